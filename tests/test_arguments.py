@@ -200,7 +200,8 @@ class Given:
             ),
             "campbell": (
                 (self.structure, self.hub),
-                {"speeds": [0.0, 1.0], "start": 0.0, "end": None, "count": 3, "modes": 2, "orders": (1, 2),
+                {"turning": None, "time": 0.0, "speeds": [0.0, 1.0],
+                "start": 0.0, "end": None, "count": 3, "modes": 2, "orders": (1, 2),
                 "name": "hub"},
             ),
             "choice_of": ((self.centrifuge, (0.05,)), {"limited": False}),
@@ -208,8 +209,11 @@ class Given:
             "compare": (tuple(self.responses), {"tolerance": 0.05, "tolerance_of": "peak", "accept": {"tip": 0.5}}),
             "compare_models": ((self.brief,), {"kinds": ("FOAM",), "progress": None}),
             "constant": ((1.0,), {}),
-            "critical_load": ((self.column, base), {"upper": None, "progress": None}),
-            "critical_speed": ((self.structure, self.hub), {"upper": None, "name": "hub", "progress": None}),
+            "critical_load": ((self.column, base), {"time": 0.0, "motion": None, "upper": None, "progress": None}),
+            "critical_speed": (
+                (self.structure, self.hub),
+                {"turning": None, "time": 0.0, "upper": None, "name": "hub", "progress": None},
+            ),
             "critical_speed_map": (
                 (self.beam, gb.Model("FOAM", y=1), self.hub, [0.1], [0.2]),
                 {"upper": None, "name": "hub", "progress": None},

@@ -83,7 +83,7 @@ class Question:
     @property
     def of_systems(self) -> bool:
         """Whether systems of bodies have an answer too."""
-        return len(self.records) > 1
+        return bool(self.answer.__annotations__["case"] == "AnyCase")
 
     def refuse(self, case: AnyCase) -> None:
         """Raise InputError if the case is a system, and only beams have an answer."""
@@ -210,30 +210,42 @@ def modes(
 
 @question(
     "critical-speed",
-    "The hub rate, load or acceleration at which the beam's equilibrium is lost.",
+    "The rate, load or acceleration at which the equilibrium of a beam or a system is lost.",
     motion=HUB,
 )
 def critical_speed(
-    case: Case,
+    case: AnyCase,
     motion: str | None = None,
     at: float | None = None,
     needs: Needs = Needs(),
     *,
     vary: Literal["rate", "loads", "acceleration"] = "rate",
+    turning: str | None = None,
     upper: float | None = None,
     progress: Callable[[str, float], None] | None = None,
 ) -> Critical:
-    """The rate of a hub, factor of the loads or acceleration of the root up to `upper` at which beams buckle."""
+    """The rate of a hub or a joint, factor of the loads or acceleration of the root up to `upper` at which beams
+    buckle.
+    """
     from gbeam.analysis.steady import stability
     from gbeam.analysis.steady.operating_point import held_base
+    from gbeam.mechanics.tree.system import System
 
-    name, time = motion_of(case.motions, motion, HUB), _time(case, at)
-    base, structure = prepared(case, name), _structure(case, needs).at_time(time)
+    name, time = motion_of(case.environments, motion, HUB), _time(case, at)
+    base, structure = prepared(case, name), _structure(case, needs)
+    options: dict[str, Any] = {"upper": upper, "progress": progress}
+    if isinstance(structure, System):
+        options |= {"motion": base, "time": time}
+    else:
+        structure = structure.at_time(time)
     if vary == "loads":
-        return stability.critical_load(structure, held_base(base, time), upper=upper, progress=progress)
+        still = None if isinstance(structure, System) else held_base(base, time)
+        return stability.critical_load(structure, still, **options)
     if vary == "acceleration":
-        return stability.buckling_acceleration(structure, upper=upper, progress=progress)
-    return replace(stability.critical_speed(structure, base, upper=upper, name=name, progress=progress), motion=name)
+        case.one_beam("bodies", "--vary acceleration")
+        return stability.buckling_acceleration(structure, **options)
+    options["motion"] = base
+    return replace(stability.critical_speed(structure, turning=turning, name=name, **options), motion=name)
 
 
 @question("plan", "Plan the axis motions of a centrifuge within its limits; needs no beam.", motion=None)
@@ -267,29 +279,30 @@ def place(case: Case, motion: str | None = None, at: float | None = None, needs:
 
 @question(
     "campbell",
-    "Frequencies against the speed of a hub, and where its multiples meet them.",
+    "Frequencies against the speed of a hub, or of a joint that turns, and where its multiples meet them.",
     motion=HUB,
     differentiable=False,
 )
 def campbell(
-    case: Case,
+    case: AnyCase,
     motion: str | None = None,
     at: float | None = None,
     needs: Needs = Needs(),
     *,
+    turning: str | None = None,
     start: float = 0.0,
     end: float | None = None,
     modes: int = 8,
     orders: int = 4,
 ) -> Campbell:
-    """Frequencies from one rate of a hub to another, rad/s, and crossings with multiples of the rate."""
+    """Frequencies from one rate of a hub or a joint to another, rad/s, and crossings with multiples of the rate."""
     from gbeam.analysis.steady import campbell
 
-    name = motion_of(case.motions, motion, HUB)
-    structure, multiples = case.assemble(), range(1, orders + 1)
+    name = motion_of(case.environments, motion, HUB)
     return campbell.campbell(
-        structure, prepared(case, name), start=start, end=end, modes=modes, orders=multiples, name=name
-    )
+        case.assemble(), prepared(case, name), turning=turning, start=start, end=end, modes=modes,
+        orders=range(1, orders + 1), time=_time(case, at), name=name,
+    )  # fmt: skip
 
 
 def machine_of(case: Case, motion: str | None) -> tuple[str, Any]:

@@ -135,7 +135,19 @@ def test_a_shell_completes_verbs_options_and_choices(
     assert answer.stdout.splitlines() == ["critical-speed", "--motion", "run static modes critical-speed plan"]
 
 
-@pytest.mark.parametrize("verb", ["campbell", "critical-speed", "plan", "place", "models"])
+@pytest.mark.parametrize("verb", ["plan", "place", "models"])
 def test_what_is_of_one_beam_refuses_a_system(verb: str, gbeam: Call) -> None:
     answer = gbeam(verb, EXAMPLES / "robot_arm.toml")
     assert answer.status == 2 and f"bodies: make a system, and gbeam {verb} is of one beam" in answer.err
+
+
+def test_a_joint_that_turns_has_a_diagram(tmp_path: Path, gbeam: Call) -> None:
+    """The base of the arm is named; the elbow, whose axis leans with it, changes the equations."""
+    arm = EXAMPLES / "robot_arm.toml"
+    asked = gbeam("campbell", arm, "--to", "30 rpm")
+    assert asked.status == 2 and "--turning is missing; say which angle turns: base.angle, elbow.angle" in asked.err
+    answer = gbeam("campbell", arm, "--turning", "base.angle", "--to", "30 rpm", "--out", tmp_path)
+    assert answer.status == 0 and "strip z" in answer.out and (tmp_path / "campbell.svg").exists()
+    assert gbeam("critical-speed", arm, "--turning", "base.angle", "--to", "10 rad/s").status == 0
+    refused = gbeam("campbell", arm, "--turning", "elbow.angle", "--to", "30 rpm")
+    assert refused.status == 2 and "joints.elbow: turns a system whose equations change" in refused.err

@@ -220,7 +220,7 @@ class SystemCase(Value):
         InputError
             Always.
         """
-        fix = "ask for run, static, modes or linearize, or sweep these; or give one [beam]"
+        fix = "ask for run, static, modes, campbell, critical-speed or linearize, or sweep these; or give one [beam]"
         raise InputError(where, f"make a system, and {what} is of one beam", fix)
 
 

@@ -80,13 +80,19 @@ IgnoreLimits = Annotated[
 
 SmoothVerb = Annotated[_Smooth, Parameter(help="Whose figures.")]
 
+# Of campbell and critical-speed.
+Turns = Annotated[
+    str | None,
+    Parameter(name="--turning", help="Of a system, the angle that turns, base.angle; else its one prescribed angle."),
+]
+
 # Of critical-speed.
 Vary = Annotated[
     Literal["rate", "loads", "acceleration"],
     Parameter(
         name="--vary",
-        help="What is raised: the hub's rate; all loads on the beam, by one factor, the base being frozen; or the "
-        "acceleration of the root along the beam, which pushes it.",
+        help="What is raised: the rate of the hub or joint; all loads on beams and points, by one factor, the base "
+        "being frozen; or the acceleration of the root along the beam, which pushes it.",
     ),
 ]
 To = Annotated[

@@ -30,7 +30,7 @@ from gbeam.results.equilibrium import CriticalMap, Deflection
 from gbeam.results.modal import Campbell, Modes, near_multiples
 from gbeam.results.result import Floats
 
-_DASHES: dict[str, Dash] = {"x": "dotted", "y": "solid", "z": "dashed"}
+_DASHES: dict[str, Dash] = {"x": "dotted", "y": "solid", "z": "dashed", "twist": "dotted"}
 SHOWN = 6  # shapes drawn
 
 
@@ -95,7 +95,8 @@ def campbell(diagram: Campbell, title: str = "", unit: tuple[float, str] = (1.0,
             texts.append((end * speed[-1], end * multiple[-1], f"{order}P"))
     for k in shown:
         way = diagram.direction[k]
-        lines.append(Line(speed, diagram.frequency[:, k], f"mode {k + 1}, {way}", colour=k % 6, dash=_DASHES[way]))
+        dash = _DASHES[way.rpartition(" ")[2]]  # of a system it has the body's name before
+        lines.append(Line(speed, diagram.frequency[:, k], f"mode {k + 1}, {way}", colour=k % 6, dash=dash))
     if diagram.crossings:
         met = sorted((factor * each.speed, each.frequency) for each in diagram.crossings)
         at, frequency = np.array(met).T

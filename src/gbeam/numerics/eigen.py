@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,6 +40,7 @@ Complex = NDArray[np.complex128]
 ZERO = 1e-11  # of the largest eigenvalue: a smaller one is rounding about zero
 # Of a mode's frequency: a base that speeds up, once frozen, feeds or drains a mode by 1e-7, and means nothing by it.
 FLUTTER = 1e-6
+EQUAL = 1e-9  # of an eigenvalue: two that differ by less are one
 UNSYMMETRIC = 1e-9  # of K: above it the loads follow the beam
 
 
@@ -73,15 +74,81 @@ def eigenvalues(
     return value, mode / weight
 
 
+class Linear(NamedTuple):
+    """M δÿ + C δẏ + K δy = B δu; C holds damping and gyroscopic coupling. (n, n), (n, n), (n, n), (n, inputs)."""
+
+    mass: Array
+    velocity: Array
+    stiffness: Array
+    inputs: Array
+
+
+class Vibrations(NamedTuple):
+    """Eigenvalues (k,) 1/s of what oscillates, one of each pair and the slowest first, with modes (n, k); of what grows
+    without oscillating, likewise; of what decays so; and the size of the largest.
+    """
+
+    value: Complex
+    modes: Complex
+    diverging: Complex
+    divergence: Complex
+    decaying: Floats
+    largest: float
+
+    @property
+    def frequency(self) -> Floats:
+        """Natural frequencies, rad/s."""
+        return np.abs(self.value)
+
+    @property
+    def flutter(self) -> NDArray[np.bool_]:
+        """Which of those that oscillate grow."""
+        return np.asarray(self.value.real > growth_limit(self.value, self.largest))
+
+
+def vibrations(linear: Linear, *, gyroscopic: bool = True, zero: float = ZERO) -> Vibrations:
+    """Small motions about an equilibrium, without those whose eigenvalues are less than a share of the largest."""
+    value, mode = eigenvalues(*linear[:3], gyroscopic=gyroscopic)
+    size = float(np.abs(value).max(initial=0.0))
+    moving, real = np.abs(value) > zero * size, np.abs(value.imag) <= ZERO * size
+
+    def chosen(which: NDArray[np.bool_]) -> tuple[Complex, Complex]:
+        order = np.flatnonzero(moving & which)
+        order = order[np.argsort(np.abs(value[order]), kind="stable")]
+        return value[order], _told_apart(value[order], mode[:, order], linear.mass)
+
+    decaying = np.sort(value[moving & real & (value.real < 0)].real)
+    return Vibrations(*chosen(~real & (value.imag > 0)), *chosen(real & (value.real > 0)), decaying, size)
+
+
+def _told_apart(value: Complex, modes: Complex, mass: Floats) -> Complex:
+    """Modes (n, k) of which those of one eigenvalue, such as two equal beams have, are along their principal axes in a
+    measure that counts later coordinates more: of any that span the same, these are the ones.
+    """
+    ends = np.flatnonzero(np.abs(np.diff(value)) > EQUAL * np.abs(value[1:])) + 1
+    out = modes.copy()
+    size = np.sqrt(np.arange(1.0, len(mass) + 1))
+    for some in np.split(np.arange(len(value)), ends):
+        if len(some) > 1:
+            of = modes[:, some]
+            of = of @ np.linalg.inv(np.linalg.cholesky(of.conj().T @ mass @ of)).conj().T
+            weighed = size[:, None] * of
+            out[:, some] = of @ np.linalg.eigh(weighed.conj().T @ mass @ weighed)[1]
+    return out
+
+
 def unsymmetric(stiffness: Floats) -> bool:
     """Whether a stiffness (n, n) is that of loads that follow the beam, and feed it or take from it."""
     return bool(np.abs(stiffness - stiffness.T).max() > UNSYMMETRIC * np.abs(stiffness).max())
 
 
-def stability_margin(mass: Floats, velocity: Floats, stiffness: Floats) -> float:
-    """Positive while nothing grows, rad²/s²: by K's lowest eigenvalue, or, where K is unsymmetric, by all of them."""
+def stability_margin(mass: Floats, velocity: Floats, stiffness: Floats, zero: float = 0.0) -> float:
+    """Positive while nothing grows, rad²/s²: by K's lowest eigenvalue, or, where K is unsymmetric, by all of them; a
+    share `zero` of the largest is rounding about none.
+    """
     if not unsymmetric(stiffness):
-        return float(symmetric_modes(symmetric(stiffness), symmetric(mass))[0][0])
+        square = symmetric_modes(symmetric(stiffness), symmetric(mass))[0]
+        return float(square[0] + zero * np.abs(square).max())
     value, _ = eigenvalues(mass, velocity, stiffness)
     return float((growth_limit(value, np.abs(value).max()) - value.real).min())
 

@@ -140,7 +140,10 @@ class Modes(Figured):
 
 
 def along(direction: str) -> str:
-    """Words for the direction of a mode: along z, or in twist."""
+    """Words for the direction of a mode: along z, in twist, or of a system's body along its z."""
+    body, _, direction = direction.rpartition(" ")
+    if body:
+        return f"of {body} along its {direction}"
     return f"in {direction}" if direction == "twist" else f"along {direction}"
 
 

@@ -11,11 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gbeam.analysis.steady.frequency_errors import doubtful, pole_errors
-from gbeam.analysis.steady.modal import modes_at
+from gbeam.analysis.steady.modal import instabilities
 from gbeam.analysis.steady.operating_point import (
     REST,
     OperatingPoint,
-    linear_matrices,
     on_base,
     on_hub,
     operating_point,
@@ -313,7 +312,7 @@ def linearize(
             point = on_hub(structure, hub, rate, q=q, qd=qd)
         else:
             point = on_base(structure, steady_base(hub, rate), q, qd)
-    linear = linear_matrices(point)
+    linear = point.linear
     n = len(linear.mass)
     measured = outputs_of(structure, point, gauges)
     value, d = measured.matrices(np.concatenate([point.y, point.yd, point.ydd, point.u]))
@@ -341,12 +340,12 @@ def linearize(
     frequency, errors = np.zeros(0), None
     if q is None and qd is None:
         if structure.source is not None:
-            frequency, errors = pole_errors(structure, point, linear)
+            frequency, errors = pole_errors(structure, point)
             warnings += doubtful(errors) if errors.within(ACCURATE) == 0 else ()
         warnings += tuple(
             f"the operating point is not stable: {each.kind} {along(each.direction)}, growing with "
             f"{each.growth_rate:.4g} 1/s"
-            for each in modes_at(structure, point, linear).instabilities
+            for each in instabilities(point, point.moving)
         )
     return StateSpace(
         a=a,

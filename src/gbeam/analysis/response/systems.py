@@ -230,6 +230,6 @@ def _described(
         steps=len(every.time) - 1,
         error_estimate=error,
         kept_every=settings.kept_every(len(kept.time), run.step * stride),
-        warnings=warnings + tuple(w for body in system.bodies.values() for w in getattr(body, "warnings", ())),
+        warnings=warnings + system.warnings,
         **over_time,
     )

@@ -6,19 +6,20 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from gbeam.analysis.accuracy.estimate import LIMIT, apart, percent, wrong_by
 from gbeam.analysis.steady.frequency_errors import Richer, doubtful
-from gbeam.analysis.steady.modal import modes_at
-from gbeam.analysis.steady.operating_point import OperatingPoint, linear_matrices, on_base, on_hub, steady_base
-from gbeam.analysis.steady.stability import critical_speed, hub_of
+from gbeam.analysis.steady.operating_point import OperatingPoint
+from gbeam.analysis.steady.stability import critical_speed, turned
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.system import System
+from gbeam.motion.profiles.profile import Profile
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.eigen import mac, matched
 from gbeam.results.errors import PARTS, ErrorEstimate, FrequencyErrors
@@ -57,24 +58,30 @@ def _fill(at: Callable[[float], _Speed], low: _Speed, high: _Speed, count: int, 
 
 @typed
 def campbell(
-    structure: Structure,
-    motion: Motion,
+    structure: Structure | System,
+    motion: Motion | None = None,
     *,
+    turning: str | None = None,
     speeds: Sequence[float] | Floats | None = None,
     start: float = 0.0,
     end: float | None = None,
     count: int = 60,
     modes: int = 8,
     orders: Sequence[int] = (1, 2, 3, 4),
+    time: float = 0.0,
     name: str = "",
 ) -> Campbell:
-    """Frequencies about the relative equilibrium against the speed of a hub.
+    """Frequencies about the relative equilibrium against the speed of a hub, or of a system's joint that turns.
 
     Parameters
     ----------
-    structure : Structure
-    motion : Hub
-        Its own rate or torque is not used; a free hub turns with the beam.
+    structure : Structure or System
+    motion : Hub, optional
+        Its own rate or torque is not used; a free hub turns with the beam. A system needs none where one of its joints
+        turns.
+    turning : str, optional
+        Of a system: the joint's angle that turns, ``joint.angle``; without a hub by default the only prescribed one. An
+        angle that is not prescribed turns with the bodies, as a free hub does.
     speeds : (v,), optional
         Rates of the hub to begin with, ascending, rad/s; in their place `start`, `end` and `count`.
     start, end : float
@@ -85,6 +92,8 @@ def campbell(
         How many to follow, the lowest at the start.
     orders : sequence of int
         Engine orders: a crossing is where frequency = order × speed.
+    time : float
+        Of a system: when its loads and other joints are frozen, s.
     name : str
         For the result.
 
@@ -96,7 +105,8 @@ def campbell(
     Raises
     ------
     InputError
-        If the motion has no hub, the range is empty, or no mode is to be followed.
+        If the motion has no hub, the range is empty, no mode is to be followed, or the equations of a system change as
+        it turns: gravity across the axis, or a rotor that is not alike about its axis on a tower that gives way.
 
     Examples
     --------
@@ -109,28 +119,30 @@ def campbell(
     [[ 36.56 182.78]
      [ 37.08 182.86]]
     """
-    hub = hub_of(motion, "a Campbell diagram", "ask `gbeam modes` for its frequencies at a time", name)
+    instead = "ask `gbeam modes` for its frequencies at a time"
+    path, history = turned(structure, motion, turning, time, "a Campbell diagram", instead, name)
     if speeds is None:
-        speeds = np.linspace(start, largest_rate(hub, name) if end is None else end, count + 1)
+        speeds = np.linspace(start, _largest(history) if end is None else end, count + 1)
     grid = np.asarray(speeds, dtype=float)
     start, end = float(grid[0]), float(grid[-1])
     if grid.ndim != 1 or len(grid) < 2 or not start >= 0 or not (np.diff(grid) > 0).all():
         raise InputError("to", f"is {end:g} rad/s, from {start:g} rad/s", "give a range of speeds that ascends from 0")
     if modes < 1:
         raise InputError("modes", f"is {modes}", "give 1 or more")
-    lost = critical_speed(structure, motion, upper=end)
+    lost = critical_speed(structure, motion, turning=turning, upper=end, time=time, name=name)
     # The last speed is short of the critical one, where a frequency is zero.
     last = end if lost.value is None or lost.value <= start else start + (lost.value - start) * (1 - 1e-6)
 
-    def point_at(rate: float) -> OperatingPoint:
-        return on_hub(structure, hub, rate) if hub.free else on_base(structure, steady_base(hub, rate))
+    def point_at(rate: float) -> Any:
+        return path(structure, rate)
 
     def at(rate: float) -> _Speed:
-        point = point_at(rate)
-        linear = linear_matrices(point)
-        at_rate = modes_at(structure, point, linear)
-        beam = linear.mass[point.first :, point.first :]
-        return _Speed(rate, at_rate.frequency, at_rate.damping_ratio, at_rate.coordinates, beam, at_rate.direction)
+        state = point_at(rate)
+        moving, first = state.moving, state.first
+        damping = -moving.value.real / moving.frequency
+        mass = state.linear.mass[first:, first:]
+        directions = state.directions(moving.modes)
+        return _Speed(rate, moving.frequency / (2 * np.pi), damping, moving.modes[first:].T, mass, directions)
 
     coarse = [at(float(rate)) for rate in start + (grid - start) * (last - start) / (end - start)]
     kept = min(modes, len(coarse[0].frequency))
@@ -159,7 +171,7 @@ def campbell(
         for each in _crossings(at, followed, index, rates, frequency[:, k], k, order)
     ]
     crossings, errors = [crossing for crossing, _, _ in met], None
-    if structure.source is not None:
+    if isinstance(structure, Structure) and structure.source is not None:
         until = len(rates) - 1 if lost.value is None else int(np.searchsorted(rates, SURE * last, "right")) - 1
         richer = Richer(structure, point_at(float(rates[until])).base)
         looked = [
@@ -171,7 +183,8 @@ def campbell(
             replace(crossing, errors=crossing_errors(crossing, mode, slope, richer, point_at))
             for crossing, mode, slope in met
         ]
-    warnings = input_warnings(structure, motion, name=name) + (() if errors is None else doubtful(errors))
+    doubts = structure.warnings if isinstance(structure, System) else input_warnings(structure, motion, name=name)
+    warnings = doubts + (() if errors is None else doubtful(errors))
     warnings += doubtful_crossings(crossings, "" if errors is None else errors.theory)
     if lost.value is not None:
         warnings += tuple(each for each in lost.warnings if each not in warnings)
@@ -294,10 +307,9 @@ def doubtful_crossings(crossings: Sequence[Crossing], theory: str) -> tuple[str,
 _SAMPLES = 501
 
 
-def largest_rate(motion: Motion, name: str = "") -> float:
-    """Largest rate that a hub with a prescribed rate reaches, rad/s."""
-    hub = hub_of(motion, "a range of speeds", "ask `gbeam modes` for frequencies at a time", name)
-    if hub.rate is None:
-        raise InputError("speeds", "are not given, and the hub is driven by a torque", "give the largest speed")
-    ends = np.append(np.asarray(hub.rate.breaks), 0.0)
-    return float(np.abs(np.asarray(hub.rate(np.linspace(ends.min(), ends.max(), _SAMPLES)))).max())
+def _largest(rate: Profile | None) -> float:
+    """Largest rate of a history, rad/s."""
+    if rate is None:
+        raise InputError("speeds", "are not given, and no rate is prescribed", "give the largest speed")
+    ends = np.append(np.asarray(rate.breaks), 0.0)
+    return float(np.abs(np.asarray(rate(np.linspace(ends.min(), ends.max(), _SAMPLES)))).max())

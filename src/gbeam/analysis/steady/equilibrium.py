@@ -139,8 +139,8 @@ def _near(structure: Structure, q: Array, other: Array) -> bool:
 
 def keeps(c: Coefficients, base: Base, values: Array | None) -> bool:
     """Whether a beam keeps an equilibrium, by the coefficients about it: where loads follow it, by what may grow."""
-    frozen = c.frozen(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, values)
-    return stability_margin(*(np.asarray(each) for each in (c.mass, *frozen))) > 0
+    mass, velocity, stiffness = map(np.asarray, (c.mass, *c.frozen(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, values)))
+    return stability_margin(mass, velocity, stiffness) > 0
 
 
 def _newton(

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from gbeam.analysis.accuracy.beam_theory import described, mode_causes
 from gbeam.analysis.accuracy.estimate import LIMIT, percent, wrong_by
 from gbeam.analysis.steady.equilibrium import equilibrium_about
-from gbeam.analysis.steady.operating_point import Linear, OperatingPoint, stepped
+from gbeam.analysis.steady.operating_point import OperatingPoint, stepped
 from gbeam.errors import ComputationError
 from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.equations.hub import free_hub
@@ -23,7 +23,7 @@ from gbeam.mechanics.models import TORSION
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import theory_of
 from gbeam.motion.bases.base import Base
-from gbeam.numerics.eigen import ZERO, eigenvalues, mac, matched
+from gbeam.numerics.eigen import Linear, mac, matched, vibrations
 from gbeam.results.errors import PARTS, ErrorEstimate, FrequencyErrors
 from gbeam.results.result import Complex, Floats
 
@@ -125,13 +125,11 @@ class Richer:
         )
 
 
-def pole_errors(structure: Structure, point: OperatingPoint, linear: Linear) -> tuple[Floats, FrequencyErrors]:
+def pole_errors(structure: Structure, point: OperatingPoint) -> tuple[Floats, FrequencyErrors]:
     """Frequencies (k,) Hz of the poles that oscillate about an operating point, ascending, and their errors."""
-    value, mode = eigenvalues(*linear[:3])
-    oscillating = np.flatnonzero(value.imag > ZERO * np.abs(value).max())
-    chosen = oscillating[np.argsort(np.abs(value[oscillating]), kind="stable")]
-    errors = Richer(structure, point.base).errors(point, value[chosen], mode[point.first :, chosen].T)
-    return np.abs(value[chosen]) / (2 * np.pi), errors
+    moving = point.moving
+    errors = Richer(structure, point.base).errors(point, moving.value, moving.modes[point.first :].T)
+    return moving.frequency / (2 * np.pi), errors
 
 
 def _frequencies(
@@ -149,10 +147,8 @@ def _frequencies(
 
 def _oscillating(linear: Linear, first: int, *, gyroscopic: bool) -> tuple[Floats, Complex]:
     """Circular frequencies (k,) of the modes that oscillate, ascending, and the beam's coordinates in them, (k, n)."""
-    value, mode = eigenvalues(*linear[:3], gyroscopic=gyroscopic)
-    chosen = np.flatnonzero(value.imag > 0)
-    chosen = chosen[np.argsort(np.abs(value[chosen]), kind="stable")]
-    return np.abs(value[chosen]), mode[first:, chosen].T
+    moving = vibrations(linear, gyroscopic=gyroscopic)
+    return moving.frequency, moving.modes[first:].T
 
 
 def _about_equilibrium(rich: Structure, point: OperatingPoint) -> Linear:

@@ -3,24 +3,25 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
+from typing import Any, Protocol
 
 import numpy as np
 
 from gbeam.analysis.accuracy.beam_theory import described, mode_causes
 from gbeam.analysis.accuracy.estimate import LIMIT, apart, percent, wrong_by
-from gbeam.analysis.steady.frequency_errors import resting
-from gbeam.analysis.steady.modal import directions, modes_at
-from gbeam.analysis.steady.operating_point import OperatingPoint, linear_matrices, on_base
+from gbeam.analysis.steady.modal import instabilities
+from gbeam.analysis.steady.operating_point import OperatingPoint, Steady
 from gbeam.errors import ComputationError
 from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import theory_of
+from gbeam.mechanics.tree.system import System
 from gbeam.motion.bases.base import Base
-from gbeam.numerics.eigen import stability_margin, symmetric_modes
+from gbeam.numerics.eigen import symmetric, symmetric_modes
 from gbeam.progress import Progress, tell
 from gbeam.results.equilibrium import Critical
 from gbeam.results.errors import ErrorEstimate
@@ -30,54 +31,59 @@ from gbeam.results.result import Floats
 SCAN = 64  # points at which a loss is looked for before its root is closed in on
 
 
-def _point(structure: Structure, base: Base) -> OperatingPoint | None:
+class Path(Protocol):
+    """Steady states of a structure or a system, or of richer ones, as a quantity grows."""
+
+    def __call__(self, of: Any, value: float, /) -> Steady:
+        """Return the steady state; raises ComputationError where there is none."""
+        ...
+
+
+def _state(path: Path, of: Any, value: float) -> Steady | None:
     try:
-        return on_base(structure, base)
-    except ComputationError:
+        return path(of, value)
+    except (ComputationError, np.linalg.LinAlgError):
         return None
 
 
-def first_loss_along(
-    path: Callable[[float], tuple[Structure, Base]], upper: float, quantity: str, unit: str
-) -> Critical:
+def first_loss_along(path: Path, of: Structure | System, upper: float, quantity: str, unit: str) -> Critical:
     """Raise a quantity from zero until the relative equilibrium is lost: first on a grid of 64 points, then by Brent's
     method.
     """
 
     @cache
     def margin(value: float) -> float:
-        point = _point(*path(value))
-        return -1.0 if point is None else stability_margin(*linear_matrices(point)[:3])
+        state = _state(path, of, value)
+        return -1.0 if state is None else state.margin
 
     def answer(value: float | None, kind: str, direction: str, reason: str) -> Critical:
-        words = kind, direction, reason, structure.kind
-        return Critical(quantity, unit, value, upper, *words, warnings=input_warnings(structure))
+        words = kind, direction, reason, of.kind
+        doubts = of.warnings if isinstance(of, System) else input_warnings(of)
+        return Critical(quantity, unit, value, upper, *words, warnings=doubts)
 
-    structure, _ = path(0.0)
     grid = [float(value) for value in np.linspace(0.0, upper, SCAN + 1)]
     first = next((i for i, value in enumerate(grid) if margin(value) < 0), None)
     if first is None:
-        why = f"{structure.kind} keeps its equilibrium at every {quantity} up to {upper:.4g} {unit}"
+        why = f"{of.kind} keeps its equilibrium at every {quantity} up to {upper:.4g} {unit}"
         return answer(None, "none", "", why)
     if first == 0:
-        return answer(0.0, "divergence", "", "the beam is unstable before anything moves")
+        which = "system" if isinstance(of, System) else "beam"
+        return answer(0.0, "divergence", "", f"the {which} is unstable before anything moves")
     from scipy.optimize import brentq
 
     root = brentq(margin, grid[first - 1], grid[first], xtol=1e-11, maxiter=200)
-    point = _point(*path(root)) or on_base(*path(grid[first - 1]))
-    beyond = _point(*path(root * (1 + 1e-5)))
+    state = _state(path, of, root) or path(of, grid[first - 1])
+    beyond = _state(path, of, root * (1 + 1e-5))
     if beyond is None:
         kind, direction = "no equilibrium", ""
     else:
-        grown = modes_at(structure, beyond).instabilities
+        grown = instabilities(beyond, beyond.moving)
         kind, direction = (grown[0].kind, grown[0].direction) if grown else ("divergence", "")
     if kind == "divergence":
-        linear = linear_matrices(point)
-        parts = ((each + each.T) / 2 for each in (linear.stiffness, linear.mass))  # the rest stores no energy
-        lowest = symmetric_modes(*parts)[1][:, :1]
-        direction = directions(structure, point, lowest)[0]
+        parts = (symmetric(each) for each in (state.linear.stiffness, state.linear.mass))  # the rest stores no energy
+        direction = state.directions(symmetric_modes(*parts)[1][:, :1])[0]
     way = f" {along(direction)}" if direction else ""
-    return answer(root, kind, direction, f"{structure.kind}: {kind}{way} at {root:.6g} {unit}")
+    return answer(root, kind, direction, f"{of.kind}: {kind}{way} at {root:.6g} {unit}")
 
 
 # Shares of the critical value at which richer models are looked at, from below.
@@ -85,18 +91,18 @@ SHARES = 0.25, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.995, 1.005, 1.02, 1.05, 1.1, 1.
 HALVINGS = 16
 CLOSE = 1e-6  # of the critical value: how closely a root is found
 
-Path = Callable[[float], tuple[Structure, Base]]
 
-
-def judged(critical: Critical, path: Path, progress: Progress = None) -> Critical:
+def judged(critical: Critical, path: Path, structure: Structure | System, progress: Progress = None) -> Critical:
     """A critical value with its estimated errors, and warnings where they are above one in a hundred."""
-    structure, _ = path(0.0)
-    if structure.source is None or critical.value == 0:
+    if isinstance(structure, System) or structure.source is None or critical.value == 0:
         return critical
     if critical.value is None:
-        return replace(critical, warnings=critical.warnings + _unseen(critical, path, progress))
+        return replace(critical, warnings=critical.warnings + _unseen(critical, path, structure, progress))
     at, (_, along_y, along_z, *_) = critical.value, structure.counts
-    more, directions = enrichment(structure, path(at)[1]), (True, along_y > 0, along_z > 0)
+    point = path(structure, (1 - CLOSE) * at)
+    assert isinstance(point, OperatingPoint)
+    base, values = point.base, point.structure.load_values
+    more, directions = enrichment(structure, base), (True, along_y > 0, along_z > 0)
 
     def lost(kind: str) -> float:
         return _lost(more.model(kind, directions=directions)[0], path, at, progress)
@@ -110,25 +116,25 @@ def judged(critical: Critical, path: Path, progress: Progress = None) -> Critica
     model, total = (math.inf, math.inf) if math.isinf(exact) else (abs(same / exact - 1), abs(at / exact - 1))
     beam_theory = max(apart(at if math.isinf(slender) else slender, each) for each in thick)
     errors = ErrorEstimate(0.0, shapes, model, total=total).with_theory(0.0 if math.isinf(model) else beam_theory)
-    lowest = _lowest(theory.slender, *path(at))[:, : theory.own]
-    causes = mode_causes(theory, path(at)[1], path(at)[0].load_values, lowest, np.zeros(1), plate)
+    lowest = _lowest(theory.slender, values, base)[:, : theory.own]
+    causes = mode_causes(theory, base, values, lowest, np.zeros(1), plate)
     doubts = doubtful_loss(critical.quantity, critical.model, errors, described(structure, causes))
     return replace(critical, errors=errors, warnings=critical.warnings + doubts)
 
 
-def _lowest(slender: Structure, structure: Structure, base: Base) -> Floats:
+def _lowest(slender: Structure, values: Any, base: Base) -> Floats:
     """Shape (1, n) along which a slender beam has the least stiffness."""
     motion = base.a_WO_B, base.w_WB_B, base.alpha_WB_B
-    stiffness = slender.coefficients.at(*motion, structure.load_values)[1]
+    stiffness = slender.coefficients.at(*motion, values)[1]
     return symmetric_modes((stiffness + stiffness.T) / 2, slender.coefficients.mass)[1][:, :1].T
 
 
-def _unseen(critical: Critical, path: Path, progress: Progress) -> tuple[str, ...]:
+def _unseen(critical: Critical, path: Path, structure: Structure, progress: Progress) -> tuple[str, ...]:
     """Warn where a beam that twists loses what a model without torsion keeps (a strip on edge), at halves of the
     search's end.
     """
     shares = tuple(2.0**-k for k in range(HALVINGS, -1, -1))
-    lost = _lost(theory_of(path(0.0)[0]).thick, path, critical.searched_to, progress, shares)
+    lost = _lost(theory_of(structure).thick, path, critical.searched_to, progress, shares)
     if math.isinf(lost):
         return ()
     return (
@@ -137,16 +143,13 @@ def _unseen(critical: Critical, path: Path, progress: Progress) -> tuple[str, ..
     )
 
 
-def _lost(rich: Structure, path: Path, near: float, progress: Progress, shares: Sequence[float] = SHARES) -> float:
+def _lost(rich: Any, path: Path, near: float, progress: Progress, shares: Sequence[float] = SHARES) -> float:
     """Value at which a richer model loses its equilibrium; infinity where it keeps it to the last of the shares."""
 
     @cache
     def margin(value: float) -> float:
-        structure, base = path(value)
-        try:
-            return stability_margin(*resting(replace(rich, load_values=structure.load_values), base)[:3])
-        except (ComputationError, np.linalg.LinAlgError):
-            return -1.0
+        state = _state(path, rich, value)
+        return -1.0 if state is None else state.margin
 
     from scipy.optimize import brentq
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -16,20 +16,14 @@ from gbeam.mechanics.equations.residuals import OnBase, OnHub
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base, mapped
 from gbeam.motion.protocol import Motion
+from gbeam.numerics.eigen import Linear, Vibrations, stability_margin, vibrations
 from gbeam.numerics.series import complex_step
+from gbeam.results.modal import outermost
 from gbeam.results.response import BaseMotion
+from gbeam.results.result import Complex, Floats
 
 Array = Any
 REST = Base(*np.zeros((3, 3)))
-
-
-class Linear(NamedTuple):
-    """M δÿ + C δẏ + K δy = B δu; C holds damping and gyroscopic coupling. (n, n), (n, n), (n, n), (n, inputs)."""
-
-    mass: Array
-    velocity: Array
-    stiffness: Array
-    inputs: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +60,79 @@ class OperatingPoint:
     def frozen(self) -> BaseMotion:
         """The base's motion as a record."""
         return frozen(self.base)
+
+    @cached_property
+    def linear(self) -> Linear:
+        """M, C, K and B of small departures."""
+        return linear_matrices(self)
+
+    @cached_property
+    def moving(self) -> Vibrations:
+        """What oscillates, grows and decays about it."""
+        return vibrations(self.linear)
+
+    @property
+    def margin(self) -> float:
+        """Positive while nothing grows: see :func:`stability_margin`."""
+        return stability_margin(*self.linear[:3])
+
+    def directions(self, modes: Complex | Floats) -> tuple[str, ...]:
+        """Axis along which each mode (n, k) moves the structure most, or twist where that moves the sections' edges
+        more than their centres.
+        """
+        structure, coordinates = self.structure, modes[self.first :]
+        particles, stations = structure.particles.slopes(self.q), structure.station_slopes(self.q)
+        moved = np.abs(np.concatenate([particles, stations]) @ coordinates).max(axis=0)
+        ways = ["xyz"[i] for i in moved.argmax(axis=0)]
+        twist = structure.station_twist(self.q)
+        if twist is not None:
+            twisted, moved = (np.abs(each @ coordinates) for each in (extent(structure)[:, None] * twist, stations))
+            more = twisted.max(axis=0) > moved.max(axis=(0, 1))
+            ways = ["twist" if each else way for way, each in zip(ways, more, strict=True)]
+        return tuple(ways)
+
+
+class Steady(Protocol):
+    """A steady state of a structure or of a system, and small departures from it."""
+
+    @property
+    def first(self) -> int:
+        """Index of the first coordinate by which modes are recognised."""
+        ...
+
+    @property
+    def linear(self) -> Linear:
+        """M, C and K of small departures."""
+        ...
+
+    @property
+    def moving(self) -> Vibrations:
+        """What oscillates, grows and decays about it."""
+        ...
+
+    @property
+    def margin(self) -> float:
+        """Positive while nothing grows."""
+        ...
+
+    def directions(self, modes: Complex) -> tuple[str, ...]:
+        """Words for what each mode (n, k) moves most."""
+        ...
+
+
+def extent(structure: Structure) -> Floats:
+    """Distance of the outermost fibres from the axis at the stations, m."""
+    of = drawn(structure)
+    return outermost(of["width"], of["thickness"], is_round=of["round"])
+
+
+def drawn(structure: Structure) -> dict[str, Any]:
+    """The beam as a picture of the shapes needs it."""
+    if structure.source is None or structure.traced:
+        return {}
+    section = structure.source.beam.section.at(structure.stations)
+    width, thickness = section.extents()
+    return {"width": width, "thickness": thickness, "round": section.round}
 
 
 def frozen(base: Base) -> BaseMotion:

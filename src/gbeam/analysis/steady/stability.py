@@ -15,7 +15,8 @@ from dataclasses import replace
 import numpy as np
 
 from gbeam.analysis.steady.loss import Path, doubtful_loss, first_loss_along, judged
-from gbeam.analysis.steady.operating_point import REST, steady_base
+from gbeam.analysis.steady.operating_point import REST, OperatingPoint, on_base, on_hub, steady_base
+from gbeam.analysis.system.steady import Drive, Loaded, Turning, turning_of
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
@@ -23,8 +24,10 @@ from gbeam.mechanics.assembly import assemble
 from gbeam.mechanics.models import Model
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.system import System
 from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.hub import Hub
+from gbeam.motion.profiles.profile import Profile
 from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress, tell
 from gbeam.results.equilibrium import Critical, CriticalMap, MapErrors
@@ -55,22 +58,28 @@ def lowest_frequency(structure: Structure) -> float:
 
 @typed
 def critical_speed(
-    structure: Structure,
-    motion: Motion,
+    structure: Structure | System,
+    motion: Motion | None = None,
     *,
+    turning: str | None = None,
     upper: float | None = None,
+    time: float = 0.0,
     name: str = "",
     progress: Progress = None,
 ) -> Critical:
-    """Lowest hub rate at which the beam's relative equilibrium is lost, the hub's rate being held.
+    """Lowest rate at which the relative equilibrium on a hub, or of a system that turns, is lost, the rate being held.
 
     Parameters
     ----------
-    structure : Structure
-    motion : Hub
-        Its own rate or torque is not used.
+    structure : Structure or System
+    motion : Hub, optional
+        Its own rate or torque is not used. A system needs none where one of its joints turns.
+    turning : str, optional
+        Of a system: the joint's angle that turns, ``joint.angle``; without a hub by default the only prescribed one.
     upper : float, optional
         End of the search, rad/s; by default ten times the lowest natural frequency.
+    time : float
+        Of a system: when its loads and other joints are frozen, s.
     name : str
         Of the motion, for what is said of it.
     progress : callable or bool, optional
@@ -85,7 +94,7 @@ def critical_speed(
     Raises
     ------
     InputError
-        If the motion has no hub.
+        If the motion has no hub, a system has no such angle, or its equations change as it turns.
 
     Examples
     --------
@@ -98,14 +107,49 @@ def critical_speed(
     >>> print(f"{loss.value:.4g} rad/s")
     1148 rad/s
     """
-    hub = hub_of(motion, "a critical speed", INSTEAD, name)
-    limit = SEARCH_FACTOR * lowest_frequency(structure) if upper is None else positive("to", upper, "rad/s")
-    turning = _turning(structure, hub)
-    return judged(first_loss_along(turning, limit, "hub rate", "rad/s"), turning, progress)
+    path, _ = turned(structure, motion, turning, time, "a critical speed", INSTEAD, name, held=True)
+    if upper is not None:
+        limit = positive("to", upper, "rad/s")
+    elif isinstance(structure, Structure):
+        limit = SEARCH_FACTOR * lowest_frequency(structure)
+    else:
+        limit = SEARCH_FACTOR * float(path(structure, 0.0).moving.frequency.min(initial=np.inf))
+        if not np.isfinite(limit):
+            raise InputError("to", "is missing, and nothing oscillates at rest", "give the end of the search")
+    if isinstance(path, Turning) and isinstance(structure, System):
+        path.refuse_changing(structure, limit / SEARCH_FACTOR)
+    words = "hub rate" if isinstance(structure, Structure) else "rate"
+    return judged(first_loss_along(path, structure, limit, words, "rad/s"), path, structure, progress)
 
 
-def _turning(structure: Structure, hub: Hub) -> Path:
-    return lambda rate: (structure, steady_base(hub, rate))
+def turned(
+    structure: Structure | System,
+    motion: Motion | None,
+    turning: str | None,
+    time: float,
+    what: str,
+    instead: str,
+    name: str,
+    *,
+    held: bool = False,
+) -> tuple[Path, Profile | None]:
+    """Steady states of a structure on a hub, or of a system that turns, by the rate, and the rate's own history."""
+    if isinstance(structure, System):
+        coordinate = turning_of(structure, motion, turning)
+        joint, _, angle = coordinate.rpartition(".")
+        history = structure.joints[joint].rates.get(angle) if joint else motion.rate  # type: ignore[union-attr]
+        return Turning(Drive(motion, time, coordinate), held), history
+    if turning is not None:
+        raise InputError("turning", "is given of one beam", "leave it out: its hub turns")
+    if motion is None:
+        raise InputError("motion", f"is missing: {what} needs a hub", "give gb.Hub(radius=...)")
+    hub, values = hub_of(motion, what, instead, name), structure.load_values
+
+    def path(of: Structure, rate: float) -> OperatingPoint:
+        of = replace(of, load_values=values)
+        return on_hub(of, hub, rate) if hub.free and not held else on_base(of, steady_base(hub, rate))
+
+    return path, hub.rate
 
 
 @typed
@@ -164,8 +208,9 @@ def critical_speed_map(
         for j, at in enumerate(positions):
             tell(progress, "critical hub rates", (i * len(positions) + j) / speed.size)
             loaded = replace(beam, masses=(*beam.masses, PointMass(at, mass)))
-            turning = _turning(assemble(loaded, model), hub)
-            loss = judged(first_loss_along(turning, limit, "hub rate", "rad/s"), turning)
+            structure = assemble(loaded, model)
+            path, _ = turned(structure, hub, None, 0.0, "", "", "", held=True)
+            loss = judged(first_loss_along(path, structure, limit, "hub rate", "rad/s"), path, structure)
             speed[i, j] = np.nan if loss.value is None else loss.value
             for part in PARTS:
                 getattr(errors, part)[i, j] = getattr(loss.errors, part)
@@ -204,26 +249,41 @@ def buckling_acceleration(structure: Structure, *, upper: float | None = None, p
     """
     limit = SEARCH_FACTOR * lowest_frequency(structure) ** 2 * structure.length if upper is None else upper
 
-    def pushed(acceleration: float) -> tuple[Structure, Base]:
-        return structure, Base(np.array([acceleration, 0.0, 0.0]), np.zeros(3), np.zeros(3))
+    values = structure.load_values
 
-    return judged(first_loss_along(pushed, limit, "acceleration along x", "m/s²"), pushed, progress)
+    def pushed(of: Structure, acceleration: float) -> OperatingPoint:
+        base = Base(np.array([acceleration, 0.0, 0.0]), np.zeros(3), np.zeros(3))
+        return on_base(replace(of, load_values=values), base)
+
+    lost = first_loss_along(pushed, structure, limit, "acceleration along x", "m/s²")
+    return judged(lost, pushed, structure, progress)
 
 
 @typed
 def critical_load(
-    structure: Structure, base: Base | None = None, *, upper: float | None = None, progress: Progress = None
+    structure: Structure | System,
+    base: Base | None = None,
+    *,
+    time: float = 0.0,
+    motion: Motion | None = None,
+    upper: float | None = None,
+    progress: Progress = None,
 ) -> Critical:
-    """Factor on all loads on the beam at which its relative equilibrium is lost.
+    """Factor on all loads on the beam, or on a system's beams and points, at which the relative equilibrium is lost.
 
     Euler's column under a dead load (π²/4 EI/L²), Beck's under one that follows the tip (20.05 EI/L², flutter).
 
     Parameters
     ----------
-    structure : Structure
-        With loads, of time zero or of its :meth:`~gbeam.Structure.at_time`.
+    structure : Structure or System
+        With loads, a structure's of time zero or of its :meth:`~gbeam.Structure.at_time`. Gravity and drives of a
+        system stay as they are.
     base : Base, optional
-        Frozen motion of the base, arrays (3,); by default at rest.
+        Frozen motion of a structure's base, arrays (3,); by default at rest.
+    time : float
+        Of a system: when its loads, drives and motion are frozen, s.
+    motion : Flight, Centrifuge or Hub, optional
+        Of a system's ground, at rest without one.
     upper : float, optional
         End of the search; by default ten times the factor that makes the loads' stiffness as large as the beam's.
     progress : callable or bool, optional
@@ -247,17 +307,25 @@ def critical_load(
     >>> print(f"{euler.value:.4g} N")
     204.9 N
     """
-    values = structure.load_values
-    share = 0.0 if values is None else _share(structure, values)
-    if values is None or share < NOTHING:
+    path: Path
+    if isinstance(structure, System):
+        path = Loaded(Drive(motion, time))
+        share = path.share(structure)
+    else:
+        values = structure.load_values
+        share = 0.0 if values is None else _share(structure, values)
+
+        def path(of: Structure, factor: float) -> OperatingPoint:
+            return on_base(
+                replace(of, load_values=None if values is None else factor * values), REST if base is None else base
+            )
+
+    if share < NOTHING:
         fix = "add one, or give a time at which one acts; `gbeam critical-speed` can raise a hub's rate instead"
-        raise InputError("beam.loads", "has none that acts", fix)
+        raise InputError("forces" if isinstance(structure, System) else "beam.loads", "has none that acts", fix)
     limit = SEARCH_FACTOR / share if upper is None else positive("to", upper, "times the loads")
-
-    def loaded(factor: float) -> tuple[Structure, Base]:
-        return replace(structure, load_values=factor * values), REST if base is None else base
-
-    return judged(first_loss_along(loaded, limit, "load factor", "times the loads"), loaded, progress)
+    lost = first_loss_along(path, structure, limit, "load factor", "times the loads")
+    return judged(lost, path, structure, progress)
 
 
 def _share(structure: Structure, values: np.ndarray) -> float:

@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.analysis.system.point import Point, rested, started
+from gbeam.analysis.system.point import Point, started
+from gbeam.analysis.system.steady import RIGID, Drive, steady
 from gbeam.guards.checks import choice
 from gbeam.mechanics.tree.signals import drives_of, measurements, signals_of
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.eigen import ZERO, eigenvalues, growth_limit
+from gbeam.numerics.eigen import vibrations
 from gbeam.numerics.series import STEP
 from gbeam.results.state_space import Signal, StateSpace
 from gbeam.results.system import SystemModes
@@ -25,55 +26,28 @@ Floats = NDArray[np.float64]
 
 def system_modes(system: System, motion: Motion | None, time: float, *, gyroscopic: bool, name: str) -> SystemModes:
     """Modes of a system about its static equilibrium."""
-    point = rested(system, motion, time).local
-    _, k, c, m = point.slopes()
-    value, mode = eigenvalues(m, c, k, gyroscopic=gyroscopic)
-    size = np.abs(value).max(initial=0.0)
-    zero, real = np.abs(value) <= RIGID * size, np.abs(value.imag) <= ZERO * size
-    chosen = np.flatnonzero(~zero & ~real & (value.imag > 0))
-    chosen = chosen[np.argsort(np.abs(value[chosen]), kind="stable")]
-    oscillating, coordinates = value[chosen], mode[:, chosen]
-    shape = np.einsum("pan,nk->kpa", _slopes_of_points(point), coordinates)
+    state = steady(system, Drive(motion, time))
+    local, moving = state.local, state.moving if gyroscopic else vibrations(state.linear, gyroscopic=False, zero=RIGID)
+    shape = np.einsum("pan,nk->kpa", state.slopes_of_points, moving.modes)
     flat = shape.reshape(len(shape), -1)
     largest = flat[np.arange(len(flat)), np.abs(flat).argmax(axis=1)] if flat.size else np.ones(len(shape))
-    growing = value[~zero & ((real & (value.real > 0)) | (value.real > growth_limit(value, size)))]
-    places = np.stack([frame.p for frame in _frames(point, point.y, 0 * point.y)])
+    growing = np.concatenate([moving.diverging, moving.value[moving.flutter]])
+    warnings = system.warnings
+    if state.changing:
+        warnings += (f"the system turns, and its equations with it: these are modes of the place at {time:g} s",)
     return SystemModes(
         name=name,
         time=time,
-        eigenvalue=oscillating,
+        eigenvalue=moving.value,
         points=system.points,
         bodies=system.order,
         shape=shape / np.where(largest == 0, 1, largest)[:, None, None],
-        share=_shares(point, coordinates),
-        place=places,
-        rigid=len(m) - len(chosen) - int((real & ~zero).sum()) // 2,
+        share=state.shares(moving.modes),
+        place=np.stack([frame.p for frame in state.frames]),
+        rigid=len(local.y) - len(moving.value) - (len(moving.diverging) + len(moving.decaying)) // 2,
         growing=growing[np.argsort(-growing.real, kind="stable")],
+        warnings=warnings,
     )
-
-
-RIGID = 1e-7  # of the largest eigenvalue: what is smaller is the root of rounding about zero
-
-
-def _frames(point: Point, y: Array, yd: Array) -> Any:
-    return point.tree.motion(y, yd, 0 * y, point.inputs).every_point
-
-
-def _slopes_of_points(point: Point) -> Floats:
-    """Derivatives of the places of all points with respect to the coordinates, (p, 3, n), by a complex step."""
-    moved = point.y + 1j * STEP * np.eye(len(point.y))
-    frames = _frames(point, moved, 0 * moved)
-    return np.stack([frame.p.imag.T / STEP for frame in frames])
-
-
-def _shares(point: Point, modes: NDArray[np.complex128]) -> Floats:
-    """Shares (k, bodies) of the bodies in the kinetic energy of modes (n, k)."""
-    tree, energies = point.tree, np.zeros((modes.shape[1], len(point.tree.links)))
-    for rates in (modes.real.T, modes.imag.T):
-        state = tree.motion(np.broadcast_to(point.y, rates.shape), rates, 0 * rates, point.inputs)
-        for k, link in enumerate(tree.links):
-            energies[:, k] += link.body.moving(state.q[k][-1], state.qd[k][-1], state.roots[k])[0]
-    return energies / np.maximum(energies.sum(axis=1, keepdims=True), 1e-300)
 
 
 def linearize_system(
@@ -92,8 +66,10 @@ def linearize_system(
     coordinates and rates and the places of points, as they are named.
     """
     choice("at", at, ("rest", "start"))
-    point = rested(system, motion, time) if at == "rest" else started(system, motion, time, "equilibrium")
-    local = point.local
+    resting = at == "rest"
+    local = (
+        steady(system, Drive(motion, time)).point if resting else started(system, motion, time, "equilibrium")
+    ).local
     _, k, c, m = local.slopes()
     n = len(m)
     b, driving = _inputs(system, local, inputs)

@@ -91,10 +91,11 @@ def started(system: System, motion: Motion | None, time: float, initial: str) ->
     raise ComputationError("no equilibrium", f"the bodies have no place to rest at the start; {fix}")
 
 
-def rested(system: System, motion: Motion | None, time: float) -> Point:
-    """The system at rest in static equilibrium, joints and bodies; of those that nothing holds, the nearest one."""
-    tree, inputs = system.tree, system.inputs(np.asarray(time), motion)
-    y, still = system.start[0][tree.free], np.zeros(len(tree.free))
+def rested(system: System, tree: Tree, inputs: Inputs, start: Floats | None = None) -> Point:
+    """A system's tree at rest in relative equilibrium, joints and bodies; of those that nothing holds, the nearest one
+    to a `start` (n,), by default that of the joints, with bodies undeformed.
+    """
+    y, still = system.start[0][tree.free] if start is None else start, np.zeros(len(tree.free))
     size = np.inf
     for _ in range(ITERATIONS):
         left, k, _, m = Point(tree, y, still, still, inputs).slopes()
@@ -117,7 +118,8 @@ def rested(system: System, motion: Motion | None, time: float) -> Point:
 
 def system_rest(system: System, motion: Motion | None, time: float, name: str) -> SystemRest:
     """Describe where a system rests, and what holds it there."""
-    point, inputs = rested(system, motion, time), system.inputs(np.array([time]), motion)
+    inputs = system.inputs(np.array([time]), motion)
+    point = rested(system, system.tree, system.inputs(np.asarray(time), motion))
     first, _ = system.start
     (begun, _), (resting, beams) = (
         histories(system, y[None], point.yd[None], point.ydd[None], inputs, inertial=False)

@@ -26,6 +26,7 @@ from gbeam.cli.options import (
     Speed,
     StrainAt,
     To,
+    Turns,
     Vary,
 )
 from gbeam.cli.outputs import deliver
@@ -38,13 +39,14 @@ def campbell(
     /,
     *,
     motion: MotionName = None,
+    turning: Turns = None,
     start: Annotated[Speed, Parameter(name="--from")] = None,
     end: Annotated[Speed, Parameter(name="--to")] = None,
     modes: Annotated[int, Parameter(name="--modes", help="How many to follow.")] = 8,
     orders: Annotated[int, Parameter(name="--orders", help="Multiples of the speed, 1 to this.")] = 4,
     output: Output = Output(),
 ) -> int:
-    """Frequencies against the speed of a hub, in the unit of --to or --from, and where its multiples meet them.
+    """Frequencies against the speed of a hub or a joint, in the unit of --to or --from, and where multiples meet them.
 
     Writes campbell.json, the diagram and with --report campbell.html into --out, by default out/ and the scenario's
     name; with --json only if --out or --report is given. Exit status: 0 done, 1 there is no equilibrium, 2 the input is
@@ -57,12 +59,14 @@ def campbell(
     high = None if end is None else number("--to", end, "angular rate")
     if orders < 0:
         raise InputError("--orders", f"is {orders}", "give 0 or more")
-    if high is None and chosen.free:
+    if high is None and getattr(chosen, "free", False):
         fix = 'give the largest speed, such as "5 rad/s"'
         raise InputError("--to", "is missing: the hub is driven by a torque", fix)
 
-    with Watch(), loaded.placing(to="--to", modes="--modes"):
-        diagram = questions.campbell(loaded.beam, name, start=low, end=high, modes=modes, orders=orders)
+    with Watch(), loaded.placing(to="--to", modes="--modes", turning="--turning", speeds="--to"):
+        diagram = questions.campbell(
+            loaded.case, name, turning=turning, start=low, end=high, modes=modes, orders=orders
+        )
 
     from gbeam.figures import steady
     from gbeam.guards.units import unit_of
@@ -86,13 +90,14 @@ def critical_speed(
     *,
     motion: MotionName = None,
     vary: Vary = "rate",
+    turning: Turns = None,
     at: At = None,
     to: To = None,
     masses: Masses = None,
     positions: Positions = None,
     output: Output = Output(),
 ) -> int:
-    """The hub rate, load or acceleration at which the beam's equilibrium is lost.
+    """The rate, load or acceleration at which the equilibrium of a beam or a system is lost.
 
     Where there is none up to the end of the search, the value is null and the reason says so; that is an answer, with
     exit status 0. 2: the input is wrong, such as a motion without a hub. With --out writes critical_speed.json, and a
@@ -106,14 +111,17 @@ def critical_speed(
     if masses is None and positions is not None:
         raise InputError("--positions", "stands without --masses", 'add --masses "0.1 kg, 0.5 kg"')
     if masses is not None:
+        loaded.case.one_beam("--masses", "a map")
         if vary != "rate":
             raise InputError("--masses", f"stands beside --vary {vary}", "a map is of hub rates")
         return critical_map(loaded, motion, masses, positions, upper, folder, output)
     name, _ = loaded.motion(motion, kind="hub")
     time = loaded.time(at)
 
-    with Watch() as watch, loaded.placing():
-        critical = questions.critical_speed(loaded.beam, name, time, vary=vary, upper=upper, progress=watch)
+    with Watch() as watch, loaded.placing(to="--to", turning="--turning"):
+        critical = questions.critical_speed(
+            loaded.case, name, time, vary=vary, turning=turning, upper=upper, progress=watch
+        )
     deliver(
         critical, "critical_speed", folder, output, origin=loaded.case.provenance, listed=False,
         motion=name,

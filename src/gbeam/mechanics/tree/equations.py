@@ -253,7 +253,6 @@ class Tree:
         """
         numbers: dict[int, int] = {}
         links, states, first = [], [], 0
-        fixed = set(self.fixed)
         for link, *parts in zip(self.links, *(self.parted(each) for each in (y, yd, ydd)), strict=True):
             steps, kept = [], []
             for step, *rates in zip(link.steps, *parts, strict=False):
@@ -268,5 +267,5 @@ class Tree:
             holder = link.holder.chosen(np.array(kept[: len(kept) - link.body.size], dtype=bool))
             links.append(replace(link, steps=tuple(steps), holder=holder))
         joined = (np.concatenate(each) for each in zip(*states, strict=True))
-        tree = replace(self, links=tuple(links), fixed=tuple(numbers[k] for k in sorted(fixed)))
+        tree = replace(self, links=tuple(links), fixed=tuple(numbers[k] for k in self.fixed))
         return tree, *joined  # type: ignore[return-value]

@@ -325,6 +325,16 @@ class System(Value):
         return body, names.index(point)
 
     @property
+    def kind(self) -> str:
+        """What stands in the place of a model's kind."""
+        return "system"
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Doubts about the bodies' models."""
+        return tuple(each for body in self.bodies.values() for each in getattr(body, "warnings", ()))
+
+    @property
     def points(self) -> tuple[str, ...]:
         """Names of all points, as ``body.point``."""
         return tuple(f"{body}.{point}" for body in self.order for point in self.points_of(body))
@@ -357,7 +367,7 @@ class System(Value):
         for name, force in self.forces.items():
             body, on = self.point(f"forces.{name}.on", force.on)
             forces.append(Force(at[body], on, force.follower))
-        fixed = tuple(k for k, each in enumerate(self.coordinates) if each in self._prescribed)
+        fixed = tuple(self.coordinates.index(each) for each in self._prescribed)  # in the order of their histories
         return Tree(tuple(links), tuple(forces), fixed)
 
     @property

@@ -1,0 +1,269 @@
+"""Steady states of a system: its joints rest, or one of them, or the ground, turns at a constant rate."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.analysis.system.point import Point, rested
+from gbeam.errors import InputError
+from gbeam.mechanics.tree.equations import Inputs
+from gbeam.mechanics.tree.frames import Frame, turned_back
+from gbeam.mechanics.tree.system import System
+from gbeam.motion.bases.hub import Hub
+from gbeam.motion.protocol import Motion
+from gbeam.numerics.eigen import Linear, Vibrations, stability_margin, symmetric, symmetric_modes, vibrations
+from gbeam.numerics.series import STEP
+
+Array = Any
+Floats = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+SLIGHT = 1e-6  # of the loads, by which their stiffness is looked at
+RIGID = 1e-7  # of the largest eigenvalue: what is smaller is the root of rounding about zero
+SAME, STILL = 1e-6, 1e-9  # of modes' matrices, and m or rad: what changes with the angle changes by more
+TURNS = (0.7, 2.1, 4.4)  # rad, at which the equations are looked at
+
+
+@dataclass(frozen=True)
+class Drive:
+    """What drives a system in a steady state: profiles and motion of the ground at a time, forces and loads times a
+    factor; a coordinate, or the hub below where none is named, turns at a rate rad/s and has turned by an angle.
+    """
+
+    motion: Motion | None = None
+    time: float = 0.0
+    coordinate: str = ""
+    rate: float | None = None
+    turn: float = 0.0
+    factor: float = 1.0
+
+    def inputs(self, system: System) -> Inputs:
+        """Inputs of a system's tree; of a coordinate that is not prescribed they are the last prescribed ones."""
+        hub = isinstance(self.motion, Hub) and self.rate is not None and not self.coordinate
+        inputs = system.inputs(np.asarray(self.time), None if hub else self.motion)
+        if hub:
+            base = self.motion.mount.base(*(np.asarray(float(each)) for each in (self.turn, self.rate, 0.0)))  # type: ignore[union-attr, arg-type]
+            still = np.zeros(3)
+            ground = Frame(np.eye(3), still, still, base.w_WB_B, base.a_WO_B, base.alpha_WB_B)
+            inputs = replace(inputs, ground=ground)
+        if self.factor != 1.0:
+            loads = tuple(None if each is None else self.factor * each for each in inputs.loads)
+            wrenches = None if inputs.wrenches is None else self.factor * inputs.wrenches
+            inputs = replace(inputs, loads=loads, wrenches=wrenches)
+        given = np.zeros((3, 0)) if inputs.prescribed is None else np.array(inputs.prescribed)
+        if self.coordinate and self.rate is not None:
+            k = system.coordinates.index(self.coordinate)
+            if k not in system.tree.fixed:
+                given = np.append(given, [[system.start[0][k]], [0.0], [0.0]], axis=1)
+            which = system.tree.fixed.index(k) if k in system.tree.fixed else -1
+            given[1:, which] = self.rate, 0.0
+        if self.turn:
+            # All that turns goes on for as long as this takes.
+            fastest = np.abs(np.append(given[1], self.rate or 0.0)).max()
+            given[0] += given[1] * self.turn / fastest
+        return replace(inputs, prescribed=given if given.size else None)
+
+
+@dataclass(frozen=True, eq=False)
+class SteadySystem:
+    """A system in a steady state, and small departures from it."""
+
+    system: System
+    drive: Drive
+    point: Point
+    first: int = 0  # index of the first coordinate by which modes are recognised
+
+    @cached_property
+    def local(self) -> Point:
+        """The point with as many coordinates as degrees of freedom."""
+        return self.point.local
+
+    @cached_property
+    def linear(self) -> Linear:
+        """M, C and K of small departures."""
+        _, k, c, m = self.local.slopes()
+        return Linear(m, c, k, np.zeros((len(m), 0)))
+
+    @cached_property
+    def moving(self) -> Vibrations:
+        """What oscillates, grows and decays about it."""
+        return vibrations(self.linear, zero=RIGID)
+
+    @property
+    def margin(self) -> float:
+        """Positive while nothing grows: see :func:`stability_margin`."""
+        return stability_margin(*self.linear[:3], RIGID**2)
+
+    @property
+    def frames(self) -> list[Frame]:
+        """Motions of all points."""
+        return self.local.tree.motion(self.local.y, self.local.yd, self.local.ydd, self.local.inputs).every_point
+
+    @cached_property
+    def slopes_of_points(self) -> Floats:
+        """Derivatives of the places of all points with respect to the coordinates, (p, 3, n), by a complex step."""
+        moved = self.local.y + 1j * STEP * np.eye(len(self.local.y))
+        frames = self.local.tree.motion(moved, 0 * moved, 0 * moved, self.local.inputs).every_point
+        return np.stack([frame.p.imag.T / STEP for frame in frames])
+
+    def shares(self, modes: Complex) -> Floats:
+        """Shares (k, bodies) of the bodies in the kinetic energy of modes (n, k), beside that of the steady state."""
+        tree, inputs = self.local.tree, self.local.inputs
+        still = Frame(*(np.eye(3) if k == 0 else np.zeros(3) for k in range(6)))
+        given = inputs.prescribed
+        alone = replace(inputs, ground=still, prescribed=None if given is None else given * [[1.0], [0.0], [0.0]])
+        energies = np.zeros((modes.shape[1], len(tree.links)))
+        for rates in (modes.real.T, modes.imag.T):
+            state = tree.motion(np.broadcast_to(self.local.y, rates.shape), rates, 0 * rates, alone)
+            for k, link in enumerate(tree.links):
+                energies[:, k] += link.body.moving(state.q[k][-1], state.qd[k][-1], state.roots[k])[0]
+        return np.asarray(energies / np.maximum(energies.sum(axis=1, keepdims=True), 1e-300))
+
+    def directions(self, modes: Complex) -> tuple[str, ...]:
+        """The body that moves most in each mode (n, k), and the axis of its root along which a point does."""
+        of_point = [body for body, name in enumerate(self.system.order) for _ in self.system.points_of(name)]
+        roots = self.local.tree.motion(self.local.y, self.local.yd, self.local.ydd, self.local.inputs).roots
+        moved = np.einsum("pan,nk->kpa", self.slopes_of_points, modes)
+        names = []
+        for body, of_mode in zip(self.shares(modes).argmax(axis=1), moved, strict=True):
+            along = turned_back(roots[body].R, of_mode[np.equal(of_point, body)])
+            names.append(f"{self.system.order[body]} {'xyz'[np.abs(along).max(axis=0).argmax()]}")
+        return tuple(names)
+
+    def richer(self, system: System) -> SteadySystem:
+        """The same steady state of a system with other bodies in it."""
+        return steady(system, self.drive)
+
+    @property
+    def changing(self) -> bool:
+        """Whether the equations change as what turns goes on turning."""
+        given = self.local.inputs.prescribed
+        if not self.drive.rate and (given is None or not given[1].any()):
+            return False
+        square, modes = symmetric_modes(*(symmetric(each) for each in (self.linear.stiffness, self.linear.mass)))
+        rate = np.sqrt(np.abs(square))
+        rate = np.maximum(rate, 1e-6 * rate.max(initial=0.0))
+        left, *at = self._slopes_after(0.0)
+        for turn in TURNS:
+            beside, *other = self._slopes_after(turn)
+            moved = np.linalg.lstsq(at[0], beside - left, rcond=1e-12)[0]
+            # K, C and M in modes of unit mass, over their frequencies.
+            parts = zip(at, other, (1.0, 0.5, 0.0), strict=True)
+            changes = [modes.T @ (b - a) @ modes / np.outer(rate, rate) ** power for a, b, power in parts]
+            if np.abs(moved).max(initial=0.0) > STILL or np.abs(changes).max(initial=0.0) > SAME:
+                return True
+        return False
+
+    def _slopes_after(self, turn: float) -> tuple[Floats, ...]:
+        """Residual, K, C and M at the same coordinates after a turn."""
+        tree, inputs = self.point.tree, replace(self.drive, turn=turn).inputs(self.system)
+        y, given = np.array(self.point.y), inputs.prescribed
+        if self.drive.coordinate:
+            k = self.system.coordinates.index(self.drive.coordinate)
+            if k not in tree.fixed:
+                y[np.searchsorted(tree.free, k)] += turn
+                given = given[:, :-1] if given is not None else None
+        inputs = replace(
+            inputs, efforts=self.point.inputs.efforts, prescribed=None if given is None or not given.size else given
+        )
+        return replace(self.point, y=y, inputs=inputs).local.slopes()
+
+
+def steady(system: System, drive: Drive, *, held: bool = False, start: Floats | None = None) -> SteadySystem:
+    """A system in equilibrium relative to what turns; a coordinate that is not prescribed turns freely, under the
+    effort that this needs, unless it is held.
+    """
+    tree, inputs = system.tree, drive.inputs(system)
+    k = system.coordinates.index(drive.coordinate) if drive.coordinate else -1
+    if k < 0 or k in tree.fixed:
+        return SteadySystem(system, drive, rested(system, tree, inputs, start))
+    fixed = rested(system, replace(tree, fixed=(*tree.fixed, k)), inputs, start)
+    if held:
+        return SteadySystem(system, drive, fixed)
+    assert inputs.prescribed is not None
+    whole = [
+        fixed.tree.whole(each, given)
+        for each, given in zip((fixed.y, fixed.yd, fixed.ydd), inputs.prescribed, strict=True)
+    ]
+    efforts = np.zeros(tree.size) if inputs.efforts is None else np.array(inputs.efforts)
+    efforts[k] += fixed.tree.rows(fixed.y, fixed.yd, fixed.ydd, inputs)[0][k]
+    others = inputs.prescribed[:, :-1]
+    inputs = replace(inputs, efforts=efforts, prescribed=others if others.size else None)
+    y, yd, ydd = (each[tree.free] for each in whole)
+    return SteadySystem(system, drive, Point(tree, y, yd, ydd, inputs))
+
+
+def turning_of(system: System, motion: Motion | None, turning: str | None) -> str:
+    """Name of the coordinate that turns, empty where the hub below does: the one given, or the only prescribed one.
+
+    Raises
+    ------
+    InputError
+        If there is no such coordinate, it is no angle, or several could be meant.
+    """
+    angles = [
+        f"{name}.{each}"
+        for name, joint in system.joints.items()
+        for each in joint.coordinates
+        if each.startswith("angle")
+    ]
+    if turning is not None:
+        if turning not in angles:
+            fix = f"choose from {', '.join(angles)}" if angles else "hold a body by a revolute joint that turns"
+            raise InputError("turning", f"is {turning!r}, which is no angle of a joint", fix)
+        return turning
+    if isinstance(motion, Hub):
+        return ""
+    given = [each for each in angles if system.coordinates.index(each) in system.tree.fixed]
+    if len(given) != 1:
+        listed = ", ".join(given or angles) or "a revolute joint's, which it has not"
+        raise InputError("turning", "is missing", f"say which angle turns: {listed}")
+    return given[0]
+
+
+@dataclass(frozen=True)
+class Turning:
+    """Steady states of a system, or of richer ones, by the rate at which its drive's coordinate turns, rad/s."""
+
+    drive: Drive
+    held: bool = False
+
+    def __call__(self, of: System, rate: float) -> SteadySystem:
+        return steady(of, replace(self.drive, rate=rate), held=self.held)
+
+    def refuse_changing(self, system: System, rate: float) -> None:
+        """Refuse a system whose equations change as it turns: it has no frequencies."""
+        if self(system, rate).changing:
+            joint = self.drive.coordinate.rpartition(".")[0]
+            fix = (
+                "let gravity be along its axis, and all that does not turn with it, or all that does, be alike about "
+                "that axis; `gbeam run` answers for the others"
+            )
+            where = f"joints.{joint}" if joint else "motion"
+            raise InputError(where, "turns a system whose equations change with the angle: it has no frequencies", fix)
+
+
+@dataclass(frozen=True)
+class Loaded:
+    """Steady states of a system, or of richer ones, by a factor on its loads and forces."""
+
+    drive: Drive
+
+    def __call__(self, of: System, factor: float) -> SteadySystem:
+        return steady(of, replace(self.drive, factor=factor))
+
+    def share(self, system: System) -> float:
+        """Stiffness that loads and forces bring, over that of the system; where they only bend it, how far, over its
+        extent.
+        """
+        rest, pushed = self(system, 0.0), self(system, SLIGHT)
+        square, modes = symmetric_modes(*(symmetric(each) for each in (rest.linear.stiffness, rest.linear.mass)))
+        held = modes[:, square > RIGID**2 * square[-1]] / np.sqrt(square[square > RIGID**2 * square[-1]])
+        brought = held.T @ (pushed.linear.stiffness - rest.linear.stiffness) @ held / SLIGHT
+        places, moved = (np.stack([frame.p for frame in each.frames]) for each in (rest, pushed))
+        size = max(np.abs(places).max(), 1e-300)
+        return float(max(np.linalg.norm(brought, 2), np.abs(moved - places).max() / SLIGHT / size))

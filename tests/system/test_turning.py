@@ -1,0 +1,151 @@
+"""Steady states of systems that turn: frequencies against the rate, and where equilibria are lost."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import gbeam as gb
+from tests.analysis_verbs.beams import slender
+from validation.published.tables import UNIFORM_FLAP
+
+STRIP = gb.Beam(0.3, gb.Section.rectangle(width=0.02, thickness=0.004), gb.Material(2700.0, 70e9), damping_ratio=0.01)
+BUS = gb.RigidBody(1.0, (1.0, 1.0, 1.0), points={"rim": (0.5, 0, 0), "back": gb.Place((-0.5, 0, 0), (0, 0, np.pi))})
+SPIN = gb.Joint("revolute", "bus", axes=[(0, 0, 1)], rate=1.0)
+FREE = gb.Joint("revolute", "bus", axes=[(0, 0, 1)])
+
+
+def panels(structure: gb.Structure, spin: gb.Joint, *on: str) -> gb.System:
+    clamps = {f"clamp_{each}": gb.Joint("fixed", f"panel_{each}", on=f"bus.{each}") for each in on}
+    beams = {f"panel_{each}": structure for each in on}
+    return gb.System({"bus": BUS, **beams}, {"spin": spin, **clamps})
+
+
+@pytest.mark.parametrize("kind", ["TLAM", "FOAM", "exact"])
+@pytest.mark.parametrize("inertia", [None, 1.0])
+def test_a_panel_on_a_joint_is_a_beam_on_a_hub(kind: str, inertia: float | None) -> None:
+    structure = gb.assemble(STRIP, kind, axial=1, y=2, z=2)
+    hub, spin = gb.Hub(radius=0.5, inertia=inertia), SPIN if inertia is None else FREE
+    options = {"end": 60.0, "count": 3, "modes": 4}
+    alone = gb.campbell(structure, hub, **options)
+    held = gb.campbell(panels(structure, spin, "rim"), turning="spin.angle", **options)
+    assert held.frequency == pytest.approx(alone.frequency, rel=1e-12)
+    assert held.damping_ratio == pytest.approx(alone.damping_ratio, abs=1e-12)
+    assert [each.speed for each in held.crossings] == pytest.approx([each.speed for each in alone.crossings], rel=1e-9)
+    assert held.direction == tuple(f"panel_rim {way}" for way in alone.direction)
+
+
+def test_two_panels_move_as_one_or_against_each_other() -> None:
+    """On a held bus every frequency is double; a free one keeps those of the panels that leave it at rest."""
+    structure = gb.assemble(STRIP, "FOAM", axial=1, y=2, z=2)
+    options = {"turning": "spin.angle", "end": 60.0, "count": 2, "modes": 8}
+    one = gb.campbell(panels(structure, SPIN, "rim"), **options | {"modes": 4})
+    held, free = (gb.campbell(panels(structure, each, "rim", "back"), **options) for each in (SPIN, FREE))
+    assert held.frequency == pytest.approx(np.repeat(one.frequency, 2, axis=1), rel=1e-10)
+    assert held.direction[:2] == ("panel_rim z", "panel_back z") or held.direction[:2] == (
+        "panel_back z",
+        "panel_rim z",
+    )
+    apart = np.abs(free.frequency[:, :, None] / one.frequency[:, None] - 1).min(axis=1)
+    assert apart.max() < 1e-10 and (np.abs(free.frequency[0, :, None] / one.frequency[0] - 1).min(axis=1) > 1e-3).any()
+
+
+def test_wrights_frequencies_through_a_tree() -> None:
+    """A clamped uniform blade on a hub without radius, in units of √(EI/ρA)/L²."""
+    blade = assemble_blade()
+    chosen = sorted(UNIFORM_FLAP)
+    diagram = gb.campbell(blade, speeds=[float(each) for each in chosen], modes=3)
+    at = np.searchsorted(diagram.speed, chosen)
+    assert 2 * np.pi * diagram.frequency[at] == pytest.approx(np.array([UNIFORM_FLAP[k][1] for k in chosen]), rel=5e-5)
+
+
+def assemble_blade() -> gb.System:
+    structure = gb.assemble(replace(slender(1e4), damping_ratio=0.0), "FOAM", axial=0, y=0, z=10)
+    joints = {
+        "spin": gb.Joint("revolute", "hub", axes=[(0, 0, 1)], rate=1.0),
+        "grip": gb.Joint("fixed", "blade", "hub.root"),
+    }
+    return gb.System({"hub": gb.RigidBody(0.0), "blade": structure}, joints)
+
+
+def disc(rate: object, inertia: tuple[float, float, float] = (0.3, 0.3, 0.5)) -> gb.System:
+    """A disc that spins about the end of a mast that tilts in both directions."""
+    mast = gb.RigidBody(0.0, (0.0, 0.0, 0.0), points={"top": (0, 0, 0.4)})
+    tilt = gb.Joint("universal", "mast", axes=[(1, 0, 0), (0, 1, 0)], stiffness={"angle_1": 50.0, "angle_2": 50.0})
+    spin = gb.Joint("revolute", "rotor", on="mast.top", axes=[(0, 0, 1)], rate=rate)
+    return gb.System({"mast": mast, "rotor": gb.RigidBody(2.0, inertia)}, {"tilt": tilt, "spin": spin})
+
+
+def test_a_disc_on_a_mast_whirls_forward_and_backward() -> None:
+    """I λ² ∓ i I_p Ω λ + k = 0, with I about the mast's foot."""
+    about, polar, k = 0.3 + 2.0 * 0.4**2, 0.5, 50.0
+    diagram = gb.campbell(disc(30.0), count=3, modes=2)
+    turn = polar * diagram.speed / (2 * about)
+    whirl = np.sqrt(turn**2 + k / about)[:, None] + turn[:, None] * [-1, 1]
+    assert 2 * np.pi * np.sort(diagram.frequency, axis=1) == pytest.approx(whirl, rel=1e-9)
+    assert gb.critical_speed(disc(30.0), upper=100.0).value is None
+
+
+@pytest.mark.parametrize("turning", [None, "spin.angle"])
+def test_what_changes_as_it_turns_is_refused(turning: str | None) -> None:
+    """A rotor that is not round on a mast that tilts, and gravity across the axis; along it there is an answer."""
+    with pytest.raises(gb.InputError, match="change with the angle") as caught:
+        gb.campbell(disc(30.0, (0.2, 0.4, 0.5)), turning=turning)
+    assert caught.value.where == "joints.spin"
+    structure = gb.assemble(STRIP, "FOAM", axial=1, y=1, z=1)
+    system = panels(structure, SPIN, "rim")
+    across, along = (gb.System(system.bodies, system.joints, gravity=g) for g in ((0, -9.81, 0), (0, 0, -9.81)))
+    with pytest.raises(gb.InputError, match="change with the angle"):
+        gb.critical_speed(across, turning=turning, upper=20.0)
+    assert gb.campbell(along, turning=turning, end=5.0, count=1, modes=1).frequency.shape == (2, 1)
+    doubt = gb.modes(across)
+    assert any("equations with it" in each for each in doubt.warnings) and not gb.modes(along).warnings
+
+
+def test_what_may_turn_is_asked_for() -> None:
+    structure = gb.assemble(STRIP, "FOAM", axial=1, y=1, z=1)
+    for system, turning, problem in (
+        (panels(structure, FREE, "rim"), None, "is missing"),
+        (panels(structure, FREE, "rim"), "clamp_rim.x", "no angle"),
+    ):
+        with pytest.raises(gb.InputError, match=problem) as caught:
+            gb.campbell(system, turning=turning, end=5.0)
+        assert caught.value.where == "turning" and "spin.angle" in caught.value.fix
+    with pytest.raises(gb.InputError, match="no rate is prescribed"):
+        gb.campbell(panels(structure, FREE, "rim"), turning="spin.angle")
+
+
+COLUMN = gb.Beam(1.0, gb.Section.general(1e-2, 1e-8, 1e-8), gb.Material(1e2, 1e8), damping_ratio=0.0)
+
+
+@pytest.mark.parametrize(("kind", "follower", "value"), [("exact", False, np.pi**2 / 4), ("exact", True, 20.0509536)])
+def test_columns_of_euler_and_beck_in_a_system(kind: str, follower: bool, value: float) -> None:
+    structure = gb.assemble(COLUMN, kind, axial=1, z=7)
+    push = gb.PointForce("column.tip", force=(-1.0, 0, 0), follower=follower)
+    system = gb.System({"column": structure}, {"foot": gb.Joint("fixed", "column")}, {"push": push})
+    lost = gb.critical_load(system)
+    assert lost.value == pytest.approx(value, rel=3e-5)
+    assert lost.kind == ("flutter" if follower else "divergence") and lost.direction == "column z"
+    with pytest.raises(gb.InputError, match="none that acts"):
+        gb.critical_load(gb.System(system.bodies, system.joints))
+
+
+def test_a_beam_that_points_inward_is_lost_as_on_a_hub() -> None:
+    structure = gb.assemble(STRIP, "TLAM", axial=1, y=2, z=2)
+    alone = gb.critical_speed(structure, gb.Hub(radius=0.5))
+    assert gb.critical_speed(panels(structure, SPIN, "rim")).value == pytest.approx(alone.value, rel=1e-9)
+
+
+def test_rates_belong_to_their_coordinates_whatever_the_order() -> None:
+    """The joints are named from the tip inward, and the bodies from the ground outward."""
+    joints = {
+        "elbow": gb.Joint("revolute", "fore", on="upper.end", axes=[(0, 1, 0)], rate=0.5),
+        "base": gb.Joint("revolute", "upper", axes=[(0, 0, 1)], rate=2.0),
+        "wrist": gb.Joint("revolute", "hand", on="fore.end", axes=[(0, 1, 0)]),
+    }
+    rod = gb.RigidBody(1.0, (0.0, 1 / 12, 1 / 12), centre=(0.5, 0, 0), points={"end": (1, 0, 0)})
+    response = gb.simulate(gb.System({"hand": rod, "upper": rod, "fore": rod}, joints), duration=0.5)
+    assert response.coordinate("base.angle")[-1] == pytest.approx(1.0, rel=1e-12)
+    assert response.coordinate("elbow.angle")[-1] == pytest.approx(0.25, rel=1e-12)
