@@ -13,9 +13,8 @@ import pytest
 import gbeam as gb
 from gbeam.figures import description, figures_of
 from gbeam.plots import draw
-from gbeam.report.page.curves import drawn
+from gbeam.report.page.curves import Numbers, drawn, thinned
 from gbeam.report.page.result import report_of, report_of_file
-from gbeam.report.page.series import Numbers, thinned
 from gbeam.results.cases import Indices, Parameter, Statistics
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.measures import Mismatch, RootHistory, RootLoads, Shock, Sizes

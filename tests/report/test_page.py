@@ -23,7 +23,7 @@ import gbeam as gb
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.report.facts import facts
-from gbeam.report.page import series
+from gbeam.report.page import curves
 from gbeam.report.page.document import html as page_of
 from gbeam.report.page.result import report_of, report_of_file
 from gbeam.report.words import as_json
@@ -212,8 +212,8 @@ def test_shown_numbers_are_those_of_the_result(study: Study) -> None:
 def test_thinned_keeps_the_least_and_the_largest(count: int, seed: int) -> None:
     time = np.linspace(-1, 2, count)
     values = np.random.default_rng(seed).normal(size=(count, 2))
-    t, kept = series.thinned(time, values)
-    assert len(t) == len(kept) <= max(2 * series.INTERVALS, 2)
+    t, kept = curves.thinned(time, values)
+    assert len(t) == len(kept) <= max(2 * curves.INTERVALS, 2)
     np.testing.assert_array_equal([kept.min(axis=0), kept.max(axis=0)], [values.min(axis=0), values.max(axis=0)])
     assert (np.diff(t) >= 0).all() and t[0] >= -1 and t[-1] <= 2
 
@@ -229,7 +229,7 @@ def test_values_beyond_all_bounds_are_drawn_as_gaps(study: Study, tmp_path: Path
 
 
 def test_numbers_come_back_and_stand_once() -> None:
-    numbers = series.Numbers()
+    numbers = curves.Numbers()
     first, second = np.arange(6.0).reshape(2, 3), np.array([7.0])
     assert numbers.add(first) == {"at": 0, "shape": [2, 3]} == numbers.add(first)
     assert numbers.add(second) == {"at": 6, "shape": [1]}

@@ -11,9 +11,8 @@ import xarray as xr
 
 import gbeam as gb
 from gbeam.figures import figures_of
-from gbeam.report.facts import facts
+from gbeam.report.facts import facts, json_schema_of_results, reference_of_results
 from gbeam.report.page.result import report_of_file
-from gbeam.report.reference import json_schema_of_results, reference_of_results
 from gbeam.report.words import as_json
 from gbeam.results.facts import paths_of, tree_of
 from gbeam.results.kinds import KINDS

@@ -13,9 +13,8 @@ import pytest
 import xarray as xr
 
 import gbeam as gb
-from gbeam.studies.answers import Facts
 from gbeam.studies.evaluate import Question
-from gbeam.studies.figures import find, value_at
+from gbeam.studies.figures import Facts, find, value_at
 
 Call = Callable[..., Any]
 ARM = ("--over", "motion.spin.arm=1:2:2")

@@ -7,9 +7,8 @@ from functools import cache
 import pytest
 
 from gbeam.scenario.load import loads
-from gbeam.studies.answers import Facts
 from gbeam.studies.evaluate import Question
-from gbeam.studies.figures import _figures, declared, find, own_keys, unit_at
+from gbeam.studies.figures import Facts, _figures, declared, find, own_keys, unit_at
 from gbeam.studies.template import ScenarioTemplate
 
 from ..scenarios import FAST, FREE_HUB, RAMPS, SLEWING

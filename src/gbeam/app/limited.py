@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 
-from gbeam.guards.resources import restrict
+from gbeam.guards.limits import restrict
 
 
 def main() -> None:

@@ -61,10 +61,10 @@ def signed(facts: dict[str, Any], provenance: Provenance | None) -> dict[str, An
     """The facts of a result, as JSON, with where they come from: found when it is printed, since that takes a while."""
 
     def origin() -> dict[str, Any]:
-        from gbeam.report.provenance import to_json
+        from gbeam.report.facts import origin_json
 
         assert provenance is not None
-        return to_json(provenance)
+        return origin_json(provenance)
 
     return facts if provenance is None else {**facts, "provenance": origin}
 

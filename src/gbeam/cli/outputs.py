@@ -114,7 +114,7 @@ def show_table(table: RenderableType) -> None:
 def list_figures(verb: str, json: bool) -> int:
     """Print every figure of a question, with its unit and what it is."""
     from gbeam.report.words import terminal_width
-    from gbeam.studies.answers import choices
+    from gbeam.studies.figures import choices
 
     every = choices(verb)
     units = {path: "" if each.unit == "unit" else each.unit for path, each in every.items()}

@@ -21,8 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.errors import ComputationError, InputError
-from gbeam.guards.limits import READER_BYTES, READER_RATE, READER_SECONDS, in_bytes
-from gbeam.guards.resources import end_with_parent, restrict
+from gbeam.guards.limits import READER_BYTES, READER_RATE, READER_SECONDS, end_with_parent, in_bytes, restrict
 
 _START = "import json, sys; sys.path[:] = json.loads(sys.argv[1]); from gbeam.guards.confined import serve; serve()"
 _PATIENCE = 6  # times the processor time: a disk, or a machine that does other things as well

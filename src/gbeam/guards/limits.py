@@ -1,13 +1,16 @@
-"""Limits of size of all input, in one table: what is more is refused before it is read, parsed or allocated.
+"""Limits of all input, in one table, and of processes: what is more is refused before it is read or allocated.
 
 Each limit is far beyond what a sound scenario holds; a refusal says what it would have cost.
 """
 
 from __future__ import annotations
 
+import json
 import os
 import stat
+import sys
 from pathlib import Path
+from typing import Any
 
 from gbeam.errors import InputError
 
@@ -81,3 +84,67 @@ def existing(path: Path) -> bool:
         return path.exists()
     except (OSError, ValueError):  # too long, or with a null character
         return False
+
+
+_END_WITH_PARENT = 1  # PR_SET_PDEATHSIG of prctl(2)
+
+
+def restrict(memory: int, seconds: int) -> None:
+    """Limit this process and what it becomes to an address space, bytes, and a processor time, s.
+
+    Windows has neither limit, and macOS none of memory. A lower limit that was inherited stays.
+    """
+    if sys.platform == "win32":
+        return
+    import resource
+
+    wanted = {resource.RLIMIT_CPU: (seconds, seconds + 5), resource.RLIMIT_CORE: (0, 0)}
+    if sys.platform != "darwin":
+        wanted[resource.RLIMIT_AS] = (memory, memory)
+    for kind, ends in wanted.items():
+        before = resource.getrlimit(kind)[1]
+        soft, hard = (end if before == resource.RLIM_INFINITY else min(end, before) for end in ends)
+        resource.setrlimit(kind, (soft, hard))
+
+
+def end_with_parent() -> None:
+    """Let the system kill this process where the one that started it ends first; Linux alone does."""
+    if sys.platform == "linux":
+        import ctypes
+        import signal
+
+        ctypes.CDLL(None).prctl(_END_WITH_PARENT, signal.SIGKILL)
+
+
+def read_json(file: Path, fix: str) -> dict[str, Any]:
+    """Return the object that a file holds."""
+    try:
+        refuse_large_file("", file, TEXT_BYTES, fix)
+        value = parse_json(file.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(str(file), f"cannot be read ({error.strerror})", fix) from None
+    except InputError:
+        raise
+    except ValueError:
+        raise InputError(str(file), "is no JSON of a result", fix) from None
+    if not isinstance(value, dict):
+        raise InputError(str(file), "is not the JSON of a result", fix)
+    return value
+
+
+def parse_json(text: str) -> Any:
+    """Return what a text holds."""
+    try:
+        value = json.loads(text)
+    except RecursionError:
+        raise ValueError("nested too deeply") from None
+    level = [value]
+    for _ in range(NESTING):
+        level = [each for one in level if isinstance(one, (dict, list)) for each in _inside(one)]
+        if not level:
+            return value
+    raise ValueError("nested too deeply")
+
+
+def _inside(one: dict[str, Any] | list[Any]) -> Any:
+    return one.values() if isinstance(one, dict) else one

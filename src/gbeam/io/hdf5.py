@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 
 from gbeam.errors import InputError
-from gbeam.io.groups import Group, Variable
+from gbeam.io.layout import Group, Variable
 from gbeam.printable import storable
 
 # Attributes of the format.

@@ -1,16 +1,94 @@
-"""Layout of files: variables and attributes of any record whose fields are declared."""
+"""Layout of files: groups of variables with dimensions, units and frames, of any record whose fields are declared."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Any
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.io.groups import Group, Variable, coordinate, flags, known, known_attrs, labels, variable, words
 from gbeam.results.declared import BESIDE, INSIDE, Declaration, declarations
 from gbeam.results.facts import unknown
+
+BASE_AXES = "B: base axes at the root, x along the beam, y along its width, z through its thickness"
+
+
+class Variable(NamedTuple):
+    """Dimensions, values (numbers, or text), and attributes, which are text or numbers."""
+
+    dims: tuple[str, ...]
+    values: Any
+    attrs: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Group:
+    """Variables, coordinates and attributes of one result."""
+
+    variables: dict[str, Variable] = field(default_factory=dict)
+    coordinates: dict[str, Variable] = field(default_factory=dict)  # each is named as its dimension
+    attrs: dict[str, Any] = field(default_factory=dict)
+
+
+def variable(dims: tuple[str, ...], values: Any, units: str, long_name: str, **more: Any) -> Variable:
+    """Return a variable; one along the dimension ``axis`` holds components in base axes, and says so."""
+    frame = {"frame": BASE_AXES} if "axis" in dims else {}
+    return Variable(dims, np.asarray(values), {"units": units, "long_name": long_name} | frame | more)
+
+
+def words(dims: tuple[str, ...], values: Any, long_name: str) -> Variable:
+    """Return a variable of text."""
+    return Variable(dims, np.array(values, dtype=object), {"long_name": long_name})
+
+
+def flags(dims: tuple[str, ...], values: Any, long_name: str, no: str, yes: str) -> Variable:
+    """Return a variable of truth values; netCDF has none, so they are numbers with meanings."""
+    meanings = {"flag_values": np.array([0, 1], dtype=np.int8), "flag_meanings": f"{no} {yes}"}
+    return variable(dims, np.asarray(values).astype(np.int8), "1", long_name, **meanings)
+
+
+def coordinate(name: str, values: Any, units: str, long_name: str) -> dict[str, Variable]:
+    """Return a numeric coordinate along its own dimension, by name."""
+    return {name: variable((name,), values, units, long_name)}
+
+
+def labels(name: str, values: list[str] | tuple[str, ...]) -> dict[str, Variable]:
+    """Return a coordinate of text along its own dimension, by name."""
+    return {name: Variable((name,), np.array(values, dtype=object), {})}
+
+
+def thinned(group: Group, every: int) -> Group:
+    """The group with one of so many samples of its histories, and with words that say so."""
+    if every == 1:
+        return group
+
+    def some(of: dict[str, Variable]) -> dict[str, Variable]:
+        cuts = {name: tuple(slice(None, None, every if dim == "time" else 1) for dim in of[name].dims) for name in of}
+        return {
+            name: each._replace(values=np.ascontiguousarray(each.values[cuts[name]])) if "time" in each.dims else each
+            for name, each in of.items()
+        }
+
+    count = len(group.coordinates["time"].values)
+    said = {"histories": f"one of {every} samples, of {count}; peaks, errors and comparisons are of all"}
+    return Group(some(group.variables), some(group.coordinates), group.attrs | said | {"histories_every": every})
+
+
+def known(variables: dict[str, Variable]) -> dict[str, Variable]:
+    """The variables but those of which no value is known: a file has no column of nothing."""
+    return {name: each for name, each in variables.items() if not _unknown(each.values)}
+
+
+def known_attrs(attrs: dict[str, Any]) -> dict[str, Any]:
+    """The attributes but those of which no value is known."""
+    return {name: value for name, value in attrs.items() if isinstance(value, str) or not _unknown(np.asarray(value))}
+
+
+def _unknown(values: Any) -> bool:
+    return values.dtype.kind == "f" and values.size > 0 and bool(np.isnan(values).all())
+
 
 _LABELLED = {
     "axis": ["x", "y", "z"],
@@ -32,14 +110,14 @@ def group_of(record: Any, over: tuple[str, ...] = (), pattern: str = "*", unit: 
     of the fields that have none of their own.
     """
     group = Group()
-    for field, each in declarations(type(record)):
-        value = getattr(record, field)
+    for key, each in declarations(type(record)):
+        value = getattr(record, key)
         if each.name is None or (value is None and (each.role != "variable" or each.dims)):
             continue
         if each.optional and unknown(value):
             continue
         before, _, after = pattern.partition("*")
-        name = before.rstrip("_") if each.name == INSIDE else f"{before}{each.name or field}{after}".rpartition("/")[2]
+        name = before.rstrip("_") if each.name == INSIDE else f"{before}{each.name or key}{after}".rpartition("/")[2]
         dims = tuple(dim + after.lstrip("_") if dim.endswith("_") else dim for dim in (*over, *each.dims))
         si = unit if each.unit is BESIDE and unit else each.unit(record) if callable(each.unit) else str(each.unit)
         within = pattern.replace("*", each.name if "*" in each.name else f"{each.name.removesuffix(INSIDE)}*")
@@ -53,13 +131,13 @@ def group_of(record: Any, over: tuple[str, ...] = (), pattern: str = "*", unit: 
                 alone = {dim for each in inner.variables.values() for dim in each.dims} - {"time", *_LABELLED}
                 inner = _renamed(inner, {dim: f"{row}_{dim}" for dim in alone})
                 group.coordinates.update({dim: each for dim, each in inner.coordinates.items() if dim})
-                for key, one in known(inner.variables).items():
+                for label, one in known(inner.variables).items():
                     words = f"{row.replace('_', ' ')}, {one.attrs['long_name']}"
-                    group.variables[key] = one._replace(attrs=one.attrs | {"long_name": words})
+                    group.variables[label] = one._replace(attrs=one.attrs | {"long_name": words})
         elif each.role == "rows":
             _merge(group, _columns([group_of(row, (), within) for row in value], dims))
         elif each.role == "fact" and isinstance(value, Mapping):
-            group.attrs.update({f"{name}{key}".replace("-", "_"): one for key, one in value.items()})
+            group.attrs.update({f"{name}{part}".replace("-", "_"): one for part, one in value.items()})
         elif each.role == "fact":
             group.attrs[name] = _attribute(value)
         elif each.role == "labels":

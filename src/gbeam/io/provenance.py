@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.guards.limits import EMBEDDED
-from gbeam.io.groups import Variable
+from gbeam.io.layout import Variable
 from gbeam.results.provenance import Environment, Provenance, RecordFile
 
 RECORD = "record_"  # before the flight's name

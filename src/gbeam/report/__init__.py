@@ -14,9 +14,8 @@ if TYPE_CHECKING:
 __all__ = ["as_json", "text"]
 # Kinds by the module that has a function of their name; of others every quantity is listed.
 _MODULES = {
-    "cases": ("Sweep", "Sensitivity"),
-    "placement": ("Placement",),
-    "searches": ("Fit", "Optimum", "ShapedCommand"),
+    "cases": ("Sweep", "Sensitivity", "Fit", "Optimum", "ShapedCommand"),
+    "machine": ("Placement",),
     "steady": ("Deflection", "Modes", "Campbell", "Critical", "CriticalMap", "StateSpace"),
     "systems": ("SystemStudy", "SystemResponse", "SystemRest", "SystemModes"),
     "tables": ("Study", "ModelStudy", "MachinePlan"),

@@ -1,22 +1,25 @@
-"""Figures of any result as its verb prints them with ``--json``, with the sentences of its text."""
+"""Figures of any result as its verb prints them with ``--json``; their schema; a result computed again."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import replace
+import json
+from collections.abc import Iterable, Iterator
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 from gbeam.report.words import as_json
 from gbeam.results.cases import Sweep
+from gbeam.results.declared import declarations
 from gbeam.results.equilibrium import Deflection
-from gbeam.results.facts import json_of, paths_of
+from gbeam.results.facts import facts_of, json_of, paths_of, schema_of
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.plan import MachinePlan
-from gbeam.results.kinds import by_motion, tree_of_answers
+from gbeam.results.kinds import KINDS, by_motion, tree_of_answers
+from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response
 from gbeam.results.result import Result
-from gbeam.results.study import Study
+from gbeam.results.study import Reproduction, Study
 from gbeam.results.system import SystemRest
 
 VERSION = 1  # of the keys: raised where one changes or goes
@@ -80,3 +83,98 @@ def _worded(figures: dict[str, Any], answers: list[Result]) -> dict[str, Any]:
 def facts_text(result: Result) -> str:
     """Return a result as the text of its JSON."""
     return as_json(facts(result))
+
+
+LISTED = 20  # differences in words
+
+
+def origin_json(provenance: Provenance) -> dict[str, Any]:
+    """Provenance as JSON: the scenario's text, hashes and versions; of records not the bytes."""
+    return facts_of(provenance.stated()[0])
+
+
+def reproduction_json(again: Reproduction) -> dict[str, Any]:
+    """Reproduction as JSON; a difference's size is null where the two cannot be compared."""
+    return {
+        "outcome": "reproduced" if again.reproduced else "not reproduced",
+        "file": again.file,
+        "compared": again.compared,
+        "tolerance": again.tolerance,
+        "differences": [asdict(each) for each in again.differences],
+        "changed": {name: {"then": then, "now": now} for name, (then, now) in again.changed.items()},
+    }
+
+
+def reproduction_text(again: Reproduction) -> str:
+    """Values compared, differences, and changes since."""
+    if again.differences:
+        extent = f"within {again.tolerance:g}" if again.reproduced else "NOT reproduced"
+    else:
+        extent = "the same to the last digit"
+    lines = [f"{again.file}: {again.compared} values and arrays computed again: {extent}"]
+    lines += [f"  {each}" for each in again.differences[:LISTED]]
+    if len(again.differences) > LISTED:
+        lines.append(f"  and {len(again.differences) - LISTED} more: see --json")
+    lines += [f"  {name} was {then}, is {now}" for name, (then, now) in again.changed.items()]
+    return "\n".join(lines)
+
+
+_ENVELOPE = {
+    "form": {
+        "type": "object",
+        "description": "kind of result, and version of its keys",
+        "properties": {"kind": {"enum": list(KINDS)}, "version": {"const": VERSION}},
+    },
+    "title": {"type": "string", "description": "title of the scenario"},
+    "outcome": {"type": "string", "description": "how it ended; done where all is well"},
+    "state": {"type": "string", "description": "outcome with what limits of acceptance make of it"},
+    "units": {"type": "object", "description": "SI unit of every number by its path, where it has one"},
+    "provenance": {"type": "object", "description": "scenario, records, command and versions that it comes from"},
+    "files": {"type": "array", "description": "files that were written", "items": {"type": "string"}},
+}
+_HEAD = """\
+# Results
+
+This page is written by `gbeam schema --results --markdown`; `gbeam schema --results` prints the same as a JSON schema.
+
+Every `--json` says in `form` which kind of result it is and which version its keys have, and in `units` the SI unit
+of every number by its path. A key changes or goes with a new version only. In paths `*` is a name, such as a motion's
+or an axis, and `[i]` a place in a list. The end of a path names a figure for `--measure`, `--of` and `--minimise`;
+`--measure list` prints those of a verb. `null` is what is not known, or not finite. The same quantities are in files,
+with long names, units and dimensions.
+"""
+
+
+def json_schema_of_results() -> str:
+    """Return the JSON schema of what verbs print, by kinds of result."""
+    kinds: dict[str, Any] = {}
+    for name, kind in KINDS.items():
+        schema = schema_of(tree_of_answers(kind))
+        kinds[name] = {**schema, "properties": _ENVELOPE | schema["properties"]}
+    schema = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "gbeam --json", "$defs": kinds}
+    return json.dumps(schema, indent=1, ensure_ascii=False) + "\n"
+
+
+def reference_of_results() -> str:
+    """Return a page with a table of every kind of result."""
+    return _HEAD + "".join(f"\n## {name}\n\n{_summary(kind)}\n\n{_table(kind)}" for name, kind in KINDS.items())
+
+
+def _summary(kind: type) -> str:
+    return (kind.__doc__ or "").strip().splitlines()[0]
+
+
+def _table(kind: type) -> str:
+    rows = [f"| `{path}` | {'–' if unit in ('', 'unit') else unit} | {words} |" for path, unit, words in _rows(kind)]
+    return "\n".join(["| key | unit | |", "|---|---|---|", *rows, ""])
+
+
+def _rows(kind: type) -> Iterator[tuple[str, str, str]]:
+    """Path, unit and words of the numbers; of what is another kind of result its name only."""
+    others = {each.key or name for name, each in declarations(kind) if each.role == "rows"}
+    links = {"motions": "Response", "comparisons": "Comparison"} if kind.__name__ == "Study" else {}
+    for key in sorted(links.keys() & others):
+        yield f"{key}.*" if key == "motions" else f"{key}[i]", "–", f"a [{links[key]}](#{links[key].lower()})"
+    for path, each in paths_of(tree_of_answers(kind)):
+        if path.partition(".")[0].partition("[")[0] not in links:
+            yield path, each.unit, each.words.replace("|", "\\|")

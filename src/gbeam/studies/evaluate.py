@@ -26,8 +26,7 @@ from gbeam.results.cases import ANSWERED
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.study import Failure
-from gbeam.studies.answers import Facts, answer_facts, answered
-from gbeam.studies.figures import History, Keys, own_keys, value_at
+from gbeam.studies.figures import Facts, History, Keys, answer_facts, answered, own_keys, value_at
 from gbeam.studies.template import Template
 
 Function = Callable[[Any], float]

@@ -21,10 +21,9 @@ from gbeam.results.imitation.criteria import BROKEN
 from gbeam.results.result import Floats
 from gbeam.results.searches import Optimum, Requirement
 from gbeam.results.study import Study
-from gbeam.studies.answers import Facts
 from gbeam.studies.derivatives import Neighbourhood, Quantities
 from gbeam.studies.evaluate import Question
-from gbeam.studies.figures import Keys, offered, unit_at
+from gbeam.studies.figures import Facts, Keys, offered, unit_at
 from gbeam.studies.parameters import Bounds, agreeing, bounds_of, named, on_bound, searched
 from gbeam.studies.sensitivity import facts_of, figure, needed, values_at
 from gbeam.studies.template import template_of

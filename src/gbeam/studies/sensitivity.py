@@ -19,10 +19,9 @@ from gbeam.results.cases import Sensitivity
 from gbeam.results.result import Flags, Floats
 from gbeam.results.study import Study
 from gbeam.scenario.values.paths import path_text
-from gbeam.studies.answers import Facts, answer_facts
 from gbeam.studies.derivatives import Neighbourhood, Slopes
 from gbeam.studies.evaluate import Question
-from gbeam.studies.figures import Keys, find, offered, own_keys, unit_at, usual, value_at
+from gbeam.studies.figures import Facts, Keys, answer_facts, find, offered, own_keys, unit_at, usual, value_at
 from gbeam.studies.parameters import PhysicalValue, physical_values
 from gbeam.studies.template import template_of
 

@@ -96,7 +96,7 @@ def schema(
         As every verb takes it: the schema is one JSON object anyway.
     """
     if results:
-        from gbeam.report.reference import json_schema_of_results, reference_of_results
+        from gbeam.report.facts import json_schema_of_results, reference_of_results
 
         print(reference_of_results() if markdown and not json else json_schema_of_results(), end="")
         return 0

@@ -134,7 +134,7 @@ def rerun(
     differs by more than 1e-9 of its largest value. Says what differs, and what has changed since. Writes nothing. Exit
     status: 0 reproduced, 1 not, 2 the file cannot be read or holds no scenario.
     """
-    from gbeam.report import provenance as report
+    from gbeam.report import facts as report
 
     if result.suffix == ".json":
         from gbeam.cli.verbs.responses import answer_again
@@ -171,7 +171,7 @@ def answer_again(file: Path) -> Reproduction:
 def _read(file: Path) -> tuple[dict[str, Any], Provenance]:
     from pydantic import TypeAdapter, ValidationError
 
-    from gbeam.guards.json_files import read_json
+    from gbeam.guards.limits import read_json
     from gbeam.results.provenance import Environment, Provenance
 
     fix = "give the JSON that a verb of gbeam wrote into --out, or a result.nc"

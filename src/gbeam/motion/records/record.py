@@ -14,8 +14,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import BINARY_BYTES, SAMPLES, refuse_large_file, refuse_more
 from gbeam.io.tables.binary import is_binary, read_binary
-from gbeam.io.tables.table import NO_COLUMN, Table
-from gbeam.io.tables.times import Clock
+from gbeam.io.tables.table import NO_COLUMN, Clock, Table
 from gbeam.motion.bases.conditioning import FEWEST, Floats, filtered, spikes, without_spikes
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
 from gbeam.motion.records.soundness import CHECKS, Samples, load_factors, mirrored, refuse_other_kinds, refuse_unsound

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from gbeam.constants import STANDARD_GRAVITY
+from gbeam.report.machine import largest
 from gbeam.report.page.parts import Cell, Value, heading, known, listed, paragraph, section, table, verbatim
-from gbeam.report.placement import largest
 from gbeam.report.words import number
 from gbeam.results.cases import BOUNDS
 from gbeam.results.imitation.accounting import PeakPair

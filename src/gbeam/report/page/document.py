@@ -13,15 +13,14 @@ from typing import Any, NamedTuple
 from gbeam.errors import InputError
 from gbeam.figures import Describe
 from gbeam.figures.description import raised
-from gbeam.guards.json_files import parse_json
+from gbeam.guards.limits import parse_json
 from gbeam.printable import json_printable
 from gbeam.report.facts import facts_text
 from gbeam.report.page import cases, machine, searches, steady, study
-from gbeam.report.page.curves import drawn
+from gbeam.report.page.curves import Numbers, drawn
 from gbeam.report.page.parts import Value, badge, escaped, folded, heading, listed, paragraph, section, table, verbatim
 from gbeam.report.page.records import figures_in, modes_in
 from gbeam.report.page.scene import scene, shapes
-from gbeam.report.page.series import Numbers
 from gbeam.report.words import as_json
 from gbeam.results.result import Result
 

@@ -13,14 +13,13 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.figures import Describe, figures_of
-from gbeam.guards.json_files import parse_json, read_json
+from gbeam.guards.limits import parse_json, read_json
 from gbeam.io.netcdf import FACTS, groups_of
 from gbeam.io.stored import read_stored
-from gbeam.report.facts import facts, whole
+from gbeam.report.facts import facts, origin_json, whole
+from gbeam.report.page.curves import Numbers
 from gbeam.report.page.document import html
 from gbeam.report.page.scene import scene, shapes
-from gbeam.report.page.series import Numbers
-from gbeam.report.provenance import to_json as origin_json
 from gbeam.results.modal import Modes
 from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response
