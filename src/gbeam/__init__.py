@@ -70,7 +70,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.motion.profiles.profile import smoothed as smoothed
     from gbeam.motion.profiles.pulse import Sine as Sine
     from gbeam.motion.profiles.pulse import SmoothStep as SmoothStep
-    from gbeam.motion.profiles.spline import SplineProfile as SplineProfile
+    from gbeam.motion.profiles.pulse import SplineProfile as SplineProfile
     from gbeam.motion.records.record import read_record as read_record
     from gbeam.results.cases import Sensitivity as Sensitivity
     from gbeam.results.cases import Sweep as Sweep
@@ -157,7 +157,7 @@ _HOME = {
     "SmoothStep": "motion.profiles.pulse",
     "SolidMesh": "solids.mesh",
     "SolidModel": "solids.mesh",
-    "SplineProfile": "motion.profiles.spline",
+    "SplineProfile": "motion.profiles.pulse",
     "StateSpace": "results.state_space",
     "Structure": "mechanics.structure",
     "Study": "results.study",

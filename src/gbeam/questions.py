@@ -15,8 +15,8 @@ from gbeam.errors import InputError
 if TYPE_CHECKING:
     from gbeam.analysis.case import AnyCase, Case
     from gbeam.results.equilibrium import Critical, Deflection
+    from gbeam.results.imitation.comparison import MachinePlan
     from gbeam.results.imitation.placement import Placement
-    from gbeam.results.imitation.plan import MachinePlan
     from gbeam.results.modal import Campbell, Modes
     from gbeam.results.study import Study, SystemStudy
     from gbeam.results.system import SystemModes, SystemRest

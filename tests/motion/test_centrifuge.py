@@ -12,7 +12,7 @@ from gbeam.motion import (
     STANDARD_GRAVITY,
     Centrifuge,
     Flight,
-    axis_history,
+    axis_angles,
     machines,
     moved,
     read_record,
@@ -71,13 +71,14 @@ def test_f16_record_on_a_short_arm(f16: Centrifuge) -> None:
     assert all(0 <= e.start < e.end <= 15.99 for e in f16.episodes())
 
 
-def test_axis_history_integrates_and_unwraps(f16: Centrifuge) -> None:
+def test_axis_angles_are_integrated_and_unwrapped(f16: Centrifuge) -> None:
     t = np.linspace(2.2, 15.99, 20001)  # the steps of the aileron before are over
-    history = axis_history(f16.axes(t), t)
-    for angle, rate in ((history.angle1, history.axes.rate1), (history.axes.angle3, history.axes.rate3)):
+    axes = f16.axes(t)
+    angles = axis_angles(axes, t)
+    for angle, rate in ((angles[:, 0], axes.rate1), (angles[:, 2], axes.rate3)):
         assert np.abs(np.diff(angle)).max() < np.pi
         np.testing.assert_allclose(np.gradient(angle, t)[1:-1], rate[1:-1], atol=0.02 * np.abs(rate).max())
-    assert history.angle1[0] == 0
+    assert angles[0, 0] == 0
 
 
 def test_like_scenarios_share_one_compiled_function() -> None:

@@ -21,9 +21,8 @@ from gbeam.figures.description import Figure as Described
 from gbeam.plots import draw, write_figures
 from gbeam.plots.draw import BROAD
 from gbeam.results.equilibrium import Deflection
-from gbeam.results.imitation.comparison import Comparison
+from gbeam.results.imitation.comparison import Comparison, MachinePlan
 from gbeam.results.imitation.measures import Mismatch, RootHistory, RootLoads, Shock
-from gbeam.results.imitation.plan import MachinePlan
 from gbeam.results.machine import LimitUse
 from gbeam.results.parts import Loads
 from gbeam.results.study import Study

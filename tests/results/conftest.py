@@ -11,8 +11,8 @@ import pytest
 import gbeam as gb
 from gbeam.results.cases import Parameter, Sensitivity, Sweep
 from gbeam.results.imitation.accounting import Accounting
+from gbeam.results.imitation.comparison import MachinePlan
 from gbeam.results.imitation.placement import Candidate, Placement
-from gbeam.results.imitation.plan import MachinePlan
 from gbeam.results.machine import AxesResult, LimitUse
 from gbeam.results.searches import CommandRun, Fit, FittedColumn, Optimum, Requirement, ShapedCommand
 from gbeam.results.study import ModelRow, ModelStudy, SystemStudy

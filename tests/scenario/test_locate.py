@@ -9,8 +9,8 @@ from pathlib import Path as File
 import pytest
 
 from gbeam.scenario.template import template
-from gbeam.scenario.text.locate import locate
-from gbeam.scenario.values.paths import Path, Span, walk
+from gbeam.scenario.text.source import locate
+from gbeam.scenario.values import Path, Span, walk
 
 EXAMPLES = sorted((File(__file__).parents[2] / "examples").glob("*.toml"))
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from gbeam import InputError
 from gbeam.scenario.template import template
 from gbeam.scenario.text.revise import with_entry, without_entry
-from gbeam.scenario.values.paths import Path
+from gbeam.scenario.values import Path
 
 LAYOUT = """\
 # of the file

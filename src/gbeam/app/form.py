@@ -11,7 +11,7 @@ from gbeam.scenario import json_schema
 from gbeam.scenario.schema import kind_of_scenario
 from gbeam.scenario.text.overrides import value_of
 from gbeam.scenario.text.revise import toml
-from gbeam.scenario.values.paths import Path, path_text, written_at
+from gbeam.scenario.values import Path, path_text, written_at
 
 Node = dict[str, Any]
 _TAGS = ("kind", "shape", "profile")  # keys that say which of several tables one is

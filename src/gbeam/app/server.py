@@ -20,8 +20,8 @@ from starlette.requests import ClientDisconnect
 
 from gbeam.app import documents, files, verbs
 from gbeam.app.access import AT_ONCE, REPORT_POLICY, Connections, Door, listening
+from gbeam.app.documents import head, load_curves
 from gbeam.app.jobs import Jobs
-from gbeam.app.preview import head, load_curves
 from gbeam.errors import GbeamError, InputError
 from gbeam.guards.limits import SCENARIO_BYTES
 from gbeam.guards.lock import alone

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 from gbeam.cli import program
 from gbeam.errors import InputError
 from gbeam.printable import unprintable
-from gbeam.scenario.values.distributions import find_distributions
-from gbeam.scenario.values.paths import parse_path, written_at
+from gbeam.scenario.values import find_distributions, parse_path, written_at
 
 if TYPE_CHECKING:
     from cyclopts import ArgumentCollection

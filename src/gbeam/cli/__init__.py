@@ -20,7 +20,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     if argv is not None:
         return _status(list(argv))
-    from gbeam.cli.interrupts import end_on_signals, ignore_signals
+    from gbeam.cli.process import end_on_signals, ignore_signals
 
     end_on_signals()
     from gbeam.cli.process import shorten_warnings

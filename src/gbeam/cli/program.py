@@ -59,7 +59,7 @@ def run(tokens: list[str]) -> int:
         return report_syntax(str(error), as_json)
     except GbeamError as error:
         return report(error, as_json)
-    except KeyboardInterrupt:  # called from Python: the command line's own process ends in `interrupts`
+    except KeyboardInterrupt:  # called from Python: the command line's own process ends in `process`
         return _INTERRUPTED
     except OSError:
         raise

@@ -13,7 +13,7 @@ from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
 
-from gbeam.cli.interrupts import cleaned_up, deferred
+from gbeam.cli.process import cleaned_up, deferred
 from gbeam.errors import ComputationError, InputError
 
 _HIDDEN = ".gbeam-"

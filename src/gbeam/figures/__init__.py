@@ -14,8 +14,7 @@ from gbeam.figures import imitation, response, solids, steady, studies, system
 from gbeam.figures.description import Figure
 from gbeam.results.cases import PROBABILITY, Sensitivity, Sweep
 from gbeam.results.equilibrium import CriticalMap, Deflection
-from gbeam.results.imitation.comparison import Comparison
-from gbeam.results.imitation.plan import MachinePlan
+from gbeam.results.imitation.comparison import Comparison, MachinePlan
 from gbeam.results.machine import AxesResult
 from gbeam.results.modal import Campbell, Modes
 from gbeam.results.response import Response

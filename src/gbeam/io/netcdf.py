@@ -37,8 +37,7 @@ from gbeam.io.provenance import provenance_attrs, provenance_variables
 from gbeam.results.cases import BOUNDS, ORDERS, PROBABILITY, SAMPLE, Parameter, Sweep
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.errors import Errors
-from gbeam.results.imitation.comparison import Comparison
-from gbeam.results.imitation.plan import MachinePlan
+from gbeam.results.imitation.comparison import Comparison, MachinePlan
 from gbeam.results.machine import LimitUse
 from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response

@@ -9,8 +9,8 @@ from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.flight import Flight
 from gbeam.motion.bases.hub import Hub, Mount
 from gbeam.motion.centrifuge.centrifuge import Centrifuge
-from gbeam.motion.centrifuge.inverses.registry import INVERSES
-from gbeam.motion.centrifuge.kinematics import Axes, AxisHistory, axis_history, forward, moved
+from gbeam.motion.centrifuge.course import INVERSES
+from gbeam.motion.centrifuge.kinematics import Axes, axis_angles, forward, moved
 from gbeam.motion.centrifuge.limits import AxisLimit, Limits, Machine, MachineLimits, machines, usage
 from gbeam.motion.centrifuge.target.build import build_target
 from gbeam.motion.centrifuge.target.target import Episode, Target
@@ -25,7 +25,6 @@ __all__ = [
     "INVERSES",
     "STANDARD_GRAVITY",
     "Axes",
-    "AxisHistory",
     "AxisLimit",
     "Base",
     "Centrifuge",
@@ -44,7 +43,7 @@ __all__ = [
     "Sum",
     "Target",
     "Vector",
-    "axis_history",
+    "axis_angles",
     "build_target",
     "constant",
     "forward",

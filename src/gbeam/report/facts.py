@@ -13,8 +13,7 @@ from gbeam.results.cases import Sweep
 from gbeam.results.declared import declarations
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.facts import facts_of, json_of, paths_of, schema_of
-from gbeam.results.imitation.comparison import Comparison
-from gbeam.results.imitation.plan import MachinePlan
+from gbeam.results.imitation.comparison import Comparison, MachinePlan
 from gbeam.results.kinds import KINDS, by_motion, tree_of_answers
 from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response

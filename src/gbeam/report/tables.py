@@ -16,8 +16,8 @@ from rich.text import Text
 from gbeam.report.machine import ends_line, judged_lines, not_followed_stretches, tracked
 from gbeam.report.study import ROUNDING, comparison_lines, of_beam, of_machine
 from gbeam.report.words import number, sentence
+from gbeam.results.imitation.comparison import MachinePlan
 from gbeam.results.imitation.criteria import GOOD
-from gbeam.results.imitation.plan import MachinePlan
 from gbeam.results.machine import LimitUse
 from gbeam.results.response import Response
 from gbeam.results.study import ModelStudy, Study

@@ -8,10 +8,9 @@ from typing import Any
 from gbeam.results.cases import Sensitivity, Sweep
 from gbeam.results.equilibrium import Critical, CriticalMap, Deflection
 from gbeam.results.facts import ANY, Entry, json_of, tree_of
-from gbeam.results.imitation.comparison import Comparison
+from gbeam.results.imitation.comparison import Comparison, MachinePlan
 from gbeam.results.imitation.criteria import Judged, state_of
 from gbeam.results.imitation.placement import Placement
-from gbeam.results.imitation.plan import MachinePlan
 from gbeam.results.modal import Campbell, Modes
 from gbeam.results.response import Response
 from gbeam.results.result import Result

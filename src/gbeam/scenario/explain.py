@@ -13,7 +13,7 @@ from gbeam.scenario.schema import kind_of_scenario
 from gbeam.scenario.schema.fields import Quantity, Table, fields_of
 from gbeam.scenario.text.diagnostics import Diagnostic
 from gbeam.scenario.text.source import Mark, Source
-from gbeam.scenario.values.paths import Path
+from gbeam.scenario.values import Path
 
 if TYPE_CHECKING:
     from pydantic.fields import FieldInfo

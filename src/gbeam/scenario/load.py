@@ -17,8 +17,7 @@ from gbeam.scenario.schema import Environments, Scenario, kind_of_scenario
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.text.overrides import override
 from gbeam.scenario.text.source import Source, parse, read_text
-from gbeam.scenario.values.distributions import Distribution, find_distributions, from_table
-from gbeam.scenario.values.paths import path_text
+from gbeam.scenario.values import Distribution, find_distributions, from_table, path_text
 
 if TYPE_CHECKING:
     from gbeam.scenario.schema.system import SystemScenario

@@ -16,7 +16,7 @@ from gbeam.scenario.schema import Environments, Flight
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.text.overrides import override
 from gbeam.scenario.text.source import parse
-from gbeam.scenario.values.paths import parse_path
+from gbeam.scenario.values import parse_path
 
 if TYPE_CHECKING:
     from gbeam.results.provenance import Provenance, RecordFile

@@ -8,7 +8,7 @@ from typing import Any
 from gbeam.errors import InputError
 from gbeam.guards.names import advise
 from gbeam.scenario.schema import Environments, Scenario
-from gbeam.scenario.values.distributions import FAMILIES
+from gbeam.scenario.values import FAMILIES
 
 _HEAD = """\
 # A scenario for gbeam. Quantities are text with a unit ("300 mm", "6 g", "60 rpm"); bare numbers are SI.

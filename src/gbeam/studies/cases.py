@@ -16,8 +16,7 @@ from gbeam.errors import InputError
 from gbeam.guards.limits import refuse_more
 from gbeam.guards.units import NUMBER
 from gbeam.results.cases import SAMPLE, Parameter
-from gbeam.scenario.values.distributions import Distribution, quantities, read_distribution, written
-from gbeam.scenario.values.paths import parse_path
+from gbeam.scenario.values import Distribution, parse_path, quantities, read_distribution, written
 
 SAMPLERS = ("sobol", "latin", "random", "saltelli")
 DEFAULT_SAMPLES = 64

@@ -14,7 +14,7 @@ from gbeam.errors import InputError
 from gbeam.guards.names import advise, closest
 from gbeam.questions import QUESTIONS, Needs
 from gbeam.results.result import Floats
-from gbeam.scenario.values.paths import path_text
+from gbeam.scenario.values import path_text
 from gbeam.structure.attachments import TIP
 from gbeam.studies.template import Template
 

@@ -18,7 +18,7 @@ from gbeam.progress import Progress
 from gbeam.results.cases import Sensitivity
 from gbeam.results.result import Flags, Floats
 from gbeam.results.study import Study
-from gbeam.scenario.values.paths import path_text
+from gbeam.scenario.values import path_text
 from gbeam.studies.derivatives import Neighbourhood, Slopes
 from gbeam.studies.evaluate import Question
 from gbeam.studies.figures import Facts, Keys, answer_facts, find, offered, own_keys, unit_at, usual, value_at

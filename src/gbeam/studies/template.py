@@ -28,8 +28,7 @@ from gbeam.scenario.origin import provenance
 from gbeam.scenario.schema import Centrifuge, Scenario
 from gbeam.scenario.schema.fields import kind_of, quantities
 from gbeam.scenario.schema.scenario import Sweep as SweepTable
-from gbeam.scenario.values.distributions import Distribution
-from gbeam.scenario.values.paths import Path, parse_path, path_text
+from gbeam.scenario.values import Distribution, Path, parse_path, path_text
 
 if TYPE_CHECKING:
     from gbeam.scenario.load import AnyScenario

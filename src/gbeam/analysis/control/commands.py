@@ -12,7 +12,7 @@ from gbeam.errors import InputError
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.profiles.profile import Profile
-from gbeam.motion.profiles.spline import SplineProfile, through
+from gbeam.motion.profiles.pulse import SplineProfile, through
 from gbeam.numerics.bspline import DEGREE, Spline
 from gbeam.results.result import Complex, Floats
 

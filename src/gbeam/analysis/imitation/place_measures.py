@@ -16,7 +16,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.motion import Flight
 from gbeam.motion.bases.base import gradient
 from gbeam.motion.centrifuge.centrifuge import MOUNTINGS, Centrifuge
-from gbeam.motion.centrifuge.inverses.registry import INVERSES
+from gbeam.motion.centrifuge.course import INVERSES
 from gbeam.motion.centrifuge.kinematics import forward
 from gbeam.numerics.filters import displacement
 from gbeam.numerics.minimise import coarse

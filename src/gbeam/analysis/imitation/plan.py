@@ -18,11 +18,12 @@ from gbeam.guards.arguments import typed
 from gbeam.guards.limits import SAMPLES, refuse_more
 from gbeam.motion import Centrifuge
 from gbeam.motion.bases.base import gradient
-from gbeam.motion.centrifuge.history import axes_result, columns
+from gbeam.motion.centrifuge.history import axes_result
+from gbeam.motion.centrifuge.kinematics import axis_angles
 from gbeam.motion.plausibility import implausible_motion
 from gbeam.results.imitation.accounting import TOLERANCE, PeakPair
+from gbeam.results.imitation.comparison import MachinePlan
 from gbeam.results.imitation.criteria import BROKEN, Limit, checked_limits
-from gbeam.results.imitation.plan import MachinePlan
 from gbeam.results.machine import Commands
 from gbeam.structure.beam import Beam, refuse_curved
 
@@ -151,5 +152,6 @@ def axis_commands(motion: Centrifuge, sample: float) -> Commands:
     between = int(np.ceil(sample / _FINE))  # axis 1's angle is an integral: finer than the samples
     steps = np.arange(-int(before) * between, int(after) * between + 1)
     time = np.asarray(first + sample / between * steps, dtype=np.float64)
-    histories = columns(motion.axes(time), time)
+    axes = motion.axes(time)
+    histories = axis_angles(axes, time), axes.rates, axes.accelerations
     return Commands(sample, time[::between], *(column[::between] for column in histories))

@@ -23,7 +23,7 @@ from gbeam.cli.process import Watch, figures_wanted
 from gbeam.cli.publication import publish, refuse_unwritable
 from gbeam.errors import InputError
 from gbeam.printable import printable
-from gbeam.scenario.values.paths import walk
+from gbeam.scenario.values import walk
 
 if TYPE_CHECKING:
     from gbeam.results.provenance import Provenance

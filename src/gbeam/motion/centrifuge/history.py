@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gbeam.motion.centrifuge.kinematics import Axes, axis_history
+from gbeam.motion.centrifuge.kinematics import axis_angles
 from gbeam.motion.centrifuge.limits import usage
 from gbeam.results.machine import AxesResult, LimitUse
 from gbeam.results.result import Floats
@@ -21,10 +21,10 @@ def axes_result(motion: Centrifuge, time: Floats) -> AxesResult:
     """Axes of a centrifuge at given times (s, ascending), with its limits and where it cannot follow."""
     axes, jerk = motion.axes_and_jerks(time)
     reference, actual, not_followed = motion.reference(time), motion.actual_by(axes), motion.not_followed(time)
-    angle, rate, acceleration = columns(axes, time)
+    rate, acceleration = axes.rates, axes.accelerations
     limits = usage(time, rate, acceleration, jerk, motion.limits)
     return AxesResult(
-        angle=angle,
+        angle=axis_angles(axes, time),
         rate=rate,
         acceleration=acceleration,
         reference=reference,
@@ -84,14 +84,3 @@ def _short_ramps(motion: Centrifuge) -> tuple[str, ...]:
                 f'the machine exceeds its limits in the {name}: {key} = "{enough:g} s" or more would keep them'
             )
     return tuple(words)
-
-
-def columns(axes: Axes, time: Floats) -> tuple[Floats, Floats, Floats]:
-    """Angles, rates and accelerations of the three axes at times `time`, (t, 3) each."""
-    history = axis_history(axes, time)
-    a = history.axes
-    return (
-        np.stack([history.angle1, a.angle2, a.angle3], axis=1),
-        a.rates,
-        a.accelerations,
-    )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -98,30 +97,8 @@ def moved(base: Base, offset: Any) -> Base:
     return Base(base.a_WO_B + turning, base.w_WB_B, base.alpha_WB_B)
 
 
-@dataclass(frozen=True)
-class AxisHistory:
-    """Axis motions over a time grid.
-
-    Parameters
-    ----------
-    time : array, shape (n,)
-        s.
-    angle1 : array, shape (n,)
-        Angle of axis 1, rad, from zero at the first time.
-    axes : Axes
-        The other states, arrays of shape (n,), angles without jumps.
-    """
-
-    time: NDArray[np.float64]
-    angle1: NDArray[np.float64]
-    axes: Axes
-
-
-def axis_history(axes: Axes, times: Any) -> AxisHistory:
-    """Unwrap the angles of axes 2 and 3 and integrate that of axis 1.
-
-    `times` (n,).
-    """
+def axis_angles(axes: Axes, times: Any) -> NDArray[np.float64]:
+    """Angles of the three axes at `times` (n,), (n, 3) rad: that of axis 1 from zero, all without jumps."""
     time = np.asarray(times, dtype=float)
-    angle1 = cumulative(time, np.asarray(axes.rate1), np.asarray(axes.acceleration1))
-    return AxisHistory(time, angle1, replace(axes, angle2=np.unwrap(axes.angle2), angle3=np.unwrap(axes.angle3)))
+    first = cumulative(time, np.asarray(axes.rate1), np.asarray(axes.acceleration1))
+    return np.stack([first, np.unwrap(axes.angle2), np.unwrap(axes.angle3)], axis=1)

@@ -1,4 +1,4 @@
-"""Limits of a centrifuge's axes, and example machines."""
+"""Limits of a centrifuge's axes, example machines, and how a motion begins and ends."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from gbeam.arrays.tree import assign, record
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import positive
+from gbeam.guards.checks import choice, positive
 from gbeam.results.machine import LimitUse
 
 QUANTITIES = {"rate": "rad/s", "acceleration": "rad/s^2", "jerk": "rad/s^3"}
@@ -214,3 +214,41 @@ machines: dict[str, Machine] = {
         "centrifuge; load 40 g and onset 10 g/s as daviddarling.info states of it. Gimbal limits: assumed",
     ),
 }
+
+
+STARTS = ("rest", "pre-yawed", "idle")
+
+
+@dataclass(frozen=True)
+class Ends:
+    """Beginning and end of a centrifuge's motion, before the flight's first time and after its last.
+
+    Parameters
+    ----------
+    start : str
+        ``rest``: from standstill to standstill, the arm's tangential acceleration on the way ignored. ``pre-yawed``:
+        likewise, with axis 2 turned across the arm at standstill so that the load has its direction on the way.
+        ``idle``: the motion begins and ends in the state that it has at the flight's first and last time.
+    spin_up, spin_down : float, optional
+        From standstill to the flight's first time, and from its last to standstill, s; found within the machine's
+        limits where left out.
+
+    Raises
+    ------
+    InputError
+        If the start is unknown, a time is not positive, or one is given for a machine that begins at idle.
+    """
+
+    start: str = "rest"
+    spin_up: float | None = None
+    spin_down: float | None = None
+
+    def __post_init__(self) -> None:
+        choice("start", self.start, STARTS)
+        for name in ("spin_up", "spin_down"):
+            duration = getattr(self, name)
+            if duration is None:
+                continue
+            if self.start == "idle":
+                raise InputError(name, "does not go with start = idle", f'leave it out, or give start = "{STARTS[0]}"')
+            object.__setattr__(self, name, float(positive(name, duration, "s")))

@@ -13,8 +13,7 @@ from gbeam.results.cases import BOUNDS, ORDERS, Indices, Parameter, Sensitivity,
 from gbeam.results.declared import INSIDE, NAMES, Declaration, annotation, declarations, record_in
 from gbeam.results.equilibrium import Critical, CriticalMap, Deflection
 from gbeam.results.imitation import measures
-from gbeam.results.imitation.comparison import Comparison
-from gbeam.results.imitation.plan import MachinePlan
+from gbeam.results.imitation.comparison import Comparison, MachinePlan
 from gbeam.results.machine import AxesResult
 from gbeam.results.modal import Campbell, Modes
 from gbeam.results.parts import Loads

@@ -13,7 +13,7 @@ from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, cor
 from gbeam.guards.kinds import KINDS
 from gbeam.guards.limits import ENTRIES, LARGEST, SMALLEST
 from gbeam.guards.units import UnitError, quantity
-from gbeam.scenario.values.paths import Path, path_text
+from gbeam.scenario.values import Path, path_text
 
 if TYPE_CHECKING:
     from pydantic.fields import FieldInfo

@@ -12,7 +12,7 @@ from typing import Any
 from gbeam.guards.limits import KEYS, NESTING, NUMBER, SCENARIO_BYTES, in_bytes
 from gbeam.printable import printable
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
-from gbeam.scenario.values.paths import Path, Span, parse_path, path_text
+from gbeam.scenario.values import Path, Span, parse_path, path_text
 
 # Strings and comments are passed over; a key with more parts than tables may be nested is one token. Possessive
 # quantifiers: no text takes longer than its length.

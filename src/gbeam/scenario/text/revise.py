@@ -14,9 +14,8 @@ from typing import Any
 from gbeam.errors import InputError
 from gbeam.guards.units import unit_of
 from gbeam.scenario.text.diagnostics import ScenarioError
-from gbeam.scenario.text.locate import is_json
-from gbeam.scenario.text.source import Source, parse
-from gbeam.scenario.values.paths import Path, parse_path, path_text, written_at
+from gbeam.scenario.text.source import Source, is_json, parse
+from gbeam.scenario.values import Path, parse_path, path_text, written_at
 
 
 def edited(source: Source, table: Path, changes: Mapping[str, str | float]) -> str:

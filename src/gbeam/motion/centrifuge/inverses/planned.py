@@ -22,10 +22,9 @@ from numpy.typing import NDArray
 from gbeam.arrays.tree import record
 from gbeam.errors import InputError
 from gbeam.guards.limits import KNOTS, refuse_more
-from gbeam.motion.centrifuge.ends import Ends
 from gbeam.motion.centrifuge.inverses.closed_form import Geometry, Inverse, Pose, QuasiStatic
 from gbeam.motion.centrifuge.inverses.spin_up import Ramp, build_ramps
-from gbeam.motion.centrifuge.limits import Limits
+from gbeam.motion.centrifuge.limits import Ends, Limits
 from gbeam.motion.centrifuge.target.target import Target
 from gbeam.motion.profiles.profile import Profile
 from gbeam.numerics.bspline import PIECE, Grid, Spline

@@ -1,1 +1,0 @@
-"""A scenario's values: paths, units and kinds, distributions in their place, and the closest name of a misspelt one."""
