@@ -13,6 +13,7 @@ import pytest
 
 import gbeam as gb
 
+from .solids.bodies import block, solid
 from .test_arguments import PUBLIC, Given, called
 
 
@@ -124,3 +125,49 @@ def test_a_machine_keeps_its_fields_alone(given: Given) -> None:
     assert state((machine, waiting)) == before and (waiting.extent, waiting.axes(0.2)) == (first, second)
     prepared = machine.over(0.0, 0.3)
     assert prepared == machine.over(0.0, 0.3) == pickle.loads(pickle.dumps(prepared)) != waiting
+
+
+def kept(before: Any, calls: list[Any]) -> None:
+    """No call changes a value; the value and all answers are pickled and copied, and stay equal to the copies."""
+    whole, other = state(before), copy.deepcopy(before)
+    answers = [call() for call in calls]
+    assert state(before) == whole and before == other
+    for each in (before, *answers):
+        inside = state(each)
+        assert copy.deepcopy(each) == each and pickle.loads(pickle.dumps(each)) == each, type(each)
+        assert repr(each) and state(each) == inside
+
+
+def test_a_system_with_a_controller_keeps_its_fields_alone(given: Given) -> None:
+    law = gb.Feedback(given.law, ["hinge.angle"], ["hinge.angle"], 0.01)
+    joints = {"hinge": replace(given.hinge, stiffness={"angle": 5.0}), "root": gb.Joint("fixed", "panel", "bar.end")}
+    bodies = {"bar": given.bar, "panel": given.structure}
+    system = gb.System(bodies, joints, controllers={"law": law})
+    settings = gb.ResponseSettings(duration=0.05, step=5e-3, integrator="gauss")
+    case = gb.SystemCase("swing", system, {"flight": given.still}, settings)
+    kept(
+        system,
+        [
+            lambda: gb.simulate(system, given.still, settings),
+            lambda: gb.static(system, given.still),
+            lambda: gb.modes(system, given.still),
+            lambda: gb.linearize(system, inputs=["hinge.angle"]),
+            lambda: gb.study(case),
+        ],
+    )
+
+
+def test_a_solid_and_a_specimen_keep_their_fields_alone(given: Given) -> None:
+    mesh = solid(block("hexahedron20", (3, 1, 1), (0.1, 0.01, 0.01)))
+    model = mesh.reduced(modes=2, damping_ratio=0.01)
+    kept(mesh, [lambda: mesh.reduced(modes=2, damping_ratio=0.01)])
+    kept(
+        model,
+        [
+            lambda: model.stress(gb.static(model.structure, given.still)),
+            lambda: gb.simulate(model.structure, given.still, given.settings),
+            lambda: gb.modes(model.structure),
+        ],
+    )
+    box = gb.RigidSpecimen.box(1.0, (0.1, 0.1, 0.1), (0.0, 0.0, 0.0))
+    kept(box, [lambda: box.loads(given.flight, 0.3, sample=0.01)])
