@@ -146,7 +146,7 @@ def loads_along(deflection: Deflection, loads: Loads, title: str = "") -> Figure
 
 
 def carried_along(loads: Loads) -> tuple[Panel, ...]:
-    """What the sections carry at one time, along the beam."""
+    """Loads of the sections at one time, along the beam."""
     scale, unit = scale_of("m", loads.stations)
     stress = (loads.stress_tension[0], loads.stress_compression[0])
     panels = _carried(scale * loads.stations, loads.section_force[0], loads.section_moment[0], stress, loads)
@@ -166,7 +166,7 @@ def loads(response: Response, carried: Loads, title: str = "") -> Figure:
 
 
 def carried_at_root(time: Floats, carried: Loads) -> Iterator[Panel]:
-    """What the root's section carries over time, and the extreme stresses along the beam."""
+    """Loads of the root's section over time, and the extreme stresses along the beam."""
     stress = (carried.stress_tension.max(axis=1), carried.stress_compression.min(axis=1))
     return _carried(time, carried.section_force[:, 0], carried.section_moment[:, 0], stress, carried)
 

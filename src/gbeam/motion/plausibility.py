@@ -51,7 +51,7 @@ def _of_flight(flight: Flight, where: str, span: tuple[float, float]) -> Iterato
 
 
 def _of_gravity(machine: Any, where: str) -> Iterator[str]:
-    """That a machine on the earth adds its own gravity to a load of which gravity is a part."""
+    """Warning that a machine on the earth adds its own gravity to a load of which gravity is a part."""
     record = machine.flight.record
     if machine.geometry.gravity == 0 and record is not None and record.quantity == "specific-force":
         yield (

@@ -185,7 +185,7 @@ class Sweep(Figured):
 
     @property
     def computed(self) -> Flags:
-        """Which cases are computed to the end, whether or not they keep limits, (...)."""
+        """Flags of the cases that are computed to the end, whether or not they keep limits, (...)."""
         return np.isin(self.outcome.astype(str), ("done", *ANSWERED))
 
     @property

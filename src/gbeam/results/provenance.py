@@ -50,7 +50,7 @@ class Environment(Part):
 
 @dataclass(frozen=True)
 class Provenance(Part):
-    """Where a result comes from."""
+    """Origin of a result."""
 
     scenario: str = fact("text of the scenario file; empty where there was none", default="", repr=False)
     overrides: tuple[str, ...] = fact("the ``key=value`` changes made to it, in order", default=())

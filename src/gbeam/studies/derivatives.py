@@ -211,7 +211,7 @@ class Neighbourhood:
 
 
 class Quantities:
-    """What is read from the answer at any values of the parameters, and its derivatives, by one run's steps and shapes.
+    """Quantities of an answer at any values of the parameters, and their derivatives, by one run's steps and shapes.
 
     Those are the steps in `motions`, and the shapes, of the `start`; without one each answer has its own.
     """

@@ -73,7 +73,7 @@ class Measurement:
 
     @property
     def motions(self) -> tuple[str, ...]:
-        """Whose responses are measured."""
+        """Names of the motions whose responses are measured."""
         return tuple(dict.fromkeys(each.motion for each in self.columns))
 
     @property

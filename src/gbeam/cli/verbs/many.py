@@ -138,7 +138,7 @@ def sensitivity(
     at: At = None,
     output: Output = Output(),
 ) -> int:
-    """Which values of a scenario a figure depends on, and how much: a ranked table and a tornado plot.
+    """Rank the values of a scenario by how much a figure depends on them: a table and a tornado plot.
 
     The derivatives of responses are those of the discrete solution, all from one run. With --out also writes
     sensitivity.nc and a plot of each figure, with --report sensitivity.html. Exit status: 0 done, 1 the run is not

@@ -297,7 +297,7 @@ class Centrifuge:
 
     @property
     def mounting(self) -> str:
-        """Which of the two mountings of the specimen in the gimbals."""
+        """Name of the mounting of the specimen in the gimbals, upright or inverted."""
         return next(name for name, sign in MOUNTINGS.items() if sign == self.geometry.sign)
 
     def _prepared(self, start: float, end: float) -> Course:

@@ -154,10 +154,10 @@ class Rounded(Profile):
 
     @property
     def record(self) -> RecordSummary | None:
-        """That of the sharp profile."""
+        """The flight's record that the sharp profile is, if it is one."""
         return self.sharp.record
 
     @property
     def extent(self) -> tuple[float, float] | None:
-        """That of the sharp profile, s."""
+        """First and last time of the sharp profile, s."""
         return self.sharp.extent

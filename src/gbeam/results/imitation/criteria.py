@@ -50,7 +50,7 @@ class Judged:
 
     @property
     def part(self) -> str:
-        """Which part of the flight was run, ``0 to 6 of 15.99 s``; empty where all of it was."""
+        """The part of the flight that was run, ``0 to 6 of 15.99 s``; empty where all of it was."""
         from gbeam.results.result import part_words
 
         return "" if self.whole is None else part_words(self.accounting.span, self.whole)
