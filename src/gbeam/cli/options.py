@@ -125,6 +125,15 @@ Inputs = Annotated[
 ]
 Outputs = Annotated[str | None, Parameter(name="--outputs", help='Only these, "tip_y, hub_angle".')]
 
+AtLoop = Annotated[
+    str,
+    Parameter(
+        name="--loop",
+        help="Of a system with controllers: open; closed, from sample to sample, with margins; or cut at a drive, "
+        '"pointing: axis.angle".',
+    ),
+]
+
 # Of campbell.
 Speed = Annotated[
     str | None, Parameter(help='Such as "60 rpm"; by default from rest to the largest rate of the motion.')

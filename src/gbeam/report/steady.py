@@ -8,7 +8,7 @@ from textwrap import wrap
 
 import numpy as np
 
-from gbeam.report.words import error_words, percent, resting_loads, tidy, warning_lines
+from gbeam.report.words import error_words, number, percent, resting_loads, tidy, warning_lines
 from gbeam.results.equilibrium import Critical, CriticalMap, Deflection
 from gbeam.results.errors import Errors
 from gbeam.results.modal import Campbell, Modes, along
@@ -123,6 +123,7 @@ def map_csv(critical: CriticalMap) -> str:
     return "\n".join([",".join(heads), *rows, ""])
 
 
+SLOWEST = 4  # poles of a loop that are named
 _WIDTH = 100  # columns of the state_space
 
 
@@ -141,10 +142,31 @@ def state_space(system: StateSpace, gauges: Iterable[Gauge] = ()) -> str:
         if f"strain_{k}" in names:
             fibre = f"fibre y {1e3 * gauge.y:g} mm, z {1e3 * gauge.z:g} mm"
             lines.append(f"  strain_{k} at {gauge.at:g} m, {fibre}")
-    lines += _accuracy(system)
+    lines += _accuracy(system) + _in_steps(system)
     if system.truncation is not None:
         lines += _left_out(system, system.truncation)
     return "\n".join([*lines, *warning_lines(system), "--json prints the matrices, --out writes them for MATLAB too."])
+
+
+def _in_steps(system: StateSpace) -> list[str]:
+    """Of a loop in steps what decays slowest, and the margins."""
+    if not system.step:
+        return []
+    slowest = [each for each in system.eigenvalue if each.imag >= 0 and each.real > -math.pi / system.step][:SLOWEST]
+    lines = [f"  in steps of {1e3 * system.step:.4g} ms; slowest to decay:"]
+    for each in slowest:
+        turning = f", {number(each.imag / (2 * math.pi))} Hz" if each.imag else ""
+        lines.append(f"    {number(each.real)} 1/s{turning}")
+    for each in system.margins:
+        gain = (
+            f"gain margin {number(each.gain)} at {number(each.gain_frequency)} Hz" if math.isfinite(each.gain) else ""
+        )
+        low = f"gain not below {number(each.gain_low)}" if each.gain_low > 0 else ""
+        phase = f"phase margin {math.degrees(each.phase):.3g} deg at {number(each.phase_frequency)} Hz"
+        phase = f"{phase}, delay margin {number(1e3 * each.delay)} ms" if math.isfinite(each.phase) else ""
+        parts = (gain, low, phase, f"least distance from -1 {number(each.modulus, 3)}")
+        lines.append(f"  {each.drive}: {'; '.join(filter(None, parts))}")
+    return lines
 
 
 def _left_out(system: StateSpace, left_out: Truncation) -> list[str]:

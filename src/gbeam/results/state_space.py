@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
@@ -14,7 +15,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.results.declared import INSIDE, declared, fact, labels, part, quantity, rows
 from gbeam.results.errors import FrequencyErrors
-from gbeam.results.result import Floats, Part, Result
+from gbeam.results.result import Complex, Floats, Part, Result
 
 ACCURATE = 0.01  # error of a frequency that is within what a design takes for accurate
 
@@ -88,8 +89,24 @@ class Truncation(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
+class Margin(Part):
+    """Stability margins of a loop that is cut at one drive, the others closed."""
+
+    drive: str = labels("name of the controller and its drive", key="")
+    gain: float = quantity(
+        "", "least factor above one by which the loop's gain may grow", note="inf where it may by any"
+    )
+    gain_frequency: float = quantity("Hz", "frequency at which the loop would oscillate then")
+    gain_low: float = quantity("", "largest factor below one to which it may fall", note="0 where it may to any")
+    phase: float = quantity("rad", "least change of phase, either way, at a gain of one")
+    phase_frequency: float = quantity("Hz", "frequency of that gain")
+    delay: float = quantity("s", "time by which the loop may be later")
+    modulus: float = quantity("", "least distance of the loop's gain from -1")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
 class StateSpace(Result):
-    """ẋ = Ax + Bu, y = Cx + Du; all are departures from the operating point.
+    """ẋ = Ax + Bu, y = Cx + Du; with a `step` x⁺ = Ax + Bu. All are departures from the operating point.
 
     Examples
     --------
@@ -128,6 +145,10 @@ class StateSpace(Result):
     errors: FrequencyErrors | None = part(
         "errors of these frequencies", "pole", name=None, note="None where there is no estimate", default=None
     )
+    step: float = fact("time between samples", "s", note="0 in continuous time", default=0.0)
+    margins: tuple[Margin, ...] = rows(
+        "margins of the loop at every drive of a controller", "drive", name="margin_", optional=True, default=()
+    )
     truncation: Truncation | None = part("what a smaller model leaves out", name="truncation_", default=None)
 
     @declared("", "names of the states", "state_of", role="labels", key=None)
@@ -138,6 +159,13 @@ class StateSpace(Result):
     def pole_error(self) -> Floats:
         """Total errors of the poles' frequencies, (k,); empty where there is no estimate."""
         return np.zeros(0) if self.errors is None else self.errors.total
+
+    @declared("1/s", "eigenvalue of A; of samples ln z over their step", "eigenvalue", key="/eigenvalue")
+    def eigenvalue(self) -> Complex:
+        """Eigenvalues s of A, (n,) 1/s, the slowest to decay first; of a sampled model ln z/T of its z."""
+        value: Any = np.asarray(np.linalg.eigvals(self.a), dtype=complex)
+        value = np.log(value + 1e-300) / self.step if self.step else value
+        return value[np.lexsort((value.imag, np.abs(value.imag), -value.real))]
 
     @declared("mixed", "of what decays", "hankel", name="hankel_singular_value", key="hankel_singular_values")
     def hankel(self) -> Floats:
@@ -196,7 +224,8 @@ class StateSpace(Result):
         """As scipy.signal.StateSpace."""
         import scipy.signal  # half a second to import
 
-        return scipy.signal.StateSpace(self.a, self.b, self.c, self.d)
+        step = {"dt": self.step} if self.step else {}
+        return scipy.signal.StateSpace(self.a, self.b, self.c, self.d, **step)
 
     def to_control(self) -> Any:
         """As python-control's StateSpace with named signals.
@@ -209,8 +238,8 @@ class StateSpace(Result):
         control = import_control()
         # It takes no dots, as those of a system's signals.
         kinds = {"states": self.states, "inputs": self.inputs, "outputs": self.outputs}
-        names = {kind: [each.name.replace(".", "_") for each in signals] for kind, signals in kinds.items()}
-        return control.ss(self.a, self.b, self.c, self.d, **names)
+        names = {kind: [re.sub(r"\W+", "_", each.name) for each in signals] for kind, signals in kinds.items()}
+        return control.ss(self.a, self.b, self.c, self.d, self.step, **names)
 
     def to_mat(self, path: str | os.PathLike[str]) -> None:
         """Write a MATLAB file: A, B, C, D, the operating point, names and units, frequencies and their errors.
@@ -233,6 +262,8 @@ class StateSpace(Result):
         points = {"x0": self.state, "u0": self.input, "y0": self.output}
         if self.errors is not None:
             points |= {"frequency_Hz": self.frequency, "frequency_error": self.errors.total}
+        if self.step:
+            points |= {"Ts": np.array(self.step)}
         if self.truncation is not None:
             points |= {"truncation_error": self.truncation.error, "truncation_bound": np.array(self.truncation.bound)}
         scipy.io.savemat(
@@ -252,6 +283,8 @@ class StateSpace(Result):
             counts.append(
                 f"frequencies within {100 * ACCURATE:g} % of the exact model's up to {self.accurate_to:.4g} Hz"
             )
+        for each in self.margins:
+            counts.append(f"{each.drive}: gain margin {each.gain:.3g}, phase margin {math.degrees(each.phase):.3g} deg")
         if self.truncation is not None:
             share = float(self.truncation.share.max(initial=0.0))
             counts.append(

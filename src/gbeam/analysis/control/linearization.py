@@ -26,6 +26,7 @@ from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import each_leaf, record
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
+from gbeam.guards.checks import choice
 from gbeam.integrate.derivatives import accelerations
 from gbeam.mechanics.assembly import at_stations
 from gbeam.mechanics.equations.residuals import OnBase, OnHub
@@ -242,6 +243,7 @@ def linearize(
     inputs: Sequence[str] | None = None,
     outputs: Sequence[str] | None = None,
     at: str = "rest",
+    loop: str = "open",
     name: str = "",
 ) -> StateSpace:
     """State-space model of small departures from an operating point.
@@ -269,6 +271,10 @@ def linearize(
         rates and places.
     at : str
         Of a system: ``rest``, where it rests, or ``start``, the motion at its start.
+    loop : str
+        Of a system with controllers: ``open``, the plant alone; ``closed``, all of it from sample to sample, with its
+        references as further inputs and the margins at every drive; or the name of a controller and its drive, such as
+        ``pointing: axis.angle``: the loop that is cut there, with negative feedback.
     name : str
         Of the motion.
 
@@ -300,7 +306,8 @@ def linearize(
     [  36.56  183.71  229.1  1146.58 4243.13]
     """
     if isinstance(structure, System):
-        return linearize_system(structure, motion, time, inputs=inputs, outputs=outputs, at=at, name=name)
+        return linearize_system(structure, motion, time, inputs=inputs, outputs=outputs, at=at, loop=loop, name=name)
+    choice("loop", loop, ("open",))
     if motion is None:
         raise InputError("motion", "is missing", "give a Flight, a Hub or a Centrifuge")
     structure.require_damping("the state-space model")

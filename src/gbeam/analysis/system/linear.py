@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.analysis.system.closed_loop import closed_loop
 from gbeam.analysis.system.point import Point, started
 from gbeam.analysis.system.steady import RIGID, Drive, steady
 from gbeam.guards.checks import choice
@@ -58,13 +59,26 @@ def linearize_system(
     inputs: Sequence[str] | None,
     outputs: Sequence[str] | None,
     at: str,
+    loop: str,
     name: str,
 ) -> StateSpace:
-    """State-space model of small departures of a system.
+    """State-space model of small departures of a system, with its controllers in the `loop` unless it is open.
 
     The inputs are efforts on joints' coordinates and the components of forces at points; the outputs are the joints'
     coordinates and rates and the places of points, as they are named.
     """
+    drives = [f"{owner}: {each}" for owner, one in system.controllers.items() for each in one.drive]
+    choice("loop", loop, ("open", *(("closed", *drives) if drives else ())))
+    if loop != "open":
+        driven = [each for one in system.controllers.values() for each in one.drive]
+        measured = [each for one in system.controllers.values() for each in one.measure]
+        free = _default_inputs(system) if inputs is None else list(inputs)
+        wanted = _default_outputs(system) if outputs is None else list(outputs)
+        plant = linearize_system(
+            system, motion, time, inputs=driven + free, outputs=measured + wanted, at=at, loop="open", name=name
+        )
+        chosen = range(len(measured), len(measured) + len(wanted))
+        return closed_loop(plant, dict(system.controllers), chosen, None if loop == "closed" else loop)
     choice("at", at, ("rest", "start"))
     resting = at == "rest"
     local = (
@@ -105,12 +119,22 @@ def _names(system: System, local: Point) -> list[str]:
     return [kept[k] for k in local.tree.free]
 
 
+def _default_inputs(system: System) -> list[str]:
+    """Driven coordinates, and the components of all forces."""
+    driven = {f"{name}.{each}" for name, joint in system.joints.items() for each in joint.efforts}
+    return [each for each in drives_of(system) if each in driven or each.partition(".")[0] in system.forces]
+
+
+def _default_outputs(system: System) -> list[str]:
+    """Coordinates, their rates and the places of points."""
+    others = ("acceleration", "velocity", "spin")
+    return [each for each in signals_of(system) if not each.rpartition(".")[2].startswith(others)]
+
+
 def _inputs(system: System, local: Point, wanted: Sequence[str] | None) -> tuple[Floats, tuple[Signal, ...]]:
     """Forces (n, m) of unit inputs on the coordinates, and their signals."""
     drives = drives_of(system)
-    if wanted is None:
-        driven = {f"{name}.{each}" for name, joint in system.joints.items() for each in joint.efforts}
-        wanted = [each for each in drives if each in driven or each.partition(".")[0] in system.forces]
+    wanted = _default_inputs(system) if wanted is None else wanted
     for each in wanted:
         choice("inputs", each, drives)
     names = _names(system, local)
@@ -131,10 +155,7 @@ def _outputs(
 ) -> tuple[tuple[Signal, ...], Floats, tuple[Floats, Floats, Floats]]:
     """Signals of outputs, their values, and their derivatives with respect to y, ẏ and ÿ."""
     every = signals_of(system)
-    if wanted is None:
-        wanted = [
-            each for each in every if not each.rpartition(".")[2].startswith(("acceleration", "velocity", "spin"))
-        ]
+    wanted = _default_outputs(system) if wanted is None else wanted
     for each in wanted:
         choice("outputs", each, every)
     n = len(local.y)

@@ -13,6 +13,7 @@ from gbeam import questions
 from gbeam.cli.inputs import Input, naming, number, numbers, read
 from gbeam.cli.options import (
     At,
+    AtLoop,
     Balanced,
     Inputs,
     Masses,
@@ -175,6 +176,7 @@ def linearize(
     strain_at: StrainAt = (),
     inputs: Inputs = None,
     outputs: Outputs = None,
+    loop: AtLoop = "open",
     output: Output = Output(),
 ) -> int:
     """State-space model A, B, C, D about the equilibrium at one time of a motion.
@@ -191,6 +193,7 @@ def linearize(
         if wanted:
             loaded.case.one_beam(option, option)
     for option, beside, both in (
+        ("--loop", "--balanced or --modes", loop != "open" and (modes is not None or balanced is not None)),
         ("--balanced", "--modes", modes is not None and balanced is not None),
         ("--rate", "--at", rate is not None and at is not None),
     ):
@@ -206,11 +209,17 @@ def linearize(
         stations = [points[text] if text in points else number("--strain-at", text, "length") for text in strain_at]
         with naming("--strain-at"):
             gauges = surface_gauges(beam, stations)
-    options = {"order": "--balanced", "modes": "--modes", "inputs": "--inputs", "outputs": "--outputs"}
+    options = {
+        "order": "--balanced",
+        "modes": "--modes",
+        "inputs": "--inputs",
+        "outputs": "--outputs",
+        "loop": "--loop",
+    }
     with Watch(), loaded.placing(**options):
         system = linearize(
             loaded.case.assemble(), chosen, time,
-            rate=steady, gauges=gauges, inputs=_names(inputs), outputs=_names(outputs), name=name,
+            rate=steady, gauges=gauges, inputs=_names(inputs), outputs=_names(outputs), loop=loop, name=name,
         )  # fmt: skip
         if modes is not None or balanced is not None:
             from gbeam.analysis.control import reduction
