@@ -260,6 +260,10 @@ class Given:
                 },
             ),
             "read_matrix": ((self.matrix, "k"), {}),
+            "read_sid": (
+                (Path(__file__).parents[1] / "examples" / "data" / "strip.sid",),
+                {"damping_ratio": 0.1, "points": {"tip": 2}, "kind": "arm"},
+            ),
             "read_record": (
                 (self.record, *columns),
                 {"time_unit": "s", "quantity": "specific-force", "span": (None, 0.1)},

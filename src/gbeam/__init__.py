@@ -92,6 +92,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.solids.mesh import SolidMesh as SolidMesh
     from gbeam.solids.mesh import SolidModel as SolidModel
     from gbeam.solids.rigid import RigidSpecimen as RigidSpecimen
+    from gbeam.solids.standard_input import read_sid as read_sid
     from gbeam.structure.attachments import Load as Load
     from gbeam.structure.attachments import Point as Point
     from gbeam.structure.attachments import PointMass as PointMass
@@ -189,6 +190,7 @@ _HOME = {
     "read_matrix": "io.models.registry",
     "read_record": "motion.records.record",
     "read_scenario": "scenario.build",
+    "read_sid": "solids.standard_input",
     "rerun": "scenario.rerun",
     "sensitivity": "studies.sensitivity",
     "shape_command": "analysis.control.shaping",

@@ -32,6 +32,7 @@ READERS = {
     ".op2": "nastran.read_op2",
     ".pch": "nastran.read_punch",
     ".asm": "nastran.read_superelement",
+    ".sid": "standard_input.read",
     **dict.fromkeys((".bdf", ".dat", ".nas", ".blk"), "nastran.read_bulk"),
 }
 NAMES = {  # that programs give their matrices

@@ -1,0 +1,176 @@
+"""Flexible bodies by standard input data, whose constant coefficients are those of gbeam's linear equations."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
+from gbeam.io.models.registry import model_of
+from gbeam.mechanics.equations.linear import Coefficients, rest_modes
+from gbeam.mechanics.fields.taylor import EPSILON, Places
+from gbeam.mechanics.reduction import standing_in
+from gbeam.mechanics.structure import Structure, linear_structure
+from gbeam.numerics.eigen import Floats
+from gbeam.structure.attachments import TIP
+
+ALIKE = 1e-6  # of the largest: two ways to the same moments
+# Columns of the centrifugal terms: the standard's, and another that is met.
+ORDERS = (((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)), ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)))
+
+
+@typed
+def read_sid(
+    path: str | os.PathLike[str],
+    *,
+    damping_ratio: Any = None,
+    points: Mapping[str, int] | None = None,
+    kind: str = "standard input data",
+) -> Structure:
+    """Read a flexible body of standard input data (SID).
+
+    Parameters
+    ----------
+    path : path
+        Text of the object ``modal``, in SI: mass, centre, inertia, coupling, gyroscopic and centrifugal terms with
+        their geometric stiffness, stiffness, damping, and nodes.
+    damping_ratio : float or sequence, optional
+        Of critical damping, in place of the damping in the file.
+    points : dict of int, optional
+        Numbers of the nodes that are put out, by their names; the ``tip`` is the farthest from the root otherwise.
+    kind : str
+        For results.
+
+    Returns
+    -------
+    Structure
+        Bodies of a :class:`gbeam.System` hang on its points, which turn as the file says.
+
+    Raises
+    ------
+    InputError
+        If the file lacks a part, its parts contradict one another, it has stress at rest, or it has no damping and none
+        is given.
+
+    Notes
+    -----
+    The polynomials are those of Wallrapp, O., "Standardization of flexible body modeling in multibody system codes",
+    Mechanics of Structures and Machines 22 (1994) 283-304. Geometric stiffness is in the slopes of Ct, Cr and Oe; where
+    those of Ct are zero, every result says that it is left out, and of how much in its motion.
+
+    Examples
+    --------
+    >>> gb.read_sid("examples/data/strip.sid", damping_ratio=0.01)
+    Structure(standard input data, 2 coordinates, 0.0648 kg)
+    """
+    body = model_of([path]).body
+    if body is None or not body["nodes"]:
+        raise InputError("path", f"{path} has no body with nodes", "export standard input data with one node or more")
+    terms = _coefficients(body, os.fspath(path))
+    if damping_ratio is None and not terms.damping.any():
+        raise InputError("damping_ratio", "is missing, and the file has no damping", "give one, such as 0.01, or 0")
+    at = np.stack([node["origin"]["m0"][:, 0] for node in body["nodes"]])
+    numbers = list(body["numbers"])
+    for name, number in (points or {}).items():
+        if number not in numbers:
+            fix = f"choose from {', '.join(map(str, numbers))}"
+            raise InputError(f"points.{name}", f"is {number}, which is no node of the file", fix)
+    chosen = {name: numbers.index(number) for name, number in (points or {}).items()}
+    tip = chosen.pop(TIP, int(np.argmax(np.linalg.norm(at, axis=1))))
+    chosen[TIP] = tip
+    nodes = [body["nodes"][k] for k in chosen.values()]
+    second = np.stack([np.moveaxis(_slope(node["phi"], terms.size), 1, 2) for node in nodes])
+    stations = Places(
+        at[list(chosen.values())],
+        np.stack([node["phi"]["m0"] for node in nodes]),
+        (second + second.swapaxes(2, 3)) / 2,
+    )
+    sums, moments = -terms.f_a, _moments(terms)
+    lacking = not np.any(terms.k_a)
+    mass, *paths = standing_in(np.asarray(terms.rigid), sums, moments)
+    structure = linear_structure(
+        terms,
+        mass,
+        Places(*paths),
+        stations,
+        length=float(np.linalg.norm(at, axis=1).max()),
+        turns=np.stack([node["psi"]["m0"] for node in nodes]),
+        damping_ratio=0.0 if damping_ratio is None else damping_ratio,
+        points=tuple(chosen),
+        kind=kind,
+        warnings=("Ct has no geometric stiffness: what the stress of loads stiffens or softens is left out",) * lacking,
+        unstiffened=lacking,
+    )
+    if damping_ratio is not None:
+        return structure
+    ratios = _ratios(terms)
+    return replace(structure, coefficients=terms, damping_ratio=ratios)
+
+
+def _slope(block: Mapping[str, Floats], count: int) -> Floats:
+    """Change of a polynomial with the coordinates (rows, n, columns), zero where the file ends before it."""
+    slope = block["m1"]
+    return slope if slope.shape[1] == count else np.zeros((slope.shape[0], count, slope.shape[2]))
+
+
+def _coefficients(body: Mapping[str, Any], path: str) -> Coefficients:
+    n = body["Me"]["m0"].shape[0]
+    if "ksigma" in body and body["ksigma"]["m0"].any():
+        raise InputError("path", f"{path} has stress at rest (ksigma)", "export the body at rest, without a load")
+    total, (x, y, z), about = float(body["mass"]), body["mdCM"]["m0"][:, 0], body["J"]["m0"]
+    second = np.trace(about) / 2 * np.eye(3) - about
+    f_ww = np.moveaxis(_slope(body["J"], n), 1, -1) / 2  # J = J₀ + J₁ q, ½ ω J₁ ω is the centrifugal force
+    along = -body["Oe"]["m0"]
+    for order in ORDERS:
+        f_oe = _by_pairs(along.T[:, :, None], order)[..., 0]
+        if np.abs(f_oe - f_ww).max() <= ALIKE * np.abs(along).max():
+            break
+    else:
+        if f_ww.any():
+            fix = "export it again: ½ dJ/dq is the force of a rotation"
+            raise InputError("path", f"{path} has centrifugal terms Oe that its inertia J contradicts", fix)
+        order = ORDERS[0]
+        f_ww = _by_pairs(along.T[:, :, None], order)[..., 0]
+    k_ww = _by_pairs(np.moveaxis(_slope(body["Oe"], n), -1, 0), order)
+    ge = body["Ge"]["m0"].reshape(n, n, 3)  # [row, coordinate, axis]
+    pairs = (second[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)))
+    return Coefficients(
+        mass=body["Me"]["m0"],
+        damping=body["De"]["m0"] if "De" in body and body["De"]["m0"].any() else np.zeros((n, n)),
+        stiffness=body["Ke"]["m0"],
+        gyroscopic=np.moveaxis(ge, -1, 0),
+        k_ww=k_ww,
+        k_al=np.moveaxis(_slope(body["Cr"], n), -1, 0),
+        k_a=np.moveaxis(_slope(body["Ct"], n), -1, 0),
+        f_ww=f_ww,
+        f_al=-body["Cr"]["m0"].T,
+        f_a=-body["Ct"]["m0"].T,
+        rigid=np.array([total, x, y, z, *pairs]),
+    )
+
+
+def _by_pairs(columns: Floats, order: Any) -> Floats:
+    """Symmetric in two rates (3, 3, ...) of the columns (6, ...) of their products."""
+    full = np.zeros((3, 3, *columns.shape[1:]))
+    for column, (i, j) in zip(columns, order, strict=True):
+        full[i, j] += column / 2
+        full[j, i] += column / 2
+    return full
+
+
+def _moments(terms: Coefficients) -> Floats:
+    """Σ m r_b ∂r_a (3, 3, n): its symmetric part by the centrifugal, its other part by Euler's force."""
+    half = np.einsum("aai->i", terms.f_ww) / 2
+    even = -terms.f_ww + np.eye(3)[..., None] * half
+    return even + np.einsum("cab,ci->abi", EPSILON, terms.f_al) / 2
+
+
+def _ratios(terms: Coefficients) -> tuple[float, ...]:
+    """Damping ratios of the modes at rest."""
+    frequency, modes = rest_modes(terms.mass, terms.stiffness)
+    return tuple(np.diagonal(modes.T @ terms.damping @ modes) / (2 * frequency))
