@@ -1,7 +1,7 @@
 """Derivatives of a residual by complex steps, at many states in one call: nothing is compiled, nothing differenced.
 
-The residual is analytic, and its arrays and what drives it may have leading axes, which are broadcast: what depends on
-q alone is computed once for all derivatives with respect to q̇ and q̈.
+The residual is analytic, and its arrays and what drives it may have leading axes, which are broadcast; the first one
+is that of the steps.
 """
 
 from __future__ import annotations
@@ -23,13 +23,10 @@ def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> tuple
     q̈ (t, n) at inputs (t, ...).
     """
     n, pieces = q.shape[1], []
+    steps = 1j * STEP * np.eye(3 * n).reshape(3 * n, 1, 3, n)
     for some in _pieces(q):
         at, given = [each[some] for each in (q, qd, qdd)], each_leaf(lambda leaf: leaf[some], inputs)  # noqa: B023
-        by_place = residual(_moved(at[0]), at[1], at[2], given)
-        still = np.zeros((n, 1, 1))
-        rates, changes = np.concatenate([_moved(at[1]), at[1] + still]), np.concatenate([at[2] + still, _moved(at[2])])
-        values = np.empty((3 * n, len(at[0]), by_place.shape[-1]), dtype=complex)
-        values[:n], values[n:] = by_place, residual(at[0], rates, changes, given)
+        values = residual(*(each + steps[:, :, k] for k, each in enumerate(at)), given)
         pieces.append(values.imag / STEP)
     k, c, m = np.concatenate(pieces, axis=1).reshape(3, n, len(q), -1).transpose(0, 2, 3, 1)
     return k, c, m

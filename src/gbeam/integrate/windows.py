@@ -30,7 +30,7 @@ from gbeam.integrate.steps import Steps
 Array = Any
 Piece = tuple[Any, ...]
 FIRST, MOST = 100, 200  # steps in a window: at first, and at most
-NEAR, APART, FAR = 4, 8, 20  # stages between derivatives: at least, at first, and at most
+NEAR, APART, FAR = 4, 12, 24  # stages between derivatives: at least, at first, and at most
 CORRECTIONS, ALONE = 10, 25  # of a window at most, and of a single step
 MOVED = 0.3  # size of a correction after which derivatives are found anew
 FEW = 3  # times, after which a window that is still so far away ends, and up to which the next one may be longer
@@ -61,7 +61,7 @@ def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, 
             held = None if sampling is None else Held(sampling, done, len(part))
             window = _Window(residual, drive, scheme, part, z, x, slope, apart, held)
             count, near, times = window.solve()
-            apart = window.apart
+            apart = window.apart if count == len(part) else max(window.apart // 2, NEAR)
             if not count and len(part) == 1:
                 failed = np.full((1, z.shape[-1]), np.nan)
                 yield failed, failed, failed, np.array([False])
@@ -76,6 +76,9 @@ def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, 
                 z, x, slope = window.behind(count, near)
             elif count:
                 z, x, slope = window.z[count], window.x[count - 1, -1], window.slope_at(count - 1)
+            else:  # begin anew, with every step like the first
+                z, x = z.reshape(-1, *z.shape[-2:])[0], x.reshape(-1, x.shape[-1])[0]
+                slope = None if slope is None else tuple(each[:1, :1] for each in slope)
             if not count:
                 continue
             q, qd, qdd = window.ended(count)
@@ -124,10 +127,11 @@ class _Window:
         """
         count, times = len(self.steps), 0
         size, good = np.full(count, np.inf), np.zeros(count, dtype=bool)
-        maps = self._maps()
+        maps, fresh = self._maps(), False
         for _ in range(ALONE if count == 1 else CORRECTIONS):
             before, size = size, self._correct(*maps)
-            good = _left(size, before) <= TOLERANCE
+            # By derivatives of another state corrections may shrink slowly without being rounding.
+            good, fresh = _left(size, before, ROUNDING if fresh else 0.0) <= TOLERANCE, False
             last, largest = before.max(), size.max()
             if good.all() or not np.isfinite(size[0]) or (largest > MOVED and times > FEW and count > 1):
                 break
@@ -135,7 +139,7 @@ class _Window:
                 if times and largest <= MOVED:
                     self.apart = max(self.apart // 2, NEAR)
                 self._differentiate()
-                maps, times = self._maps(), times + 1
+                maps, times, fresh = self._maps(), times + 1, True
             elif largest < FAST * last:
                 self.apart = min(self.apart + 1, FAR)
         return _first(good), _first(size <= MOVED), times
@@ -147,13 +151,16 @@ class _Window:
         q, qd = ends[:, 0], ends[:, 1]
         if self.scheme.ends:
             return q, qd, x[:, -1].copy()
-        inputs, mass, c = self._at_ends(count), self.slope[2][:count, -1], self.scheme.offsets
-        qdd, size = x[:, -1] + (x[:, -1] - x[:, 0]) * (1 - c[-1]) / (c[-1] - c[0]), np.full(count, np.inf)
+        inputs, mass, size = self._at_ends(count), self.slope[2], np.full(count, np.inf)
+        at = np.arange(len(self.x))[:, None] + np.array(self.scheme.offsets)
+        weight = _interpolation(at.ravel(), np.arange(1, count + 1))
+        qdd = weight @ self.x.reshape(-1, self.x.shape[-1])
+        mass = (mass[:, -1] + np.concatenate([mass[1:, 0], mass[-1:, -1]])) / 2
         for _ in range(CORRECTIONS):  # with the mass at hand, for the equations are linear in q̈
-            change = solved(mass, self.residual(q, qd, qdd, inputs)[..., None])[..., 0]
+            change = solved(mass[:count], self.residual(q, qd, qdd, inputs)[..., None])[..., 0]
             qdd = qdd - change
             before, size = size, _size(change, qdd)
-            if (_left(size, before) <= TOLERANCE).all():
+            if (_left(size, before, ROUNDING) <= TOLERANCE).all():
                 return q, qd, qdd
         return q, qd, accelerations(self.residual, q, qd, inputs)
 
@@ -188,7 +195,7 @@ class _Window:
         q, qd, qdd = (each[at] for each in self._stages())
         slope: Any = slopes(self.residual, q, qd, qdd, inputs)
         if samples > 1:
-            weight = np.stack([np.interp(np.arange(count * stages), at, unit) for unit in np.eye(len(at))], axis=1)
+            weight = _interpolation(at, np.arange(count * stages))
             slope = tuple(np.tensordot(weight, each, 1).reshape(count, stages, n, n) for each in slope)
         else:
             slope = tuple(each[None] for each in slope)
@@ -235,6 +242,19 @@ class _Window:
         return _size(change, self.x)
 
 
+def _interpolation(at: Array, points: Array) -> Array:
+    """Weights (p, k) of values at k places in their interpolation at points by the cubic through the nearest four."""
+    size = min(4, len(at))
+    first: Array = np.clip(np.searchsorted(at, points) - size // 2, 0, len(at) - size)
+    index = first[:, None] + np.arange(size)
+    near, itself = at[index], np.eye(size, dtype=bool)
+    apart = np.where(itself, 1.0, points[:, None, None] - near[:, None, :])
+    between = np.where(itself, 1.0, near[:, :, None] - near[:, None, :])
+    weight = np.zeros((len(points), len(at)))
+    np.put_along_axis(weight, index, (apart / between).prod(axis=-1), axis=1)
+    return weight
+
+
 def _first(flags: Array) -> int:
     """Number of flags before the first that is false."""
     return len(flags) if flags.all() else int(np.argmin(flags))
@@ -246,8 +266,10 @@ def _size(change: Array, x: Array) -> Array:
     return np.abs(change).max(axis=axes) / (1.0 + np.abs(x).max(axis=axes))
 
 
-def _left(size: Array, before: Array) -> Array:
-    """Errors left after the last of two corrections, which shrink by a constant factor; none where they stall."""
+def _left(size: Array, before: Array, rounding: float) -> Array:
+    """Errors left after the last of two corrections, which shrink by a constant factor; none where they stall at no
+    more than rounding.
+    """
     shrunk = np.where(np.isfinite(before), size / np.maximum(before, 1e-300), 1.0)
     left = size * np.minimum(shrunk, 1.0)
-    return np.where((size > before / 2) & (size <= ROUNDING), 0.0, left)
+    return np.where((size > before / 2) & (size <= rounding), 0.0, left)

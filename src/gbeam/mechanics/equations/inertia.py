@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from functools import reduce
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.arrays.namespace import is_jax, namespace
+from gbeam.arrays.namespace import concatenated, is_jax, namespace
 from gbeam.arrays.tree import record
 from gbeam.mechanics.equations.linear import Geometric, geometric_of
 from gbeam.mechanics.fields.components import (
@@ -25,11 +26,28 @@ from gbeam.mechanics.fields.components import (
     turned,
     turned_back,
 )
-from gbeam.mechanics.fields.strains import StrainField, Tangents
+from gbeam.mechanics.fields.strains import Columns, StrainField, Tangents
 from gbeam.mechanics.fields.taylor import Places
 
 Array = Any
 NOTHING = 1e-13  # of the moments of inertia: a smaller product is rounding
+
+
+x, y, z = np.eye(3)[..., None]
+UNITS: Vector = (x, y, z)  # of the three unit vectors, in columns
+
+
+class Demanded(NamedTuple):
+    """Forces on t and moments on the sections at the nodes that motion demands, their resultant and moment about the
+    root, and of these the moments of the sections' own inertia and the forces on points beside the axis.
+    """
+
+    force: Vector
+    moment: Vector
+    total: Vector
+    about: Vector
+    turn: Vector
+    push: Vector
 
 
 @record
@@ -39,13 +57,15 @@ class Particles:
     field: StrainField | Places
     mass: Array
 
-    def forces(self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array) -> tuple[Array, Vector, Vector]:
+    def forces(
+        self, q: Array, qd: Array, qdd: Array, a: Vector, w: Vector, alpha: Vector
+    ) -> tuple[Array, Vector, Vector]:
         """Forces Σ m (∂r/∂q)·a on the coordinates (..., n), and resultant and moment about the root, by components, on
         a base with components (..., 1).
         """
         field: Any = self.field
         r, rd, rdd = field.components(q, qd, qdd)
-        force = scaled(self.mass, add(_relative(r, rd, rdd, w, alpha), split(a)))
+        force = scaled(self.mass, add(_relative(r, rd, rdd, w, alpha), a))
         return field.along(q, force), _summed(force), _summed(cross(r, force))
 
 
@@ -66,30 +86,102 @@ class Bodies:
     turning: Array | None
     aside: Array | None = None
 
-    def forces(self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array) -> tuple[Array, Vector, Vector]:
+    def forces(
+        self, q: Array, qd: Array, qdd: Array, a: Vector, w: Vector, alpha: Vector
+    ) -> tuple[Array, Vector, Vector]:
         """Forces, resultant and moment, as of particles."""
         tangents = self.field.moving(q, qd, qdd)
-        base = split(a)
+        demanded = self._demanded(tangents, a, w, alpha)
+        return self.field.pulled(tangents, demanded.force, demanded.moment), demanded.total, demanded.about
+
+    def _demanded(self, tangents: Tangents, a: Vector, w: Vector, alpha: Vector) -> Demanded:
+        """Forces and moments at the nodes, and their sums."""
         relative = _relative(tangents.t, tangents.td, tangents.tdd, w, alpha)
-        force, moment = add(mapped(relative, self.pairs), scaled(self.first, base)), NONE
-        x, y, z = (plus(part @ self.first, self.mass * each[..., 0]) for part, each in zip(relative, base, strict=True))
-        total: Vector = (x, y, z)
+        force, moment = add(mapped(relative, self.pairs), scaled(self.first, a)), NONE
+        total = add(_summed(scaled(self.first, relative)), scaled(self.mass, _alone(a)))
         about = _summed(cross(tangents.t, force))
+        turn, push = NONE, NONE
         if self.turning is not None:
-            turn = self._turning(tangents, split(w), split(alpha))
+            turn = self._turning(tangents, w, alpha)
+            on_sections = turn
             if self.aside is not None:
-                push, lever = self._aside(tangents, relative, base, split(w), split(alpha))
-                force, turn = add(force, mapped(push, self.field.node_cumulative.T)), add(turn, lever)
+                aside, lever = self._aside(tangents, relative, a, w, alpha)
+                force, on_sections = add(force, mapped(aside, self.field.node_cumulative.T)), add(turn, lever)
                 place = mapped(tangents.t, self.field.node_cumulative)
-                total, about = add(total, _summed(push)), add(about, _summed(cross(place, push)))
-            moment, about = mapped(turn, self.field.node_cumulative.T), add(about, _summed(turn))
+                total, about = add(total, _summed(aside)), add(about, _summed(cross(place, aside)))
+            moment, about = mapped(on_sections, self.field.node_cumulative.T), add(about, _summed(on_sections))
         if len(self.beside):
             r, rd, rdd = self.field.carried(tangents)
-            push = scaled(self.beside, add(_relative(r, rd, rdd, w, alpha), base))
+            push = scaled(self.beside, add(_relative(r, rd, rdd, w, alpha), a))
             along, bent = self.field.at_nodes(tangents, push)
             force, moment = add(force, along), add(moment, bent)
             total, about = add(total, _summed(push)), add(about, _summed(cross(r, push)))
-        return self.field.pulled(tangents, force, moment), total, about
+        return Demanded(force, moment, total, about, turn, push)
+
+    def slopes(
+        self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array, axes: list[int]
+    ) -> tuple[Array, Array]:
+        """Forces, resultant and moment (..., n + 6), and their derivatives by all arguments, (..., 3 n + 9, n + 6), of
+        ω and α only about some axes.
+        """
+        shape, n = np.broadcast_shapes(*(each.shape[:-1] for each in (q, qd, qdd, a, w, alpha))), self.field.size
+        # The last axis are nodes or points, the one before it the columns by q, q̇, q̈, ω and α.
+        base, w, alpha = (_components(each[..., None, :]) for each in (a, w, alpha))
+        tangents = self.field.moving(*(each[..., None, :] for each in (q, qd, qdd)))
+        at, columns = self._demanded(tangents, base, w, alpha), self.field.columns(tangents)
+        side, back = _Side.of(shape, n, axes), self.field.node_cumulative.T
+        # The root's turn moves t, and turns sections, as a coordinate does.
+        moved = side.rows(columns.place[0], cross(UNITS, tangents.t))
+        change = side.changes(columns, tangents.t, tangents.td, w, alpha)
+        by, resultant = _work(mapped(change, self.pairs), moved), _summed(scaled(self.first, change))
+        by_a, mass, swung = _summed(scaled(self.first, moved)), self.mass, cross(columns.place[0], at.force)
+        lever, about = mapped(swung, back), _summed(swung)
+        if self.turning is not None:
+            turn = self._turning_changes(tangents, columns, at.turn, side, w, alpha)
+            by = by + _work(turn, side.rows(columns.angle[0], UNITS))
+        if len(self.beside):
+            (r, rd, _), points = self.field.carried(tangents), self.field.columns_of_points(tangents, columns)
+            moved = side.rows(points.place[0], cross(UNITS, r))
+            change = scaled(self.beside, side.changes(points, r, rd, w, alpha))
+            by, resultant = by + _work(change, moved), add(resultant, _summed(change))
+            by_a, mass = add(by_a, _summed(scaled(self.beside, moved))), mass + self.beside.sum()
+            arm = cross(cross(points.angle[0], tangents.arm), at.push)
+            lever = add(lever, mapped(arm, self.field.cumulative.T))
+            about = add(about, _summed(arm))
+        held = add(at.moment, mapped(cross(tangents.t, at.force), back))
+        # What is given to the nodes does other work where these have turned.
+        force, moment = cross(at.force, columns.angle[0]), add(cross(held, columns.angle[0]), lever)
+        by[..., :n, :n] += self.field.inward(tangents, force, moment)
+        by[..., :n, n:] += joined(np, about, (*shape, n))
+        out, turns = np.zeros((*shape, 3 * n + 9, n + 6)), 3 * n + 3 + np.array(axes, dtype=int)
+        motion, rows = np.r_[: 3 * n, turns, turns + 3], np.r_[:n, n + 3 : n + 6]
+        out[..., motion[:, None], rows] = by
+        out[..., motion, n : n + 3] = joined(np, resultant, (*shape, len(motion)))
+        out[..., 3 * n : 3 * n + 3, rows] = np.moveaxis(joined(np, by_a, (*shape, n + 3)), -1, -2)
+        out[..., 3 * n : 3 * n + 3, n : n + 3] = mass * np.eye(3)
+        along = self.field.pulled(tangents, at.force, at.moment)
+        value = [along, *(joined(np, each, (*shape, 1)) for each in (at.total, at.about))]
+        return concatenated(value)[..., 0, :], out
+
+    def _turning_changes(
+        self, tangents: Tangents, columns: Columns, turn: Vector, side: _Side, w: Vector, alpha: Vector
+    ) -> Vector:
+        """Derivatives of the moments of the sections at the nodes, side by side."""
+        (angle, rate, change), inward = columns.angle, tangents.rotation
+        spin, spun = add(tangents.w, w), add(tangents.alpha, alpha, cross(w, tangents.w))
+        by_place = add(rate, cross(angle, tangents.w))
+        faster = add(change, cross(rate, tangents.w), cross(angle, tangents.alpha), cross(w, by_place))
+        by_rate = add(rate, by_place, cross(w, angle))
+        # In axes that turn with the sections.
+        spins = side.joined(add(by_place, cross(spin, angle)), angle, NONE, side.units, NONE)
+        changes = side.joined(
+            add(faster, cross(spun, angle)), by_rate, angle, cross(side.units, tangents.w), side.units
+        )
+        spin, spins, changes = (turned_back(inward, each) for each in (spin, spins, changes))
+        torque = add(
+            self._about_axes(changes), cross(spins, self._about_axes(spin)), cross(spin, self._about_axes(spins))
+        )
+        return add(turned(inward, torque), side.joined(cross(angle, turn), NONE, NONE, NONE, NONE))
 
     def _turning(self, tangents: Tangents, w: Vector, alpha: Vector) -> Vector:
         """Moments J α + ω × J ω of the sections at the nodes."""
@@ -134,9 +226,34 @@ class Inertia:
         particles on a base with acceleration (or specific force), angular velocity and angular acceleration (..., 3):
         a = a_O + α × r + ω × (ω × r) + 2 ω × ṙ + r̈.
         """
-        along, total, moment = self.same.forces(q, qd, qdd, *(each[..., None, :] for each in (a, w, alpha)))
-        xp, shape = namespace(self.mass, q, a), along.shape[:-1]
+        motion = (q, qd, qdd, a, w, alpha)
+        if any(map(np.iscomplexobj, motion)):
+            stepped = self._stepped(motion)
+            if stepped is not None:
+                return stepped[..., :-6], stepped[..., -6:-3], stepped[..., -3:]
+        xp, shape = namespace(self.mass, q, a), np.broadcast_shapes(*(each.shape[:-1] for each in motion))
+        along, total, moment = self.same.forces(q, qd, qdd, *(_components(each) for each in (a, w, alpha)))
+        along = xp.broadcast_to(along, (*shape, along.shape[-1]))
         return along, joined(xp, total, shape), joined(xp, moment, shape)
+
+    def _stepped(self, motion: tuple[Array, ...]) -> Array | None:
+        """Forces, resultant and moment where the motion is one, moved by complex steps along the first axis."""
+        axes = max(each.ndim for each in motion)
+        at = [_common(each, axes) for each in motion]
+        if axes < 2 or not isinstance(self.same, Bodies) or self.same.aside is not None or any(x is None for x in at):
+            return None
+        q, qd, qdd, a, w, alpha = at
+        turns = [k for k in range(3) if any(np.imag(each[..., k]).any() for each in motion[4:])]
+        out, slope = self.same.slopes(q, qd, qdd, a, w, alpha, turns)
+        first = 0
+        for each in motion:
+            size = each.shape[-1]
+            if np.iscomplexobj(each):
+                moved = each.imag if each.ndim == axes else each.imag[None]
+                change = np.moveaxis(moved, 0, -2) @ slope[..., first : first + size, :]
+                out = out + 1j * np.moveaxis(change, -2, 0)
+            first += size
+        return out
 
     def about(self, q: Array) -> tuple[Places, Geometric | None]:
         """Places of the particles about coordinates (n,), and their geometric stiffness unless they have second
@@ -148,14 +265,89 @@ class Inertia:
         return places, geometric_of(bent[0], bent[1:])
 
 
-def _relative(r: Vector, rd: Vector, rdd: Vector, w: Array, alpha: Array) -> Vector:
+def _relative(r: Vector, rd: Vector, rdd: Vector, w: Vector, alpha: Vector) -> Vector:
     """α × r + ω × (ω × r) + 2 ω × ṙ + r̈."""
-    rate, change = split(w), split(alpha)
-    return add(swept(rate, change, r), scaled(2.0, cross(rate, rd)), rdd)
+    return add(swept(w, alpha, r), scaled(2.0, cross(w, rd)), rdd)
+
+
+class _Side(NamedTuple):
+    """Columns of derivatives side by side, of instants of a shape, by n coordinates and about some of the root's axes,
+    whose unit vectors are `units`.
+    """
+
+    shape: tuple[int, ...]
+    n: int
+    axes: int
+    units: Vector
+
+    @classmethod
+    def of(cls, shape: tuple[int, ...], n: int, axes: list[int]) -> _Side:
+        """Columns about axes of the root."""
+        x, y, z = (row[axes, None] if k in axes else 0 for k, row in enumerate(np.eye(3)))
+        return cls(shape, n, len(axes), (x, y, z))
+
+    def joined(self, *parts: Vector) -> Vector:
+        """Columns (..., 3 n + 2 axes, points) by q, q̇, q̈, ω and α."""
+        return self._joined(parts, (self.n,) * 3 + (self.axes,) * 2)
+
+    def rows(self, by_coordinate: Vector, by_turn: Vector) -> Vector:
+        """Columns (..., n + 3, points) by coordinates and turns of the root about all axes."""
+        return self._joined((by_coordinate, by_turn), (self.n, 3))
+
+    def _joined(self, parts: tuple[Vector, ...], counts: tuple[int, ...]) -> Vector:
+        ends, columns = np.cumsum(counts), list[Any]()
+        for each in zip(*parts, strict=True):
+            if all(map(absent, each)):
+                columns.append(0)
+                continue
+            points = max(part.shape[-1] for part in each if not absent(part))
+            columns.append(np.empty((*self.shape, ends[-1], points)))
+            for part, end, count in zip(each, ends, counts, strict=True):
+                columns[-1][..., end - count : end, :] = part
+        x, y, z = columns
+        return x, y, z
+
+    def changes(self, columns: Columns, r: Vector, rd: Vector, w: Vector, alpha: Vector) -> Vector:
+        """Derivatives of α × r + ω × (ω × r) + 2 ω × ṙ + r̈, (..., 3 n + 6, points)."""
+        slope, rate, change = columns.place
+        by_place = add(swept(w, alpha, slope), scaled(2.0, cross(w, rate)), change)
+        by_rate = scaled(2.0, add(cross(w, slope), rate))
+        turn = cross(self.units, r)
+        by_w = add(cross(self.units, cross(w, r)), cross(w, turn), scaled(2.0, cross(self.units, rd)))
+        return self.joined(by_place, by_rate, slope, by_w, turn)
+
+
+def _work(forces: Vector, slopes: Vector) -> Array:
+    """Work (..., c, n) of forces (..., c, points) along slopes (..., n, points)."""
+    pairs = zip(forces, slopes, strict=True)
+    return reduce(plus, (f @ np.swapaxes(s, -1, -2) for f, s in pairs if not (absent(f) or absent(s))))
+
+
+def _components(vectors: Array) -> Vector:
+    """Components (..., 1) of vectors (..., 3); one that is zero at all times is absent."""
+    x, y, z = split(vectors[..., None, :])
+    if is_jax(vectors):
+        return x, y, z
+    x, y, z = (part if part.any() else 0 for part in (x, y, z))
+    return x, y, z
+
+
+def _alone(vectors: Vector) -> Vector:
+    """Vectors (...) of components (..., 1)."""
+    x, y, z = (part if absent(part) else part[..., 0] for part in vectors)
+    return x, y, z
+
+
+def _common(part: Array, axes: int) -> Array:
+    """Real parts without their first axis, if they have as many as `axes`; None where they differ along it."""
+    real = part.real
+    if part.ndim < axes:
+        return real
+    return real[0] if (real == real[:1]).all() else None
 
 
 def _summed(vectors: Vector) -> Vector:
-    x, y, z = (0 if absent(part) else part.sum(axis=-1) for part in vectors)
+    x, y, z = (0 if absent(part) else part @ np.ones(part.shape[-1]) for part in vectors)
     return x, y, z
 
 

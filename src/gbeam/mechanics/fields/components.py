@@ -6,7 +6,6 @@ a plane needs no larger program than its plane.
 
 from __future__ import annotations
 
-from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -20,55 +19,59 @@ UNTURNED: Rotation = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 
 def absent(value: Scalar) -> bool:
     """Whether a component is zero by construction."""
-    return isinstance(value, int) and value == 0
+    return type(value) is int and value == 0
 
 
 def times(left: Scalar, right: Scalar) -> Scalar:
     """Product of two components."""
-    if absent(left) or absent(right):
-        return 0
-    if isinstance(left, int) and left == 1:
-        return right
-    return left if isinstance(right, int) and right == 1 else left * right
+    if type(left) is int:
+        return right if left else 0
+    if type(right) is int:
+        return left if right else 0
+    return left * right
 
 
 def plus(left: Scalar, right: Scalar) -> Scalar:
     """Sum of two components."""
-    if absent(left):
+    if type(left) is int and left == 0:
         return right
-    return left if absent(right) else left + right
+    return left if type(right) is int and right == 0 else left + right
 
 
 def minus(left: Scalar, right: Scalar) -> Scalar:
     """Difference of two components."""
-    if absent(right):
+    if type(right) is int and right == 0:
         return left
-    return -right if absent(left) else left - right
+    return -right if type(left) is int and left == 0 else left - right
 
 
 def add(*vectors: Vector) -> Vector:
     """Sum of vectors."""
-    x, y, z = (reduce(plus, parts) for parts in zip(*vectors, strict=True))
+    x, y, z = vectors[0]
+    for u, v, w in vectors[1:]:
+        x, y, z = plus(x, u), plus(y, v), plus(z, w)
     return x, y, z
 
 
 def scaled(factor: Scalar, vector: Vector) -> Vector:
     """Product of a number, or of one at each point, and a vector."""
-    x, y, z = (times(factor, part) for part in vector)
-    return x, y, z
+    x, y, z = vector
+    return times(factor, x), times(factor, y), times(factor, z)
 
 
 def dot(left: Vector, right: Vector) -> Scalar:
     """Scalar product."""
-    return reduce(plus, (times(a, b) for a, b in zip(left, right, strict=True)))
+    (a, b, c), (x, y, z) = left, right
+    return plus(plus(times(a, x), times(b, y)), times(c, z))
 
 
 def cross(w: Vector, r: Vector) -> Vector:
     """w × r."""
+    (a, b, c), (x, y, z) = w, r
     return (
-        minus(times(w[1], r[2]), times(w[2], r[1])),
-        minus(times(w[2], r[0]), times(w[0], r[2])),
-        minus(times(w[0], r[1]), times(w[1], r[0])),
+        minus(times(b, z), times(c, y)),
+        minus(times(c, x), times(a, z)),
+        minus(times(a, y), times(b, x)),
     )
 
 
@@ -79,14 +82,14 @@ def swept(w: Vector, alpha: Vector, r: Vector) -> Vector:
 
 def turned(rotation: Rotation, vector: Vector) -> Vector:
     """R v."""
-    x, y, z = (dot(row, vector) for row in rotation)
-    return x, y, z
+    x, y, z = rotation
+    return dot(x, vector), dot(y, vector), dot(z, vector)
 
 
 def turned_back(rotation: Rotation, vector: Vector) -> Vector:
     """Rᵀ v."""
-    x, y, z = (dot(column, vector) for column in zip(*rotation, strict=True))
-    return x, y, z
+    (a, b, c), (d, e, f), (g, h, i) = rotation
+    return dot((a, d, g), vector), dot((b, e, h), vector), dot((c, f, i), vector)
 
 
 def plane_rotation(axis: int, cosine: Scalar, sine: Scalar) -> Rotation:
@@ -111,5 +114,11 @@ def split(vectors: Any) -> Vector:
 
 def joined(xp: Any, parts: tuple[Scalar, ...], shape: tuple[int, ...]) -> Any:
     """Array (*shape, k) of k components, of a shape that they broadcast further."""
-    shape = np.broadcast_shapes(shape, *(part.shape for part in parts if not isinstance(part, int | float)))
-    return xp.stack([xp.broadcast_to(float(p) if isinstance(p, int) else p, shape) for p in parts], axis=-1)
+    sizes = {shape, *(part.shape for part in parts if not isinstance(part, int | float))}
+    shape = np.broadcast_shapes(*sizes) if len(sizes) > 1 else shape
+    if xp is not np:
+        return xp.stack([xp.broadcast_to(float(p) if isinstance(p, int) else p, shape) for p in parts], axis=-1)
+    out = np.empty((*shape, len(parts)), dtype=np.result_type(float, *parts))
+    for k, part in enumerate(parts):
+        out[..., k] = part
+    return out

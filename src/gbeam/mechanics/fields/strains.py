@@ -60,6 +60,16 @@ class Tangents(NamedTuple):
     alpha: Vector = NONE
 
 
+class Columns(NamedTuple):
+    """By coordinate, (..., n, points), and with its first and second derivatives with respect to time: how t or points
+    move, by which angle sections turn, and Rκ at the nodes.
+    """
+
+    place: tuple[Vector, Vector, Vector]
+    angle: tuple[Vector, Vector, Vector]
+    turn: tuple[Vector, Vector, Vector]
+
+
 @record
 class StrainField:
     """Points (p,) of a beam by strains (6, G, n) at the nodes, and their values `rest` (6, G) at rest; `offset` (p, 3)
@@ -181,10 +191,11 @@ class StrainField:
     def pulled(self, tangents: Tangents, force: Vector, moment: Vector = NONE) -> Array:
         """Generalised forces (..., n) of forces on t and moments on the sections at the nodes."""
         lever = mapped(cross(tangents.t, force), self.node_cumulative.T)
-        inward = (
-            *turned_back(tangents.rotation, force),
-            *turned_back(tangents.rotation, add(moment, lever)),
-        )
+        return self.inward(tangents, force, add(moment, lever))
+
+    def inward(self, tangents: Tangents, force: Vector, moment: Vector) -> Array:
+        """Generalised forces (..., n) of section forces and moments at the nodes."""
+        inward = (*turned_back(tangents.rotation, force), *turned_back(tangents.rotation, moment))
         parts = [part @ self.strains[k] for k, part in enumerate(inward) if self.shaped[k] and not absent(part)]
         return sum(parts[1:], start=parts[0])
 
@@ -214,6 +225,25 @@ class StrainField:
     def _summed(matrix: Array, vector: Vector) -> Vector:
         x, y, z = (0 if absent(part) else matrix @ part for part in vector)
         return x, y, z
+
+    def columns(self, tangents: Tangents) -> Columns:
+        """How t moves and the nodes' sections turn with coordinates, of tangents with an axis of length one before the
+        nodes.
+        """
+        shapes: Any = tuple(part.T if shaped else 0 for part, shaped in zip(self.strains, self.shaped, strict=True))
+        strain, turn = (_carried(turned(tangents.rotation, part), tangents) for part in (shapes[:3], shapes[3:]))
+        angle = _mapped(turn, self.node_cumulative)
+        swung = _swung(angle, (tangents.t, tangents.td, tangents.tdd))
+        return Columns(_added(swung, strain), angle, turn)
+
+    def columns_of_points(self, tangents: Tangents, columns: Columns) -> Columns:
+        """How the points move and turn, likewise."""
+        place, angle = (_mapped(each, self.cumulative) for each in (columns.place, columns.turn))
+        if self.offset is None:
+            return Columns(place, angle, columns.turn)
+        w, alpha = (mapped(each, self.cumulative) for each in (tangents.turn, tangents.turnd))
+        arm = tangents.arm, cross(w, tangents.arm), swept(w, alpha, tangents.arm)
+        return Columns(_added(place, _swung(angle, arm)), angle, columns.turn)
 
     def slopes(self, q: Array) -> Array:
         """∂r/∂q of the points at coordinates (..., n), (..., p, 3, n)."""
@@ -281,6 +311,31 @@ class StrainField:
         turn = xp.einsum("abc,pbi,pcd->padi", EPSILON, angle, rotation)
         columns = [self.weighted(q, 0 * even, xp.einsum("pa,pk->kap", rotation[:, :, d], even)) for d in range(3)]
         return Places(self.positions(q), slopes, second), rotation, Turns(turn, xp.stack(columns, axis=2))
+
+
+def _carried(vector: Vector, tangents: Tangents) -> tuple[Vector, Vector, Vector]:
+    """Vectors fixed to the nodes' sections, with their rates."""
+    return vector, cross(tangents.w, vector), swept(tangents.w, tangents.alpha, vector)
+
+
+def _swung(angle: Any, arm: Any) -> tuple[Vector, Vector, Vector]:
+    """Products θ × r with their rates."""
+    (turn, rate, change), (r, rd, rdd) = angle, arm
+    return (
+        cross(turn, r),
+        add(cross(rate, r), cross(turn, rd)),
+        add(cross(change, r), scaled(2.0, cross(rate, rd)), cross(turn, rdd)),
+    )
+
+
+def _mapped(vectors: Any, matrix: Array) -> tuple[Vector, Vector, Vector]:
+    value, rate, change = (mapped(each, matrix) for each in vectors)
+    return value, rate, change
+
+
+def _added(left: Any, right: Any) -> tuple[Vector, Vector, Vector]:
+    value, rate, change = (add(*pair) for pair in zip(left, right, strict=True))
+    return value, rate, change
 
 
 @record
