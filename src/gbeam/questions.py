@@ -83,7 +83,7 @@ class Question:
     @property
     def of_systems(self) -> bool:
         """Whether systems of bodies have an answer too."""
-        return bool(self.answer.__annotations__["case"] == "AnyCase")
+        return bool(self.answer.__annotations__.get("case") == "AnyCase")
 
     def refuse(self, case: AnyCase) -> None:
         """Raise InputError if the case is a system, and only beams have an answer."""
