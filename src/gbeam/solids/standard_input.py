@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -28,7 +28,7 @@ ORDERS = (((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)), ((0, 0), (1, 1), (2,
 def read_sid(
     path: str | os.PathLike[str],
     *,
-    damping_ratio: Any = None,
+    damping_ratio: float | Sequence[float] | None = None,
     points: Mapping[str, int] | None = None,
     kind: str = "standard input data",
 ) -> Structure:
