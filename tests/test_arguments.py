@@ -259,6 +259,10 @@ class Given:
                     "numbers": [1],
                 },
             ),
+            "ModalTest": (
+                ([20.0], [0.01], np.ones((1, 3, 1)), [(0.3, 0.0, 0.0)], [0.1]),
+                {"numbers": [1]},
+            ),
             "read_matrix": ((self.matrix, "k"), {}),
             "read_sid": (
                 (Path(__file__).parents[1] / "examples" / "data" / "strip.sid",),

@@ -91,6 +91,7 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.solids.imported import ImportedModel as ImportedModel
     from gbeam.solids.mesh import SolidMesh as SolidMesh
     from gbeam.solids.mesh import SolidModel as SolidModel
+    from gbeam.solids.modal_test import ModalTest as ModalTest
     from gbeam.solids.rigid import RigidSpecimen as RigidSpecimen
     from gbeam.solids.standard_input import read_sid as read_sid
     from gbeam.structure.attachments import Load as Load
@@ -142,6 +143,7 @@ _HOME = {
     "Load": "structure.attachments",
     "MachineLimits": "motion.centrifuge.limits",
     "Material": "structure.material",
+    "ModalTest": "solids.modal_test",
     "Model": "mechanics.models",
     "Optimum": "results.searches",
     "Orthotropic": "structure.material",

@@ -33,6 +33,8 @@ READERS = {
     ".pch": "nastran.read_punch",
     ".asm": "nastran.read_superelement",
     ".sid": "standard_input.read",
+    ".uff": "universal.read",
+    ".unv": "universal.read",
     **dict.fromkeys((".bdf", ".dat", ".nas", ".blk"), "nastran.read_bulk"),
 }
 NAMES = {  # that programs give their matrices

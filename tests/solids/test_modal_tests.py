@@ -1,0 +1,106 @@
+"""Modes of a beam as if they had been measured: by arrays, and by universal files that pyuff writes."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import pyuff
+
+import gbeam as gb
+from gbeam.motion import constant
+
+
+@cache
+def beam() -> gb.Structure:
+    strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    whole = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    return gb.assemble(whole, "TLAM", axial=0, y=2, z=3)
+
+
+def measured() -> dict[str, Any]:
+    """Modes at all particles of the beam, of unit modal mass."""
+    frequency, modes = beam().rest
+    shapes = beam().places.first @ modes
+    return {
+        "frequency": frequency / (2 * np.pi),
+        "damping_ratio": np.full(5, 0.01),
+        "shapes": shapes,
+        "nodes": beam().places.r0,
+        "modal_mass": np.ones(5),
+    }
+
+
+def moved(structure: gb.Structure) -> np.ndarray:
+    flight = gb.Flight(acceleration=constant(np.array([0.0, -2.0, 8.0])))
+    return gb.simulate(structure, flight, duration=0.05, step=1e-3).displacement[:, -1]
+
+
+def test_measured_modes_move_as_the_beam() -> None:
+    """To the last digits without stress in the stiffness, which an even acceleration across it does not bring."""
+    test = gb.ModalTest(**measured())
+    structure = test.structure(beam().mass)
+    np.testing.assert_allclose(structure.rest[0], beam().rest[0], rtol=1e-12)
+    last = structure.station_places.first[-1]
+    at_end = beam().places.first[np.argmax(beam().places.r0[:, 0])] @ beam().rest[1]
+    np.testing.assert_allclose(last, at_end)
+    c, whole, modes = structure.coefficients, beam().coefficients, beam().rest[1]
+    for name in ("f_a", "f_al", "f_ww"):
+        np.testing.assert_allclose(getattr(c, name), getattr(whole, name) @ modes, atol=1e-12)
+    np.testing.assert_allclose(c.damping, modes.T @ whole.damping @ modes, atol=1e-10)
+    assert any("no geometric stiffness is given" in each for each in structure.warnings)
+    assert moved(structure).shape[1] == 3
+
+
+@pytest.mark.parametrize("kind", ["normal", "complex"])
+def test_modes_come_from_universal_files(tmp_path: Path, kind: str) -> None:
+    each, path = measured(), tmp_path / "test.uff"
+    numbers = np.arange(1, len(each["nodes"]) + 1)
+    file = pyuff.UFF(str(path))
+    grid = {"type": 15, "node_nums": numbers, "def_cs": 0 * numbers, "disp_cs": 0 * numbers, "color": 0 * numbers}
+    sets = [grid | dict(zip("xyz", each["nodes"].T, strict=True))]
+    for i, frequency in enumerate(each["frequency"]):
+        w = 2 * np.pi * frequency
+        common = {"type": 55, "model_type": 1, "node_nums": numbers, "data_ch": 2, "spec_data_type": 8, "load_case": 0,
+                  "mode_n": i + 1, "n_data_per_node": 3, **{f"id{k}": "strip" for k in range(1, 6)}}  # fmt: skip
+        if kind == "normal":
+            r = dict(zip(("r1", "r2", "r3"), each["shapes"][:, :, i].T, strict=True))
+            sets.append(common | r | {"analysis_type": 2, "data_type": 2, "freq": frequency, "modal_m": 1.0,
+                                      "modal_damp_vis": 0.01, "modal_damp_his": 0.0})  # fmt: skip
+        else:
+            turned = each["shapes"][:, :, i] * np.exp(0.7j)
+            root = w * complex(-0.01, np.sqrt(1 - 1e-4))
+            r = dict(zip(("r1", "r2", "r3"), turned.T, strict=True))
+            sets.append(common | r | {"analysis_type": 3, "data_type": 5, "eig": root,
+                                      "modal_a": 2j * root.imag * np.exp(1.4j), "modal_b": 0j})  # fmt: skip
+    file.write_sets(sets, "overwrite")
+    read = gb.ModalTest.read(path)
+    for name in ("frequency", "damping_ratio", "modal_mass"):
+        np.testing.assert_allclose(getattr(read, name), each[name], rtol=2e-5)  # six digits
+    sign = np.sign((read.shapes * each["shapes"]).sum(axis=(0, 1)))
+    np.testing.assert_allclose(read.shapes * sign, each["shapes"], atol=1e-4 * np.abs(each["shapes"]).max())
+    structure = read.structure(beam().mass, points={"first": 1})
+    assert structure.points == ("first", "tip")
+    np.testing.assert_allclose(structure.rest[0], beam().rest[0], rtol=2e-5)
+
+
+def test_what_cannot_be_measured_so_is_refused(tmp_path: Path) -> None:
+    each = measured()
+    test = gb.ModalTest(**each)
+    with pytest.raises(gb.InputError, match=r"gives a mode a mass that is \d+ % away from its modal mass"):
+        test.structure(beam().mass / 5)
+    with pytest.raises(gb.InputError, match=r"points\.lens is 999, which is no node"):
+        test.structure(beam().mass, points={"lens": 999})
+    with pytest.raises(gb.InputError, match=r"modal_mass\[0\] is nan; give a positive one; a file may lack it"):
+        gb.ModalTest(**(each | {"modal_mass": np.nan}))
+    wild = each["shapes"] * np.exp(1j * np.linspace(0, 2, len(each["nodes"])))[:, None, None]
+    with pytest.raises(gb.InputError, match=r"shapes\[\d\] moves out of phase by \d+ %; give normal modes"):
+        gb.ModalTest(**(each | {"shapes": wild}))
+    with pytest.raises(gb.InputError, match=r"shapes are \(2, 3, 5\), of"):
+        gb.ModalTest(**(each | {"shapes": each["shapes"][:2]}))
+    (tmp_path / "empty.unv").write_text("    -1\n    -1\n", encoding="ascii")
+    with pytest.raises(gb.InputError, match=r"has no modes|cannot be read"):
+        gb.ModalTest.read(tmp_path / "empty.unv")
