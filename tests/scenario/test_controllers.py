@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from scipy.io import savemat
 
 import gbeam as gb
 from gbeam.mechanics.tree.laws import in_series, lead_lag, notch, pid
@@ -42,6 +45,57 @@ def test_a_scenario_is_the_system_in_python() -> None:
     assert law == same
     # What it measures is taken from the reference: it pushes back.
     assert law.effort(0.0, np.array([0.1]), law.start)[0] < 0
+
+
+FILED = POINTING[: POINTING.index("law = [")] + 'law = [{ kind = "state-space", file = "FILE" }]' + POINTING[
+    POINTING.index("]\n", POINTING.index('kind = "notch"')) + 1 :
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("ending", [".npz", ".mat", ".json"])
+def test_a_law_is_read_from_a_file(ending: str, tmp_path: Path) -> None:
+    """In continuous time as it is, in discrete time with its step; the result runs again from what it holds."""
+    file, text = tmp_path / f"law{ending}", FILED.replace("FILE", f"law{ending}")
+    named = dict(zip("ABCD", in_series([pid(60.0, 0.0, 220.0, 0.1), notch(2 * np.pi * 4.25, 0.1, 0.3)]), strict=True))
+    (tmp_path / "case.toml").write_text(text.replace('duration = "40 s"', 'duration = "1 s"'))
+    held = build(loads(POINTING)).system.controllers["pointing"].law
+    for step in (0.0, 0.02):
+        parts = dict(zip("ABCD", held, strict=True)) | {"dt": step} if step else named
+        if ending == ".npz":
+            np.savez(file, **parts)
+        elif ending == ".mat":
+            savemat(file, parts)
+        else:
+            file.write_text(json.dumps({key: np.asarray(each).tolist() for key, each in parts.items()}))
+        read = gb.read_scenario(tmp_path / "case.toml").system.controllers["pointing"].law
+        for one, other in zip(read, held, strict=True):
+            np.testing.assert_allclose(one, other, atol=1e-12 * np.abs(other).max())
+    gb.study(gb.read_scenario(tmp_path / "case.toml")).save(tmp_path / "result.nc")
+    file.unlink()
+    assert gb.rerun(tmp_path / "result.nc").reproduced
+
+
+@pytest.mark.parametrize(
+    ("parts", "change", "problem"),
+    [
+        ({"A": [[1.0]], "B": [[1.0]], "C": [[1.0]]}, "", "holds no D"),
+        ({name: [[np.nan]] for name in "ABCD"}, "", "not finite"),
+        ({**{name: [[1.0]] for name in "ABCD"}, "dt": 0.03}, "", "step"),
+        ({**{name: [[1.0]] for name in "ABCD"}, "dt": 0.02}, ', { kind = "gains", gains = [[1]] }', "give it alone"),
+        ({}, ", a = [[1]]", "is given beside file"),
+        (None, "", "there is no file"),
+    ],
+)
+def test_files_of_laws_that_are_none_are_refused(parts: Any, change: str, problem: str, tmp_path: Path) -> None:
+    if parts is not None:
+        np.savez(tmp_path / "law.npz", **parts)
+    text = FILED.replace("FILE", "law.npz")
+    text = (
+        text.replace(" }]\n", f"{change} }}]\n") if change.startswith(", a") else text.replace("}]\n", f"}}{change}]\n")
+    )
+    with pytest.raises(ScenarioError) as caught:
+        build(loads(text, folder=tmp_path))
+    assert problem in str(caught.value) and "law" in str(caught.value)
 
 
 @pytest.mark.parametrize(

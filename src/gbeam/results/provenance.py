@@ -18,9 +18,9 @@ from gbeam.results.result import Part
 
 @dataclass(frozen=True)
 class RecordFile(Part):
-    """A flight's record as it was read."""
+    """A flight's record, or the file of another table, as it was read."""
 
-    motion: str = fact("name of the flight")
+    motion: str = fact("name of the flight, or the table's place")
     file: str = fact("path as the scenario and its folder make it")
     sha256: str = fact("hash of its bytes")
     content: bytes | None = fact(

@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 
 from gbeam.errors import InputError
+from gbeam.io.models.state_space import read_state_space
 from gbeam.mechanics.assembly import assemble
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.control import Feedback
 from gbeam.mechanics.tree.joints import Joint
-from gbeam.mechanics.tree.laws import Law, gains, in_series, lead_lag, notch, pid
+from gbeam.mechanics.tree.laws import gains, in_series, lead_lag, notch, pid
 from gbeam.mechanics.tree.system import Place, PointForce, RigidBody, System
 from gbeam.scenario.build_beam import beam_of, model_of
 from gbeam.scenario.build_motion import components, profile_of
@@ -74,24 +75,42 @@ def _controller(parts: Collector, where: str, table: control.Controller) -> Feed
     return parts.attempt(where, controller)
 
 
-def _law(table: control.Controller) -> Law:
-    """The laws of a controller in series."""
+def _law(table: control.Controller) -> Any:
+    """The laws of a controller in series; one in discrete time, with its step, alone."""
     single = control.PID, control.LeadLag, control.Notch
     for k, law in enumerate(table.law):
         if isinstance(law, single) and (len(table.measure) > 1 or len(table.drive) > 1):
             fix = "name one measurement and one effort, or give gains or a state-space"
             raise InputError(f"law[{k}]", f"is a {law.kind}, of one error and one effort", fix)
+    laws = [_LAWS[type(each)](k, each) for k, each in enumerate(table.law)]
+    for k, law in enumerate(laws):
+        if not isinstance(law, tuple):
+            if len(laws) > 1:
+                fix = "give it alone, or one in continuous time"
+                raise InputError(f"law[{k}].file", f"is in discrete time, in steps of {law.dt:g} s", fix)
+            return law
     try:
-        return in_series([_LAWS[type(each)](each) for each in table.law])
+        return in_series(laws)
     except ValueError:
         fix = "give as many columns as the law before gives values, and as many rows as the next one takes"
         raise InputError("law", "has matrices that do not fit one another", fix) from None
 
 
+def _matrices(k: int, law: control.Matrices) -> Any:
+    """Matrices of a table or of its file; with a step where they are of discrete time."""
+    if law.file is None:
+        return tuple(np.array(getattr(law, name), dtype=float, ndmin=2) for name in "abcd")
+    try:
+        stored = read_state_space(law.file)
+    except InputError as error:
+        raise error.within(f"law[{k}]") from None
+    return stored if stored.dt else (stored.a, stored.b, stored.c, stored.d)
+
+
 _LAWS: dict[type, Any] = {
-    control.Gains: lambda law: gains(law.gains),
-    control.PID: lambda law: pid(law.kp, law.ki, law.kd, law.smoothing),
-    control.LeadLag: lambda law: lead_lag(law.gain, law.zero, law.pole),
-    control.Notch: lambda law: notch(law.frequency, law.depth, law.damping),
-    control.Matrices: lambda law: tuple(np.array(getattr(law, name), dtype=float, ndmin=2) for name in "abcd"),
+    control.Gains: lambda _, law: gains(law.gains),
+    control.PID: lambda _, law: pid(law.kp, law.ki, law.kd, law.smoothing),
+    control.LeadLag: lambda _, law: lead_lag(law.gain, law.zero, law.pole),
+    control.Notch: lambda _, law: notch(law.frequency, law.depth, law.damping),
+    control.Matrices: _matrices,
 }

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -30,16 +30,23 @@ def provenance(scenario: Environments, command: str = "") -> Provenance:
     source = scenario.source
     if source is None:
         return Provenance(command=command)
-    records = tuple(
-        _record(name, table.record.file)
-        for name, table in scenario.motion.items()
-        if isinstance(table, Flight) and table.record is not None
-    )
+    records = tuple(_record(name, file) for name, file in _files(scenario))
     changes = tuple(change.text for change in source.overrides)
     data = source.data
     if source.distributions:  # which have their centres there
         data, _ = override(_parsed(source.name, source.text), source.name, changes)
     return Provenance(source.text, changes, fingerprint(data), records, command)
+
+
+def _files(scenario: Environments) -> Iterator[tuple[str, str]]:
+    """Files that a scenario reads: records by their motion's name, others by their table's place."""
+    for name, motion in scenario.motion.items():
+        if isinstance(motion, Flight) and motion.record is not None:
+            yield name, motion.record.file
+    for name, controller in getattr(scenario, "controllers", {}).items():
+        for k, law in enumerate(controller.law):
+            if getattr(law, "file", None) is not None:
+                yield f"controllers.{name}.law[{k}]", law.file
 
 
 # A sweep's cases are of one text; `override` copies it.

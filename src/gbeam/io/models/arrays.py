@@ -17,7 +17,7 @@ def read(path: str) -> Contents:
     from scipy.sparse import issparse
 
     contents: Contents = {"matrices": {}}
-    every = _every(path)
+    every = everything(path)
     for key, each in every.items():
         if issparse(each):
             contents["matrices"][key] = sparse_parts(each)
@@ -37,7 +37,7 @@ def read(path: str) -> Contents:
     return contents
 
 
-def _every(path: str) -> dict[str, Any]:
+def everything(path: str) -> dict[str, Any]:
     """Everything in a file by its name, a structure's fields by theirs; what has none by that of the file."""
     from scipy.io import loadmat, mmread
     from scipy.sparse import load_npz

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Discriminator, Field, model_validator
+from pydantic import AfterValidator, Discriminator, Field, model_validator
 
 from gbeam.guards.limits import ENTRIES
-from gbeam.scenario.schema.fields import Duration, Quantity, Ratio, Table, Time, refuse, wrong
+from gbeam.scenario.schema.fields import Duration, Quantity, Ratio, Table, Time, existing_file, refuse, wrong
 
 _Rate = Annotated[float, Quantity("angular rate", "positive")]
 _Rows = tuple[tuple[Ratio, ...], ...]
@@ -58,13 +58,28 @@ class Notch(Table):
 
 
 class Matrices(Table):
-    """A law with states of its own: x' = A x + B e, efforts = C x + D e, in continuous time."""
+    """A law with states of its own: x' = A x + B e, efforts = C x + D e, by rows or from a file."""
 
     kind: Literal["state-space"] = Field(description="kind of the law")
-    a: _Rows = Field(description="A, by rows")
-    b: _Rows = Field(description="B, by rows: a column for every measurement")
-    c: _Rows = Field(description="C, by rows: a row for every effort")
-    d: _Rows = Field(description="D, by rows")
+    file: Annotated[str, AfterValidator(existing_file)] | None = Field(
+        default=None,
+        description="file of matrices A, B, C, D: .npz, .mat or .json, relative to the scenario's folder; with dt, Ts "
+        "or step, s, above zero it is in discrete time, and then the only law",
+    )
+    a: _Rows | None = Field(default=None, description="A, by rows, in continuous time")
+    b: _Rows | None = Field(default=None, description="B, by rows: a column for every measurement")
+    c: _Rows | None = Field(default=None, description="C, by rows: a row for every effort")
+    d: _Rows | None = Field(default=None, description="D, by rows")
+
+    @model_validator(mode="after")
+    def _one_way(self) -> Matrices:
+        given = [name for name in "abcd" if getattr(self, name) is not None]
+        if self.file is not None and given:
+            refuse([((given[0],), wrong("is given beside file", "give the matrices or their file", mark="key"))])
+        if self.file is None and len(given) < 4:
+            lacking = next(name for name in "abcd" if name not in given)
+            refuse([((), wrong(f"{lacking} is missing", 'give a, b, c and d, or file = "controller.mat"'))])
+        return self
 
 
 Law = Annotated[Gains | PID | LeadLag | Notch | Matrices, Discriminator("kind")]

@@ -4,14 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import Path as File
 from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
 
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler, Tag
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    Tag,
+    ValidationInfo,
+)
 from pydantic import ValidationError as PydanticError
 from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, core_schema
 
 from gbeam.guards.kinds import KINDS
-from gbeam.guards.limits import ENTRIES, LARGEST, SMALLEST
+from gbeam.guards.limits import ENTRIES, LARGEST, SMALLEST, existing
+from gbeam.guards.names import closest
 from gbeam.guards.units import UnitError, quantity
 from gbeam.scenario.values import Path, path_text
 
@@ -37,6 +48,21 @@ class Table(BaseModel):
 def wrong(message: str, hint: str = "", *, mark: Literal["value", "key"] = "value") -> PydanticCustomError:
     """Make the error of one value."""
     return PydanticCustomError("scenario", "{message}", {"message": message, "hint": hint, "mark": mark})
+
+
+def existing_file(file: str, info: ValidationInfo) -> str:
+    """Resolve `file` against the scenario's folder, which load passes as context."""
+    path = File((info.context or {}).get("folder", ".")) / file
+    if existing(path) and not path.is_dir():
+        return str(path)
+    folder = path.parent
+    try:
+        neighbours = sorted(p.name for p in folder.iterdir() if p.is_file())
+    except (OSError, ValueError):
+        neighbours = []
+    near = closest(path.name, neighbours)
+    looked = f"it is looked for in {folder}"
+    raise wrong("there is no file {value}", f"did you mean {str(File(file).with_name(near))!r}?" if near else looked)
 
 
 def refuse(problems: Iterable[tuple[Loc, PydanticCustomError]]) -> None:

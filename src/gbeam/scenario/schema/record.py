@@ -2,30 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, Field, StrictBool, Tag, ValidationInfo, model_validator
+from pydantic import AfterValidator, Field, StrictBool, Tag, model_validator
 
-from gbeam.guards.limits import existing
-from gbeam.guards.names import closest
-from gbeam.scenario.schema.fields import ONE_OR_LIST, Moment, Quantity, Table, refuse, wrong
-
-
-def _existing(file: str, info: ValidationInfo) -> str:
-    """Resolve `file` against the scenario's folder, which load passes as context."""
-    path = Path((info.context or {}).get("folder", ".")) / file
-    if existing(path) and not path.is_dir():
-        return str(path)
-    folder = path.parent
-    try:
-        neighbours = sorted(p.name for p in folder.iterdir() if p.is_file())
-    except (OSError, ValueError):
-        neighbours = []
-    near = closest(path.name, neighbours)
-    looked = f"it is looked for in {folder}"
-    raise wrong("there is no file {value}", f"did you mean {str(Path(file).with_name(near))!r}?" if near else looked)
-
+from gbeam.scenario.schema.fields import ONE_OR_LIST, Moment, Quantity, Table, existing_file, refuse, wrong
 
 _Skipped = Annotated[
     Annotated[StrictBool, Tag("one")]
@@ -37,7 +18,7 @@ _Skipped = Annotated[
 class Record(Table):
     """A measured flight: a file of named columns."""
 
-    file: Annotated[str, AfterValidator(_existing)] = Field(
+    file: Annotated[str, AfterValidator(existing_file)] = Field(
         description="text of any dialect, or by its suffix MAT (.mat), HDF5 (.h5, .hdf5), netCDF (.nc) or UFF 58 "
         "(.uff, .unv), relative to the folder of the scenario file"
     )
