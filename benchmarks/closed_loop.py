@@ -32,7 +32,8 @@ GAINS, START = np.array([-60.0, -150.0]), -0.5
 
 def ours(step: float, kind: str = "FOAM") -> np.ndarray:
     """Angle of the hub at its samples, by gbeam."""
-    beam = gb.Beam(LENGTH, gb.Section.rectangle(WIDTH, THICKNESS), gb.Material(DENSITY, MODULUS), damping_ratio=0.0)
+    section, material = gb.Section.rectangle(WIDTH, THICKNESS), gb.Material(DENSITY, MODULUS)
+    beam = gb.Beam(LENGTH, section, material, damping_ratio=0.0, rotary_inertia=False)
     hub = gb.RigidBody(1.0, (INERTIA,) * 3, points={"rim": gb.Place((RADIUS, 0, 0), (np.pi / 2, 0, 0))})
     joints = {
         "axis": gb.Joint("revolute", "hub", axes=[(0, 0, 1)], initial=START),

@@ -83,7 +83,8 @@ class Reference:
 def structure_of(drive: Drive, model: str, axial: int, bending: int, shapes: str) -> gb.Structure:
     """The hub-beam in one of gbeam's models."""
     section, material = gb.Section.general(7.2968e-5, 8.2189e-9, 8.2189e-9), gb.Material(2766.7, 6.8952e10)
-    beam = gb.Beam(8.0, section, material, [gb.PointMass(8.0, drive.mass)] if drive.mass else [], 0.0)
+    masses = [gb.PointMass(8.0, drive.mass)] if drive.mass else []
+    beam = gb.Beam(8.0, section, material, masses, 0.0, rotary_inertia=False)
     return gb.assemble(beam, model, axial=axial, y=bending, shapes=shapes)
 
 

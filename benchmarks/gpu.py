@@ -39,7 +39,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--most", type=int, default=4096, help="cases of the largest run")
     options = parser.parse_args()
-    structure = gb.assemble(gb.Beam(8.0, SECTION, MATERIAL, damping_ratio=0.0), "FOAM", axial=5, y=5)
+    structure = gb.assemble(
+        gb.Beam(8.0, SECTION, MATERIAL, damping_ratio=0.0, rotary_inertia=False), "FOAM", axial=5, y=5
+    )
     processor = jax.devices("cpu")[0]
     try:
         graphics = jax.devices("gpu")[0]

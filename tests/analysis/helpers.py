@@ -22,7 +22,8 @@ OMEGA = 1.875104068711961**2 * np.sqrt(EI / (LINE * LENGTH**4))  # of the first 
 
 @cache
 def strip(kind: str = "FOAM", counts: tuple[int, int, int] = (0, 0, 2), damping_ratio: float = 0.0) -> Structure:
-    return assemble(Beam(LENGTH, SECTION, ALUMINIUM, damping_ratio=damping_ratio), Model(kind, *counts))
+    beam = Beam(LENGTH, SECTION, ALUMINIUM, damping_ratio=damping_ratio, rotary_inertia=False)
+    return assemble(beam, Model(kind, *counts))
 
 
 def made(name: str, time: np.ndarray, tip: np.ndarray, held: np.ndarray | None = None) -> Response:

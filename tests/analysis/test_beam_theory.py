@@ -68,7 +68,7 @@ def timoshenko(slenderness: float, count: int) -> np.ndarray:
 def test_frequencies_state_timoshenkos_differences(slenderness: float) -> None:
     """At L/h = 10 the second frequency is 5.3 % high; 3.5e-6 was stated."""
     square = gb.Section.rectangle(LENGTH / slenderness, LENGTH / slenderness)
-    found = gb.modes(gb.assemble(gb.Beam(LENGTH, square, METAL), "FOAM", z=3, shapes="adapted"))
+    found = gb.modes(gb.assemble(gb.Beam(LENGTH, square, METAL, rotary_inertia=False), "FOAM", z=3, shapes="adapted"))
     true = 1 / timoshenko(slenderness, 3) - 1
     np.testing.assert_allclose(found.errors.beam_theory, true, rtol=2e-3)
     assert (found.errors.total < 3 * true).all() and (true < 3 * found.errors.total).all()

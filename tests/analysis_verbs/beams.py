@@ -18,12 +18,13 @@ FREE_2009 = Hub(radius=0.5, inertia=200.0, torque=Sine(200.0, 10.0))
 def slender(slenderness: float, *masses: PointMass, chord: float = 1.0) -> Beam:
     """ρA = 1, L = 1, EI_y = 1, EI_z = `chord`, EA = slenderness² (λ = sqrt(A L²/I))."""
     e = slenderness**2 / AREA
-    return Beam(1.0, Section.general(AREA, 1 / e, chord / e), Material(1 / AREA, e), masses)
+    section, material = Section.general(AREA, 1 / e, chord / e), Material(1 / AREA, e)
+    return Beam(1.0, section, material, masses, rotary_inertia=False)
 
 
 def beam_2009(mass: float = 0.0, at: float = 8.0, damping_ratio: float = 0.0) -> Beam:
     """The beam of 2009 with a mass."""
-    return Beam(8.0, BOX, ALUMINIUM, [PointMass(at, mass)] if mass else [], damping_ratio)
+    return Beam(8.0, BOX, ALUMINIUM, [PointMass(at, mass)] if mass else [], damping_ratio, rotary_inertia=False)
 
 
 @cache

@@ -13,7 +13,7 @@ CASES = {
     "plane": (gb.Beam(0.3, STRIP, ALUMINIUM), {"axial": 1, "y": 2}),
     "space": (gb.Beam(0.3, STRIP, ALUMINIUM), {"axial": 1, "y": 2, "z": 2}),
     "all strains, rotary inertia, a body beside the axis": (
-        gb.Beam(0.3, STRIP, ALUMINIUM, [ASIDE], rotary_inertia=True),
+        gb.Beam(0.3, STRIP, ALUMINIUM, [ASIDE]),
         {"axial": 1, "y": 2, "z": 2, "twist": 1, "shear_y": 1, "shear_z": 1},
     ),
 }

@@ -15,12 +15,9 @@ import numpy as np
 import pytest
 
 from gbeam import (
-    Beam,
     Centrifuge,
     Flight,
-    Material,
     Model,
-    Section,
     Structure,
     assemble,
     constant,
@@ -31,7 +28,8 @@ from gbeam import (
 from gbeam.integrate import LinearEquations, gauss, integrate
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.motion import Base, Profile, moved
-from validation.published.zhang2020 import COUNTS, DENSITY, G0, LENGTH, LINE, THICKNESS, WIDTH, YOUNG, matrices
+from validation.published.specimens import strip_beam
+from validation.published.zhang2020 import COUNTS, G0, LENGTH, LINE, THICKNESS, WIDTH, YOUNG, matrices
 
 EQUATIONS = 1e-10  # relative to the largest entry
 ARM, MIDDLE = 3.3, 0.15  # m; the control point of the paper is the middle of the beam
@@ -41,8 +39,7 @@ BENDING_Z = slice(4, 7)  # coordinates along z, after one axial and three along 
 
 @cache
 def structure(kind: str = "FOAM", counts: tuple[int, int, int] = COUNTS) -> Structure:
-    beam = Beam(LENGTH, Section.rectangle(WIDTH, THICKNESS), Material(DENSITY, YOUNG))
-    return assemble(beam, Model(kind, *counts))
+    return assemble(strip_beam(), Model(kind, *counts))
 
 
 @cache

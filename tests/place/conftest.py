@@ -22,7 +22,8 @@ from gbeam import (
 from gbeam.motion import MachineLimits, Profile
 
 G = 9.80665
-SPECIMEN = Beam(0.3, Section.rectangle(0.02, 0.004), Material(2700.0, 70e9), damping_ratio=0.0)
+STRIP, METAL = Section.rectangle(0.02, 0.004), Material(2700.0, 70e9)
+SPECIMEN = Beam(0.3, STRIP, METAL, damping_ratio=0.0, rotary_inertia=False)
 
 
 @pytest.fixture(scope="session")

@@ -163,7 +163,7 @@ def test_the_answer_is_applied(tmp_path: Path, capsys: pytest.CaptureFixture[str
     command = ["place", str(file), "--measure", "vibration", "--smoothing", "60 ms"]
     assert main([*command, "--json"]) == 0
     first = json.loads(capsys.readouterr().out)
-    assert first["set"] == ["motion.spin.control_point=217.943 mm"] and first["written"] is None
+    assert first["set"] == ["motion.spin.control_point=217.955 mm"] and first["written"] is None
     for measure in MEASURES:  # all of them, before and after
         assert first["mismatch"]["current"][measure] > 0 and first["total_error"]["best"][measure] > 0
     assert first["verifications"]["best"]["vibration"] < 0.1 * first["verifications"]["current"]["vibration"]
@@ -172,8 +172,8 @@ def test_the_answer_is_applied(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert again["set"] == [] and "best placement already" in again["message"]
     assert main([*command, "--no-proof", "--write"]) == 0
     words = capsys.readouterr().out
-    assert '--set "motion.spin.control_point=217.943 mm"' in words and f"written to {file}" in words
-    assert file.read_text(encoding="utf-8") == SCENARIO.replace('"150 mm"', '"217.943 mm"  # by the middle')
+    assert '--set "motion.spin.control_point=217.955 mm"' in words and f"written to {file}" in words
+    assert file.read_text(encoding="utf-8") == SCENARIO.replace('"150 mm"', '"217.955 mm"  # by the middle')
     assert main([*command, "--no-proof", "--write"]) == 0 and "already" in capsys.readouterr().out
 
 

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from exact_beams import AREA, DENSITY, INERTIA, LENGTH, MODULUS, with_bodies
 
-from gbeam import Beam, Hub, Material, Model, PointMass, Section, assemble
+from gbeam import Hub, Material, Model, PointMass, Section, assemble
 
 from ..lagrange import Complete, hub_kinetic
+from ..specimens import appendage
 
 BOX, METAL = Section.general(AREA, INERTIA, INERTIA), Material(DENSITY, MODULUS)
 ALONG = PointMass(LENGTH, 0.5, inertia=(0.0, 0.2, 0.2), offset=(0.3, 0.0, 0.0))
@@ -20,13 +21,13 @@ KINDS = ["TLAM", "FOAM", "SFOAM", "CFOAM", "exact"]
 def test_frequency_equation(kind: str) -> None:
     """Body's centre beyond the tip, on the axis: the closed frequency equation."""
     truth = with_bodies(3, mass=0.5, inertia=0.2, offset=0.3)
-    structure = assemble(Beam(LENGTH, BOX, METAL, [ALONG]), Model(kind, 0, 3, 0, "adapted"))
+    structure = assemble(appendage(ALONG), Model(kind, 0, 3, 0, "adapted"))
     np.testing.assert_allclose(structure.rest[0], truth, rtol=1e-7)
 
 
 def test_the_exact_field_vibrates_as_foams_field_does_with_a_body_askew() -> None:
     """Offset across the axis couples bending, stretch and the other plane; small vibrations must agree."""
-    beam = Beam(LENGTH, BOX, METAL, [ASKEW])
+    beam = appendage(ASKEW)
     first, second = (assemble(beam, Model(kind, 1, 3, 3, "adapted")).rest[0] for kind in ("CFOAM", "exact"))
     np.testing.assert_allclose(first, second, rtol=1e-9)
 
@@ -34,7 +35,7 @@ def test_the_exact_field_vibrates_as_foams_field_does_with_a_body_askew() -> Non
 @pytest.mark.parametrize("kind", KINDS)
 def test_planar_rigid_body_limit(kind: str) -> None:
     """At rest on the hub, the beam does not bend: inertia about the axis is that of rigid bodies."""
-    structure = assemble(Beam(LENGTH, BOX, METAL, [ASKEW]), Model(kind, 0, 3, 0, "adapted"))
+    structure = assemble(appendage(ASKEW), Model(kind, 0, 3, 0, "adapted"))
     energy = Complete(structure)
     unit = np.array([1.0, 0.0, 0.0, 0.0])
     inertia = 2 * hub_kinetic(energy, 0.5, 200.0, np.eye(3), 0 * unit, unit)

@@ -41,7 +41,12 @@ LARGE = Model("exact", *PLANAR)  # all large deflections in one size
 def beam(length: float, bending: float, *loads: Load, axial: float = 1.0, **options: Any) -> Beam:
     """A beam of unit density and modulus: EI and EA are its section's."""
     return Beam(
-        length, Section.general(axial, bending, bending), Material(1.0, 1.0), damping_ratio=0.0, loads=loads, **options
+        length,
+        Section.general(axial, bending, bending),
+        Material(1.0, 1.0),
+        damping_ratio=0.0,
+        loads=loads,
+        **{"rotary_inertia": False, **options},
     )
 
 

@@ -11,6 +11,8 @@ from gbeam import Beam, InputError, Material, Model, PointMass, Section, assembl
 from gbeam.motion import Base
 from gbeam.structure.attachments import Load, Root
 
+from ..specimens import appendage
+
 BOX, METAL = Section.general(AREA, INERTIA, INERTIA), Material(DENSITY, MODULUS)
 STILL = Base(*np.zeros((3, 3)))
 TIP = PointMass(LENGTH, 0.1)
@@ -18,7 +20,7 @@ SOFT = Root(rotation_y=5 * EI / LENGTH, translation_z=40 * EI / LENGTH**3)
 
 
 def frequencies(root: Root, model: Model) -> np.ndarray:
-    return assemble(Beam(LENGTH, BOX, METAL, [TIP], root=root), model).rest[0]
+    return assemble(appendage(TIP, root=root), model).rest[0]
 
 
 @pytest.mark.parametrize("kind", ["TLAM", "FOAM", "SFOAM", "CFOAM", "exact"])

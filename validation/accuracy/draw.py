@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -48,7 +48,8 @@ def draw(seed: int, kinds: tuple[str, ...] = KINDS) -> Scenario:
     # Always two bodies, which may weigh nothing: fewer compiled programs.
     tip, middle = (line * length * float(random.choice([0.0, random.uniform(0.05, 1.0)])) for _ in range(2))
     bodies = [gb.PointMass(length / 2, middle), gb.PointMass(length, tip)]
-    bare = gb.Beam(length, section, material, bodies, damping_ratio=float(random.choice([0.0, 0.005, 0.02])))
+    ratio = float(random.choice([0.0, 0.005, 0.02]))
+    bare = gb.Beam(length, section, material, bodies, damping_ratio=ratio, rotary_inertia=False)
     fine = gb.assemble(bare, "FOAM", axial=1, y=6, shapes="adapted")
     period = 2 * np.pi / float(fine.rest[0][0])
     share = float(np.exp(random.uniform(np.log(0.003), np.log(0.3))))
@@ -61,7 +62,7 @@ def draw(seed: int, kinds: tuple[str, ...] = KINDS) -> Scenario:
         total = acceleration * (line * length + tip + middle) * (0.4 if setting == "tip force" else 1.0)
         along = gb.trapezoid(total if setting == "tip force" else total / length, jerk=total / rise, hold=duration)
         load = gb.Load(length if setting == "tip force" else None, force=gb.vector(y=along))
-        beam = gb.Beam(length, section, material, bodies, damping_ratio=bare.damping_ratio, loads=[load])
+        beam = replace(bare, loads=[load])
     chosen = [(kind, weight) for kind, weight in zip(KINDS, SHARES, strict=True) if kind in kinds]
     weights = np.array([weight for _, weight in chosen])
     kind = str(random.choice([kind for kind, _ in chosen], p=weights / weights.sum()))

@@ -99,7 +99,8 @@ def gbeam(drive: Drive, kind: str, shapes: int) -> Answer:
     """The answer of a model."""
     masses = [gb.PointMass(8.0, drive.mass)] if drive.mass else []
     section, material = gb.Section.general(7.2968e-5, 8.2189e-9, 8.2189e-9), gb.Material(2766.7, 6.8952e10)
-    structure = gb.assemble(gb.Beam(8.0, section, material, masses, damping_ratio=0.0), kind, axial=2, y=shapes)
+    beam = gb.Beam(8.0, section, material, masses, damping_ratio=0.0, rotary_inertia=False)
+    structure = gb.assemble(beam, kind, axial=2, y=shapes)
     if drive.rate is not None:
         hub = gb.Hub(radius=0.5, rate=gb.SmoothStep(drive.rate, drive.duration))
     else:

@@ -91,7 +91,8 @@ def damped(kind: str) -> gb.Structure:
     section, material = gb.Section.circle(ROD.diameter), gb.Material(ROD.density, ROD.modulus)
 
     def structure(ratios: float | tuple[float, ...]) -> gb.Structure:
-        return gb.assemble(gb.Beam(ROD.length, section, material, damping_ratio=ratios), kind, axial=1, y=4, z=4)
+        beam = gb.Beam(ROD.length, section, material, damping_ratio=ratios, rotary_inertia=False)
+        return gb.assemble(beam, kind, axial=1, y=4, z=4)
 
     return structure(tuple(ROD.viscosity * structure(0.0).rest[0] / 2))
 
@@ -111,9 +112,8 @@ def on_hub() -> Iterator[Row]:
         gb.Section.general(case.area, case.inertia, case.inertia),
         gb.Material(case.density, case.modulus),
     )
-    structure = gb.assemble(
-        gb.Beam(case.length, section, material, [body], damping_ratio=0.0), "exact", axial=2, y=6, z=6
-    )
+    beam = gb.Beam(case.length, section, material, [body], damping_ratio=0.0, rotary_inertia=False)
+    structure = gb.assemble(beam, "exact", axial=2, y=6, z=6)
     hub = gb.Hub(radius=case.radius, inertia=case.hub_inertia, torque=gb.Sine(amplitude, duration))
     found = gb.simulate(structure, hub, duration=end, integrator="gauss", step=0.02)
     ours = np.column_stack([found.tip, found.loads.root_force, found.loads.root_moment, found.hub.angle])

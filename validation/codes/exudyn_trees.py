@@ -107,7 +107,7 @@ def _spun() -> gb.SystemResponse:
     bodies["hub"] = gb.RigidBody(MASS, (INERTIA,) * 3, points=turned)
     joints = {"free": gb.Joint("free", "hub")}
     for name, length in zip("ab", LENGTHS, strict=True):
-        beam = gb.Beam(length, section, material, damping_ratio=0.0)
+        beam = gb.Beam(length, section, material, damping_ratio=0.0, rotary_inertia=False)
         bodies[name] = gb.assemble(beam, "exact", axial=2, y=0, z=6)
         joints[f"clamp_{name}"] = gb.Joint("fixed", name, f"hub.{name}")
     moment = gb.vector(z=gb.Sine(TORQUE, 2.0))

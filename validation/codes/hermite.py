@@ -42,7 +42,8 @@ def unit_blade(slenderness: float, tip: float, elements: int) -> tuple[HermiteBe
         1.0, np.ones_like, lambda x: i_y + 0 * x, lambda x: 4 * i_y + 0 * x, 1.0, slenderness**2, tip, elements
     )
     masses = [gb.PointMass(1.0, tip)] if tip else []
-    return fine, gb.Beam(1.0, gb.Section.general(1.0, i_y, 4 * i_y), gb.Material(1.0, slenderness**2), masses)
+    section, material = gb.Section.general(1.0, i_y, 4 * i_y), gb.Material(1.0, slenderness**2)
+    return fine, gb.Beam(1.0, section, material, masses, rotary_inertia=False)
 
 
 def unit_blades() -> Iterator[Row]:
@@ -98,7 +99,7 @@ def tapered_blade() -> Iterator[Row]:
         tip,
     )
     section = gb.Section.rectangle((0.02, 0.01), (0.004, 0.002), stations=(0.0, length))
-    beam = gb.Beam(length, section, gb.Material(density, modulus), [gb.PointMass(length, tip)])
+    beam = gb.Beam(length, section, gb.Material(density, modulus), [gb.PointMass(length, tip)], rotary_inertia=False)
     structure = gb.assemble(beam, "FOAM", axial=3, y=10, z=10, shapes="adapted")
     reference = elements.frequencies(*hub_base(rate, radius), 4) / (2 * np.pi)
     ours = gb.modes(structure, gb.Hub(radius=radius, rate=rate)).frequency
@@ -112,7 +113,7 @@ def strip_in_space() -> Iterator[Row]:
     a, w = np.array([-9.8, 30.0, 98.0]), np.array([40.0, 25.0, -60.0])
     elements = HermiteBeam(0.3, *(lambda x, c=c: c + 0 * x for c in (8e-5, 20 * 4**3 / 12e12, 4 * 20**3 / 12e12)),
                            2700.0, 70e9)  # fmt: skip
-    beam = gb.Beam(0.3, gb.Section.rectangle(0.02, 0.004), gb.Material(2700.0, 70e9))
+    beam = gb.Beam(0.3, gb.Section.rectangle(0.02, 0.004), gb.Material(2700.0, 70e9), rotary_inertia=False)
     structure = gb.assemble(beam, "FOAM", axial=8, y=8, z=8)
     flight = gb.Flight(acceleration=gb.constant(a), rates=gb.constant(w))
     tip, ours = elements.static(a, w), gb.static(structure, flight).tip
@@ -139,7 +140,8 @@ def slew() -> Iterator[Row]:
     elements = HermiteBeam(8.0, *(lambda x, c=c: c + 0 * x for c in constants), 2766.7, 6.8952e10, elements=8)
     times = np.arange(0.0, end + step / 2, step)
     tip = elements.history(base, times)[:, 1]
-    beam = gb.Beam(8.0, gb.Section.general(*constants), gb.Material(2766.7, 6.8952e10), damping_ratio=0.0)
+    section, metal = gb.Section.general(*constants), gb.Material(2766.7, 6.8952e10)
+    beam = gb.Beam(8.0, section, metal, damping_ratio=0.0, rotary_inertia=False)
     structure = gb.assemble(beam, "FOAM", axial=2, y=8)
     hub = gb.Hub(radius=0.5, rate=gb.SmoothStep(level, duration))
     ours = gb.simulate(structure, hub, duration=end, step=step, residual_from=duration)

@@ -113,9 +113,8 @@ def by_kane_on_hub(kind: str, y: np.ndarray, yd: np.ndarray, ydd: np.ndarray) ->
 
 def on_hub(kind: str) -> Iterator[Row]:
     """A model on the free hub at random states."""
-    beam = gb.Beam(
-        LENGTH, gb.Section.general(AREA, INERTIA, INERTIA), gb.Material(DENSITY, YOUNG), [gb.PointMass(LENGTH, TIP)]
-    )
+    section, material = gb.Section.general(AREA, INERTIA, INERTIA), gb.Material(DENSITY, YOUNG)
+    beam = gb.Beam(LENGTH, section, material, [gb.PointMass(LENGTH, TIP)], rotary_inertia=False)
     equations = gb.assemble(beam, kind, axial=1, y=1).on_free_hub(gb.Hub(radius=RADIUS, inertia=HUB))
     size = np.array([1.0, *SIZES.get(kind, (0.02, 0.5))])
     states = np.random.default_rng(2009).normal(size=(STATES, 3, 3)) * size
@@ -166,9 +165,8 @@ def particle_in_space() -> Callable[..., list[float]]:
 
 def in_space() -> Iterator[Row]:
     """FOAM in three dimensions at random motions of its base, I_z four times I_y."""
-    beam = gb.Beam(
-        LENGTH, gb.Section.general(AREA, INERTIA, 4 * INERTIA), gb.Material(DENSITY, YOUNG), [gb.PointMass(LENGTH, TIP)]
-    )
+    section, material = gb.Section.general(AREA, INERTIA, 4 * INERTIA), gb.Material(DENSITY, YOUNG)
+    beam = gb.Beam(LENGTH, section, material, [gb.PointMass(LENGTH, TIP)], rotary_inertia=False)
     equations = gb.assemble(beam, "FOAM", axial=1, y=1, z=1).equations
     random = np.random.default_rng(2020)
     stretch, bend = stiffnesses("FOAM")

@@ -110,7 +110,8 @@ def hinged_rigid_blade() -> Iterator[Row]:
     """A stiff blade on a root spring k: it flaps and lags as a rigid body."""
     length, radius, rate, spring = 1.0, 0.4, 5.0, 20.0
     section = Section.general(1.0, 1.0, 1.0)
-    beam = Beam(length, section, Material(1.0, 1e9), root=Root(rotation_y=spring, rotation_z=spring))
+    hinge = Root(rotation_y=spring, rotation_z=spring)
+    beam = Beam(length, section, Material(1.0, 1e9), root=hinge, rotary_inertia=False)
     found = modes(assemble(beam, Model("FOAM", 0, 1, 1)), Hub(radius=radius, rate=constant(rate)))
     inertia = length**3 / 3
     stiff = spring / inertia + rate**2 * 1.5 * radius / length
@@ -177,7 +178,7 @@ def hanging_chain() -> Iterator[Row]:
     """Bending stiffness all but nothing, a weight per length that pulls: Bernoulli's chain."""
     slack = 1e-9  # EI over ρA g L³
     beam = Beam(1.0, Section.general(1.0, slack * 1e-6, slack * 1e-6), Material(1.0, 1e6),
-                root=Root(rotation_y=slack))  # fmt: skip
+                root=Root(rotation_y=slack), rotary_inertia=False)  # fmt: skip
     structure = assemble(beam, Model("exact", 0, 0, 14)).coefficients
     o = np.zeros(3)
     _, stiffness, _ = structure.at(np.array([-1.0, 0.0, 0.0]), o, o)
@@ -194,7 +195,7 @@ def hanging_chain() -> Iterator[Row]:
 def column(*loads: Load) -> Structure:
     """ρA = EI = L = 1, slender."""
     section, material = Section.general(1e-2, 1e-8, 1e-8), Material(1e2, 1e8)
-    return assemble(Beam(1.0, section, material, loads=loads), Model("exact", 1, 0, 7))
+    return assemble(Beam(1.0, section, material, loads=loads, rotary_inertia=False), Model("exact", 1, 0, 7))
 
 
 def beck(load: float) -> float:

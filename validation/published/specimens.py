@@ -47,7 +47,7 @@ ARM_2020, MIDDLE_2020 = 3.3, 0.15  # m; the arm follows from the excess at 6 g, 
 
 def appendage(*masses: PointMass, damping_ratio: Any = 0.0, **more: Any) -> Beam:
     """The beam of 2009 with bodies."""
-    return Beam(hubbeam2009.LENGTH, BOX, METAL, masses, damping_ratio, **more)
+    return Beam(hubbeam2009.LENGTH, BOX, METAL, masses, damping_ratio, **{"rotary_inertia": False, **more})
 
 
 @cache
@@ -84,7 +84,7 @@ def pulse(kind: str, counts: tuple[int, int], torque: float, mass: float = 0.0, 
 
 def strip_beam(**more: Any) -> Beam:
     """The specimen of 2020."""
-    return Beam(zhang2020.LENGTH, STRIP, ALUMINIUM, **more)
+    return Beam(zhang2020.LENGTH, STRIP, ALUMINIUM, **{"rotary_inertia": False, **more})
 
 
 @cache
@@ -108,7 +108,8 @@ def centrifuge_2020(level: float, control_point: float = MIDDLE_2020) -> Centrif
 def unit_beam(slenderness: float = 1000.0, tip: float = 0.0) -> Beam:
     """Unit length, unit mass per length and unit EI, EA = slenderness²; frequencies come without dimensions."""
     inertia, modulus = slenderness**-2, slenderness**2
-    return Beam(1.0, Section.general(1.0, inertia, inertia), Material(1.0, modulus), [PointMass(1.0, tip)], 0.0)
+    section, material = Section.general(1.0, inertia, inertia), Material(1.0, modulus)
+    return Beam(1.0, section, material, [PointMass(1.0, tip)], 0.0, rotary_inertia=False)
 
 
 @cache
@@ -128,7 +129,8 @@ def robot_arm(counts: tuple[int, int, int] = (2, 5, 0)) -> Structure:
     """EA = 2.8e7 N, EI = 1.4e4 N m², ρA = 1.2 kg/m, L = 10 m; shear (GA = 1e7 N) and rotary inertia are left out."""
     section = Section.general(4e-4, 2e-7, 2e-7)
     none = PointMass(10.0, 0.0)  # the size of 2009's beam
-    return assemble(Beam(10.0, section, Material(3000.0, 7e10), [none], 0.0), Model("exact", *counts))
+    beam = Beam(10.0, section, Material(3000.0, 7e10), [none], 0.0, rotary_inertia=False)
+    return assemble(beam, Model("exact", *counts))
 
 
 def spinning(rate: float, axis: int, radius: float = 0.0) -> Base:

@@ -230,7 +230,7 @@ class Root(Value):
     >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), root=hinge)
     >>> lowest = gb.modes(gb.assemble(beam, "FOAM", axial=1, z=4)).frequency[0]
     >>> print(f"{lowest:.2f} Hz")
-    21.00 Hz
+    20.99 Hz
     """
 
     translation_x: float | None = None

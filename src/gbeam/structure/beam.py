@@ -47,7 +47,8 @@ class Beam(Value):
     points : sequence of Point
         Named points of output; a mass with a name is one at its place. The tip is ``tip``.
     rotary_inertia : bool
-        Whether the sections resist turning by their own second moments; without it each is a point on the axis.
+        Whether the sections resist turning by their own second moments, as they do; the theory of Euler and Bernoulli,
+        and the papers', has each as a point on the axis.
     line : Line, optional
         Reference line at rest, with the sections' twist; straight along x without it. Positions are lengths of arc.
 
@@ -73,7 +74,7 @@ class Beam(Value):
     root: Root = field(default_factory=Root)
     loads: Sequence[Load] = field(default=())
     points: Sequence[Point] = field(default=())
-    rotary_inertia: bool = False
+    rotary_inertia: bool = True
     line: Line | None = None
 
     def __post_init__(self) -> None:

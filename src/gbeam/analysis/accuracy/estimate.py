@@ -18,7 +18,7 @@ from gbeam.results.parts import Loads
 from gbeam.results.result import Floats
 
 LIMIT = 0.01  # an error of a steady state above is warned of
-BEYOND = 'kind = "exact" with modes.twist, shear_y, shear_z and beam.rotary_inertia has all but plate action'
+BEYOND = 'kind = "exact" with modes.twist, shear_y, shear_z has all but plate action'
 
 
 def percent(share: float) -> str:

@@ -303,7 +303,7 @@ def linearize(
     >>> [each.name for each in plant.inputs]
     ['torque']
     >>> print(plant.frequency.round(2))
-    [  36.56  183.71  229.1  1146.58 4243.13]
+    [  36.56  183.55  229.04 1139.77 4243.13]
     """
     if isinstance(structure, System):
         return linearize_system(structure, motion, time, inputs=inputs, outputs=outputs, at=at, loop=loop, name=name)

@@ -116,8 +116,8 @@ def campbell(
     >>> hub = gb.Hub(radius=0.5)
     >>> diagram = gb.campbell(structure, hub, end=20.0, count=10, modes=2)
     >>> print(diagram.frequency[[0, -1]].round(2))
-    [[ 36.56 182.78]
-     [ 37.08 182.86]]
+    [[ 36.56 182.63]
+     [ 37.08 182.7 ]]
     """
     instead = "ask `gbeam modes` for its frequencies at a time"
     path, history = turned(structure, motion, turning, time, "a Campbell diagram", instead, name)

@@ -9,7 +9,7 @@ import numpy as np
 
 from gbeam.arrays.namespace import concatenated, is_jax, namespace
 from gbeam.arrays.tree import record
-from gbeam.mechanics.equations.linear import Geometric, geometric_of
+from gbeam.mechanics.equations.linear import NOTHING, Geometric, geometric_of
 from gbeam.mechanics.fields.components import (
     NONE,
     Vector,
@@ -30,7 +30,6 @@ from gbeam.mechanics.fields.strains import Columns, StrainField, Tangents
 from gbeam.mechanics.fields.taylor import Places
 
 Array = Any
-NOTHING = 1e-13  # of the moments of inertia: a smaller product is rounding
 
 
 x, y, z = np.eye(3)[..., None]
@@ -318,9 +317,10 @@ class _Side(NamedTuple):
 
 
 def _work(forces: Vector, slopes: Vector) -> Array:
-    """Work (..., c, n) of forces (..., c, points) along slopes (..., n, points)."""
-    pairs = zip(forces, slopes, strict=True)
-    return reduce(plus, (f @ np.swapaxes(s, -1, -2) for f, s in pairs if not (absent(f) or absent(s))))
+    """Work (..., c, n) of forces (..., c, points) along slopes (..., n, points), or (..., n, 1) alike at all points."""
+    pairs = [(f, s) for f, s in zip(forces, slopes, strict=True) if not (absent(f) or absent(s))]
+    along = (np.broadcast_to(s, (*s.shape[:-1], f.shape[-1])) for f, s in pairs)
+    return reduce(plus, (f @ np.swapaxes(s, -1, -2) for (f, _), s in zip(pairs, along, strict=True)))
 
 
 def _components(vectors: Array) -> Vector:

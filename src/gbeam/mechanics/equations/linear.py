@@ -25,6 +25,7 @@ from gbeam.mechanics.fields.taylor import EPSILON, Places
 from gbeam.numerics.eigen import symmetric_modes
 
 Array = Any
+NOTHING = 1e-13  # of the sizes of what is summed: less is rounding
 
 
 @record
@@ -195,12 +196,13 @@ def coefficients(
     axes, n = r0.shape[1], first.shape[2]
     # Products of shapes for each pair of directions, (3, 3, n, n): one matrix product.
     rows = xp.reshape(first, (-1, axes * n))
-    pairs = xp.reshape(rows.T @ (mass[:, None] * rows), (axes, n, axes, n))
+    pairs = xp.reshape(_summed(xp, mass[:, None] * rows, rows), (axes, n, axes, n))
     pairs = xp.moveaxis(pairs, 2, 1)
     weighted = mass[:, None] * r0
-    sums, moments = xp.einsum("k,kai->ai", mass, first), xp.einsum("kb,kai->abi", weighted, first)
+    sums = xp.reshape(_summed(xp, mass[:, None], rows), (axes, n))
+    moments = xp.moveaxis(xp.reshape(_summed(xp, weighted, rows), (axes, axes, n)), 0, 1)
     extra = _weighted(xp, mass, weighted, places) if geometric is None else geometric
-    second = weighted.T @ r0
+    second = _summed(xp, weighted, r0)
     rigid = xp.stack(
         [
             mass.sum(),
@@ -234,7 +236,14 @@ def _weighted(xp: Any, mass: Array, weighted: Array, places: Places) -> Geometri
     points, axes, n, _ = places.second.shape
     flat = xp.reshape(places.second, (points, -1))
     shaped = (-1, axes, n, n)
-    return geometric_of(xp.reshape(mass @ flat, shaped[1:]), xp.reshape(weighted.T @ flat, shaped))
+    even, growing = _summed(xp, mass[:, None], flat), _summed(xp, weighted, flat)
+    return geometric_of(xp.reshape(even, shaped[1:]), xp.reshape(growing, shaped))
+
+
+def _summed(xp: Any, left: Array, right: Array) -> Array:
+    """Sums leftᵀ right over the particles, zero where what is left of a sum is the rounding of terms that cancel."""
+    sums = left.T @ right
+    return xp.where(xp.abs(sums) > NOTHING * (xp.abs(left).T @ xp.abs(right)), sums, 0.0) if xp is np else sums
 
 
 def geometric_of(even: Array, growing: Array) -> Geometric:

@@ -347,9 +347,9 @@ class Beam(Table):
         default=(), max_length=ENTRIES, description="points of output beside the tip: [ { name, at } ]"
     )
     rotary_inertia: StrictBool = Field(
-        default=False,
-        description="true if the sections resist turning by their own second moments, as those of a stout beam and of "
-        "one that twists do; without it each is a point on the axis",
+        default=True,
+        description="false for sections that do not resist turning by their own second moments, each a point on the "
+        "axis: the theory of Euler and Bernoulli",
     )
     line: Line | None = Field(
         default=None, description="reference line at rest, where it is not straight along x: { points, pieces, twist }"

@@ -35,9 +35,9 @@ class Modes(Table):
     axial: Count = Field(description="axial shapes; for `exact` of the stretch")
     y: Count = Field(description="bending shapes along y; for `exact` of the curvature")
     z: Count = Field(description="bending shapes along z; for `exact` of the curvature")
-    twist: Count = Field(default=0, description="shapes of the twist, of `exact` only; needs beam.rotary_inertia")
-    shear_y: Count = Field(default=0, description="shapes of the shear strain along y, of `exact` only")
-    shear_z: Count = Field(default=0, description="shapes of the shear strain along z, of `exact` only")
+    twist: Count = Field(default=0, description="shapes of the twist, whose inertia is beam.rotary_inertia")
+    shear_y: Count = Field(default=0, description="shapes of the shear strain along y")
+    shear_z: Count = Field(default=0, description="shapes of the shear strain along z")
 
 
 class Model(Table):
