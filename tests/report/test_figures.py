@@ -12,8 +12,9 @@ import pytest
 
 import gbeam as gb
 from gbeam.figures import description, figures_of
+from gbeam.numerics.samples import thinned
 from gbeam.plots import draw
-from gbeam.report.page.curves import Numbers, drawn, thinned
+from gbeam.report.page.curves import COLUMNS, Numbers, drawn
 from gbeam.report.page.result import report_of, report_of_file
 from gbeam.results.cases import Indices, Parameter, Statistics
 from gbeam.results.imitation.comparison import Comparison
@@ -167,7 +168,7 @@ def _compare_lines(axes: object, panel: description.Panel, spec: dict, numbers: 
     low, high = panel.limits or (-np.inf, np.inf)
     for one, line, each in zip(panel.lines, lines, series, strict=False):
         x, y = (numbers[each[way]["at"] :][: each[way]["shape"][0]] for way in "xy")
-        along, values = thinned(line.get_xdata(), line.get_ydata())
+        along, values = thinned(line.get_xdata(), line.get_ydata(), COLUMNS)
         np.testing.assert_allclose(x, along, rtol=1e-6, atol=1e-6 * np.ptp(along))
         np.testing.assert_allclose(y, np.clip(values, low, high), rtol=1e-6, atol=1e-6 * np.ptp(values))
         assert line.get_label() == one.label if panel.named and one.label else line.get_label().startswith("_")

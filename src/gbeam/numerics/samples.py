@@ -33,6 +33,18 @@ def joined(runs: list[slice], time: NDArray[np.float64], gap: float) -> list[sli
     return merged
 
 
+def thinned(x: Floats, y: Floats, columns: int) -> tuple[Floats, Floats]:
+    """The samples that show: of each of so many columns the first, last, lowest and highest; few stay as they are."""
+    if len(x) <= 4 * columns:
+        return x, y
+    width = -(-len(x) // columns)
+    index = np.minimum(np.arange(width * -(-len(x) // width)), len(x) - 1).reshape(-1, width)
+    rows, shown = np.arange(len(index)), y[index]
+    ends = index[:, 0], index[:, -1], index[rows, shown.argmin(axis=1)], index[rows, shown.argmax(axis=1)]
+    kept = np.unique(np.concatenate(ends))
+    return x[kept], y[kept]
+
+
 def interpolated(time: Floats, known: Floats, values: Floats) -> Floats:
     """Values (t, ...) at the times `known`, at `time` (u,): on straight lines, and constant beyond the ends."""
     columns = np.reshape(values, (len(known), -1)).T

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from gbeam.numerics.samples import true_runs
+from gbeam.numerics.samples import thinned, true_runs
 from gbeam.results.result import Flags, Floats
 
 COLUMNS = 1500  # across a line: more than a panel has pixels at 150 dpi
@@ -26,7 +26,7 @@ def line(panel: Axes, x: Floats, y: Floats, **options: Any) -> None:
     bins = _Bins(x, y) if len(x) >= 4 * BINS else None
     runs = [] if bins is None else true_runs(bins.fast)
     if bins is None or not runs:
-        panel.plot(*_reduced(x, y), **options)
+        panel.plot(*thinned(x, y, COLUMNS), **options)
         return
     (drawn,) = panel.plot(*bins.middle(x, y, runs), **options)
     named = any(each.get_label() == ENVELOPE for other in drawn.figure.axes for each in other.collections)
@@ -54,10 +54,11 @@ class _Bins:
         """The line, in the middle of its envelope where it has one."""
         parts, begin = [], 0
         for run in runs:
-            parts.append(_reduced(x[begin : self._ends[run.start] + 1], y[begin : self._ends[run.start] + 1]))
+            before = slice(begin, self._ends[run.start] + 1)
+            parts.append(thinned(x[before], y[before], COLUMNS))
             parts.append((self.centre[run], (self.low[run] + self.high[run]) / 2))
             begin = self._ends[run.stop]
-        parts.append(_reduced(x[begin:], y[begin:]))
+        parts.append(thinned(x[begin:], y[begin:], COLUMNS))
         at, values = zip(*parts, strict=True)
         return np.concatenate(at), np.concatenate(values)
 
@@ -78,16 +79,3 @@ def _closed(fast: Flags) -> Flags:
         if run.stop - run.start < _FEW:
             joined[run] = False
     return joined
-
-
-def _reduced(x: Floats, y: Floats) -> tuple[Floats, Floats]:
-    """The points that show: per column of pixels the first, last, lowest and highest."""
-    per_column = len(x) // COLUMNS
-    if per_column <= 4:
-        return x, y
-    full = COLUMNS * per_column
-    rows = y[:full].reshape(COLUMNS, per_column)
-    start = per_column * np.arange(COLUMNS)
-    lowest, highest = start + rows.argmin(axis=1), start + rows.argmax(axis=1)
-    kept = np.unique(np.concatenate([start, lowest, highest, start + per_column - 1, np.arange(full, len(x))]))
-    return x[kept], y[kept]

@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 
 from gbeam.figures.description import GREY, REFERENCE, Bars, Figure, Line, Map, Panel
+from gbeam.numerics.samples import thinned
 from gbeam.report.page.parts import Cell, Value, heading, paragraph, plot_places, table
 from gbeam.report.words import number
 from gbeam.results.result import Floats
 
-INTERVALS = 1200  # of a line with more samples than twice as many: least and largest of each are kept
+COLUMNS = 600  # across a plot, of which a line has no more samples than show
 Ref = dict[str, Any]  # where an array begins, and its shape
 
 
@@ -44,26 +45,6 @@ class Numbers:
     def encoded(self) -> str:
         """All of them in base64."""
         return base64.b64encode(self.array.tobytes()).decode("ascii")
-
-
-def thinned(time: Floats, values: Floats) -> tuple[Floats, Floats]:
-    """Values (t, ...) with the least and the largest of every interval, in the order in which they come.
-
-    Each pair is put to a quarter and three quarters of its interval; short histories stay as they are.
-    """
-    count = len(time)
-    if count <= 2 * INTERVALS:
-        return time, values
-    each = -(-count // INTERVALS)
-    whole = -(-count // each)
-    index = np.minimum(np.arange(whole * each), count - 1).reshape(whole, each)
-    parts = values[index]  # (whole, each, ...)
-    low, high = parts.argmin(axis=1), parts.argmax(axis=1)
-    pair = np.stack([np.minimum(low, high), np.maximum(low, high)], axis=1)
-    kept = np.take_along_axis(parts, pair, axis=1)
-    begin, end = time[index[:, 0]], time[index[:, -1]]
-    places = np.stack([begin + 0.25 * (end - begin), begin + 0.75 * (end - begin)], axis=1)
-    return places.ravel(), kept.reshape(2 * whole, *values.shape[1:])
 
 
 _NUDGE = 1e-5  # of the whole width: places that are the same are drawn beside each other
@@ -117,7 +98,7 @@ def _series(panel: Panel) -> Iterator[tuple[dict[str, Any], Floats, Floats]]:
             label = ", ".join(filter(None, (area.label, end)))
             yield {"label": label, "colour": area.colour, "dash": bool(end)}, _ascending(area.x), values
     for line in panel.lines:
-        yield _look(line, panel.y), *thinned(_ascending(line.x), line.y)
+        yield _look(line, panel.y), *thinned(_ascending(line.x), line.y, COLUMNS)
 
 
 def _look(line: Line, quantity: str) -> dict[str, Any]:
