@@ -16,7 +16,7 @@ from gbeam.figures.description import raised
 from gbeam.guards.limits import parse_json
 from gbeam.printable import json_printable
 from gbeam.report.facts import facts_text
-from gbeam.report.page import cases, machine, searches, steady, study
+from gbeam.report.page import machine, searches, steady, study
 from gbeam.report.page.curves import Numbers, drawn
 from gbeam.report.page.parts import Value, badge, escaped, folded, heading, listed, paragraph, section, table, verbatim
 from gbeam.report.page.records import figures_in, modes_in
@@ -97,11 +97,11 @@ PAGES = {
     "Campbell": Page("campbell", steady.campbell_body, ("tracks", "crossings")),
     "Critical": Page("critical-speed", steady.critical_body, ("quantity", "searched_to", "reason")),
     "CriticalMap": Page("critical-speed --masses", steady.critical_map_body, ("mass", "position", "critical_speed")),
-    "Placement": Page("place", cases.placement_body, ("fraction_of_length", "options")),
+    "Placement": Page("place", machine.placement_body, ("fraction_of_length", "options")),
     "SystemStudy": Page("run", _quantities, ("motions",), ("points", "coordinates", "steps")),
     "SystemRest": Page("static", _quantities, ("motions",), ("points", "coordinates", "ground_force")),
     "SystemModes": Page("modes", _quantities, ("modes", "body_names")),
-    "Sweep": Page("sweep", cases.sweep_body, ("parameters", "measures")),
+    "Sweep": Page("sweep", searches.sweep_body, ("parameters", "measures")),
     "Fit": Page("fit", searches.fit_body, ("covariance", "columns")),
     "Optimum": Page("optimize", searches.optimum_body, ("minimise", "subject_to")),
     "Sensitivity": Page("sensitivity", searches.sensitivity_body, ("measures", "run_error")),

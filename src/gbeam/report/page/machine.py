@@ -1,4 +1,4 @@
-"""The inside of pages of a machine: the verdict, its axes, what they use of their limits."""
+"""The inside of pages of a machine: the verdict, its axes, what they use of their limits, the place of the specimen."""
 
 from __future__ import annotations
 
@@ -8,8 +8,10 @@ from typing import Any
 
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.figures.description import raised
-from gbeam.report.machine import followed
-from gbeam.report.page.parts import Cell, Value, folded, heading, known, listed, paragraph, section, table
+from gbeam.report.machine import followed, largest
+from gbeam.report.page.parts import Cell, Value, folded, heading, known, listed, paragraph, section, table, verbatim
+from gbeam.report.words import number
+from gbeam.results.imitation.accounting import PeakPair
 from gbeam.results.imitation.criteria import RULES
 from gbeam.results.imitation.verdict import change, percent
 
@@ -143,3 +145,73 @@ def machine_section(name: str, motion: Facts) -> str:
     head = ("", "used", "allowed", "unit", "share", "at, s")
     rows = map(row, motion["limits"])
     return heading(f"Machine: {name}") + table(head, rows, "Limits used", words=(0, 3)) + paragraph(followed(motion))
+
+
+_PLACES = {"current": "now", "best": "placed", "middle": "at mid-span"}
+
+
+def placement_body(facts: Facts, viewer: str, drawn: str) -> str:
+    """Best place of the specimen, its effect, and the other options."""
+    best = f"{1e3 * facts['control_point']:.2f} mm from the root, {facts['fraction_of_length']:.4f} of the length"
+    now = f"{1e3 * facts['current_control_point']:.2f} mm"
+    rows = [
+        ("control point", f"{best} (now {now})"),
+        ("largest load", largest(_pair(facts["options"][0]), facts["before"] and _pair(facts["before"]))),
+        ("mounting", facts["mounting"]),
+        ("smoothing", f"{number(1e3 * facts['smoothing'])} ms"),
+    ]
+    parts = [heading("Placement"), table(("", ""), rows, words=(0, 1))]
+    if facts["message"]:
+        parts.append(paragraph(facts["message"], "" if facts["outcome"] == "done" else "bad"))
+    if facts["set"]:
+        flags = " ".join(f'--set "{each}"' for each in facts["set"])
+        parts += [paragraph("to apply it, add to the command line:"), verbatim(flags)]
+    for title, key in (("Mismatch field alone", "mismatch"), ("With smoothing and tracking", "total_error")):
+        if facts[key]:
+            names = list(facts[key]["best"])
+            shares = [[name, *(_of_peak(facts[key][place].get(name)) for place in _PLACES)] for name in names]
+            parts.append(table(("of flight's peak", *_PLACES.values()), shares, title))
+    if facts["verifications"]:
+        checks = [
+            [word, *(facts["verifications"][place][key] * scale for key, scale in _CHECKS.values())]
+            for place, word in _PLACES.items()
+            if place in facts["verifications"]
+        ]
+        parts.append(table(("", *_CHECKS), checks, "By simulation, largest difference from flight"))
+    return "".join([*parts, heading("Options"), _options(facts["options"]), listed(facts["refused"])])
+
+
+_CHECKS = {
+    "tip, mm": ("tip_difference", 1e3),
+    "vibration, mm": ("vibration", 1e3),
+    "root shear, N": ("force_difference", 1.0),
+    "root moment, N m": ("moment_difference", 1.0),
+}
+
+
+def _pair(candidate: Facts) -> PeakPair:
+    """A candidate's largest load, from its JSON."""
+    load = candidate["largest_load"]
+    return PeakPair(known(load["flight"]), known(load["machine"]), place_machine=load.get("place_machine", ""))
+
+
+def _options(options: list[Facts]) -> str:
+    def row(each: Facts) -> list[Value]:
+        words = "; ".join(map(_use, each["exceeded"]))
+        share = f"{100 * each['share']:.0f} % of a limit" if each["share"] else ""
+        limits = Cell(f"exceeds {words}", "bad") if words else share
+        point = 1e3 * each["control_point"]
+        largest = each["largest_load"]
+        load = [known(largest["machine"]) / STANDARD_GRAVITY, largest.get("place_machine", "").removeprefix("the ")]
+        return [each["mounting"], 1e3 * each["smoothing"], point, _of_peak(each["total_error"]), *load, limits]
+
+    head = ("mounting", "smoothing, ms", "control point, mm", "error", "largest load, g", "at", "limits")
+    return table(head, map(row, options), "Best first; those that break limits last", words=(0, 5, 6))
+
+
+def _use(use: Facts) -> str:
+    return f"{use['axis']} {use['quantity']} {number(use['used'])} of {number(use['allowed'])} {use['unit']}"
+
+
+def _of_peak(share: float | None) -> str:
+    return "–" if share is None else f"{100 * share:.3g} %" if share > 1e-8 else "0 %"

@@ -1,4 +1,4 @@
-"""The pages of studies: a fit, an optimum, sensitivities, a shaped command."""
+"""The pages of studies: a fit, an optimum, sensitivities, a shaped command, a sweep."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 from gbeam.figures.description import raised
 from gbeam.report.page.parts import Cell, Value, heading, known, listed, paragraph, section, table
 from gbeam.report.words import number, percent
+from gbeam.results.cases import BOUNDS
 
 Facts = Mapping[str, Any]
 
@@ -144,3 +145,85 @@ def _between(ends: tuple[float, float]) -> str:
 def _six(value: float | None) -> Cell:
     """A value that is to be copied, with six digits."""
     return Cell("–" if value is None else f"{value:.6g}")
+
+
+_CASES = 400  # listed
+
+
+def sweep_body(facts: Facts, viewer: str, drawn: str) -> str:
+    """Counts of outcomes, a plot or a map of each measure, and every case."""
+    counts = ", ".join(f"{count} {name}" for name, count in facts["counts"].items())
+    outcomes = np.array(facts["outcomes"], dtype=object)
+    kind = "" if facts["outcome"] == "done" else "bad"
+    parts = [paragraph(f"figures of gbeam {facts['verb']}: {outcomes.size} cases: {counts}", kind), _varied(facts)]
+    parts += [_estimates(facts)]
+    values = {name: np.array(each["values"], dtype=float) for name, each in facts["measures"].items()}
+    return "".join(
+        [
+            *parts,
+            section("Figures", drawn),
+            heading("Cases"),
+            _cases(facts, values, outcomes),
+            _failures(facts, outcomes),
+        ]
+    )
+
+
+def _estimates(facts: Facts) -> str:
+    """Statistics of each measure, where no grid makes many of it, with bounds of 95 % confidence."""
+    rows: list[list[Value]] = []
+    for name, estimates in facts["statistics"].items():
+        if name in facts["measures"] and isinstance(estimates["draws"], int):
+            label = _labelled(name, facts["measures"][name]["unit"])
+            named = {each: bounds for each, bounds in estimates.items() if each != "draws"}
+            rows += [[label, each, *(bounds[bound] for bound in BOUNDS)] for each, bounds in named.items()]
+            shares = facts["indices"].get(name, {})
+            rows += [
+                [label, f"share of the variance, {order}: {path}", *(each[order][bound] for bound in BOUNDS)]
+                for path, each in shares.items()
+                for order in each
+            ]
+    return table(("measure", "estimate of", *BOUNDS), rows, "bounds of 95 % confidence", words=(0, 1)) if rows else ""
+
+
+def _varied(facts: Facts) -> str:
+    rows = [
+        [each["path"], each["unit"], each["distribution"] or f"{len(each['values'])} values, {_ends(each['values'])}"]
+        for each in facts["parameters"]
+    ]
+    return table(("varies", "unit", "values"), rows, words=(0, 1, 2))
+
+
+def _cases(facts: Facts, values: Mapping[str, Any], outcomes: Any) -> str:
+    parameters, dimensions = facts["parameters"], facts["dimensions"]
+    rows: list[list[Value]] = []
+    for at in np.ndindex(outcomes.shape):
+        place = dict(zip(dimensions, at, strict=True))
+        coordinates = [each["values"][place["sample" if each["distribution"] else each["path"]]] for each in parameters]
+        done = outcomes[at] == "done"
+        figures = [float(each[at]) for each in values.values()]
+        rows.append([*map(_tick, coordinates), *figures, Cell(str(outcomes[at]), "" if done else "bad")])
+        if len(rows) == _CASES:
+            break
+    head = [_labelled(each["path"], each["unit"]) for each in parameters]
+    head += [_labelled(name, facts["measures"][name]["unit"]) for name in values]
+    more = f"the first {_CASES} of {outcomes.size}" if outcomes.size > _CASES else ""
+    return table([*head, "outcome"], rows, more, words=(len(head),))
+
+
+def _failures(facts: Facts, outcomes: Any) -> str:
+    messages = np.array(facts["messages"], dtype=object).ravel()
+    lost = {f"{outcome}: {said}": None for outcome, said in zip(outcomes.ravel(), messages, strict=True) if said}
+    return listed(list(lost)[:10], "bad")
+
+
+def _labelled(name: str, unit: str) -> str:
+    return f"{name}, {unit}" if unit else name
+
+
+def _tick(value: Any) -> str:
+    return f"{value:.6g}" if isinstance(value, (int, float)) else str(value)
+
+
+def _ends(values: list[Any]) -> str:
+    return f"{_tick(values[0])} to {_tick(values[-1])}" if len(values) > 3 else ", ".join(map(_tick, values))
