@@ -128,7 +128,7 @@ def test_a_slip_of_a_motion_is_named(slip: str) -> None:
 
 def test_an_arm_in_millimetres_is_named_by_plan() -> None:
     machine = gb.Centrifuge(FLIGHT, arm=3300.0, control_point=0.15, inverse="flat", gravity=False).over(0.0, 0.5)
-    from gbeam.motion.plausibility import implausible_motion
+    from gbeam.motion.protocol import implausible_motion
 
     (warning,) = implausible_motion(machine, "motion.spin", (0.0, 0.5))
     assert warning.startswith("motion.spin.arm is 3300 m") and "3300 mm" in warning

@@ -1,8 +1,9 @@
-"""Text from outside, as a terminal, a file or a figure may show it."""
+"""Text from outside, as a terminal, a file or a figure may show it; suggestions for a misspelt name."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 
 # Control characters but tab and line feed, C1's included; lone surrogates; marks that reverse the direction of writing.
 _UNPRINTABLE = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
@@ -45,3 +46,21 @@ def shortened(text: str, longest: int = LONGEST) -> str:
 def _escaped(match: re.Match[str]) -> str:
     code = ord(match[0])
     return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}"
+
+
+def closest(word: str, choices: Iterable[str]) -> str | None:
+    """Return the choice that `word` was probably meant to be, or None; case does not count."""
+    from difflib import get_close_matches  # needed only where something is wrong
+
+    lowered: dict[str, str] = {}
+    for choice in choices:
+        lowered.setdefault(choice.lower(), choice)
+    near = get_close_matches(word.lower(), lowered, n=1, cutoff=0.6)
+    return lowered[near[0]] if near else None
+
+
+def advise(word: str, choices: Iterable[str], *, listed: str = "choose one of") -> str:
+    """Return ``did you mean 'thickness'?``, or the list of choices when none is near."""
+    possible = list(choices)
+    near = closest(word, possible)
+    return f"did you mean {near!r}?" if near else f"{listed} {', '.join(possible)}"

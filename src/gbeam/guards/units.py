@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from gbeam.guards.kinds import KINDS, USUAL, Kind
 from gbeam.guards.limits import QUANTITY
-from gbeam.guards.names import closest
-from gbeam.printable import shortened
+from gbeam.printable import closest, shortened
 
 if TYPE_CHECKING:
     from pint import UnitRegistry

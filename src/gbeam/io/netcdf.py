@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.io.hdf5 import write_groups
+from gbeam.io.hdf5 import provenance_attrs, provenance_variables, write_groups
 from gbeam.io.layout import (
     Group,
     Variable,
@@ -33,7 +33,6 @@ from gbeam.io.layout import (
     variable,
     whole_group,
 )
-from gbeam.io.provenance import provenance_attrs, provenance_variables
 from gbeam.results.cases import BOUNDS, ORDERS, PROBABILITY, SAMPLE, Parameter, Sweep
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.errors import Errors

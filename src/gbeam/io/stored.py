@@ -15,9 +15,8 @@ import numpy as np
 from gbeam.errors import InputError
 from gbeam.guards.confined import confined
 from gbeam.guards.limits import existing
-from gbeam.io.hdf5 import contents, contents_of, image
+from gbeam.io.hdf5 import contents, contents_of, image, provenance_of
 from gbeam.io.netcdf import groups_of
-from gbeam.io.provenance import provenance_of
 from gbeam.results.provenance import Provenance
 from gbeam.results.result import Floats, Result
 

@@ -10,8 +10,7 @@ import numpy as np
 from gbeam.arrays.namespace import holds_jax, is_traced
 from gbeam.mechanics.models import TORSION
 from gbeam.mechanics.structure import Structure
-from gbeam.motion.plausibility import implausible_values, times
-from gbeam.motion.protocol import Motion
+from gbeam.motion.protocol import Motion, implausible_values, times
 
 NOTICED = 0.01  # of the largest: a smaller share along a direction without shapes is none
 STIFF = 10.0  # times the other direction: from there on the driven one should be meant

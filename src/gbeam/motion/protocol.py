@@ -1,13 +1,18 @@
-"""Protocol of motions of the base."""
+"""Protocol of motions of the base, and what is implausible about one."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any, ClassVar, Protocol, Self, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.arrays.namespace import holds_jax
+from gbeam.guards.ranges import implausible
 from gbeam.motion.bases.base import Base
+from gbeam.motion.bases.flight import Flight
+from gbeam.results.result import part_words
 
 
 @runtime_checkable
@@ -40,3 +45,57 @@ class Motion(Protocol):
     def beyond(self, start: float, end: float) -> tuple[Any, Any]:
         """Return the times that a machine moves before `start` and after `end`, to and from standstill, s."""
         ...
+
+
+SAMPLES = 501
+
+
+def implausible_motion(motion: Motion, where: str, span: tuple[float, float], base: Any = None) -> tuple[str, ...]:
+    """Warnings of what is implausible in a motion; none where JAX traces it."""
+    return () if holds_jax(motion) else tuple(implausible_values(motion, where, span, base))
+
+
+def implausible_values(motion: Any, where: str, span: tuple[float, float], base: Any) -> Iterator[str]:
+    """Warnings of a motion that holds nothing of JAX."""
+    if motion.kind == "centrifuge":
+        yield from implausible(f"{where}.arm", "arm", float(motion.geometry.arm))
+        yield from _of_gravity(motion, where)
+        return
+    if motion.kind == "hub":
+        yield from implausible(f"{where}.radius", "radius", motion.mount.radius)
+        if motion.mount.gravity is not None and np.any(motion.mount.gravity):
+            yield from implausible(f"{where}.gravity", "gravity", float(np.linalg.norm(motion.mount.gravity)))
+    if motion.free:
+        return
+    if isinstance(motion, Flight):
+        yield from _of_flight(motion, where, span)
+    base = motion.base(times(motion, span)) if base is None else base
+    rate, load = (float(np.linalg.norm(each, axis=-1).max()) for each in (base.w_WB_B, base.a_WO_B))
+    odd = tuple(implausible(f"{where}.rate", "rate", rate))
+    yield from odd or implausible(f"{where}.acceleration", "acceleration", load)
+
+
+def _of_flight(flight: Flight, where: str, span: tuple[float, float]) -> Iterator[str]:
+    """Notes on its record: steps taken, oddities, and that only a part of it is flown."""
+    if flight.record is not None:
+        yield from (f"{where}.record: {note}" for note in flight.record.notes)
+    whole = flight.part_of(*span) if span[1] > span[0] else None
+    if whole is not None:
+        yield f"{where}: {part_words(span, whole)} are flown, and the rest is left out"
+
+
+def _of_gravity(machine: Any, where: str) -> Iterator[str]:
+    """Warning that a machine on the earth adds its own gravity to a load of which gravity is a part."""
+    record = machine.flight.record
+    if machine.geometry.gravity == 0 and record is not None and record.quantity == "specific-force":
+        yield (
+            f"{where}.gravity is false, and the record of its flight holds specific force, of which gravity is a part: "
+            "on a machine that stands on the earth the specimen feels 1 g more than is said here, at every instant; "
+            'give gravity = true, or quantity = "acceleration" on the record if it holds no gravity'
+        )
+
+
+def times(motion: Motion, span: tuple[float, float]) -> np.ndarray:
+    """Times at which a motion is looked at: evenly over the span, and at its corners."""
+    inside = np.clip(motion.corners((span[1] - span[0]) / SAMPLES), *span)
+    return np.unique(np.concatenate([np.linspace(*span, SAMPLES), inside]))

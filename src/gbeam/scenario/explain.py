@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
 from gbeam.guards.kinds import KINDS
-from gbeam.guards.names import advise
 from gbeam.guards.units import spoken
+from gbeam.printable import advise
 from gbeam.scenario.schema import kind_of_scenario
 from gbeam.scenario.schema.fields import Quantity, Table, fields_of
 from gbeam.scenario.text.diagnostics import Diagnostic

@@ -16,8 +16,8 @@ import numpy as np
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import BINARY_BYTES, existing, refuse_large_file
+from gbeam.io.hdf5 import RECORD
 from gbeam.io.netcdf import FACTS
-from gbeam.io.provenance import RECORD
 from gbeam.results.provenance import Provenance, present
 from gbeam.results.study import Difference, Reproduction
 from gbeam.scenario.build import build

@@ -6,7 +6,7 @@ import json
 from typing import Any
 
 from gbeam.errors import InputError
-from gbeam.guards.names import advise
+from gbeam.printable import advise
 from gbeam.scenario.schema import Environments, Scenario
 from gbeam.scenario.values import FAMILIES
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from gbeam.errors import InputError
-from gbeam.guards.names import closest
 from gbeam.guards.units import NUMBER
+from gbeam.printable import closest
 
 Path = tuple[str | int, ...]
 

@@ -19,8 +19,8 @@ from gbeam.analysis.case import AnyCase, Case
 from gbeam.analysis.environments import study_of
 from gbeam.analysis.response.batch import TOGETHER, simulate_batch
 from gbeam.errors import ComputationError, GbeamError, InputError
-from gbeam.guards.names import advise
 from gbeam.mechanics.structure import Structure
+from gbeam.printable import advise
 from gbeam.questions import QUESTIONS, Needs, reduced
 from gbeam.results.cases import ANSWERED
 from gbeam.results.response import Response

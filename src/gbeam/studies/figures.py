@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gbeam.errors import InputError
-from gbeam.guards.names import advise, closest
+from gbeam.printable import advise, closest
 from gbeam.questions import QUESTIONS, Needs
 from gbeam.results.result import Floats
 from gbeam.scenario.values import path_text

@@ -15,10 +15,10 @@ from gbeam.analysis.case import Case
 from gbeam.analysis.control.linearization import surface_gauge
 from gbeam.errors import InputError
 from gbeam.guards.kinds import KINDS
-from gbeam.guards.names import advise
 from gbeam.guards.units import UnitError, argument
 from gbeam.io.tables.table import Table
 from gbeam.motion.records.text import read_text
+from gbeam.printable import advise
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.study import Study

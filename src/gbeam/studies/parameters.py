@@ -14,8 +14,8 @@ import numpy as np
 from gbeam.errors import GbeamError, InputError
 from gbeam.guards.kinds import KINDS
 from gbeam.guards.limits import refuse_more
-from gbeam.guards.names import advise
 from gbeam.guards.units import UnitError, argument
+from gbeam.printable import advise
 from gbeam.results.result import Flags, Floats
 from gbeam.scenario.load import load
 from gbeam.scenario.text.revise import with_quantities

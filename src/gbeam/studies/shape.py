@@ -16,10 +16,10 @@ from gbeam.analysis.control.shaping import profile_of, shape_command
 from gbeam.analysis.model_study import counterpart
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.names import advise
 from gbeam.mechanics.models import KINDS
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.profiles.piecewise import constant
+from gbeam.printable import advise
 from gbeam.progress import Progress
 from gbeam.questions import motion_of
 from gbeam.results.searches import ShapedCommand

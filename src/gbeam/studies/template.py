@@ -19,8 +19,8 @@ from gbeam.analysis.case import AnyCase, Case
 from gbeam.arrays.tree import altered, arguments_of
 from gbeam.errors import InputError
 from gbeam.guards.kinds import KINDS, kind_of_argument
-from gbeam.guards.names import advise
 from gbeam.guards.units import UnitError, argument
+from gbeam.printable import advise
 from gbeam.results.provenance import Provenance
 from gbeam.scenario.build import build, scenario_of
 from gbeam.scenario.load import change

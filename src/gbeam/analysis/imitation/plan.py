@@ -20,7 +20,7 @@ from gbeam.motion import Centrifuge
 from gbeam.motion.bases.base import gradient
 from gbeam.motion.centrifuge.history import axes_result
 from gbeam.motion.centrifuge.kinematics import axis_angles
-from gbeam.motion.plausibility import implausible_motion
+from gbeam.motion.protocol import implausible_motion
 from gbeam.results.imitation.accounting import TOLERANCE, PeakPair
 from gbeam.results.imitation.comparison import MachinePlan
 from gbeam.results.imitation.criteria import BROKEN, Limit, checked_limits

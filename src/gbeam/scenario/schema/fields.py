@@ -22,8 +22,8 @@ from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, cor
 
 from gbeam.guards.kinds import KINDS
 from gbeam.guards.limits import ENTRIES, LARGEST, SMALLEST, existing
-from gbeam.guards.names import closest
 from gbeam.guards.units import UnitError, quantity
+from gbeam.printable import closest
 from gbeam.scenario.values import Path, path_text
 
 if TYPE_CHECKING:

@@ -10,8 +10,7 @@ from pydantic import AfterValidator, Field, PrivateAttr, StrictInt, ValidationIn
 from pydantic_core import PydanticCustomError
 
 from gbeam.guards.limits import NAME, SHAPES, TITLE
-from gbeam.guards.names import advise
-from gbeam.printable import shortened, unprintable
+from gbeam.printable import advise, shortened, unprintable
 from gbeam.questions import QUESTIONS
 from gbeam.scenario.schema.beam import Beam
 from gbeam.scenario.schema.fields import Loc, Table, refuse, wrong

@@ -15,7 +15,7 @@ from typing import Any, Literal
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import SCENARIO_BYTES, refuse_large_file
-from gbeam.guards.names import closest
+from gbeam.printable import closest
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.text.overrides import Override, crowded, excess, no_text
 from gbeam.scenario.values import Distribution, Path, Place, Span, path_text, written_at
