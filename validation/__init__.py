@@ -20,6 +20,7 @@ MODULES: tuple[str, ...] = (
     "published.paper2020",
     "published.references",
     "published.others",
+    "published.space_beams",
     "published.closed_forms",
     "accuracy.random_scenarios",
     "accuracy.integrators",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from validation.published import closed_forms, others, paper2009, paper2020, references
+from validation.published import closed_forms, others, paper2009, paper2020, references, space_beams
 from validation.table import AGREES, DIFFERS, Row
 
 CHEAP = {
@@ -22,6 +22,9 @@ CHEAP = {
     "free hub": closed_forms.free_hub,
     "hanging chain": closed_forms.hanging_chain,
     "section forces": closed_forms.section_forces,
+    "Princeton": space_beams.princeton,
+    "laminates": space_beams.laminates,
+    "Lee's frame": space_beams.lees_frame,
 }
 
 
