@@ -106,6 +106,10 @@ class Given:
                 ("case", self.beam, gb.Model("FOAM", z=1), {"flight": self.still}, self.settings),
                 {"tracks": {}, "stations": (0.1,), "accept": {}},
             ),
+            "SpecimenCase": (
+                ("case", "strip", self.structure, {"flight": self.still}, self.settings),
+                {"tracks": {}, "accept": {}},
+            ),
             "SystemCase": (
                 ("case", gb.System({"bar": self.bar}, {"hinge": self.hinge}), {}, self.settings),
                 {"tracks": {}},
@@ -179,7 +183,7 @@ class Given:
             ),
             "RigidSpecimen": (
                 (1.0, (0.0, 0.0, 0.0), np.eye(3), [(0.1, 0.0, 0.0)]),
-                {"bolts": np.eye(3), "bolt_axis": (0.0, 0.0, 1.0)},
+                {"bolts": np.eye(3), "bolt_axis": (0.0, 0.0, 1.0), "spread_limit": 0.1},
             ),
             "Root": ((1e6, 1e6, 1e6, 1e3, 1e3), {}),
             "Section": (("rectangle", {"width": (0.02,), "thickness": (0.004,)}), {"stations": (), "plate": False}),
@@ -247,7 +251,10 @@ class Given:
             ),
             "plan": (
                 ("machine", self.centrifuge.over(0.0, 0.1), "flight"),
-                {"beam": self.beam, "tolerance": 0.05, "tolerance_of": "peak", "accept": {"tip": 0.5}, "title": "a"},
+                {
+                    "beam": self.beam, "tolerance": 0.05, "tolerance_of": "peak", "accept": {"tip": 0.5}, "title": "a",
+                    "envelope": None,
+                },
             ),
             "ImportedModel": (
                 (),

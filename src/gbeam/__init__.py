@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.analysis.case import Case as Case
+    from gbeam.analysis.case import SpecimenCase as SpecimenCase
     from gbeam.analysis.case import SystemCase as SystemCase
     from gbeam.analysis.case import describe as describe
     from gbeam.analysis.control.linearization import linearize as linearize
@@ -119,6 +120,7 @@ _HOME = {
     "PointForce": "mechanics.tree.system",
     "RigidBody": "mechanics.tree.system",
     "System": "mechanics.tree.system",
+    "SpecimenCase": "analysis.case",
     "SystemCase": "analysis.case",
     "SystemStudy": "results.study",
     "SystemModes": "results.system",

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from gbeam.errors import InputError
 
 if TYPE_CHECKING:
-    from gbeam.analysis.case import AnyCase, Case
+    from gbeam.analysis.case import AnyCase, Case, SpecimenCase
     from gbeam.results.equilibrium import Critical, Deflection
     from gbeam.results.imitation.comparison import MachinePlan
     from gbeam.results.imitation.placement import Placement
@@ -61,6 +61,8 @@ class Question:
         Kind of motion that answers, empty for any; None where all that can answer do.
     differentiable : bool
         Whether its figures are smooth in the scenario's values.
+    deforms : bool
+        Whether it is about what deforms, which a rigid specimen does not.
     """
 
     name: str
@@ -68,6 +70,7 @@ class Question:
     answer: Callable[..., Any]
     motion: str | None = ""
     differentiable: bool = True
+    deforms: bool = True
 
     @property
     def records(self) -> tuple[type, ...]:
@@ -86,9 +89,16 @@ class Question:
         return bool(self.answer.__annotations__.get("case") == "AnyCase")
 
     def refuse(self, case: AnyCase) -> None:
-        """Raise InputError if the case is a system, and only beams have an answer."""
-        if not self.of_systems:
+        """Raise InputError if the case is a system, and only one structure has an answer; or of a specimen without
+        coordinates one that needs them.
+        """
+        from gbeam.analysis.case import SpecimenCase, SystemCase
+
+        if isinstance(case, SystemCase) and not self.of_systems:
             case.one_beam("bodies", self.name)
+        if isinstance(case, SpecimenCase) and self.deforms and not case.structure.size:
+            fix = "ask for run, which has the load at its corners, or plan; or give it as a solid"
+            raise InputError(f"bodies.{case.name}", f"is rigid, and {self.name} is of what deforms", fix)
 
 
 QUESTIONS: dict[str, Question] = {}
@@ -150,10 +160,10 @@ def reduced(case: AnyCase, needs: Needs) -> AnyCase:
 
 def _structure(case: AnyCase, needs: Needs) -> Any:
     """The case's structure; where no errors are needed it does not know what it was made of, and states none."""
-    from gbeam.analysis.case import SystemCase
+    from gbeam.analysis.case import Case
 
-    if isinstance(case, SystemCase):
-        return case.system
+    if not isinstance(case, Case):
+        return case.assemble()
     length = case.beam.length
     structure = case.assemble([length * i / (STATIONS - 1) for i in range(STATIONS)] if needs.shapes else None)
     return structure if needs.errors else replace(structure, source=None)
@@ -163,7 +173,9 @@ def _time(case: AnyCase, at: float | None) -> float:
     return case.response.start if at is None else at
 
 
-@question("run", "Compute the response in every environment of a scenario, and compare them.", motion=None)
+@question(
+    "run", "Compute the response in every environment of a scenario, and compare them.", motion=None, deforms=False
+)
 def run(
     case: AnyCase, motion: str | None = None, at: float | None = None, needs: Needs = Needs()
 ) -> Study | SystemStudy:
@@ -248,9 +260,9 @@ def critical_speed(
     return replace(stability.critical_speed(structure, turning=turning, name=name, **options), motion=name)
 
 
-@question("plan", "Plan the axis motions of a centrifuge within its limits; needs no beam.", motion=None)
+@question("plan", "Plan the axis motions of a centrifuge within its limits; needs no beam.", motion=None, deforms=False)
 def plan(
-    case: Case, motion: str | None = None, at: float | None = None, needs: Needs = Needs()
+    case: Case | SpecimenCase, motion: str | None = None, at: float | None = None, needs: Needs = Needs()
 ) -> tuple[MachinePlan, ...]:
     """Plans of all centrifuges, or one."""
     from gbeam.analysis.imitation.plan import plan
@@ -261,7 +273,7 @@ def plan(
     if not machines:
         raise InputError("motion", "has no centrifuge to plan", "add a motion of kind centrifuge")
     return tuple(
-        plan(name, prepared(case, name), case.tracks[name], beam=case.beam, **judging(case.accept.get(name, {})))
+        plan(name, prepared(case, name), case.tracks[name], **case.extent, **judging(case.accept.get(name, {})))
         for name in machines
     )
 

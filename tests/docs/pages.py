@@ -120,6 +120,9 @@ class Reader:
             loads(text, where, folder=self.folder, distributions=True)
         else:
             part = tomllib.loads(text)
+            if {"bodies", "motion", "response"} <= part.keys():  # a whole scenario
+                loads(text, where, folder=ROOT / "examples")
+                return
             example = "pointing_satellite" if part.keys() & OF_SYSTEMS else "f16_8g_turn"
             base = tomllib.loads((ROOT / "examples" / f"{example}.toml").read_text(encoding="utf-8"))
             loads(json.dumps(_merged(base, part)), where, folder=ROOT / "examples")

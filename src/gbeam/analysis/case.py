@@ -1,5 +1,5 @@
-"""Cases: one beam in one model, or a system of bodies, the environments it is put into, and how its response is
-computed.
+"""Cases: one beam in one model, another specimen, or a system of bodies, the environments it is put into, and how its
+response is computed.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ from gbeam.results.description import (
     Description,
     ForceOfSystem,
     JointOfSystem,
+    SpecimenDescription,
     SystemDescription,
 )
 from gbeam.results.provenance import Provenance
@@ -37,7 +38,7 @@ from gbeam.structure.beam import Beam
 
 if TYPE_CHECKING:
     from gbeam.scenario.schema.scenario import Scenario
-    from gbeam.scenario.schema.system import SystemScenario
+    from gbeam.scenario.schema.system import SpecimenScenario, SystemScenario
 
 
 @typed
@@ -120,6 +121,11 @@ class Case(Value):
     def environments(self) -> Mapping[str, Motion]:
         """Motions of the base, by name."""
         return self.motions
+
+    @property
+    def extent(self) -> dict[str, Any]:
+        """Argument of :func:`gbeam.plan` that says where the specimen is."""
+        return {"beam": self.beam}
 
     def one_beam(self, where: str, what: str) -> Case:
         """Return the case.
@@ -224,26 +230,129 @@ class SystemCase(Value):
         raise InputError(where, f"make a system, and {what} is of one beam", fix)
 
 
-AnyCase = Case | SystemCase
+@typed
+@dataclass(frozen=True, eq=False)
+class SpecimenCase(Value):
+    """Objects that a scenario of one specimen that is no beam describes: a solid, matrices, or a rigid box.
+
+    Parameters
+    ----------
+    title : str
+    name : str
+        Of the specimen.
+    structure : Structure
+    motions : mapping of str to motion
+        By name, in the scenario's order.
+    response : ResponseSettings
+    tracks : mapping of str to str
+        Name of the flight that each centrifuge tracks.
+    accept : mapping of str to mapping
+        As of a :class:`Case`.
+    provenance : Provenance, optional
+        Of the scenario; results of the whole case have it.
+
+    Attributes
+    ----------
+    scenario : SpecimenScenario or None
+        The scenario that the case was read from; None of one that is made, or changed, in Python.
+
+    Raises
+    ------
+    InputError
+        If a motion is a hub that turns freely, and the specimen is rigid.
+
+    Examples
+    --------
+    >>> case = gb.read_scenario("examples/bracket.toml")
+    >>> case.name, case.structure
+    ('bracket', Structure(solid, 19 coordinates, 0.251 kg))
+    """
+
+    title: str
+    name: str
+    structure: Structure
+    motions: Mapping[str, Motion]
+    response: ResponseSettings
+    tracks: Mapping[str, str] = field(default_factory=dict)
+    accept: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    provenance: Provenance | None = None
+    scenario: SpecimenScenario | None = field(default=None, init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        for name, motion in self.motions.items():
+            if motion.free and not self.structure.size:
+                fix = "give the hub a rate: the motion of a rigid specimen follows from it alone"
+                raise InputError(f"motion.{name}", "is a hub that turns freely, and carries a rigid specimen", fix)
+
+    def __repr__(self) -> str:
+        motions = ", ".join(f"{name}: {motion.kind}" for name, motion in self.motions.items())
+        return f"SpecimenCase({self.title!r}, {self.structure!r}, {{{motions}}}, {self.response.duration:g} s)"
+
+    def assemble(self, stations: ArrayLike | None = None) -> Structure:
+        """Return the structure; its stations are its points.
+
+        Parameters
+        ----------
+        stations : ignored
+            Of beams.
+        """
+        return self.structure
+
+    @property
+    def automatic(self) -> bool:
+        """Whether the numbers of shapes are chosen by the errors: never."""
+        return False
+
+    @property
+    def environments(self) -> Mapping[str, Motion]:
+        """Motions of the base, by name."""
+        return self.motions
+
+    @property
+    def extent(self) -> dict[str, Any]:
+        """Argument of :func:`gbeam.plan` that says where the specimen is; of bare matrices, which do not, none."""
+        recovery = self.structure.recovery
+        return {} if recovery is None else {"envelope": recovery.envelope}
+
+    def one_beam(self, where: str, what: str) -> Case:
+        """Refuse what is of one beam.
+
+        Parameters
+        ----------
+        where, what : str
+            The place of the error, and the answer that is refused.
+
+        Raises
+        ------
+        InputError
+            Always.
+        """
+        fix = "ask for run, static, modes, plan, place or linearize, or sweep these; or give a [beam]"
+        raise InputError(f"{where}.{self.name}", f"is no beam, and {what} is of one beam", fix)
+
+
+AnyCase = Case | SpecimenCase | SystemCase
 MODES = 6  # natural frequencies at most
 
 
 @overload
 def describe(case: Case) -> Description: ...
 @overload
+def describe(case: SpecimenCase) -> SpecimenDescription: ...
+@overload
 def describe(case: SystemCase) -> SystemDescription: ...
 @typed
-def describe(case: Case | SystemCase) -> Description | SystemDescription:
+def describe(case: Case | SpecimenCase | SystemCase) -> Description | SpecimenDescription | SystemDescription:
     """Describe a case: the beam's mass, its frequencies at rest, or bodies and joints; motions, records, and settings.
 
     Parameters
     ----------
-    case : Case or SystemCase
+    case : Case, SpecimenCase or SystemCase
         From :func:`gbeam.read_scenario`, or made by hand.
 
     Returns
     -------
-    Description or SystemDescription
+    Description, SpecimenDescription or SystemDescription
 
     Raises
     ------
@@ -270,9 +379,22 @@ def describe(case: Case | SystemCase) -> Description | SystemDescription:
             gravity=None if system.gravity is None else tuple(map(float, system.gravity)),  # type: ignore[arg-type]
             **_described(case, doubts),
         )
-    structure, beam, settings = case.assemble(), case.beam, case.response
+    structure, settings = case.assemble(), case.response
     span = settings.start, settings.start + settings.duration
     doubts = [input_warnings(structure, motion, name=name, span=span) for name, motion in case.motions.items()]
+    if isinstance(case, SpecimenCase):
+        total, *moment = (float(each) for each in structure.coefficients.rigid[:4])
+        return SpecimenDescription(
+            name=case.name,
+            kind=structure.kind,
+            mass=total,
+            centre=np.array(moment) / total,
+            coordinates=structure.size,
+            points=structure.points,
+            frequency=np.asarray(structure.rest[0])[:MODES] / (2 * np.pi) if structure.size else np.empty(0),
+            **_described(case, doubts),
+        )
+    beam = case.beam
     frequencies, modes = structure.rest
     # Which group of coordinates moves most says along which axis a mode bends.
     groups = np.repeat(FAMILIES, structure.counts)

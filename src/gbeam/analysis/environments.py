@@ -7,7 +7,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any, overload
 
-from gbeam.analysis.case import AnyCase, Case, SystemCase
+from gbeam.analysis.case import AnyCase, Case, SpecimenCase, SystemCase
 from gbeam.analysis.imitation.comparison import compare
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
@@ -23,16 +23,16 @@ ENOUGH = 1e-3  # error from too few shapes, at most, where their numbers are aut
 
 
 @overload
-def study(case: Case, progress: Progress = None) -> Study: ...
+def study(case: Case | SpecimenCase, progress: Progress = None) -> Study: ...
 @overload
 def study(case: SystemCase, progress: Progress = None) -> SystemStudy: ...
 @typed
-def study(case: Case | SystemCase, progress: Progress = None) -> Study | SystemStudy:
+def study(case: Case | SpecimenCase | SystemCase, progress: Progress = None) -> Study | SystemStudy:
     """Compute the response in every environment of a case and compare each centrifuge with its flight.
 
     Parameters
     ----------
-    case : Case or SystemCase
+    case : Case, SpecimenCase or SystemCase
         From :func:`gbeam.read_scenario`, or made by hand.
     progress : callable or bool, optional
         Called with what is being done and the fraction of it done; True shows a bar.
@@ -40,7 +40,7 @@ def study(case: Case | SystemCase, progress: Progress = None) -> Study | SystemS
     Returns
     -------
     Study or SystemStudy
-        Of a beam, or of a system, whose responses are not compared.
+        Of a beam or another specimen, or of a system, whose responses are not compared.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def study(case: Case | SystemCase, progress: Progress = None) -> Study | SystemS
         fix = "give it, or leave response.estimate out"
         raise InputError("model.modes", "is left out, and estimate = false leaves nothing to choose it by", fix)
     responses, failures = _answers(case, progress)
-    while case.automatic and _lacks_shapes(responses, case.response):
+    while isinstance(case, Case) and case.automatic and _lacks_shapes(responses, case.response):
         richer = case.model.richer()
         if richer is None:
             break
@@ -73,7 +73,7 @@ def study(case: Case | SystemCase, progress: Progress = None) -> Study | SystemS
 
 
 def study_of(
-    case: Case, responses: Mapping[str, Response], failures: Mapping[str, Failure] = MappingProxyType({})
+    case: Case | SpecimenCase, responses: Mapping[str, Response], failures: Mapping[str, Failure] = MappingProxyType({})
 ) -> Study:
     """The study of responses that are computed: those of a centrifuge and its flight are compared."""
     _refuse_none(responses, failures)

@@ -81,8 +81,10 @@ def read(verb: str, file: Path, overrides: Sequence[str]) -> Input:
         scenario = load(file, overrides, distributions=verb == "check")
         case = build(scenario, ahead=verb in _MOVING)
     given = Input(scenario, replace(case, provenance=provenance(scenario, command())))
-    if verb not in _ANY and not (verb in QUESTIONS and QUESTIONS[verb].of_systems):
-        with given.placing():
+    with given.placing():
+        if verb in QUESTIONS:
+            QUESTIONS[verb].refuse(case)
+        elif verb not in _ANY:
             case.one_beam("bodies", f"gbeam {verb}")
     return given
 

@@ -151,6 +151,10 @@ def _of_response(result: Response, title: str, flight: Response | None = None) -
         every |= _of_machine(result, result.axes, title, flight)
     if result.hub is not None:
         every["hub"] = partial(response.hub, result, result.hub, title)
+    if result.solid is not None:
+        every["stress"] = partial(solids.stress, result.solid, title)
+    if result.specimen is not None:
+        every["specimen"] = partial(solids.specimen, result.specimen, title)
     return every
 
 

@@ -51,6 +51,8 @@ def through(
     """Integrate by given steps; the result has the ends of those that are kept."""
     run = _linear if isinstance(equations, LinearEquations) else _nonlinear
     time = np.append(steps.begin[:1], steps.end[steps.kept])
+    if not np.size(q):
+        return Trajectory(time, *np.zeros((3, len(time), 0)))
     pieces: list[tuple[Any, ...]] = []
     converged, stopped, done = True, False, 0
     for *piece, solved in run(equations, scheme, q, qd, steps):  # type: ignore[arg-type]

@@ -31,7 +31,7 @@ def input_warnings(
     if structure.traced or holds_jax(motion):
         return ()
     where = f"motion.{name}" if name else "motion"
-    warnings = [*structure.warnings, *_frequency(structure)]
+    warnings = [*structure.warnings, *(_frequency(structure) if structure.size else ())]
     if motion is not None:
         warnings += implausible_values(motion, where, span, base)
         if base is None and motion.kind != "centrifuge" and not motion.free:

@@ -21,6 +21,8 @@ from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.mechanics.fields.components import cross, joined, split
 from gbeam.mechanics.fields.rotation import skew
 from gbeam.mechanics.structure import Sections, Structure
+from gbeam.mechanics.tree.bodies import LinearBody, PolynomialPoints
+from gbeam.mechanics.tree.frames import Frame
 from gbeam.motion.bases.base import Base, mapped
 from gbeam.motion.protocol import Motion
 from gbeam.results.parts import Loads
@@ -54,12 +56,12 @@ def section_forces(
     *,
     motion: Motion | None = None,
     hung: Hung | None = None,
-) -> Loads | None:
-    """Loads at the root and the stations for motions of base (t, 3) and beam (t, n), with other bodies `hung` on it;
-    None where the structure has no sections.
+) -> Loads:
+    """Loads at the root and the stations for motions of base (t, 3) and beam (t, n), with other bodies `hung` on it; of
+    a structure without sections at the root and the tip.
     """
     if structure.sections is None:
-        return None
+        return about_the_hub(_of_ends(structure, base, q, qd, qdd, time), motion, base.alpha_WB_B)
     xp = namespace(q, base.a_WO_B)
     applied = None if structure.history is None else structure.history(time)
     pieces = []
@@ -92,6 +94,31 @@ def section_forces(
         fatigue_exponent=section_data.fatigue_exponent,
     )
     return about_the_hub(loads, motion, base.alpha_WB_B)
+
+
+def _of_ends(structure: Structure, base: BaseMotion, q: Array, qd: Array, qdd: Array, time: Array) -> Loads:
+    """Loads, without stress, at the root of a structure of constant coefficients, and at its tip, which carries nothing
+    outboard.
+    """
+    xp = namespace(q, base.a_WO_B)
+    applied = None if structure.history is None else structure.history(time)
+    root = Frame(None, None, None, base.w_WB_B, base.a_WO_B, base.alpha_WB_B)
+    places = structure.station_places[-1:]
+    points = PolynomialPoints(places.r0, places.first, places.second, 0 * places.first, 0 * places.second)
+    _, wrench = LinearBody(structure.coefficients, points).demanded(q, qd, qdd, root, applied)
+    force, moment = (xp.stack([-each, 0 * each], axis=1) for each in (wrench.force, wrench.moment))
+    tip = absolute_accelerations(xp, mapped(base, lambda each: each), *structure.output[-1:].paths(q, qd, qdd))
+    unknown = xp.full(force.shape[:2], np.nan)
+    return Loads(
+        stations=np.append(0.0, structure.stations[-1:]),
+        force=force,
+        moment=moment,
+        section_force=force,
+        section_moment=moment,
+        stress_tension=unknown,
+        stress_compression=unknown,
+        acceleration=xp.concatenate([base.a_WO_B[:, None], tip], axis=1),
+    )
 
 
 def _equivalent(of: Sections, force: Array, moment: Array) -> Array:

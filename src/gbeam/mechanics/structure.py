@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -48,6 +48,19 @@ class Sections:
     stresses: Array | None = None
     yield_strength: Any = None
     fatigue_exponent: Any = np.nan
+
+
+class Recovery(Protocol):
+    """Results of a specimen beside its coordinates, such as the stress of a solid."""
+
+    @property
+    def envelope(self) -> Array:
+        """Corners (c, 3) of its convex hull at rest, from the root, m: its load is largest at one of them."""
+        ...
+
+    def parts(self, time: Array, base: Any, q: Array, *, motion: str, model: str, environment: str) -> dict[str, Any]:
+        """Fields of a response, by name, from its times (t,), base motion (t, 3) and coordinates (t, n)."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,6 +121,8 @@ class Structure:
         Rotations of the stations of a structure of particles per coordinate, rad; not a number where unknown.
     unstiffened : bool
         Whether the stress of loads is left out of the stiffness of a structure of particles.
+    recovery : Recovery or None
+        What responses of a solid or a rigid specimen have besides.
 
     Examples
     --------
@@ -141,6 +156,7 @@ class Structure:
     points: tuple[str, ...] = static(default=())
     turns: Array | None = None
     unstiffened: bool = static(default=False)
+    recovery: Recovery | None = static(default=None)
 
     def __repr__(self) -> str:
         shapes = ", ".join(f"{n} {way}" for n, way in zip(self.counts, FAMILIES, strict=True) if n)

@@ -105,7 +105,8 @@ def quintic_hermite(time: Floats, q: Floats, qd: Floats, qdd: Floats, at: Indice
 
     `time` (t,), `q`, `qd`, `qdd` (t, n), `at` (u,); returns `time` (u, p), `q` (u, p, n).
     """
-    history, within = np.stack([q, qd, qdd], axis=-2).reshape(-1, 3, q.shape[-1]), at % len(time)
+    count, within = int(np.prod(q.shape[:-1])), at % len(time)
+    history = np.stack([q, qd, qdd], axis=-2).reshape(count, 3, q.shape[-1])
 
     def step(shift: int) -> Floats:
         j = within + shift

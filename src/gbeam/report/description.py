@@ -7,7 +7,14 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from gbeam.constants import STANDARD_GRAVITY
-from gbeam.results.description import Described, Description, RecordSummary, SystemDescription, Vector
+from gbeam.results.description import (
+    Described,
+    Description,
+    RecordSummary,
+    SpecimenDescription,
+    SystemDescription,
+    Vector,
+)
 from gbeam.results.result import part_words
 
 
@@ -32,6 +39,8 @@ def text(case: Described) -> str:
 def _structure(case: Described) -> list[str]:
     if isinstance(case, SystemDescription):
         return _system(case)
+    if isinstance(case, SpecimenDescription):
+        return _specimen(case)
     assert isinstance(case, Description)
     return _beam(case)
 
@@ -49,6 +58,16 @@ def _beam(case: Description) -> list[str]:
         f"  model     {case.model}, coordinates: {counts}",
         f"  modes     at rest, Hz: {modes}",
     ]
+
+
+def _specimen(case: SpecimenDescription) -> list[str]:
+    centre = ", ".join(f"{1e3 * each:.4g}" for each in case.centre)
+    lines = [f"  {case.name:<9} {case.kind}, {case.mass:.4g} kg, centre of mass at ({centre}) mm"]
+    if case.coordinates:
+        modes = ", ".join(f"{each:.4g}" for each in case.frequency)
+        lines.append(f"  {'':<9} {case.coordinates} coordinates; points {', '.join(case.points)}")
+        lines.append(f"  modes     at rest, Hz: {modes}")
+    return lines
 
 
 def _system(case: SystemDescription) -> list[str]:

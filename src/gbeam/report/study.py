@@ -22,11 +22,16 @@ SHORTFALLS = 2
 
 def of_beam(response: Response) -> Iterator[str]:
     """Sentences on accuracy, beginning, root loads, hub, and the samples that a file keeps."""
-    yield _accuracy(response)
-    if response.initial:
-        yield response.initial
-    if response.loads is not None and response.peaks.loads is not None:
+    rigid = response.specimen is not None
+    if not rigid:
+        yield _accuracy(response)
+        if response.initial:
+            yield response.initial
+    if response.loads is not None and response.peaks.loads is not None and not rigid:
         yield largest_loads(response.peaks.loads)
+    for part in (response.solid, response.specimen):
+        if part is not None:
+            yield from part.lines
     if response.hub is not None:
         yield _hub(response.hub)
         if response.hub.free and np.any(response.damping_ratio):
@@ -94,7 +99,7 @@ def comparison_lines(comparison: Comparison) -> Iterator[str]:
     main = comparison.main_axis
     yield from judged_lines(comparison)
     yield from peak_lines(comparison.peaks)
-    if comparison.covered.any():
+    if comparison.covered.any() and np.isfinite(comparison.relative).any():
         root = "" if comparison.root is None else f", root moment by up to {share_of(comparison.root.moment_agreement)}"
         yield (
             f"while the target is the flight's load: tip differs along {'xyz'[main]} by up to "

@@ -54,7 +54,8 @@ def _response(response: Response, elsewhere: Sequence[str] = ()) -> Iterator[Ren
     yield _heading(response.name, kind, response.outcome)
     if response.message:
         yield _indented(Text(sentence(response.message), style="red"))
-    yield _indented(_tip(response))
+    if response.specimen is None:
+        yield _indented(_tip(response))
     yield from (_indented(Text(line)) for line in of_beam(response))
     if response.axes is not None:
         yield _indented(limits_table(response.axes.limits))

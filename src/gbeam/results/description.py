@@ -112,6 +112,21 @@ class Description(Described):
         return self.mass + sum(mass for _, mass in self.bodies)
 
 
+@dataclass(frozen=True, repr=False, eq=False, kw_only=True)
+class SpecimenDescription(Described):
+    """Meaning of a case of a specimen that is no beam."""
+
+    json_rows: ClassVar[dict[str, str]] = {"mode": "modes"}
+
+    name: str = fact("name of the specimen", key="specimen.name")
+    kind: str = fact("solid, matrices or rigid", key="specimen.kind")
+    mass: float = fact("mass of the specimen", "kg", key="specimen.mass")
+    centre: Floats = entry("m", "centre of mass from the root, undeformed", "axis", key="specimen.centre")
+    coordinates: int = fact("number of its coordinates: none of a rigid specimen", key="specimen.coordinates")
+    points: tuple[str, ...] = fact("names of its points", key="specimen.points")
+    frequency: Floats = entry("Hz", "lowest natural frequencies on a base at rest", "mode")
+
+
 @dataclass(frozen=True, repr=False, eq=False)
 class BodyOfSystem(Part):
     """A body of a system."""

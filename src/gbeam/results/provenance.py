@@ -18,14 +18,19 @@ from gbeam.results.result import Part
 
 @dataclass(frozen=True)
 class RecordFile(Part):
-    """A flight's record, or the file of another table, as it was read."""
+    """A flight's record, or another file that a scenario names, as it was read."""
 
-    motion: str = fact("name of the flight, or the table's place")
+    motion: str = fact("name of the flight, or the path of the key that names another file")
     file: str = fact("path as the scenario and its folder make it")
     sha256: str = fact("hash of its bytes")
     content: bytes | None = fact(
         "all its bytes, where they are few enough to go with the result", key=None, default=None, repr=False
     )
+
+    @property
+    def path(self) -> str:
+        """Path of the key that names the file in the scenario."""
+        return self.motion if "." in self.motion else f"motion.{self.motion}.record.file"
 
 
 @dataclass(frozen=True)
@@ -59,7 +64,7 @@ class Provenance(Part):
         key="scenario_sha256",
         default="",
     )
-    records: tuple[RecordFile, ...] = rows("records of flights", "record", default=())
+    records: tuple[RecordFile, ...] = rows("records of flights, and other files of the scenario", "record", default=())
     command: str = fact("the command line; empty where gbeam was called from Python", default="")
     environment: Environment | None = part("versions and platform; None: the present ones", key=INSIDE, default=None)
     date: str = fact(

@@ -16,6 +16,7 @@ from gbeam.results.errors import Errors
 from gbeam.results.machine import AxesResult, Driven
 from gbeam.results.parts import Influence, Loads, Outline, Peaks, VectorPeaks
 from gbeam.results.result import Figured, Floats, Part, brief
+from gbeam.results.solids import SolidStress, SpecimenLoads
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -203,6 +204,19 @@ class Response(Driven, Figured):
         default=(),
     )
     kept_every: int = fact("how many samples of the histories make one in a file", name=None, key=None, default=1)
+    envelope: Floats = quantity(
+        "m",
+        "corners of the convex hull of a solid or rigid specimen, undeformed, from the root",
+        "corner",
+        "axis",
+        name=None,
+        key=None,
+        default_factory=lambda: np.empty((0, 3)),
+    )
+    solid: SolidStress | None = part("stress of a solid", name="solid_", key="solid", optional=True, default=None)
+    specimen: SpecimenLoads | None = part(
+        "loads of a rigid specimen", name="specimen_", key="specimen", optional=True, default=None
+    )
 
     @declared("s", "time of the part of the flight", "ends", name=None, key="span", optional=True)
     def part_span(self) -> tuple[float, float] | None:

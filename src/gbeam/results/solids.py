@@ -77,17 +77,20 @@ class SolidStress(Figured):
     def point_time_of_max(self) -> Floats:
         return self.time[self.point_von_mises.argmax(axis=0)]
 
-    def __repr__(self) -> str:
-        of = f" {self.motion!r}" if self.motion else ""
-        return self._with_warnings(f"SolidStress{of} ({self.model}): {said(self.worst)}", *self._margin())
-
-    def _margin(self) -> list[str]:
+    @property
+    def lines(self) -> tuple[str, str]:
+        """The largest stress and the least margin in words."""
         if self.nearest_yield is None:
-            return ["margin on yield not known: no material has a yield_strength"]
+            return said(self.worst), "margin on yield not known: no material has a yield_strength"
         margin = self.nearest_yield.margin
         assert margin is not None
         words = "margin on yield" if margin >= 0 else "ABOVE YIELD: margin"
-        return [f"{words} {margin:.3g} in {self.nearest_yield.material or 'the material'}: {said(self.nearest_yield)}"]
+        material = self.nearest_yield.material or "the material"
+        return said(self.worst), f"{words} {margin:.3g} in {material}: {said(self.nearest_yield)}"
+
+    def __repr__(self) -> str:
+        of, (worst, margin) = f" {self.motion!r}" if self.motion else "", self.lines
+        return self._with_warnings(f"SolidStress{of} ({self.model}): {worst}", margin)
 
 
 def said(stress: StressAt) -> str:
@@ -141,6 +144,20 @@ class SpecimenLoads(Figured):
     )  # fmt: skip
     bolt_axis: Floats = quantity("", "direction of the bolts", "axis", key=None, optional=True,
                                  default_factory=lambda: np.empty(0))  # fmt: skip
+    spread_limit: float | None = fact("largest spread that is accepted", optional=True, default=None)
+
+    @declared("", "whether the spread is within its limit", role="fact", name=None, optional=True)
+    def within_limit(self) -> bool | None:
+        """Whether the spread is within its limit; None without one."""
+        return None if self.spread_limit is None else bool(self.spread_max <= self.spread_limit)
+
+    @property
+    def refusal(self) -> str:
+        """The limit that is not kept, in words; empty where it is, or there is none."""
+        if self.within_limit is not False:
+            return ""
+        assert self.spread_limit is not None
+        return f"spread {100 * self.spread_max:.3g} % over the specimen (limit {100 * self.spread_limit:.3g} %)"
 
     @declared("m/s^2", "largest size of the acceleration at the corner", "corner", name=None, key="max_abs")
     def corner_max(self) -> Floats:
@@ -193,16 +210,23 @@ class SpecimenLoads(Figured):
     def bolt_shear(self) -> Floats:
         return self.shear.max(axis=0)
 
-    def __repr__(self) -> str:
-        of, worst = f" {self.motion!r}" if self.motion else "", self.largest
+    @property
+    def lines(self) -> list[str]:
+        """The largest loads in words."""
+        worst = self.largest
         x, y, z = (1e3 * float(each) for each in worst.place)
+        limit = "" if self.spread_limit is None else f" (limit {100 * self.spread_limit:.3g} %)"
         lines = [
-            f"SpecimenLoads{of} ({self.environment}): up to {worst.g:.4g} g at ({x:.4g}, {y:.4g}, {z:.4g}) mm, at "
-            f"{worst.time:.4g} s; spread over the specimen {100 * self.spread_max:.3g} %",
+            f"up to {worst.g:.4g} g at ({x:.4g}, {y:.4g}, {z:.4g}) mm, at {worst.time:.4g} s; spread over the specimen "
+            f"{100 * self.spread_max:.3g} %{limit}",
             f"on the fixture up to {self.force_max:.4g} N and {self.moment_max:.4g} N m",
         ]
         if len(self.bolts):
             lines.append(
                 f"bolts: tension up to {self.bolt_tension.max():.4g} N, shear up to {self.bolt_shear.max():.4g} N"
             )
-        return self._with_warnings(*lines)
+        return lines
+
+    def __repr__(self) -> str:
+        of, (first, *others) = f" {self.motion!r}" if self.motion else "", self.lines
+        return self._with_warnings(f"SpecimenLoads{of} ({self.environment}): {first}", *others)

@@ -12,7 +12,7 @@ import numpy as np
 
 from gbeam.results.declared import declared, fact, quantity, rows
 from gbeam.results.imitation.comparison import Comparison
-from gbeam.results.imitation.criteria import state_of
+from gbeam.results.imitation.criteria import NOT_ACCEPTED, state_of
 from gbeam.results.response import Response
 from gbeam.results.result import Figured, Floats, Part
 from gbeam.results.system import SystemResponse
@@ -37,6 +37,11 @@ class Answers(Figured):
     @property
     def exceeding(self) -> Mapping[str, str]:
         """Limits of machines that are exceeded, by the motion's name; none where no machine has limits."""
+        return {}
+
+    @property
+    def not_accepted(self) -> Mapping[str, str]:
+        """Limits of acceptance that are not kept, by the motion's name; none where nothing is judged."""
         return {}
 
     @property
@@ -83,12 +88,21 @@ class Study(Answers):
     @property
     def refusals(self) -> Mapping[str, str]:
         """Limits of acceptance that are not kept and limits of machines that are exceeded, by the motion's name."""
-        kept = {each.centrifuge: each.refusal for each in self.comparisons if each.refusal}
-        return kept or self.exceeding
+        return self.not_accepted or self.exceeding
+
+    @property
+    def not_accepted(self) -> Mapping[str, str]:
+        """Limits of acceptance that are not kept, of imitations and of rigid specimens, by the motion's name."""
+        words = {name: each.specimen.refusal for name, each in self.responses.items() if each.specimen is not None}
+        for each in self.comparisons:
+            words[each.centrifuge] = ", ".join(filter(None, (each.refusal, words.get(each.centrifuge, ""))))
+        return {name: each for name, each in words.items() if each}
 
     @declared("", "the outcome, with what limits make of it", role="fact")
     def state(self) -> str:
         exceeded = any(each.axes is not None and not each.axes.within_limits for each in self.responses.values())
+        if self.outcome == "done" and self.not_accepted:
+            return NOT_ACCEPTED
         return state_of(self.outcome, self.comparisons, exceeded=exceeded)
 
     def __repr__(self) -> str:

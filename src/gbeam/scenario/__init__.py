@@ -5,7 +5,7 @@ explain and placing put every error at its line; template is for those who write
 """
 
 from gbeam.guards.units import UnitError, argument, quantity
-from gbeam.scenario.build import build, build_machines, build_specimen, read_scenario
+from gbeam.scenario.build import build, build_extent, build_machines, read_scenario
 from gbeam.scenario.load import load, load_environments, loads
 from gbeam.scenario.origin import placed, provenance
 from gbeam.scenario.schema import Environments, Scenario
@@ -20,8 +20,8 @@ __all__ = [
     "UnitError",
     "argument",
     "build",
+    "build_extent",
     "build_machines",
-    "build_specimen",
     "json_schema",
     "load",
     "load_environments",

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from gbeam.motion import Centrifuge, Motion
     from gbeam.results.description import RecordSummary
     from gbeam.scenario.load import AnyScenario
-    from gbeam.structure.beam import Beam
 
 
 @typed
@@ -36,8 +35,8 @@ def read_scenario(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -
 
     Returns
     -------
-    Case or SystemCase
-        Beam and model, or a system of bodies; motions by name and response settings; SI.
+    Case, SpecimenCase or SystemCase
+        Beam and model, another specimen, or a system of bodies; motions by name and response settings; SI.
 
     Raises
     ------
@@ -55,12 +54,12 @@ def read_scenario(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -
 
 def build(scenario: AnyScenario, *, ahead: bool = False) -> AnyCase:
     """Make the objects of a scenario."""
-    from gbeam.analysis.case import Case, SystemCase
+    from gbeam.analysis.case import Case, SpecimenCase, SystemCase
     from gbeam.scenario.build_motion import centrifuges, flights_and_hubs
 
     parts = Collector()
     make: Callable[..., AnyCase] = Case
-    of_beam = isinstance(scenario, schema.Scenario)
+    of_system = False
     if isinstance(scenario, schema.Scenario):
         structure: dict[str, Any] = {
             "beam": beam_of(parts, "beam", scenario.beam),
@@ -68,16 +67,20 @@ def build(scenario: AnyScenario, *, ahead: bool = False) -> AnyCase:
             "stations": scenario.response.stations or (),
         }
     else:
-        from gbeam.scenario.build_system import system_of
+        from gbeam.scenario.build_system import specimen_of, system_of
+        from gbeam.scenario.schema.system import SpecimenScenario
 
-        make, structure = SystemCase, {"system": system_of(parts, scenario)}
+        if isinstance(scenario, SpecimenScenario):
+            make, structure = SpecimenCase, {"name": scenario.specimen[0], "structure": specimen_of(parts, scenario)}
+        else:
+            of_system, make, structure = True, SystemCase, {"system": system_of(parts, scenario)}
     motions = flights_and_hubs(parts, scenario)
-    response = _response(parts, scenario.response, motions, usual="newmark" if of_beam else "gauss")
+    response = _response(parts, scenario.response, motions, usual="gauss" if of_system else "newmark")
     if response is not None:
         span = (response.start, response.start + response.duration)
         motions |= centrifuges(parts, scenario, motions, span, ahead=ahead)
     accept = _acceptance(parts, scenario)
-    if of_beam:
+    if not of_system:
         structure["accept"] = accept
     if parts.errors or None in structure.values() or response is None:
         raise placed(scenario, parts.errors)
@@ -126,15 +129,22 @@ def build_machines(scenario: schema.Environments) -> dict[str, Centrifuge]:
     return {name: machine for name in scenario.motion if isinstance(machine := motions[name], Centrifuge)}
 
 
-def build_specimen(scenario: schema.Environments) -> Beam | None:
-    """Make the beam of a scenario alone; None where it has none."""
-    if not isinstance(scenario, schema.Scenario):
-        return None
+def build_extent(scenario: schema.Environments) -> dict[str, Any]:
+    """Where the specimen of a scenario is, as an argument of :func:`gbeam.plan`; none where it has none."""
+    if type(scenario) is schema.Environments:
+        return {}
     parts = Collector()
-    beam = beam_of(parts, "beam", scenario.beam)
+    if isinstance(scenario, schema.Scenario):
+        extent = {"beam": beam_of(parts, "beam", scenario.beam)}
+    else:
+        from gbeam.scenario.build_system import specimen_of
+
+        structure = specimen_of(parts, scenario)  # type: ignore[arg-type]
+        recovery = None if structure is None else structure.recovery
+        extent = {} if recovery is None else {"envelope": recovery.envelope}
     if parts.errors:
         raise placed(scenario, parts.errors)
-    return beam
+    return extent
 
 
 def _acceptance(parts: Collector, scenario: schema.Environments) -> dict[str, dict[str, Any]]:

@@ -13,11 +13,12 @@ from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.control import Feedback
 from gbeam.mechanics.tree.joints import Joint
 from gbeam.mechanics.tree.laws import gains, in_series, lead_lag, notch, pid
-from gbeam.mechanics.tree.system import Place, PointForce, RigidBody, System
+from gbeam.mechanics.tree.system import PointForce, System
 from gbeam.scenario.build_beam import beam_of, model_of
 from gbeam.scenario.build_motion import components, profile_of
+from gbeam.scenario.build_specimen import matrices_of, rigid_body_of, rigid_of, solid_of
 from gbeam.scenario.origin import Collector
-from gbeam.scenario.schema import control
+from gbeam.scenario.schema import control, specimen
 from gbeam.scenario.schema import system as schema
 from gbeam.scenario.schema.profile import Smoothed
 
@@ -34,17 +35,25 @@ def system_of(parts: Collector, scenario: schema.SystemScenario) -> System | Non
     return parts.attempt("", System, bodies, joints, forces, scenario.system.gravity, controllers)
 
 
-def _rigid(parts: Collector, where: str, table: schema.RigidBody) -> RigidBody | None:
-    points = {name: Place(each.at, each.turn) for name, each in table.points.items()}
-    return parts.attempt(where, RigidBody, table.mass, table.inertia, table.centre, points)
-
-
 def _beam(parts: Collector, where: str, table: schema.BeamBody) -> Structure | None:
     beam, model = beam_of(parts, where, table), model_of(parts, f"{where}.model", table.model)
     return None if beam is None or model is None else parts.attempt(where, assemble, beam, model, table.stations)
 
 
-_BODIES: dict[type, Any] = {schema.RigidBody: _rigid, schema.BeamBody: _beam}
+_BODIES: dict[type, Any] = {
+    schema.RigidBody: rigid_body_of,
+    schema.BeamBody: _beam,
+    specimen.SolidBody: solid_of,
+    specimen.MatricesBody: matrices_of,
+}
+_ALONE = _BODIES | {schema.RigidBody: rigid_of}  # as a specimen on the base
+
+
+def specimen_of(parts: Collector, scenario: schema.SpecimenScenario) -> Structure | None:
+    """The specimen of a scenario; None, with what is wrong collected, where it cannot be made."""
+    name, table = scenario.specimen
+    made: Structure | None = _ALONE[type(table)](parts, f"bodies.{name}", table)
+    return made
 
 
 def _joint(parts: Collector, where: str, table: Any) -> Joint | None:

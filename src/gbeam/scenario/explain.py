@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
+from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args, get_origin
+
+from pydantic import Discriminator, Tag
 
 from gbeam.guards.kinds import KINDS
 from gbeam.guards.units import spoken
@@ -72,7 +74,8 @@ def _words(source: Source, error: ErrorDetails, path: Path) -> tuple[str, str, M
         few = "at least" if what == "too_short" else "at most"
         return f"has {count} {'entry' if count == 1 else 'entries'}", f"give {few} {limit}", "value", path
     if what == "greater_than_equal":
-        return "{value} is negative", f"give {context['ge']} or more", "value", path
+        size = f"below {context['ge']}" if context["ge"] else "negative"
+        return f"{{value}} is {size}", f"give {context['ge']} or more", "value", path
     if what == "less_than_equal":
         return "{value} is more than is computed", f"give {context['le']} or less", "value", path
     if what in _NOT_A:
@@ -91,7 +94,7 @@ def _path(loc: tuple[int | str, ...], source: Source) -> Path:
         if step == "[key]":
             continue
         if isinstance(node, dict):
-            if untagged and step == _tag(path, node):
+            if untagged and step == _tag(_field(source, path), node):
                 untagged = False
                 continue
         elif step in ("one", "list"):
@@ -102,13 +105,11 @@ def _path(loc: tuple[int | str, ...], source: Source) -> Path:
     return path
 
 
-def _tag(path: Path, node: dict[str, Any]) -> object:
+def _tag(field: FieldInfo | None, node: dict[str, Any]) -> object:
     """Return the tag that pydantic puts into its places below the table `node`, if it is one of a union."""
-    if path[:1] in (("motion",), ("bodies",), ("joints",)) and len(path) == 2:
-        return node.get("kind")
-    if path[-1:] == ("section",):
-        return node.get("shape", "general")
-    return node.get("profile")
+    parts = [] if field is None else [*field.metadata, *_inside(field.annotation)]
+    told = next((each.discriminator for each in parts if isinstance(each, Discriminator)), "profile")
+    return told(node) if callable(told) else node.get(told)
 
 
 def _field(source: Source, path: Path) -> FieldInfo | None:
@@ -139,6 +140,9 @@ def _table(source: Source, path: Path) -> type[Table] | None:
     raw = source.raw(path)
     written = raw if isinstance(raw, dict) else {}
     tables = list(_tables(field.annotation if field else None))
+    tag_of = {tag: table for tag, table in _tagged(field.annotation if field else None)}
+    if (chosen := tag_of.get(str(_tag(field, written)))) is not None:
+        return chosen
     for table in tables:
         for tag in _TAGS:
             if tag in table.model_fields:
@@ -158,6 +162,15 @@ def _tables(annotation: Any) -> Iterator[type[Table]]:
     for part in _inside(annotation):
         if isinstance(part, type) and issubclass(part, Table):
             yield part
+
+
+def _tagged(annotation: Any) -> Iterator[tuple[str, type[Table]]]:
+    """Tables of a union by their tags."""
+    for part in _inside(annotation):
+        if get_origin(part) is Annotated:
+            table, *marks = get_args(part)
+            if isinstance(table, type) and issubclass(table, Table):
+                yield from ((each.tag, table) for each in marks if isinstance(each, Tag))
 
 
 def _literals(annotation: Any) -> Iterator[Any]:

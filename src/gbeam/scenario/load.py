@@ -20,9 +20,9 @@ from gbeam.scenario.text.source import Source, parse, read_text
 from gbeam.scenario.values import Distribution, find_distributions, from_table, path_text
 
 if TYPE_CHECKING:
-    from gbeam.scenario.schema.system import SystemScenario
+    from gbeam.scenario.schema.system import SpecimenScenario, SystemScenario
 
-    AnyScenario = Scenario | SystemScenario
+    AnyScenario = Scenario | SpecimenScenario | SystemScenario
 T = TypeVar("T", bound=Environments)
 
 

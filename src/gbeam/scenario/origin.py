@@ -39,14 +39,16 @@ def provenance(scenario: Environments, command: str = "") -> Provenance:
 
 
 def _files(scenario: Environments) -> Iterator[tuple[str, str]]:
-    """Files that a scenario reads: records by their motion's name, others by their table's place."""
+    """Files that a scenario reads: records by their motion's name, others by their keys' paths."""
     for name, motion in scenario.motion.items():
         if isinstance(motion, Flight) and motion.record is not None:
             yield name, motion.record.file
     for name, controller in getattr(scenario, "controllers", {}).items():
         for k, law in enumerate(controller.law):
             if getattr(law, "file", None) is not None:
-                yield f"controllers.{name}.law[{k}]", law.file
+                yield f"controllers.{name}.law[{k}].file", law.file
+    for name, body in getattr(scenario, "bodies", {}).items():
+        yield from ((f"bodies.{name}.{key}", file) for key, file in getattr(body, "files", ()))
 
 
 # A sweep's cases are of one text; `override` copies it.

@@ -27,7 +27,8 @@ expected. In a scenario for `gbeam sweep` a distribution may stand in place of a
 
 A scenario has one `[beam]` with its `[model]` and what its base does, `[motion.NAME]`; or `[bodies.NAME]` and the
 `[joints.NAME]` that make a system of them, whose ground rests where there is no motion:
-[systems of bodies](howto/systems.md).
+[systems of bodies](howto/systems.md). One `[bodies.NAME]` without joints is a specimen on the moving base in place of
+the beam: a [solid by its mesh, matrices, or a rigid box](howto/solid.md).
 
 | quantity | SI unit | for example |
 |---|---|---|

@@ -126,8 +126,7 @@ def records(origin: Provenance, folder: Path) -> Iterator[str]:
         if hashlib.sha256(content).hexdigest() != record.sha256:
             fix = "put back the one with the SHA-256 " + record.sha256
             raise InputError(record.file, "is another record than the one that was run", fix)
-        place = record.motion if "." in record.motion else f"motion.{record.motion}.record"
-        yield f"{place}.file={file}"
+        yield f"{record.path}={file}"
 
 
 def _facts(of: Stored) -> dict[str, Any]:

@@ -155,20 +155,22 @@ def _distribution_schema() -> dict[str, Any]:
 
 
 def json_schema(*, distributions: bool = True) -> str:
-    """Return the JSON schema of a scenario, of one beam or of a system: every field with description, quantity and SI
-    unit.
+    """Return the JSON schema of a scenario, of one beam, another specimen or a system: every field with description,
+    quantity and SI unit.
     """
     from pydantic.json_schema import models_json_schema
 
-    from gbeam.scenario.schema.system import SystemScenario
+    from gbeam.scenario.schema.system import SpecimenScenario, SystemScenario
 
-    kinds: tuple[type[Environments], ...] = (Scenario, SystemScenario)
+    kinds: tuple[type[Environments], ...] = (Scenario, SystemScenario, SpecimenScenario)
     _, schema = models_json_schema([(each, "validation") for each in kinds], title="Scenario")
     every = [schema["$defs"].pop(each.__name__) for each in kinds]
     schema |= {"type": "object", "additionalProperties": False, "description": "A scenario, in SI or with units."}
     schema["anyOf"] = [{"required": each["required"]} for each in every]
-    one, several = (each["properties"] for each in every)
-    schema["properties"] = one | {key: each for key, each in several.items() if key not in one}
+    properties: dict[str, Any] = {}
+    for each in every:
+        properties |= {key: of for key, of in each["properties"].items() if key not in properties}
+    schema["properties"] = properties
     if distributions:
         _allow_distributions(schema)
         schema["$defs"]["Distribution"] = _distribution_schema()

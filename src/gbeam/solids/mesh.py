@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -36,7 +36,7 @@ from gbeam.solids.elements import (
 )
 from gbeam.solids.foreign import elements_in, no_group, nodes_in, read_mesh, solid_blocks
 from gbeam.solids.interfaces import attached, refuse_names
-from gbeam.solids.stress import solid_stress
+from gbeam.solids.stress import NodalStress, solid_stress
 from gbeam.structure.attachments import TIP, checked_name
 from gbeam.structure.material import Material, Orthotropic
 
@@ -102,6 +102,8 @@ class SolidMesh(Value):
         point_masses: Mapping[str, float] | None = None,
         interfaces: Mapping[str, str] | None = None,
         origin: Sequence[float] = (0.0, 0.0, 0.0),
+        turn: Sequence[float] = (0.0, 0.0, 0.0),
+        scale: Sequence[float] = (1.0, 1.0, 1.0),
     ) -> SolidMesh:
         """Read a mesh of solid elements.
 
@@ -127,8 +129,11 @@ class SolidMesh(Value):
             Groups of nodes or elements by the name of a point that moves and turns as their nodes do on average: bodies
             of a :class:`gbeam.System` hang on it by joints, and it is put out.
         origin : (3,)
-            Root in the mesh's coordinates, m: the point whose acceleration the motion gives. The base axes are along
-            those of the mesh.
+            Root in the mesh's coordinates, m: the point whose acceleration the motion gives.
+        turn : (3,)
+            Rotation vector of the mesh's axes, and of those of its materials, in the base axes, rad.
+        scale : (3,)
+            Factors of the mesh's coordinates, before everything else.
 
         Raises
         ------
@@ -144,9 +149,11 @@ class SolidMesh(Value):
         >>> gb.SolidMesh.read("examples/data/bracket.msh", materials=materials, clamp="screwed", unit="mm")
         SolidMesh(2213 nodes, 352 hexahedron20, 0.215 kg)
         """
+        from scipy.spatial.transform import Rotation
+
         mesh = read_mesh(source)
         try:
-            scale = quantity(f"1 {unit}", "length")
+            size = quantity(f"1 {unit}", "length")
         except UnitError as error:
             raise InputError("unit", f"is {unit!r}: {error.problem}", error.hint or 'give one such as "mm"') from None
         places = np.asarray(mesh.points, dtype=float)
@@ -159,7 +166,10 @@ class SolidMesh(Value):
             raise InputError("mesh", f"has elements on node {used[-1] + 1} of {len(places)}", "write it again")
         new = np.full(len(places), -1)
         new[used] = np.arange(len(used))
-        at = scale * places[used] - np.asarray(origin, dtype=float)
+        for i, factor in enumerate(scale):
+            positive(f"scale[{i}]", factor, "")
+        rotation = Rotation.from_rotvec(turn).as_matrix()
+        at = (size * places[used] * np.asarray(scale, dtype=float) - np.asarray(origin, dtype=float)) @ rotation.T
 
         def group(where: str, name: str) -> Indices:
             nodes = new[nodes_in(mesh, where, name)]
@@ -177,7 +187,7 @@ class SolidMesh(Value):
             where = f"point_masses.{name}"
             nodes = np.array([tip if name == TIP else named[name]]) if name in {*named, TIP} else group(where, name)
             weights[nodes] += positive(where, mass, "kg") / len(nodes)
-        blocks = _blocks(mesh, solids, new, materials)
+        blocks = _blocks(mesh, solids, new, materials, rotation)
         kinds = materials if isinstance(materials, Mapping) else {"": materials}
         strengths = {name: each.yield_strength for name, each in kinds.items() if each.yield_strength is not None}
         refuse_names(interfaces or {}, named | {TIP: tip})
@@ -272,7 +282,7 @@ class SolidMesh(Value):
             kind=kind,
             warnings=(*self.warnings, *doubts),
         )
-        return SolidModel(self, structure, shapes, frequency, error)
+        return SolidModel(self, replace(structure, recovery=NodalStress.of(self, shapes)), shapes, frequency, error)
 
     @property
     def named_points(self) -> tuple[str, ...]:
@@ -368,7 +378,9 @@ class SolidModel(Value):
         time = np.atleast_1d(np.asarray(answer.time, dtype=float))
         name = answer.name if isinstance(answer, Response) else answer.motion
         about = {"motion": name, "model": answer.model, "warnings": answer.warnings, "provenance": answer.provenance}
-        return solid_stress(self.mesh, self.shapes, time, q, **about)
+        nodal = self.structure.recovery
+        assert isinstance(nodal, NodalStress)
+        return solid_stress(nodal, time, q, **about)
 
 
 def _mesh_errors(frequency: Floats, coarser: SolidModel | None) -> tuple[Floats, tuple[str, ...]]:
@@ -406,8 +418,8 @@ def _node(at: Floats, name: str, place: Any, group: Any) -> int:
     return int(away.argmin())
 
 
-def _blocks(mesh: Any, solids: list[int], new: Indices, materials: Any) -> tuple[Block, ...]:
-    """Elements of each kind and material."""
+def _blocks(mesh: Any, solids: list[int], new: Indices, materials: Any, rotation: Floats) -> tuple[Block, ...]:
+    """Elements of each kind and material, whose axes are turned with the mesh."""
     given = materials if isinstance(materials, Mapping) else {"": materials}
     owner = {i: np.full(len(mesh.cells[i].data), -1) for i in solids}
     for m, name in enumerate(given):
@@ -428,7 +440,9 @@ def _blocks(mesh: Any, solids: list[int], new: Indices, materials: Any) -> tuple
     blocks = []
     for m, (name, material) in enumerate(given.items()):
         try:
-            elasticity = material.elasticity
+            turned = isinstance(material, Orthotropic)
+            along = replace(material, axes=np.asarray(material.axes) @ rotation.T) if turned else material
+            elasticity = along.elasticity
         except InputError as error:
             raise error.within(f"materials.{name}" if name else "materials") from None
         for i in solids:

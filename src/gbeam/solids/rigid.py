@@ -16,9 +16,14 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive
 from gbeam.guards.limits import SAMPLES, refuse_more
+from gbeam.mechanics.equations.linear import Coefficients
+from gbeam.mechanics.fields.taylor import Places
+from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.results.result import Floats
 from gbeam.results.solids import SpecimenLoads
+from gbeam.solids.stress import hull
+from gbeam.structure.attachments import TIP
 
 ALIKE = 1e-9  # of the largest second moment: bolts on a line
 SAME = 1e-6  # of the time between samples: corners nearer to one are that one
@@ -43,6 +48,8 @@ class RigidSpecimen(Value):
         Places of the bolts, or of other points that hold it, from the root, m.
     bolt_axis : (3,), optional
         Direction of the bolts, away from the fixture.
+    spread_limit : float, optional
+        Largest spread of the load over the specimen that the test order accepts, of the largest load of the centre.
 
     Raises
     ------
@@ -64,9 +71,12 @@ class RigidSpecimen(Value):
     corners: ArrayLike
     bolts: ArrayLike | None = None
     bolt_axis: Sequence[float] | None = None
+    spread_limit: float | None = None
 
     def __post_init__(self) -> None:
         positive("mass", self.mass, "kg")
+        if self.spread_limit is not None:
+            positive("spread_limit", self.spread_limit, "(a share)")
         shapes = {"centre": (3,), "inertia": (3, 3), "corners": (-1, 3), "bolts": (-1, 3), "bolt_axis": (3,)}
         for name, shape in shapes.items():
             value = getattr(self, name)
@@ -179,7 +189,10 @@ class RigidSpecimen(Value):
         inside = breaks[(breaks > start) & (breaks < end)]
         time = np.union1d(np.linspace(start, end, count), inside)
         time = time[np.append(True, np.diff(time) > SAME * sample)]
-        base = moving.base(time)
+        return self._loads(time, moving.base(time), name, motion.kind)
+
+    def _loads(self, time: Floats, base: Any, name: str, environment: str) -> SpecimenLoads:
+        corners = np.asarray(self.corners)
         a, w, alpha = (np.broadcast_to(each, (len(time), 3)) for each in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B))
 
         def accelerations(places: Floats) -> Floats:
@@ -194,7 +207,7 @@ class RigidSpecimen(Value):
         held: dict[str, Any] = {} if self.bolts is None else self._shared(np.asarray(self.bolts), force, moment)
         return SpecimenLoads(
             motion=name,
-            environment=motion.kind,
+            environment=environment,
             mass=float(self.mass),
             time=time,
             corners=corners,
@@ -202,8 +215,63 @@ class RigidSpecimen(Value):
             centre=of_centre,
             force=force,
             moment=moment,
+            spread_limit=self.spread_limit,
             **held,
         )
+
+    @property
+    def structure(self) -> Structure:
+        """The specimen as analyses take it: a structure without coordinates, whose tip is the farthest corner."""
+        corners, centre, inertia = (np.asarray(each) for each in (self.corners, self.centre, self.inertia))
+        second = (np.trace(inertia) / 2 * np.eye(3) - inertia) + self.mass * np.outer(centre, centre)
+        products = (second[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)))
+        tip = corners[np.linalg.norm(corners, axis=1).argmax()]
+        points = np.stack([centre, tip])
+        square, rate = np.zeros((0, 0)), np.zeros((3, 0, 0))
+        rigid = np.array([self.mass, *(self.mass * centre), *products])
+        coefficients = Coefficients(
+            mass=square, damping=square, stiffness=square, gyroscopic=rate,
+            k_ww=np.zeros((3, 3, 0, 0)), k_al=rate, k_a=rate,
+            f_ww=np.zeros((3, 3, 0)), f_al=np.zeros((3, 0)), f_a=np.zeros((3, 0)), rigid=rigid,
+        )  # fmt: skip
+        places = Places(points, np.zeros((2, 3, 0)), np.zeros((2, 3, 0, 0)))
+        return Structure(
+            kind="rigid",
+            linear=True,
+            hub_force=True,
+            counts=(0,) * 6,
+            length=float(np.linalg.norm(tip)),
+            mass=np.array([self.mass, 0.0]),
+            places=places,
+            stations=points[1:, 0],
+            station_places=places[[1]],
+            coefficients=coefficients,
+            damping_ratio=0.0,
+            points=(TIP,),
+            recovery=self,
+        )
+
+    @property
+    def envelope(self) -> Floats:
+        """Corners of the convex hull of its corners and its bolts, (c, 3) m."""
+        corners = np.asarray(self.corners)
+        return hull(corners if self.bolts is None else np.concatenate([corners, np.asarray(self.bolts)]))
+
+    def parts(self, time: Floats, base: Any, q: Floats, *, motion: str, model: str, environment: str) -> dict[str, Any]:
+        """Return the loads of a response of the :attr:`structure`, by the name of its field.
+
+        Parameters
+        ----------
+        time : (t,)
+            s.
+        base : BaseMotion
+            Of the root, (t, 3).
+        q : (t, 0)
+            Coordinates, of which it has none.
+        motion, model, environment : str
+            Names of the response's.
+        """
+        return {"specimen": self._loads(time, base, motion, environment)}
 
     def _shared(self, bolts: Floats, force: Floats, moment: Floats) -> dict[str, Any]:
         """Forces (t, b, 3) of bolts that are alike, between rigid bodies, with their places and direction."""

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, Self
 
 import numpy as np
 
+from gbeam.arrays.tree import Value
 from gbeam.results.result import Floats
 from gbeam.results.solids import SolidStress, StressAt
 from gbeam.solids.elements import TENSOR, Indices, chunks, extrapolation, stress_at
@@ -14,28 +16,52 @@ from gbeam.solids.elements import TENSOR, Indices, chunks, extrapolation, stress
 BLOCK = 2**22  # numbers handled together
 
 
-class NodalStress:
-    """Stresses (p, 6, n) of unit coordinates at all pairs of a node and a material of its elements."""
+@dataclass(frozen=True, eq=False)
+class NodalStress(Value):
+    """Stresses of a mesh by coordinates with shapes (k, 3, n): at all pairs `known` (p,), a node and the number of a
+    material of its elements in one, those of unit coordinates (p, 6, n).
+    """
 
-    def __init__(self, points: Floats, blocks: Any, shapes: Floats) -> None:
-        names = list(dict.fromkeys(block.material for block in blocks))
-        pairs = [names.index(block.material) * len(points) + np.unique(block.nodes) for block in blocks]
+    mesh: Any
+    shapes: Floats
+    envelope: Floats
+    known: Indices
+    table: Floats
+
+    @classmethod
+    def of(cls, mesh: Any, shapes: Floats) -> Self:
+        """Stresses of a mesh."""
+        count, names = len(mesh.points), _materials(mesh)
+        pairs = [names.index(block.material) * count + np.unique(block.nodes) for block in mesh.blocks]
         known = np.unique(np.concatenate(pairs))
-        self.points, self.blocks, self.shapes = points, blocks, shapes
-        self.node, self.material = known % len(points), [names[i] for i in known // len(points)]
-        every = np.arange(len(points))
-        self._pairs = {name: np.searchsorted(known, i * len(points) + every) for i, name in enumerate(names)}
-        total, count = np.zeros((len(known), 6, shapes.shape[-1])), np.zeros(len(known))
-        for pair, stress in self._elements():
+        empty = cls(mesh, shapes, hull(mesh.points), known, np.empty((0, 6, shapes.shape[-1])))
+        total, shared = np.zeros((len(known), 6, shapes.shape[-1])), np.zeros(len(known))
+        for pair, stress in empty._elements():
             np.add.at(total, pair, stress)
-            np.add.at(count, pair, 1)
-        self.table = total / count[:, None, None]
+            np.add.at(shared, pair, 1)
+        return replace(empty, table=total / shared[:, None, None])
+
+    @property
+    def node(self) -> Indices:
+        """Nodes of the pairs."""
+        return self.known % len(self.mesh.points)
+
+    @property
+    def material(self) -> list[str]:
+        """Materials of the pairs."""
+        names = _materials(self.mesh)
+        return [names[i] for i in self.known // len(self.mesh.points)]
+
+    def parts(self, time: Floats, base: Any, q: Floats, *, motion: str, model: str, environment: str) -> dict[str, Any]:
+        """The stress of a response."""
+        return {"solid": solid_stress(self, time, q, motion=motion, model=model)}
 
     def _elements(self, wanted: int | None = None) -> Iterator[tuple[Indices, Floats]]:
         """Pairs (m,) and stresses (m, 6, n) at the nodes of elements: of all, or of those at one pair."""
-        for block, part, _, gradients, _ in chunks(self.points, self.blocks, "stress"):
+        names, count = _materials(self.mesh), len(self.mesh.points)
+        for block, part, _, gradients, _ in chunks(self.mesh.points, self.mesh.blocks, "stress"):
             nodes = block.nodes[part]
-            pair = self._pairs[block.material][nodes]
+            pair = np.searchsorted(self.known, names.index(block.material) * count + nodes)
             chosen = slice(None) if wanted is None else (pair == wanted).any(axis=1)
             stress = stress_at(block, nodes[chosen], gradients[chosen], self.shapes)
             at_nodes = np.einsum("kq,eqvn->ekvn", extrapolation(block.kind), stress, optimize=True)
@@ -49,7 +75,7 @@ class NodalStress:
 
     def histories(self, q: Floats) -> tuple[Floats, Indices, Floats]:
         """Largest von Mises stress over time at every pair (p,), when (p,), and over all pairs at every time (t,)."""
-        count = len(self.node)
+        count = len(self.known)
         largest, when, over = np.full(count, -1.0), np.zeros(count, dtype=int), np.empty(len(q))
         flat = self.table.reshape(count * 6, -1).T
         step = max(1, BLOCK // (count * 6))
@@ -61,6 +87,20 @@ class NodalStress:
             more = size > largest
             largest[more], when[more] = size[more], start + best[more]
         return largest, when, over
+
+
+def _materials(mesh: Any) -> list[str]:
+    return list(dict.fromkeys(block.material for block in mesh.blocks))
+
+
+def hull(points: Floats) -> Floats:
+    """Corners of the convex hull of points (k, 3); the points themselves where they are flat."""
+    from scipy.spatial import ConvexHull, QhullError
+
+    try:
+        return np.asarray(points[np.sort(ConvexHull(points).vertices)])
+    except (QhullError, ValueError):
+        return points
 
 
 def von_mises(stress: Floats) -> Floats:
@@ -75,30 +115,30 @@ def principal(stress: Floats) -> Floats:
     return np.asarray(np.linalg.eigvalsh(stress[..., TENSOR])[..., ::-1])
 
 
-def solid_stress(mesh: Any, shapes: Floats, time: Floats, q: Floats, **about: Any) -> SolidStress:
-    """Return the stress of a mesh whose coordinates are (t, n) at times (t,)."""
-    nodal = NodalStress(mesh.points, mesh.blocks, shapes)
+def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> SolidStress:
+    """Return the stress at coordinates (t, n) at times (t,)."""
+    mesh, of_pair, materials = nodal.mesh, nodal.node, nodal.material
     largest, when, over = nodal.histories(q)
-    strengths = np.array([mesh.strengths.get(name, np.inf) for name in nodal.material])
+    strengths = np.array([mesh.strengths.get(name, np.inf) for name in materials])
 
     def at(pair: int) -> StressAt:
-        t, node, strength = int(when[pair]), int(nodal.node[pair]), float(strengths[pair])
+        t, node, strength = int(when[pair]), int(of_pair[pair]), float(strengths[pair])
         return StressAt(
             von_mises=float(largest[pair]),
             principal=principal(nodal.table[pair] @ q[t]),
             time=float(time[t]),
             place=mesh.points[node],
             node=int(mesh.numbers[node]) + 1,
-            material=nodal.material[pair],
+            material=materials[pair],
             spread=nodal.spread(pair, q[t]),
             yield_strength=strength if np.isfinite(strength) else None,
         )
 
     # At a node of two materials, that which is stressed more.
-    chosen = [max(np.flatnonzero(nodal.node == node), key=largest.__getitem__) for node in mesh.stations.values()]
+    chosen = [max(np.flatnonzero(of_pair == node), key=largest.__getitem__) for node in mesh.stations.values()]
     stress = np.einsum("pvn,tn->tpv", nodal.table[chosen], q, optimize=True)
     every = np.zeros(len(mesh.points))
-    np.maximum.at(every, nodal.node, largest)
+    np.maximum.at(every, of_pair, largest)
     return SolidStress(
         time=time,
         von_mises=over,

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.case import Case, SystemCase
+from gbeam.analysis.case import Case, SpecimenCase, SystemCase
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.kinds import KINDS
@@ -35,7 +35,7 @@ _BOUND = re.compile(r"\s*(\S+)\s*(<=|>=)\s*(.+?)\s*")
 
 @typed
 def optimise(
-    scenario: str | os.PathLike[str] | Case | SystemCase,
+    scenario: str | os.PathLike[str] | Case | SpecimenCase | SystemCase,
     minimise: str,
     over: Sequence[str],
     *,

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.case import Case, SystemCase
+from gbeam.analysis.case import Case, SpecimenCase, SystemCase
 from gbeam.errors import GbeamError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.progress import Progress
@@ -34,7 +34,7 @@ _NOT_PHYSICAL = re.compile(r"(^|\.)(steps|step|errors|error_estimate|accepted|pa
 
 @typed
 def sensitivity(
-    scenario: str | os.PathLike[str] | Case | SystemCase,
+    scenario: str | os.PathLike[str] | Case | SpecimenCase | SystemCase,
     of: Sequence[str] = (),
     parameters: Sequence[str] = (),
     *,

@@ -25,7 +25,7 @@ from gbeam.results.provenance import Provenance
 from gbeam.scenario.build import build, scenario_of
 from gbeam.scenario.load import change
 from gbeam.scenario.origin import provenance
-from gbeam.scenario.schema import Centrifuge, Scenario
+from gbeam.scenario.schema import Centrifuge
 from gbeam.scenario.schema.fields import kind_of, quantities
 from gbeam.scenario.schema.scenario import Sweep as SweepTable
 from gbeam.scenario.values import Distribution, Path, parse_path, path_text
@@ -50,7 +50,7 @@ class ScenarioTemplate:
     @property
     def of_system(self) -> bool:
         """Whether the cases are systems of bodies."""
-        return not isinstance(self.scenario, Scenario)
+        return "joints" in type(self.scenario).model_fields
 
     @property
     def motions(self) -> tuple[str, ...]:

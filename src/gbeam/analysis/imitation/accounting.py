@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,16 +29,14 @@ Codes = NDArray[np.intp]
 
 @dataclass(frozen=True)
 class History:
-    """Load (t, 3) m/s² of one environment at root and tip of a rigid specimen; `load` is the root's in flight."""
+    """Load (t, 3) m/s² of one environment on a rigid specimen: `load` is that of the control point, or of the root in
+    flight; `root` and its `growth` (t, 3, 3) give that of its other `ends` (p, 3) m: the tip, or corners.
+    """
 
     load: Floats
     root: Floats
-    tip: Floats
-
-    @classmethod
-    def of(cls, root: Floats, gradient: Floats, length: float, load: Floats | None = None) -> Self:
-        """Make the history of a specimen of a length, m, from the root's load and its growth (t, 3) along x."""
-        return cls(root if load is None else load, root, root + length * gradient)
+    growth: Floats
+    ends: Floats
 
     @property
     def size(self) -> Floats:
@@ -46,10 +44,14 @@ class History:
         return np.asarray(np.linalg.norm(self.load, axis=1))
 
     def spread(self, i: int) -> tuple[float, float]:
-        """Size of the load at the root and at the tip over that in between, less one, at a sample."""
-        middle, *ends = (float(np.linalg.norm(each[i])) for each in (self.load, self.root, self.tip))
-        root, tip = (end / middle - 1 if middle > 0 else np.nan for end in ends)
-        return root, tip
+        """Size of the load at the root, and at that end where it differs most, over that at the control point, less
+        one, at a sample.
+        """
+        middle, root = (float(np.linalg.norm(each[i])) for each in (self.load, self.root))
+        if not middle > 0:
+            return np.nan, np.nan
+        ends = np.linalg.norm(self.root[i] + self.ends @ self.growth[i].T, axis=1) / middle - 1
+        return root / middle - 1, float(ends[np.abs(ends).argmax()])
 
 
 def account_of(
@@ -230,10 +232,12 @@ def times_between(first: float, last: float) -> Floats:
     return np.linspace(first, last, min(int(np.ceil((last - first) / _GRID)), _MOST) + 1)
 
 
-def points_of(length: float, bodies: Floats) -> dict[str, Floats]:
-    """Ends of the beam, m from the root, and bodies (b, 3), by name: the load's size, convex in the place, is largest
-    at one.
+def points_of(length: float, bodies: Floats, envelope: Floats | None = None) -> dict[str, Floats]:
+    """Ends of the beam, m from the root, and bodies (b, 3), or corners (c, 3) of another specimen, by name: the load's
+    size, convex in the place, is largest at one.
     """
+    if envelope is not None and len(envelope):
+        return {"({:.4g}, {:.4g}, {:.4g}) mm".format(*(1e3 * corner)): corner for corner in envelope}
     ends = {"the root": np.zeros(3), "the tip": np.array([length, 0.0, 0.0])}
     off = [body for body in np.asarray(bodies) if np.any(body[1:] != 0) or not 0 <= body[0] <= length]
     return ends | {f"the body at {1e3 * body[0]:.4g} mm": body for body in off}

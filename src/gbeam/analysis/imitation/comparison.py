@@ -10,7 +10,7 @@ from gbeam.analysis.imitation.accounting import History, account_of, largest_loa
 from gbeam.analysis.response.peaks import vector_peaks
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.motion.bases.base import gradient
+from gbeam.motion.bases.base import gradients
 from gbeam.numerics.filters import largest_riding_acceleration, low_pass
 from gbeam.numerics.peaks import maxima, near_maxima, seven_point, turning_points
 from gbeam.numerics.samples import interpolated
@@ -67,7 +67,7 @@ def peak_pairs(flight: Response, centrifuge: Response, during: slice) -> dict[st
     last = centrifuge.time[during][-1]
     one = _peaks(flight, flight.time <= last + 1e-12 * abs(last))
     two = _peaks(centrifuge, during)
-    points = points_of(float(centrifuge.stations[-1]), centrifuge.bodies)
+    points = points_of(float(centrifuge.stations[-1]), centrifuge.bodies, centrifuge.envelope)
     loads = (largest_load(each.time, each.base, points) for each in (flight, centrifuge))
     pairs = {name: PeakPair(one[name][0], two[name][0], one[name][1], two[name][1]) for name in one}
     return {"largest_load": largest_pair(*loads)} | pairs
@@ -78,16 +78,20 @@ def _peaks(response: Response, part: slice | Flags) -> dict[str, tuple[float, fl
     time, of = response.time[part], response.peaks
     known = {"tip": (of.max_size, of.time_of_max_size)}
     samples = {"tip": lambda: vector_peaks(time, response.tip[part])}
-    if response.loads is not None:
+    if response.solid is not None:
+        over = response.solid.von_mises[part, None]
+        samples["stress"] = lambda: maxima(time, over, *seven_point(time, over, near_maxima(time, over)))
+    elif response.loads is not None:
         loads = response.loads
         stress = np.concatenate([loads.stress_tension[part], -loads.stress_compression[part]], axis=1)
+        if np.isfinite(stress).all():
+            samples["stress"] = lambda: maxima(time, stress, *seven_point(time, stress, near_maxima(time, stress)))
+    if response.loads is not None:
+        carried = response.loads
         samples |= {
-            "root_force": lambda: vector_peaks(time, loads.section_force[part, 0]),
-            "root_moment": lambda: vector_peaks(time, loads.section_moment[part, 0]),
-            "stress": lambda: maxima(time, stress, *seven_point(time, stress, near_maxima(time, stress))),
+            "root_force": lambda: vector_peaks(time, carried.section_force[part, 0]),
+            "root_moment": lambda: vector_peaks(time, carried.section_moment[part, 0]),
         }
-        if not np.isfinite(stress).all():
-            del samples["stress"]
     if of.loads is not None:
         worst = int(np.argmax(of.loads.stress.value))
         extremes = {
@@ -108,7 +112,8 @@ def _peaks(response: Response, part: slice | Flags) -> dict[str, tuple[float, fl
         most = int(np.argmax(values))
         return float(values[most]), float(times[most])
 
-    return {name: peak(name) for name in ("tip", "root_force", "root_moment", "stress")}
+    names = ("tip", "root_force", "root_moment", "stress")
+    return {name: peak(name) for name in names if name != "tip" or response.q.shape[1]}  # a rigid one has none
 
 
 CUTOFF = 0.5  # of the lowest natural frequency: trend below, elastic vibration above
@@ -202,8 +207,11 @@ def compare(
         )  # fmt: skip
         root = _root(covered, history, in_flight(a.stress[:, 0]), b.stress[during, 0])
         shock = _shock(time, covered, in_flight(a.acceleration[:, -1]), b.acceleration[during, -1])
-    names, growth = _names(flight, centrifuge), in_flight(gradient(flight.base.w_WB_B, flight.base.alpha_WB_B))
-    spun = gradient(centrifuge.base.w_WB_B[during], centrifuge.base.alpha_WB_B[during])
+    names, growth = _names(flight, centrifuge), in_flight(gradients(flight.base.w_WB_B, flight.base.alpha_WB_B))
+    spun = gradients(centrifuge.base.w_WB_B[during], centrifuge.base.alpha_WB_B[during])
+    of_beam, root_load = not len(centrifuge.envelope), in_flight(flight.base.a_WO_B)
+    ends = np.array([[length, 0.0, 0.0]]) if of_beam else centrifuge.envelope
+    machine_root = centrifuge.base.a_WO_B[during]
     return Comparison(
         flight=names[0],
         centrifuge=names[1],
@@ -216,20 +224,28 @@ def compare(
         peak_centrifuge=_largest(actual[:, -1], covered),
         peaks=peak_pairs(flight, centrifuge, during),
         accounting=account_of(
-            time, History.of(in_flight(flight.base.a_WO_B), growth, length),
-            History.of(centrifuge.base.a_WO_B[during], spun, length, None if axes is None else axes.actual[during]),
+            time, History(root_load, root_load, growth, ends),
+            History(machine_root if axes is None else axes.actual[during], machine_root, spun, ends),
             axes, during, tolerance=tolerance, tolerance_of=tolerance_of,
         ),
         accept=limits,
         stations=_statistics(time, covered, reference, actual, centrifuge),
-        mismatch=_mismatch(covered, centrifuge, spun - growth),
+        mismatch=_mismatch(covered, centrifuge, (spun - growth)[..., 0]) if of_beam else None,
         root=root,
         shock=shock,
         fatigue=fatigue(flight, centrifuge),
         yield_strength=None if centrifuge.loads is None else centrifuge.loads.yield_strength,
+        margins_of_materials=_of_materials(flight, centrifuge),
         whole=whole,
         kept_every=centrifuge.kept_every,
     )  # fmt: skip
+
+
+def _of_materials(flight: Response, centrifuge: Response) -> tuple[float, float] | None:
+    """Least margins on yield of solids in both runs; None where one is not known."""
+    worst = [None if each.solid is None else each.solid.nearest_yield for each in (flight, centrifuge)]
+    one, two = (None if each is None else each.margin for each in worst)
+    return None if one is None or two is None else (one, two)
 
 
 def _names(flight: Response, centrifuge: Response) -> tuple[str, str]:

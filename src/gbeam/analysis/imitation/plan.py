@@ -17,7 +17,7 @@ from gbeam.analysis.imitation.accounting import (
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import SAMPLES, refuse_more
 from gbeam.motion import Centrifuge
-from gbeam.motion.bases.base import gradient
+from gbeam.motion.bases.base import gradients
 from gbeam.motion.centrifuge.history import axes_result
 from gbeam.motion.centrifuge.kinematics import axis_angles
 from gbeam.motion.protocol import implausible_motion
@@ -25,6 +25,7 @@ from gbeam.results.imitation.accounting import TOLERANCE, PeakPair
 from gbeam.results.imitation.comparison import MachinePlan
 from gbeam.results.imitation.criteria import BROKEN, Limit, checked_limits
 from gbeam.results.machine import Commands
+from gbeam.results.result import Floats
 from gbeam.structure.beam import Beam, refuse_curved
 
 _FINE = 1e-3  # s: the angle of axis 1 is integrated on times no further apart
@@ -37,6 +38,7 @@ def plan(
     tracks: str = "",
     *,
     beam: Beam | None = None,
+    envelope: Floats | None = None,
     tolerance: float = TOLERANCE,
     tolerance_of: str = "peak",
     accept: Mapping[str, Limit] | None = None,
@@ -54,6 +56,8 @@ def plan(
         Name of the flight.
     beam : Beam, optional
         The specimen, whose size the load along it depends on.
+    envelope : (c, 3), optional
+        Of another specimen the corners of its convex hull, from the root, m.
     tolerance, tolerance_of, accept
         As for :func:`gbeam.compare`; limits that need a response are not judged.
     title : str
@@ -85,11 +89,15 @@ def plan(
     warnings += implausible_motion(motion.flight, f"motion.{tracks}" if tracks else "flight", span)
     during = slice(*np.searchsorted(time, (span[0], np.nextafter(span[1], np.inf))))
     flown, machine = motion.flight.base(time[during]), motion.base(time)
-    length = np.nan if beam is None else beam.length
-    along = gradient(flown.w_WB_B, flown.alpha_WB_B), gradient(machine.w_WB_B, machine.alpha_WB_B)[during]
-    largest = PeakPair()
+    tip = np.array([[np.nan if beam is None else beam.length, 0.0, 0.0]])
+    ends = tip if envelope is None else envelope
+    growth = gradients(flown.w_WB_B, flown.alpha_WB_B), gradients(machine.w_WB_B, machine.alpha_WB_B)[during]
+    largest, points = PeakPair(), dict[str, Floats]()
     if beam is not None:
         points = points_of(beam.length, beam.body_centres)
+    elif envelope is not None:
+        points = points_of(0.0, envelope, envelope)
+    if points:
         largest = largest_pair(largest_load(time[during], flown, points), largest_load(time, machine, points))
     return MachinePlan(
         name=name,
@@ -101,8 +109,8 @@ def plan(
         axes=axes,
         accounting=account_of(
             time[during],
-            History.of(flown.a_WO_B, along[0], length),
-            History.of(machine.a_WO_B[during], along[1], length, axes.actual[during]),
+            History(flown.a_WO_B, flown.a_WO_B, growth[0], ends),
+            History(axes.actual[during], machine.a_WO_B[during], growth[1], ends),
             axes,
             during,
             tolerance=tolerance,

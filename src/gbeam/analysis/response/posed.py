@@ -13,13 +13,23 @@ from gbeam.analysis.response.problem import Problem, problem_of
 from gbeam.analysis.response.record import moving
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.step_errors import Readings, Run
-from gbeam.analysis.response.stepping import Plan, corners, first_step, integrated, planned, scheme_of, steps_beyond
+from gbeam.analysis.response.stepping import (
+    Plan,
+    corners,
+    first_step,
+    integrated,
+    once,
+    planned,
+    scheme_of,
+    steps_beyond,
+)
 from gbeam.guards.limits import BOUNDLESS, HISTORY_BYTES, STEPS, refuse_more
 from gbeam.integrate.equations import Trajectory
 from gbeam.integrate.steps import Corners, Steps, fitted
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
+from gbeam.results.errors import StepErrors
 from gbeam.results.result import Floats
 from gbeam.structure.beam import refuse_curved
 
@@ -54,6 +64,8 @@ class Posed:
 
     def plan(self) -> Plan:
         """Plan the runs that the settings need."""
+        if not self.structure.size:  # nothing is integrated
+            return once(self.kept, StepErrors(0.0, 0.0, 0.0))
         return planned(self.settings, self.coarse, self.given)
 
     def steps(self, step: float) -> Steps:
@@ -100,8 +112,6 @@ class Posed:
         base, _ = moving(self.motion, time, q, qd, qdd)
         q, qd, qdd = (x[:, self.problem.first :] for x in (q, qd, qdd))
         forces = section_forces(self.structure, base, q, qd, qdd, time, motion=self.motion)
-        if forces is None:
-            return []
         sides = [forces.stress_tension, forces.stress_compression]
         if forces.von_mises is not None and np.isfinite(forces.von_mises).all():
             sides.append(forces.von_mises)  # of what is only twisted the others are rounding

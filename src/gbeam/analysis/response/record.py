@@ -227,7 +227,18 @@ def response_of(
         bodies=np.empty((0, 3)) if traced or structure.source is None else structure.source.beam.body_centres,
         whole=_whole(motion, settings),
         kept_every=settings.kept_every(len(time), float(time[-1] - time[0]) / max(len(time) - 1, 1)),
+        **(_recovered(structure, motion, time, over_time, q[:, beam], name) if settings.loads and not traced else {}),
     )
+
+
+def _recovered(
+    structure: Structure, motion: Motion, time: Floats, base: BaseMotion, q: Floats, name: str
+) -> dict[str, Any]:
+    """What the response of a solid or a rigid specimen has besides."""
+    if structure.recovery is None:
+        return {}
+    parts = structure.recovery.parts(time, base, q, motion=name, model=structure.kind, environment=motion.kind)
+    return {"envelope": structure.recovery.envelope, **parts}
 
 
 def _whole(motion: Motion, settings: ResponseSettings) -> tuple[float, float] | None:

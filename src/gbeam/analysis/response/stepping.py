@@ -27,6 +27,7 @@ MAX_STEPS = 4_000_000
 LOADS_STEPS = 50_000  # at most, where it is the loads that need them
 ONE_CORNER = 1e-6  # of the duration: corners nearer to one another are one
 JUMPS = 2, 3, 4, 6, 8, 12, 16  # into how many a step is divided; a check takes four, three or two of the new ones
+RIGID = 2e-3  # s: step of a specimen without coordinates
 SPARE = 1.05  # how much finer a step is than the order promises to be enough
 # Yields a step, s, and what it is for; is sent the run; returns the run that counts with its errors.
 Plan = Generator[tuple[float, str], Run, tuple[Run, StepErrors]]
@@ -54,7 +55,8 @@ def first_step(structure: Structure, motion: Motion, settings: ResponseSettings)
     """Step of the results, s: an even number over the duration, at least 500 and 20 to the lowest period, none longer
     than the shortest time between corners of motion or loads.
     """
-    largest = min(2 * math.pi / float(structure.rest[0][0]) / 20, settings.duration / 500)
+    period = 2 * math.pi / float(structure.rest[0][0]) if structure.size else 20 * RIGID
+    largest = min(period / 20, settings.duration / 500)
     times = corners(structure, motion, largest) - settings.start
     gaps = np.diff(np.unique(np.clip(times, 0.0, settings.duration)))
     largest = min(largest, gaps.min(where=gaps > ONE_CORNER * settings.duration, initial=largest))
@@ -85,7 +87,12 @@ def planned(settings: ResponseSettings, coarse: float, given: float | None) -> P
         return (yield from refine(coarse, order, settings))
     if settings.estimate:
         return (yield from check(given, order))
-    return (yield given, "integrating"), StepErrors()
+    return (yield from once(given, StepErrors()))
+
+
+def once(step: float, errors: StepErrors) -> Plan:
+    """One run, whose errors are known beforehand or unknown."""
+    return (yield step, "integrating"), errors
 
 
 def check(step: float, order: int) -> Plan:

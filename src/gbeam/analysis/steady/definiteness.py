@@ -90,6 +90,8 @@ def worst_loss(structure: Structure, time: Array, base: BaseMotion, q: Array) ->
             causes=_causes(structure, drive.between(before, first, share), matrices(first)),
         )
 
+    if not c.size:
+        return None
     doubtful, most = _doubtful(c, drive)
     stretches = np.split(doubtful, np.flatnonzero(np.diff(doubtful) > 1) + 1) if len(doubtful) else []
     stretches.sort(key=lambda part: -most[part].sum())

@@ -96,6 +96,4 @@ def loads_of(beam: Structure, pieces: list[Carried], time: Floats) -> Loads:
     q, qd, qdd, a, w, alpha = (np.concatenate(each) for each in moving)
     station, force, moment = zip(*hung, strict=True)
     every = Hung(station[0], np.concatenate(force), np.concatenate(moment))
-    loads = section_forces(beam, BaseMotion(a, w, alpha), q, qd, qdd, time, hung=every)
-    assert loads is not None
-    return loads
+    return section_forces(beam, BaseMotion(a, w, alpha), q, qd, qdd, time, hung=every)

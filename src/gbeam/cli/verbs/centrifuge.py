@@ -40,14 +40,14 @@ def plan(
     """
     folder = output.folder(scenario)
 
-    from gbeam.scenario import build_machines, build_specimen, load_environments, placed, provenance, schema
+    from gbeam.scenario import build_extent, build_machines, load_environments, placed, provenance, schema
 
     with Watch(f"planning the machines of {scenario}"):
         environments = load_environments(scenario, output.overrides)
-        if type(environments) not in (schema.Environments, schema.Scenario):
-            fix = "give one [beam], or none"
-            raise placed(environments, [InputError("bodies", "make a system, and gbeam plan is of one beam", fix)])
-        machines, beam = build_machines(environments), build_specimen(environments)
+        if "joints" in type(environments).model_fields:
+            fix = "give one [beam] or one body without joints, or none"
+            raise placed(environments, [InputError("bodies", "make a system, and gbeam plan is of one specimen", fix)])
+        machines, extent = build_machines(environments), build_extent(environments)
     if not machines:
         raise InputError("motion", "has no centrifuge to plan", "add a motion of kind centrifuge")
     every = None if sample is None else number("--sample", sample, "time")
@@ -63,7 +63,7 @@ def plan(
         replace(
             analysis.plan(
                 name, machines[name], table.tracks,
-                beam=beam, title=environments.title, **judging(table.limits_of_acceptance),
+                **extent, title=environments.title, **judging(table.limits_of_acceptance),
             ),
             provenance=origin,
         )

@@ -59,9 +59,9 @@ def run(
         complain(f"motion.{name} {failure.outcome}: {failure.message}")
     for name, which in answer.exceeding.items():
         complain(f"motion.{name} limits exceeded: {which}" + (" (allowed)" if ignore_limits else ""))
-    refused = [each for each in answer.comparisons if each.accepted is False]
-    for each in refused:
-        complain(f"motion.{each.centrifuge} not accepted: {each.refusal}")
+    refused = answer.not_accepted
+    for name, which in refused.items():
+        complain(f"motion.{name} not accepted: {which}")
     return 0 if answer.outcome == "done" and not refused and (ignore_limits or not answer.exceeding) else FAILED
 
 

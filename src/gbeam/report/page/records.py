@@ -168,7 +168,14 @@ def _response(name: str, facts: Facts, v: Facts) -> Response:
         hub=_read(HubResult, {}, v) if "hub_angle" in v else None,
         axes=_axes(facts, v) if "axis_rate" in v else None,
         loads=_loads(facts.get("loads", {}), v) if "section_force" in v else None,
+        solid=_inside_of(SolidStress, facts.get("solid"), v, "solid_"),
+        specimen=_inside_of(SpecimenLoads, facts.get("specimen"), v, "specimen_"),
     )  # fmt: skip
+
+
+def _inside_of(kind: type[_R], facts: Facts | None, v: Facts, before: str) -> _R | None:
+    """A record within a response, whose variables have its name before their own."""
+    return None if facts is None else _read(kind, facts, {**v, **_under(before, v)})
 
 
 def _loads(facts: Facts, v: Facts) -> Loads:

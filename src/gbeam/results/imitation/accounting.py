@@ -35,7 +35,8 @@ class LoadPeak(Part):
         "",
         "load at root and tip over that at the control point, less one",
         "end",
-        note="of the rigid specimen on the machine at `time_machine`",
+        note="of the rigid specimen on the machine at `time_machine`; of one that is no beam at the corner where it "
+        "differs most in place of the tip",
     )
     spread_flight: tuple[float, float] = quantity(
         "", "the same in flight", "end", name=None, note="of the rigid specimen at `time`"

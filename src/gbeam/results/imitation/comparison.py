@@ -90,6 +90,10 @@ class Comparison(Judged, Figured):
     yield_strength: float | None = fact(
         "yield strength of the material, where it is given", "Pa", name=None, key=None, default=None
     )
+    margins_of_materials: tuple[float, float] | None = fact(
+        "least margin on yield of a solid's materials in flight and on the machine, whose run is judged as a whole",
+        name=None, key=None, default=None,
+    )  # fmt: skip
     whole: tuple[float, float] | None = fact(
         "first and last time of the whole flight, where only a part of it was run, and is judged",
         "s", name=None, key=None, default=None,
@@ -126,6 +130,8 @@ class Comparison(Judged, Figured):
     @property
     def margins(self) -> tuple[float, float] | None:
         """Least margin on yield over the whole flight, in it and on the machine; None without a yield strength."""
+        if self.margins_of_materials is not None:
+            return self.margins_of_materials
         stress = self.peaks.get("stress")
         if self.yield_strength is None or stress is None or not np.isfinite(stress.machine):
             return None

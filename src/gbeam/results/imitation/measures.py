@@ -218,11 +218,15 @@ class RootLoads(Part):
     moment_difference: Floats = quantity(
         "N m", "largest size of their difference", "axis", name=None, key="moment.difference"
     )
-    stress_flight: float = quantity("Pa", "largest normal stress, in flight", name=None, key="stress.flight")
-    stress_centrifuge: float = quantity(
-        "Pa", "largest normal stress, on the centrifuge", name=None, key="stress.centrifuge"
+    stress_flight: float = quantity(
+        "Pa", "largest normal stress, in flight", name=None, key="stress.flight", optional=True
     )
-    stress_difference: float = quantity("Pa", "largest normal stress, difference", name=None, key="stress.difference")
+    stress_centrifuge: float = quantity(
+        "Pa", "largest normal stress, on the centrifuge", name=None, key="stress.centrifuge", optional=True
+    )
+    stress_difference: float = quantity(
+        "Pa", "largest normal stress, difference", name=None, key="stress.difference", optional=True
+    )
     history: RootHistory = part("force and moment over time", name="root_", key=None)
 
     @property

@@ -12,7 +12,7 @@ from gbeam.scenario.schema.response import Response
 from gbeam.scenario.schema.scenario import Environments, Model, Scenario
 
 if TYPE_CHECKING:
-    from gbeam.scenario.schema.system import SystemScenario
+    from gbeam.scenario.schema.system import SpecimenScenario, SystemScenario
 
 __all__ = [
     "AxisLimit",
@@ -41,10 +41,19 @@ __all__ = [
 ]
 
 
-def kind_of_scenario(data: Mapping[str, Any]) -> type[Scenario | SystemScenario]:
-    """Table of a scenario as it is written: of one beam, or of a system of bodies, whose tables are made only then."""
-    if "bodies" in data or ("beam" not in data and not {"joints", "forces", "system"}.isdisjoint(data)):
-        from gbeam.scenario.schema.system import SystemScenario
+_OF_SYSTEMS = {"joints", "forces", "controllers", "system"}
 
-        return SystemScenario
-    return Scenario
+
+def kind_of_scenario(data: Mapping[str, Any]) -> type[Scenario | SystemScenario | SpecimenScenario]:
+    """Table of a scenario as it is written: of one beam, of one other specimen, or of a system of bodies, whose tables
+    are made only then.
+    """
+    if "bodies" not in data and ("beam" in data or {"joints", "forces", "system"}.isdisjoint(data)):
+        return Scenario
+    from gbeam.scenario.schema.system import SpecimenScenario, SystemScenario
+
+    bodies = data.get("bodies")
+    alone = isinstance(bodies, Mapping) and len(bodies) == 1 and {*_OF_SYSTEMS, "beam", "model"}.isdisjoint(data)
+    kinds = [each.get("kind") for each in bodies.values() if isinstance(each, Mapping)] if bodies and alone else []
+    of_beam = kinds == ["beam"]
+    return SpecimenScenario if alone and not of_beam else SystemScenario

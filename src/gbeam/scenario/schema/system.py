@@ -24,12 +24,9 @@ from gbeam.scenario.schema.fields import (
     Angle,
     AngularRate,
     Loc,
-    Mass,
-    MomentOfInertia,
     Offset,
     Position,
     Quantity,
-    Ratio,
     Speed,
     Table,
     refuse,
@@ -38,15 +35,15 @@ from gbeam.scenario.schema.fields import (
 from gbeam.scenario.schema.motion import Centrifuge, Motion
 from gbeam.scenario.schema.profile import ForceOverTime, MomentOverTime, SpeedOverTime, TurnOverTime
 from gbeam.scenario.schema.scenario import Environments, Model, Titled, motion_name
-
-Place3 = tuple[Offset, Offset, Offset]
-Turn3 = tuple[Angle, Angle, Angle]
-Direction = tuple[Ratio, Ratio, Ratio]
-_Row = tuple[
-    Annotated[float, Quantity("moment of inertia")],
-    Annotated[float, Quantity("moment of inertia")],
-    Annotated[float, Quantity("moment of inertia")],
-]
+from gbeam.scenario.schema.specimen import (
+    Direction,
+    MatricesBody,
+    Place3,
+    PlaceOfBody,
+    RigidKeys,
+    SolidBody,
+    Turn3,
+)
 
 
 def _named(name: str) -> str:
@@ -58,36 +55,9 @@ def _named(name: str) -> str:
 Name = Annotated[str, AfterValidator(_named)]
 
 
-def _rows(value: Any) -> str:
-    return "list" if isinstance(value, (list, tuple)) and value and isinstance(value[0], (list, tuple)) else "one"
-
-
-Inertia = Annotated[
-    Annotated[tuple[MomentOfInertia, MomentOfInertia, MomentOfInertia], Tag("one")]
-    | Annotated[tuple[_Row, _Row, _Row], Tag("list")],
-    Discriminator(_rows),
-]
-
-
-class PlaceOfBody(Table):
-    """A named point of a rigid body, with axes."""
-
-    at: Place3 = Field(default=(0.0, 0.0, 0.0), description="place from the body's root, in its axes: [x, y, z]")
-    turn: Turn3 = Field(
-        default=(0.0, 0.0, 0.0), description="rotation vector of the point's axes in those of the root: [x, y, z]"
-    )
-
-
-class RigidBody(Table):
+class RigidBody(RigidKeys):
     """A rigid body."""
 
-    kind: Literal["rigid"] = Field(description="kind of the body")
-    mass: Mass = Field(description="mass")
-    inertia: Inertia = Field(
-        default=(0.0, 0.0, 0.0),
-        description="about the centre of mass, axes of the root: principal moments [x, y, z], or three rows",
-    )
-    centre: Place3 = Field(default=(0.0, 0.0, 0.0), description="centre of mass from the root: [x, y, z]")
     points: dict[Name, PlaceOfBody] = Field(
         default_factory=dict,
         max_length=ENTRIES,
@@ -107,7 +77,23 @@ class BeamBody(Beam):
     )
 
 
-Body = Annotated[RigidBody | BeamBody, Discriminator("kind")]
+# Tables of bodies by their kind: one more is an entry, and its builder one in `gbeam.scenario.build_system`.
+BODIES: dict[str, type[Table]] = {"rigid": RigidBody, "beam": BeamBody, "solid": SolidBody, "matrices": MatricesBody}
+_KNOWN_BY = {"mesh": "solid", "mass_matrix": "matrices"}  # keys beside which a kind may be left out
+
+
+def _kind(body: Any) -> str | None:
+    if not isinstance(body, Mapping):
+        return getattr(body, "kind", None)
+    known = (kind for key, kind in _KNOWN_BY.items() if key in body)
+    kind = body.get("kind", next(known, None))
+    return kind if kind is None or isinstance(kind, str) else str(kind)
+
+
+if TYPE_CHECKING:
+    Body = Any
+else:
+    Body = Annotated[reduce(or_, (Annotated[each, Tag(name)] for name, each in BODIES.items())), Discriminator(_kind)]
 
 
 class _Of:
@@ -239,7 +225,9 @@ class Tree(Titled):
     """Bodies and what joins them."""
 
     bodies: dict[Name, Body] = Field(
-        min_length=1, description="rigid bodies and beams, each [bodies.NAME]: instead of [beam] and [model]"
+        min_length=1,
+        description="bodies, each [bodies.NAME]: instead of [beam] and [model]; one alone, without joints, is a "
+        "specimen on the moving base",
     )
     joints: dict[Name, Joint] = Field(description="one for every body, which holds it by its root: [joints.NAME]")
     forces: dict[Name, PointForce] = Field(
@@ -277,6 +265,10 @@ class SystemScenario(Environments, Tree):
             if isinstance(body, BeamBody) and body.model.modes is None:
                 hint = "add modes = { axial = 1, y = 2, z = 2 }: numbers of shapes of a body are not chosen"
                 yield ("bodies", name, "model"), wrong("modes is missing", hint, mark="key")
+        for name, body in self.bodies.items():
+            for key in body.alone() if isinstance(body, RigidBody) else ():
+                hint = "leave it out, or give points; a rigid body alone, without joints, is a specimen"
+                yield ("bodies", name, key), wrong("is of a specimen alone on its base", hint, mark="key")
         for name, motion in self.motion.items():
             if isinstance(motion, Centrifuge) and motion.limits_of_acceptance:
                 yield ("motion", name, "accept"), wrong("is of the response of one beam", "leave it out", mark="key")
@@ -287,3 +279,24 @@ class SystemScenario(Environments, Tree):
         of_tip += [("response", "initial", key) for key in initial.given if key != "state"]
         for place in of_tip:
             yield place, wrong("is of one beam", "leave it out: output is at the points of the bodies", mark="key")
+
+
+class _Specimen(Titled):
+    bodies: dict[Name, Body] = Field(
+        min_length=1, max_length=1, description="the specimen on the moving base, [bodies.NAME]"
+    )
+
+
+class SpecimenScenario(Environments, _Specimen):
+    """A validated scenario of one body alone on the moving base: SI floats throughout, frozen."""
+
+    @property
+    def specimen(self) -> tuple[str, Any]:
+        """Name and table of the body."""
+        return next(iter(self.bodies.items()))
+
+    def about_structure(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
+        """What is of a beam only."""
+        if self.response.stations is not None:
+            hint = "leave it out: output is at the points of the body"
+            yield ("response", "stations"), wrong("is of a beam", hint, mark="key")

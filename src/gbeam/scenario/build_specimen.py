@@ -1,0 +1,162 @@
+"""Solids, matrices and rigid specimens of a scenario as objects of the core."""
+
+from __future__ import annotations
+
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gbeam.errors import InputError
+from gbeam.scenario.schema import specimen as schema
+
+if TYPE_CHECKING:
+    from gbeam.mechanics.structure import Structure
+    from gbeam.mechanics.tree.system import RigidBody
+    from gbeam.scenario.origin import Collector
+    from gbeam.scenario.schema import system
+    from gbeam.solids.rigid import RigidSpecimen
+
+
+def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure | None:
+    """The structure of a mesh."""
+    from gbeam.solids.mesh import SolidMesh
+
+    given: Any = (
+        {name: _material(parts, f"{where}.materials.{name}", each) for name, each in table.materials.items()}
+        if table.material is None
+        else _material(parts, f"{where}.material", table.material)
+    )
+    if given is None or (isinstance(given, dict) and None in given.values()):
+        return None
+
+    def read(file: str) -> SolidMesh:
+        try:
+            return SolidMesh.read(
+                file,
+                materials=given,
+                clamp=table.clamp,
+                unit=table.unit,
+                points=table.points,
+                point_masses=table.masses,
+                origin=table.origin,
+                turn=table.turn,
+                scale=table.scale,
+            )
+        except InputError as error:  # the scenario's own names of what Python calls otherwise
+            one = error.where.replace("point_masses", "masses")
+            renamed = one.replace("materials", "material", 1) if table.material is not None else one
+            raise InputError(renamed, error.problem, error.fix) from None
+
+    def model() -> Structure:
+        coarser = None
+        if table.coarser is not None:
+            try:
+                coarser = read(table.coarser).reduced(modes=table.modes, damping_ratio=table.damping_ratio)
+            except InputError as error:
+                raise InputError("coarser", f"{error.where} {error.problem}", error.fix) from None
+        solid = read(table.mesh)
+        return solid.reduced(modes=table.modes, damping_ratio=table.damping_ratio, coarser=coarser).structure
+
+    return parts.attempt(where, model)
+
+
+def _material(parts: Collector, where: str, table: Any) -> Any:
+    from gbeam.structure.material import Material, Orthotropic
+
+    kind = Orthotropic if isinstance(table, schema.Orthotropic) else Material
+    return parts.attempt(where, kind, **table.model_dump(exclude_none=True))
+
+
+def matrices_of(parts: Collector, where: str, table: schema.MatricesBody) -> Structure | None:
+    """The structure of a mass and a stiffness matrix."""
+    from gbeam.io.matrices import read_matrix
+    from gbeam.mechanics.structure import Structure
+
+    def matrix(key: str) -> Any:
+        of = getattr(table, key)
+        file, name = (of, "") if isinstance(of, str) else (of.file, of.name)
+        try:
+            read = read_matrix(file, name)
+        except InputError as error:
+            raise InputError(f"{key}.name" if error.where == "name" else key, error.problem, error.fix) from None
+        return read if key != "nodes" or not hasattr(read, "toarray") else read.toarray()
+
+    def model() -> Structure:
+        mass, stiffness, nodes = (matrix(key) for key in ("mass_matrix", "stiffness_matrix", "nodes"))
+        try:
+            return Structure.of_matrices(
+                mass,
+                stiffness,
+                nodes,
+                modes=table.modes,
+                damping_ratio=table.damping_ratio,
+                clamp=table.clamp,
+                points=table.points,
+                total_mass=table.total_mass,
+                centre=table.centre,
+                inertia=None if table.inertia is None else _inertia(table.inertia),
+            )
+        except InputError as error:
+            names = {"mass": "mass_matrix", "stiffness": "stiffness_matrix"}
+            raise InputError(names.get(error.where, error.where), error.problem, error.fix) from None
+
+    return parts.attempt(where, model)
+
+
+def rigid_body_of(parts: Collector, where: str, table: system.RigidBody) -> RigidBody | None:
+    """A rigid body of a system."""
+    from gbeam.mechanics.tree.system import Place, RigidBody
+
+    points = {name: Place(each.at, each.turn) for name, each in table.points.items()}
+
+    def body() -> RigidBody:
+        return RigidBody(table.mass, _moments(table), table.centre, points)
+
+    return parts.attempt(where, body)
+
+
+def rigid_of(parts: Collector, where: str, table: system.RigidBody) -> Structure | None:
+    """A rigid specimen."""
+    from gbeam.solids.rigid import RigidSpecimen
+
+    def specimen() -> RigidSpecimen:
+        corners = [*table.corners, *(each.at for each in table.points.values())]
+        if table.size is not None:
+            ways = np.array(list(product((-0.5, 0.5), repeat=3)))
+            corners = [*(_middle(table) + ways * np.asarray(table.size)), *corners]
+        if not corners:
+            raise InputError("size", "is missing", "give the box that it fills, or its corners")
+        bolts = table.bolts or None
+        moments = _inertia(_moments(table))
+        return RigidSpecimen(table.mass, table.centre, moments, corners, bolts, table.bolt_axis, table.spread_limit)
+
+    made = parts.attempt(where, specimen)
+    return None if made is None else made.structure
+
+
+def _middle(table: system.RigidBody) -> Any:
+    return np.asarray(table.centre if table.middle is None else table.middle)
+
+
+def _moments(table: system.RigidBody) -> Any:
+    """Inertia as given, or of an even box."""
+    if table.size is None:
+        if table.middle is not None:
+            raise InputError("middle", "is given without a size", "give the edges of the box: size = [x, y, z]")
+        return table.inertia
+    for i, edge in enumerate(table.size):
+        if not edge > 0:
+            raise InputError(f"size[{i}]", f"is {edge:g} m", "give a positive length")
+    if "inertia" in table.model_fields_set:
+        return table.inertia
+    if not np.allclose(_middle(table), table.centre):
+        fix = "give it: the box is not even, whose middle is not its centre of mass"
+        raise InputError("inertia", "is missing", fix)
+    squares = np.square(table.size)
+    return tuple(table.mass / 12 * (squares.sum() - squares))
+
+
+def _inertia(given: Any) -> Any:
+    """Principal moments, or three rows, as rows."""
+    return np.diag(given) if np.ndim(given) == 1 else np.asarray(given, dtype=float)

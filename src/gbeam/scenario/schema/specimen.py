@@ -1,0 +1,241 @@
+"""[bodies.NAME] of a solid by its mesh, of matrices of another program, and of a rigid specimen."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, Literal
+
+from pydantic import AfterValidator, Discriminator, Field, StrictInt, Tag, model_validator
+
+from gbeam.guards.limits import ENTRIES
+from gbeam.scenario.schema.beam import Material
+from gbeam.scenario.schema.fields import (
+    ONE_OR_LIST,
+    Angle,
+    Density,
+    Exponent,
+    Mass,
+    MomentOfInertia,
+    Offset,
+    Pressure,
+    Quantity,
+    Ratio,
+    Ratios,
+    Table,
+    refuse,
+    wrong,
+)
+from gbeam.scenario.schema.record import existing_file
+
+Place3 = tuple[Offset, Offset, Offset]
+Turn3 = tuple[Angle, Angle, Angle]
+Direction = tuple[Ratio, Ratio, Ratio]
+_Moduli = tuple[Pressure, Pressure, Pressure]
+_Count = Annotated[StrictInt, Field(ge=1, le=1000)]
+File = Annotated[str, AfterValidator(existing_file)]
+_Row = tuple[
+    Annotated[float, Quantity("moment of inertia")],
+    Annotated[float, Quantity("moment of inertia")],
+    Annotated[float, Quantity("moment of inertia")],
+]
+
+
+def _rows(value: Any) -> str:
+    return "list" if isinstance(value, (list, tuple)) and value and isinstance(value[0], (list, tuple)) else "one"
+
+
+Inertia = Annotated[
+    Annotated[tuple[MomentOfInertia, MomentOfInertia, MomentOfInertia], Tag("one")]
+    | Annotated[tuple[_Row, _Row, _Row], Tag("list")],
+    Discriminator(_rows),
+]
+
+
+class Orthotropic(Table):
+    """Linear elastic material with three planes of symmetry, such as a laminate."""
+
+    density: Density = Field(description="mass per volume")
+    youngs_moduli: _Moduli = Field(description="along its axes 1, 2 and 3")
+    poissons_ratios: tuple[Ratio, Ratio, Ratio] = Field(
+        description="nu12, nu23 and nu13: contraction along the second axis by a pull along the first"
+    )
+    shear_moduli: _Moduli = Field(description="G12, G23 and G13")
+    axes: tuple[Direction, Direction] = Field(
+        default=((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)), description="directions of its axes 1 and 2, in axes of the mesh"
+    )
+
+
+def _symmetry(material: Any) -> str:
+    keys = material if isinstance(material, Mapping) else getattr(material, "model_fields_set", ())
+    several = {"youngs_moduli", "poissons_ratios", "shear_moduli"}
+    return "isotropic" if several.isdisjoint(keys) else "orthotropic"
+
+
+SolidMaterial = Annotated[
+    Annotated[Material, Tag("isotropic")] | Annotated[Orthotropic, Tag("orthotropic")], Discriminator(_symmetry)
+]
+_Groups = Annotated[Annotated[str, Tag("one")] | Annotated[tuple[str, ...], Tag("list")], ONE_OR_LIST]
+_Point = Annotated[Annotated[str, Tag("one")] | Annotated[Place3, Tag("list")], ONE_OR_LIST]
+
+
+class Reduced(Table):
+    """Keys of what is reduced to modes."""
+
+    modes: _Count = Field(default=10, description="number of modes; up to twelve static shapes come on top")
+    damping_ratio: Ratios = Field(description="of critical damping, of every coordinate, or a list with one for each")
+
+
+class SolidBody(Reduced):
+    """A solid of finite elements, by its mesh."""
+
+    kind: Literal["solid"] = Field(default="solid", description="kind of the body; may be left out beside mesh")
+    mesh: File = Field(
+        description="file of Gmsh, Nastran bulk data, Abaqus, CalculiX, VTK or another format of meshio, relative to "
+        'the folder of the scenario file; needs pip install "gbeam[mesh]"'
+    )
+    unit: str = Field(description='unit of the coordinates in the mesh, such as "mm"')
+    material: SolidMaterial | None = Field(
+        default=None,
+        description="of all elements: { density, youngs_modulus, poissons_ratio, yield_strength }, or orthotropic "
+        "{ density, youngs_moduli, poissons_ratios, shear_moduli, axes }",
+    )
+    materials: dict[str, SolidMaterial] = Field(
+        default_factory=dict,
+        max_length=ENTRIES,
+        description="of the elements of each group, by its name or number, instead of material",
+    )
+    clamp: _Groups = Field(description="name of the group whose nodes follow the base or the joint, or a list of them")
+    masses: dict[str, Mass] = Field(
+        default_factory=dict,
+        max_length=ENTRIES,
+        description="masses by the name of a point, or of a group over whose nodes each is spread evenly",
+    )
+    points: dict[str, _Point] = Field(
+        default_factory=dict,
+        max_length=ENTRIES,
+        description="points of output by name: the place [x, y, z] from the root for the nearest node, or a group of "
+        "one node; tip is the node farthest from the root where it is not given",
+    )
+    origin: Place3 = Field(
+        default=(0.0, 0.0, 0.0), description="the root in the mesh, whose acceleration the motion gives: [x, y, z]"
+    )
+    turn: Turn3 = Field(
+        default=(0.0, 0.0, 0.0), description="rotation vector of the mesh's axes in those of the base: [x, y, z]"
+    )
+    scale: tuple[Exponent, Exponent, Exponent] = Field(
+        default=(1.0, 1.0, 1.0),
+        description="factors of the mesh's coordinates, such as [1, 1, 1.25] for a board a quarter thicker",
+    )
+    coarser: File | None = Field(
+        default=None, description="file of a coarser mesh with the same groups, by which the mesh's error is estimated"
+    )
+
+    @property
+    def files(self) -> Iterator[tuple[str, str]]:
+        """Files that it names, by their keys."""
+        yield "mesh", self.mesh
+        if self.coarser is not None:
+            yield "coarser", self.coarser
+
+    @model_validator(mode="after")
+    def _one_way(self) -> SolidBody:
+        if (self.material is None) == (not self.materials):
+            given = self.material is not None
+            problem = "is given beside material" if given else "material is missing"
+            hint = "keep one of them" if given else "add material = { density, youngs_modulus, poissons_ratio }"
+            refuse([(("materials",) if given else (), wrong(problem, hint, mark="key"))])
+        return self
+
+
+class MatrixFile(Table):
+    """A matrix in a file that holds several."""
+
+    file: File = Field(description="NPZ, MAT, Matrix Market or NPY, relative to the folder of the scenario file")
+    name: str = Field(default="", description="name of the matrix in the file, where it holds several")
+
+
+_MatrixFile = Annotated[
+    Annotated[File, Tag("one")] | Annotated[MatrixFile, Tag("table")],
+    Discriminator(lambda value: "one" if isinstance(value, str) else "table"),
+]
+
+
+class MatricesBody(Reduced):
+    """A structure by the matrices of a finite-element program."""
+
+    kind: Literal["matrices"] = Field(default="matrices", description="kind of the body; may be left out")
+    mass_matrix: _MatrixFile = Field(
+        description="file of the mass matrix, or { file, name }; node by node along x, y, z, and about them if at all; "
+        "SI"
+    )
+    stiffness_matrix: _MatrixFile = Field(description="file of the stiffness matrix, likewise")
+    nodes: _MatrixFile = Field(description="file of the nodes' places from the root, a row of x, y, z each, m")
+    clamp: tuple[StrictInt, ...] = Field(
+        default=(), description="nodes, from 0, that follow the base; none where the matrices are of the others alone"
+    )
+    points: dict[str, StrictInt] = Field(
+        default_factory=dict, max_length=ENTRIES, description="nodes of output, from 0, by name"
+    )
+    total_mass: Mass | None = Field(default=None, description="mass that the matrices must have, within 1 %")
+    centre: Place3 | None = Field(default=None, description="centre of mass that they must have: [x, y, z]")
+    inertia: Inertia | None = Field(
+        default=None, description="inertia about the centre of mass that they must have: [x, y, z], or three rows"
+    )
+
+    @property
+    def files(self) -> Iterator[tuple[str, str]]:
+        """Files that it names, by their keys."""
+        for key in ("mass_matrix", "stiffness_matrix", "nodes"):
+            of = getattr(self, key)
+            yield (key, of) if isinstance(of, str) else (f"{key}.file", of.file)
+
+
+class PlaceOfBody(Table):
+    """A named point of a rigid body, with axes."""
+
+    at: Place3 = Field(default=(0.0, 0.0, 0.0), description="place from the body's root, in its axes: [x, y, z]")
+    turn: Turn3 = Field(
+        default=(0.0, 0.0, 0.0), description="rotation vector of the point's axes in those of the root: [x, y, z]"
+    )
+
+
+_OF_SPECIMEN = "of a specimen alone on its base: "
+_Places = Annotated[tuple[Place3, ...], Field(max_length=ENTRIES)]
+
+
+class RigidKeys(Table):
+    """Keys of a rigid body."""
+
+    kind: Literal["rigid"] = Field(description="kind of the body")
+    mass: Mass = Field(description="mass")
+    inertia: Inertia = Field(
+        default=(0.0, 0.0, 0.0),
+        description="about the centre of mass, axes of the root: principal moments [x, y, z], or three rows; of a size "
+        "where it is left out that of an even box",
+    )
+    centre: Place3 = Field(default=(0.0, 0.0, 0.0), description="centre of mass from the root: [x, y, z]")
+    size: tuple[Offset, Offset, Offset] | None = Field(
+        default=None, description="edges [x, y, z] of the box that it fills, about middle"
+    )
+    middle: Place3 | None = Field(
+        default=None, description="middle of the box from the root, [x, y, z]; the centre of mass where left out"
+    )
+    corners: _Places = Field(
+        default=(), description=_OF_SPECIMEN + "corners of its envelope where it is no box: [ [x, y, z], ... ]"
+    )
+    bolts: _Places = Field(
+        default=(), description=_OF_SPECIMEN + "places of the bolts that hold it, alike: [ [x, y, z], ... ]"
+    )
+    bolt_axis: Direction | None = Field(
+        default=None, description=_OF_SPECIMEN + "direction of the bolts, away from the fixture: [x, y, z]"
+    )
+
+    spread_limit: Exponent | None = Field(
+        default=None,
+        description=_OF_SPECIMEN + "largest difference of the load at a corner to the centre's that the test order "
+        'accepts, over the largest of the centre, such as "10 %"; beyond it the run is not accepted',
+    )
+
+    def alone(self) -> Iterator[str]:
+        """Keys given that a body among others does not take."""
+        yield from (key for key in ("corners", "bolts", "bolt_axis", "spread_limit") if getattr(self, key))
