@@ -127,11 +127,12 @@ def test_the_spread_is_held_against_the_orders_limit(folder: Path, limit: str, s
 
 def test_matrices_of_files_are_a_specimen(folder: Path) -> None:
     mmwrite(folder / "m.mtx", 2.0 * np.eye(6))
-    np.savez(folder / "model.npz", K=np.diag([800.0, 5e3, 9e3] * 2))
+    mmwrite(folder / "k.mtx", np.diag([800.0, 5e3, 9e3] * 2))
     text = """
     [bodies.oscillator]
-    mass_matrix = "m.mtx"
-    stiffness_matrix = { file = "model.npz", name = "K" }
+    matrices = ["m.mtx", "k.mtx"]
+    mass_matrix = "m"
+    stiffness_matrix = "k"
     nodes = "nodes.npy"
     modes = 2
     damping_ratio = 0.01

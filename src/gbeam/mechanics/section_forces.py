@@ -21,8 +21,8 @@ from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.mechanics.fields.components import cross, joined, split
 from gbeam.mechanics.fields.rotation import skew
 from gbeam.mechanics.structure import Sections, Structure
-from gbeam.mechanics.tree.bodies import LinearBody, PolynomialPoints
 from gbeam.mechanics.tree.frames import Frame
+from gbeam.mechanics.tree.system import body_of
 from gbeam.motion.bases.base import Base, mapped
 from gbeam.motion.protocol import Motion
 from gbeam.results.parts import Loads
@@ -103,9 +103,7 @@ def _of_ends(structure: Structure, base: BaseMotion, q: Array, qd: Array, qdd: A
     xp = namespace(q, base.a_WO_B)
     applied = None if structure.history is None else structure.history(time)
     root = Frame(None, None, None, base.w_WB_B, base.a_WO_B, base.alpha_WB_B)
-    places = structure.station_places[-1:]
-    points = PolynomialPoints(places.r0, places.first, places.second, 0 * places.first, 0 * places.second)
-    _, wrench = LinearBody(structure.coefficients, points).demanded(q, qd, qdd, root, applied)
+    _, wrench = body_of("", structure).demanded(q, qd, qdd, root, applied)
     force, moment = (xp.stack([-each, 0 * each], axis=1) for each in (wrench.force, wrench.moment))
     tip = absolute_accelerations(xp, mapped(base, lambda each: each), *structure.output[-1:].paths(q, qd, qdd))
     unknown = xp.full(force.shape[:2], np.nan)

@@ -39,6 +39,7 @@ def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure
                 unit=table.unit,
                 points=table.points,
                 point_masses=table.masses,
+                interfaces=table.interfaces,
                 origin=table.origin,
                 turn=table.turn,
                 scale=table.scale,
@@ -69,39 +70,43 @@ def _material(parts: Collector, where: str, table: Any) -> Any:
 
 
 def matrices_of(parts: Collector, where: str, table: schema.MatricesBody) -> Structure | None:
-    """The structure of a mass and a stiffness matrix."""
-    from gbeam.io.matrices import read_matrix
-    from gbeam.mechanics.structure import Structure
+    """The structure of the matrices of another program."""
+    from gbeam.io.models.registry import read_matrix
+    from gbeam.solids.imported import ImportedModel
 
-    def matrix(key: str) -> Any:
-        of = getattr(table, key)
-        file, name = (of, "") if isinstance(of, str) else (of.file, of.name)
+    def places() -> Any:
+        if table.nodes is None:
+            return None
         try:
-            read = read_matrix(file, name)
+            read = read_matrix(table.nodes)
         except InputError as error:
-            raise InputError(f"{key}.name" if error.where == "name" else key, error.problem, error.fix) from None
-        return read if key != "nodes" or not hasattr(read, "toarray") else read.toarray()
+            raise InputError("nodes", error.problem, error.fix) from None
+        return read.toarray() if hasattr(read, "toarray") else read
 
     def model() -> Structure:
-        mass, stiffness, nodes = (matrix(key) for key in ("mass_matrix", "stiffness_matrix", "nodes"))
+        files = (table.matrices,) if isinstance(table.matrices, str) else table.matrices
+        inertia = None if table.inertia is None else _inertia(table.inertia)
         try:
-            return Structure.of_matrices(
-                mass,
-                stiffness,
-                nodes,
-                modes=table.modes,
-                damping_ratio=table.damping_ratio,
-                clamp=table.clamp,
-                points=table.points,
-                total_mass=table.total_mass,
-                centre=table.centre,
-                inertia=None if table.inertia is None else _inertia(table.inertia),
+            imported = ImportedModel.read(
+                *files,
+                mass=table.mass_matrix,
+                stiffness=table.stiffness_matrix,
+                nodes=places(),
+                length_unit=table.length_unit,
+                mass_unit=table.mass_unit,
+            )
+            return imported.reduced(
+                **{key: getattr(table, key) for key in _AS_THEY_ARE},
+                inertia=inertia,
             )
         except InputError as error:
-            names = {"mass": "mass_matrix", "stiffness": "stiffness_matrix"}
+            names = {"mass": "mass_matrix", "stiffness": "stiffness_matrix", "paths": "matrices", "path": "matrices"}
             raise InputError(names.get(error.where, error.where), error.problem, error.fix) from None
 
     return parts.attempt(where, model)
+
+
+_AS_THEY_ARE = ("modes", "damping_ratio", "clamp", "points", "interfaces", "total_mass", "centre")
 
 
 def rigid_body_of(parts: Collector, where: str, table: system.RigidBody) -> RigidBody | None:

@@ -116,6 +116,12 @@ class SolidBody(Reduced):
         description="points of output by name: the place [x, y, z] from the root for the nearest node, or a group of "
         "one node; tip is the node farthest from the root where it is not given",
     )
+    interfaces: dict[str, str] = Field(
+        default_factory=dict,
+        max_length=ENTRIES,
+        description="groups by the name of a point that moves and turns as their nodes do on average: other bodies "
+        "hang on it, and it is put out",
+    )
     origin: Place3 = Field(
         default=(0.0, 0.0, 0.0), description="the root in the mesh, whose acceleration the motion gives: [x, y, z]"
     )
@@ -147,16 +153,9 @@ class SolidBody(Reduced):
         return self
 
 
-class MatrixFile(Table):
-    """A matrix in a file that holds several."""
-
-    file: File = Field(description="NPZ, MAT, Matrix Market or NPY, relative to the folder of the scenario file")
-    name: str = Field(default="", description="name of the matrix in the file, where it holds several")
-
-
-_MatrixFile = Annotated[
-    Annotated[File, Tag("one")] | Annotated[MatrixFile, Tag("table")],
-    Discriminator(lambda value: "one" if isinstance(value, str) else "table"),
+_Files = Annotated[
+    Annotated[File, Tag("one")] | Annotated[tuple[File, ...], Field(min_length=1, max_length=ENTRIES), Tag("list")],
+    ONE_OR_LIST,
 ]
 
 
@@ -164,18 +163,27 @@ class MatricesBody(Reduced):
     """A structure by the matrices of a finite-element program."""
 
     kind: Literal["matrices"] = Field(default="matrices", description="kind of the body; may be left out")
-    mass_matrix: _MatrixFile = Field(
-        description="file of the mass matrix, or { file, name }; node by node along x, y, z, and about them if at all; "
-        "SI"
+    matrices: _Files = Field(
+        description="file with mass and stiffness matrix, or a list of several that complete one another: NPZ, NPY, "
+        "Matrix Market, MAT, matrices of Abaqus, CalculiX and Nastran; relative to the folder of the scenario file"
     )
-    stiffness_matrix: _MatrixFile = Field(description="file of the stiffness matrix, likewise")
-    nodes: _MatrixFile = Field(description="file of the nodes' places from the root, a row of x, y, z each, m")
+    mass_matrix: str = Field(default="", description="name of the mass matrix in them, where it is not the usual one")
+    stiffness_matrix: str = Field(default="", description="name of the stiffness matrix, likewise")
+    nodes: File | None = Field(
+        default=None,
+        description="file of a matrix with the places of the nodes, a row of x, y, z each, in length_unit, where the "
+        "others lack them",
+    )
+    length_unit: str = Field(default="m", description="unit of length of the program, such as mm; of time it is s")
+    mass_unit: str = Field(default="kg", description="unit of mass of the program, such as Mg")
     clamp: tuple[StrictInt, ...] = Field(
-        default=(), description="nodes, from 0, that follow the base; none where the matrices are of the others alone"
+        default=(),
+        description="numbers of nodes that follow the base; none where the matrices are of the others alone",
     )
     points: dict[str, StrictInt] = Field(
-        default_factory=dict, max_length=ENTRIES, description="nodes of output, from 0, by name"
+        default_factory=dict, max_length=ENTRIES, description="numbers of nodes of output by name"
     )
+    interfaces: tuple[str, ...] = Field(default=(), description="names of points on which other bodies hang")
     total_mass: Mass | None = Field(default=None, description="mass that the matrices must have, within 1 %")
     centre: Place3 | None = Field(default=None, description="centre of mass that they must have: [x, y, z]")
     inertia: Inertia | None = Field(
@@ -185,9 +193,12 @@ class MatricesBody(Reduced):
     @property
     def files(self) -> Iterator[tuple[str, str]]:
         """Files that it names, by their keys."""
-        for key in ("mass_matrix", "stiffness_matrix", "nodes"):
-            of = getattr(self, key)
-            yield (key, of) if isinstance(of, str) else (f"{key}.file", of.file)
+        if isinstance(self.matrices, str):
+            yield "matrices", self.matrices
+        else:
+            yield from ((f"matrices[{i}]", file) for i, file in enumerate(self.matrices))
+        if self.nodes is not None:
+            yield "nodes", self.nodes
 
 
 class PlaceOfBody(Table):

@@ -79,7 +79,7 @@ class BeamBody(Beam):
 
 # Tables of bodies by their kind: one more is an entry, and its builder one in `gbeam.scenario.build_system`.
 BODIES: dict[str, type[Table]] = {"rigid": RigidBody, "beam": BeamBody, "solid": SolidBody, "matrices": MatricesBody}
-_KNOWN_BY = {"mesh": "solid", "mass_matrix": "matrices"}  # keys beside which a kind may be left out
+_KNOWN_BY = {"mesh": "solid", "matrices": "matrices"}  # keys beside which a kind may be left out
 
 
 def _kind(body: Any) -> str | None:
