@@ -22,10 +22,10 @@ from gbeam.scenario.schema.fields import (
     Ratio,
     Ratios,
     Table,
+    existing_file,
     refuse,
     wrong,
 )
-from gbeam.scenario.schema.record import existing_file
 
 Place3 = tuple[Offset, Offset, Offset]
 Turn3 = tuple[Angle, Angle, Angle]
