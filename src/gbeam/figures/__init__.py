@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any
 
 from gbeam.errors import InputError
-from gbeam.figures import imitation, response, solids, steady, studies, system
+from gbeam.figures import imitation, response, steady, studies, system
 from gbeam.figures.description import Figure
 from gbeam.results.cases import PROBABILITY, Sensitivity, Sweep
 from gbeam.results.equilibrium import CriticalMap, Deflection
@@ -85,9 +85,9 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
         case SystemModes():
             return {"modes": partial(system.modes, result, title)} if len(result.frequency) else {}
         case SolidStress():
-            return {"stress": partial(solids.stress, result, title)}
+            return {"stress": partial(system.stress, result, title)}
         case SpecimenLoads():
-            return {"specimen": partial(solids.specimen, result, title)}
+            return {"specimen": partial(system.specimen, result, title)}
         case Sensitivity():
             return {name: partial(studies.sensitivity, result, name, title) for name in result.measures}
     return {}

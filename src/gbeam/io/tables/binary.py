@@ -1,20 +1,232 @@
-"""The columns of MAT, HDF5, netCDF and universal files, read in a process of its own."""
+"""HDF5 and netCDF, MATLAB and universal files as tables, read in a process of their own: vectors are columns."""
 
 from __future__ import annotations
 
+import math
 import os
-from collections.abc import Callable, Iterable, Sequence
+import warnings
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gbeam.errors import InputError
 from gbeam.guards.confined import confined
-from gbeam.io.tables.readers import read_hdf5, read_mat, read_uff
-from gbeam.io.tables.table import Column, Table
+from gbeam.guards.limits import ELEMENTS, refuse_more
+from gbeam.io.tables.table import Column, Table, array_columns
+
+if TYPE_CHECKING:
+    import h5py
+
+_NETCDF_3 = b"CDF"  # which is not HDF5
+
+
+def read_hdf5(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
+    """Read an HDF5 or netCDF file.
+
+    A vector is a column by its path, ``group/az``, or the path's last word; a matrix is one column per vector,
+    ``acc[:,0]``. The attribute `units` is the unit; `scale_factor`, `add_offset` and `_FillValue` are applied.
+    """
+    try:
+        with open(path, "rb") as file:
+            old = file.read(3) == _NETCDF_3
+        return Table(tuple(_netcdf_3(path) if old else hdf5_columns(path)))
+    except MemoryError:
+        raise
+    except Exception as error:  # a damaged file leads to any
+        raise InputError("record.file", f"{path} cannot be read ({error})", "give an HDF5 or netCDF file") from None
+
+
+def hdf5_columns(path: str | os.PathLike[str], *, matlab: bool = False) -> list[Column]:
+    """Columns of an HDF5 file; MATLAB's hold every matrix transposed."""
+    import h5py  # 0.2 s to import
+
+    columns: list[Column] = []
+
+    def add(path_inside: str, item: h5py.Dataset | h5py.Group) -> None:
+        if not isinstance(item, h5py.Dataset) or item.dtype.kind not in "iuf" or path_inside.startswith("#"):
+            return
+        shape = item.shape[::-1] if matlab else item.shape
+        name = path_inside.replace("/", ".") if matlab else path_inside
+        unit = _text(item.attrs.get("units", ""))
+        columns.extend(array_columns(name, shape, lambda: values(path_inside), unit=unit, matlab=matlab))
+
+    def values(path_inside: str) -> NDArray[Any]:
+        with h5py.File(path) as file:
+            item = file[path_inside]
+            refuse_more("", "numbers", item.size, ELEMENTS, 40.0, "save fewer at a time")
+            array = _unpacked(np.asarray(item), item.attrs)
+        return array.T if matlab else array
+
+    with h5py.File(path) as file:
+        file.visititems(add)
+    return columns
+
+
+def _netcdf_3(path: str | os.PathLike[str]) -> list[Column]:
+    from scipy.io import netcdf_file  # 0.4 s to import
+
+    columns: list[Column] = []
+    with netcdf_file(path, mmap=False) as file:
+        for name, variable in file.variables.items():
+            if variable.data.dtype.kind in "iuf":
+                attributes = {name: getattr(variable, name) for name in _ATTRIBUTES if hasattr(variable, name)}
+                array = _unpacked(np.array(variable.data, dtype=np.float64), attributes)
+                unit = _text(attributes.get("units", ""))
+                columns += array_columns(name, array.shape, lambda array=array: array, unit=unit)  # type: ignore[misc]
+    return columns
+
+
+def _unpacked(array: NDArray[Any], attributes: Mapping[str, Any]) -> NDArray[np.float64]:
+    """Undo the packing of the CF conventions: samples that are missing are NaN."""
+    missing = [np.ravel(attributes[name])[0] for name in ("_FillValue", "missing_value") if name in attributes]
+    empty = np.isin(array, missing) if missing else False
+    scale, offset = (np.ravel(attributes.get(name, default))[0] for name, default in _PACKING.items())
+    with np.errstate(all="ignore"):  # what is no number is refused where its sample is used
+        values = array.astype(np.float64) * np.float64(scale) + np.float64(offset)
+    return np.where(empty, np.nan, values) if missing else values
+
+
+_PACKING = {"scale_factor": 1.0, "add_offset": 0.0}
+_ATTRIBUTES = "units", "_FillValue", "missing_value", *_PACKING
+
+
+def _text(attribute: Any) -> str:
+    value = np.ravel(attribute)[0] if np.size(attribute) else ""
+    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
+
+
+_STRUCTURES = ("struct", "object")
+_NUMBERS = ("double", "single", "logical", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)))
+
+
+def read_mat(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
+    """Read a MAT file of any version; 7.3 is HDF5.
+
+    A vector is a column by its name, ``az``, or a structure's field by its path, ``rec.az``, or the path's last word; a
+    matrix is one column per vector, ``acc(:,1)``.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.filterwarnings("error", ".*may be corrupt")  # numbers of a VAX or a Cray, which SciPy misreads
+            columns = _any_version(path, words)
+    except (InputError, MemoryError):
+        raise
+    except Exception as error:  # loadmat raises whatever a damaged file leads to
+        raise InputError("record.file", f"{path} is not a MAT file ({error})", "save the record by MATLAB") from None
+    if not columns:
+        fix = "save vectors of numbers; a table T as s = table2struct(T, 'ToScalar', true)"
+        raise InputError("record.file", f"{path} holds no numeric variables", fix)
+    return Table(tuple(columns))
+
+
+def _any_version(path: str | os.PathLike[str], words: Sequence[str]) -> list[Column]:
+    import scipy.io  # 0.2 s to import
+
+    try:
+        variables = scipy.io.whosmat(path)
+    except NotImplementedError:  # scipy's word for version 7.3
+        return hdf5_columns(path, matlab=True)
+    columns: list[Column] = []
+    for name, shape, kind in variables:
+        if kind in _NUMBERS:
+            squeezed = tuple(size for size in shape if size != 1)
+            columns += array_columns(name, squeezed, partial(_array, path, name, shape), matlab=True)
+    structures = [name for name, _, kind in variables if kind in _STRUCTURES]
+    missing = {word.removeprefix("-").strip() for word in words} - {each.name for each in columns} - {"0"}
+    named = [name for name in structures if any(word.startswith(f"{name}.") for word in missing)]
+    columns += [column for name in named for column in _columns(name, _loaded(path, name))]
+    if not words or missing - {each.name for each in columns}:  # a part's last word, or a mistake
+        columns += [c for name in structures if name not in named for c in _columns(name, _loaded(path, name))]
+    return columns
+
+
+def _loaded(path: str | os.PathLike[str], name: str) -> Any:
+    import scipy.io
+
+    return scipy.io.loadmat(path, simplify_cells=True, variable_names=[name])[name]
+
+
+def _array(path: str | os.PathLike[str], name: str, shape: tuple[int, ...]) -> NDArray[Any]:
+    refuse_more("", "numbers", math.prod(shape), ELEMENTS, 8.0, "save fewer at a time")
+    values: NDArray[Any] = _loaded(path, name)
+    if values.dtype.kind not in "iuf":
+        raise InputError("", "holds complex numbers", "save their real parts")
+    return values
+
+
+def _columns(name: str, value: Any) -> list[Column]:
+    if isinstance(value, dict):
+        return [column for field, part in value.items() for column in _columns(f"{name}.{field}", part)]
+    if not isinstance(value, np.ndarray) or value.dtype.kind not in "iuf":
+        return []
+    return array_columns(name, value.shape, lambda: value, matlab=True)
+
+
+_TIME = "time"
+_RESPONSES = (0, 1)  # function types: general, time response
+_DIRECTIONS = ("", "X", "Y", "Z", "RX", "RY", "RZ")
+_NO_NAME = ("", "NONE")
+
+
+def read_uff(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
+    """Read the time responses (data set 58, text or binary) of a universal file.
+
+    A column goes by the first line of the data set's identification, and by its node and direction, ``12+Z``; the
+    abscissa is the column ``time``.
+    """
+    import pyuff  # 0.2 s to import
+
+    try:
+        file = pyuff.UFF(os.fspath(path))
+        sets = [file.read_sets(i) for i, kind in enumerate(file.get_set_types()) if int(kind) == 58]
+    except MemoryError:
+        raise
+    except Exception as error:  # pyuff raises Exception itself
+        raise InputError("record.file", f"{path} is not a universal file ({error})", "export it as UFF 58") from None
+    sets = [one for one in sets if one["func_type"] in _RESPONSES and np.isrealobj(one["data"])]
+    if not sets:
+        raise InputError("record.file", f"{path} holds no time response", "export data sets of type 58")
+    time = _samples(sets[0], "x")
+    names = Counter(_name(one) for one in sets)
+    columns = [Column(_TIME, lambda: time, _unit(sets[0]["abscissa_axis_units_lab"]))]
+    for one in sets:
+        point = _point(one)
+        name = _name(one) if names[_name(one)] == 1 else point
+        abscissa = _samples(one, "x")
+        if abscissa.shape != time.shape or not np.allclose(abscissa, time, rtol=0, atol=1e-6 * np.ptp(time)):
+            raise InputError(
+                "record.file", f"{path} has responses at different times, such as {name!r}", "export them at one rate"
+            )
+        values = _samples(one, "data")
+        unit = _unit(one["ordinate_axis_units_lab"])
+        columns.append(Column(name, lambda values=values: values, unit, (point,)))  # type: ignore[misc]
+    return Table(tuple(columns))
+
+
+def _samples(one: dict[str, Any], key: str) -> np.ndarray[Any, np.dtype[np.float64]]:
+    return np.asarray(one[key], dtype=np.float64)[: int(one["num_pts"])]
+
+
+def _name(one: dict[str, Any]) -> str:
+    name = one["id1"].strip()
+    return _point(one) if name.upper() in _NO_NAME else name
+
+
+def _point(one: dict[str, Any]) -> str:
+    direction = int(one["rsp_dir"])
+    return f"{int(one['rsp_node'])}{'-' if direction < 0 else '+'}{_DIRECTIONS[abs(direction)]}"
+
+
+def _unit(label: str) -> str:
+    label = label.strip()
+    return "" if label.upper() in _NO_NAME else label
+
 
 _READERS: dict[str, Callable[[str, Sequence[str]], Table]] = {
     ".mat": read_mat,
@@ -69,12 +281,12 @@ def columns_of(path: str, words: list[str]) -> list[dict[str, Any]]:
         with suppress(InputError):  # no column, or several: refused where it is looked for
             needed.add(table.column("", table.signed(word)[1] or ""))
     return [
-        {"name": each.name, "unit": each.unit, "aliases": each.aliases} | (_samples(each) if each in needed else {})
+        {"name": each.name, "unit": each.unit, "aliases": each.aliases} | (_sampled(each) if each in needed else {})
         for each in table.columns
     ]
 
 
-def _samples(column: Column) -> dict[str, Any]:
+def _sampled(column: Column) -> dict[str, Any]:
     try:
         return {"samples": np.asarray(column.read(), dtype=np.float64)}
     except MemoryError:
