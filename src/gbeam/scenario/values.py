@@ -85,11 +85,14 @@ class Family:
         Of the numbers: what they should be, or nothing where they are sound.
     centre : callable
         Of the numbers: the value to build the scenario with where nothing is drawn.
+    law : callable
+        Of the numbers: name and arguments of SciPy's distribution.
     """
 
     arguments: tuple[str, ...]
     fault: Callable[..., str]
     centre: Callable[..., float]
+    law: Callable[..., tuple[Any, ...]]
 
 
 FAMILIES = {
@@ -97,21 +100,25 @@ FAMILIES = {
         ("mean", "standard deviation"),
         lambda _, spread: "" if spread > 0 else "a standard deviation above zero",
         lambda mean, _: mean,
+        lambda mean, spread: ("norm", mean, spread),
     ),
     "lognormal": Family(
         ("median", "standard deviation of the logarithm"),
         lambda median, spread: "" if median > 0 and spread > 0 else "a median and a spread above zero",
         lambda median, _: median,
+        lambda median, spread: ("lognorm", spread, 0.0, median),
     ),
     "uniform": Family(
         ("from", "to"),
         lambda low, high: "" if high > low else "a range that ascends",
         lambda low, high: (low + high) / 2,
+        lambda low, high: ("uniform", low, high - low),
     ),
     "triangular": Family(
         ("from", "most likely", "to"),
         lambda low, mode, high: "" if low <= mode <= high and low < high else "three values that ascend",
         lambda _low, mode, _high: mode,
+        lambda low, mode, high: ("triang", (mode - low) / (high - low), low, high - low),
     ),
 }
 
@@ -133,6 +140,13 @@ class Distribution:
         """Mean, median, midpoint or most likely value, as it stands in a scenario."""
         value = FAMILIES[self.family].centre(*self.arguments)
         return written(value, self.unit) if self.unit else value
+
+    def quantile(self, probability: Any) -> Any:
+        """Values that are not exceeded with probabilities (n,)."""
+        from scipy import stats  # half a second
+
+        name, *arguments = FAMILIES[self.family].law(*self.arguments)
+        return getattr(stats, name).ppf(probability, *arguments)
 
 
 def read_distribution(family: str, parts: Sequence[str]) -> Distribution:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
@@ -138,32 +138,6 @@ _CALL = re.compile(r"\s*([a-z]+)\s*\((.*)\)\s*", re.DOTALL)
 MAX_VALUES = 10_000_000  # of one parameter: 80 MB
 
 
-def _scipy(name: str) -> Callable[..., Any]:
-    def quantile(probability: NDArray[Any], *arguments: float) -> Any:
-        from scipy import stats  # half a second
-
-        return getattr(stats, name).ppf(probability, *arguments)
-
-    return quantile
-
-
-def _lognormal(probability: NDArray[Any], median: float, spread: float) -> Any:
-    return median * np.exp(spread * _scipy("norm")(probability))
-
-
-def _triangular(probability: NDArray[Any], low: float, mode: float, high: float) -> Any:
-    return _scipy("triang")(probability, (mode - low) / (high - low), low, high - low)
-
-
-# Inverses of the cumulative distribution functions: of probabilities (n,) and the distribution's arguments.
-QUANTILES: Mapping[str, Callable[..., Any]] = {
-    "normal": _scipy("norm"),
-    "lognormal": _lognormal,
-    "uniform": lambda probability, low, high: low + probability * (high - low),
-    "triangular": _triangular,
-}
-
-
 @dataclass(frozen=True)
 class Variation:
     """One ``PATH=VALUES``: `texts` that replace the scenario's value, and `values` (n,), words or numbers in `unit`.
@@ -180,9 +154,8 @@ class Variation:
     def drawn(self, probability: NDArray[Any]) -> Variation:
         """Variation with the values at probabilities (n,), (0, 1)."""
         assert self.distribution is not None
-        quantile = QUANTILES[self.distribution.family]
         with np.errstate(over="ignore"):
-            values = np.asarray(quantile(probability, *self.distribution.arguments), dtype=float)
+            values = np.asarray(self.distribution.quantile(probability), dtype=float)
         if not np.isfinite(values).all():
             fix = "give a smaller spread"
             raise InputError(f"{OPTION} {self.path}", f"{self.distribution} draws values beyond every number", fix)
