@@ -125,6 +125,9 @@ def test_histories_stay_in_their_bands(unsure: Path) -> None:
     assert np.array_equal(resumed.histories["flight.tip.z"], found.histories["flight.tip.z"])
     response = gb.study(gb.read_scenario(unsure, [f"{STIFFNESS}={float(stiffness[3])!r} GPa"])).responses["flight"]
     assert found.histories["flight.tip.z"][3, -1] == pytest.approx(response.tip[-1, 2], rel=1e-9)
+    assert response.loads is not None  # whose sign is that of the base on the beam
+    root = response.loads.root_moment[-1, 1]
+    assert found.histories["flight.root_moment.y"][3, -1] == pytest.approx(root, rel=1e-9)
 
 
 def test_a_case_that_is_not_done_is_left_out_of_the_estimates(unsure: Path, gbeam: Call) -> None:

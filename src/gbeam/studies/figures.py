@@ -21,6 +21,7 @@ from gbeam.studies.template import Template
 if TYPE_CHECKING:
     from gbeam.analysis.case import AnyCase
     from gbeam.results.facts import Entry
+    from gbeam.results.response import Response
     from gbeam.results.study import Study
 
 Facts = Mapping[str, Any]
@@ -251,23 +252,21 @@ class History:
     def at(self, study: Study, times: Floats) -> Floats:
         """Values at times (t,); NaN where the response has none."""
         response = study.responses.get(self.motion)
-        nothing = np.full(len(times), math.nan)
-        if response is None:
-            return nothing
-        loads = response.loads
-        if self.quantity not in _LOADS:
-            values = response.at(self.quantity)
-        elif loads is None:
-            return nothing
-        else:
-            values = (loads.force if self.quantity == "root_force" else loads.moment)[:, 0]
+        if response is None or (self.quantity in _LOADS and response.loads is None):
+            return np.full(len(times), math.nan)
         from scipy.interpolate import CubicSpline
 
         # Twenty steps to the shortest period: straight lines between them would be off by 1 % of a vibration.
-        spline = CubicSpline(response.time, values[:, self.axis])
+        spline = CubicSpline(response.time, component(response, self.quantity, self.axis))
         slack = 1e-9 * float(response.time[-1] - response.time[0])
         inside = (times >= response.time[0] - slack) & (times <= response.time[-1] + slack)
         return np.where(inside, spline(times), math.nan)
+
+
+def component(response: Response, quantity: str, axis: int) -> Floats:
+    """Component over time (t,) of the displacement of a named point, or of the root's force or moment."""
+    values = getattr(response.loads, quantity) if quantity in _LOADS else response.at(quantity)
+    return np.asarray(values[:, axis])
 
 
 def read_history(text: str, motions: Collection[str], points: Collection[str] = (TIP,)) -> History:

@@ -23,6 +23,7 @@ from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.study import Study
 from gbeam.structure.beam import fibre_strain
+from gbeam.studies.figures import component
 
 OPTION = "--data"
 _TIME = ("time", "time_s", "t")
@@ -237,14 +238,12 @@ def _modal(facts: Mapping[str, Any], quantity: str, mode: int) -> float:
 
 def _values(case: Case, response: Response, column: Measured) -> Floats:
     kind, _, axis = column.quantity.partition(".")
-    if kind in response.points:
-        return response.at(kind)[:, "xyz".index(axis)]
     if kind == "hub":
         assert response.hub is not None
         return np.asarray(getattr(response.hub, axis))
-    assert response.loads is not None
     if not column.face:
-        return np.asarray(getattr(response.loads, kind)[:, "xyz".index(axis)])
+        return component(response, kind, "xyz".index(axis))
+    assert response.loads is not None
     loads, gauge = response.loads, surface_gauge(case.beam, column.at, column.face)
     k = int(np.argmin(np.abs(loads.stations - gauge.at)))
     carried = loads.section_force[:, k], loads.section_moment[:, k]
