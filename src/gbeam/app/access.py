@@ -94,8 +94,8 @@ class Door:
         return None
 
 
-def _same(given: str, secret: str) -> bool:
-    return secrets.compare_digest(given.encode(), secret.encode())
+def _same(answer: str, secret: str) -> bool:
+    return secrets.compare_digest(answer.encode(), secret.encode())
 
 
 _HEADERS = [

@@ -217,9 +217,9 @@ def suggested(columns: Iterable[tuple[str, str]]) -> dict[str, str]:
     }
 
 
-def _together(found: Mapping[str, list[tuple[str, str]]], keys: Iterable[str], unit: str) -> dict[str, str]:
+def _together(columns: Mapping[str, list[tuple[str, str]]], keys: Iterable[str], unit: str) -> dict[str, str]:
     """Columns of one quantity, unless one of them has several; with their unit, unless it is another for each."""
-    held = {key: found[key] for key in keys if key in found}
+    held = {key: columns[key] for key in keys if key in columns}
     units = {stated for each in held.values() for _, stated in each}
     if any(len(each) > 1 for each in held.values()) or len(units) > 1:
         return {}

@@ -80,13 +80,13 @@ def read(verb: str, file: Path, overrides: Sequence[str]) -> Input:
     with Watch(f"reading {file}" + (" and planning its machines" if verb in _MOVING else "")):
         scenario = load(file, overrides, distributions=verb == "check")
         case = build(scenario, ahead=verb in _MOVING)
-    given = Input(scenario, replace(case, provenance=provenance(scenario, command())))
-    with given.placing():
+    loaded = Input(scenario, replace(case, provenance=provenance(scenario, command())))
+    with loaded.placing():
         if verb in QUESTIONS:
             QUESTIONS[verb].refuse(case)
         elif verb not in _ANY:
             case.one_beam("bodies", f"gbeam {verb}")
-    return given
+    return loaded
 
 
 @contextmanager

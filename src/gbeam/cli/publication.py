@@ -104,9 +104,9 @@ def _hidden_in(parent: Path) -> Iterator[Path]:
 
 def _remove_dead(parent: Path) -> None:
     """Remove the hidden folders of runs that were killed."""
-    own = re.compile(rf"{re.escape(_HIDDEN + _computer())}-(\d+)-[^-]+")
+    ours = re.compile(rf"{re.escape(_HIDDEN + _computer())}-(\d+)-[^-]+")
     for left in parent.glob(f"{_HIDDEN}*"):
-        match = own.fullmatch(left.name)
+        match = ours.fullmatch(left.name)
         with suppress(OSError):
             dead = not _runs(int(match[1])) if match and os.name == "posix" else False
             if dead or time.time() - left.stat().st_mtime > _DEAD:
@@ -148,13 +148,13 @@ def _synchronise(folder: Path) -> None:
             os.fsync(opened.fileno())
 
 
-def _remove_plots_before(folder: Path, made: set[str]) -> None:
-    """Remove plots signed by the command that made the files `made`, under their own names, and not among them."""
-    if not any(name.endswith(_PLOTS) for name in made):
+def _remove_plots_before(folder: Path, names: set[str]) -> None:
+    """Remove plots signed by the command that made the files `names`, under their own names, and not among them."""
+    if not any(name.endswith(_PLOTS) for name in names):
         return
     from gbeam.plots import signature
 
-    commands = {signature(folder / name) for name in made if name.endswith(_PLOTS)} - {""}
+    commands = {signature(folder / name) for name in names if name.endswith(_PLOTS)} - {""}
     for file in folder.iterdir():
-        if file.suffix in _PLOTS and file.name not in made and file.is_file() and signature(file) in commands:
+        if file.suffix in _PLOTS and file.name not in names and file.is_file() and signature(file) in commands:
             file.unlink()

@@ -152,9 +152,9 @@ def _of_response(result: Response, title: str, flight: Response | None = None) -
     if result.hub is not None:
         every["hub"] = partial(response.hub, result, result.hub, title)
     if result.solid is not None:
-        every["stress"] = partial(solids.stress, result.solid, title)
+        every["stress"] = partial(system.stress, result.solid, title)
     if result.specimen is not None:
-        every["specimen"] = partial(solids.specimen, result.specimen, title)
+        every["specimen"] = partial(system.specimen, result.specimen, title)
     return every
 
 

@@ -79,29 +79,29 @@ def typed(function: F) -> F:
     kinds = (Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD)
     names = [each.name for each in signature(function).parameters.values() if each.kind in kinds]
 
-    def check(given: Iterable[tuple[str, Any]], texts: bool) -> None:
+    def check(pairs: Iterable[tuple[str, Any]], texts: bool) -> None:
         tests = _tests(function, texts)
-        for name, value in given:
+        for name, value in pairs:
             refuse_units(name, value)
             if name in tests and not tests[name](value):
                 raise _refused(name, value, _hints(function)[name], texts)
 
     @functools.wraps(function)
     def call(*args: Any, **keywords: Any) -> Any:
-        given = (*zip(names, args, strict=False), *keywords.items())
-        if ("progress", True) in given:
+        pairs = (*zip(names, args, strict=False), *keywords.items())
+        if ("progress", True) in pairs:
             with Bar() as bar:
-                return call(**dict(given) | {"progress": bar})
-        if any(type(value) not in _NUMBERS for _, value in given):
+                return call(**dict(pairs) | {"progress": bar})
+        if any(type(value) not in _NUMBERS for _, value in pairs):
             args = (*(_read(owner, *each) for each in zip(names, args, strict=False)), *args[len(names) :])
             keywords = {name: _read(owner, name, value) for name, value in keywords.items()}
-            given = (*zip(names, args, strict=False), *keywords.items())
-        check(given, True)
+            pairs = (*zip(names, args, strict=False), *keywords.items())
+        check(pairs, True)
         try:
             return function(*args, **keywords)
         except (AttributeError, LookupError, TypeError, ValueError) as error:
             if not isinstance(error, GbeamError):
-                check(given, False)
+                check(pairs, False)
             raise
 
     return call  # type: ignore[return-value]

@@ -60,12 +60,12 @@ def _number(where: str, value: Any, fix: str) -> float:
         raise InputError(where, f"is {value!r}", fix) from None
 
 
-def choice(where: str, given: str, choices: Iterable[str]) -> None:
+def choice(where: str, name: str, choices: Iterable[str]) -> None:
     """Raise InputError unless the name is one of the choices."""
     names = tuple(choices)
-    if given not in names:
+    if name not in names:
         import difflib
 
-        close = difflib.get_close_matches(str(given), names, n=1)
+        close = difflib.get_close_matches(str(name), names, n=1)
         guess = f"did you mean {close[0]!r}? " if close else ""
-        raise InputError(where, f"is {given!r}", f"{guess}choose one of {', '.join(names)}")
+        raise InputError(where, f"is {name!r}", f"{guess}choose one of {', '.join(names)}")

@@ -188,15 +188,15 @@ def _is_distribution(node: Any) -> bool:
     return name in FAMILIES or (isinstance(numbers, list) and bool(closest(name, FAMILIES)))
 
 
-def from_table(name: str, given: Any) -> Distribution:
+def from_table(name: str, numbers: Any) -> Distribution:
     """Read what stands in a scenario."""
     known = FAMILIES.get(name)
-    plain = isinstance(given, list) and all(
-        isinstance(each, (str, int, float)) and not isinstance(each, bool) for each in given
+    plain = isinstance(numbers, list) and all(
+        isinstance(each, (str, int, float)) and not isinstance(each, bool) for each in numbers
     )
     if not plain and known is not None:
         raise InputError("", f"has no list of numbers in {name}", f"write {{ {name} = [{_named(known)}] }}")
-    return read_distribution(name, [each if isinstance(each, str) else repr(each) for each in given])
+    return read_distribution(name, [each if isinstance(each, str) else repr(each) for each in numbers])
 
 
 def quantities(parts: Sequence[str]) -> tuple[list[float], str]:

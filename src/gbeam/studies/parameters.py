@@ -106,10 +106,10 @@ def named(template: Template, names: Sequence[str], option: str) -> list[Physica
         raise InputError(option, error.problem, error.fix) from None
 
 
-def bounds_of(each: PhysicalValue, given: Bounds, option: str) -> tuple[float, float]:
+def bounds_of(each: PhysicalValue, bounds: Bounds, option: str) -> tuple[float, float]:
     """Return the bounds given for a value, or a tenth to ten times it; they hold it, as a search begins there."""
-    if each.path in given:
-        low, high = (_quantity(each, end) for end in given[each.path])
+    if each.path in bounds:
+        low, high = (_quantity(each, end) for end in bounds[each.path])
         if not low < high:
             raise InputError("--bounds", f"of {each.path} go from {low:g} to {high:g}", "give the smaller one first")
         if not low <= each.value <= high:
@@ -172,23 +172,23 @@ def on_bound(values: Floats, limits: Floats) -> Flags:
     return np.asarray(np.minimum(values - low, high - values) < _ON * (high - low))
 
 
-def _starting_points(own: Floats, limits: Floats, count: int) -> list[Floats]:
+def _starting_points(start: Floats, limits: Floats, count: int) -> list[Floats]:
     """The scenario's values (p,), and further ones spread evenly between bounds (p, 2), by a Sobol sequence."""
     if count < 1:
         raise InputError("--starts", f"is {count}", "give one or more")
     refuse_more("--starts", "searches", count, MAX_STARTS, 1e5, "give fewer")
     if count == 1:
-        return [own]
+        return [start]
     from scipy.stats import qmc  # half a second
 
     low, high = limits.T
-    sequence = qmc.Sobol(len(own), rng=0).random_base2(max(1, int(np.ceil(np.log2(count - 1)))))
+    sequence = qmc.Sobol(len(start), rng=0).random_base2(max(1, int(np.ceil(np.log2(count - 1)))))
     share = sequence[: count - 1]
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = high / low
         wide = (low > 0) & (ratio > _WIDE)
         points = np.where(wide, low * ratio**share, low + share * (high - low))
-    return [own, *points]
+    return [start, *points]
 
 
 def agreeing(ends: Sequence[Floats], best: Floats, limits: Floats) -> int:

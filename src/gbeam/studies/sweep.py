@@ -230,17 +230,17 @@ def _batches(tasks: Iterator[Task], size: int) -> Iterator[list[Task]]:
 
 
 def _collected(
-    found: Iterator[list[Row]],
+    batches: Iterator[list[Row]],
     before: Sequence[Row],
     count: int,
     progress: Progress,
     journal: Journal | None = None,
 ) -> list[Row]:
-    """The rows found, each batch kept and reported before the next is awaited."""
+    """The rows of batches, each kept and reported before the next is awaited."""
     rows: list[Row] = []
     failed = sum(row.failed for row in before)
     tell(progress, len(before), failed, count)
-    for some in found:
+    for some in batches:
         if journal is not None:
             journal.add(some)
         rows += some

@@ -196,12 +196,12 @@ Template = ScenarioTemplate | CaseTemplate
 
 
 def template_of(
-    given: str | os.PathLike[str] | AnyCase, overrides: Sequence[str] = (), *, distributions: bool = False
+    scenario: str | os.PathLike[str] | AnyCase, overrides: Sequence[str] = (), *, distributions: bool = False
 ) -> Template:
     """Return the template that a scenario's file or a case is, with changes."""
-    if isinstance(given, Case) and given.scenario is None:
-        return CaseTemplate(given).changed(tuple(overrides))
-    return ScenarioTemplate(scenario_of(given, overrides, distributions=distributions))
+    if isinstance(scenario, Case) and scenario.scenario is None:
+        return CaseTemplate(scenario).changed(tuple(overrides))
+    return ScenarioTemplate(scenario_of(scenario, overrides, distributions=distributions))
 
 
 def _below(node: Any, kind: str) -> dict[Any, tuple[Any, str]]:

@@ -74,8 +74,8 @@ def plan(
         from gbeam.io.commands import write_commands
 
         for each in plans:
-            given = tables[each.name].commands
-            time = every or (given.sample if given else SAMPLE)
+            asked = tables[each.name].commands
+            time = every or (asked.sample if asked else SAMPLE)
             write_commands(each, analysis.axis_commands(machines[each.name], time), hidden)
 
     deliver(
@@ -148,11 +148,11 @@ def place(
     return 0
 
 
-def _apply(given: Input, file: Path, name: str, changes: dict[str, str]) -> str:
+def _apply(loaded: Input, file: Path, name: str, changes: dict[str, str]) -> str:
     """Write the changes of one centrifuge into the scenario file; return its name."""
     from gbeam.scenario.text.revise import edited
 
-    source = given.scenario.source
+    source = loaded.scenario.source
     assert source is not None  # it was read from a file
     text, place = edited(source, ("motion", name), changes), file.resolve()
     with naming("--write"):

@@ -131,7 +131,7 @@ def critical_speed(
 
 
 def critical_map(
-    given: Input,
+    loaded: Input,
     motion: str | None,
     masses: str,
     positions: str | None,
@@ -140,8 +140,8 @@ def critical_map(
     output: Output,
 ) -> int:
     """Print and write the map; the arguments are those of :func:`~.critical_speed.critical_speed`."""
-    name, chosen = given.motion(motion, kind="hub")
-    case = given.beam
+    name, chosen = loaded.motion(motion, kind="hub")
+    case = loaded.beam
     kilograms = numbers("--masses", masses, "mass")
     length = case.beam.length
     places = [length * i / 8 for i in range(1, 9)] if positions is None else numbers("--positions", positions, "length")
@@ -152,7 +152,7 @@ def critical_map(
     from gbeam.figures import steady
     from gbeam.report.steady import map_csv
 
-    with Watch() as watch, given.placing():
+    with Watch() as watch, loaded.placing():
         critical = critical_speed_map(
             case.beam, case.model, chosen, kilograms, places, upper, name=name, progress=watch
         )

@@ -95,8 +95,8 @@ class Limits:
     inertia: Any
     power: Any
 
-    def __init__(self, given: MachineLimits | None = None) -> None:
-        machine = MachineLimits() if given is None else given
+    def __init__(self, limits: MachineLimits | None = None) -> None:
+        machine = MachineLimits() if limits is None else limits
         if machine.power is not None and machine.inertia is None:
             raise InputError("limits.power", "is given without the inertia", 'add inertia = "2000 kg m^2" of the arm')
 

@@ -122,13 +122,13 @@ def vector(x: Any | None = None, y: Any | None = None, z: Any | None = None) -> 
     return Vector((parts[0], parts[1], parts[2]))
 
 
-def as_profile(where: str, given: Any, components: int = 1) -> Profile:
+def as_profile(where: str, value: Any, components: int = 1) -> Profile:
     """The profile itself, or the constant one of a number or of three."""
-    if isinstance(given, Profile):
-        profile = given
+    if isinstance(value, Profile):
+        profile = value
     else:
         try:
-            profile = constant(given)
+            profile = constant(value)
         except InputError as error:
             raise InputError(where, error.problem, error.fix) from None
     shape = np.shape(profile(0.0))
