@@ -82,10 +82,10 @@ def _is_regular(file: Path) -> bool:
         return False
 
 
-_TEMPLATES = {"Flight and centrifuge": "flight", "Hub": "hub"}
+_TEMPLATES = {"Flight and centrifuge": "flight", "Hub": "hub", "System of bodies": "system"}
 _FLOWN = "F-16 turn of 8 g, with its record"
 _SCENARIO, _RECORD = "f16_8g_turn.toml", "f16_8g_turn.csv"
-EXAMPLES = ("Flight and centrifuge", _FLOWN, "Hub")
+EXAMPLES = ("Flight and centrifuge", _FLOWN, "Hub", "System of bodies")
 
 
 def example(name: str, records: Path) -> str:

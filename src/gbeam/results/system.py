@@ -16,6 +16,7 @@ from gbeam.results.parts import LoadPeaks, Loads, Outline
 from gbeam.results.result import Complex, Figured, Floats, Part
 
 ENERGIES = ("kinetic", "elastic", "gravity")
+_OF_POINTS = {"place": "place", "velocity": "velocity", "acceleration": "acceleration", "spin": "angular_velocity"}
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -207,6 +208,32 @@ class SystemResponse(Figured):
             If there is no such point.
         """
         return self.place[:, _index("point", point, self.points)]
+
+    def signal(self, name: str) -> Floats:
+        """Return what a sensor would read, by the name of an output of :func:`gbeam.linearize`, (t,) SI.
+
+        Parameters
+        ----------
+        name : str
+            ``joint.angle``, ``joint.angle_rate``, ``body.point.place_x``, ``velocity_x`` (axes of the ground),
+            ``acceleration_x`` or ``spin_x`` (axes of the point); of a beam ``body.root_force.x``, ``root_moment.x``.
+
+        Raises
+        ------
+        InputError
+            If there is no such signal.
+        """
+        owner, _, kind = name.rpartition(".")
+        quantity, _, axis = kind.rpartition("_")
+        if owner in self.points and quantity in _OF_POINTS and axis in tuple("xyz"):
+            k = "xyz".index(axis)
+            return np.asarray(getattr(self, _OF_POINTS[quantity])[:, self.points.index(owner), k])
+        body, _, load = owner.rpartition(".")
+        if body in self.beams and load in ("root_force", "root_moment") and kind in tuple("xyz"):
+            return np.asarray(getattr(self.beams[body].loads, load)[:, "xyz".index(kind)])
+        if name.endswith("_rate") and name.removesuffix("_rate") in self.coordinates:
+            return self.qd[:, self.coordinates.index(name.removesuffix("_rate"))]
+        return self.q[:, _index("name", name, self.coordinates)]
 
     def coordinate(self, name: str) -> Floats:
         """Return a coordinate over time, (t,) m or rad: ``joint.angle``.

@@ -118,7 +118,65 @@ step = "auto"
 integrator = "newmark"  # newmark | hht | generalized-alpha | gauss
 """
 
-_TEMPLATES = {"flight": _FLIGHT, "hub": _HUB}
+_SYSTEM = """\
+title = "A satellite with a flexible panel, pointed by its wheel"
+
+# Bodies, each rigid or a beam, in axes of its root.
+[bodies.bus]
+kind = "rigid"
+mass = "100 kg"
+inertia = ["40 kg m^2", "50 kg m^2", "60 kg m^2"]  # principal moments about the centre of mass, or three rows
+# centre = ["0 m", "0 m", "0 m"]  # of mass, from the root
+points = { side = { at = ["0.5 m", 0, 0], turn = ["90 deg", 0, 0] } }  # places with axes, on which others hang
+
+[bodies.panel]
+kind = "beam"  # the keys of [beam], and its model
+length = "3 m"
+section = { shape = "rectangle", width = "0.5 m", thickness = "20 mm" }
+material = { density = "2700 kg/m^3", youngs_modulus = "70 GPa" }  # yield_strength = "270 MPa" in it gives margins
+damping_ratio = 0.005
+points = [ { name = "middle", at = "1.5 m" } ]  # besides tip and root
+# stations = ["1 m", "2 m"]  # further sections with loads and stress
+model = { kind = "FOAM", modes = { axial = 0, y = 0, z = 3 } }  # exact | CFOAM | FOAM | TLAM
+
+# One joint for every body, which holds it by its root.
+[joints.axis]
+kind = "revolute"  # fixed | revolute | prismatic | cylindrical | universal | spherical | free
+body = "bus"
+on = "ground"  # or a point of another body
+axes = [[0, 0, 1]]
+initial = "-0.3 rad"
+# rate = { profile = "smooth-step", level = "10 deg/s", duration = "5 s" }  # prescribed, instead of free
+# effort = "2 N m"  # of a drive; stiffness, ease, damping, friction, stops with stop_stiffness
+
+[joints.clamp]
+kind = "fixed"  # stiffness = { rz = "2 kN m/rad" } lets it give way
+body = "panel"
+on = "bus.side"
+
+# Forces and moments on points, in axes of the ground, or of the point with follower = true.
+# [forces.thruster]
+# on = "panel.tip"
+# force = { y = "1 N" }  # moment likewise; each a quantity or a profile
+
+# Controllers sample, and hold their efforts; laws one after the other: pid, lead-lag, notch, gains, state-space.
+[controllers.pointing]
+measure = ["axis.angle"]
+drive = ["axis.angle"]
+law = [{ kind = "pid", kp = 60, kd = 220, smoothing = "100 ms" }]  # in SI units of effort and measurement
+sample = "20 ms"
+# delay = "20 ms"
+limit = [20]  # N m
+
+# [system]
+# gravity = [0, 0, "-1 g"]
+# The ground rests, or moves as [motion.NAME] says: a flight, a centrifuge, a hub of a given rate.
+
+[response]
+duration = "20 s"
+"""
+
+_TEMPLATES = {"flight": _FLIGHT, "hub": _HUB, "system": _SYSTEM}
 
 
 def template(kind: str) -> str:

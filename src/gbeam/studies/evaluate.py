@@ -26,7 +26,7 @@ from gbeam.results.cases import ANSWERED
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.study import Failure
-from gbeam.studies.figures import Facts, History, Keys, answer_facts, answered, own_keys, value_at
+from gbeam.studies.figures import Facts, History, Keys, SystemHistory, answer_facts, answered, own_keys, value_at
 from gbeam.studies.template import Template
 
 Function = Callable[[Any], float]
@@ -65,7 +65,7 @@ class Question:
     at: float | None = None
     keys: tuple[Keys, ...] = ()
     functions: tuple[Function, ...] = ()
-    histories: tuple[History, ...] = ()
+    histories: tuple[History | SystemHistory, ...] = ()
     times: Floats = field(default_factory=lambda: np.empty(0))
     together: bool = False
 

@@ -19,10 +19,10 @@ from gbeam.structure.attachments import TIP
 from gbeam.studies.template import Template
 
 if TYPE_CHECKING:
-    from gbeam.analysis.case import AnyCase
+    from gbeam.analysis.case import AnyCase, SystemCase
     from gbeam.results.facts import Entry
     from gbeam.results.response import Response
-    from gbeam.results.study import Study
+    from gbeam.results.study import Study, SystemStudy
 
 Facts = Mapping[str, Any]
 KIND = ""  # key of the kind of answers in facts; no figure's path begins so
@@ -50,6 +50,7 @@ def answer_facts(answer: Any, title: str = "") -> Facts:
             each.centrifuge: {**compared, "verdict": each.figures | _accepted(compared.pop("accepted"))}
             for each, compared in zip(answer.comparisons, facts["comparisons"], strict=True)
         }
+    if hasattr(answer, "responses"):
         facts["study"] = answer  # for histories
     kind = type(answer[0]) if several else type(answer)
     return {**facts, KIND: kind, "message": _message(answer) or facts.get("message", "")}
@@ -253,14 +254,53 @@ class History:
         """Values at times (t,); NaN where the response has none."""
         response = study.responses.get(self.motion)
         if response is None or (self.quantity in _LOADS and response.loads is None):
-            return np.full(len(times), math.nan)
-        from scipy.interpolate import CubicSpline
+            return _at(None, times)
+        return _at((response.time, component(response, self.quantity, self.axis)), times)
 
-        # Twenty steps to the shortest period: straight lines between them would be off by 1 % of a vibration.
-        spline = CubicSpline(response.time, component(response, self.quantity, self.axis))
-        slack = 1e-9 * float(response.time[-1] - response.time[0])
-        inside = (times >= response.time[0] - slack) & (times <= response.time[-1] + slack)
-        return np.where(inside, spline(times), math.nan)
+
+@dataclass(frozen=True)
+class SystemHistory:
+    """What a sensor of a system reads over time, in the motion of that name; the load at the root of a beam too."""
+
+    name: str
+    motion: str
+    quantity: str
+    unit: str
+
+    def at(self, study: SystemStudy, times: Floats) -> Floats:
+        """Values at times (t,); NaN where the response has none."""
+        response = study.responses.get(self.motion)
+        return _at(None if response is None else (response.time, response.signal(self.quantity)), times)
+
+
+def _at(known: tuple[Floats, Floats] | None, times: Floats) -> Floats:
+    """Values (k,) at their times (k,), at others (t,); NaN beyond these."""
+    if known is None:
+        return np.full(len(times), math.nan)
+    from scipy.interpolate import CubicSpline
+
+    # Twenty steps to the shortest period: straight lines between them would be off by 1 % of a vibration.
+    time, values = known
+    slack = 1e-9 * float(time[-1] - time[0])
+    inside = (times >= time[0] - slack) & (times <= time[-1] + slack)
+    return np.where(inside, CubicSpline(time, values)(times), math.nan)
+
+
+def read_system_history(text: str, case: SystemCase, where: str = HISTORY, chosen: str | None = None) -> SystemHistory:
+    """Read ``strip.tip.place_z``, with the motion's name and a dot before it where there are several."""
+    from gbeam.analysis.system.histories import beams_of
+    from gbeam.mechanics.tree.signals import signals_of
+
+    units, names = signals_of(case.system), list(case.environments)
+    for load, unit in _LOADS.items():
+        units |= {f"{body}.{load}.{axis}": unit for body in beams_of(case.system) for axis in "xyz"}
+    motion, _, rest = text.partition(".")
+    motion, signal = (motion, rest) if rest in units and motion in names else (chosen or "", text)
+    if signal not in units:
+        raise InputError(where, f"{text!r} is no history", advise(text, units))
+    if not motion and len(names) > 1:
+        raise InputError(where, f"{text!r} leaves the motion out", f"write {names[0]}.{text}")
+    return SystemHistory(text, motion or names[0], signal, units[signal])
 
 
 def component(response: Response, quantity: str, axis: int) -> Floats:

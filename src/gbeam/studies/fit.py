@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.case import Case
+from gbeam.analysis.case import Case, SystemCase
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.progress import Progress
@@ -29,7 +29,7 @@ _VISIBLE = 1e-5  # of the largest datum: residuals that are less are rounding
 
 @typed
 def fit(
-    scenario: str | os.PathLike[str] | Case,
+    scenario: str | os.PathLike[str] | Case | SystemCase,
     data: str | os.PathLike[str],
     free: Sequence[str],
     *,
@@ -47,13 +47,14 @@ def fit(
 
     Parameters
     ----------
-    scenario : path or Case
+    scenario : path, Case or SystemCase
         The scenario's file, or a case, of :func:`gbeam.read_scenario` or made in Python.
         Its values are where the search starts.
     data : path
         A text file with a header. Columns ``time`` and any of ``tip.z``, ``root_moment.y``, ``root_force.z``,
         ``hub.angle``, ``hub.rate``, ``strain.z@10 mm``, with a unit in brackets or SI, after the motion's name where
-        the scenario has several; or columns ``mode``, ``frequency`` and ``damping_ratio``.
+        the scenario has several; of a system what :meth:`SystemResponse.signal` reads, ``strip.tip.place_z``; or
+        columns ``mode``, ``frequency`` and ``damping_ratio``.
     free : sequence of str
         Paths of the values to find, such as ``beam.material.youngs_modulus``.
     bounds : mapping of str to a pair, optional
@@ -99,14 +100,18 @@ def fit(
         raise InputError(OPTION, "is missing", 'name values: --free "beam.material.youngs_modulus"')
     parameters = named(template, free, OPTION)
     question = Question(template, "run", motion, at)
-    case = question.case(()).one_beam("bodies", "gbeam fit")
+    case = question.case(())
     measurement = read_measurement(data, case, motion)
     if len(measurement.values) <= len(parameters):
         problem = f"names {len(parameters)} values for {len(measurement.values)} data"
         raise InputError(OPTION, problem, "measure more, or free fewer")
     limits = np.array([bounds_of(each, bounds or {}, OPTION) for each in parameters])
     question = replace(question, verb="modes") if measurement.modal else question
-    start = None if measurement.modal else Neighbourhood(question, parameters, progress=progress)
+    start = (
+        None
+        if measurement.modal or isinstance(case, SystemCase)
+        else Neighbourhood(question, parameters, progress=progress)
+    )
     model = Quantities(
         question, parameters, measurement.read, start, measurement.motions, measurement.parts,
         measurement.instrumented, progress,

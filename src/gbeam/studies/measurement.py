@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.case import Case
+from gbeam.analysis.case import AnyCase, Case, SystemCase
 from gbeam.analysis.control.linearization import surface_gauge
 from gbeam.errors import InputError
 from gbeam.guards.kinds import KINDS
@@ -23,7 +23,7 @@ from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.study import Study
 from gbeam.structure.beam import fibre_strain
-from gbeam.studies.figures import component
+from gbeam.studies.figures import SystemHistory, component, read_system_history
 
 OPTION = "--data"
 _TIME = ("time", "time_s", "t")
@@ -40,6 +40,8 @@ _STRAIN = re.compile(r"strain\.(-?[yz])@(.+)")
 _MODAL = {"frequency": "frequency", "damping_ratio": "ratio"}
 _USUAL = {"history": 1e-2, "frequency": 1e-3, "damping_ratio": 0.1}  # noise, of the largest or of the value
 _LEAST = 1e-6  # of that: the noise of data that were computed
+_SIGNALS = "length", "angle", "speed", "angular rate", "acceleration", "force", "torque"  # kinds, of a system
+_KIND_OF = {KINDS[kind].unit: kind for kind in _SIGNALS}
 _MICROSTRAIN = {"µm/m": 1e-6, "um/m": 1e-6, "microstrain": 1e-6}
 
 
@@ -101,15 +103,20 @@ class Measurement:
             weights.append(1 / (usual * size))
         return np.concatenate(weights)
 
-    def instrumented(self, case: Case) -> Case:
+    def instrumented(self, case: Any) -> Any:
         """The case with the gauges among its stations."""
+        if isinstance(case, SystemCase):
+            return case
         gauges = {each.at for each in self.columns if each.face and each.at > 0}
         return replace(case, stations=tuple(sorted({*case.stations, *gauges}))) if gauges else case
 
-    def read(self, case: Case, answer: Any) -> Floats:
+    def read(self, case: AnyCase, answer: Any) -> Floats:
         """Measured quantities of a case, (m,)."""
         if self.modal:
             return np.array([_modal(answer, each.quantity, int(k)) for each in self.columns for k in self.at])
+        if isinstance(case, SystemCase):
+            every = [SystemHistory(each.name, each.motion, each.quantity, each.unit) for each in self.columns]
+            return np.concatenate([each.at(answer["study"], self.at) for each in every])
         assert isinstance(answer, Study)
         return np.concatenate([self._history(case, answer, each) for each in self.columns])
 
@@ -121,13 +128,13 @@ class Measurement:
         return np.asarray(CubicSpline(response.time, values)(self.at))
 
 
-def read_measurement(path: str | os.PathLike[str], case: Case, motion: str | None = None) -> Measurement:
+def read_measurement(path: str | os.PathLike[str], case: AnyCase, motion: str | None = None) -> Measurement:
     """Read measured histories (a column ``time``) or modes (a column ``mode``) from a text file.
 
     Histories are ``tip.z``, ``root_moment.y``, ``root_force.z``, ``hub.angle``, ``hub.rate`` and ``strain.z@10 mm`` (on
     the face towards +z; ``strain.-z@...`` towards −z), with a unit in brackets, ``tip.z [mm]``, or SI, and where
     several motions could be meant after a name, ``flight.tip.z``; columns of modes are ``frequency`` and
-    ``damping_ratio``.
+    ``damping_ratio``. Of a system histories are what its sensors read, ``strip.tip.place_z``.
     """
     try:
         return _read(os.fspath(path), case, motion)
@@ -136,7 +143,7 @@ def read_measurement(path: str | os.PathLike[str], case: Case, motion: str | Non
         raise InputError(where, error.problem, error.fix) from None
 
 
-def _read(path: str, case: Case, motion: str | None) -> Measurement:
+def _read(path: str, case: AnyCase, motion: str | None) -> Measurement:
     table = read_text(path)
     names = {(column.aliases or (column.name,))[0]: column.unit for column in table.columns}
     clock = next((name for name in names if name.lower() in (*_TIME, _MODE)), None)
@@ -152,7 +159,7 @@ def _read(path: str, case: Case, motion: str | None) -> Measurement:
     return Measurement(path, at, modal, columns)
 
 
-def _check_clock(at: Floats, path: str, modal: bool, case: Case) -> None:
+def _check_clock(at: Floats, path: str, modal: bool, case: AnyCase) -> None:
     if modal:
         if (at < 1).any() or (at % 1 != 0).any() or len(set(at)) < len(at):
             raise InputError(OPTION, f"{path} has modes that are no numbers 1, 2, …", "number each mode once")
@@ -168,12 +175,16 @@ def _check_clock(at: Floats, path: str, modal: bool, case: Case) -> None:
         raise InputError(OPTION, problem, "give response.duration the data's, or cut the data")
 
 
-def _column(table: Table, name: str, unit: str, modal: bool, case: Case, motion: str | None) -> Measured:
+def _column(table: Table, name: str, unit: str, modal: bool, case: AnyCase, motion: str | None) -> Measured:
     values = table.numbers("file", name)
     if modal:
         if name not in _MODAL:
             raise InputError(OPTION, f"has the column {name!r}", advise(name, _MODAL))
         return Measured(name, motion or "", name, values * _factor(unit, _MODAL[name], name), _si(_MODAL[name]))
+    if isinstance(case, SystemCase):
+        signal = read_system_history(name, case, OPTION, motion)
+        factor = _factor(unit, _KIND_OF[signal.unit], name)
+        return Measured(name, signal.motion, signal.quantity, values * factor, signal.unit)
     first, _, rest = name.partition(".")
     of, quantity = (first, rest) if first in case.motions else (motion or _only_motion(case, name), name)
     if of not in case.motions:

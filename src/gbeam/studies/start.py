@@ -9,15 +9,16 @@ import math
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.case import AnyCase
+from gbeam.analysis.case import AnyCase, SystemCase
 from gbeam.errors import GbeamError, InputError
 from gbeam.studies.cases import Cases
 from gbeam.studies.evaluate import NO_FACTS, Question, Row, ended, settled, width, without_figures
 from gbeam.studies.evaluate import rows as computed
-from gbeam.studies.figures import find, is_truth, read_history, unit_at
+from gbeam.studies.figures import find, is_truth, read_history, read_system_history, unit_at
 from gbeam.studies.template import Template
 
 _FEW = 8  # cases that stand together in the computation that is timed
@@ -41,8 +42,12 @@ class OverTime:
             return question
         first = case.response.start
         times = np.linspace(first, first + case.response.duration, self.count)
-        points = list(case.one_beam("--history", "a history").beam.named_points)
-        histories = tuple(read_history(each, case.motions, points) for each in self.names)
+        histories: tuple[Any, ...]
+        if isinstance(case, SystemCase):
+            histories = tuple(read_system_history(each, case) for each in self.names)
+        else:
+            points = list(case.beam.named_points)
+            histories = tuple(read_history(each, case.motions, points) for each in self.names)
         return replace(question, histories=histories, times=times)
 
 

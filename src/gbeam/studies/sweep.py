@@ -71,7 +71,8 @@ def sweep(
         of a :class:`gbeam.Case` that return a number, by name. Of run by default the largest of tip and root moment,
         the share of the flight that a centrifuge follows, and whether it is accepted.
     histories : sequence of str
-        Histories over time as further measures, ``flight.tip.z``: of tip, root_force or root_moment along x, y or z.
+        Histories over time as further measures, ``flight.tip.z``: of tip, root_force or root_moment along x, y or z; of
+        a system what :meth:`SystemResponse.signal` reads, ``strip.tip.place_z``.
         Where samples are drawn, their quantiles at every time are the bands that the response stays in.
     times : int
         At which histories are given, spread evenly over the response of the first case; 501 by default.

@@ -15,11 +15,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gbeam.analysis.case import AnyCase, Case
+from gbeam.analysis.case import AnyCase, Case, SystemCase
 from gbeam.arrays.tree import altered, arguments_of
 from gbeam.errors import InputError
 from gbeam.guards.kinds import KINDS, kind_of_argument
 from gbeam.guards.units import UnitError, argument
+from gbeam.mechanics.assembly import assemble
+from gbeam.mechanics.models import Model
+from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.joints import SLIDES, Joint
+from gbeam.mechanics.tree.system import RigidBody, System
 from gbeam.printable import advise
 from gbeam.results.provenance import Provenance
 from gbeam.scenario.build import build, scenario_of
@@ -29,10 +34,24 @@ from gbeam.scenario.schema import Centrifuge
 from gbeam.scenario.schema.fields import kind_of, quantities
 from gbeam.scenario.schema.scenario import Sweep as SweepTable
 from gbeam.scenario.values import Distribution, Path, parse_path, path_text
+from gbeam.structure.beam import Beam
 
 if TYPE_CHECKING:
     from gbeam.scenario.load import AnyScenario
 
+# Kinds of what is said of a joint's coordinate: of a displacement, and of an angle.
+OF_COORDINATES = {
+    "initial": ("length", "angle"),
+    "initial_rate": ("speed", "angular rate"),
+    "stiffness": ("stiffness", "rotational stiffness"),
+    "ease": ("length", "angle"),
+    "damping": ("damping", "rotational damping"),
+    "friction": ("force", "torque"),
+    "stops": ("length", "angle"),
+    "stop_stiffness": ("stiffness", "rotational stiffness"),
+    "rate": ("speed", "angular rate"),
+    "effort": ("force", "torque"),
+}
 _LONGEST = 100  # numbers of a list that are values of a study; more are a record
 
 
@@ -110,14 +129,36 @@ class ScenarioTemplate:
         return KINDS[kind].unit if kind else ""
 
 
+class _BeamBody:
+    """A beam in its model, as a body of a system: varied by the arguments of the beam, and `model`."""
+
+    owner = "Beam"
+
+    def __init__(self, structure: Structure, beam: Beam, shapes: str) -> None:
+        axial, y, z, *others = structure.counts
+        self.structure = structure
+        self.arguments = (arguments_of(beam) or {}) | {
+            "model": Model(structure.kind, axial, y, z, shapes, False, *others)
+        }
+
+    def altered(self, **changes: Any) -> Structure:
+        """The structure of other arguments; its stations stay those within the beam."""
+        arguments = self.arguments | changes
+        model, beam = arguments.pop("model"), Beam(**arguments)
+        return assemble(beam, model, [at for at in self.structure.stations[:-1] if at < beam.length])
+
+
 @dataclass(frozen=True)
 class CaseTemplate:
     """A case made in Python, with the members of a ScenarioTemplate; its values are arguments of its objects, in SI."""
 
-    case: Case
+    case: AnyCase
 
     table = None
-    of_system = False  # a system is varied in its file
+
+    @property
+    def of_system(self) -> bool:
+        return isinstance(self.case, SystemCase)
 
     @property
     def title(self) -> str:
@@ -129,7 +170,8 @@ class CaseTemplate:
 
     @property
     def imitations(self) -> dict[str, bool]:
-        return {name: bool(self.case.accept.get(name)) for name in self.case.tracks}
+        accept = {} if isinstance(self.case, SystemCase) else self.case.accept
+        return {name: bool(accept.get(name)) for name in self.case.tracks}
 
     @property
     def distributions(self) -> Mapping[str, Distribution]:
@@ -151,7 +193,19 @@ class CaseTemplate:
     @property
     def _tree(self) -> dict[str, Any]:
         case = self.case
-        return {"beam": case.beam, "model": case.model, "motion": case.motions, "response": case.response}
+        of_all = {"motion": case.motions, "response": case.response}
+        if not isinstance(case, SystemCase):
+            return {"beam": case.beam, "model": case.model} | of_all
+        system = case.system
+        bodies: dict[str, Any] = {}
+        for name, body in system.bodies.items():
+            if isinstance(body, RigidBody):
+                bodies[name] = body
+            elif body.source is not None:  # of particles no value is known
+                bodies[name] = _BeamBody(body, body.source.beam, body.source.shapes)
+        gravity = {} if system.gravity is None else {"gravity": system.gravity}
+        parts = {name: getattr(system, name) for name in ("joints", "forces", "controllers")}
+        return {"bodies": bodies} | parts | {"system": gravity} | of_all
 
     def changed(self, changes: Sequence[str]) -> CaseTemplate:
         if not changes:
@@ -173,9 +227,15 @@ class CaseTemplate:
         for machine, flight in self.case.tracks.items():
             if motions.get(flight) is not self.case.motions.get(flight):
                 motions[machine] = motions[machine].altered(flight=motions[flight])
+        if isinstance(self.case, SystemCase):
+            system = self.case.system
+            changed = {name: getattr(each, "structure", each) for name, each in parts.pop("bodies").items()}
+            gravity = parts.pop("system").get("gravity")
+            others = {name: parts.pop(name) for name in ("joints", "forces", "controllers")}
+            parts["system"] = System({**system.bodies, **changed}, gravity=gravity, **others)
         return CaseTemplate(replace(self.case, **parts, motions=motions))
 
-    def built(self) -> Case:
+    def built(self) -> AnyCase:
         return self.case
 
     def quantities(self) -> dict[str, tuple[float, str]]:
@@ -199,7 +259,7 @@ def template_of(
     scenario: str | os.PathLike[str] | AnyCase, overrides: Sequence[str] = (), *, distributions: bool = False
 ) -> Template:
     """Return the template that a scenario's file or a case is, with changes."""
-    if isinstance(scenario, Case) and scenario.scenario is None:
+    if isinstance(scenario, (Case, SystemCase)) and scenario.scenario is None:
         return CaseTemplate(scenario).changed(tuple(overrides))
     return ScenarioTemplate(scenario_of(scenario, overrides, distributions=distributions))
 
@@ -211,9 +271,17 @@ def _below(node: Any, kind: str) -> dict[Any, tuple[Any, str]]:
     """
     if isinstance(node, (tuple, list)) or np.ndim(node):
         return {k: (each, kind) for k, each in enumerate(node)}
-    owner = type(node).__name__
+    owner = getattr(node, "owner", type(node).__name__)
     arguments = dict(node) if isinstance(node, Mapping) else arguments_of(node) or {}
-    return {name: (each, kind_of_argument(owner, name) or kind) for name, each in arguments.items()}
+    return {name: (each, _kind(node, owner, name) or kind) for name, each in arguments.items()}
+
+
+def _kind(node: Any, owner: str, name: str) -> str:
+    """Kind of an argument of an object; of a joint that of its coordinates, where these are of one kind."""
+    if isinstance(node, Joint) and name in OF_COORDINATES:
+        slides = {each in SLIDES for each in node.coordinates}
+        return OF_COORDINATES[name][not slides.pop()] if len(slides) == 1 else ""
+    return kind_of_argument(owner, name)
 
 
 def _with(node: Any, kind: str, wanted: Any, path: Path) -> Any:

@@ -50,7 +50,9 @@ def new(
     file: Annotated[Path, Parameter(help="File to write, such as wing.toml; never overwritten.")],
     /,
     *,
-    kind: Annotated[Literal["flight", "hub"], Parameter(help="Flight and centrifuge, or a hub.")] = "flight",
+    kind: Annotated[
+        Literal["flight", "hub", "system"], Parameter(help="Flight and centrifuge, a hub, or a system of bodies.")
+    ] = "flight",
     json: Json = False,
 ) -> int:
     """Write a commented scenario to start from.

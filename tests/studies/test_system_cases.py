@@ -1,0 +1,85 @@
+"""Studies of systems: made in Python as in a file, and histories of what sensors of a system read."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gbeam as gb
+
+SATELLITE = "examples/satellite_two_panels.toml"
+SHORT = ["response.duration=0.5 s", "response.step=5 ms", "response.estimate=false"]
+
+
+def made() -> gb.SystemCase:
+    """The example as if it were made in Python."""
+    return replace(gb.read_scenario(SATELLITE, SHORT), title="made")
+
+
+@pytest.mark.parametrize(
+    "over",
+    [
+        "joints.hinge_right.stiffness=50 N m/rad, 100 N m/rad",
+        "bodies.bus.mass=40 kg, 60 kg",
+        "bodies.right.section.thickness=20 mm, 30 mm",
+        "bodies.left.length=2.5 m, 3 m",
+    ],
+)
+def test_a_sweep_of_a_case_is_that_of_its_file(over: str) -> None:
+    options: dict[str, Any] = {"verb": "modes"}
+    name = "modes[0].frequency"
+    of_case, of_file = (gb.sweep(each, [over], [name], **options) for each in (made(), SATELLITE))
+    np.testing.assert_allclose(of_case.measures[name], of_file.measures[name], rtol=1e-9)
+    assert np.ptp(of_case.measures[name]) > 0 and of_case.parameters[0].unit == of_file.parameters[0].unit
+
+
+def test_other_studies_of_a_case() -> None:
+    measure, path = "modes[0].frequency", "joints.hinge_right.stiffness"
+    sensitivity = gb.sensitivity(made(), [measure], [path], verb="modes")
+    up, down = (
+        gb.sweep(made(), [f"{path}={value}"], [measure], verb="modes").measures[measure][0] for value in (101.0, 99.0)
+    )
+    assert sensitivity.derivatives[0, 0] == pytest.approx((up - down) / 2, rel=1e-3)
+    optimum = gb.optimise(made(), measure, [path], bounds={path: (50.0, 150.0)}, verb="modes")
+    assert optimum.values[0] == pytest.approx(50.0, rel=1e-3)
+    with pytest.raises(gb.InputError, match="is no value that the case gives"):
+        gb.sweep(made(), ["bodies.bus.weight=1, 2"], [measure], verb="modes")
+
+
+def test_histories_are_what_sensors_read() -> None:
+    names = ["right.tip.place_z", "hinge_right.angle", "right.root_moment.y", "ground.bus.root.spin_y"]
+    swept = gb.sweep(SATELLITE, ["bodies.bus.mass=40 kg, 60 kg"], histories=names, times=21, overrides=SHORT)
+    case = gb.read_scenario(SATELLITE, [*SHORT, "bodies.bus.mass=60 kg"])
+    response = gb.simulate(case.system, settings=case.response)
+    for name in names:
+        signal = response.signal(name.removeprefix("ground."))
+        expected = np.interp(swept.time, response.time, signal)
+        np.testing.assert_allclose(swept.histories[name][1], expected, atol=1e-4 * np.abs(signal).max())
+    assert [swept.units[name] for name in names] == ["m", "rad", "N m", "rad/s"]
+    with pytest.raises(gb.InputError, match="did you mean"):
+        gb.sweep(SATELLITE, ["bodies.bus.mass=40 kg"], histories=["right.tip.plase_z"], overrides=SHORT)
+
+
+@pytest.mark.parametrize("modal", [True, False])
+def test_a_fit_finds_what_was_measured(modal: bool, tmp_path: Path) -> None:
+    """The stiffness of a hinge by frequencies and damping, and by what two sensors read over time."""
+    path, true = "joints.hinge_right.stiffness", 90.0
+    case, data = gb.read_scenario(SATELLITE, [*SHORT, f"{path}={true} N m/rad"]), tmp_path / "data.csv"
+    if modal:
+        modes = gb.modes(case.system)
+        table, head = (
+            np.stack([np.arange(1, 5), modes.frequency[:4], modes.damping_ratio[:4]], 1),
+            "mode,frequency,damping_ratio",
+        )
+    else:
+        response = gb.simulate(case.system, settings=case.response)
+        signals = [response.signal(name) for name in ("right.tip.place_z", "hinge_right.angle")]
+        table = np.stack([response.time, 1e3 * signals[0], signals[1]], axis=1)[::10]
+        head = "time,right.tip.place_z [mm],hinge_right.angle"
+    np.savetxt(data, table, delimiter=",", header=head, comments="")
+    fit = gb.fit(gb.read_scenario(SATELLITE, SHORT), data, [path])
+    assert fit.values[0] == pytest.approx(true, rel=1e-4) and fit.before[0] == 100.0
