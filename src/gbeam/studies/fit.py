@@ -100,7 +100,8 @@ def fit(
         raise InputError(OPTION, "is missing", 'name values: --free "beam.material.youngs_modulus"')
     parameters = named(template, free, OPTION)
     question = Question(template, "run", motion, at)
-    case = question.case(())
+    given = question.case(())
+    case = given if isinstance(given, SystemCase) else given.one_beam("bodies", "gbeam fit")
     measurement = read_measurement(data, case, motion)
     if len(measurement.values) <= len(parameters):
         problem = f"names {len(parameters)} values for {len(measurement.values)} data"

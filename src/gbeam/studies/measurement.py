@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.case import AnyCase, Case, SystemCase
+from gbeam.analysis.case import Case, SystemCase
 from gbeam.analysis.control.linearization import surface_gauge
 from gbeam.errors import InputError
 from gbeam.guards.kinds import KINDS
@@ -110,7 +110,7 @@ class Measurement:
         gauges = {each.at for each in self.columns if each.face and each.at > 0}
         return replace(case, stations=tuple(sorted({*case.stations, *gauges}))) if gauges else case
 
-    def read(self, case: AnyCase, answer: Any) -> Floats:
+    def read(self, case: Case | SystemCase, answer: Any) -> Floats:
         """Measured quantities of a case, (m,)."""
         if self.modal:
             return np.array([_modal(answer, each.quantity, int(k)) for each in self.columns for k in self.at])
@@ -128,7 +128,7 @@ class Measurement:
         return np.asarray(CubicSpline(response.time, values)(self.at))
 
 
-def read_measurement(path: str | os.PathLike[str], case: AnyCase, motion: str | None = None) -> Measurement:
+def read_measurement(path: str | os.PathLike[str], case: Case | SystemCase, motion: str | None = None) -> Measurement:
     """Read measured histories (a column ``time``) or modes (a column ``mode``) from a text file.
 
     Histories are ``tip.z``, ``root_moment.y``, ``root_force.z``, ``hub.angle``, ``hub.rate`` and ``strain.z@10 mm`` (on
@@ -143,7 +143,7 @@ def read_measurement(path: str | os.PathLike[str], case: AnyCase, motion: str | 
         raise InputError(where, error.problem, error.fix) from None
 
 
-def _read(path: str, case: AnyCase, motion: str | None) -> Measurement:
+def _read(path: str, case: Case | SystemCase, motion: str | None) -> Measurement:
     table = read_text(path)
     names = {(column.aliases or (column.name,))[0]: column.unit for column in table.columns}
     clock = next((name for name in names if name.lower() in (*_TIME, _MODE)), None)
@@ -159,7 +159,7 @@ def _read(path: str, case: AnyCase, motion: str | None) -> Measurement:
     return Measurement(path, at, modal, columns)
 
 
-def _check_clock(at: Floats, path: str, modal: bool, case: AnyCase) -> None:
+def _check_clock(at: Floats, path: str, modal: bool, case: Case | SystemCase) -> None:
     if modal:
         if (at < 1).any() or (at % 1 != 0).any() or len(set(at)) < len(at):
             raise InputError(OPTION, f"{path} has modes that are no numbers 1, 2, …", "number each mode once")
@@ -175,7 +175,7 @@ def _check_clock(at: Floats, path: str, modal: bool, case: AnyCase) -> None:
         raise InputError(OPTION, problem, "give response.duration the data's, or cut the data")
 
 
-def _column(table: Table, name: str, unit: str, modal: bool, case: AnyCase, motion: str | None) -> Measured:
+def _column(table: Table, name: str, unit: str, modal: bool, case: Case | SystemCase, motion: str | None) -> Measured:
     values = table.numbers("file", name)
     if modal:
         if name not in _MODAL:

@@ -152,7 +152,7 @@ class _BeamBody:
 class CaseTemplate:
     """A case made in Python, with the members of a ScenarioTemplate; its values are arguments of its objects, in SI."""
 
-    case: AnyCase
+    case: Case | SystemCase
 
     table = None
 
