@@ -46,6 +46,14 @@ def array(where: str, value: Any) -> Any:
         raise InputError(where, f"is {shortened(repr(value))}", "give numbers in SI") from None
 
 
+def vector(where: str, value: Any) -> Any:
+    """Return `value` as an array of three finite numbers."""
+    checked = array(where, value)
+    if checked.shape != (3,) or not (is_jax(checked) or all(map(math.isfinite, checked))):
+        raise InputError(where, f"is {value!r}", "give three finite components, along x, y and z")
+    return checked
+
+
 def _holds_text(value: Any) -> bool:
     """Whether a value is a text, or a list of some: NumPy would read them."""
     return isinstance(value, str) or (isinstance(value, (list, tuple)) and any(map(_holds_text, value)))

@@ -2,7 +2,7 @@
 
 A scheme is data: which combinations of the last state its stages start from, and what their accelerations add. Linear
 equations become one affine map a step, found for many steps at once; nonlinear ones are solved in windows of many
-steps by Newton's method. Neither compiles anything; batches and what JAX traces are compiled.
+steps by Newton's method. Neither compiles anything; batches are compiled, and derivatives of runs that JAX traces.
 """
 
 from gbeam.integrate.driver import integrate

@@ -91,21 +91,8 @@ def _nonlinear(equations: NonlinearEquations, scheme: Scheme, q: Any, qd: Any, s
 
 
 def _traced(equations: NonlinearEquations, scheme: Scheme, q: Any, qd: Any, steps: Steps) -> Iterator[Piece]:
-    """All steps in one program; from one that fails on, the values are NaN, and so are their derivatives."""
-    import jax
-    import jax.numpy as jnp
+    from gbeam.integrate.traced import traced
 
-    from gbeam.integrate import newton
-
-    qdd = newton.accelerations(equations.residual, q[None], qd[None], equations.drive(steps.first[:1]))[0]
-    yield *(jnp.asarray(each, dtype=float)[None] for each in (q, qd, qdd)), np.array([True])
-    x = jnp.broadcast_to(qdd, (len(scheme.offsets), len(q)))
-    carry = newton.Carry(scheme.tableau(steps.length[0]).first @ jnp.stack([q, qd, qdd]), x, x)
-    times = np.stack([steps.times(offset) for offset in scheme.offsets], axis=1)
-    inputs = jax.tree.map(lambda leaf: leaf.reshape(*times.shape, *leaf.shape[1:]), equations.drive(times.ravel()))
-    at_ends = None if scheme.ends else equations.drive(steps.end)
-    every = np.ones(len(steps), dtype=bool)
-    tableau = scheme.tableau(steps.length)
-    _, (*piece, solved) = newton.safe(equations.residual, tableau, carry, inputs, at_ends, every)
-    sound = jnp.where(jnp.cumprod(solved), 1.0, jnp.nan)[:, None]
-    yield *(sound * values for values in piece), every
+    run = traced(equations, scheme, q, qd, steps)
+    yield *(each[:1] for each in run), np.array([True])
+    yield *(each[1:] for each in run), np.ones(len(steps), dtype=bool)

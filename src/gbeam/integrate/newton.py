@@ -1,9 +1,9 @@
-"""Nonlinear equations in time, compiled by JAX: steps of many runs without conditions, and what JAX differentiates.
+"""Nonlinear equations in time, compiled by JAX: steps of many runs side by side, without conditions.
 
 On a CPU a loop with a condition inside costs as much as the arithmetic of a step. So a step makes a given number of
 corrections from an extrapolated guess, with the inverse Jacobian of its chunk's beginning; the size of the last two
 says what error is left. A run of steps in which one leaves too much is done again with more corrections by the same
-program. What JAX traces takes Newton's method proper.
+program.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 
-from gbeam.arrays.jax_setup import linear_root, with_slope
+from gbeam.arrays.jax_setup import with_slope
 from gbeam.integrate.schemes import Tableau
 
 Array = Any
@@ -22,7 +22,6 @@ Array = Any
 CORRECTIONS, PER_JACOBIAN = {2: 4, 4: 5}, {2: 20, 4: 2}
 PATIENT = 8  # corrections where those did not suffice
 ACCEPTED = 1e-8  # of the largest acceleration: the error that the last correction may leave
-_TOLERANCE, _ROUNDING, _ITERATIONS = 1e-9, 1e3, 25  # Newton's method proper
 
 
 class Carry(NamedTuple):
@@ -146,45 +145,3 @@ def _first(group: Any, carry: Carry, by_group: Any, count: Any, shape: tuple[int
 
     history = (*[jnp.zeros(shape)] * 3, jnp.zeros(shape[:-1]))
     return jax.lax.fori_loop(0, count, turn, (carry, history))
-
-
-@jax.jit
-def safe(residual: Any, tableau: Tableau, carry: Carry, inputs: Any, at_ends: Any, inside: Any) -> Any:
-    """Take steps (steps, ...) by Newton's method to convergence, flagging those solved; derivatives are by the implicit
-    function theorem.
-    """
-    stages, n = carry.x.shape
-
-    def newton(flat: Any, guess: Array) -> tuple[Array, Array]:
-        """Solution, and the size of the last correction."""
-
-        def go_on(state: tuple[Any, ...]) -> Array:
-            _, size, before, count = state
-            stalled = (size > before / 2) & (size <= _ROUNDING * _TOLERANCE)
-            return (size > _TOLERANCE) & ~stalled & (count < _ITERATIONS)
-
-        def iterate(state: tuple[Any, ...]) -> tuple[Any, ...]:
-            x, size, _, count = state
-            value, slope = with_slope(flat)(x)
-            correction = jnp.linalg.solve(slope, value)
-            x = x - correction
-            return x, _size(correction, x), size, count + 1
-
-        far = jnp.array(jnp.inf)
-        x, size, _, _ = jax.lax.while_loop(go_on, iterate, (guess, far, far, jnp.array(0)))
-        return x, size
-
-    def step(carry: Carry, of_step: Any) -> Any:
-        t, at, counts = of_step
-
-        def flat(x: Array) -> Array:
-            return _stage_residual(residual, t, carry.z, at, x.reshape(stages, n)).ravel()
-
-        x, size = jax.lax.custom_root(flat, carry.x.ravel(), newton, linear_root, has_aux=True)
-        x = x.reshape(stages, n)
-        after, q, qd = _next(t, carry, x)
-        after = jax.tree.map(lambda a, b: jnp.where(counts, a, b), after, carry)
-        return after, (q, qd, x[-1], (size <= _ROUNDING * _TOLERANCE) & jnp.all(jnp.isfinite(x)))
-
-    carry, (q, qd, qdd, solved) = jax.lax.scan(step, carry, (tableau, inputs, inside))
-    return carry, (q, qd, qdd if at_ends is None else accelerations(residual, q, qd, at_ends), solved)

@@ -19,7 +19,8 @@ from gbeam.analysis.response.stepping import MAX_STEPS, ONE_CORNER, finer_by, sc
 from gbeam.analysis.system.assembly import assembly_of
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
 from gbeam.analysis.system.histories import Carried, beams_of, histories, loads_of
-from gbeam.analysis.system.point import Point, started
+from gbeam.analysis.system.point import Point, started, started_traced
+from gbeam.arrays.namespace import holds_jax, namespace
 from gbeam.errors import InputError
 from gbeam.integrate.driver import integrate
 from gbeam.integrate.equations import NonlinearEquations, Trajectory
@@ -72,8 +73,10 @@ def simulate_system(
     begin = settings.begin
     if begin != type(begin)(begin.state):
         raise InputError("initial", "displaces a tip", 'give "equilibrium" or "undeformed"; joints have initial values')
-    point = started(system, motion, settings.start, begin.state)
     equations = NonlinearEquations(system.tree, lambda t: system.inputs(t, motion))
+    if system.holds_jax or holds_jax(motion):
+        return _traced(system, motion, settings, name, equations)
+    point = started(system, motion, settings.start, begin.state)
     if system.controllers:
         if settings.integrator != "gauss":
             fix = "leave it out: controllers are sampled by Gauss's method"
@@ -126,6 +129,23 @@ def simulate_system(
     return _described(system, motion, settings, chosen, stride, error, name, equations)
 
 
+def _traced(
+    system: System, motion: Motion | None, settings: ResponseSettings, name: str, equations: NonlinearEquations
+) -> SystemResponse:
+    """A run whose values JAX traces: of a given step, without a look at them."""
+    if settings.step is None:
+        raise InputError("step", "is automatic, and a traced run has no numbers to choose it by", "give a step, s")
+    if system.controllers:
+        fix = "trace the system without them: a law that is sampled is no part of a compiled program"
+        raise InputError("controllers", "are in the loop of a traced run", fix)
+    count = max(1, round(settings.duration / settings.step))
+    step, how = settings.duration / count, replace(settings, loads=False)
+    y, yd = started_traced(system, motion, settings.start, settings.begin.state)
+    run = integrate(equations, scheme_of(settings), y, yd, step=step, count=count, start=settings.start)
+    whole = Run(run, step, None)  # type: ignore[arg-type]
+    return _described(system, motion, how, whole, 1, math.nan, name, equations)
+
+
 def _error(runs: list[tuple[Run, Floats]], order: int) -> float:
     """Error of the last of two or more runs, by the order observed in the last three."""
     last = runs[-3:]
@@ -171,7 +191,7 @@ def _over_time(
         for name, each in carried.items():
             beams.setdefault(name, []).append(each)
     along = {name: loads_of(beams_of(system)[name], each, of.time) for name, each in beams.items() if loads}
-    over_time = {key: np.concatenate(values) for key, values in columns.items()}
+    over_time = {key: namespace(*values).concatenate(values) for key, values in columns.items()}
     return over_time | {"attitude": continuous(over_time["attitude"])}, along, loop
 
 

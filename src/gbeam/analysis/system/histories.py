@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.arrays.namespace import as_array, namespace
 from gbeam.mechanics.section_forces import Hung, section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.bodies import Acting
@@ -46,15 +47,15 @@ def histories(
     whole = [y, yd]
     if inputs.prescribed is not None:
         whole = [tree.whole(each, inputs.prescribed[:, k]) for k, each in enumerate(whole)]
-    effort = np.zeros_like(whole[0]) if inputs.efforts is None else np.array(inputs.efforts)
-    fixed = list(tree.fixed)
-    effort[:, fixed] = rows[:, fixed]
+    xp = namespace(rows)
+    effort = xp.zeros_like(whole[0]) if inputs.efforts is None else inputs.efforts
+    effort = xp.where(np.isin(np.arange(tree.size), tree.fixed), rows, effort)
     out = {
-        "place": np.stack([frame.p for frame in frames], axis=1),
-        "velocity": np.stack([turned(frame.R, frame.v) for frame in frames], axis=1),
-        "acceleration": np.stack([frame.a for frame in frames], axis=1),
-        "attitude": np.stack([parameters_of_all(frame.R) for frame in frames], axis=1),
-        "angular_velocity": np.stack([frame.w for frame in frames], axis=1),
+        "place": xp.stack([frame.p for frame in frames], axis=1),
+        "velocity": xp.stack([turned(frame.R, frame.v) for frame in frames], axis=1),
+        "acceleration": xp.stack([frame.a for frame in frames], axis=1),
+        "attitude": xp.stack([parameters_of_all(frame.R) for frame in frames], axis=1),
+        "angular_velocity": xp.stack([frame.w for frame in frames], axis=1),
         "q": whole[0],
         "qd": whole[1],
         "effort": effort,
@@ -62,7 +63,7 @@ def histories(
         "ground_moment": -ground.moment,
     }
     if inertial:
-        gravity = np.zeros(3) if system.gravity is None else np.asarray(system.gravity, dtype=float)
+        gravity = np.zeros(3) if system.gravity is None else as_array(system.gravity)
         momentum, spin, energy = tree.invariants(y, yd, inputs, gravity)
         out |= {"momentum": momentum, "angular_momentum": spin, "energy": energy}
     beams = beams_of(system)
@@ -83,7 +84,7 @@ def _carried(state: State, k: int, beam: Structure, acting: list[Acting]) -> Car
     wrenches = [each.wrench.brought(each.by) for each in acting]
     none = np.zeros((len(q), 0, 3))
     force, moment = (
-        np.stack([getattr(each, name) for each in wrenches], axis=1) if wrenches else none
+        namespace(q).stack([getattr(each, name) for each in wrenches], axis=1) if wrenches else none
         for name in ("force", "moment")
     )
     hung = Hung(np.array([places[each.point] for each in acting], dtype=int), force, moment)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.analysis.system.histories import beams_of, histories, loads_of
+from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import each_leaf
 from gbeam.errors import ComputationError, InputError
 from gbeam.integrate.derivatives import slopes
@@ -89,6 +90,26 @@ def started(system: System, motion: Motion | None, time: float, initial: str) ->
             return Point(tree, y, yd, ydd, inputs)
     fix = 'begin with initial = "undeformed"'
     raise ComputationError("no equilibrium", f"the bodies have no place to rest at the start; {fix}")
+
+
+def started_traced(system: System, motion: Motion | None, time: float, initial: str) -> tuple[Array, Array]:
+    """Coordinates and rates at the start of a system that JAX traces; NaN where its bodies find no place to rest."""
+    tree, inputs = system.tree, system.inputs(np.asarray(time), motion)
+    free = tree.free
+    y, yd = (each[free] for each in system.start)
+    elastic = np.array([".q" in system.coordinates[k] for k in free], dtype=bool)
+    if initial != "equilibrium" or not elastic.any():
+        return y, yd
+    import jax.numpy as jnp
+
+    from gbeam.mechanics.equations.compiled import root
+
+    def left(z: Array, share: Any) -> Array:
+        # Unknown are the coordinates of the bodies, and the accelerations of the joints.
+        bent = namespace(z).where(elastic, z, 0.0)
+        return tree(y + bent, yd, z - bent, inputs)
+
+    return y + elastic * root(left, jnp.zeros(len(free))), yd
 
 
 def rested(system: System, tree: Tree, inputs: Inputs, start: Floats | None = None) -> Point:

@@ -27,7 +27,7 @@ def resting(residual: Any, base: Base, loads: Array | None) -> Array:
         part = Base(share * base.a_WO_B, jnp.sqrt(share) * base.w_WB_B, share * base.alpha_WB_B)
         return residual(q, still, still, (part, None if loads is None else share * loads))
 
-    return _root(force, still)
+    return root(force, still)
 
 
 @partial(jax.jit, static_argnames="axes")
@@ -39,10 +39,10 @@ def displaced(structure: Any, axes: tuple[int, ...], wanted: Array) -> Array:
         q, pull = z[:n], z[n:]
         return equations.strain_energy(q) - pull @ (structure.tip(q)[jnp.array(axes)] - share * wanted)
 
-    return _root(jax.grad(energy), jnp.zeros(n + len(axes)))[:n]
+    return root(jax.grad(energy), jnp.zeros(n + len(axes)))[:n]
 
 
-def _root(function: Any, start: Array) -> Array:
+def root(function: Any, start: Array) -> Array:
     """Root of a function of x and a share of its drive, as the share grows to one; derivatives are implicit."""
 
     def newton(of: Any, start: Array) -> tuple[Array, Array]:

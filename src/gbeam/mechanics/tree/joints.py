@@ -9,10 +9,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.arrays.namespace import as_array, is_jax, namespace
 from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import array, choice, finite, positive
+from gbeam.guards.checks import array, choice, finite, positive, vector
 from gbeam.mechanics.tree.equations import Holder
 from gbeam.mechanics.tree.steps import Ball, Placed, Rotation, Slide, Step, about
 from gbeam.motion.profiles.combine import as_profile
@@ -147,9 +148,7 @@ class Joint(Value):
             raise InputError("axes", f"is {self.axes!r}", "give directions of finite length above zero")
         object.__setattr__(self, "axes", tuple(map(tuple, axes)))
         for name in ("at", "turn"):
-            value = np.asarray(array(name, getattr(self, name)), dtype=float)
-            if value.shape != (3,) or not np.isfinite(value).all():
-                raise InputError(name, f"is {getattr(self, name)!r}", "give three finite components")
+            vector(name, getattr(self, name))
         if self.kind == "fixed":
             for name in (*_EASY, "stops"):
                 if getattr(self, name) is not None and not isinstance(getattr(self, name), Mapping):
@@ -173,7 +172,7 @@ class Joint(Value):
     @property
     def steps(self) -> tuple[Step, ...]:
         """The chain of elementary motions from the point to the root of the body."""
-        placed = Placed(np.asarray(self.at, dtype=float), about(np.asarray(self.turn)))
+        placed = Placed(as_array(self.at), about(self.turn))
         axes = np.asarray(self.axes, dtype=float).reshape(-1, 3)
         steps = KINDS[self.kind].steps(axes / np.linalg.norm(axes, axis=1, keepdims=True))
         if self.kind == "fixed" and self.coordinates:
@@ -181,7 +180,8 @@ class Joint(Value):
             steps = (Slide(_EYE[:, moved]),) * bool(moved) + (Rotation(_EYE[:, turned], _EYE),) * bool(turned)
         # The coordinates are in axes of the point; the body is turned after them.
         before, after = Placed(placed.r, None), Placed(np.zeros(3), placed.R)
-        return (before,) * bool(np.any(placed.r)) + steps + (after,) * bool(np.any(self.turn))
+        moves, turns = (is_jax(each) or bool(each.any()) for each in map(as_array, (self.at, self.turn)))
+        return (before,) * moves + steps + (after,) * turns
 
     @property
     def holder(self) -> Holder:
@@ -197,7 +197,7 @@ class Joint(Value):
             if ends.shape != (2,) or not ends[0] < ends[1]:
                 raise InputError(f"stops.{coordinate}", f"is {pair!r}", "give the lowest and the highest coordinate")
             low[k], high[k] = ends
-            if not values["stop_stiffness"][k] > 0:
+            if not (is_jax(values["stop_stiffness"]) or values["stop_stiffness"][k] > 0):
                 raise InputError("stop_stiffness", "is missing", f"a stop of {coordinate} needs one")
         return Holder(low=low, high=high, stop=values.pop("stop_stiffness"), **values)
 
@@ -210,7 +210,7 @@ class Joint(Value):
             if name in _BALL:
                 raise InputError(f"initial.{name}", "is one of four Euler parameters", "give `turn` for the rotation")
         values = dict(zip(chosen, self._numbers("initial", self.initial, chosen), strict=True))
-        return np.array([values.get(name, one) for name, one in zip(self.coordinates, unit, strict=True)])
+        return as_array([values.get(name, one) for name, one in zip(self.coordinates, unit, strict=True)])
 
     @property
     def start_rate(self) -> Floats:
@@ -220,8 +220,8 @@ class Joint(Value):
         if not spin:
             return values
         # The spin is given in axes of the body, which the turn sets after the ball.
-        turned = about(np.asarray(self.turn)) @ values[spin]
-        return np.concatenate([values[: spin[0]], [0.0], turned / 2])
+        turned = about(self.turn) @ values[np.array(spin)]
+        return namespace(turned).concatenate([values[: spin[0]], np.zeros(1), turned / 2])
 
     @property
     def rates(self) -> dict[str, Profile]:
@@ -242,7 +242,7 @@ class Joint(Value):
 
     def _numbers(self, where: str, given: Any, names: tuple[str, ...]) -> Floats:
         values = {name: finite(f"{where}.{name}", each) for name, each in self._named(where, given, names).items()}
-        return np.array([values.get(name, 0.0) for name in names])
+        return as_array([values.get(name, 0.0) for name in names])
 
     def _named(self, where: str, given: Any, names: tuple[str, ...]) -> dict[str, Any]:
         """Values by the names of coordinates; of a single coordinate the value alone will do."""

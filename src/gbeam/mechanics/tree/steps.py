@@ -10,7 +10,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from gbeam.arrays.namespace import concatenated, namespace
+from gbeam.arrays.namespace import as_array, concatenated, namespace
 from gbeam.arrays.tree import record
 from gbeam.mechanics.tree.frames import Relative, Wrench, cross, product
 
@@ -158,16 +158,26 @@ def rotation_by_parameters(n: Array) -> Array:
 
 def parameters_of_all(R: Array) -> Array:
     """Unit Euler parameters (t, 4) of rotation matrices (t, 3, 3), without jumps of sign from one to the next."""
-    from scipy.spatial.transform import Rotation as Turned
-
-    e = np.roll(Turned.from_matrix(np.asarray(R)).as_quat(), 1, axis=-1)
-    return continuous(e if e[0, 0] >= 0 else -e)
+    xp = namespace(R)
+    (a, b, c), (d, e, f), (g, h, i) = (tuple(R[..., j, k] for k in range(3)) for j in range(3))
+    rows = [
+        (1 + a + e + i, h - f, c - g, d - b),
+        (h - f, 1 + a - e - i, b + d, c + g),
+        (c - g, b + d, 1 + e - a - i, f + h),
+        (d - b, c + g, f + h, 1 + i - a - e),
+    ]
+    products = xp.stack([xp.stack(row, axis=-1) for row in rows], axis=-2)  # 4 e_j e_k: the row of the largest is safe
+    largest = xp.diagonal(products, axis1=-2, axis2=-1).argmax(axis=-1)[..., None, None]
+    row = xp.take_along_axis(products, largest, axis=-2)[..., 0, :]
+    unit = row / xp.sqrt((row * row).sum(axis=-1, keepdims=True))
+    return continuous(xp.where(unit[:1, :1] >= 0, unit, -unit))
 
 
 def continuous(e: Array) -> Array:
     """Euler parameters (t, ..., 4) without jumps of sign."""
-    turn = np.where((e[1:] * e[:-1]).sum(axis=-1) < 0, -1.0, 1.0)
-    return e * np.cumprod(np.concatenate([np.ones_like(turn[:1]), turn]), axis=0)[..., None] if len(e) > 1 else e
+    xp = namespace(e)
+    turn = xp.where((e[1:] * e[:-1]).sum(axis=-1) < 0, -1.0, 1.0)
+    return e * xp.cumprod(xp.concatenate([xp.ones_like(turn[:1]), turn]), axis=0)[..., None] if len(e) > 1 else e
 
 
 def functions_of_angle(s: Array) -> tuple[Array, ...]:
@@ -217,7 +227,7 @@ def tangent_back(phi: Array, moment: Array) -> Array:
     return moment + b * once + c * cross(phi, once)
 
 
-def about(v: Array) -> Array:
+def about(v: Any) -> Array:
     """Rotation matrix (3, 3) of a rotation vector (3,), rad."""
     zero = np.zeros(3)
-    return rotation_by_vector(np.asarray(v, dtype=float), zero, zero, plane=True)[0]
+    return rotation_by_vector(as_array(v), zero, zero, plane=True)[0]

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.arrays.namespace import namespace
+from gbeam.arrays.namespace import as_array, concatenated, holds_jax, is_jax, namespace
 from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import array, choice, positive
+from gbeam.guards.checks import array, choice, positive, vector
 from gbeam.mechanics.fields.strains import StrainField
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.bodies import (
@@ -36,15 +36,9 @@ from gbeam.motion.bases.hub import Hub
 from gbeam.motion.profiles.combine import as_profile
 from gbeam.motion.protocol import Motion
 
+Array = Any
 Floats = NDArray[np.float64]
 ROOT = "root"
-
-
-def _vector(where: str, value: Any) -> Floats:
-    checked = np.asarray(array(where, value), dtype=float)
-    if checked.shape != (3,) or not np.isfinite(checked).all():
-        raise InputError(where, f"is {value!r}", "give three finite components, along x, y and z")
-    return checked
 
 
 @typed
@@ -69,7 +63,7 @@ class Place(Value):
     turn: Sequence[float] = (0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
-        _vector("at", self.at), _vector("turn", self.turn)
+        vector("at", self.at), vector("turn", self.turn)
 
 
 @typed
@@ -107,8 +101,8 @@ class RigidBody(Value):
 
     def __post_init__(self) -> None:
         positive("mass", self.mass, "kg", zero=True)
-        _vector("centre", self.centre)
-        moments = np.linalg.eigvalsh(self.tensor)
+        vector("centre", self.centre)
+        moments = np.zeros(3) if is_jax(self.tensor) else np.linalg.eigvalsh(self.tensor)
         if moments[0] < -1e-12 * moments[-1] or moments[-1] > moments[:2].sum() * (1 + 1e-9) + 1e-300:
             fix = "no principal moment is negative, or exceeds the sum of the other two"
             raise InputError("inertia", f"has the principal moments {moments} kg m²", fix)
@@ -122,23 +116,22 @@ class RigidBody(Value):
         )
 
     @property
-    def tensor(self) -> Floats:
+    def tensor(self) -> Array:
         """Inertia (3, 3) about the centre of mass, kg m²."""
-        tensor = np.asarray(array("inertia", self.inertia), dtype=float)
-        tensor = np.diag(tensor) if tensor.shape == (3,) else tensor
-        if tensor.shape != (3, 3) or not np.isfinite(tensor).all() or np.abs(tensor - tensor.T).max() > 0:
+        tensor = array("inertia", self.inertia)
+        tensor = namespace(tensor).diag(tensor) if tensor.shape == (3,) else tensor
+        if tensor.shape != (3, 3) or not (is_jax(tensor) or (np.abs(tensor - tensor.T) <= 0).all()):
             raise InputError("inertia", f"is {self.inertia!r}", "give three principal moments or a symmetric 3 × 3")
         return tensor
 
     @property
     def body(self) -> Rigid:
         """Its terms in the equations."""
-        places = [np.asarray(each.at, dtype=float) for each in self.points.values()]
+        places = [as_array(each.at) for each in self.points.values()]
         turns = [about(each.turn) for each in self.points.values()]
-        centre = np.asarray(self.centre, dtype=float)
-        return Rigid(
-            self.mass, centre, self.tensor, np.reshape(places, (-1, 3)), np.reshape(np.array(turns), (-1, 3, 3))
-        )
+        xp = namespace(*places, *turns)
+        places, turns = (xp.reshape(xp.asarray(each), (-1, *to)) for each, to in ((places, (3,)), (turns, (3, 3))))
+        return Rigid(self.mass, as_array(self.centre), self.tensor, places, turns)
 
 
 @typed
@@ -234,7 +227,7 @@ class System(Value):
                 if not name.isidentifier() or name == GROUND:
                     raise InputError(f"{where}.{name}", "is no name", "give letters, digits and underscores")
         if self.gravity is not None:
-            _vector("gravity", self.gravity)
+            vector("gravity", self.gravity)
         object.__setattr__(self, "order", self._ordered())
         object.__setattr__(self, "tree", self._assembled())
         drives, signals = drives_of(self), signals_of(self)
@@ -325,6 +318,14 @@ class System(Value):
         return body, names.index(point)
 
     @property
+    def holds_jax(self) -> bool:
+        """Whether some of its values live in JAX, or are traced by it."""
+        driven = [(joint.rates, joint.efforts) for joint in self.joints.values()]
+        histories = [force.history for force in self.forces.values()]
+        loads = [body.history for body in self.bodies.values() if isinstance(body, Structure)]
+        return holds_jax(self.tree, self.start, self.gravity, driven, histories, loads)
+
+    @property
     def kind(self) -> str:
         """What stands in the place of a model's kind."""
         return "system"
@@ -375,7 +376,7 @@ class System(Value):
         return {f"{name}.{each}": (joint, each) for name, joint in self.joints.items() for each in joint.rates}
 
     @property
-    def start(self) -> tuple[Floats, Floats]:
+    def start(self) -> tuple[Array, Array]:
         """All coordinates and rates at the start, flexible bodies undeformed."""
         q, qd = [], []
         for body in self.order:
@@ -383,7 +384,8 @@ class System(Value):
             still = np.zeros(0 if isinstance(flexible, RigidBody) else flexible.size)
             q += [joint.start, still]
             qd += [joint.start_rate, still]
-        return np.concatenate(q), np.concatenate(qd)
+        xp = namespace(*q, *qd)
+        return xp.concatenate(q), xp.concatenate(qd)
 
     def corners(self, step: float) -> Floats:
         """Return the times that steps should not pass unseen, s.
@@ -415,7 +417,7 @@ class System(Value):
         xp, shape = namespace(t), np.shape(t)
         zero, eye = xp.zeros((*shape, 3)), xp.broadcast_to(np.eye(3), (*shape, 3, 3))
         if motion is None:
-            gravity = xp.zeros(3) if self.gravity is None else xp.asarray(self.gravity, dtype=float)
+            gravity = xp.zeros(3) if self.gravity is None else as_array(self.gravity)
             ground = Frame(eye, zero, zero, zero, zero - gravity, zero)
         else:
             base = motion.base(t)
@@ -425,27 +427,26 @@ class System(Value):
             rate, change = joint.rates[name].derivatives(t)
             angle = Hub(radius=0.0, rate=joint.rates[name]).angle(t)
             first = joint.start[joint.coordinates.index(name)]
-            prescribed.append(xp.stack([first + angle, rate, change], axis=-1))
+            prescribed.append(namespace(first, angle).stack([first + angle, rate, change], axis=-1))
         columns = {}
         for name, joint in self.joints.items():
             for each, profile in joint.efforts.items():
                 columns[self.coordinates.index(f"{name}.{each}")] = profile(t)
         if columns:
             none = xp.zeros(shape)
-            efforts = xp.stack([columns.get(k, none) for k in range(self.tree.size)], axis=-1)
-        wrenches = [
-            xp.concatenate([profile(t) for profile in force.history], axis=-1) for force in self.forces.values()
-        ]
+            every = [columns.get(k, none) for k in range(self.tree.size)]
+            efforts = namespace(*columns.values()).stack(every, axis=-1)
+        wrenches = [concatenated([profile(t) for profile in force.history]) for force in self.forces.values()]
         loads = tuple(
             None if isinstance(each, RigidBody) or each.history is None else each.history(t)
             for each in (self.bodies[body] for body in self.order)
         )
         return Inputs(
             ground,
-            xp.stack(prescribed, axis=-1) if prescribed else None,
+            namespace(*prescribed).stack(prescribed, axis=-1) if prescribed else None,
             efforts,
             loads,
-            xp.stack(wrenches, axis=-2) if wrenches else None,
+            namespace(*wrenches).stack(wrenches, axis=-2) if wrenches else None,
         )
 
 
