@@ -210,7 +210,10 @@ class Given:
             ),
             "choice_of": ((self.centrifuge, (0.05,)), {"limited": False}),
             "axis_commands": ((self.centrifuge.over(0.0, 0.1), 0.01), {}),
-            "compare": (tuple(self.responses), {"tolerance": 0.05, "tolerance_of": "peak", "accept": {"tip": 0.5}}),
+            "compare": (
+                tuple(self.responses),
+                {"tolerance": 0.05, "tolerance_of": "peak", "accept": {"tip": 0.5}, "control": {"tip": 1.0}},
+            ),
             "compare_models": ((self.brief,), {"kinds": ("FOAM",), "progress": None}),
             "constant": ((1.0,), {}),
             "critical_load": ((self.column, base), {"time": 0.0, "motion": None, "upper": None, "progress": None}),
@@ -269,6 +272,10 @@ class Given:
             "ModalTest": (
                 ([20.0], [0.01], np.ones((1, 3, 1)), [(0.3, 0.0, 0.0)], [0.1]),
                 {"numbers": [1]},
+            ),
+            "Sensor": (
+                (),
+                {"turn": (0.0, 0.0, 0.1), "frequency": 100.0, "damping_ratio": 0.7, "sensitivity": np.eye(3)},
             ),
             "read_matrix": ((self.matrix, "k"), {}),
             "read_sid": (

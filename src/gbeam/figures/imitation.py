@@ -91,5 +91,5 @@ def shock(comparison: Comparison, spectra: Shock, title: str = "") -> Figure:
         )
         label = f"largest acceleration along {'xyz'[axis]}, m/s²"
         panels.append(Panel(label, lines, x="frequency of the oscillator, Hz", logarithmic=True, height=1.6))
-    about = f"shock response of the tip's acceleration, Q = {spectra.quality:g}"
+    about = f"shock response of the acceleration of {spectra.control}, Q = {spectra.quality:g}"
     return Figure(title, about, tuple(panels))

@@ -169,6 +169,12 @@ def sections(
     return force, moment, inward(force), inward(moment), a_stations
 
 
+def accelerations(structure: Structure, base: BaseMotion, q: Array, qd: Array, qdd: Array) -> Array:
+    """Absolute accelerations (t, s, 3) of the stations (specific force where gravity acts), base axes."""
+    moving = Base(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
+    return absolute_accelerations(namespace(q, base.a_WO_B), moving, *structure.output.paths(q, qd, qdd))
+
+
 def absolute_accelerations(xp: Any, base: Base, r: Array, rd: Array, rdd: Array) -> Array:
     """Absolute accelerations of points, (t, p, 3)."""
     w, alpha, along = base.w_WB_B, base.alpha_WB_B, base.a_WO_B[:, None, :]

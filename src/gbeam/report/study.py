@@ -116,7 +116,7 @@ def comparison_lines(comparison: Comparison) -> Iterator[str]:
         least, most = sorted(comparison.shock.extremes, key=lambda each: each.ratio)
         written = RULES["srs"].written
         yield (
-            f"shock response spectra of the tip on the centrifuge {written(least.ratio)} {least} to "
+            f"shock response spectra of {comparison.shock.control} on the centrifuge {written(least.ratio)} {least} to "
             f"{written(most.ratio)} {most}, beside flight's"
         )
     if comparison.stations is not None:

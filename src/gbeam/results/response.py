@@ -16,6 +16,7 @@ from gbeam.results.errors import Errors
 from gbeam.results.machine import AxesResult, Driven
 from gbeam.results.parts import Influence, Loads, Outline, Peaks, VectorPeaks
 from gbeam.results.result import Figured, Floats, Part, brief
+from gbeam.results.sensors import Sensor
 from gbeam.results.solids import SolidStress, SpecimenLoads
 
 
@@ -203,6 +204,16 @@ class Response(Driven, Figured):
         note="tip, that of a point of the beam, or its position",
         default=(),
     )
+    point_acceleration: Floats | None = quantity(
+        "m/s^2",
+        "absolute acceleration of the stations",
+        "time",
+        "station",
+        "axis",
+        key=None,
+        note="specific force where gravity acts; None of a beam, whose loads have it",
+        default=None,
+    )
     kept_every: int = fact("how many samples of the histories make one in a file", name=None, key=None, default=1)
     envelope: Floats = quantity(
         "m",
@@ -250,9 +261,41 @@ class Response(Driven, Figured):
         InputError
             If there is no such point.
         """
+        return self.displacement[:, self._station(point)]
+
+    def _station(self, point: str) -> int:
         if point not in self.points:
             raise InputError("point", f"is {point!r}", f"choose from {', '.join(self.points)}")
-        return self.displacement[:, self.points.index(point)]
+        return self.points.index(point)
+
+    @property
+    def accelerations(self) -> Floats | None:
+        """Absolute accelerations of the stations, (t, s, 3) m/s²; None where the run has none."""
+        if self.point_acceleration is not None or self.loads is None:
+            return self.point_acceleration
+        return self.loads.acceleration[:, 1:]
+
+    def reading_at(self, point: str, sensor: Sensor | None = None) -> Floats:
+        """Return what an accelerometer at a named point reads, (t, 3) m/s².
+
+        Parameters
+        ----------
+        point : str
+            tip, or the name of another point.
+        sensor : Sensor, optional
+            Its axes, which do not turn with the deformation, frequency and sensitivity; the absolute acceleration along
+            the base axes (specific force where gravity acts) without one.
+
+        Raises
+        ------
+        InputError
+            If there is no such point, the run has no accelerations, or its samples do not resolve the sensor.
+        """
+        station, every = self._station(point), self.accelerations
+        if every is None:
+            raise InputError("response", "has no accelerations", "leave loads = true in its settings")
+        felt = every[:, station]
+        return felt if sensor is None else sensor.reads(felt, float(self.time[1] - self.time[0]))
 
     @property
     def tip(self) -> Floats:

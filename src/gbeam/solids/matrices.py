@@ -18,6 +18,7 @@ SYMMETRIC = 1e-6  # of the largest entry
 STRAINED = 1e-5  # of the forces in it: a rigid motion that strains the structure
 EXACT = 1e-6  # of a mode's mass: what is left out below it is rounding
 MOST = 0.05  # of a mode's mass, left out
+ROUNDING = 1e-12  # of the size
 NEAR = 0.01  # of a given mass, or of the size of the structure
 
 
@@ -140,7 +141,7 @@ def compare_mass(body: Floats, size: float, total: float | None, centre: Any, in
     if total is not None and abs(known / total - 1) > NEAR:
         raise InputError("total_mass", f"is {total:.6g} kg, and the matrix has {known:.6g} kg", fix)
     if centre is not None and np.linalg.norm(np.subtract(centre, middle)) > NEAR * size:
-        shown = ", ".join(f"{each:.4g}" for each in middle)
+        shown = ", ".join(f"{each:.4g}" for each in np.where(np.abs(middle) < ROUNDING * size, 0.0, middle))
         raise InputError("centre", f"is not that of the matrix, ({shown}) m", fix)
     if inertia is not None and np.abs(np.subtract(inertia, about)).max() > NEAR * np.trace(about):
         shown = ", ".join(f"{each:.4g}" for each in np.diagonal(about))

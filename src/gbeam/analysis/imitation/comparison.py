@@ -10,6 +10,7 @@ from gbeam.analysis.imitation.accounting import History, account_of, largest_loa
 from gbeam.analysis.response.peaks import vector_peaks
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
+from gbeam.guards.checks import positive
 from gbeam.motion.bases.base import gradients
 from gbeam.numerics.filters import largest_riding_acceleration, low_pass
 from gbeam.numerics.peaks import maxima, near_maxima, seven_point, turning_points
@@ -132,6 +133,7 @@ def compare(
     tolerance: float = TOLERANCE,
     tolerance_of: str = "peak",
     accept: Mapping[str, Limit] | None = None,
+    control: Mapping[str, float] | None = None,
 ) -> Comparison:
     """Compare the response on a centrifuge with that in the flight it imitates.
 
@@ -148,6 +150,8 @@ def compare(
         Limits that decide whether the imitation is accepted, by the names of ``[motion.NAME.accept]``: shares, such as
         ``{"tip": 0.02}``; of ``srs`` and ``damage`` the largest ratio of machine to flight, either way, or the least
         and the largest, ``{"srs": (0.84, 1.41)}``.
+    control : mapping of str to float, optional
+        Weights of named points: the shock response spectra are the weighted mean of those there, in place of the tip's.
 
     Returns
     -------
@@ -206,7 +210,10 @@ def compare(
             in_flight(a.section_moment[:, 0]), b.section_moment[during, 0],
         )  # fmt: skip
         root = _root(covered, history, in_flight(a.stress[:, 0]), b.stress[during, 0])
-        shock = _shock(time, covered, in_flight(a.acceleration[:, -1]), b.acceleration[during, -1])
+    weights = _weights(control, flight, centrifuge)
+    felt = flight.accelerations, centrifuge.accelerations
+    if felt[0] is not None and felt[1] is not None and covered.any():
+        shock = _shock(time, covered, in_flight(felt[0]), felt[1][during], weights, flight.points, centrifuge.points)
     names, growth = _names(flight, centrifuge), in_flight(gradients(flight.base.w_WB_B, flight.base.alpha_WB_B))
     spun = gradients(centrifuge.base.w_WB_B[during], centrifuge.base.alpha_WB_B[during])
     of_beam, root_load = not len(centrifuge.envelope), in_flight(flight.base.a_WO_B)
@@ -335,12 +342,35 @@ def _root(covered: Flags, history: RootHistory, stress_flight: Floats, stress_ce
     return RootLoads(*force, *moment, float(stress[0]), float(stress[1]), float(stress[2]), history)
 
 
-def _shock(time: Floats, covered: Flags, reference: Floats, actual: Floats) -> Shock | None:
+def _weights(control: Mapping[str, float] | None, *responses: Response) -> dict[str, float]:
+    """Shares of the control points, which all responses have."""
+    for name, weight in ({} if control is None else control).items():
+        positive(f"control.{name}", weight, "(a weight)")
+        for response in responses:
+            if name not in response.points:
+                raise InputError(f"control.{name}", "is no point", f"choose from {', '.join(response.points)}")
+    total = sum(({} if control is None else control).values())
+    return {} if control is None else {name: weight / total for name, weight in control.items()}
+
+
+def _shock(
+    time: Floats,
+    covered: Flags,
+    reference: Floats,
+    actual: Floats,
+    weights: Mapping[str, float],
+    *points: tuple[str, ...],
+) -> Shock | None:
+    """Spectra of accelerations (t, s, 3) at the tip, or the mean of those at control points."""
     if len(time) < _FEWEST:
         return None
     step = float(time[1] - time[0])
     lowest, highest = 1 / float(time[-1] - time[0]), _HIGHEST / step
     frequency = np.geomspace(max(lowest, highest / 1000), highest, _SPECTRUM)
-    both = np.concatenate([reference, actual], axis=1)
-    spectra = largest_riding_acceleration(both, 2 * np.pi * frequency, 0.5 / QUALITY, step, covered)
-    return Shock(QUALITY, frequency, spectra[:, :3], spectra[:, 3:])
+    mean = np.zeros((_SPECTRUM, 6))
+    for name, share in (weights or {"": 1.0}).items():
+        places = [each.index(name) if name else -1 for each in points]
+        both = np.concatenate([reference[:, places[0]], actual[:, places[1]]], axis=1)
+        mean += share * largest_riding_acceleration(both, 2 * np.pi * frequency, 0.5 / QUALITY, step, covered)
+    said = ", ".join(f"{name} ({100 * share:.3g} %)" for name, share in weights.items())
+    return Shock(QUALITY, frequency, mean[:, :3], mean[:, 3:], **({"control": said} if said else {}))

@@ -19,7 +19,7 @@ from gbeam.analysis.response.stepping import joined
 from gbeam.arrays.namespace import is_jax
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.plausibility import input_warnings
-from gbeam.mechanics.section_forces import section_forces
+from gbeam.mechanics.section_forces import accelerations, section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.motion import Centrifuge
 from gbeam.motion.bases.base import Base
@@ -164,6 +164,9 @@ def response_of(
         hub = replace(hub, drive_torque=loads.drive_torque)
     axes = None if traced or motion.kind != "centrifuge" else axes_of(motion, time)
     outcome, message = "done", ""
+    felt = None if traced or structure.sections is not None or not settings.loads else accelerations(
+        structure, over_time, q[:, beam], qd[:, beam], qdd[:, beam]
+    )  # fmt: skip
     displacement = fine[::stride] if up is None and down is None else structure.displacement(q[:, beam])
     errors = Errors()
     warnings: tuple[str, ...] = ()
@@ -226,6 +229,7 @@ def response_of(
         outline=outline_of(structure, motion, time, q[:, beam]) if settings.loads and not traced else None,
         bodies=np.empty((0, 3)) if traced or structure.source is None else structure.source.beam.body_centres,
         whole=_whole(motion, settings),
+        point_acceleration=felt,
         kept_every=settings.kept_every(len(time), float(time[-1] - time[0]) / max(len(time) - 1, 1)),
         **(_recovered(structure, motion, time, over_time, q[:, beam], name) if settings.loads and not traced else {}),
     )

@@ -201,7 +201,9 @@ def _comparison(facts: Facts, v: Facts, stations: Floats) -> Comparison:
         parts["root"] = _read(measures.RootLoads, {}, history=_read(measures.RootHistory, {}, _under("root_", v)))
     if facts.get("shock"):
         spectra = {key: _array(facts["shock"][key]) for key in ("frequency", "flight", "centrifuge")}
-        parts["shock"] = measures.Shock(facts["shock"]["quality"], **spectra)
+        parts["shock"] = measures.Shock(
+            facts["shock"]["quality"], **spectra, control=facts["shock"].get("control", "the tip")
+        )
     return _read(Comparison, facts, v, **parts)
 
 

@@ -310,8 +310,9 @@ RULES = {
         ),
         Rule(
             "srs",
-            "shock response spectra of the tip: largest ratio of machine and flight, either way, at any frequency "
-            "along any axis; or the least and the largest of machine to flight, such as [-1.5 dB, 3 dB]",
+            "shock response spectra of the tip, or of control points: largest ratio of machine and flight, either way, "
+            "at any frequency along any axis; or the least and the largest of machine to flight, such as "
+            "[-1.5 dB, 3 dB]",
             "level", 10 ** (3 / 20), _srs,
         ),
         Rule(

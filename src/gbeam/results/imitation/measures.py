@@ -255,7 +255,9 @@ class SpectrumRatio:
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Shock(Part):
-    """Shock response spectra of the tip's acceleration: largest absolute acceleration of an oscillator riding on it.
+    """Shock response spectra of an acceleration: largest absolute acceleration of an oscillator riding on it.
+
+    The acceleration is the tip's, or the spectra are the weighted mean of those at several control points.
 
     Smallwood's ramp-invariant filter (absolute acceleration, maximax over the times compared); the oscillators begin at
     rest relative to the first sample.
@@ -264,12 +266,14 @@ class Shock(Part):
     quality: float = fact("Q of the oscillators", name=None)
     frequency: Floats = quantity("Hz", "frequency of the oscillators", "frequency", role="coordinate")
     flight: Floats = quantity(
-        "m/s^2", "shock response spectrum of the tip in flight", "frequency", "axis", name="shock_flight", key=None,
+        "m/s^2", "shock response spectrum in flight", "frequency", "axis", name="shock_flight", key=None,
         note="specific force where gravity acts",
     )  # fmt: skip
     centrifuge: Floats = quantity(
         "m/s^2", "the same on the centrifuge", "frequency", "axis", name="shock_centrifuge", key=None
     )
+
+    control: str = fact("points whose spectra they are, with their weights", name=None, default="the tip")
 
     @declared("m/s^2", "spectrum in flight, by frequency", "frequency", "direction", name=None, key="flight")
     def rows_flight(self) -> Floats:
