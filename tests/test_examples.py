@@ -46,6 +46,20 @@ def _nulls(value: Any, place: str = "") -> Iterator[str]:
         yield place
 
 
+def test_the_bracket_is_accepted() -> None:
+    """What docs/tutorials/bracket.md says of it."""
+    answer = run("bracket")
+    (compared,) = answer.comparisons
+    flight, machine = (answer.responses[name].solid for name in ("flight", "centrifuge"))
+    assert flight is not None and machine is not None
+    assert 1e-6 * flight.worst.von_mises == pytest.approx(8.468, abs=5e-4)
+    assert 1e-6 * machine.worst.von_mises == pytest.approx(9.580, abs=5e-4)
+    assert compared.margins == pytest.approx((27.3, 24.1), abs=0.06)
+    assert compared.peaks["tip"].ratio == pytest.approx(1.145, abs=1e-3)
+    assert compared.peaks["root_moment"].ratio == pytest.approx(1.052, abs=1e-3)
+    assert answer.state == "accepted"
+
+
 @pytest.mark.parametrize("path", [each for each in EXAMPLES if each.stem not in SYSTEMS], ids=lambda p: p.stem)
 def test_example_is_done_within_its_tolerance(path: Path) -> None:
     case = gbeam.read_scenario(path)

@@ -122,3 +122,41 @@ def test_a_free_hub_is_refused() -> None:
     box = gb.RigidSpecimen.box(2.0, (0.4, 0.2, 0.1), (0.0, 0.0, 0.0))
     with pytest.raises(gb.InputError, match="motion is a free hub"):
         box.loads(gb.Hub(radius=2.0, inertia=10.0, torque=constant(1.0)), 1.0, sample=0.5)
+
+
+def test_a_box_on_the_f16_flight_is_newtons() -> None:
+    """At every time of the record: force m a, moment c × m a, the bolts' sums; nothing is spread, without rates."""
+    case = gb.read_scenario("examples/f16_8g_turn.toml")
+    bolts = np.array([(-0.1, -0.08, 0.0), (0.1, -0.08, 0.0), (-0.1, 0.08, 0.0), (0.1, 0.08, 0.0)])
+    box = gb.RigidSpecimen.box(3.0, (0.3, 0.2, 0.1), (0.01, 0.02, 0.05), bolts=bolts, bolt_axis=(0, 0, 1))
+    response = gb.simulate(box.structure, case.motions["flight"], duration=15.99, step=2e-3)
+    loads, a = response.specimen, response.base.a_WO_B
+    assert loads is not None and response.loads is not None
+    assert loads.acceleration == pytest.approx(np.broadcast_to(a[:, None], loads.acceleration.shape), abs=1e-12)
+    moment = np.cross((0.01, 0.02, 0.05), 3.0 * a)
+    for force, turning in ((loads.force, loads.moment), (response.loads.root_force, response.loads.root_moment)):
+        assert force == pytest.approx(3.0 * a, abs=1e-10) and turning == pytest.approx(moment, abs=1e-10)
+    assert loads.bolt_force.sum(axis=1) == pytest.approx(3.0 * a, abs=1e-10)
+    assert np.cross(bolts, loads.bolt_force).sum(axis=1) == pytest.approx(moment, abs=1e-10)
+    assert loads.spread_max == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_box_on_the_centrifuge_is_newtons() -> None:
+    """By numerical derivatives of where its points are, carried by the axes of the machine."""
+    case = gb.read_scenario("examples/f16_8g_turn.toml")
+    machine = case.motions["centrifuge"].over(0.0, 15.99)
+    inertia = ((0.02, 0.001, 0.0), (0.001, 0.03, 0.002), (0.0, 0.002, 0.04))
+    box = gb.RigidSpecimen(3.0, (0.01, 0.02, 0.05), inertia, [(0.2, 0.1, 0.1), (-0.1, -0.1, 0.0)])
+    loads = box.loads(machine, duration=15.99, sample=0.05)
+    base = machine.base(loads.time)
+    w, alpha = base.w_WB_B, base.alpha_WB_B
+    for k, corner in enumerate(np.asarray(box.corners)):
+        # a + Ω̇ r with Ω = skew ω: the matrix of the rotation's second derivative.
+        skew = np.stack([np.cross(np.eye(3)[i], -w) for i in range(3)], axis=-1)
+        turning = np.stack([np.cross(np.eye(3)[i], -alpha) for i in range(3)], axis=-1)
+        field = base.a_WO_B + np.einsum("tij,j->ti", turning + skew @ skew, corner)
+        assert loads.acceleration[:, k] == pytest.approx(field, abs=1e-9)
+    # Its moment of momentum about the centre changes by the moment there: power of the moment is the energy's rate.
+    about_centre = loads.moment - np.cross((0.01, 0.02, 0.05), loads.force)
+    power = (about_centre * w).sum(axis=1)
+    assert power == pytest.approx(np.einsum("ti,ij,tj->t", w, np.array(inertia), alpha), abs=1e-9)

@@ -45,7 +45,7 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
             return _of_study(result, title or result.title)
         case Response():
             tip = partial(response.tip, Study(title, {result.name or result.environment: result}, ()))
-            return {"tip": tip, **_of_response(result, title)}
+            return ({} if result.specimen is not None else {"tip": tip}) | _of_response(result, title)
         case ModelStudy():
             return {"models": partial(response.models, result, title)} if any(len(r.time) for r in result.rows) else {}
         case Comparison():
@@ -144,8 +144,11 @@ def _of_machine(
 
 
 def _of_response(result: Response, title: str, flight: Response | None = None) -> dict[str, Describe]:
-    every: dict[str, Describe] = {"base": partial(response.base, result, title)}
-    if result.loads is not None:
+    every: dict[str, Describe] = {}
+    if result.specimen is not None:
+        every["specimen"] = partial(system.specimen, result.specimen, title)
+    every["base"] = partial(response.base, result, title)
+    if result.loads is not None and result.specimen is None:
         every["loads"] = partial(response.loads, result, result.loads, title)
     if result.axes is not None:
         every |= _of_machine(result, result.axes, title, flight)
@@ -153,8 +156,6 @@ def _of_response(result: Response, title: str, flight: Response | None = None) -
         every["hub"] = partial(response.hub, result, result.hub, title)
     if result.solid is not None:
         every["stress"] = partial(system.stress, result.solid, title)
-    if result.specimen is not None:
-        every["specimen"] = partial(system.specimen, result.specimen, title)
     return every
 
 
@@ -168,7 +169,8 @@ def _of_comparison(result: Comparison, title: str, main: str, other: str, end: s
 
 
 def _of_study(study: Study, title: str) -> dict[str, Describe]:
-    every: dict[str, Describe] = {"tip": partial(response.tip, study)}
+    moving = any(each.specimen is None for each in study.responses.values())
+    every: dict[str, Describe] = {"tip": partial(response.tip, study)} if moving else {}
     if sum(each.loads is not None for each in study.responses.values()) > 1:
         every["sizes"] = partial(response.sizes, study)
     flights = {each.centrifuge: study.responses.get(each.flight) for each in study.comparisons}
