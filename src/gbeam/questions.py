@@ -88,14 +88,14 @@ class Question:
         """Whether systems of bodies have an answer too."""
         return bool(self.answer.__annotations__.get("case") == "AnyCase")
 
-    def refuse(self, case: AnyCase) -> None:
+    def refuse(self, case: AnyCase, before: str = "") -> None:
         """Raise InputError if the case is a system, and only one structure has an answer; or of a specimen without
         coordinates one that needs them.
         """
         from gbeam.analysis.case import SpecimenCase, SystemCase
 
         if isinstance(case, SystemCase) and not self.of_systems:
-            case.one_beam("bodies", self.name)
+            case.one_beam("bodies", f"{before}{self.name}")
         if isinstance(case, SpecimenCase) and self.deforms and not case.structure.size:
             fix = "ask for run, which has the load at its corners, or plan; or give it as a solid"
             raise InputError(f"bodies.{case.name}", f"is rigid, and {self.name} is of what deforms", fix)

@@ -83,7 +83,7 @@ def read(verb: str, file: Path, overrides: Sequence[str]) -> Input:
     loaded = Input(scenario, replace(case, provenance=provenance(scenario, command())))
     with loaded.placing():
         if verb in QUESTIONS:
-            QUESTIONS[verb].refuse(case)
+            QUESTIONS[verb].refuse(case, "gbeam ")
         elif verb not in _ANY:
             case.one_beam("bodies", f"gbeam {verb}")
     return loaded

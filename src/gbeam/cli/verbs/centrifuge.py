@@ -46,7 +46,7 @@ def plan(
         environments = load_environments(scenario, output.overrides)
         if "joints" in type(environments).model_fields:
             fix = "give one [beam] or one body without joints, or none"
-            raise placed(environments, [InputError("bodies", "make a system, and gbeam plan is of one specimen", fix)])
+            raise placed(environments, [InputError("bodies", "make a system, and gbeam plan is of one beam", fix)])
         machines, extent = build_machines(environments), build_extent(environments)
     if not machines:
         raise InputError("motion", "has no centrifuge to plan", "add a motion of kind centrifuge")
