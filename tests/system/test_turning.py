@@ -127,6 +127,7 @@ def test_columns_of_euler_and_beck_in_a_system(kind: str, follower: bool, value:
     system = gb.System({"column": structure}, {"foot": gb.Joint("fixed", "column")}, {"push": push})
     lost = gb.critical_load(system)
     assert lost.value == pytest.approx(value, rel=3e-5)
+    assert lost.errors.total == pytest.approx(abs(lost.value / value - 1), rel=0.1, abs=3e-5)
     assert lost.kind == ("flutter" if follower else "divergence") and lost.direction == "column z"
     with pytest.raises(gb.InputError, match="none that acts"):
         gb.critical_load(gb.System(system.bodies, system.joints))
@@ -135,7 +136,10 @@ def test_columns_of_euler_and_beck_in_a_system(kind: str, follower: bool, value:
 def test_a_beam_that_points_inward_is_lost_as_on_a_hub() -> None:
     structure = gb.assemble(STRIP, "TLAM", axial=1, y=2, z=2)
     alone = gb.critical_speed(structure, gb.Hub(radius=0.5))
-    assert gb.critical_speed(panels(structure, SPIN, "rim")).value == pytest.approx(alone.value, rel=1e-9)
+    lost = gb.critical_speed(panels(structure, SPIN, "rim"))
+    assert lost.value == pytest.approx(alone.value, rel=1e-9) and np.isinf(lost.errors.model)
+    assert lost.errors.shapes == pytest.approx(alone.errors.shapes, abs=1e-8)
+    assert any("critical rate is the system's own" in each for each in lost.warnings)
 
 
 def test_rates_belong_to_their_coordinates_whatever_the_order() -> None:

@@ -53,7 +53,7 @@ def points(response: SystemResponse, title: str = "") -> Figure:
         for i in axes
     )
     about = "displacement of the points from the start, axes of the ground"
-    error = estimated({"steps": response.error_estimate})
+    error = estimated({"": response.error_estimate})
     return Figure(title, about, panels or (Panel(f"x, {unit}"),), error, (response.outcome,))
 
 

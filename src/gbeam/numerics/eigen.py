@@ -38,6 +38,7 @@ Floats = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 ZERO = 1e-11  # of the largest eigenvalue: a smaller one is rounding about zero
+RIGID = 1e-7  # likewise of systems, in which motions that nothing holds are the roots of rounding
 # Of a mode's frequency: a base that speeds up, once frozen, feeds or drains a mode by 1e-7, and means nothing by it.
 FLUTTER = 1e-6
 EQUAL = 1e-9  # of an eigenvalue: two that differ by less are one

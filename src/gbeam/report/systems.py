@@ -17,6 +17,7 @@ from gbeam.report.words import (
     tidy,
     warning_lines,
 )
+from gbeam.results.errors import SystemErrors
 from gbeam.results.study import SystemStudy
 from gbeam.results.system import SystemModes, SystemResponse, SystemRest, named
 
@@ -47,9 +48,16 @@ def system_response(response: SystemResponse) -> str:
         first, last = (number(float(each.sum())) for each in kept.energy[[0, -1]])
         lines.append(f"  energy {first} J at the start, {last} J at the end")
     error = percent(response.error_estimate)
-    known = f"estimated error of the steps {error}" if math.isfinite(response.error_estimate) else "no error estimate"
+    known = f"estimated error {error}" if math.isfinite(response.error_estimate) else "no error estimate"
     lines.append(f"  {response.integrator}, {response.steps} steps of {1e3 * response.step:.4g} ms, {known}")
+    lines += _by_beam(response.errors)
     return "\n".join([*lines, *warning_lines(response)])
+
+
+def _by_beam(errors: SystemErrors) -> list[str]:
+    alone = zip(errors.beams, errors.by_beam, strict=True)
+    listed = ", ".join(f"{name} {percent(float(each))}" for name, each in alone)
+    return [f"  errors by shapes and model of {listed}"] if listed else []
 
 
 def system_rest(rests: Iterable[SystemRest]) -> str:
@@ -71,17 +79,20 @@ def _rest(rest: SystemRest) -> Iterator[str]:
     yield "  on the ground: force ({}) N, moment ({}) N m".format(*pair)
     for body, loads in rest.loads.items():
         yield f"  {body}: {resting_loads(loads)}"
+    yield from _by_beam(rest.errors)
     yield from warning_lines(rest)
 
 
 def system_modes(modes: SystemModes) -> str:
     """Modes on a line each, with the bodies' shares of the kinetic energy."""
     lines = [f"{modes.name} at {modes.time:.4g} s:"]
-    for k, (frequency, ratio) in enumerate(zip(modes.frequency, modes.damping_ratio, strict=True)):
+    rows = zip(modes.frequency, modes.damping_ratio, modes.error_estimate, strict=True)
+    for k, (frequency, ratio, error) in enumerate(rows):
         shares = ((share, body) for share, body in zip(modes.share[k], modes.bodies, strict=True) if share > 0.005)
         listed = ", ".join(f"{body} {share:.0%}" for share, body in sorted(shares, reverse=True))
         damping = ratio if abs(ratio) > 1e-10 else 0.0
-        lines.append(f"  {k + 1:>3}  {frequency:12.6g} Hz  damping {damping:8.4g}  {listed}")
+        known = f"  error {percent(error):>7}" if math.isfinite(error) else ""
+        lines.append(f"  {k + 1:>3}  {frequency:12.6g} Hz  damping {damping:8.4g}{known}  {listed}")
     if modes.rigid:
         lines.append(f"  and {modes.rigid} motions of zero frequency")
     lines += [f"  UNSTABLE: grows by {each.real:.4g} per second" for each in modes.growing]

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.results.declared import fact, part, quantity
+from gbeam.results.declared import fact, labels, part, quantity
 from gbeam.results.result import Floats, Part
 
 PARTS = ("shapes", "model", "beam_theory", "total")
@@ -68,6 +68,41 @@ class Errors(Part):
         if self.theory:
             lines.append(f"beam theory: {self.theory}")
         return "\n  ".join(["Errors", *lines, *([self.note] if self.note else [])])
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class SystemErrors(Part):
+    """Estimated errors of a system's answer, in all and as each of its beams brings them."""
+
+    displacement: ErrorEstimate = part("of the points' places", default_factory=ErrorEstimate)
+    beams: tuple[str, ...] = labels("beam that is judged", "judged", default=())
+    by_beam: Floats = quantity(
+        "",
+        "estimated error that the beam's shapes and model bring",
+        "judged",
+        note="alone; together they may be more or less",
+        default_factory=lambda: np.empty(0),
+    )
+    note: str = fact("what is not estimated, and why", default="")
+
+    def doubts(self, tolerance: float) -> tuple[str, ...]:
+        """Warnings of what exceeds a tolerance, and of what is not judged."""
+        shapes, model, total = self.displacement.shapes, self.displacement.model, self.displacement.total
+        said = [self.note] if self.note else []
+        if max(shapes, model, 0.0) > tolerance:
+            worst = self.beams[int(np.argmax(self.by_beam))]
+            cure = "raise its model.modes" if shapes >= model else 'check with model.kind = "exact"'
+            cause = "too few shapes" if shapes >= model else "the model"
+            said.append(
+                f"places are wrong by an estimated {100 * total:.2g} % of the largest displacement: {cause}, most of "
+                f"{worst}; {cure}"
+            )
+        return tuple(said)
+
+    def __repr__(self) -> str:
+        alone = (f"{name} {100 * each:.2g} %" for name, each in zip(self.beams, self.by_beam, strict=True))
+        lines = [f"displacement: {self.displacement}", ", ".join(alone), self.note]
+        return "\n  ".join(["SystemErrors", *filter(None, lines)])
 
 
 @dataclass(frozen=True, repr=False, eq=False)

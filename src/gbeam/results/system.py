@@ -11,6 +11,7 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.results.declared import INSIDE, declared, fact, labels, part, quantity, rows
+from gbeam.results.errors import FrequencyErrors, SystemErrors
 from gbeam.results.facts import at_place
 from gbeam.results.parts import LoadPeaks, Loads, Outline
 from gbeam.results.result import Complex, Figured, Floats, Part
@@ -170,12 +171,16 @@ class SystemResponse(Figured):
     integrator: str = fact("integrator", default="gauss")
     step: float = fact("time step", "s", default=math.nan)
     steps: int = fact("number of steps", default=0)
-    error_estimate: float = fact(
-        "estimated error of the time steps, as a fraction of the largest displacement",
-        note="that of shapes and models of the bodies is not in it; NaN where there is no estimate",
-        default=math.nan,
+    errors: SystemErrors = part(
+        "of the points' places, as fractions of the largest displacement", name="error_", default_factory=SystemErrors
     )
     kept_every: int = fact("how many samples of the histories make one in a file", name=None, key=None, default=1)
+
+    @declared("", "estimated error in all, as a fraction of the largest displacement", role="fact")
+    def error_estimate(self) -> float:
+        """Estimated error in all; that of the steps alone where no more is known, NaN where there is none."""
+        total, step = self.errors.displacement.total, self.errors.displacement.step
+        return step if math.isnan(total) else total
 
     @declared(
         "m", "displacement of the point from its place at the start, the largest", "point", key="displacement_max"
@@ -255,7 +260,7 @@ class SystemResponse(Figured):
         far = {name: value for name, value in zip(self.points, self.largest, strict=True)}
         most = max(far, key=lambda name: far[name])
         unknown = math.isnan(self.error_estimate)
-        error = "no error estimate" if unknown else f"estimated error of the steps {self.error_estimate:.2g}"
+        error = "no error estimate" if unknown else f"estimated error {100 * self.error_estimate:.2g} %"
         lines = [
             f"SystemResponse{of} ({self.environment}): {self.outcome}",
             *([self.message] if self.message else []),
@@ -305,6 +310,10 @@ class SystemRest(Figured):
     def carried(self) -> Mapping[str, Loads]:
         return {name: replace(at_place(each, 0), stations=each.stations) for name, each in self.loads.items()}
 
+    errors: SystemErrors = part(
+        "of the points' places, as fractions of the largest displacement", name=None, default_factory=SystemErrors
+    )
+
     def at(self, point: str) -> Floats:
         """Return the place of a named point in axes of the ground, (3,) m.
 
@@ -340,6 +349,8 @@ class SystemRest(Figured):
         most = int(size.argmax())
         force = ", ".join(f"{each:.4g}" for each in self.ground_force)
         lines = [f"SystemRest: {self.points[most]} moves by {size[most]:.4g} m", f"force on the ground ({force}) N"]
+        total = self.errors.displacement.total
+        lines += [f"estimated error {100 * total:.2g} %"] if self.errors.beams and math.isfinite(total) else []
         return self._with_warnings(*lines)
 
 
@@ -376,6 +387,13 @@ class SystemModes(Figured):
     share: Floats = quantity("", "share of the body in the kinetic energy", "mode", "body")
     place: Floats = quantity("m", "place of the point at rest", "point", "axis", key=None, frame="ground")
     rigid: int = fact("number of motions of zero frequency, left out")
+    errors: FrequencyErrors | None = part(
+        "errors of the frequencies",
+        "mode",
+        name="frequency_error_",
+        note="None where there is no estimate; without the theory of slender beams",
+        default=None,
+    )
     growing: Complex = quantity(
         "1/s", "eigenvalues that grow", "eigenvalue", name="growing", key=None, default_factory=lambda: np.empty(0)
     )
@@ -394,6 +412,11 @@ class SystemModes(Figured):
     def stable(self) -> bool:
         """Whether nothing grows."""
         return not len(self.growing)
+
+    @declared("", "estimated error of the frequency in all", "mode", name=None)
+    def error_estimate(self) -> Floats:
+        """Estimated errors of the frequencies, (k,), fractions; NaN where there is no estimate."""
+        return np.full(len(self.eigenvalue), np.nan) if self.errors is None else self.errors.total
 
     @declared("", "body that moves most", "mode", name=None)
     def foremost(self) -> tuple[str, ...]:

@@ -16,6 +16,7 @@ from gbeam.analysis.response.record import outline_of
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.step_errors import Run, difference, ratio, share
 from gbeam.analysis.response.stepping import MAX_STEPS, ONE_CORNER, finer_by, scheme_of
+from gbeam.analysis.system.accuracy import system_errors
 from gbeam.analysis.system.assembly import assembly_of
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
 from gbeam.analysis.system.histories import Carried, beams_of, histories, loads_of
@@ -29,6 +30,7 @@ from gbeam.mechanics.tree.steps import continuous
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress, tell
+from gbeam.results.errors import ErrorEstimate, SystemErrors
 from gbeam.results.parts import Loads
 from gbeam.results.system import BeamResponse, Invariants, Loop, SystemResponse
 
@@ -94,25 +96,28 @@ def simulate_system(
         felt = Corners(np.concatenate([felt.time, commands])[order], jumps[order])
     scheme = scheme_of(settings)
 
-    def run(step: float, what: str) -> tuple[Run, Floats]:
-        trajectory = integrate(
-            equations,
+    def integrated(of: NonlinearEquations, begun: Point, step: float, what: str) -> Trajectory:
+        return integrate(
+            of,
             scheme,
-            point.y,
-            point.yd,
+            begun.y,
+            begun.yd,
             step=step,
             count=math.ceil(settings.duration / step - 1e-6),
             start=settings.start,
             corners=felt,
             progress=lambda done: tell(progress, what, done),
         )
+
+    def run(step: float, what: str) -> tuple[Run, Floats]:
+        trajectory = integrated(equations, point, step, what)
         return Run(trajectory, step, None), _moved(system, motion, trajectory)  # type: ignore[arg-type]
 
     runs, error = [run(settings.step or 2 * coarse, "integrating")], math.nan
     if settings.step is None:
         runs.append(run(coarse, "refining"))
         while True:
-            error = _error(runs, scheme.order)
+            error = _step_error(runs, scheme.order)
             whole = runs[-1][0].whole
             if (error <= settings.aim and whole) or settings.duration / runs[-1][0].step > MAX_STEPS / 8:
                 break
@@ -123,10 +128,28 @@ def simulate_system(
             runs.append(run(step, f"refining the step to {1e3 * step:.3g} ms"))
     elif settings.estimate:
         runs.insert(0, run(2 * settings.step, "checking with twice the step"))
-        error = _error(runs, scheme.order)
+        error = _step_error(runs, scheme.order)
     chosen = runs[-1][0]
     stride = 1 if settings.step is not None else round(coarse / chosen.step)
-    return _described(system, motion, settings, chosen, stride, error, name, equations)
+    kept = _at(chosen.trajectory, slice(None, None, stride))
+    if not settings.estimate or not chosen.whole:
+        errors = SystemErrors(ErrorEstimate(error))
+        return _described(system, motion, settings, chosen, stride, errors, name, equations)
+
+    def inputs(of: System, some: Any) -> Any:
+        return of.inputs(kept.time[some], motion)
+
+    def begun(of: System) -> Point:
+        return started(of, motion, settings.start, begin.state)
+
+    def again(of: System) -> Trajectory:
+        control = SystemControllers(of) if system.controllers else None
+        own = NonlinearEquations(of.tree, lambda t: of.inputs(t, motion), control, None if control is None else [])
+        trajectory = integrated(own, begun(of), chosen.step, "errors of shapes and models")
+        return _at(trajectory, slice(None, None, stride))
+
+    errors = system_errors(system, kept, inputs, begun, again if system.controllers else None, error)
+    return _described(system, motion, settings, chosen, stride, errors, name, equations)
 
 
 def _traced(
@@ -143,10 +166,10 @@ def _traced(
     y, yd = started_traced(system, motion, settings.start, settings.begin.state)
     run = integrate(equations, scheme_of(settings), y, yd, step=step, count=count, start=settings.start)
     whole = Run(run, step, None)  # type: ignore[arg-type]
-    return _described(system, motion, how, whole, 1, math.nan, name, equations)
+    return _described(system, motion, how, whole, 1, SystemErrors(), name, equations)
 
 
-def _error(runs: list[tuple[Run, Floats]], order: int) -> float:
+def _step_error(runs: list[tuple[Run, Floats]], order: int) -> float:
     """Error of the last of two or more runs, by the order observed in the last three."""
     last = runs[-3:]
     apart = [difference(a, b, ratio(x, y)) for (x, a), (y, b) in pairwise(last)]
@@ -201,7 +224,7 @@ def _described(
     settings: ResponseSettings,
     run: Run,
     stride: int,
-    error: float,
+    errors: SystemErrors,
     name: str,
     equations: NonlinearEquations,
 ) -> SystemResponse:
@@ -231,8 +254,10 @@ def _described(
             f"Newton's method failed at {every.time[-1]:.4g} s: give a smaller step, or look for what breaks there"
         )
     warnings = (*settings.warnings, *yielded)
-    if outcome == "done" and error > settings.tolerance:
-        warnings += (f"the error of the steps is {100 * error:.2g} %: give a smaller step or tolerance",)
+    warnings += errors.doubts(settings.tolerance)
+    step_error = errors.displacement.step
+    if outcome == "done" and step_error > settings.tolerance:
+        warnings += (f"the error of the steps is {100 * step_error:.2g} %: give a smaller step or tolerance",)
     return SystemResponse(
         name=name,
         environment="ground" if motion is None else motion.kind,
@@ -248,7 +273,7 @@ def _described(
         integrator=scheme_of(settings).name,
         step=run.step,
         steps=len(every.time) - 1,
-        error_estimate=error,
+        errors=errors,
         kept_every=settings.kept_every(len(kept.time), run.step * stride),
         warnings=warnings + system.warnings,
         **over_time,

@@ -94,6 +94,10 @@ class Richer:
         exact = reference(self.exact)
         return exact if self.same is self.exact else reference(self.same), exact
 
+    def theory_shares(self, point: OperatingPoint, coordinates: Complex) -> Floats:
+        """Errors (k,) of these modes' frequencies by the theory of slender beams."""
+        return self.by_theory(point, coordinates).shares
+
     def by_theory(self, point: OperatingPoint, coordinates: Complex, *, gyroscopic: bool = True) -> ByTheory:
         """Errors of these modes' frequencies by the theory of slender beams; arguments as above."""
         theory, first, k = self.theory, point.first, len(coordinates)

@@ -14,6 +14,7 @@ from gbeam.analysis.accuracy.beam_theory import described, mode_causes
 from gbeam.analysis.accuracy.estimate import LIMIT, apart, percent, wrong_by
 from gbeam.analysis.steady.modal import instabilities
 from gbeam.analysis.steady.operating_point import OperatingPoint, Steady
+from gbeam.analysis.system.accuracy import RicherModes, judged_beams
 from gbeam.errors import ComputationError
 from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.plausibility import input_warnings
@@ -94,7 +95,17 @@ CLOSE = 1e-6  # of the critical value: how closely a root is found
 
 def judged(critical: Critical, path: Path, structure: Structure | System, progress: Progress = None) -> Critical:
     """A critical value with its estimated errors, and warnings where they are above one in a hundred."""
-    if isinstance(structure, System) or structure.source is None or critical.value == 0:
+    if isinstance(structure, System):
+        if not critical.value or not judged_beams(structure):
+            return critical
+        at = critical.value
+        richer = RicherModes(path(structure, (1 - CLOSE) * at))  # type: ignore[arg-type]
+        exact = _lost(richer.exact.system, path, at, progress)
+        same = exact if richer.same is richer.exact else _lost(richer.same.system, path, at, progress)
+        errors = _errors(at, same, exact)
+        doubts = doubtful_loss(critical.quantity, "the system", errors)
+        return replace(critical, errors=errors, warnings=critical.warnings + doubts)
+    if structure.source is None or critical.value == 0:
         return critical
     if critical.value is None:
         return replace(critical, warnings=critical.warnings + _unseen(critical, path, structure, progress))
@@ -112,14 +123,19 @@ def judged(critical: Critical, path: Path, structure: Structure | System, progre
     slender, *thick = (_lost(each, path, at, progress) for each in (theory.slender, *theory.variants(plate)))
     exact = lost("exact")
     same = exact if structure.kind == "exact" else lost(structure.kind)
-    shapes = abs(at / same - 1)
-    model, total = (math.inf, math.inf) if math.isinf(exact) else (abs(same / exact - 1), abs(at / exact - 1))
+    errors = _errors(at, same, exact)
     beam_theory = max(apart(at if math.isinf(slender) else slender, each) for each in thick)
-    errors = ErrorEstimate(0.0, shapes, model, total=total).with_theory(0.0 if math.isinf(model) else beam_theory)
+    errors = errors.with_theory(0.0 if math.isinf(errors.model) else beam_theory)
     lowest = _lowest(theory.slender, values, base)[:, : theory.own]
     causes = mode_causes(theory, base, values, lowest, np.zeros(1), plate)
     doubts = doubtful_loss(critical.quantity, critical.model, errors, described(structure, causes))
     return replace(critical, errors=errors, warnings=critical.warnings + doubts)
+
+
+def _errors(at: float, same: float, exact: float) -> ErrorEstimate:
+    """Errors of a critical value, by that of the same model with more shapes and by the exact one's."""
+    model, total = (math.inf, math.inf) if math.isinf(exact) else (abs(same / exact - 1), abs(at / exact - 1))
+    return ErrorEstimate(0.0, abs(at / same - 1), model, total=total)
 
 
 def _lowest(slender: Structure, values: Any, base: Base) -> Floats:

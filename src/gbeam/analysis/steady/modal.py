@@ -130,7 +130,9 @@ def modes(
     [  36.6  182.6  229.  1138.7 4243.1]
     """
     if isinstance(structure, System):
-        return system_modes(structure, motion, time, gyroscopic=gyroscopic, name=name)
+        of_system = system_modes(structure, motion, time, gyroscopic=gyroscopic, name=name)
+        doubts = () if of_system.errors is None else doubtful(of_system.errors)
+        return replace(of_system, warnings=of_system.warnings + doubts)
     point = operating_point(structure, motion, time)
     warnings = input_warnings(structure, motion, name=name, span=(time, time), base=point.base)
     computed = modes_at(structure, point, gyroscopic=gyroscopic, name=name, time=time)

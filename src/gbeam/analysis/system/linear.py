@@ -9,14 +9,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.analysis.system.accuracy import RicherModes, judged_beams
 from gbeam.analysis.system.closed_loop import closed_loop
 from gbeam.analysis.system.point import Point, started
-from gbeam.analysis.system.steady import RIGID, Drive, steady
+from gbeam.analysis.system.steady import Drive, SteadySystem, steady
 from gbeam.guards.checks import choice
 from gbeam.mechanics.tree.signals import drives_of, measurements, signals_of
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.eigen import vibrations
+from gbeam.numerics.eigen import RIGID, vibrations
 from gbeam.numerics.series import STEP
 from gbeam.results.state_space import Signal, StateSpace
 from gbeam.results.system import SystemModes
@@ -47,6 +48,9 @@ def system_modes(system: System, motion: Motion | None, time: float, *, gyroscop
         place=np.stack([frame.p for frame in state.frames]),
         rigid=len(local.y) - len(moving.value) - (len(moving.diverging) + len(moving.decaying)) // 2,
         growing=growing[np.argsort(-growing.real, kind="stable")],
+        errors=RicherModes(state).errors(state, moving.value, moving.modes.T, gyroscopic=gyroscopic)
+        if judged_beams(system)
+        else None,
         warnings=warnings,
     )
 
@@ -80,19 +84,21 @@ def linearize_system(
         chosen = range(len(measured), len(measured) + len(wanted))
         return closed_loop(plant, dict(system.controllers), chosen, None if loop == "closed" else loop)
     choice("at", at, ("rest", "start"))
-    resting = at == "rest"
-    local = (
-        steady(system, Drive(motion, time)).point if resting else started(system, motion, time, "equilibrium")
-    ).local
+    frozen = Drive(motion, time)
+    if at == "rest":
+        state = steady(system, frozen)
+    else:
+        state = SteadySystem(system, frozen, started(system, motion, time, "equilibrium"))
+    local = state.local
     _, k, c, m = local.slopes()
     n = len(m)
-    b, driving = _inputs(system, local, inputs)
+    b, driving = _inputs(system, local, state.names, inputs)
     signals, values, out = _outputs(system, local, outputs)
     stiffness, damping, drive = (np.linalg.solve(m, each) for each in (k, c, b))
     zero = np.zeros((n, n))
     a = np.block([[zero, np.eye(n)], [-stiffness, -damping]])
     c_y, c_yd, c_ydd = out
-    names = _names(system, local)
+    names = state.names
     states = [Signal(each, "") for each in names] + [Signal(f"{each}_rate", "") for each in names]
     return StateSpace(
         a=a,
@@ -111,14 +117,6 @@ def linearize_system(
     )
 
 
-def _names(system: System, local: Point) -> list[str]:
-    """Names of the local coordinates: those of the system, Euler parameters but for the first one as rotations."""
-    turns = {"e1": "rx", "e2": "ry", "e3": "rz"}
-    kept = [each for each in system.coordinates if each.rpartition(".")[2] != "e0"]
-    kept = [f"{head}.{turns.get(tail, tail)}" for head, _, tail in (each.rpartition(".") for each in kept)]
-    return [kept[k] for k in local.tree.free]
-
-
 def _default_inputs(system: System) -> list[str]:
     """Driven coordinates, and the components of all forces."""
     driven = {f"{name}.{each}" for name, joint in system.joints.items() for each in joint.efforts}
@@ -131,13 +129,14 @@ def _default_outputs(system: System) -> list[str]:
     return [each for each in signals_of(system) if not each.rpartition(".")[2].startswith(others)]
 
 
-def _inputs(system: System, local: Point, wanted: Sequence[str] | None) -> tuple[Floats, tuple[Signal, ...]]:
+def _inputs(
+    system: System, local: Point, names: Sequence[str], wanted: Sequence[str] | None
+) -> tuple[Floats, tuple[Signal, ...]]:
     """Forces (n, m) of unit inputs on the coordinates, and their signals."""
     drives = drives_of(system)
     wanted = _default_inputs(system) if wanted is None else wanted
     for each in wanted:
         choice("inputs", each, drives)
-    names = _names(system, local)
     columns = np.zeros((len(names), len(wanted)))
     for k, each in enumerate(wanted):
         if drives[each].force is None:

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.analysis.accuracy.estimate import LIMIT
+from gbeam.analysis.system.accuracy import system_errors
 from gbeam.analysis.system.histories import beams_of, histories, loads_of
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import each_leaf
 from gbeam.errors import ComputationError, InputError
 from gbeam.integrate.derivatives import slopes
+from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.tree.equations import Inputs, Tree
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
@@ -147,12 +151,26 @@ def system_rest(system: System, motion: Motion | None, time: float, name: str) -
         for y in (first[system.tree.free], point.y)
     )
     at = {key: value[0] for key, value in resting.items()}
+
+    def again(of: System) -> Trajectory:
+        return _standing(rested(of, of.tree, of.inputs(np.asarray(time), motion)), time)
+
+    standing, start = _standing(point, time), begun["place"][0]
+    errors = system_errors(
+        system, standing, lambda of, _: of.inputs(np.array([time]), motion), lambda _: point, again, math.nan, start
+    )
     return SystemRest(
         name=name,
         time=time,
         points=system.points,
         coordinates=system.coordinates,
-        displacement=at["place"] - begun["place"][0],
+        displacement=at["place"] - start,
+        errors=errors,
+        warnings=errors.doubts(LIMIT) + system.warnings,
         loads={body: loads_of(beams_of(system)[body], [each], np.array([time])) for body, each in beams.items()},
         **{key: at[key] for key in ("place", "attitude", "q", "effort", "ground_force", "ground_moment")},
     )
+
+
+def _standing(point: Point, time: float) -> Trajectory:
+    return Trajectory(np.array([time]), point.y[None], point.yd[None], point.ydd[None])

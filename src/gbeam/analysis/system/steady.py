@@ -16,14 +16,13 @@ from gbeam.mechanics.tree.frames import Frame, turned_back
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.eigen import Linear, Vibrations, stability_margin, symmetric, symmetric_modes, vibrations
+from gbeam.numerics.eigen import RIGID, Linear, Vibrations, stability_margin, symmetric, symmetric_modes, vibrations
 from gbeam.numerics.series import STEP
 
 Array = Any
 Floats = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 SLIGHT = 1e-6  # of the loads, by which their stiffness is looked at
-RIGID = 1e-7  # of the largest eigenvalue: what is smaller is the root of rounding about zero
 SAME, STILL = 1e-6, 1e-9  # of modes' matrices, and m or rad: what changes with the angle changes by more
 TURNS = (0.7, 2.1, 4.4)  # rad, at which the equations are looked at
 
@@ -97,6 +96,14 @@ class SteadySystem:
     def margin(self) -> float:
         """Positive while nothing grows: see :func:`stability_margin`."""
         return stability_margin(*self.linear[:3], RIGID**2)
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the local coordinates: those of the system, Euler parameters but for the first one as rotations."""
+        turns = {"e1": "rx", "e2": "ry", "e3": "rz"}
+        kept = [each.rpartition(".") for each in self.system.coordinates]
+        local = [f"{head}.{turns.get(tail, tail)}" for head, _, tail in kept if tail != "e0"]
+        return [local[k] for k in self.local.tree.free]
 
     @property
     def frames(self) -> list[Frame]:

@@ -1,0 +1,147 @@
+"""Errors that a system states of its beams' shapes and models, beside those of really computing with more shapes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gbeam as gb
+from gbeam.analysis.system.accuracy import Richer, judged_beams, richer
+from gbeam.motion.bases.base import Base
+
+STRIP = gb.Beam(1.0, gb.Section.rectangle(0.04, 0.004), gb.Material(2700.0, 70e9), damping_ratio=0.01)
+SOFT = replace(STRIP, section=gb.Section.rectangle(0.04, 0.001))
+STILL = Base(*np.zeros((3, 1, 3)))
+
+
+def arm(kind: str, torque: float, shapes: int) -> gb.System:
+    """A beam in a hub that a torque turns freely."""
+    hub = gb.RigidBody(2.0, (0.05, 0.05, 0.05), points={"rim": (0.1, 0, 0)})
+    spin = gb.Joint("revolute", "hub", axes=[(0, 1, 0)], effort=torque)
+    beam = gb.assemble(STRIP, kind, axial=0, y=0, z=shapes)
+    return gb.System({"hub": hub, "beam": beam}, {"spin": spin, "clamp": gb.Joint("fixed", "beam", on="hub.rim")})
+
+
+def panels() -> gb.System:
+    """A free bus with two panels, one of them with a single shape, that a moment turns."""
+    places = {"right": gb.Place((0.1, 0, 0)), "left": gb.Place((-0.1, 0, 0), (0, 0, np.pi))}
+    few, many = gb.assemble(STRIP, "exact", axial=0, y=0, z=1), gb.assemble(STRIP, "FOAM", axial=1, y=0, z=2)
+    joints = {
+        "hold": gb.Joint("free", "bus"),
+        "clamp_right": gb.Joint("fixed", "right", on="bus.right"),
+        "clamp_left": gb.Joint("fixed", "left", on="bus.left"),
+    }
+    push = gb.PointForce("bus.root", moment=(0, 5.0, 0), follower=True)
+    bus = gb.RigidBody(5.0, (0.2, 0.2, 0.2), points=places)
+    return gb.System({"bus": bus, "right": few, "left": many}, joints, {"push": push})
+
+
+def beam_on_beam() -> gb.System:
+    """A soft beam that falls, with a second one on a sprung hinge at its tip."""
+    joints = {
+        "wall": gb.Joint("fixed", "first"),
+        "hinge": gb.Joint("revolute", "second", on="first.tip", axes=[(0, 1, 0)], stiffness=0.5),
+    }
+    first, second = gb.assemble(SOFT, "CFOAM", axial=0, y=0, z=2), gb.assemble(SOFT, "FOAM", axial=1, y=0, z=2)
+    return gb.System({"first": first, "second": second}, joints, gravity=(0, 0, -1.0))
+
+
+def with_more(system: gb.System) -> Richer:
+    return richer(system, dict.fromkeys(judged_beams(system), STILL), exact=True)
+
+
+@pytest.mark.parametrize(
+    ("system", "duration", "initial", "least", "most"),
+    [
+        (arm("exact", 0.2, 1), 1.0, "equilibrium", 1e-3, 3e-3),
+        (arm("FOAM", 40.0, 2), 0.4, "undeformed", 0.05, 0.1),
+        (panels(), 1.0, "equilibrium", 2e-3, 6e-3),
+        (beam_on_beam(), 1.0, "undeformed", 5e-3, 2e-2),
+    ],
+    ids=["arm bent little", "arm bent strongly", "two panels on a free bus", "beam on beam"],
+)
+def test_what_is_stated_is_what_more_shapes_change(
+    system: gb.System, duration: float, initial: Any, least: float, most: float
+) -> None:
+    response = gb.simulate(system, duration=duration, initial=initial)
+    errors = response.errors.displacement
+    step = float(response.time[1] - response.time[0])
+    truth = gb.simulate(with_more(system).system, duration=duration, initial=initial, step=step, estimate=False)
+    size = np.linalg.norm(response.place - response.place[0], axis=-1).max()
+    true = np.linalg.norm(truth.place - response.place, axis=-1).max() / size
+    assert least < true < most
+    assert errors.total == pytest.approx(true, rel=0.1)
+    assert errors.total <= errors.step + errors.shapes + errors.model + 1e-9 and response.error_estimate == errors.total
+    assert response.errors.beams == tuple(judged_beams(system))
+    assert response.errors.by_beam.max() == pytest.approx(errors.total, rel=0.3)
+
+
+def test_the_beam_with_few_shapes_is_named() -> None:
+    response = gb.simulate(panels(), duration=1.0)
+    right, left = response.errors.by_beam
+    assert right > 100 * left and response.errors.displacement.model < 1e-4
+    doubt = gb.simulate(panels(), duration=1.0, tolerance=1e-3, step=2e-3).warnings
+    assert any("most of right; raise its model.modes" in each for each in doubt)
+    assert np.isnan(gb.simulate(panels(), duration=0.1, step=2e-3, estimate=False).error_estimate)
+
+
+def test_bodies_without_a_beam_are_named_as_not_judged() -> None:
+    slope = np.array([0.0, 0.3, 1.0])[:, None, None] * [[0.0], [0.0], [1.0]]
+    place, curve = np.array([[0.0, 0, 0], [0.5, 0, 0], [1.0, 0, 0]]), np.zeros((3, 3, 1, 1))
+    frame = gb.Structure.of_particles(
+        np.full(3, 0.5), place, slope, np.array([[40.0]]), second=curve, damping_ratio=0.0
+    )
+    system = gb.System({"frame": frame}, {"foot": gb.Joint("fixed", "frame")}, gravity=(0, 0, -1.0))
+    response = gb.simulate(system, duration=0.2, initial="undeformed")
+    assert "not judged of frame" in response.errors.note and np.isnan(response.errors.displacement.total)
+    assert response.error_estimate == response.errors.displacement.step
+
+
+def test_a_controller_answers_what_is_lacking() -> None:
+    """With a loop the richer system is run: what it says is the difference itself."""
+    system = arm("exact", 0.0, 1)
+    spin = replace(system.joints["spin"], effort=None, initial=0.5)
+    held = gb.System(
+        system.bodies,
+        {**system.joints, "spin": spin},
+        controllers={
+            "point": gb.Feedback(
+                lambda t, y: [-8.0 * y[0] - 4.0 * y[1]], ["spin.angle", "spin.angle_rate"], ["spin.angle"], sample=0.02
+            )
+        },
+    )
+    response = gb.simulate(held, duration=1.0, step=0.01)
+    truth = gb.simulate(with_more(held).system, duration=1.0, step=0.01, estimate=False)
+    size = np.linalg.norm(response.place - response.place[0], axis=-1).max()
+    true = np.linalg.norm(truth.place - response.place, axis=-1).max() / size
+    errors = response.errors.displacement
+    assert true > 1e-4 and errors.total - errors.step == pytest.approx(true, rel=1e-3)
+
+
+def test_a_place_at_rest_is_judged() -> None:
+    """Two soft beams one on the other hang by their weight: the tip of the second is 0.5 m lower."""
+    system = beam_on_beam()
+    rest = gb.static(system)
+    truth = gb.static(with_more(system).system)
+    size = np.linalg.norm(rest.displacement, axis=-1).max()
+    true = np.linalg.norm(truth.place - rest.place, axis=-1).max() / size
+    assert true > 1e-3 and rest.errors.displacement.total == pytest.approx(true, rel=1e-6)
+    assert rest.errors.beams == ("first", "second") and any("most of" in each for each in rest.warnings)
+    assert np.isnan(rest.errors.displacement.step)
+
+
+@pytest.mark.parametrize("turns", [False, True])
+def test_frequencies_are_judged(turns: bool) -> None:
+    """By the frequencies of the system with more shapes in every beam, at rest and on a bus that turns."""
+    system = panels()
+    hold = gb.Joint("revolute", "bus", axes=[(0, 0, 1)], rate=5.0) if turns else system.joints["hold"]
+    system = gb.System(system.bodies, {**system.joints, "hold": hold})
+    modes, truth = gb.modes(system), gb.modes(with_more(system).system)
+    true = np.abs(modes.frequency[:3] / truth.frequency[:3] - 1)
+    assert modes.errors is not None and modes.errors.total[:3] == pytest.approx(true, rel=1e-3, abs=1e-9)
+    if turns:
+        diagram = gb.campbell(system, end=5.0, count=2, modes=3)
+        assert diagram.errors is not None and diagram.errors.total.max() == pytest.approx(true.max(), rel=0.2)
