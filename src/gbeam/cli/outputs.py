@@ -9,8 +9,7 @@ from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Literal
 
-from gbeam.cli.inputs import naming, signed
-from gbeam.cli.options import Output
+from gbeam.cli.options import Output, naming, signed
 from gbeam.cli.process import Watch, command, figures_wanted
 from gbeam.cli.publication import publish
 from gbeam.errors import InputError

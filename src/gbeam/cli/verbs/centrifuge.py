@@ -9,8 +9,20 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from gbeam.cli.failures import FAILED, complain
-from gbeam.cli.inputs import Input, naming, number, read
-from gbeam.cli.options import CentrifugeName, Check, IgnoreLimits, Measure, Output, ScenarioFile, Widths, option
+from gbeam.cli.options import (
+    CentrifugeName,
+    Check,
+    IgnoreLimits,
+    Input,
+    Measure,
+    Output,
+    ScenarioFile,
+    Widths,
+    naming,
+    number,
+    option,
+    read,
+)
 from gbeam.cli.outputs import deliver
 from gbeam.cli.process import Watch, command
 from gbeam.cli.publication import publish

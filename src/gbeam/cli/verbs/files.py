@@ -10,8 +10,7 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from gbeam.cli.inputs import read, signed
-from gbeam.cli.options import Json, Out, Overrides, ScenarioFile, option
+from gbeam.cli.options import Json, Out, Overrides, ScenarioFile, option, read, signed
 from gbeam.cli.outputs import show, write_json
 from gbeam.cli.publication import publish, refuse_unwritable
 from gbeam.errors import InputError

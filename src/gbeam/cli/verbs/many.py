@@ -9,8 +9,7 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from gbeam.cli.failures import FAILED, complain
-from gbeam.cli.inputs import names, number
-from gbeam.cli.options import At, MotionName, Output, ScenarioFile, SmoothVerb, Verb, option
+from gbeam.cli.options import At, MotionName, Output, ScenarioFile, SmoothVerb, Verb, names, number, option
 from gbeam.cli.outputs import LIST, deliver, list_figures
 from gbeam.cli.process import Watch, command
 from gbeam.cli.publication import refuse_unwritable

@@ -10,8 +10,7 @@ from typing import Annotated, Any, get_args, get_type_hints
 
 from cyclopts import Parameter
 
-from gbeam.cli.inputs import number, read
-from gbeam.cli.options import At, MotionName, Output, ScenarioFile
+from gbeam.cli.options import At, MotionName, Output, ScenarioFile, number, read
 from gbeam.cli.outputs import deliver
 from gbeam.cli.process import Watch
 from gbeam.questions import QUESTIONS, Needs, Question

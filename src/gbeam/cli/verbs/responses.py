@@ -16,8 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from gbeam.cli.failures import FAILED, complain
-from gbeam.cli.inputs import read
-from gbeam.cli.options import IgnoreLimits, Json, Out, Output, ScenarioFile
+from gbeam.cli.options import IgnoreLimits, Json, Out, Output, ScenarioFile, read
 from gbeam.cli.outputs import deliver, show
 from gbeam.cli.process import Watch, figures_wanted
 from gbeam.cli.publication import publish, refuse_unwritable

@@ -8,8 +8,20 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from gbeam.cli.failures import FAILED, complain
-from gbeam.cli.inputs import names, number, search_bounds
-from gbeam.cli.options import At, MotionName, Output, ScenarioFile, SearchBounds, SmoothVerb, Starts, WriteTo, option
+from gbeam.cli.options import (
+    At,
+    MotionName,
+    Output,
+    ScenarioFile,
+    SearchBounds,
+    SmoothVerb,
+    Starts,
+    WriteTo,
+    names,
+    number,
+    option,
+    search_bounds,
+)
 from gbeam.cli.outputs import LIST, deliver, list_figures, refuse_changes, write_found
 from gbeam.cli.process import Watch
 

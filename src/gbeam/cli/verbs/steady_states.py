@@ -10,11 +10,11 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 from gbeam import questions
-from gbeam.cli.inputs import Input, naming, number, numbers, read
 from gbeam.cli.options import (
     At,
     AtLoop,
     Balanced,
+    Input,
     Inputs,
     Masses,
     ModesKept,
@@ -29,6 +29,10 @@ from gbeam.cli.options import (
     To,
     Turns,
     Vary,
+    naming,
+    number,
+    numbers,
+    read,
 )
 from gbeam.cli.outputs import deliver
 from gbeam.cli.process import Watch
