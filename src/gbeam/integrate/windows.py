@@ -29,12 +29,13 @@ from gbeam.integrate.steps import Steps
 
 Array = Any
 Piece = tuple[Any, ...]
-FIRST, MOST = 100, 200  # steps in a window: at first, and at most
+FIRST, MOST, LONGEST = 100, 200, 1000  # steps in a window: at first, at most, and where derivatives hold all along
 NEAR, APART, FAR = 4, 12, 24  # stages between derivatives: at least, at first, and at most
 CORRECTIONS, ALONE = 10, 25  # of a window at most, and of a single step
 MOVED = 0.3  # size of a correction after which derivatives are found anew
 FEW = 3  # times, after which a window that is still so far away ends, and up to which the next one may be longer
 SLOW, FAST = 0.3, 0.01  # of the last correction: where one is larger, derivatives are closer, where smaller farther
+QUICKEST, STALLED = 0.01, 0.9  # factors of corrections: none is thought to be smaller, and where they do not shrink
 LEAST = 4  # steps behind those that have converged, which go on with what they have: at least
 TOLERANCE, ROUNDING = 1e-9, 1e-6  # of the largest acceleration: error left by the last correction, and where it stalls
 
@@ -67,7 +68,7 @@ def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, 
                 yield failed, failed, failed, np.array([False])
                 return
             if count == len(part):
-                size = min(size + size // 2 + 1, MOST) if times <= FEW else size
+                size = min(size + size // 2 + 1, MOST if times else LONGEST) if times <= FEW else size
             elif near > count + LEAST:
                 size = near - count
             else:
@@ -118,7 +119,7 @@ class _Window:
         if held is not None:
             held.begin(self.z[:-1])
             self.inputs = held.driven(self.free, len(scheme.offsets))
-        if slope is None:
+        if slope is None or not all(np.isfinite(each).all() for each in slope):
             self._differentiate(alone=True)
 
     def solve(self) -> tuple[int, int, int]:
@@ -153,8 +154,7 @@ class _Window:
             return q, qd, x[:, -1].copy()
         inputs, mass, size = self._at_ends(count), self.slope[2], np.full(count, np.inf)
         at = np.arange(len(self.x))[:, None] + np.array(self.scheme.offsets)
-        weight = _interpolation(at.ravel(), np.arange(1, count + 1))
-        qdd = weight @ self.x.reshape(-1, self.x.shape[-1])
+        qdd = _interpolated(at.ravel(), self.x.reshape(-1, self.x.shape[-1]), np.arange(1, count + 1))
         mass = (mass[:, -1] + np.concatenate([mass[1:, 0], mass[-1:, -1]])) / 2
         for _ in range(CORRECTIONS):  # with the mass at hand, for the equations are linear in q̈
             change = solved(mass[:count], self.residual(q, qd, qdd, inputs)[..., None])[..., 0]
@@ -195,8 +195,8 @@ class _Window:
         q, qd, qdd = (each[at] for each in self._stages())
         slope: Any = slopes(self.residual, q, qd, qdd, inputs)
         if samples > 1:
-            weight = _interpolation(at, np.arange(count * stages))
-            slope = tuple(np.tensordot(weight, each, 1).reshape(count, stages, n, n) for each in slope)
+            every = np.arange(count * stages)
+            slope = tuple(_interpolated(at, each, every).reshape(count, stages, n, n) for each in slope)
         else:
             slope = tuple(each[None] for each in slope)
         self.slope = slope
@@ -221,19 +221,10 @@ class _Window:
     def _correct(self, inverse: Array, answer: Array, step: Array) -> Array:
         """Correct every step; returns the sizes of the corrections, (t,)."""
         t, count = self.t, len(self.x)
-        alone = inverse @ self.residual(*self._stages(), self.inputs).reshape(count, -1, 1)
+        alone = _products(inverse, self.residual(*self._stages(), self.inputs).reshape(count, -1))
         defect = t.g @ self.z[:-1] + t.d @ (self.x - alone.reshape(self.x.shape)) - self.z[1:]
-        moved = np.zeros((count + 1, self.z[0].size))
-        steps = step if len(step) > 1 else np.broadcast_to(step, (count, *step.shape[1:]))
-        if self.held is not None:
-            self.held.measure(self.z[:-1])
-        every = zip(steps, defect.reshape(count, -1), moved[:-1], moved[1:], strict=True)
-        for k, (one, more, before, after) in enumerate(every):
-            np.dot(one, before, out=after)
-            after += more
-            if self.held is not None:
-                after += self.held.sampled(k, before)
-        change = (alone + answer @ moved[:-1, :, None]).reshape(self.x.shape)
+        moved = self._moved(step, defect.reshape(count, -1))
+        change = (alone + _products(answer, moved[:-1])).reshape(self.x.shape)
         if self.held is not None:
             change = change + self.held.changed(self.x.shape)
             self.inputs = self.held.driven(self.free, self.x.shape[1])
@@ -241,18 +232,44 @@ class _Window:
         self.x -= change
         return _size(change, self.x)
 
+    def _moved(self, step: Array, defect: Array) -> Array:
+        """Changes δz (t + 1, m n) of the states by δz₊ = S δz + the defects (t, m n)."""
+        count, moved = len(defect), np.zeros((len(defect) + 1, defect.shape[1]))
+        if len(step) == 1 and self.held is None:  # sums of powers of one map, each twice as long as the last
+            moved[1:], power, reach = defect, step[0].T, 1
+            while reach < count:
+                moved[1 + reach :] += moved[1:-reach] @ power
+                power, reach = power @ power, 2 * reach
+            return moved
+        if self.held is not None:
+            self.held.measure(self.z[:-1])
+        every = zip(np.broadcast_to(step, (count, *step.shape[1:])), defect, moved[:-1], moved[1:], strict=True)
+        for k, (one, more, before, after) in enumerate(every):
+            np.dot(one, before, out=after)
+            after += more
+            if self.held is not None:
+                after += self.held.sampled(k, before)
+        return moved
 
-def _interpolation(at: Array, points: Array) -> Array:
-    """Weights (p, k) of values at k places in their interpolation at points by the cubic through the nearest four."""
+
+def _products(matrices: Array, vectors: Array) -> Array:
+    """Products (t, a) of matrices (1 or t, a, b) and vectors (t, b)."""
+    return vectors @ matrices[0].T if len(matrices) == 1 else (matrices @ vectors[..., None])[..., 0]
+
+
+def _interpolated(at: Array, values: Array, points: Array) -> Array:
+    """Values (k, ...) at places (k,), interpolated at points (p,) by the cubic through the nearest four."""
     size = min(4, len(at))
     first: Array = np.clip(np.searchsorted(at, points) - size // 2, 0, len(at) - size)
     index = first[:, None] + np.arange(size)
     near, itself = at[index], np.eye(size, dtype=bool)
     apart = np.where(itself, 1.0, points[:, None, None] - near[:, None, :])
     between = np.where(itself, 1.0, near[:, :, None] - near[:, None, :])
-    weight = np.zeros((len(points), len(at)))
-    np.put_along_axis(weight, index, (apart / between).prod(axis=-1), axis=1)
-    return weight
+    weight = (apart / between).prod(axis=-1).reshape(len(points), size, *(1,) * (values.ndim - 1))
+    out = weight[:, 0] * values[index[:, 0]]
+    for k in range(1, size):
+        out += weight[:, k] * values[index[:, k]]
+    return out
 
 
 def _first(flags: Array) -> int:
@@ -271,5 +288,5 @@ def _left(size: Array, before: Array, rounding: float) -> Array:
     more than rounding.
     """
     shrunk = np.where(np.isfinite(before), size / np.maximum(before, 1e-300), 1.0)
-    left = size * np.minimum(shrunk, 1.0)
-    return np.where((size > before / 2) & (size <= rounding), 0.0, left)
+    left = size * np.clip(shrunk, QUICKEST, 1.0)
+    return np.where((size > STALLED * before) & (size <= rounding), 0.0, left)

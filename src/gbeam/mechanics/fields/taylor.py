@@ -47,7 +47,7 @@ class Places:
         # Of few points, as of the tip, H q is smaller than q qᵀ.
         xp = namespace(self.first, q)
         turned = xp.reshape(q @ xp.reshape(self.second, (-1, n)).T, (*q.shape[:-1], points * axes, n))
-        curved = xp.reshape(xp.sum(turned * q[..., None, :], axis=-1), (*q.shape[:-1], points, axes))
+        curved = xp.reshape(xp.einsum("...ai,...i->...a", turned, q), (*q.shape[:-1], points, axes))
         return self.r0 + self._linear(q) + 0.5 * curved
 
     def paths(self, q: Any, qd: Any, qdd: Any) -> tuple[Any, Any, Any]:
