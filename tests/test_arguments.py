@@ -147,6 +147,7 @@ class Given:
                     "on": "ground", "axes": [(0.0, 1.0, 0.0)], "at": (0.1, 0.0, 0.0), "turn": (0.0, 0.0, 0.2),
                     "initial": 0.1, "initial_rate": 0.2, "stiffness": 2.0, "ease": 0.1, "damping": 0.1,
                     "friction": 0.1, "stops": (-1.0, 1.0), "stop_stiffness": 10.0, "rate": None, "effort": 1.0,
+                    "coupling": None,
                 },
             ),
             "Place": (((0.1, 0.0, 0.0),), {"turn": (0.0, 0.0, 0.2)}),

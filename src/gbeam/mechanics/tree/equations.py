@@ -23,7 +23,8 @@ SLIP = 1e-3  # rad/s or m/s: rate at which friction has 0.76 of its size
 @record
 class Holder:
     """Springs, dampers, friction and stops on the coordinates (k,) of a joint, and the coordinates `ease` of the
-    springs; the stops stand at `low` and `high` and give way by their own stiffness.
+    springs; the stops stand at `low` and `high` and give way by their own stiffness; `coupling` (k, k) is the stiffness
+    between coordinates, or None.
     """
 
     stiffness: Array
@@ -33,20 +34,28 @@ class Holder:
     low: Array
     high: Array
     stop: Array
+    coupling: Array | None = None
 
     def forces(self, q: Array, qd: Array) -> Array:
         """Forces (..., k) that hold the coordinates."""
         xp = namespace(q, qd, self.stiffness)
         held = self.stiffness * (q - self.ease) + self.damping * qd + self.friction * xp.tanh(qd / SLIP)
+        if self.coupling is not None:
+            held = held + (q - self.ease) @ self.coupling
         return held + self.stop * self._beyond(q)
 
     def stored(self, q: Array) -> Array:
         """Energy (...) of the springs and stops, J."""
-        return (self.stiffness * (q - self.ease) ** 2 + self.stop * self._beyond(q) ** 2).sum(axis=-1) / 2
+        moved = q - self.ease
+        pull = self.stiffness * moved if self.coupling is None else self.stiffness * moved + moved @ self.coupling
+        return (pull * moved + self.stop * self._beyond(q) ** 2).sum(axis=-1) / 2
 
     def chosen(self, which: Array) -> Holder:
         """What holds some of the coordinates."""
-        return Holder(*(getattr(self, each.name)[which] for each in fields(self)))
+        parts = {each.name: getattr(self, each.name) for each in fields(self)}
+        coupling = parts.pop("coupling")
+        alone = None if coupling is None else coupling[which][:, which]
+        return Holder(**{name: each[which] for name, each in parts.items()}, coupling=alone)
 
     def _beyond(self, q: Array) -> Array:
         xp = namespace(q, self.low)

@@ -97,6 +97,9 @@ class Joint(Value):
         Spring, N/m or N m/rad, coordinate at which it has no force, damper, N s/m or N m s/rad, and Coulomb friction, N
         or N m, of each coordinate. A ``fixed`` joint gives way along and about the axes that have a stiffness: ``x``,
         ``y``, ``z``, ``rx``, ``ry``, ``rz``, the last three components of a rotation vector.
+    coupling : mapping of str to float, optional
+        Stiffness between two coordinates, by both names, such as ``{"y rz": -2e4}``: with the springs of all six
+        directions the 6 × 6 stiffness of a fixture, N/m, N, or N m.
     stops : pair of float or mapping of str to pairs
         Lowest and highest coordinate, at which stops begin to give way.
     stop_stiffness : float or mapping of str to float
@@ -134,6 +137,7 @@ class Joint(Value):
     stop_stiffness: Any = None
     rate: Any = None
     effort: Any = None
+    coupling: Any = None
 
     def __post_init__(self) -> None:
         choice("kind", self.kind, KINDS)
@@ -199,7 +203,32 @@ class Joint(Value):
             low[k], high[k] = ends
             if not (is_jax(values["stop_stiffness"]) or values["stop_stiffness"][k] > 0):
                 raise InputError("stop_stiffness", "is missing", f"a stop of {coordinate} needs one")
-        return Holder(low=low, high=high, stop=values.pop("stop_stiffness"), **values)
+        coupling = self._coupling(values["stiffness"])
+        return Holder(low=low, high=high, stop=values.pop("stop_stiffness"), coupling=coupling, **values)
+
+    def _coupling(self, stiffness: Floats) -> Floats | None:
+        """Stiffness (k, k) between coordinates; None without any."""
+        if self.coupling is None:
+            return None
+        names = self.coordinates
+        if not isinstance(self.coupling, Mapping):
+            raise InputError("coupling", f"is {self.coupling!r}", 'name pairs of coordinates, such as {"y rz": -2e4}')
+        coupling = np.zeros((len(names), len(names)))
+        for pair, value in self.coupling.items():
+            ends = str(pair).split()
+            if len(ends) != 2 or ends[0] == ends[1] or not set(ends) <= set(names) - set(_BALL):
+                fix = f"give two of {', '.join(names)}" if names else "give the springs of the directions as well"
+                raise InputError(f"coupling.{pair}", "is no pair of coordinates", fix)
+            i, j = (names.index(each) for each in ends)
+            coupling[i, j] = coupling[j, i] = finite(f"coupling.{pair}", value)
+        if is_jax(stiffness):
+            return coupling
+        whole = np.diag(np.asarray(stiffness, dtype=float)) + coupling
+        if np.linalg.eigvalsh(whole)[0] < -1e-9 * np.abs(whole).max():
+            raise InputError(
+                "coupling", "makes springs that give energy", "give a stiffness without negative eigenvalue"
+            )
+        return coupling
 
     @property
     def start(self) -> Floats:
