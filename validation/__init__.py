@@ -16,6 +16,7 @@ MODULES: tuple[str, ...] = (
     "codes.exudyn_plane",
     "codes.exudyn_space",
     "codes.exudyn_trees",
+    "codes.exudyn_rods",
     "published.paper2009",
     "published.paper2020",
     "published.references",
