@@ -105,6 +105,8 @@ def _of_system(result: SystemResponse, title: str) -> dict[str, Describe]:
     if result.loop is not None:
         every["loop"] = partial(system.loop, result, title)
     every |= {f"loads {body}": partial(system.loads, result, body, title) for body in result.beams}
+    if result.axes is not None:
+        every |= _of_machine(result, result.axes, title)
     if result.invariants is not None:
         every["energy"] = partial(system.energy, result, title)
     return every
@@ -134,7 +136,7 @@ def _of_sweep(result: Sweep, title: str) -> dict[str, Describe]:
 
 
 def _of_machine(
-    result: Response | MachinePlan, axes: AxesResult, title: str, flight: Response | None = None
+    result: Response | MachinePlan | SystemResponse, axes: AxesResult, title: str, flight: Response | None = None
 ) -> dict[str, Describe]:
     quantities = ("rate", "acceleration", *(["jerk"] if axes.jerk is not None else []))
     return {

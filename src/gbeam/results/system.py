@@ -13,7 +13,9 @@ from gbeam.errors import InputError
 from gbeam.results.declared import INSIDE, declared, fact, labels, part, quantity, rows
 from gbeam.results.errors import FrequencyErrors, SystemErrors
 from gbeam.results.facts import at_place
+from gbeam.results.machine import AxesResult
 from gbeam.results.parts import LoadPeaks, Loads, Outline
+from gbeam.results.response import BaseMotion
 from gbeam.results.result import Complex, Figured, Floats, Part
 
 ENERGIES = ("kinetic", "elastic", "gravity")
@@ -92,6 +94,9 @@ class Assembly(Part):
     place_at_rest: Floats = quantity(
         "m", "place of that point, its body undeformed", "body", "axis", frame="axes of its body's root"
     )
+    undeformed: Floats = quantity(
+        "m", "place of the point, joints at the start and bodies undeformed", "point", "axis", frame="ground"
+    )
     box: Floats = quantity(
         "m", "extents of an even box of the same mass and inertia", "body", "axis", note="NaN of flexible bodies",
         frame="principal axes",
@@ -162,6 +167,10 @@ class SystemResponse(Figured):
         "momentum and energy", key="invariants", name=INSIDE, note="None on a base that moves", default=None
     )
     loop: Loop | None = part("controllers", key="loop", name=INSIDE, note="None without any", default=None)
+    base: BaseMotion | None = part(
+        "motion of the ground", "time", key=None, name="ground_", note="None where it rests", default=None
+    )
+    axes: AxesResult | None = part("motion of a centrifuge", key=INSIDE, optional=True, default=None)
     assembly: Assembly | None = part(
         "how the bodies hang together", key=None, name=INSIDE, note="None where nothing is to be drawn", default=None
     )

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from gbeam.analysis.imitation.accounting import History, account_of, largest_load, largest_pair, points_of
+from gbeam.analysis.imitation.systems import specimen_of
 from gbeam.analysis.response.peaks import vector_peaks
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
@@ -31,6 +32,7 @@ from gbeam.results.imitation.measures import (
 from gbeam.results.parts import Influence
 from gbeam.results.response import Response
 from gbeam.results.result import Flags, Floats
+from gbeam.results.system import SystemResponse
 
 _NOTHING = 1e-9  # of the largest stress: a smaller cycle is rounding
 
@@ -127,9 +129,10 @@ _ROUNDING = 1e-12  # of the last time
 
 @typed
 def compare(
-    flight: Response,
-    centrifuge: Response,
+    flight: Response | SystemResponse,
+    centrifuge: Response | SystemResponse,
     *,
+    point: str | None = None,
     tolerance: float = TOLERANCE,
     tolerance_of: str = "peak",
     accept: Mapping[str, Limit] | None = None,
@@ -139,9 +142,12 @@ def compare(
 
     Parameters
     ----------
-    flight, centrifuge : Response
+    flight, centrifuge : Response or SystemResponse
         Sampled at any times; the flight's are interpolated where they differ. A response without a name goes by its
         environment.
+    point : str, optional
+        Of a system, the one whose displacement is compared, ``body.point``; by default the one that moves farthest in
+        flight. Its root loads are those of the ground, its stress is the largest of all beams.
     tolerance : float
         Share of the flight's load by which the machine's may differ and count as following.
     tolerance_of : str
@@ -183,6 +189,11 @@ def compare(
     0.26%
     """
     limits = checked_limits(accept)
+    if isinstance(flight, SystemResponse) and isinstance(centrifuge, SystemResponse):
+        chosen = flight.points[int(flight.largest.argmax())] if point is None else point
+        flight, centrifuge = specimen_of(flight, chosen), specimen_of(centrifuge, chosen)
+    if isinstance(flight, SystemResponse) or isinstance(centrifuge, SystemResponse):
+        raise InputError("centrifuge", "and flight are a system and a beam", "give two responses of one specimen")
     flown, reproduced = (float(flight.time[0]), float(flight.time[-1])), centrifuge.flight_span
     first, last = max(flown[0], reproduced[0]), min(flown[1], reproduced[1])
     slack = _ROUNDING * max(map(abs, flown))

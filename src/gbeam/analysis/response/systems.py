@@ -28,10 +28,13 @@ from gbeam.integrate.equations import NonlinearEquations, Trajectory
 from gbeam.integrate.steps import Corners
 from gbeam.mechanics.tree.steps import continuous
 from gbeam.mechanics.tree.system import System
+from gbeam.motion import Centrifuge
+from gbeam.motion.centrifuge.history import axes_result
 from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress, tell
 from gbeam.results.errors import ErrorEstimate, SystemErrors
 from gbeam.results.parts import Loads
+from gbeam.results.response import BaseMotion
 from gbeam.results.system import BeamResponse, Invariants, Loop, SystemResponse
 
 Array = Any
@@ -247,6 +250,7 @@ def _described(
     invariants = None
     if motion is None:
         invariants = Invariants(*(over_time.pop(key) for key in ("momentum", "angular_momentum", "energy")))
+    base: Any = None if motion is None else motion.base(kept.time)
     outcome, message = "done", ""
     if not every.whole:
         outcome = "not converged"
@@ -269,6 +273,8 @@ def _described(
         invariants=invariants,
         loop=loop,
         beams=beams,
+        base=None if motion is None else BaseMotion(base.a_WO_B, base.w_WB_B, base.alpha_WB_B),
+        axes=axes_result(motion, kept.time) if isinstance(motion, Centrifuge) else None,
         assembly=assembly_of(system) if settings.loads else None,
         integrator=scheme_of(settings).name,
         step=run.step,

@@ -159,7 +159,8 @@ def _system_response(facts: Facts, v: Facts, **more: Any) -> SystemResponse:
         for body, each in facts.get("beams", {}).items()
         if f"{body}_section_force" in v
     }
-    return _read(SystemResponse, facts, v, invariants=invariants, beams=beams, **more)
+    axes = _axes(facts, v) if "axis_rate" in v else None
+    return _read(SystemResponse, facts, v, invariants=invariants, beams=beams, axes=axes, base=None, **more)
 
 
 def _response(name: str, facts: Facts, v: Facts) -> Response:

@@ -1,0 +1,70 @@
+"""A system that is flown and spun, as the specimen of a comparison: its base, one point, and all of its loads."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from gbeam.errors import InputError
+from gbeam.results.parts import Loads, Peaks
+from gbeam.results.response import Response
+from gbeam.results.system import SystemResponse
+
+
+def specimen_of(response: SystemResponse, point: str) -> Response:
+    """The response of a system on a moving ground: displacement of one of its points, loads of the ground, and the
+    stress of all beams.
+    """
+    if response.base is None or response.assembly is None:
+        fix = "simulate it on a flight, and on a centrifuge that tracks it, with loads"
+        raise InputError("", "is a system on a ground at rest, or without loads", fix)
+    if point not in response.points:
+        raise InputError("point", f"is {point!r}", f"choose from {', '.join(response.points)}")
+    k, chosen = response.points.index(point), [beam.loads for beam in response.beams.values()]
+    turned = Rotation.from_quat(np.roll(response.attitude[:, k], -1, axis=-1))
+    nothing = np.full(3, math.nan)
+    # What the ground takes, then the largest stress at the roots; the sections of the beams follow.
+    tension = [np.max([each.stress_tension[:, 0] for each in chosen], axis=0)[:, None]] if chosen else []
+    compression = [np.min([each.stress_compression[:, 0] for each in chosen], axis=0)[:, None]] if chosen else []
+    tension += [each.stress_tension for each in chosen]
+    compression += [each.stress_compression for each in chosen]
+    unknown = np.full((len(response.time), 1), math.nan)
+    strengths = {each.yield_strength for each in chosen}
+    loads = Loads(
+        stations=np.arange(float(1 + sum(each.stress_tension.shape[1] for each in chosen))),
+        force=response.ground_force[:, None],
+        moment=response.ground_moment[:, None],
+        section_force=response.ground_force[:, None],
+        section_moment=response.ground_moment[:, None],
+        stress_tension=np.concatenate(tension, axis=1) if chosen else unknown,
+        stress_compression=np.concatenate(compression, axis=1) if chosen else unknown,
+        acceleration=turned.apply(response.acceleration[:, k])[:, None],
+        root_fibre=chosen[0].root_fibre if len(chosen) == 1 else None,
+        yield_strength=strengths.pop() if len(strengths) == 1 else None,
+        fatigue_exponent=chosen[0].fatigue_exponent if len(chosen) == 1 else math.nan,
+    )
+    return Response(
+        name=response.name,
+        environment=response.environment,
+        model="system",
+        outcome=response.outcome,
+        message=response.message,
+        time=response.time,
+        stations=np.zeros(1),
+        displacement=(response.place[:, k] - response.assembly.undeformed[k])[:, None],
+        q=response.q,
+        qd=response.qd,
+        base=response.base,
+        peaks=Peaks(nothing, nothing, nothing),
+        integrator=response.integrator,
+        step=response.step,
+        steps=response.steps,
+        error_estimate=response.error_estimate,
+        residual_from=math.nan,
+        loads=loads,
+        axes=response.axes,
+        envelope=response.assembly.undeformed,
+        kept_every=response.kept_every,
+    )
