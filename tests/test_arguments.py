@@ -213,7 +213,7 @@ class Given:
             "axis_commands": ((self.centrifuge.over(0.0, 0.1), 0.01), {}),
             "compare": (
                 tuple(self.responses),
-                {"tolerance": 0.05, "tolerance_of": "peak", "accept": {"tip": 0.5}, "control": {"tip": 1.0}},
+                {"point": None, "tolerance": 0.05, "tolerance_of": "peak", "accept": {"tip": 0.5}, "control": {"tip": 1.0}},
             ),
             "compare_models": ((self.brief,), {"kinds": ("FOAM",), "progress": None}),
             "constant": ((1.0,), {}),
@@ -235,7 +235,7 @@ class Given:
                 (self.structure, self.hub, 0.0),
                 {
                     "rate": None, "q": None, "qd": None, "gauges": [gb.Gauge(0.1, z=0.002)], "name": "hub",
-                    "inputs": None, "outputs": None, "at": "rest",
+                    "inputs": None, "outputs": None, "at": "rest", "loop": "open",
                 },
             ),
             "modal_truncation": ((self.system, 1), {}),
