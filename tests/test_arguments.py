@@ -213,7 +213,10 @@ class Given:
             "axis_commands": ((self.centrifuge.over(0.0, 0.1), 0.01), {}),
             "compare": (
                 tuple(self.responses),
-                {"point": None, "tolerance": 0.05, "tolerance_of": "peak", "accept": {"tip": 0.5}, "control": {"tip": 1.0}},
+                {
+                    "point": None, "tolerance": 0.05, "tolerance_of": "peak", "accept": {"tip": 0.5},
+                    "control": {"tip": 1.0},
+                },
             ),
             "compare_models": ((self.brief,), {"kinds": ("FOAM",), "progress": None}),
             "constant": ((1.0,), {}),

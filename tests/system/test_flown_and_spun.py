@@ -48,6 +48,9 @@ def test_two_beams_on_a_rigid_body_are_flown_and_spun() -> None:
     assert 0 < compared.relative[2] < 0.1 and compared.root is not None
     largest = max(each.peaks.largest_stress.value for each in flight.beams.values())  # type: ignore[union-attr]
     assert compared.peaks["stress"].flight == pytest.approx(largest, rel=1e-3)
+    assert compared.shock is not None
+    control = gb.compare(flight, spun, point="left.tip", control={"left.tip": 1.0, "right.tip": 1.0}).shock
+    assert control is not None and "right.tip" in control.control
     assert gb.compare(flight, spun).max_difference.shape == (3,)
     with pytest.raises(gb.InputError, match="choose from"):
         gb.compare(flight, spun, point="left.top")

@@ -22,8 +22,12 @@ def specimen_of(response: SystemResponse, point: str) -> Response:
         raise InputError("", "is a system on a ground at rest, or without loads", fix)
     if point not in response.points:
         raise InputError("point", f"is {point!r}", f"choose from {', '.join(response.points)}")
-    k, chosen = response.points.index(point), [beam.loads for beam in response.beams.values()]
-    turned = Rotation.from_quat(np.roll(response.attitude[:, k], -1, axis=-1))
+    chosen = [beam.loads for beam in response.beams.values()]
+    order = sorted(range(len(response.points)), key=lambda k: response.points[k] == point)  # the tip is the last
+    felt = [
+        Rotation.from_quat(np.roll(response.attitude[:, k], -1, axis=-1)).apply(response.acceleration[:, k])
+        for k in order
+    ]
     nothing = np.full(3, math.nan)
     # What the ground takes, then the largest stress at the roots; the sections of the beams follow.
     tension = [np.max([each.stress_tension[:, 0] for each in chosen], axis=0)[:, None]] if chosen else []
@@ -40,7 +44,7 @@ def specimen_of(response: SystemResponse, point: str) -> Response:
         section_moment=response.ground_moment[:, None],
         stress_tension=np.concatenate(tension, axis=1) if chosen else unknown,
         stress_compression=np.concatenate(compression, axis=1) if chosen else unknown,
-        acceleration=turned.apply(response.acceleration[:, k])[:, None],
+        acceleration=felt[-1][:, None],
         root_fibre=chosen[0].root_fibre if len(chosen) == 1 else None,
         yield_strength=strengths.pop() if len(strengths) == 1 else None,
         fatigue_exponent=chosen[0].fatigue_exponent if len(chosen) == 1 else math.nan,
@@ -52,8 +56,10 @@ def specimen_of(response: SystemResponse, point: str) -> Response:
         outcome=response.outcome,
         message=response.message,
         time=response.time,
-        stations=np.zeros(1),
-        displacement=(response.place[:, k] - response.assembly.undeformed[k])[:, None],
+        stations=np.arange(float(len(order))),
+        points=tuple(response.points[k] for k in order),
+        displacement=(response.place - response.assembly.undeformed)[:, order],
+        point_acceleration=np.stack(felt, axis=1),
         q=response.q,
         qd=response.qd,
         base=response.base,
