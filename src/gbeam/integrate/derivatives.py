@@ -28,7 +28,7 @@ def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> tuple
         at, given = [each[some] for each in (q, qd, qdd)], each_leaf(lambda leaf: leaf[some], inputs)  # noqa: B023
         values = residual(*(each + steps[:, :, k] for k, each in enumerate(at)), given)
         pieces.append(values.imag / STEP)
-    k, c, m = np.concatenate(pieces, axis=1).reshape(3, n, len(q), -1).transpose(0, 2, 3, 1)
+    k, c, m = np.concatenate(pieces, axis=1).reshape(3, n, len(q), pieces[0].shape[-1]).transpose(0, 2, 3, 1)
     return k, c, m
 
 

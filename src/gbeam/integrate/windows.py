@@ -32,6 +32,7 @@ Piece = tuple[Any, ...]
 FIRST, MOST, LONGEST = 100, 200, 1000  # steps in a window: at first, at most, and where derivatives hold all along
 NEAR, APART, FAR = 4, 12, 24  # stages between derivatives: at least, at first, and at most
 CORRECTIONS, ALONE = 10, 25  # of a window at most, and of a single step
+HALVINGS = 8  # of a correction of a single step
 MOVED = 0.3  # size of a correction after which derivatives are found anew
 FEW = 3  # times, after which a window that is still so far away ends, and up to which the next one may be longer
 SLOW, FAST = 0.3, 0.01  # of the last correction: where one is larger, derivatives are closer, where smaller farther
@@ -44,6 +45,10 @@ def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, 
     """Integrate; yields the initial state, then window by window q, q̇, q̈ (k, n) at the steps that are kept and whether
     each was solved.
     """
+    if not q.size:  # all motion is prescribed
+        still = np.zeros((1 + np.count_nonzero(steps.kept), 0))
+        yield from ((each, each, each, np.ones(len(each), dtype=bool)) for each in (still[:1], still[1:]))
+        return
     residual, drive, sampling = equations.residual, equations.drive, sampling_of(equations, steps)
 
     def demanded(t: Any, q: Array, qd: Array) -> Array:
@@ -56,6 +61,7 @@ def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, 
     ends = np.append(np.flatnonzero(steps.anew[:-1]) + 1 if scheme.ends else [], len(steps)).astype(int)
     z, x = scheme.tableau(steps.length[0]).first @ np.stack([q, qd, qdd]), qdd
     done, size, apart, slope = 0, FIRST, APART, None
+    start: Any = z, x, slope
     while done < len(steps):
         part = steps[done : min(done + size, ends[np.searchsorted(ends, done, side="right")])]
         with np.errstate(all="ignore"):
@@ -69,17 +75,13 @@ def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, 
                 return
             if count == len(part):
                 size = min(size + size // 2 + 1, MOST if times else LONGEST) if times <= FEW else size
-            elif near > count + LEAST:
+            elif count and near > count + LEAST:
                 size = near - count
             else:
                 size = max(count, len(part) // 2)
-            if near > count + LEAST:
-                z, x, slope = window.behind(count, near)
-            elif count:
-                z, x, slope = window.z[count], window.x[count - 1, -1], window.slope_at(count - 1)
-            else:  # begin anew, with every step like the first
-                z, x = z.reshape(-1, *z.shape[-2:])[0], x.reshape(-1, x.shape[-1])[0]
-                slope = None if slope is None else tuple(each[:1, :1] for each in slope)
+            if count:
+                start = window.z[count], window.x[count - 1, -1], window.slope_at(count - 1)
+            z, x, slope = window.behind(count, near) if count and near > count + LEAST else start
             if not count:
                 continue
             q, qd, qdd = window.ended(count)
@@ -88,6 +90,7 @@ def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, 
                 x = demanded(end.resume, q[-1], qd[-1])
                 qdd[-1] = demanded(end.end, q[-1], qd[-1])
                 z = scheme.tableau(end.following).first @ np.stack([q[-1], qd[-1], x])
+                start = z, x, slope
         done, kept = done + count, part.kept[:count]
         yield q[kept], qd[kept], qdd[kept], np.ones(np.count_nonzero(kept), dtype=bool)
 
@@ -131,6 +134,8 @@ class _Window:
         maps, fresh = self._maps(), False
         for _ in range(ALONE if count == 1 else CORRECTIONS):
             before, size = size, self._correct(*maps)
+            if count == 1:
+                self._shorten(maps[0])
             # By derivatives of another state corrections may shrink slowly without being rounding.
             good, fresh = _left(size, before, ROUNDING if fresh else 0.0) <= TOLERANCE, False
             last, largest = before.max(), size.max()
@@ -228,7 +233,8 @@ class _Window:
         if self.held is not None:
             change = change + self.held.changed(self.x.shape)
             self.inputs = self.held.driven(self.free, self.x.shape[1])
-        self.z += moved.reshape(self.z.shape)
+        self.moved = moved.reshape(self.z.shape), change
+        self.z += self.moved[0]
         self.x -= change
         return _size(change, self.x)
 
@@ -250,6 +256,20 @@ class _Window:
             if self.held is not None:
                 after += self.held.sampled(k, before)
         return moved
+
+    def _shorten(self, inverse: Array) -> None:
+        """Halve the correction of a single step until the next one is smaller by a part: the law of a friction or a
+        stop bends within a step.
+        """
+        (state, change), share = self.moved, 1.0
+        whole = np.linalg.norm(change)
+        for _ in range(HALVINGS):
+            following = inverse @ self.residual(*self._stages(), self.inputs).reshape(1, -1, 1)
+            if np.linalg.norm(following) <= (1 - share / 2) * whole or whole <= ROUNDING:
+                return
+            share /= 2
+            self.z -= share * state
+            self.x += share * change
 
 
 def _products(matrices: Array, vectors: Array) -> Array:

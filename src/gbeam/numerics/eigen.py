@@ -61,11 +61,11 @@ def eigenvalues(
     # In modes of the symmetric part, each scaled by its own frequency, all blocks are of the size of the frequencies:
     # the raw companion matrix loses half the digits of the low ones.
     square, basis = symmetric_modes(symmetric(stiffness), symmetric(mass))
-    reference = np.sqrt(np.abs(square).max())
+    reference = np.sqrt(np.abs(square).max(initial=0.0))
     scale = np.maximum(np.sqrt(np.abs(square)), 1e-6 * reference)
     k, c = basis.T @ stiffness @ basis, basis.T @ damping @ basis
     n = len(square)
-    moving = np.abs(k).max(axis=0) > 1e-13 * reference**2
+    moving = np.abs(k).max(axis=0, initial=0.0) > 1e-13 * reference**2
     a = np.block([[np.zeros((n, n)), np.diag(scale)], [-k / scale, -c]])
     keep = np.concatenate([moving, np.ones(n, dtype=bool)])
     value, vector = np.linalg.eig(a[np.ix_(keep, keep)])

@@ -15,7 +15,7 @@ from gbeam.analysis.response.peaks import load_peaks
 from gbeam.analysis.response.record import outline_of
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.step_errors import Run, difference, ratio, share
-from gbeam.analysis.response.stepping import MAX_STEPS, ONE_CORNER, finer_by, scheme_of
+from gbeam.analysis.response.stepping import LOADS_STEPS, ONE_CORNER, finer_by, scheme_of
 from gbeam.analysis.system.accuracy import system_errors
 from gbeam.analysis.system.assembly import assembly_of
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
@@ -23,6 +23,7 @@ from gbeam.analysis.system.histories import Carried, beams_of, histories, loads_
 from gbeam.analysis.system.point import Point, started, started_traced
 from gbeam.arrays.namespace import holds_jax, namespace
 from gbeam.errors import InputError
+from gbeam.guards.limits import HISTORY_BYTES, refuse_more
 from gbeam.integrate.driver import integrate
 from gbeam.integrate.equations import NonlinearEquations, Trajectory
 from gbeam.integrate.steps import Corners
@@ -60,7 +61,7 @@ def _at(of: Trajectory, steps: Any) -> Trajectory:
 
 def _pieces(trajectory: Trajectory, system: System) -> list[Trajectory]:
     """A trajectory in pieces of which all frames are held in memory at once."""
-    size = max(1, AT_ONCE // system.tree.size)
+    size = max(1, AT_ONCE // max(1, system.tree.size))
     return [_at(trajectory, slice(first, first + size)) for first in range(0, len(trajectory.time), size)]
 
 
@@ -88,6 +89,10 @@ def simulate_system(
             raise InputError("integrator", f"is {settings.integrator!r}", fix)
         equations = replace(equations, controllers=SystemControllers(system), samplings=[])
     coarse = _first_step(system, motion, point, settings)
+    each = 8.0 * (3 * system.tree.size + 16 * len(system.points))
+    most, kept = int(HISTORY_BYTES / each), settings.step or coarse
+    fix = f"give {most * kept:.3g} s or less, or longer steps"
+    refuse_more("response.duration", "steps", settings.duration / kept, most, each, fix)
     end = settings.start + settings.duration
     times = _corners(system, motion, coarse)
     felt = Corners.of(times, equations.drive, settings.start, end)
@@ -122,9 +127,10 @@ def simulate_system(
         while True:
             error = _step_error(runs, scheme.order)
             whole = runs[-1][0].whole
-            if (error <= settings.aim and whole) or settings.duration / runs[-1][0].step > MAX_STEPS / 8:
-                break
             finer = finer_by(error / settings.aim if whole else math.nan, scheme.order)
+            too_many = settings.duration / runs[-1][0].step * finer > LOADS_STEPS
+            if (error <= settings.aim and whole) or too_many:
+                break
             if not (whole or runs[-2][0].whole) and len(runs) > 3:
                 break
             step = runs[-1][0].step / finer
@@ -185,17 +191,20 @@ def _corners(system: System, motion: Motion | None, step: float) -> Floats:
 
 
 def _first_step(system: System, motion: Motion | None, point: Point, settings: ResponseSettings) -> float:
-    """Step of the results, s: 500 at least, twenty to the period of the slowest vibration, and none over a corner."""
+    """Step of the results, s: 500 at least, twenty to the period of the slowest vibration of which the most steps are
+    one to a period, and none over a corner, as far as there are not too many.
+    """
     _, k, _, m = point.local.slopes()
     square = np.abs(np.linalg.eigvals(np.linalg.solve(m, k))) if len(k) else np.zeros(0)
     largest = settings.duration / LEAST
     oscillating = np.sqrt(square[square > 1e-9 * square.max(initial=0.0)])
+    oscillating = oscillating[oscillating * settings.duration < 2 * math.pi * LOADS_STEPS]
     if oscillating.size:
         largest = min(largest, 2 * math.pi / float(oscillating.min()) / 20)
     times = _corners(system, motion, largest) - settings.start
     gaps = np.diff(np.unique(np.clip(times, 0.0, settings.duration)))
     largest = min(largest, gaps.min(where=gaps > ONE_CORNER * settings.duration, initial=largest))
-    return settings.duration / (2 * math.ceil(settings.duration / largest / 2))
+    return settings.duration / min(2 * math.ceil(settings.duration / largest / 2), LOADS_STEPS)
 
 
 def _over_time(

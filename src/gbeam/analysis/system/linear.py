@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -31,7 +32,7 @@ def system_modes(system: System, motion: Motion | None, time: float, *, gyroscop
     state = steady(system, Drive(motion, time))
     local, moving = state.local, state.moving if gyroscopic else vibrations(state.linear, gyroscopic=False, zero=RIGID)
     shape = np.einsum("pan,nk->kpa", state.slopes_of_points, moving.modes)
-    flat = shape.reshape(len(shape), -1)
+    flat = shape.reshape(len(shape), math.prod(shape.shape[1:]))
     largest = flat[np.arange(len(flat)), np.abs(flat).argmax(axis=1)] if flat.size else np.ones(len(shape))
     growing = np.concatenate([moving.diverging, moving.value[moving.flutter]])
     warnings = system.warnings
@@ -159,7 +160,7 @@ def _outputs(
         choice("outputs", each, every)
     n = len(local.y)
     state = np.concatenate([local.y, local.yd, local.ydd])
-    moved = np.concatenate([state[None] + 0j, state + 1j * STEP * np.eye(3 * n)]).reshape(-1, 3, n)
+    moved = np.concatenate([state[None] + 0j, state + 1j * STEP * np.eye(3 * n)]).reshape(3 * n + 1, 3, n)
     measured = measurements(system, local.tree, moved[:, 0], moved[:, 1], moved[:, 2], local.inputs, wanted)
-    slopes = (measured[1:].imag / STEP).reshape(3, n, -1).transpose(0, 2, 1)
+    slopes = (measured[1:].imag / STEP).reshape(3, n, len(wanted)).transpose(0, 2, 1)
     return tuple(Signal(each, every[each]) for each in wanted), measured[0].real, (slopes[0], slopes[1], slopes[2])

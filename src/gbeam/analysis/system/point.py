@@ -67,7 +67,7 @@ def refuse_massless(system: System, mass: Floats, free: NDArray[np.int64]) -> No
     scale = np.sqrt(np.abs(mass).max(axis=1, initial=0.0))
     scale = np.where(scale > 0, scale, 1.0)
     _, sizes, rows = np.linalg.svd(mass / np.outer(scale, scale))
-    if sizes.size and sizes[-1] < MASSLESS * sizes[0]:
+    if sizes.size and sizes[-1] <= MASSLESS * sizes[0]:
         name = system.coordinates[free[np.abs(rows[-1]).argmax()]]
         fix = "give the body that it moves a mass, and a moment of inertia about every axis that is free"
         raise InputError("bodies", f"leave {name} without inertia", fix)

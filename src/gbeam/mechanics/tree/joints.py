@@ -169,6 +169,11 @@ class Joint(Value):
         return KINDS[self.kind].names
 
     @property
+    def _held(self) -> tuple[str, ...]:
+        """Coordinates whose values are given by name: not Euler parameters, of which no torque is a function."""
+        return tuple(name for name in self.coordinates if name not in _BALL)
+
+    @property
     def rate_names(self) -> tuple[str, ...]:
         """Names of the rates at which it moves."""
         return KINDS[self.kind].rates or self.coordinates
@@ -190,12 +195,12 @@ class Joint(Value):
     @property
     def holder(self) -> Holder:
         """Springs, dampers, friction and stops of the coordinates."""
-        values = {name: self._numbers(name, getattr(self, name), self.coordinates) for name in _EASY}
+        values = {name: self._numbers(name, getattr(self, name), self._held, self.coordinates) for name in _EASY}
         for name in ("stiffness", "damping", "friction", "stop_stiffness"):
             for coordinate, value in zip(self.coordinates, values[name], strict=True):
                 positive(f"{name}.{coordinate}", value, "SI", zero=True)
         low, high = np.full(len(self.coordinates), -np.inf), np.full(len(self.coordinates), np.inf)
-        for coordinate, pair in self._named("stops", self.stops, self.coordinates).items():
+        for coordinate, pair in self._named("stops", self.stops, self._held).items():
             k = self.coordinates.index(coordinate)
             ends = array(f"stops.{coordinate}", pair)
             if ends.shape != (2,) or not ends[0] < ends[1]:
@@ -234,12 +239,10 @@ class Joint(Value):
     def start(self) -> Floats:
         """Coordinates at the start."""
         unit = [1.0 if name == "e0" else 0.0 for name in self.coordinates]
-        chosen = tuple(name for name in self.coordinates if name not in _BALL)
         for name in self._named("initial", self.initial, self.coordinates):
             if name in _BALL:
                 raise InputError(f"initial.{name}", "is one of four Euler parameters", "give `turn` for the rotation")
-        values = dict(zip(chosen, self._numbers("initial", self.initial, chosen), strict=True))
-        return as_array([values.get(name, one) for name, one in zip(self.coordinates, unit, strict=True)])
+        return self._numbers("initial", self.initial, self._held, self.coordinates) + np.array(unit)
 
     @property
     def start_rate(self) -> Floats:
@@ -266,12 +269,13 @@ class Joint(Value):
         return efforts
 
     def _profiles(self, where: str, given: Any) -> dict[str, Profile]:
-        chosen = tuple(name for name in self.coordinates if name not in _BALL)
-        return {name: as_profile(f"{where}.{name}", each) for name, each in self._named(where, given, chosen).items()}
+        named = self._named(where, given, self._held)
+        return {name: as_profile(f"{where}.{name}", each) for name, each in named.items()}
 
-    def _numbers(self, where: str, given: Any, names: tuple[str, ...]) -> Floats:
+    def _numbers(self, where: str, given: Any, names: tuple[str, ...], every: tuple[str, ...] = ()) -> Floats:
+        """Values by some names, of all of `every`: zero where they are not given."""
         values = {name: finite(f"{where}.{name}", each) for name, each in self._named(where, given, names).items()}
-        return as_array([values.get(name, 0.0) for name in names])
+        return as_array([values.get(name, 0.0) for name in every or names])
 
     def _named(self, where: str, given: Any, names: tuple[str, ...]) -> dict[str, Any]:
         """Values by the names of coordinates; of a single coordinate the value alone will do."""

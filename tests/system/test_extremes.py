@@ -1,0 +1,88 @@
+"""Systems at the edge of what they may be: no unknowns, no inertia, friction that holds, vibrations without end."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import gbeam as gb
+
+ROD = gb.RigidBody(1.0, (0.0, 1 / 12, 1 / 12), centre=(0.5, 0, 0), points={"end": (1, 0, 0)})
+DOWN = (0.0, 0.0, -9.81)
+
+
+def hinged(**more: object) -> gb.System:
+    return gb.System({"rod": ROD}, {"hinge": gb.Joint("revolute", "rod", axes=[(0, 1, 0)], **more)}, gravity=DOWN)
+
+
+@pytest.mark.parametrize("kind", ["spherical", "free"])
+@pytest.mark.parametrize(
+    "name", ["stiffness", "ease", "damping", "friction", "stop_stiffness", "stops", "rate", "effort"]
+)
+def test_nothing_is_a_function_of_one_euler_parameter(kind: str, name: str) -> None:
+    value = (-1.0, 1.0) if name == "stops" else 1.0
+    with pytest.raises(gb.InputError, match="no coordinate"):
+        gb.Joint(kind, "rod", **{name: {"e1": value}})
+
+
+@pytest.mark.parametrize("integrator", ["gauss", "newmark"])
+def test_a_motion_that_is_prescribed_needs_the_drive_that_it_needs(integrator: str) -> None:
+    rate = gb.SmoothStep(3.0, 2.0)
+    response = gb.simulate(hinged(rate=rate), duration=2.0, integrator=integrator)
+    angle, change = response.coordinate("hinge.angle"), rate.derivatives(response.time, 1)[1]
+    expected = change / 3 - 9.81 / 2 * np.cos(angle)
+    assert response.outcome == "done" and response.effort.shape == (len(response.time), 1)
+    np.testing.assert_allclose(response.effort[:, 0], expected, atol=1e-9)
+
+
+def test_what_cannot_move_is_answered_by_every_question() -> None:
+    fixed = gb.System({"rod": ROD}, {"clamp": gb.Joint("fixed", "rod")}, gravity=DOWN)
+    response = gb.simulate(fixed, duration=1.0)
+    assert response.outcome == "done" and not response.largest.any()
+    np.testing.assert_allclose(response.ground_moment, [[0, 9.81 / 2, 0]] * len(response.time), atol=1e-12)
+    np.testing.assert_allclose(gb.static(fixed).ground_force, DOWN)
+    assert len(gb.modes(fixed).frequency) == 0
+    assert gb.linearize(fixed).a.shape == (0, 0)
+
+
+@pytest.mark.parametrize("body", [gb.RigidBody(0.0), gb.RigidBody(1.0), gb.RigidBody(1.0, (0, 2, 2), (0, 0, 0))])
+@pytest.mark.parametrize("question", [gb.static, gb.modes, gb.linearize, lambda s: gb.simulate(s, duration=1.0)])
+def test_a_joint_that_moves_no_mass_is_refused(body: gb.RigidBody, question: object) -> None:
+    joint = gb.Joint("revolute", "rod", axes=[(1, 0, 0)])
+    with pytest.raises(gb.InputError, match="without inertia"):
+        question(gb.System({"rod": body}, {"hinge": joint}, gravity=DOWN))  # type: ignore[operator]
+
+
+def test_modes_about_a_place_that_is_not_stable_say_so() -> None:
+    modes = gb.modes(hinged(initial=-np.pi / 2))
+    assert len(modes.frequency) == 0
+    np.testing.assert_allclose(modes.growing, [np.sqrt(1.5 * 9.81)], rtol=1e-9)
+
+
+@pytest.mark.parametrize("friction", [1.0, 4.9, 5.0, 30.0])
+def test_friction_holds_what_it_can(friction: float) -> None:
+    """A rod whose weight turns it by up to 4.905 N m creeps where friction is larger, and swings where it is not."""
+    response = gb.simulate(hinged(friction=friction), duration=1.0)
+    assert response.outcome == "done"
+    if friction > 4.905:
+        slip = 1e-3 * np.arctanh(4.905 / friction)
+        np.testing.assert_allclose(response.coordinate("hinge.angle")[-1], slip, rtol=1e-3)
+    else:
+        assert response.coordinate("hinge.angle")[-1] > 5 * (4.905 - friction) / 2 * 0.1
+
+
+def test_friction_takes_the_same_from_every_swing() -> None:
+    """A mass on a spring with Coulomb friction: each swing ends 2 F/k shorter than it began."""
+    mass = gb.RigidBody(1.0, (1.0, 1.0, 1.0))
+    slide = gb.Joint("prismatic", "mass", axes=[(1, 0, 0)], stiffness=50.0, friction=1.0, initial=0.21)
+    response = gb.simulate(gb.System({"mass": mass}, {"slide": slide}), duration=4.0)
+    half = np.pi / np.sqrt(50.0)
+    ends = np.interp(half * np.arange(5), response.time, response.coordinate("slide.displacement"))
+    assert response.outcome == "done"
+    np.testing.assert_allclose(ends, [0.21, -0.17, 0.13, -0.09, 0.05], atol=5e-4)
+
+
+def test_a_vibration_that_no_number_of_steps_shows_asks_for_none() -> None:
+    """A hinge as stiff as a clamp vibrates at 275 kHz."""
+    stiff = gb.System({"rod": ROD}, {"hinge": gb.Joint("revolute", "rod", axes=[(0, 1, 0)], stiffness=1e12)})
+    assert gb.simulate(stiff, duration=1.0).steps == 500
