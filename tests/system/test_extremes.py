@@ -86,3 +86,12 @@ def test_a_vibration_that_no_number_of_steps_shows_asks_for_none() -> None:
     """A hinge as stiff as a clamp vibrates at 275 kHz."""
     stiff = gb.System({"rod": ROD}, {"hinge": gb.Joint("revolute", "rod", axes=[(0, 1, 0)], stiffness=1e12)})
     assert gb.simulate(stiff, duration=1.0).steps == 500
+
+
+@pytest.mark.parametrize("step", [2e-3, 1e-3, 5e-4, 1e-4])
+def test_a_flight_without_forces_meets_a_stop(step: float) -> None:
+    """A stop that is met after a free flight gives the speed back, whatever the steps are."""
+    block = gb.RigidBody(2.0)
+    slide = gb.Joint("prismatic", "block", axes=[(1, 0, 0)], initial_rate=1.0, stops=(-1.0, 0.2), stop_stiffness=2e4)
+    response = gb.simulate(gb.System({"block": block}, {"slide": slide}), duration=0.5, step=step, estimate=False)
+    assert response.qd[-1, 0] == pytest.approx(-1.0, abs=0.3 * (100 * step) ** 2 + 1e-6)

@@ -305,8 +305,8 @@ def _size(change: Array, x: Array) -> Array:
 
 def _left(size: Array, before: Array, rounding: float) -> Array:
     """Errors left after the last of two corrections, which shrink by a constant factor; none where they stall at no
-    more than rounding.
+    more than rounding. The first one moves states of which it does not know what acts there: it leaves any.
     """
-    shrunk = np.where(np.isfinite(before), size / np.maximum(before, 1e-300), 1.0)
-    left = size * np.clip(shrunk, QUICKEST, 1.0)
+    shrunk = size / np.maximum(before, 1e-300)
+    left = np.where(np.isfinite(before), size * np.clip(shrunk, QUICKEST, 1.0), np.inf)
     return np.where((size > STALLED * before) & (size <= rounding), 0.0, left)
