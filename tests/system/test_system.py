@@ -198,3 +198,8 @@ def test_linear_model_follows_the_response() -> None:
     size = np.abs(y).max(axis=1)
     np.testing.assert_allclose(y[0], response.coordinate("hinge.angle"), atol=2e-5 * size[0])
     np.testing.assert_allclose(y[2], response.acceleration[:, 0, 2], atol=2e-3 * size[2])
+
+
+def test_a_free_body_has_six_motions_of_no_frequency() -> None:
+    free = gb.modes(gb.System({"rod": gb.RigidBody(1.0, (1.0, 1.0, 1.0))}, {"hold": gb.Joint("free", "rod")}))
+    assert free.frequency.shape == (0,) and free.rigid == 6 and free.stable

@@ -62,7 +62,7 @@ def eigenvalues(
     # the raw companion matrix loses half the digits of the low ones.
     square, basis = symmetric_modes(symmetric(stiffness), symmetric(mass))
     reference = np.sqrt(np.abs(square).max(initial=0.0))
-    scale = np.maximum(np.sqrt(np.abs(square)), 1e-6 * reference)
+    scale = np.maximum(np.sqrt(np.abs(square)), 1e-6 * reference or 1.0)
     k, c = basis.T @ stiffness @ basis, basis.T @ damping @ basis
     n = len(square)
     moving = np.abs(k).max(axis=0, initial=0.0) > 1e-13 * reference**2
