@@ -11,9 +11,11 @@ from scipy.sparse.linalg import spsolve
 
 import gbeam as gb
 from gbeam.solids.elements import KINDS, chunks, stiffness_matrix
-from gbeam.solids.stress import NodalStress, principal, von_mises
+from gbeam.solids.stress import VERTICES, NodalStress, principal, surface_of, von_mises
 
 from .bodies import STIFF, block, solid
+
+SIZE = (0.2, 0.03, 0.02)
 
 QUADRATIC = [kind for kind, each in KINDS.items() if not each.linear]
 L, B, H = 0.3, 0.02, 0.01
@@ -132,3 +134,40 @@ def test_nafems_le10_thick_plate() -> None:
     stress = NodalStress.of(mesh, moved.reshape(-1, 3, 1))
     (corner,) = np.flatnonzero(np.linalg.norm(mesh.points - (2.0, 0.0, 0.6), axis=1) < 1e-9)
     assert 1e-6 * stress.table[corner, 1, 0] == pytest.approx(LE10, rel=0.01)
+
+
+@pytest.mark.parametrize("kind", ["tetra10", "hexahedron20", "wedge"])
+def test_the_surface_for_pictures_is_closed_and_that_of_the_block(kind: str) -> None:
+    mesh = solid(block(kind, (4, 2, 3), SIZE))
+    nodes, triangles = surface_of(mesh)
+    corners = mesh.points[nodes][triangles]
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum() / 2
+    x, y, z = SIZE
+    assert area == pytest.approx(2 * (x * y + y * z + z * x), rel=1e-9)
+    edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
+
+
+def test_a_large_surface_is_thinned_for_pictures() -> None:
+    mesh = solid(block("hexahedron", (40, 40, 4), (0.4, 0.4, 0.04)))
+    nodes, triangles = surface_of(mesh)
+    assert 0.3 * VERTICES < len(nodes) < 1.5 * VERTICES
+    assert np.ptp(mesh.points[nodes], axis=0) == pytest.approx((0.4, 0.4, 0.04), rel=0.1)
+    assert triangles.max() == len(nodes) - 1
+
+
+def test_few_shapes_hold_what_the_surface_does() -> None:
+    """Of a response: displacement and stress of a vertex, by all coordinates and by the shapes of the picture."""
+    model = solid(block("hexahedron20", (4, 1, 1), SIZE)).reduced(modes=4, damping_ratio=0.02)
+    turn = gb.Flight(z=gb.trapezoid(78.5, jerk=400.0, start=0.1, hold=0.2))
+    response = gb.simulate(model.structure, turn, duration=1.0, step=1e-3, integrator="gauss", estimate=False)
+    surface = response.surface
+    assert surface is not None and len(surface.shapes) < model.structure.size / 2
+    moved = np.einsum("ts,sva->tva", surface.sizes, surface.shapes)
+    tip = np.linalg.norm(surface.vertices - mesh_tip(model), axis=1).argmin()
+    index = np.searchsorted(response.time, surface.time)
+    assert moved[:, tip] == pytest.approx(response.tip[index], abs=2e-3 * np.abs(response.tip).max())
+
+
+def mesh_tip(model: gb.SolidModel) -> np.ndarray:
+    return np.asarray(model.mesh.points[model.mesh.stations["tip"]])

@@ -14,6 +14,7 @@ import {
 } from "three";
 import { BeamMesh } from "./beam";
 import { interpolate, locate, type Part, view } from "./data";
+import { SurfaceMesh } from "./surface";
 
 export type Colouring = "deflection" | "stress" | "none";
 
@@ -41,6 +42,7 @@ export class Body {
   readonly group = new Group();
   private readonly mesh: BeamMesh | null = null;
   private readonly ghost: BeamMesh | null = null;
+  private readonly surface: SurfaceMesh | null = null;
   private readonly now: Float32Array;
   private readonly shares: Float32Array;
 
@@ -56,6 +58,10 @@ export class Body {
       this.mesh = new BeamMesh(part.beam, false);
       this.ghost = new BeamMesh(part.beam, true);
       this.group.add(this.mesh.group, this.ghost.group);
+    }
+    if (part.surface) {
+      this.surface = new SurfaceMesh(part.surface, numbers);
+      this.group.add(this.surface.group);
     }
     if (part.box) this.group.add(box(part.box, 0.012 * size));
     if (part.points?.length) {
@@ -77,6 +83,12 @@ export class Body {
       const more = settings.factor - 1;
       this.group.position.set(f[0]! + more * f[7]!, f[1]! + more * f[8]!, f[2]! + more * f[9]!);
       this.group.quaternion.set(f[4]!, f[5]!, f[6]!, f[3]!).normalize();
+    }
+    if (this.surface) {
+      const { colouring, largestStress, largestDeflection } = settings;
+      const largest = colouring === "stress" ? largestStress : largestDeflection;
+      this.surface.update(place, settings.factor, colouring, largest, dark ? 0.75 : 0.55);
+      this.surface.ghost.visible = settings.ghost;
     }
     const { beam } = part;
     if (!beam || !this.mesh || !this.ghost) return;

@@ -28,9 +28,21 @@ export interface Beam extends Shape {
   stress?: Stress;
 }
 
+/** The surface of a solid: vertices (v, 3), triangles (f, 3), and shapes (s, v, 3) of displacement and (s, v, 6) of stress
+ * xx, yy, zz, yz, xz, xy, whose sizes (t, s) change over time. */
+export interface Surface {
+  vertices: Ref;
+  triangles: Ref;
+  shapes: Ref;
+  stress: Ref;
+  sizes: Ref;
+  largest: number;
+}
+
 /** A body: a beam, or the box of a rigid body and the places of its points, in axes of its root. */
 export interface Part {
   beam?: Beam;
+  surface?: Surface;
   /** Size, centre, and rotation row by row. */
   box?: { size: number[]; centre: number[]; rotation: number[] };
   points?: number[][];

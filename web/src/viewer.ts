@@ -40,14 +40,16 @@ export class Viewer {
     const most = (of: (each: (typeof motions)[number]) => number | undefined): number =>
       Math.max(0, ...motions.map((each) => of(each) ?? 0));
     const largest = most((each) => each.largest);
-    const beams = motions.flatMap((each) => each.parts.flatMap((part) => part.beam ?? []));
+    const parts = motions.flatMap((each) => each.parts);
+    const beams = parts.flatMap((part) => part.beam ?? []);
+    const stresses = [...beams.flatMap((each) => each.stress ?? []), ...parts.flatMap((part) => part.surface ?? [])];
     this.settings = {
       factor: visible(largest, motions[0]!.length),
       ghost: true,
       loads: true,
-      colouring: !beams.length ? "none" : beams.some((each) => each.stress) ? "stress" : "deflection",
+      colouring: stresses.length ? "stress" : beams.length ? "deflection" : "none",
       largestDeflection: largest,
-      largestStress: Math.max(0, ...beams.map((each) => each.stress?.largest ?? 0)),
+      largestStress: Math.max(0, ...stresses.map((each) => each.largest)),
       largestLoad: most((each) => each.largestLoad),
     };
     const ends = motions.map((each) => view(data.numbers, each.time));
@@ -204,7 +206,7 @@ export class Viewer {
       this.touch();
     });
     const relative = this.panels.every((panel) => panel.motion.relative);
-    const bends = this.panels.some((panel) => panel.motion.parts.some((part) => part.beam));
+    const bends = this.panels.some((panel) => panel.motion.parts.some((part) => part.beam ?? part.surface));
     const parts: HTMLElement[] = !bends ? [speed] : relative ? [speed, colour, ghost] : [speed, scale, colour, ghost];
     if (settings.largestLoad > 0) {
       parts.push(

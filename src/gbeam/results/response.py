@@ -17,7 +17,7 @@ from gbeam.results.machine import AxesResult, Driven
 from gbeam.results.parts import Influence, Loads, Outline, Peaks, VectorPeaks
 from gbeam.results.result import Figured, Floats, Part, brief
 from gbeam.results.sensors import Sensor
-from gbeam.results.solids import SolidStress, SpecimenLoads
+from gbeam.results.solids import SolidStress, SpecimenLoads, Surface
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -225,6 +225,7 @@ class Response(Driven, Figured):
         default_factory=lambda: np.empty((0, 3)),
     )
     solid: SolidStress | None = part("stress of a solid", name="solid_", key="solid", optional=True, default=None)
+    surface: Surface | None = part("surface of a solid, for pictures", name="surface_", key=None, default=None)
     specimen: SpecimenLoads | None = part(
         "loads of a rigid specimen", name="specimen_", key="specimen", optional=True, default=None
     )

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.results.declared import declared, fact, labels, part, quantity
@@ -100,6 +101,20 @@ def said(stress: StressAt) -> str:
         f"von Mises {1e-6 * stress.von_mises:.4g} MPa at ({x:.4g}, {y:.4g}, {z:.4g}) mm, node {stress.node}, at "
         f"{stress.time:.4g} s; elements there differ by {100 * stress.spread:.2g} %"
     )
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Surface(Part):
+    """Surface of a solid for pictures, coarser than its mesh, in a few shapes that move and stress it over time."""
+
+    vertices: Floats = quantity("m", "place of the vertex from the root, undeformed", "vertex", "axis")
+    triangles: NDArray[np.int_] = quantity("", "vertices of the triangle, from 0", "triangle", "corner_of_triangle")
+    shapes: Floats = quantity("m", "displacement of the vertex", "surface_shape", "vertex", "axis")
+    stress: Floats = quantity(
+        "Pa", "stress xx, yy, zz, yz, xz, xy at the vertex", "surface_shape", "vertex", "stress_component"
+    )
+    time: Floats = quantity("s", "some of the times", "surface_time", role="coordinate")
+    sizes: Floats = quantity("", "size of the shape over time", "surface_time", "surface_shape")
 
 
 @dataclass(frozen=True, repr=False, eq=False)

@@ -10,10 +10,18 @@ import numpy as np
 
 from gbeam.arrays.tree import Value
 from gbeam.results.result import Floats
-from gbeam.results.solids import SolidStress, StressAt
+from gbeam.results.solids import SolidStress, StressAt, Surface
 from gbeam.solids.elements import TENSOR, Indices, chunks, extrapolation, stress_at
 
 BLOCK = 2**22  # numbers handled together
+VERTICES, TIMES = 1500, 1000  # of pictures, about
+ENOUGH = 1e-3  # of the largest shape: one that is less is not seen
+# Corners of the faces of elements, by their number.
+FACES = {
+    4: ((0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3)),
+    6: ((0, 1, 2), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)),
+    8: ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +62,30 @@ class NodalStress(Value):
 
     def parts(self, time: Floats, base: Any, q: Floats, *, motion: str, model: str, environment: str) -> dict[str, Any]:
         """The stress of a response."""
-        return {"solid": solid_stress(self, time, q, motion=motion, model=model)}
+        solid = solid_stress(self, time, q, motion=motion, model=model)
+        return {"solid": solid, "surface": self._surface(time, q)}
+
+    def _surface(self, time: Floats, q: Floats) -> Surface:
+        """The surface in the few shapes in which the coordinates (t, n) moved and stressed it most."""
+        vertices, triangles = surface_of(self.mesh)
+        count = len(self.mesh.points)
+        # At a vertex of two materials the first.
+        first = np.full(count, -1)
+        first[self.node[::-1]] = np.arange(len(self.known))[::-1]
+        stress = self.table[first[vertices]]
+        some = np.unique(np.linspace(0, len(time) - 1, TIMES).round().astype(int))
+        size = np.sqrt((stress**2).sum(axis=(0, 1)))
+        left, sizes, right = np.linalg.svd(q[some] * size, full_matrices=False)
+        kept = max(1, int((sizes > ENOUGH * sizes[0]).sum()))
+        mixed = (right[:kept] / np.where(size > 0, size, np.inf)).T  # coordinates of unit shapes
+        return Surface(
+            vertices=self.mesh.points[vertices],
+            triangles=triangles,
+            shapes=np.moveaxis(self.shapes[vertices] @ mixed, -1, 0),
+            stress=np.moveaxis(stress @ mixed, -1, 0),
+            time=time[some],
+            sizes=left[:, :kept] * sizes[:kept],
+        )
 
     def _elements(self, wanted: int | None = None) -> Iterator[tuple[Indices, Floats]]:
         """Pairs (m,) and stresses (m, 6, n) at the nodes of elements: of all, or of those at one pair."""
@@ -101,6 +132,45 @@ def hull(points: Floats) -> Floats:
         return np.asarray(points[np.sort(ConvexHull(points).vertices)])
     except (QhullError, ValueError):
         return points
+
+
+def surface_of(mesh: Any) -> tuple[Indices, Indices]:
+    """Nodes (v,) and triangles (f, 3) of them that make up the outer faces; of many nodes those nearest to the middles
+    of cells of a grid.
+    """
+    corners = {"tetra": 4, "tetra10": 4, "wedge": 6}
+    triangles = list[Indices]()
+    for size in (3, 4):
+        faces = [
+            block.nodes[:, face]
+            for block in mesh.blocks
+            for face in FACES[corners.get(block.kind, 8)]
+            if len(face) == size
+        ]
+        if faces:
+            every = np.concatenate(faces)
+            _, index, shared = np.unique(np.sort(every, axis=1), axis=0, return_index=True, return_counts=True)
+            outer = every[index[shared == 1]]
+            triangles += [outer[:, [0, k, k + 1]] for k in range(1, size - 1)]
+    outside = np.concatenate(triangles)
+    nodes, flat = np.unique(outside, return_inverse=True)
+    if len(nodes) > VERTICES:
+        at = mesh.points[nodes] - mesh.points[nodes].min(axis=0)
+        cell = np.sqrt(_area(mesh.points[outside]) / VERTICES)
+        _, group = np.unique(np.floor(at / cell).astype(int), axis=0, return_inverse=True)
+        group = group.ravel()
+        totals = np.stack([np.bincount(group, each) for each in at.T], axis=1) / np.bincount(group)[:, None]
+        order = np.lexsort((np.linalg.norm(at - totals[group], axis=1), group))
+        nodes, flat = nodes[order[np.unique(group[order], return_index=True)[1]]], group[flat]
+    thin = flat.reshape(-1, 3)
+    whole = (thin[:, 0] != thin[:, 1]) & (thin[:, 1] != thin[:, 2]) & (thin[:, 2] != thin[:, 0])
+    return nodes, thin[whole]
+
+
+def _area(corners: Floats) -> float:
+    """Area of triangles (f, 3, 3)."""
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return float(np.linalg.norm(normals, axis=1).sum() / 2)
 
 
 def von_mises(stress: Floats) -> Floats:

@@ -29,6 +29,8 @@ def scene(motions: Mapping[str, str], variables: Variables, numbers: Numbers) ->
         of = {key.removeprefix(place): each for key, each in variables.items() if key.startswith(place)}
         if "outline" in of:
             shown.append((motion(name, environment, of, numbers), of["outline_time"], of["outline"]))
+        elif "surface_vertices" in of:
+            shown.append(_solid(name, environment, of, numbers))
         elif "hangs_on" in of:
             shown.append(_system(name, environment, of, numbers))
     if not shown:
@@ -65,6 +67,32 @@ def motion(name: str, environment: str, variables: Variables, numbers: Numbers) 
         header["radius"], header["mounting"] = float(of("hub_radius")), np.ravel(of("hub_mounting")).tolist()
         header["angle"] = numbers.add(of("hub_angle")[index])
     return header
+
+
+def _solid(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple[dict[str, Any], Floats, Floats]:
+    """One motion of a solid: its surface in a few shapes; times and displacements (t, v, 3), the largest last."""
+    some, at = v["surface_time"], v["surface_vertices"]
+    index = np.searchsorted(v["time"], some - 1e-12).clip(max=len(v["time"]) - 1)
+    low, high = at.min(axis=0), at.max(axis=0)
+    radius = float(np.linalg.norm(high - low)) / 2
+    few = v["surface_sizes"][:: max(1, len(some) // 100)]
+    moved = np.einsum("ts,sva->tva", few, v["surface_shapes"])
+    tip = np.einsum("ts,sa->ta", v["surface_sizes"], v["surface_shapes"][:, np.abs(moved).max(axis=(0, 2)).argmax()])
+    surface = {key: numbers.add(v[f"surface_{key}"]) for key in ("vertices", "triangles", "shapes", "stress", "sizes")}
+    load = v.get("load_actual", v["root_acceleration"])
+    header = {
+        "name": name,
+        "environment": environment,
+        "parts": [{"surface": {**surface, "largest": float(v["solid_von_mises"].max())}}],
+        "length": 2 * radius,
+        "time": numbers.add(some),
+        "largest": _largest(moved),
+        "middle": numbers.add((low + high)[None] / 2),
+        "radiusShown": 1.05 * radius,
+        "load": numbers.add(load[index]),
+        "largestLoad": _largest(load),
+    }
+    return header, some, tip[:, None]
 
 
 def _beam(variables: Variables, index: Any, numbers: Numbers) -> dict[str, Any]:
