@@ -28,6 +28,7 @@ from gbeam.motion import Base, constant
 
 from ..specimens import HUB_RADIUS, hub_beam
 
+LOADS = 1e-4  # of the largest: what ends at second order in the coordinates beside what ends at the places
 SAME = 1e-10  # relative
 SLEW = Hub(radius=HUB_RADIUS, rate=SmoothStep(3.0, 2.0))
 
@@ -81,7 +82,10 @@ def test_particles_of_a_beam_are_the_beam(by_stress: bool) -> None:
     np.testing.assert_allclose(rests[0].q, rests[1].q, rtol=SAME)
     np.testing.assert_allclose(rests[0].strain_energy, rests[1].strain_energy, rtol=SAME)
     np.testing.assert_allclose(rests[0].tip[1:], rests[1].tip[1:], rtol=SAME)
-    assert rests[0].loads is None
+    carried = [each.loads for each in rests]
+    for name in ("root_force", "root_moment"):  # to third order in the coordinates
+        of_particles, of_sections = (getattr(each, name) for each in carried)
+        np.testing.assert_allclose(of_particles, of_sections, atol=LOADS * np.abs(of_sections).max())
     curves = [campbell(s, SLEW, end=3.0, count=4, modes=3) for s in (ours, whole)]
     np.testing.assert_allclose(curves[0].frequency, curves[1].frequency, rtol=SAME)
 
@@ -95,7 +99,14 @@ def test_particles_of_a_beam_respond_as_the_beam_does(by_stress: bool) -> None:
     # Without second derivatives of the places the tip has no displacement of second order, along x, and its error none.
     assert ours.outcome == "done" and steps[0] == pytest.approx(steps[1], rel=0.1 if by_stress else 1e-5)
     assert ours.error_estimate == steps[0] and "not judged" in ours.errors.note  # shapes and model
-    assert ours.loads is None and theirs.loads is not None
+    assert ours.loads is not None and theirs.loads is not None
+    force, moment = ([getattr(each.loads, name) for each in (ours, theirs)] for name in ("root_force", "root_moment"))
+    np.testing.assert_allclose(force[0], force[1], atol=LOADS * np.abs(force[1]).max())
+    # The moment of sections has terms of third order, which are large where the tip moves by most of the length.
+    begin = int(np.argmax(np.linalg.norm(theirs.tip, axis=1) > 0.02 * 8.0))
+    assert begin > 10
+    scale = np.abs(moment[1][:begin]).max()
+    np.testing.assert_allclose(moment[0][:begin], moment[1][:begin], atol=5e-3 * scale)
 
 
 def test_particles_on_a_free_hub() -> None:
