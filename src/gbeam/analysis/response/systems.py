@@ -90,9 +90,9 @@ def simulate_system(
         equations = replace(equations, controllers=SystemControllers(system), samplings=[])
     coarse = _first_step(system, motion, point, settings)
     each = 8.0 * (3 * system.tree.size + 16 * len(system.points))
-    most, kept = int(HISTORY_BYTES / each), settings.step or coarse
-    fix = f"give {most * kept:.3g} s or less, or longer steps"
-    refuse_more("response.duration", "steps", settings.duration / kept, most, each, fix)
+    most, step = int(HISTORY_BYTES / each), settings.step or coarse
+    fix = f"give {most * step:.3g} s or less, or longer steps"
+    refuse_more("response.duration", "steps", settings.duration / step, most, each, fix)
     end = settings.start + settings.duration
     times = _corners(system, motion, coarse)
     felt = Corners.of(times, equations.drive, settings.start, end)
@@ -127,9 +127,9 @@ def simulate_system(
         while True:
             error = _step_error(runs, scheme.order)
             whole = runs[-1][0].whole
-            finer = finer_by(error / settings.aim if whole else math.nan, scheme.order)
-            too_many = settings.duration / runs[-1][0].step * finer > LOADS_STEPS
-            if (error <= settings.aim and whole) or too_many:
+            most = int(LOADS_STEPS * runs[-1][0].step / settings.duration)
+            finer = min(finer_by(error / settings.aim if whole else math.nan, scheme.order), most)
+            if (error <= settings.aim and whole) or finer < 2:
                 break
             if not (whole or runs[-2][0].whole) and len(runs) > 3:
                 break
