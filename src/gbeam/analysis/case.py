@@ -327,7 +327,7 @@ class SpecimenCase(Value):
         InputError
             Always.
         """
-        fix = "ask for run, static, modes, plan, place or linearize, or sweep these; or give a [beam]"
+        fix = "ask for run, static, modes, plan or linearize, or sweep these; or give a [beam]"
         raise InputError(f"{where}.{self.name}", f"is no beam, and {what} is of one beam", fix)
 
 

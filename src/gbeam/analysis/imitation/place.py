@@ -229,6 +229,9 @@ class _Trials:
         self.answers, self.length, self.flight = Answers(structure, flight, settings), structure.length, flight
         self.choice, self.weights = choice, weights
         self.span = settings.start, settings.start + settings.duration
+        if structure.recovery is not None:
+            fix = "vary motion.NAME.control_point, and origin and turn of the body, by `gbeam sweep`"
+            raise InputError("bodies", "is no beam, of which alone a place along x is searched", fix)
         refuse_curved(None if structure.source is None else structure.source.beam, "place")
         bodies = np.empty((0, 3)) if structure.source is None else structure.source.beam.body_centres
         self.points = points_of(structure.length, bodies)
