@@ -74,7 +74,7 @@ def driven_cable(
         system.AddObject(items.ObjectConnectorCoordinate(markerNumbers=markers, offsetUserFunction=follow))
     sensor = _sensor(system, nodes[-1], exudyn.OutputVariableType.Position)
     system.Assemble()
-    settings = _settings(step, len(path) - 1, "EigenDense")
+    settings = dynamic_settings(step, len(path) - 1, "EigenDense")
     system.SolveStatic(settings, updateInitialValues=True)
     moving[0] = True
     system.SolveDynamic(settings)
@@ -157,7 +157,7 @@ def hub_with_body(
         ),
     ]
     system.Assemble()
-    system.SolveDynamic(_settings(step, round(end / step), "EigenSparse"))
+    system.SolveDynamic(dynamic_settings(step, round(end / step), "EigenSparse"))
     time = system.GetSensorStoredData(sensors[0])[:, 0]
     tip, turned, force, multipliers = (system.GetSensorStoredData(sensor)[:, 1:] for sensor in sensors)
     axes = turned.reshape(-1, 3, 3)
@@ -185,7 +185,7 @@ def _sensor(system: exudyn.MainSystem, node: object, output: object) -> object:
     return system.AddSensor(items.SensorNode(nodeNumber=node, outputVariableType=output, **stored))
 
 
-def _settings(step: float, steps: int, linear: str) -> exudyn.SimulationSettings:
+def dynamic_settings(step: float, steps: int, linear: str) -> exudyn.SimulationSettings:
     settings = exudyn.SimulationSettings()
     integration = settings.timeIntegration
     integration.endTime, integration.numberOfSteps, integration.adaptiveStep = step * steps, steps, False
