@@ -95,3 +95,22 @@ def test_a_flight_without_forces_meets_a_stop(step: float) -> None:
     slide = gb.Joint("prismatic", "block", axes=[(1, 0, 0)], initial_rate=1.0, stops=(-1.0, 0.2), stop_stiffness=2e4)
     response = gb.simulate(gb.System({"block": block}, {"slide": slide}), duration=0.5, step=step, estimate=False)
     assert response.qd[-1, 0] == pytest.approx(-1.0, abs=0.3 * (100 * step) ** 2 + 1e-6)
+
+
+@pytest.mark.parametrize(
+    "law", [lambda t, y: "a", lambda t, y: 1j * y, lambda t, y: np.zeros(3), lambda t, y: np.nan * y, lambda t, y: None]
+)
+def test_a_law_that_gives_no_effort_is_named(law: object) -> None:
+    loop = gb.Feedback(law, ["hinge.angle"], ["hinge.angle"], sample=0.01)
+    system = gb.System(hinged().bodies, hinged().joints, controllers={"loop": loop})
+    with pytest.raises(gb.InputError, match=r"law gives .* at 0 s; give 1 finite efforts"):
+        gb.simulate(system, duration=1.0)
+
+
+def test_a_law_without_measurements_and_too_many_samples_are_refused() -> None:
+    with pytest.raises(gb.InputError, match="law takes"):
+        gb.Feedback(lambda: 1.0, ["hinge.angle"], ["hinge.angle"], sample=0.01)
+    loop = gb.Feedback(lambda t, y: -y, ["hinge.angle"], ["hinge.angle"], sample=1e-7)
+    system = gb.System(hinged().bodies, hinged().joints, controllers={"loop": loop})
+    with pytest.raises(gb.InputError, match=r"controllers\.loop\.sample"):
+        gb.simulate(system, duration=1.0)

@@ -23,7 +23,7 @@ from gbeam.analysis.system.histories import Carried, beams_of, histories, loads_
 from gbeam.analysis.system.point import Point, started, started_traced
 from gbeam.arrays.namespace import holds_jax, namespace
 from gbeam.errors import InputError
-from gbeam.guards.limits import HISTORY_BYTES, refuse_more
+from gbeam.guards.limits import HISTORY_BYTES, STEPS, refuse_more
 from gbeam.integrate.driver import integrate
 from gbeam.integrate.equations import NonlinearEquations, Trajectory
 from gbeam.integrate.steps import Corners
@@ -83,6 +83,10 @@ def simulate_system(
     if system.holds_jax or holds_jax(motion):
         return _traced(system, motion, settings, name, equations)
     point = started(system, motion, settings.start, begin.state)
+    for key, controller in system.controllers.items():
+        fix = f"give {settings.duration / LOADS_STEPS:.3g} s or more, or a shorter run"
+        samples = settings.duration / controller.sample
+        refuse_more(f"controllers.{key}.sample", "samples", samples, STEPS, 8.0 * 3 * system.tree.size, fix)
     if system.controllers:
         if settings.integrator != "gauss":
             fix = "leave it out: controllers are sampled by Gauss's method"

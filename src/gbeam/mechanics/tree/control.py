@@ -97,7 +97,12 @@ class Feedback(Value):
                 raise InputError("state", "is given of a linear law, which starts at zero", "leave it out")
             object.__setattr__(self, "law", self._sampled())
         else:
-            object.__setattr__(self, "stateful", len(signature(self.law).parameters) > 2)
+            taken = signature(self.law)
+            object.__setattr__(self, "stateful", len(taken.parameters) > 2)
+            try:
+                taken.bind(*range(3 if self.stateful else 2))
+            except TypeError as error:
+                raise InputError("law", f"takes {taken}", "write law(t, y), or law(t, y, state)") from error
 
     def _sampled(self) -> tuple[Floats, Floats, Floats, Floats]:
         """Matrices of the linear law, in steps of `sample`."""
@@ -163,10 +168,11 @@ class Feedback(Value):
             efforts, state = self.law(t, measured, state)
         else:
             efforts = self.law(t, measured)
-        efforts = np.asarray(efforts, dtype=float).reshape(-1)
-        if efforts.shape != (len(self.drive),) or not np.isfinite(efforts).all():
-            raise InputError("law", f"gives {efforts} at {t:.6g} s", f"give {len(self.drive)} finite efforts")
-        return efforts, state
+        given = np.asarray(efforts).reshape(-1)
+        real = given.dtype.kind in "bifu" and given.shape == (len(self.drive),)
+        if not real or not np.isfinite(given).all():
+            raise InputError("law", f"gives {efforts!r} at {t:.6g} s", f"give {len(self.drive)} finite efforts")
+        return given.astype(float), state
 
     def limited(self, efforts: Floats) -> Floats:
         """Return efforts within the limit.
