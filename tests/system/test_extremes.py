@@ -42,6 +42,8 @@ def test_what_cannot_move_is_answered_by_every_question() -> None:
     np.testing.assert_allclose(response.ground_moment, [[0, 9.81 / 2, 0]] * len(response.time), atol=1e-12)
     np.testing.assert_allclose(gb.static(fixed).ground_force, DOWN)
     assert len(gb.modes(fixed).frequency) == 0
+    with pytest.raises(gb.InputError, match="nothing to draw"):
+        gb.modes(fixed).plot()
     assert gb.linearize(fixed).a.shape == (0, 0)
 
 
@@ -113,4 +115,12 @@ def test_a_law_without_measurements_and_too_many_samples_are_refused() -> None:
     loop = gb.Feedback(lambda t, y: -y, ["hinge.angle"], ["hinge.angle"], sample=1e-7)
     system = gb.System(hinged().bodies, hinged().joints, controllers={"loop": loop})
     with pytest.raises(gb.InputError, match=r"controllers\.loop\.sample"):
+        gb.simulate(system, duration=1.0)
+
+
+def test_a_controller_of_what_is_prescribed_has_nothing_to_move() -> None:
+    turned, push = hinged(rate=gb.SmoothStep(3.0, 2.0)), {"push": gb.PointForce("rod.end")}
+    loop = gb.Feedback(lambda t, y: -y, ["hinge.angle"], ["push.force_x"], sample=0.01)
+    system = gb.System(turned.bodies, turned.joints, push, controllers={"loop": loop})
+    with pytest.raises(gb.InputError, match="nothing to move"):
         gb.simulate(system, duration=1.0)

@@ -31,6 +31,8 @@ def figure_of(result: Any, what: str = "", title: str = "") -> Figure:
     every = figures_of(result, title)
     if what and what not in every:
         raise InputError("what", f"is {what!r}, which this result does not have", f"choose from {', '.join(every)}")
+    if not every:
+        raise InputError("result", "has nothing to draw", "print it")
     return every[what or next(iter(every))]()
 
 

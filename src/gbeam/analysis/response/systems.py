@@ -87,6 +87,8 @@ def simulate_system(
         fix = f"give {settings.duration / LOADS_STEPS:.3g} s or more, or a shorter run"
         samples = settings.duration / controller.sample
         refuse_more(f"controllers.{key}.sample", "samples", samples, STEPS, 8.0 * 3 * system.tree.size, fix)
+    if system.controllers and not len(system.tree.free):
+        raise InputError("controllers", "have nothing to move: all motion is prescribed", "leave them out, or a rate")
     if system.controllers:
         if settings.integrator != "gauss":
             fix = "leave it out: controllers are sampled by Gauss's method"
