@@ -175,7 +175,9 @@ def test_too_little_memory_is_no_defect(megabytes: int, fast: Path) -> None:
             answer = _called(fast.parent, *words, limit=megabytes * 10**6)
         ends.append(answer.returncode)
         assert answer.returncode in (0, 1), answer.stderr
-        assert answer.returncode == 0 or answer.stderr.splitlines()[-1].startswith(b"gbeam: out of memory: ")
+        # OpenBLAS ends the process by itself where it gets no memory, and says so.
+        ends_so = b"gbeam: out of memory: ", b"OpenBLAS error: Memory allocation"
+        assert answer.returncode == 0 or answer.stderr.splitlines()[-1].startswith(ends_so)
     assert megabytes > 200 or 1 in ends
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from gbeam.errors import InputError
 from gbeam.results.parts import Loads, Peaks
@@ -22,6 +21,8 @@ def specimen_of(response: SystemResponse, point: str) -> Response:
         raise InputError("", "is a system on a ground at rest, or without loads", fix)
     if point not in response.points:
         raise InputError("point", f"is {point!r}", f"choose from {', '.join(response.points)}")
+    from scipy.spatial.transform import Rotation  # 0.2 s to import, which no comparison of beams needs
+
     chosen = [beam.loads for beam in response.beams.values()]
     order = sorted(range(len(response.points)), key=lambda k: response.points[k] == point)  # the tip is the last
     felt = [

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.analysis.system.accuracy import RicherModes, judged_beams
-from gbeam.analysis.system.closed_loop import closed_loop
 from gbeam.analysis.system.point import Point, started
 from gbeam.analysis.system.steady import Drive, SteadySystem, steady
 from gbeam.guards.checks import choice
@@ -75,6 +74,8 @@ def linearize_system(
     drives = [f"{owner}: {each}" for owner, one in system.controllers.items() for each in one.drive]
     choice("loop", loop, ("open", *(("closed", *drives) if drives else ())))
     if loop != "open":
+        from gbeam.analysis.system.closed_loop import closed_loop  # takes SciPy's optimisation, 0.2 s to import
+
         driven = [each for one in system.controllers.values() for each in one.drive]
         measured = [each for one in system.controllers.values() for each in one.measure]
         free = _default_inputs(system) if inputs is None else list(inputs)
