@@ -5,6 +5,7 @@ The frame's elements are the tests' own, ``tests/frame.py``; the plate's Ritz fu
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -16,7 +17,7 @@ from scipy.optimize import brentq
 import gbeam as gb
 from gbeam.analysis.accuracy.estimate import BEYOND
 from gbeam.analysis.steady.loss import _lost
-from gbeam.analysis.steady.operating_point import REST
+from gbeam.analysis.steady.operating_point import REST, OperatingPoint, on_base
 from gbeam.mechanics.theory import theory_of
 
 from ..frame import Frame, cantilever
@@ -245,7 +246,14 @@ def test_a_strip_on_edge_buckles_sideways() -> None:
 
     rigidity = MODULUS * 0.02 * 0.001**3 / 12 * SHEAR * properties(thin)["torsion"]
     true = 4.0126 * np.sqrt(rigidity) / LENGTH**2
-    lost = _lost(theory_of(loaded(1.0)).thick, lambda force: (loaded(force), REST), true, None)
+    beam = loaded(1.0)
+    assert beam.load_values is not None
+    unit = beam.load_values
+
+    def pulled(of: gb.Structure, force: float) -> OperatingPoint:
+        return on_base(replace(of, load_values=force * unit), REST)
+
+    lost = _lost(theory_of(beam).thick, pulled, true, None)
     assert lost == pytest.approx(true, rel=2e-3)  # and its own deflection
     for force, stays in ((0.9 * true, True), (1.1 * true, False)):
         rest = gb.static(loaded(force))
