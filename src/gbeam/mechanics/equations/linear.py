@@ -243,7 +243,10 @@ def _weighted(xp: Any, mass: Array, weighted: Array, places: Places) -> Geometri
 def _summed(xp: Any, left: Array, right: Array) -> Array:
     """Sums leftᵀ right over the particles, zero where what is left of a sum is the rounding of terms that cancel."""
     sums = left.T @ right
-    return xp.where(xp.abs(sums) > NOTHING * (xp.abs(left).T @ xp.abs(right)), sums, 0.0) if xp is np else sums
+    if xp is not np:
+        return sums
+    sizes = (np.sqrt(np.einsum("ki,ki->i", each, each)) for each in (left, right))
+    return np.where(np.abs(sums) > NOTHING * np.multiply.outer(*sizes), sums, 0.0)
 
 
 def geometric_of(even: Array, growing: Array) -> Geometric:
