@@ -45,6 +45,11 @@ def along_z(sizes: np.ndarray) -> np.ndarray:
     return G * sizes[:, None] * [0.0, 0.0, 1.0]
 
 
+def alike(load: np.ndarray) -> History:
+    """The same load all over a specimen."""
+    return History(load, load, np.zeros((*load.shape, 3)), np.array([[0.3, 0.0, 0.0]]))
+
+
 def flight_of(load: np.ndarray) -> Response:
     """A flight whose tip and root moment go with the load."""
     return replace(made("flight", TIME, 1e-4 * load), base=BaseMotion(load, ZERO, ZERO))
@@ -192,7 +197,7 @@ def test_the_error_of_a_peak_at_the_same_instant() -> None:
     time = 0.005 * np.arange(801)
     load = along_z(5 + 4 * np.sin(2 * np.pi * time))
     late = along_z(5 + 4 * np.sin(2 * np.pi * (time - 0.04)))
-    accounting = account(time, History(load, load, load), History(late, late, late), tolerance=0.05)
+    accounting = account(time, alike(load), alike(late), tolerance=0.05)
     peak = accounting.peaks[1]
     assert peak.error < 1e-3 and not peak.reason and peak.time_machine - peak.time == pytest.approx(0.04)
     assert peak.instant_error == pytest.approx(4 * (1 - np.cos(2 * np.pi * 0.04)) / 9, rel=1e-9)
@@ -274,7 +279,7 @@ def test_no_peak_of_a_record_is_missing(name: str, count: int) -> None:
     # At the ends and below idle as low as nothing: both separate.
     level = np.log(np.where(size > IDLE * G, size, 1e-3))
     tops, _ = find_peaks(np.pad(level, 1, constant_values=-9.0), prominence=-np.log(0.9))
-    flown = History(load, load, load)
+    flown = alike(load)
     accounting = account(time, flown, flown, tolerance=0.05, idle=IDLE * G)
     assert [peak.time for peak in accounting.peaks] == pytest.approx(time[tops - 1].tolist(), abs=0.011)
     assert [peak.load for peak in accounting.peaks] == pytest.approx(size[tops - 1].tolist())
@@ -286,4 +291,4 @@ def test_no_peak_of_a_record_is_missing(name: str, count: int) -> None:
 
 def still(load: np.ndarray) -> History:
     """A machine that makes no load at all."""
-    return History(0 * load, 0 * load, 0 * load)
+    return alike(0 * load)
