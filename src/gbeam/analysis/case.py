@@ -412,7 +412,7 @@ def describe(case: Case | SpecimenCase | SystemCase) -> Description | SpecimenDe
 
 
 def _described(case: AnyCase, doubts: Sequence[Sequence[str]]) -> dict[str, Any]:
-    """What is said of every case."""
+    """Parts of a description that every case has."""
     settings = case.response
     return dict(
         title=case.title,

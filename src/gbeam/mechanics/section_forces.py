@@ -35,7 +35,7 @@ _BLOCK = 256  # times handled together: what stays in a cache
 
 
 class Hung(NamedTuple):
-    """What hangs on stations (p,) of a beam: forces and moments about the root (t, p, 3) that its motion demands."""
+    """Loads of what hangs on stations (p,) of a beam: forces and moments about the root (t, p, 3) that it demands."""
 
     station: Array
     force: Array

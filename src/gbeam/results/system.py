@@ -86,7 +86,7 @@ class BeamResponse(Part):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Assembly(Part):
-    """What hangs on what, and the size of rigid bodies, for pictures."""
+    """Parents of bodies, and the size of rigid ones, for pictures."""
 
     bodies: tuple[str, ...] = labels("name of the body", "body")
     hangs_on: tuple[str, ...] = quantity("", "point that the body hangs on", "body", note="ground, or body.point")

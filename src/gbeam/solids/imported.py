@@ -16,7 +16,7 @@ from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, choice
 from gbeam.guards.units import UnitError, quantity
 from gbeam.io.models.registry import model_of
-from gbeam.mechanics.equations.linear import Coefficients, Geometric, coefficients, inertial_forces
+from gbeam.mechanics.equations.linear import PAIRS, Coefficients, Geometric, coefficients, inertial_forces
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.reduction import particles_of, reduce, standing_in
 from gbeam.mechanics.structure import Structure, linear_structure
@@ -41,7 +41,6 @@ from gbeam.solids.matrices import (
 from gbeam.structure.attachments import TIP
 
 LOADS = ("a_x", "a_y", "a_z", "alpha_x", "alpha_y", "alpha_z", "w_xx", "w_yy", "w_zz", "w_xy", "w_yz", "w_zx")
-_PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))
 
 
 @typed
@@ -371,7 +370,7 @@ def _geometric(given: Mapping[str, Any] | None, shapes: Floats) -> tuple[Geometr
     none = np.zeros((n, n))
     a, al = (np.stack([matrices.get(f"{way}_{axis}", none) for axis in "xyz"]) for way in ("a", "alpha"))
     ww = np.zeros((3, 3, n, n))
-    for name, (i, j) in zip(LOADS[6:], _PAIRS, strict=True):
+    for name, (i, j) in zip(LOADS[6:], PAIRS, strict=True):
         ww[i, j] = ww[j, i] = matrices.get(name, none)
     missing = [name for name in LOADS if name not in matrices]
     if not missing:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.errors import InputError
+from gbeam.mechanics.equations.linear import PAIRS
 from gbeam.mechanics.fields.taylor import EPSILON
 from gbeam.mechanics.reduction import linear_fields
 from gbeam.numerics.eigen import Floats
@@ -87,7 +88,7 @@ def rigid_body(mass: Any, rigid: Floats) -> Floats:
     first = np.einsum("abc,bc->a", EPSILON, body[:3, 3:]) / 2  # Σ m e_c × r
     about = body[3:, 3:]
     second = np.trace(about) / 2 * np.eye(3) - about
-    pairs = (second[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)))
+    pairs = (second[i, j] for i, j in PAIRS)
     return np.array([total, *first, *pairs])
 
 

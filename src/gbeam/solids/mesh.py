@@ -489,7 +489,7 @@ def _refuse_loose(mesh: SolidMesh) -> None:
 
 
 def _doubts(mesh: SolidMesh, unit: str) -> list[str]:
-    """What is implausible in a mesh, or known to be inaccurate."""
+    """Warnings of what is implausible in a mesh, or known to be inaccurate."""
     size, mass = float(np.linalg.norm(np.ptp(mesh.points, axis=0))), mesh.mass
     doubts = []
     if size > LARGE or mass > HEAVY or size < SMALL:

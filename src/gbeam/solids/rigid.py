@@ -16,7 +16,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive
 from gbeam.guards.limits import SAMPLES, refuse_more
-from gbeam.mechanics.equations.linear import Coefficients
+from gbeam.mechanics.equations.linear import PAIRS, Coefficients
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
@@ -224,7 +224,7 @@ class RigidSpecimen(Value):
         """The specimen as analyses take it: a structure without coordinates, whose tip is the farthest corner."""
         corners, centre, inertia = (np.asarray(each) for each in (self.corners, self.centre, self.inertia))
         second = (np.trace(inertia) / 2 * np.eye(3) - inertia) + self.mass * np.outer(centre, centre)
-        products = (second[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)))
+        products = (second[i, j] for i, j in PAIRS)
         tip = corners[np.linalg.norm(corners, axis=1).argmax()]
         points = np.stack([centre, tip])
         square, rate = np.zeros((0, 0)), np.zeros((3, 0, 0))

@@ -12,7 +12,7 @@ import numpy as np
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.io.models.registry import model_of
-from gbeam.mechanics.equations.linear import Coefficients, rest_modes
+from gbeam.mechanics.equations.linear import PAIRS, Coefficients, rest_modes
 from gbeam.mechanics.fields.taylor import EPSILON, Places
 from gbeam.mechanics.reduction import standing_in
 from gbeam.mechanics.structure import Structure, linear_structure
@@ -138,7 +138,7 @@ def _coefficients(body: Mapping[str, Any], path: str) -> Coefficients:
         f_ww = _by_pairs(along.T[:, :, None], order)[..., 0]
     k_ww = _by_pairs(np.moveaxis(_slope(body["Oe"], n), -1, 0), order)
     ge = body["Ge"]["m0"].reshape(n, n, 3)  # [row, coordinate, axis]
-    pairs = (second[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)))
+    pairs = (second[i, j] for i, j in PAIRS)
     return Coefficients(
         mass=body["Me"]["m0"],
         damping=body["De"]["m0"] if "De" in body and body["De"]["m0"].any() else np.zeros((n, n)),

@@ -260,7 +260,7 @@ class History:
 
 @dataclass(frozen=True)
 class SystemHistory:
-    """What a sensor of a system reads over time, in the motion of that name; the load at the root of a beam too."""
+    """Reading of a sensor of a system over time, in the motion of that name; the load at the root of a beam too."""
 
     name: str
     motion: str

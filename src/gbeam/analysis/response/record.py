@@ -238,7 +238,7 @@ def response_of(
 def _recovered(
     structure: Structure, motion: Motion, time: Floats, base: BaseMotion, q: Floats, name: str
 ) -> dict[str, Any]:
-    """What the response of a solid or a rigid specimen has besides."""
+    """Parts that only the response of a solid or a rigid specimen has."""
     if structure.recovery is None:
         return {}
     parts = structure.recovery.parts(time, base, q, motion=name, model=structure.kind, environment=motion.kind)

@@ -60,7 +60,7 @@ def modes_at(
 
 
 def instabilities(point: Steady, moving: Vibrations) -> tuple[Instability, ...]:
-    """What grows about a steady state."""
+    """Growing motions about a steady state."""
     ways = point.directions(moving.divergence), point.directions(moving.modes)
     return (
         *(Instability("divergence", float(v.real), 0.0, d) for v, d in zip(moving.diverging, ways[0], strict=True)),

@@ -68,7 +68,7 @@ class OperatingPoint:
 
     @cached_property
     def moving(self) -> Vibrations:
-        """What oscillates, grows and decays about it."""
+        """Vibrations, growing and decaying motions about it."""
         return vibrations(self.linear)
 
     @property
@@ -107,7 +107,7 @@ class Steady(Protocol):
 
     @property
     def moving(self) -> Vibrations:
-        """What oscillates, grows and decays about it."""
+        """Vibrations, growing and decaying motions about it."""
         ...
 
     @property

@@ -99,7 +99,7 @@ class Answered(NamedTuple):
     inputs: InputsOf
 
     def residual(self) -> Floats:
-        """What the richer system's equations leave, and those of the one that lacks the shapes do not, (t, n)."""
+        """Residual (t, n) of the richer system's equations, less that of the one that lacks the shapes."""
         rich, own = self.rich.system, self.rich.own
         out = []
         for s in pieces(len(self.y), rich.tree.size):

@@ -111,9 +111,8 @@ class Loop:
         b[:n, first : first + free] = into[:, m:]
         for i in range(m):
             each = next(one for one in channels if one.driven.start <= i < one.driven.stop)
-            _, late = self._over(step - each.part)
+            over, late = self._over(step - each.part)
             if each.part:
-                over, _ = self._over(step - each.part)
                 a[:n, past[i].start + each.late] += over @ self._over(each.part)[1][:, i]
             if each.late:
                 a[:n, past[i].start + each.late - 1] += late[:, i]
@@ -200,8 +199,7 @@ def closed_loop(
     loop = Loop(plant, step, channels) if cut is None else loops[drives.index(cut)]
     margins = []
     for k, each in enumerate(loops):
-        through = (-part[k : k + 1] for part in each.command)
-        c, d = through
+        c, d = (-part[k : k + 1] for part in each.command)
         margins.append(margin_of(drives[k], (each.a, each.b[:, :1], c, d[:, :1]), step))
     growth = loop.growth if cut is None else 0.0
     unstable = (f"the closed loop is not stable: it grows with {growth:.4g} 1/s",) if growth > 0 else ()

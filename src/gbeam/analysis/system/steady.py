@@ -29,7 +29,7 @@ TURNS = (0.7, 2.1, 4.4)  # rad, at which the equations are looked at
 
 @dataclass(frozen=True)
 class Drive:
-    """What drives a system in a steady state: profiles and motion of the ground at a time, forces and loads times a
+    """Drives of a system in a steady state: profiles and motion of the ground at a time, forces and loads times a
     factor; a coordinate, or the hub below where none is named, turns at a rate rad/s and has turned by an angle.
     """
 
@@ -89,7 +89,7 @@ class SteadySystem:
 
     @cached_property
     def moving(self) -> Vibrations:
-        """What oscillates, grows and decays about it."""
+        """Vibrations, growing and decaying motions about it."""
         return vibrations(self.linear, zero=RIGID)
 
     @property

@@ -87,7 +87,7 @@ def read_matrix(path: str | os.PathLike[str], name: str = "") -> Any:
 
 @dataclass(frozen=True)
 class Model:
-    """What several files say together."""
+    """Contents of several files together."""
 
     matrices: dict[str, Any] = field(default_factory=dict)
     unknowns: dict[str, Any] = field(default_factory=dict)

@@ -25,6 +25,7 @@ from gbeam.mechanics.fields.taylor import EPSILON, Places
 from gbeam.numerics.eigen import symmetric_modes
 
 Array = Any
+PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))  # axes of six symmetric entries: xx, yy, zz, xy, yz, zx
 NOTHING = 1e-13  # of the sizes of what is summed: less is rounding
 
 
@@ -207,7 +208,7 @@ def coefficients(
         [
             mass.sum(),
             *weighted.sum(axis=0),
-            *(second[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))),
+            *(second[i, j] for i, j in PAIRS),
         ]
     )
     zero = xp.zeros((n, n))

@@ -327,7 +327,7 @@ class System(Value):
 
     @property
     def kind(self) -> str:
-        """What stands in the place of a model's kind."""
+        """Word in the place of a model's kind."""
         return "system"
 
     @property

@@ -144,7 +144,7 @@ class Environments(Titled):
         return self
 
     def about_structure(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
-        """What does not agree with the structure, or its parts with one another."""
+        """Errors of parts that do not agree with the structure, or with one another."""
         yield from ()
 
     def _about_motions(self) -> Iterator[tuple[Loc, PydanticCustomError]]:

@@ -260,7 +260,7 @@ class SystemScenario(Environments, Tree):
         return data
 
     def about_structure(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
-        """What is of one beam only."""
+        """Errors of keys that are of one beam only."""
         for name, body in self.bodies.items():
             if isinstance(body, BeamBody) and body.model.modes is None:
                 hint = "add modes = { axial = 1, y = 2, z = 2 }: numbers of shapes of a body are not chosen"
@@ -296,7 +296,7 @@ class SpecimenScenario(Environments, _Specimen):
         return next(iter(self.bodies.items()))
 
     def about_structure(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
-        """What is of a beam only."""
+        """Errors of keys that are of a beam only."""
         if self.response.stations is not None:
             hint = "leave it out: output is at the points of the body"
             yield ("response", "stations"), wrong("is of a beam", hint, mark="key")
