@@ -37,8 +37,8 @@ from gbeam.solids.matrices import (
     rigid_motions,
     sparse_matrix,
     turned,
+    with_tip,
 )
-from gbeam.structure.attachments import TIP
 
 LOADS = ("a_x", "a_y", "a_z", "alpha_x", "alpha_y", "alpha_z", "w_xx", "w_yy", "w_zz", "w_xy", "w_yz", "w_zx")
 
@@ -240,8 +240,7 @@ class ImportedModel(Value):
         at, unknowns = np.asarray(self.nodes), np.asarray(self.unknowns)
         held = [self._node(f"clamp[{i}]", number) for i, number in enumerate(clamp)]
         named = {name: self._node(f"points.{name}", number) for name, number in (points or {}).items()}
-        tip = named.pop(TIP, int(np.argmax(np.linalg.norm(at, axis=1))))
-        named[TIP] = tip
+        named = with_tip(named, at)
         fields = fields_of(at, unknowns)
         rigid = rigid_motions(fields)
         body = rigid_body(self.mass, rigid)

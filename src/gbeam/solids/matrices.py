@@ -12,6 +12,7 @@ from gbeam.mechanics.equations.linear import PAIRS
 from gbeam.mechanics.fields.taylor import EPSILON
 from gbeam.mechanics.reduction import linear_fields
 from gbeam.numerics.eigen import Floats
+from gbeam.structure.attachments import TIP
 
 Indices = NDArray[np.intp]
 OWN = 0  # direction of a coordinate that belongs to no node
@@ -112,6 +113,12 @@ def displaced(unknowns: Indices, nodes: int) -> tuple[Indices, Indices]:
         rows[unknowns[which, 0], axis] = which
     every = np.flatnonzero((rows >= 0).all(axis=1))
     return every, rows[every]
+
+
+def with_tip(points: dict[str, int], at: Floats) -> dict[str, int]:
+    """Nodes of points by name, the tip the last: the one farthest from the root (k, 3) where none is called so."""
+    tip = points.get(TIP, int(np.argmax(np.linalg.norm(at, axis=1))))
+    return {name: node for name, node in points.items() if name != TIP} | {TIP: tip}
 
 
 def turned(unknowns: Indices, node: int) -> Indices | None:

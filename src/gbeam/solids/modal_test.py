@@ -19,8 +19,7 @@ from gbeam.mechanics.equations.linear import Geometric, coefficients
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.structure import Structure, linear_structure
 from gbeam.numerics.eigen import Floats
-from gbeam.solids.matrices import EXACT, left_out
-from gbeam.structure.attachments import TIP
+from gbeam.solids.matrices import EXACT, left_out, with_tip
 
 LOOSE = 0.5  # of a modal mass, which the masses of the nodes do not have
 CURVED = 0.1  # of a shape, which moves out of phase
@@ -163,9 +162,7 @@ class ModalTest(Value):
         for name, number in numbers.items():
             if number not in known:
                 raise InputError(f"points.{name}", f"is {number}, which is no node", "give the number of one")
-        chosen = {name: known.index(number) for name, number in numbers.items()}
-        tip = chosen.pop(TIP, int(np.argmax(np.linalg.norm(at, axis=1))))
-        chosen[TIP] = tip
+        chosen = with_tip({name: known.index(number) for name, number in numbers.items()}, at)
         n = shapes.shape[-1]
         none = np.zeros((3, n, n))
         stiffness = np.diag(modal * (2 * np.pi * np.asarray(self.frequency)) ** 2)

@@ -17,7 +17,7 @@ from gbeam.mechanics.fields.taylor import EPSILON, Places
 from gbeam.mechanics.reduction import standing_in
 from gbeam.mechanics.structure import Structure, linear_structure
 from gbeam.numerics.eigen import Floats
-from gbeam.structure.attachments import TIP
+from gbeam.solids.matrices import with_tip
 
 ALIKE = 1e-6  # of the largest: two ways to the same moments
 # Columns of the centrifugal terms: the standard's, and another that is met.
@@ -80,9 +80,7 @@ def read_sid(
         if number not in numbers:
             fix = f"choose from {', '.join(map(str, numbers))}"
             raise InputError(f"points.{name}", f"is {number}, which is no node of the file", fix)
-    chosen = {name: numbers.index(number) for name, number in (points or {}).items()}
-    tip = chosen.pop(TIP, int(np.argmax(np.linalg.norm(at, axis=1))))
-    chosen[TIP] = tip
+    chosen = with_tip({name: numbers.index(number) for name, number in (points or {}).items()}, at)
     nodes = [body["nodes"][k] for k in chosen.values()]
     second = np.stack([np.moveaxis(_slope(node["phi"], terms.size), 1, 2) for node in nodes])
     stations = Places(

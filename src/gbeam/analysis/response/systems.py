@@ -16,7 +16,7 @@ from gbeam.analysis.response.record import outline_of
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.step_errors import Run, difference, ratio, share
 from gbeam.analysis.response.stepping import LOADS_STEPS, ONE_CORNER, finer_by, scheme_of
-from gbeam.analysis.system.accuracy import system_errors
+from gbeam.analysis.system.accuracy import pieces, system_errors
 from gbeam.analysis.system.assembly import assembly_of
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
 from gbeam.analysis.system.histories import Carried, beams_of, histories, loads_of
@@ -41,7 +41,6 @@ from gbeam.results.system import BeamResponse, Invariants, Loop, SystemResponse
 Array = Any
 Floats = NDArray[np.float64]
 LEAST = 500  # steps of the results at least
-AT_ONCE = 20_000  # numbers of a state's frames computed together, times coordinates
 
 
 def _moved(system: System, motion: Motion | None, trajectory: Trajectory) -> Floats:
@@ -61,8 +60,7 @@ def _at(of: Trajectory, steps: Any) -> Trajectory:
 
 def _pieces(trajectory: Trajectory, system: System) -> list[Trajectory]:
     """A trajectory in pieces of which all frames are held in memory at once."""
-    size = max(1, AT_ONCE // max(1, system.tree.size))
-    return [_at(trajectory, slice(first, first + size)) for first in range(0, len(trajectory.time), size)]
+    return [_at(trajectory, some) for some in pieces(len(trajectory.time), system.tree.size)]
 
 
 def simulate_system(
