@@ -112,7 +112,7 @@ class Given:
             ),
             "SystemCase": (
                 ("case", gb.System({"bar": self.bar}, {"hinge": self.hinge}), {}, self.settings),
-                {"tracks": {}},
+                {"tracks": {}, "accept": {}},
             ),
             "Centrifuge": (
                 (self.still,),

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from gbeam.errors import InputError
 
 if TYPE_CHECKING:
-    from gbeam.analysis.case import AnyCase, Case, SpecimenCase
+    from gbeam.analysis.case import AnyCase, Case
     from gbeam.results.equilibrium import Critical, Deflection
     from gbeam.results.imitation.comparison import MachinePlan
     from gbeam.results.imitation.placement import Placement
@@ -262,7 +262,7 @@ def critical_speed(
 
 @question("plan", "Plan the axis motions of a centrifuge within its limits; needs no beam.", motion=None, deforms=False)
 def plan(
-    case: Case | SpecimenCase, motion: str | None = None, at: float | None = None, needs: Needs = Needs()
+    case: AnyCase, motion: str | None = None, at: float | None = None, needs: Needs = Needs()
 ) -> tuple[MachinePlan, ...]:
     """Plans of all centrifuges, or one."""
     from gbeam.analysis.imitation.plan import plan
@@ -272,9 +272,9 @@ def plan(
     machines = [name for name, m in case.motions.items() if m.kind == CENTRIFUGE and named in (None, name)]
     if not machines:
         raise InputError("motion", "has no centrifuge to plan", "add a motion of kind centrifuge")
+    limits = {name: judging(case.accept.get(name, {}), response=False) for name in machines}
     return tuple(
-        plan(name, prepared(case, name), case.tracks[name], **case.extent, **judging(case.accept.get(name, {})))
-        for name in machines
+        plan(name, prepared(case, name), case.tracks[name], **case.extent, **limits[name]) for name in machines
     )
 
 

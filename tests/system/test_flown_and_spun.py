@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import gbeam as gb
+from gbeam.cli import main
+from gbeam.questions import QUESTIONS
+from gbeam.scenario import ScenarioError
 
 STRIP = gb.Beam(
     0.3, gb.Section.rectangle(0.02, 0.004), gb.Material(2700.0, 70e9, yield_strength=270e6), damping_ratio=0.01
@@ -25,7 +29,7 @@ def test_a_system_of_one_beam_compares_as_the_beam() -> None:
         gb.compare(*(gb.simulate(each, motion, **OPTIONS) for motion in (TURN, MACHINE)), accept={"tip": 0.05})
         for each in (structure, system)
     )
-    np.testing.assert_allclose(of_system.difference, of_beam.difference, atol=1e-7)
+    np.testing.assert_allclose(of_system.difference, of_beam.difference, atol=1e-9)
     assert of_system.root is not None and of_beam.root is not None
     for name in ("tip", "root_force", "root_moment", "stress"):
         one, other = of_system.peaks[name], of_beam.peaks[name]
@@ -56,3 +60,93 @@ def test_two_beams_on_a_rigid_body_are_flown_and_spun() -> None:
         gb.compare(flight, spun, point="left.top")
     with pytest.raises(gb.InputError, match="a system and a beam"):
         gb.compare(flight, gb.simulate(structure, MACHINE, **OPTIONS))
+
+
+SCENARIO = """
+{structure}
+[motion.flight]
+kind = "flight"
+[motion.flight.acceleration.z]
+profile = "sum"
+terms = [
+    { profile = "constant", level = "20 m/s^2" },
+    { profile = "trapezoid", level = "50 m/s^2", jerk = "25 m/s^3", start = "1 s", hold = "2 s" },
+]
+[motion.centrifuge]
+kind = "centrifuge"
+tracks = "flight"
+arm = "3.3 m"
+control_point = "220 mm"
+gravity = true
+smoothing = "0.1 s"
+accept = { tip = "5 %", srs = "3 dB", damage = 1.5 }
+[response]
+duration = "8 s"
+step = "4 ms"
+integrator = "gauss"
+estimate = false
+"""
+BEAM = """
+length = "300 mm"
+damping_ratio = "1 %"
+section = { shape = "rectangle", width = "20 mm", thickness = "4 mm" }
+material = { density = "2700 kg/m^3", youngs_modulus = "70 GPa", yield_strength = "270 MPa" }
+"""
+OF_BEAM = f'[beam]{BEAM}\n[model]\nkind = "FOAM"\nmodes = {{ axial = 0, y = 1, z = 2 }}'
+OF_SYSTEM = (
+    f'[bodies.strip]\nkind = "beam"{BEAM}\nmodel = {{ kind = "FOAM", modes = {{ axial = 0, y = 1, z = 2 }} }}\n'
+    '[joints.clamp]\nkind = "fixed"\nbody = "strip"'
+)
+
+
+def read(structure: str, tmp_path: Path, *changes: str) -> Any:
+    file = tmp_path / "scenario.toml"
+    file.write_text(SCENARIO.replace("{structure}", structure), encoding="utf-8")
+    return gb.read_scenario(file, changes)
+
+
+def test_a_scenario_of_a_system_is_judged_as_one_of_a_beam(tmp_path: Path) -> None:
+    beam, system = (gb.study(read(each, tmp_path)) for each in (OF_BEAM, OF_SYSTEM))
+    assert isinstance(system, gb.SystemStudy) and system.state == beam.state == "not accepted"
+    (one,), (other,) = beam.comparisons, system.comparisons
+    for a, b in zip(one.criteria, other.criteria, strict=True):
+        assert (a.name, a.passed) == (b.name, b.passed)
+        assert b.value == pytest.approx(a.value, rel=1e-4, abs=1e-5), a.name
+    spun = system.responses["centrifuge"]
+    assert spun.spin_up == pytest.approx(beam.responses["centrifuge"].spin_up) and spun.spin_up > 5.0
+    assert other.peaks["largest_load"].machine == pytest.approx(one.peaks["largest_load"].machine, rel=1e-9)
+    np.testing.assert_allclose(other.difference, one.difference, atol=2e-7)  # of 2 mm, by the steps
+    assert system.not_accepted == {"centrifuge": other.refusal} and "damage" in other.refusal
+
+
+def test_a_run_of_a_system_that_is_not_accepted_fails(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "scenario.toml"
+    file.write_text(SCENARIO.replace("{structure}", OF_SYSTEM), encoding="utf-8")
+    short = ["--set", "response.step=20 ms", "--out", str(tmp_path / "out"), "--report"]
+    assert main(["run", str(file), *short]) == 1
+    printed = capsys.readouterr()
+    assert "motion.centrifuge not accepted: damage" in printed.err and "not accepted: tip" in printed.out
+    assert "from standstill to standstill" in printed.out
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "Verdict" in page and "not accepted" in page
+    assert main(["run", str(file), *short, "--set", "motion.centrifuge.accept.damage=5"]) == 0
+
+
+def test_the_point_that_is_judged_is_one_of_the_system(tmp_path: Path) -> None:
+    case = read(OF_SYSTEM, tmp_path, 'motion.centrifuge.accept.point="strip.tip"')
+    assert case.accept["centrifuge"]["point"] == "strip.tip"
+    with pytest.raises(ScenarioError, match="no such point") as caught:
+        read(OF_SYSTEM, tmp_path, 'motion.centrifuge.accept.point="strip.top"')
+    assert "motion.centrifuge.accept.point" in str(caught.value)
+    with pytest.raises(ScenarioError, match="is of a system"):
+        read(OF_BEAM, tmp_path, 'motion.centrifuge.accept.point="strip.tip"')
+
+
+def test_the_machine_of_a_system_is_planned_as_that_of_the_beam(tmp_path: Path) -> None:
+    file = tmp_path / "scenario.toml"
+    (one,), (other,) = (QUESTIONS["plan"].answer(read(each, tmp_path)) for each in (OF_BEAM, OF_SYSTEM))
+    np.testing.assert_array_equal(one.axes.rate, other.axes.rate)
+    pairs = [each.peaks["largest_load"] for each in (one, other)]
+    assert (pairs[0].flight, pairs[0].machine) == pytest.approx((pairs[1].flight, pairs[1].machine), rel=1e-12)
+    assert other.not_judged == ("tip", "srs", "damage")
+    assert main(["plan", str(file)]) == 0

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.analysis.system.assembly import undeformed
 from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
@@ -152,6 +153,8 @@ class SystemCase(Value):
     response : ResponseSettings
     tracks : mapping of str to str
         Name of the flight that each centrifuge tracks.
+    accept : mapping of str to mapping
+        As of a :class:`Case`, and ``point``, whose displacement is compared.
     provenance : Provenance, optional
         Of the scenario; results of the whole case have it.
 
@@ -163,7 +166,8 @@ class SystemCase(Value):
     Raises
     ------
     InputError
-        If gravity is given beside a motion, which carries its own, or a motion is a hub that turns freely.
+        If gravity is given beside a motion, which carries its own, a motion is a hub that turns freely, or a point of
+        `accept` is not there.
 
     Examples
     --------
@@ -177,6 +181,7 @@ class SystemCase(Value):
     motions: Mapping[str, Motion]
     response: ResponseSettings
     tracks: Mapping[str, str] = field(default_factory=dict)
+    accept: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     provenance: Provenance | None = None
     scenario: SystemScenario | None = field(default=None, init=False, repr=False, compare=False)
 
@@ -188,6 +193,9 @@ class SystemCase(Value):
             if self.system.gravity is not None:
                 fix = f"leave one out: {name} carries its own, as specific force"
                 raise InputError("system.gravity", "is given beside a motion of the ground", fix)
+        for name, limits in self.accept.items():
+            if limits.get("point") is not None:
+                self.system.point(f"motion.{name}.accept.point", limits["point"])
 
     def __repr__(self) -> str:
         motions = ", ".join(f"{name}: {motion.kind}" for name, motion in self.motions.items()) or GROUND
@@ -212,6 +220,11 @@ class SystemCase(Value):
     def environments(self) -> Mapping[str, Motion | None]:
         """Motions of the ground, by name; the ground at rest where there is none."""
         return self.motions or {GROUND: None}
+
+    @property
+    def extent(self) -> dict[str, Any]:
+        """Argument of :func:`gbeam.plan` that says where the specimen is: its points, undeformed."""
+        return {"envelope": undeformed(self.system)}
 
     def one_beam(self, where: str, what: str) -> Case:
         """Refuse what is of one beam.

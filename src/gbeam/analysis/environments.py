@@ -40,7 +40,7 @@ def study(case: Case | SpecimenCase | SystemCase, progress: Progress = None) -> 
     Returns
     -------
     Study or SystemStudy
-        Of a beam or another specimen, or of a system, whose responses are not compared.
+        Of a beam or another specimen, or of a system.
 
     Raises
     ------
@@ -57,8 +57,6 @@ def study(case: Case | SpecimenCase | SystemCase, progress: Progress = None) -> 
     >>> print(f"{answer.comparisons[0].relative[2]:.1%}")
     0.0%
     """
-    if isinstance(case, SystemCase):
-        return _of_responses(case, *_answers(case, progress))
     if case.automatic and not case.response.estimate:
         fix = "give it, or leave response.estimate out"
         raise InputError("model.modes", "is left out, and estimate = false leaves nothing to choose it by", fix)
@@ -73,10 +71,14 @@ def study(case: Case | SpecimenCase | SystemCase, progress: Progress = None) -> 
 
 
 def study_of(
-    case: Case | SpecimenCase, responses: Mapping[str, Response], failures: Mapping[str, Failure] = MappingProxyType({})
-) -> Study:
+    case: AnyCase, responses: Mapping[str, Any], failures: Mapping[str, Failure] = MappingProxyType({})
+) -> Any:
     """The study of responses that are computed: those of a centrifuge and its flight are compared."""
-    _refuse_none(responses, failures)
+    if not responses:
+        first = next(iter(failures.values()))
+        raise ComputationError(
+            first.outcome, "; ".join(f"motion.{n}: {failure.message}" for n, failure in failures.items())
+        )
     comparisons = tuple(
         replace(
             compare(responses[flight], responses[name], **judging(case.accept.get(name, {}))),
@@ -85,21 +87,8 @@ def study_of(
         for name, flight in case.tracks.items()
         if {flight, name} <= responses.keys() and responses[flight].outcome == responses[name].outcome == "done"
     )
-    return Study(case.title, dict(responses), comparisons, dict(failures), provenance=case.provenance)
-
-
-def _refuse_none(responses: Mapping[str, Any], failures: Mapping[str, Failure]) -> None:
-    """Raise ComputationError where no environment has a response."""
-    if not responses:
-        first = next(iter(failures.values()))
-        raise ComputationError(
-            first.outcome, "; ".join(f"motion.{n}: {failure.message}" for n, failure in failures.items())
-        )
-
-
-def _of_responses(case: SystemCase, responses: dict[str, SystemResponse], failures: dict[str, Failure]) -> SystemStudy:
-    _refuse_none(responses, failures)
-    return SystemStudy(case.title, responses, failures, provenance=case.provenance)
+    of = SystemStudy if isinstance(case, SystemCase) else Study
+    return of(case.title, dict(responses), comparisons, dict(failures), provenance=case.provenance)
 
 
 def _answers(case: AnyCase, progress: Progress) -> tuple[dict[str, Any], dict[str, Failure]]:

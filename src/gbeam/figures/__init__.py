@@ -76,7 +76,8 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
             }
         case SystemStudy():
             named = {name: _of_system(each, title or result.title) for name, each in result.responses.items()}
-            return next(iter(named.values())) if len(named) == 1 else _by_motion(named)
+            every = next(iter(named.values())) if len(named) == 1 else _by_motion(named)
+            return every | _compared(result.comparisons, title or result.title)
         case (SystemRest(), *_):
             return _by_motion({each.name: figures_of(each, title) for each in result})
         case SystemResponse():
@@ -181,7 +182,12 @@ def _of_study(study: Study, title: str) -> dict[str, Describe]:
     for name, each in study.responses.items():
         of_each = _of_response(each, title, flights.get(name))
         every |= {f"{kind} {name}": describe for kind, describe in of_each.items()}
-    for compared in study.comparisons:
+    return every | _compared(study.comparisons, title)
+
+
+def _compared(comparisons: Sequence[Comparison], title: str) -> dict[str, Describe]:
+    every: dict[str, Describe] = {}
+    for compared in comparisons:
         of_pair = _of_comparison(compared, title, "comparison", "comparison_", f" {compared.centrifuge}")
         parts = compared.root or compared.stations or compared.mismatch
         # Without parts a comparison is the difference that the tip's figure has.

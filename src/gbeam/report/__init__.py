@@ -17,8 +17,8 @@ _MODULES = {
     "cases": ("Sweep", "Sensitivity", "Fit", "Optimum", "ShapedCommand"),
     "machine": ("Placement",),
     "steady": ("Deflection", "Modes", "Campbell", "Critical", "CriticalMap", "StateSpace"),
-    "systems": ("SystemStudy", "SystemResponse", "SystemRest", "SystemModes"),
-    "tables": ("Study", "ModelStudy", "MachinePlan"),
+    "systems": ("SystemResponse", "SystemRest", "SystemModes"),
+    "tables": ("Study", "SystemStudy", "ModelStudy", "MachinePlan"),
 }
 
 

@@ -18,7 +18,7 @@ from gbeam.results.kinds import KINDS, by_motion, tree_of_answers
 from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response
 from gbeam.results.result import Result
-from gbeam.results.study import Reproduction, Study
+from gbeam.results.study import Reproduction, Study, SystemStudy
 from gbeam.results.system import SystemRest
 
 VERSION = 1  # of the keys: raised where one changes or goes
@@ -66,11 +66,13 @@ def _worded(figures: dict[str, Any], answers: list[Result]) -> dict[str, Any]:
                 from gbeam.report.study import comparison_lines
 
                 figures["lines"] = list(comparison_lines(answer))
-            case Study():
+            case Study() | SystemStudy():
                 from gbeam.report.study import comparison_lines, of_beam, of_machine
+                from gbeam.report.systems import of_system
 
                 for name, response in answer.responses.items():
-                    lines = [*of_beam(response), *of_machine(response)]
+                    of = of_beam(response) if isinstance(response, Response) else of_system(response)
+                    lines = [*of, *of_machine(response)]
                     figures["motions"][name]["lines"] = lines
                 for each, compared in zip(figures["comparisons"], answer.comparisons, strict=True):
                     each["lines"] = list(comparison_lines(compared))
@@ -171,7 +173,8 @@ def _table(kind: type) -> str:
 def _rows(kind: type) -> Iterator[tuple[str, str, str]]:
     """Path, unit and words of the numbers; of what is another kind of result its name only."""
     others = {each.key or name for name, each in declarations(kind) if each.role == "rows"}
-    links = {"motions": "Response", "comparisons": "Comparison"} if kind.__name__ == "Study" else {}
+    responses = {"Study": "Response", "SystemStudy": "SystemResponse"}.get(kind.__name__, "")
+    links = {"motions": responses, "comparisons": "Comparison"} if responses else {}
     for key in sorted(links.keys() & others):
         yield f"{key}.*" if key == "motions" else f"{key}[i]", "–", f"a [{links[key]}](#{links[key].lower()})"
     for path, each in paths_of(tree_of_answers(kind)):

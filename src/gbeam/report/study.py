@@ -14,6 +14,7 @@ from gbeam.results.imitation.criteria import RULES
 from gbeam.results.imitation.verdict import metres
 from gbeam.results.imitation.verdict import percent as share_of
 from gbeam.results.response import HubResult, Response
+from gbeam.results.system import SystemResponse
 
 ROUNDING = 1e-9  # of what it belongs to: a smaller number is none
 EPISODES = 8  # of holding listed; a rough record has hundreds
@@ -71,7 +72,7 @@ def _hub(hub: HubResult) -> str:
     return f"hub: angle at the end {number(hub.angle[-1])} rad, largest rate {number(rate)} rad/s"
 
 
-def of_machine(response: Response) -> Iterator[str]:
+def of_machine(response: Response | SystemResponse) -> Iterator[str]:
     """Sentences on how a centrifuge begins and ends, follows the load, and where it does not."""
     axes = response.axes
     if axes is None:

@@ -18,46 +18,43 @@ from gbeam.report.words import (
     warning_lines,
 )
 from gbeam.results.errors import SystemErrors
-from gbeam.results.study import SystemStudy
 from gbeam.results.system import SystemModes, SystemResponse, SystemRest, named
-
-
-def system_study(study: SystemStudy) -> str:
-    """Responses in all environments, each with how far its points move."""
-    parts = [study.title] if study.title else []
-    parts += [system_response(each) for each in study.responses.values()]
-    parts += [f"{name}: {each.outcome}\n  {sentence(each.message)}" for name, each in study.failures.items()]
-    return "\n\n".join(parts)
 
 
 def system_response(response: SystemResponse) -> str:
     """The largest motions of the points, the joints at the end, what is kept, and the error."""
     lines = [f"{response.name or response.environment}: {response.outcome}"]
     lines += [f"  {sentence(response.message)}"] if response.message else []
+    lines += [f"  {line}" for line in of_system(response)]
+    return "\n".join([*lines, *warning_lines(response)])
+
+
+def of_system(response: SystemResponse) -> Iterator[str]:
+    """Sentences on points, joints, loads, energy and the error."""
     far, hard = (tidy(each, float(each.max())) for each in (response.largest, response.largest_acceleration))
     rows = [[name, number(a), number(b)] for name, a, b in zip(response.points, far, hard, strict=True)]
-    lines += [f"  {line}" for line in columns(["point", "moves by, m", "acceleration, m/s²"], rows)]
+    yield from columns(["point", "moves by, m", "acceleration, m/s²"], rows)
     every = named(response)
     size = max((float(np.abs(each).max()) for each in every.values()), default=0.0)
     ends = tidy([float(each[-1]) for each in every.values()], max(size, max(far)))
     joints = ", ".join(f"{name} {number(end)}" for name, end in zip(every, ends, strict=True))
-    lines += [f"  at the end {joints}"] if joints else []
-    lines += [f"  {body}: {largest_loads(each.peaks)}" for body, each in response.beams.items()]
+    if joints:
+        yield f"at the end {joints}"
+    yield from (f"{body}: {largest_loads(each.peaks)}" for body, each in response.beams.items())
     kept = response.invariants
     if kept is not None:
         first, last = (number(float(each.sum())) for each in kept.energy[[0, -1]])
-        lines.append(f"  energy {first} J at the start, {last} J at the end")
+        yield f"energy {first} J at the start, {last} J at the end"
     error = percent(response.error_estimate)
     known = f"estimated error {error}" if math.isfinite(response.error_estimate) else "no error estimate"
-    lines.append(f"  {response.integrator}, {response.steps} steps of {1e3 * response.step:.4g} ms, {known}")
-    lines += _by_beam(response.errors)
-    return "\n".join([*lines, *warning_lines(response)])
+    yield f"{response.integrator}, {response.steps} steps of {1e3 * response.step:.4g} ms, {known}"
+    yield from _by_beam(response.errors)
 
 
 def _by_beam(errors: SystemErrors) -> list[str]:
     alone = zip(errors.beams, errors.by_beam, strict=True)
     listed = ", ".join(f"{name} {percent(float(each))}" for name, each in alone)
-    return [f"  errors by shapes and model of {listed}"] if listed else []
+    return [f"errors by shapes and model of {listed}"] if listed else []
 
 
 def system_rest(rests: Iterable[SystemRest]) -> str:
@@ -79,7 +76,7 @@ def _rest(rest: SystemRest) -> Iterator[str]:
     yield "  on the ground: force ({}) N, moment ({}) N m".format(*pair)
     for body, loads in rest.loads.items():
         yield f"  {body}: {resting_loads(loads)}"
-    yield from _by_beam(rest.errors)
+    yield from (f"  {line}" for line in _by_beam(rest.errors))
     yield from warning_lines(rest)
 
 

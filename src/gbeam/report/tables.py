@@ -15,15 +15,17 @@ from rich.text import Text
 
 from gbeam.report.machine import ends_line, judged_lines, not_followed_stretches, tracked
 from gbeam.report.study import ROUNDING, comparison_lines, of_beam, of_machine
+from gbeam.report.systems import of_system
 from gbeam.report.words import number, sentence
 from gbeam.results.imitation.comparison import MachinePlan
 from gbeam.results.imitation.criteria import GOOD
 from gbeam.results.machine import LimitUse
 from gbeam.results.response import Response
-from gbeam.results.study import ModelStudy, Study
+from gbeam.results.study import ModelStudy, Study, SystemStudy
+from gbeam.results.system import SystemResponse
 
 
-def study(study: Study) -> RenderableType:
+def study(study: Study | SystemStudy) -> RenderableType:
     """Study as tables and lines."""
     parts: list[RenderableType] = [Text(study.title, style="bold")] if study.title else []
     common = _common_warnings(study)
@@ -38,25 +40,29 @@ def study(study: Study) -> RenderableType:
     return Group(*parts)
 
 
+system_study = study  # by the name of its kind
+
+
 def _heading(name: str, kind: str, outcome: str) -> Text:
     colour = "green" if outcome == "done" else "bold red"
     return Text.from_markup(f"[bold]{escape(name)}[/bold]{kind}: [{colour}]{outcome}[/{colour}]")
 
 
-def _common_warnings(study: Study) -> list[str]:
+def _common_warnings(study: Study | SystemStudy) -> list[str]:
     """Warnings of every response, such as of the beam: they are given once."""
     first, *others = study.responses.values()
     return [each for each in first.warnings if others and all(each in other.warnings for other in others)]
 
 
-def _response(response: Response, elsewhere: Sequence[str] = ()) -> Iterator[RenderableType]:
-    kind = "" if response.name == response.environment else f" ({response.environment})"
-    yield _heading(response.name, kind, response.outcome)
+def _response(response: Response | SystemResponse, elsewhere: Sequence[str] = ()) -> Iterator[RenderableType]:
+    kind = "" if response.name in ("", response.environment) else f" ({response.environment})"
+    yield _heading(response.name or response.environment, kind, response.outcome)
     if response.message:
         yield _indented(Text(sentence(response.message), style="red"))
-    if response.specimen is None:
+    if isinstance(response, Response) and response.specimen is None:
         yield _indented(_tip(response))
-    yield from (_indented(Text(line)) for line in of_beam(response))
+    lines = of_beam(response) if isinstance(response, Response) else of_system(response)
+    yield from (_indented(Text(line)) for line in lines)
     if response.axes is not None:
         yield _indented(limits_table(response.axes.limits))
         yield from (_indented(Text(line)) for line in of_machine(response))

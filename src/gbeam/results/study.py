@@ -36,18 +36,37 @@ class Answers(Figured):
 
     @property
     def exceeding(self) -> Mapping[str, str]:
-        """Limits of machines that are exceeded, by the motion's name; none where no machine has limits."""
-        return {}
+        """Limits of machines that are exceeded, by the motion's name."""
+        axes = {name: each.axes for name, each in self.responses.items() if each.axes is not None}
+        return {name: each.exceeding for name, each in axes.items() if each.exceeding}
 
     @property
     def not_accepted(self) -> Mapping[str, str]:
-        """Limits of acceptance that are not kept, by the motion's name; none where nothing is judged."""
-        return {}
+        """Limits of acceptance that are not kept, of imitations and of rigid specimens, by the motion's name."""
+        alone = {name: each.specimen for name, each in self.responses.items() if isinstance(each, Response)}
+        words = {name: specimen.refusal for name, specimen in alone.items() if specimen is not None}
+        for each in self.comparisons:
+            words[each.centrifuge] = ", ".join(filter(None, (each.refusal, words.get(each.centrifuge, ""))))
+        return {name: each for name, each in words.items() if each}
 
     @property
     def refusals(self) -> Mapping[str, str]:
-        """Limits that are not kept, by the motion's name."""
-        return self.exceeding
+        """Limits of acceptance that are not kept and limits of machines that are exceeded, by the motion's name."""
+        return self.not_accepted or self.exceeding
+
+    @declared("", "the outcome, with what limits make of it", role="fact")
+    def state(self) -> str:
+        exceeded = any(each.axes is not None and not each.axes.within_limits for each in self.responses.values())
+        if self.outcome == "done" and self.not_accepted:
+            return NOT_ACCEPTED
+        return state_of(self.outcome, self.comparisons, exceeded=exceeded)
+
+    def __repr__(self) -> str:
+        parts = [repr(response) for response in self.responses.values()]
+        parts += [f"{name}: {failure.outcome}\n  {failure.message}" for name, failure in self.failures.items()]
+        parts += [repr(comparison) for comparison in self.comparisons]
+        title = f" {self.title!r}" if self.title else ""
+        return "\n".join([f"{type(self).__name__}{title}: {self.state}", *parts])
 
     @property
     def unfinished(self) -> Mapping[str, Failure]:
@@ -79,38 +98,6 @@ class Study(Answers):
         "where a response has no state to start from", "motion", key="motions", default_factory=dict
     )
 
-    @property
-    def exceeding(self) -> Mapping[str, str]:
-        """Limits of machines that are exceeded, by the motion's name."""
-        axes = {name: each.axes for name, each in self.responses.items() if each.axes is not None}
-        return {name: each.exceeding for name, each in axes.items() if each.exceeding}
-
-    @property
-    def refusals(self) -> Mapping[str, str]:
-        """Limits of acceptance that are not kept and limits of machines that are exceeded, by the motion's name."""
-        return self.not_accepted or self.exceeding
-
-    @property
-    def not_accepted(self) -> Mapping[str, str]:
-        """Limits of acceptance that are not kept, of imitations and of rigid specimens, by the motion's name."""
-        words = {name: each.specimen.refusal for name, each in self.responses.items() if each.specimen is not None}
-        for each in self.comparisons:
-            words[each.centrifuge] = ", ".join(filter(None, (each.refusal, words.get(each.centrifuge, ""))))
-        return {name: each for name, each in words.items() if each}
-
-    @declared("", "the outcome, with what limits make of it", role="fact")
-    def state(self) -> str:
-        exceeded = any(each.axes is not None and not each.axes.within_limits for each in self.responses.values())
-        if self.outcome == "done" and self.not_accepted:
-            return NOT_ACCEPTED
-        return state_of(self.outcome, self.comparisons, exceeded=exceeded)
-
-    def __repr__(self) -> str:
-        parts = [repr(response) for response in self.responses.values()]
-        parts += [f"{name}: {failure.outcome}\n  {failure.message}" for name, failure in self.failures.items()]
-        parts += [repr(comparison) for comparison in self.comparisons]
-        return "\n".join([f"Study{f' {self.title!r}' if self.title else ''}: {self.state}", *parts])
-
 
 @dataclass(frozen=True, repr=False, eq=False)
 class SystemStudy(Answers):
@@ -128,14 +115,12 @@ class SystemStudy(Answers):
     responses: Mapping[str, SystemResponse] = rows(
         "responses by the name of the ground's motion", "motion", key="motions", note="ground where it rests"
     )
+    comparisons: tuple[Comparison, ...] = rows(
+        "comparisons of centrifuges with flight", "comparison", default_factory=tuple
+    )
     failures: Mapping[str, Failure] = rows(
         "where a response has no state to start from", "motion", key="motions", default_factory=dict
     )
-
-    def __repr__(self) -> str:
-        parts = [repr(response) for response in self.responses.values()]
-        parts += [f"{name}: {failure.outcome}\n  {failure.message}" for name, failure in self.failures.items()]
-        return "\n".join([f"SystemStudy{f' {self.title!r}' if self.title else ''}: {self.outcome}", *parts])
 
 
 @dataclass(frozen=True, repr=False, eq=False)

@@ -13,7 +13,7 @@ from gbeam.errors import InputError
 from gbeam.results.declared import INSIDE, declared, fact, labels, part, quantity, rows
 from gbeam.results.errors import FrequencyErrors, SystemErrors
 from gbeam.results.facts import at_place
-from gbeam.results.machine import AxesResult
+from gbeam.results.machine import AxesResult, Driven
 from gbeam.results.parts import LoadPeaks, Loads, Outline
 from gbeam.results.response import BaseMotion
 from gbeam.results.result import Complex, Figured, Floats, Part
@@ -106,7 +106,7 @@ class Assembly(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class SystemResponse(Figured):
+class SystemResponse(Driven, Figured):
     """Response of a system over time, at its named points and coordinates.
 
     Examples

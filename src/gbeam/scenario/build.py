@@ -80,8 +80,6 @@ def build(scenario: AnyScenario, *, ahead: bool = False) -> AnyCase:
         span = (response.start, response.start + response.duration)
         motions |= centrifuges(parts, scenario, motions, span, ahead=ahead)
     accept = _acceptance(parts, scenario)
-    if not of_system:
-        structure["accept"] = accept
     if parts.errors or None in structure.values() or response is None:
         raise placed(scenario, parts.errors)
     case = parts.attempt(
@@ -91,6 +89,7 @@ def build(scenario: AnyScenario, *, ahead: bool = False) -> AnyCase:
         motions={name: motions[name] for name in scenario.motion},
         response=response,
         tracks={name: table.tracks for name, table in scenario.motion.items() if isinstance(table, schema.Centrifuge)},
+        accept=accept,
         provenance=provenance(scenario),
         **structure,
     )
@@ -135,13 +134,20 @@ def build_extent(scenario: schema.Environments) -> dict[str, Any]:
         return {}
     parts = Collector()
     if isinstance(scenario, schema.Scenario):
-        extent = {"beam": beam_of(parts, "beam", scenario.beam)}
+        extent: dict[str, Any] = {"beam": beam_of(parts, "beam", scenario.beam)}
     else:
-        from gbeam.scenario.build_system import specimen_of
+        from gbeam.scenario.build_system import specimen_of, system_of
+        from gbeam.scenario.schema.system import SpecimenScenario
 
-        structure = specimen_of(parts, scenario)  # type: ignore[arg-type]
-        recovery = None if structure is None else structure.recovery
-        extent = {} if recovery is None else {"envelope": recovery.envelope}
+        if isinstance(scenario, SpecimenScenario):
+            structure = specimen_of(parts, scenario)
+            recovery = None if structure is None else structure.recovery
+            extent = {} if recovery is None else {"envelope": recovery.envelope}
+        else:
+            from gbeam.analysis.system.assembly import undeformed
+
+            system = system_of(parts, scenario)  # type: ignore[arg-type]
+            extent = {} if system is None else {"envelope": undeformed(system)}
     if parts.errors:
         raise placed(scenario, parts.errors)
     return extent

@@ -15,7 +15,7 @@ from gbeam.analysis.response.peaks import load_peaks
 from gbeam.analysis.response.record import outline_of
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.step_errors import Run, difference, ratio, share
-from gbeam.analysis.response.stepping import LOADS_STEPS, ONE_CORNER, finer_by, scheme_of
+from gbeam.analysis.response.stepping import LOADS_STEPS, ONE_CORNER, finer_by, scheme_of, steps_beyond
 from gbeam.analysis.system.accuracy import pieces, system_errors
 from gbeam.analysis.system.assembly import assembly_of
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
@@ -81,6 +81,10 @@ def simulate_system(
     if system.holds_jax or holds_jax(motion):
         return _traced(system, motion, settings, name, equations)
     point = started(system, motion, settings.start, begin.state)
+    coarse = _first_step(system, motion, point, settings)
+    flight, settings = settings, _with_ends(motion, settings, settings.step or coarse)
+    if settings.start < flight.start:
+        point = started(system, motion, settings.start, begin.state)
     for key, controller in system.controllers.items():
         fix = f"give {settings.duration / LOADS_STEPS:.3g} s or more, or a shorter run"
         samples = settings.duration / controller.sample
@@ -92,7 +96,6 @@ def simulate_system(
             fix = "leave it out: controllers are sampled by Gauss's method"
             raise InputError("integrator", f"is {settings.integrator!r}", fix)
         equations = replace(equations, controllers=SystemControllers(system), samplings=[])
-    coarse = _first_step(system, motion, point, settings)
     each = 8.0 * (3 * system.tree.size + 16 * len(system.points))
     most, step = int(HISTORY_BYTES / each), settings.step or coarse
     fix = f"give {most * step:.3g} s or less, or longer steps"
@@ -174,12 +177,21 @@ def _traced(
     if system.controllers:
         fix = "trace the system without them: a law that is sampled is no part of a compiled program"
         raise InputError("controllers", "are in the loop of a traced run", fix)
-    count = max(1, round(settings.duration / settings.step))
-    step, how = settings.duration / count, replace(settings, loads=False)
+    step = settings.duration / max(1, round(settings.duration / settings.step))
+    settings = _with_ends(motion, settings, step)
+    count, how = round(settings.duration / step), replace(settings, loads=False)
     y, yd = started_traced(system, motion, settings.start, settings.begin.state)
     run = integrate(equations, scheme_of(settings), y, yd, step=step, count=count, start=settings.start)
     whole = Run(run, step, None)  # type: ignore[arg-type]
     return _described(system, motion, how, whole, 1, SystemErrors(), name, equations)
+
+
+def _with_ends(motion: Motion | None, settings: ResponseSettings, step: float) -> ResponseSettings:
+    """Settings of a run from a machine's standstill to its standstill, in whole steps beyond the flight's times."""
+    if motion is None:
+        return settings
+    before, after = (step * count for count in steps_beyond(motion, settings, step))
+    return replace(settings, start=settings.start - before, duration=settings.duration + before + after)
 
 
 def _step_error(runs: list[tuple[Run, Floats]], order: int) -> float:

@@ -24,7 +24,7 @@ def assembly_of(system: System) -> Assembly:
         hangs_on=tuple(holding[name].on for name in system.order),
         joint=tuple(holding[name].kind for name in system.order),
         place_at_rest=np.stack([_place_at_rest(system, holding[name].on) for name in system.order]),
-        undeformed=_undeformed(system),
+        undeformed=undeformed(system),
         box=size,
         box_centre=centre,
         box_rotation=rotation,
@@ -42,7 +42,7 @@ def _place_at_rest(system: System, on: str) -> Floats:
     return np.asarray(places[point]) if point < len(places) else np.zeros(3)
 
 
-def _undeformed(system: System) -> Floats:
+def undeformed(system: System) -> Floats:
     """Places of all points with the joints at the start, bodies undeformed."""
     q, zero, still = system.start[0], np.zeros(3), np.zeros(system.tree.size)
     ground = Frame(np.eye(3), zero, zero, zero, zero, zero)

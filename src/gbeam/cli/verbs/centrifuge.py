@@ -45,20 +45,17 @@ def plan(
     """Plan the axis motions of the centrifuges of a scenario; it needs no beam.
 
     Prints what the axes do, what that uses of the machine's limits, which peaks of the load are reproduced and why not
-    the others, and the largest load on the specimen, which a [beam] gives its length. Limits of [motion.NAME.accept]
-    that need no response are judged. With --out also writes the axis motions at the controller's sample time
-    (commands_NAME.csv and .mat) and plots, with --report plan.html. Exit status: 0 done, 1 a limit of the machine is
-    exceeded or one of acceptance not kept, 2 the input is wrong.
+    the others, and the largest load on the specimen, which a [beam] or bodies give its size. Limits of
+    [motion.NAME.accept] that need no response are judged. With --out also writes the axis motions at the controller's
+    sample time (commands_NAME.csv and .mat) and plots, with --report plan.html. Exit status: 0 done, 1 a limit of the
+    machine is exceeded or one of acceptance not kept, 2 the input is wrong.
     """
     folder = output.folder(scenario)
 
-    from gbeam.scenario import build_extent, build_machines, load_environments, placed, provenance, schema
+    from gbeam.scenario import build_extent, build_machines, load_environments, provenance, schema
 
     with Watch(f"planning the machines of {scenario}"):
         environments = load_environments(scenario, output.overrides)
-        if "joints" in type(environments).model_fields:
-            fix = "give one [beam] or one body without joints, or none"
-            raise placed(environments, [InputError("bodies", "make a system, and gbeam plan is of one beam", fix)])
         machines, extent = build_machines(environments), build_extent(environments)
     if not machines:
         raise InputError("motion", "has no centrifuge to plan", "add a motion of kind centrifuge")
@@ -75,7 +72,7 @@ def plan(
         replace(
             analysis.plan(
                 name, machines[name], table.tracks,
-                **extent, title=environments.title, **judging(table.limits_of_acceptance),
+                **extent, title=environments.title, **judging(table.limits_of_acceptance, response=False),
             ),
             provenance=origin,
         )

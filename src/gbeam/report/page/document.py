@@ -45,6 +45,14 @@ def _quantities(facts: Mapping[str, Any], viewer: str, plots: str) -> str:
     return "".join([section("Motion", viewer), *_inside(known, facts.get("units", {}), ""), section("Figures", plots)])
 
 
+def _system_study(facts: Mapping[str, Any], viewer: str, plots: str) -> str:
+    """The verdicts on centrifuges, the quantities of all responses, and what the axes do."""
+    motions = {name: each for name, each in facts["motions"].items() if "limits" in each}
+    alone = {key: value for key, value in facts.items() if key != "comparisons"}
+    machines = "".join(machine.machine_section(name, each) for name, each in motions.items())
+    return study.verdicts(facts) + _quantities(alone, viewer, plots) + machines
+
+
 def _inside(known: Mapping[str, Any], units: Mapping[str, str], place: str) -> Iterator[str]:
     """Single values in a table, lists and named rows of them in one each; what such rows hold stands below its name."""
     single = {key: value for key, value in known.items() if not isinstance(value, (dict, list))}
@@ -98,7 +106,7 @@ PAGES = {
     "Critical": Page("critical-speed", steady.critical_body, ("quantity", "searched_to", "reason")),
     "CriticalMap": Page("critical-speed --masses", steady.critical_map_body, ("mass", "position", "critical_speed")),
     "Placement": Page("place", machine.placement_body, ("fraction_of_length", "options")),
-    "SystemStudy": Page("run", _quantities, ("motions",), ("points", "coordinates", "steps")),
+    "SystemStudy": Page("run", _system_study, ("motions",), ("points", "coordinates", "steps")),
     "SystemRest": Page("static", _quantities, ("motions",), ("points", "coordinates", "ground_force")),
     "SystemModes": Page("modes", _quantities, ("modes", "body_names")),
     "Sweep": Page("sweep", searches.sweep_body, ("parameters", "measures")),

@@ -144,12 +144,16 @@ def _study(facts: Facts, variables: Facts) -> Study:
 
 
 def _system_study(facts: Facts, variables: Facts) -> SystemStudy:
-    responses = {}
+    responses, comparisons = {}, []
     for name, each in facts["motions"].items():
         v = _under(f"motions/{name}/", variables)
         if "time" in v:
             responses[name] = _system_response(each, v, name=name)
-    return SystemStudy("", responses)
+    for each in facts["comparisons"]:
+        v = _under(f"comparisons/{each['centrifuge']}/", variables)
+        if "time" in v:
+            comparisons.append(_comparison(each, v, _NONE))
+    return SystemStudy("", responses, tuple(comparisons))
 
 
 def _system_response(facts: Facts, v: Facts, **more: Any) -> SystemResponse:

@@ -16,7 +16,7 @@ Facts = Mapping[str, Any]
 def body(facts: Facts, viewer: str, drawn: str) -> str:
     """The page's inside."""
     motions = {name: each for name, each in facts["motions"].items() if "environment" in each}
-    parts = [_verdict(facts), section("Motion", viewer)]
+    parts = [verdicts(facts), section("Motion", viewer)]
     parts.append(section("Histories", drawn and paragraph(_HINT, "faint gbeam-screen") + drawn))
     parts += [heading("Response"), tips_table(motions), loads_table(motions)]
     parts += [machine_section(name, each) for name, each in motions.items() if "limits" in each]
@@ -35,7 +35,8 @@ def warnings(facts: Facts) -> list[str]:
     return [f"{name}: {warning}" if several else warning for warning, name in reversed(every.items())]
 
 
-def _verdict(facts: Facts) -> str:
+def verdicts(facts: Facts) -> str:
+    """What went wrong, and how well each centrifuge imitates its flight."""
     parts = []
     for name, each in facts["motions"].items():
         if each["outcome"] != "done":

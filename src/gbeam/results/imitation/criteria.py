@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 Limit = float | tuple[float, float]
 Value = tuple[float, str]  # and where it occurs
-SETTINGS = ("tolerance", "tolerance_of")  # beside the limits in a table of acceptance
+SETTINGS = ("tolerance", "tolerance_of", "point")  # beside the limits in a table of acceptance
 NOT_ACCEPTED, EXCEEDED = "not accepted", "machine limits exceeded"
 BROKEN = "limits exceeded"  # outcome of a plan, a placement or a search
 GOOD = ("done", "accepted")  # states of which nothing is to be said
@@ -220,10 +220,10 @@ class Criterion:
         return f"{self.name} {rule.written(self.value)}{where} ({rule.limit_written(self.limit)})"
 
 
-def judging(accept: Mapping[str, Any]) -> dict[str, Any]:
-    """Arguments of :func:`gbeam.compare` and :func:`gbeam.plan` that a table of acceptance gives."""
-    limits = {name: value for name, value in accept.items() if name not in SETTINGS}
-    return {name: value for name, value in accept.items() if name in SETTINGS} | {"accept": limits}
+def judging(accept: Mapping[str, Any], *, response: bool = True) -> dict[str, Any]:
+    """Arguments of :func:`gbeam.compare`, or without a response of :func:`gbeam.plan`, by a table of acceptance."""
+    settings = {name: value for name, value in accept.items() if name in SETTINGS and (response or name != "point")}
+    return settings | {"accept": {name: value for name, value in accept.items() if name not in SETTINGS}}
 
 
 def checked_limits(accept: Mapping[str, object] | None) -> dict[str, Limit]:

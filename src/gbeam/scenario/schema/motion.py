@@ -49,6 +49,11 @@ class Accept(_Limits):  # type: ignore[misc, valid-type]
         description="what tolerance is a share of. peak: the flight's largest load, as where it is left out; instant: "
         "its load at each time",
     )
+    point: str | None = Field(
+        default=None,
+        description='point of a system whose displacement is that of the tip: "arm.tip"; left out, the one that moves '
+        "farthest in flight",
+    )
 
     @property
     def given(self) -> dict[str, Any]:

@@ -32,7 +32,7 @@ from gbeam.scenario.schema.fields import (
     refuse,
     wrong,
 )
-from gbeam.scenario.schema.motion import Centrifuge, Motion
+from gbeam.scenario.schema.motion import Motion
 from gbeam.scenario.schema.profile import ForceOverTime, MomentOverTime, SpeedOverTime, TurnOverTime
 from gbeam.scenario.schema.scenario import Environments, Model, Titled, motion_name
 from gbeam.scenario.schema.specimen import (
@@ -269,9 +269,6 @@ class SystemScenario(Environments, Tree):
             for key in body.alone() if isinstance(body, RigidBody) else ():
                 hint = "leave it out, or give points; a rigid body alone, without joints, is a specimen"
                 yield ("bodies", name, key), wrong("is of a specimen alone on its base", hint, mark="key")
-        for name, motion in self.motion.items():
-            if isinstance(motion, Centrifuge) and motion.limits_of_acceptance:
-                yield ("motion", name, "accept"), wrong("is of the response of one beam", "leave it out", mark="key")
         of_tip: list[Loc] = [
             ("response", key) for key in ("stations", "residual_from") if getattr(self.response, key) is not None
         ]
