@@ -184,7 +184,7 @@ class Given:
             ),
             "RigidSpecimen": (
                 (1.0, (0.0, 0.0, 0.0), np.eye(3), [(0.1, 0.0, 0.0)]),
-                {"bolts": np.eye(3), "bolt_axis": (0.0, 0.0, 1.0), "spread_limit": 0.1},
+                {"bolts": np.eye(3), "bolt_axis": (0.0, 0.0, 1.0), "spread_limit": 0.1, "points": {"lid": (0, 0, 1)}},
             ),
             "Root": ((1e6, 1e6, 1e6, 1e3, 1e3), {}),
             "Section": (("rectangle", {"width": (0.02,), "thickness": (0.004,)}), {"stations": (), "plate": False}),

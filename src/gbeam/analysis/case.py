@@ -196,6 +196,8 @@ class SystemCase(Value):
         for name, limits in self.accept.items():
             if limits.get("point") is not None:
                 self.system.point(f"motion.{name}.accept.point", limits["point"])
+            for point in limits.get("control", ()):
+                self.system.point(f"motion.{name}.accept.control.{point}", point)
 
     def __repr__(self) -> str:
         motions = ", ".join(f"{name}: {motion.kind}" for name, motion in self.motions.items()) or GROUND

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
+from gbeam.printable import advise
 from gbeam.results.imitation.criteria import RULES
 from gbeam.scenario import schema
 from gbeam.scenario.build_beam import beam_of, model_of
@@ -79,7 +80,7 @@ def build(scenario: AnyScenario, *, ahead: bool = False) -> AnyCase:
     if response is not None:
         span = (response.start, response.start + response.duration)
         motions |= centrifuges(parts, scenario, motions, span, ahead=ahead)
-    accept = _acceptance(parts, scenario)
+    accept = _acceptance(parts, scenario, _points(structure))
     if parts.errors or None in structure.values() or response is None:
         raise placed(scenario, parts.errors)
     case = parts.attempt(
@@ -153,7 +154,17 @@ def build_extent(scenario: schema.Environments) -> dict[str, Any]:
     return extent
 
 
-def _acceptance(parts: Collector, scenario: schema.Environments) -> dict[str, dict[str, Any]]:
+def _points(structure: Mapping[str, Any]) -> tuple[str, ...]:
+    """Names of the points of a beam or a specimen; none where they are not known."""
+    beam, specimen = structure.get("beam"), structure.get("structure")
+    if beam is not None:
+        return tuple(beam.named_points)
+    return () if specimen is None else tuple(specimen.points)
+
+
+def _acceptance(
+    parts: Collector, scenario: schema.Environments, points: tuple[str, ...] = ()
+) -> dict[str, dict[str, Any]]:
     """Limits of acceptance and their settings, by the centrifuge's name."""
     machines = {name: each for name, each in scenario.motion.items() if isinstance(each, schema.Centrifuge)}
     limited = {name: each.limits_of_acceptance for name, each in machines.items() if each.limits_of_acceptance}
@@ -161,6 +172,11 @@ def _acceptance(parts: Collector, scenario: schema.Environments) -> dict[str, di
         for key, limit in limits.items():
             if key in RULES:
                 parts.attempt(f"motion.{name}.accept", RULES[key].checked, limit)
+        unknown = [each for each in limits.get("control", ()) if points and each not in points]
+        parts.errors += [
+            InputError(f"motion.{name}.accept.control.{each}", "is given for no point", advise(each, points))
+            for each in unknown
+        ]
     return limited
 
 

@@ -1,7 +1,8 @@
-"""Solids, matrices and rigid specimens of a scenario as objects of the core."""
+"""Solids, imported and measured models, and rigid specimens of a scenario as objects of the core."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
@@ -109,6 +110,56 @@ def matrices_of(parts: Collector, where: str, table: schema.MatricesBody) -> Str
 _AS_THEY_ARE = ("modes", "damping_ratio", "clamp", "points", "interfaces", "total_mass", "centre")
 
 
+def standard_input_of(parts: Collector, where: str, table: schema.StandardInputBody) -> Structure | None:
+    """The structure of standard input data."""
+    from gbeam.solids.standard_input import read_sid
+
+    def model() -> Structure:
+        try:
+            return read_sid(table.standard_input_data, damping_ratio=table.damping_ratio, points=table.points)
+        except InputError as error:
+            named = "standard_input_data" if error.where == "path" else error.where
+            raise InputError(named, error.problem, error.fix) from None
+
+    return parts.attempt(where, model)
+
+
+def modal_test_of(parts: Collector, where: str, table: schema.ModalTestBody) -> Structure | None:
+    """The structure of measured modes."""
+    from gbeam.solids.modal_test import ModalTest
+
+    def test() -> ModalTest:
+        if table.modal_test is None:
+            given: dict[str, Any] = {key: getattr(table, key) for key in schema.MEASURED}
+            return ModalTest(**given | {"shapes": _same_nodes(table.shapes, len(given["nodes"]))})
+        read = ModalTest.read(table.modal_test, modal_mass=table.modal_mass)
+        return read if table.damping_ratio is None else replace(read, damping_ratio=table.damping_ratio)
+
+    def model() -> Structure:
+        try:
+            measured = test()
+        except InputError as error:
+            named = "modal_test" if error.where == "path" else error.where
+            raise InputError(named, error.problem, error.fix) from None
+        count = len(np.asarray(measured.nodes))
+        masses = np.full(count, table.masses) if np.ndim(table.masses) == 0 else table.masses
+        try:
+            return measured.structure(masses, points=table.points)
+        except InputError as error:
+            raise InputError(error.where.replace("mass", "masses", 1), error.problem, error.fix) from None
+
+    return parts.attempt(where, model)
+
+
+def _same_nodes(shapes: Any, count: int) -> Any:
+    """Shapes by mode (m, k, 3) as displacements of nodes (k, 3, m)."""
+    for i, shape in enumerate(shapes):
+        if len(shape) != count:
+            fix = f"give {count} of [x, y, z]"
+            raise InputError(f"shapes[{i}]", f"has {len(shape)} displacements for {count} nodes", fix)
+    return np.moveaxis(np.asarray(shapes), 0, -1)
+
+
 def rigid_body_of(parts: Collector, where: str, table: system.RigidBody) -> RigidBody | None:
     """A rigid body of a system."""
     from gbeam.mechanics.tree.system import Place, RigidBody
@@ -134,7 +185,10 @@ def rigid_of(parts: Collector, where: str, table: system.RigidBody) -> Structure
             raise InputError("size", "is missing", "give the box that it fills, or its corners")
         bolts = table.bolts or None
         moments = _inertia(_moments(table))
-        return RigidSpecimen(table.mass, table.centre, moments, corners, bolts, table.bolt_axis, table.spread_limit)
+        points = {name: each.at for name, each in table.points.items()}
+        return RigidSpecimen(
+            table.mass, table.centre, moments, corners, bolts, table.bolt_axis, table.spread_limit, points
+        )
 
     made = parts.attempt(where, specimen)
     return None if made is None else made.structure

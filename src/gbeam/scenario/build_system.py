@@ -16,10 +16,18 @@ from gbeam.mechanics.tree.laws import gains, in_series, lead_lag, notch, pid
 from gbeam.mechanics.tree.system import PointForce, System
 from gbeam.scenario.build_beam import beam_of, model_of
 from gbeam.scenario.build_motion import components, profile_of
-from gbeam.scenario.build_specimen import matrices_of, rigid_body_of, rigid_of, solid_of
+from gbeam.scenario.build_specimen import (
+    matrices_of,
+    modal_test_of,
+    rigid_body_of,
+    rigid_of,
+    solid_of,
+    standard_input_of,
+)
 from gbeam.scenario.origin import Collector
 from gbeam.scenario.schema import control, specimen
 from gbeam.scenario.schema import system as schema
+from gbeam.scenario.schema.fields import fields_of
 from gbeam.scenario.schema.profile import Smoothed
 
 
@@ -45,6 +53,8 @@ _BODIES: dict[type, Any] = {
     schema.BeamBody: _beam,
     specimen.SolidBody: solid_of,
     specimen.MatricesBody: matrices_of,
+    specimen.StandardInputBody: standard_input_of,
+    specimen.ModalTestBody: modal_test_of,
 }
 _ALONE = _BODIES | {schema.RigidBody: rigid_of}  # as a specimen on the base
 
@@ -64,7 +74,8 @@ def _joint(parts: Collector, where: str, table: Any) -> Joint | None:
 def _value(parts: Collector, where: str, value: Any) -> Any:
     """A value of a joint as it takes it: by coordinate, a profile, or as it is."""
     if isinstance(value, schema.Coordinates):
-        return {name: _value(parts, f"{where}.{name}", each) for name, each in value if each is not None}
+        keys = zip(fields_of(type(value)), value, strict=True)
+        return {key: _value(parts, f"{where}.{key}", each) for key, (_, each) in keys if each is not None}
     return profile_of(parts, where, value) if isinstance(value, Smoothed) else value
 
 

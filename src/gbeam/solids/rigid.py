@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from itertools import product
 from typing import Any
 
@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import array, positive
+from gbeam.guards.checks import array, positive, vector
 from gbeam.guards.limits import SAMPLES, refuse_more
 from gbeam.mechanics.equations.linear import PAIRS, Coefficients
 from gbeam.mechanics.fields.taylor import Places
@@ -50,6 +50,9 @@ class RigidSpecimen(Value):
         Direction of the bolts, away from the fixture.
     spread_limit : float, optional
         Largest spread of the load over the specimen that the test order accepts, of the largest load of the centre.
+    points : dict of (3,), optional
+        Places of output by name, from the root, m, at which accelerations and spectra are given; ``tip`` is the corner
+        farthest from the root where it is not given.
 
     Raises
     ------
@@ -72,6 +75,7 @@ class RigidSpecimen(Value):
     bolts: ArrayLike | None = None
     bolt_axis: Sequence[float] | None = None
     spread_limit: float | None = None
+    points: Mapping[str, Sequence[float]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         positive("mass", self.mass, "kg")
@@ -87,6 +91,8 @@ class RigidSpecimen(Value):
                 words = "three numbers" if shape == (3,) else "3 × 3 numbers" if name == "inertia" else "rows of three"
                 raise InputError(name, f"has the shape {value.shape}, or is not finite", f"give {words}")
             object.__setattr__(self, name, value)
+        named = {name: tuple(vector(f"points.{name}", place)) for name, place in self.points.items()}
+        object.__setattr__(self, "points", named)
         inertia = np.asarray(self.inertia)
         value = np.linalg.eigvalsh((inertia + inertia.T) / 2)
         if inertia.shape != (3, 3) or not np.allclose(inertia, inertia.T, atol=1e-9 * np.abs(inertia).max()):
@@ -221,12 +227,14 @@ class RigidSpecimen(Value):
 
     @property
     def structure(self) -> Structure:
-        """The specimen as analyses take it: a structure without coordinates, whose tip is the farthest corner."""
+        """The specimen as analyses take it, without coordinates; its tip is the farthest corner unless it is named."""
         corners, centre, inertia = (np.asarray(each) for each in (self.corners, self.centre, self.inertia))
         second = (np.trace(inertia) / 2 * np.eye(3) - inertia) + self.mass * np.outer(centre, centre)
         products = (second[i, j] for i, j in PAIRS)
-        tip = corners[np.linalg.norm(corners, axis=1).argmax()]
-        points = np.stack([centre, tip])
+        named = dict(self.points)
+        tip = np.asarray(named.pop(TIP, corners[np.linalg.norm(corners, axis=1).argmax()]))
+        points = np.stack([centre, *map(np.asarray, named.values()), tip])
+        count = len(points)
         square, rate = np.zeros((0, 0)), np.zeros((3, 0, 0))
         rigid = np.array([self.mass, *(self.mass * centre), *products])
         coefficients = Coefficients(
@@ -234,20 +242,20 @@ class RigidSpecimen(Value):
             k_ww=np.zeros((3, 3, 0, 0)), k_al=rate, k_a=rate,
             f_ww=np.zeros((3, 3, 0)), f_al=np.zeros((3, 0)), f_a=np.zeros((3, 0)), rigid=rigid,
         )  # fmt: skip
-        places = Places(points, np.zeros((2, 3, 0)), np.zeros((2, 3, 0, 0)))
+        places = Places(points, np.zeros((count, 3, 0)), np.zeros((count, 3, 0, 0)))
         return Structure(
             kind="rigid",
             linear=True,
             hub_force=True,
             counts=(0,) * 6,
             length=float(np.linalg.norm(tip)),
-            mass=np.array([self.mass, 0.0]),
+            mass=np.append(self.mass, np.zeros(count - 1)),
             places=places,
             stations=points[1:, 0],
-            station_places=places[[1]],
+            station_places=places[list(range(1, count))],
             coefficients=coefficients,
             damping_ratio=0.0,
-            points=(TIP,),
+            points=(*named, TIP),
             recovery=self,
         )
 

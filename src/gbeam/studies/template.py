@@ -33,6 +33,7 @@ from gbeam.scenario.origin import provenance
 from gbeam.scenario.schema import Centrifuge
 from gbeam.scenario.schema.fields import kind_of, quantities
 from gbeam.scenario.schema.scenario import Sweep as SweepTable
+from gbeam.scenario.schema.system import COUPLINGS
 from gbeam.scenario.values import Distribution, Path, parse_path, path_text
 from gbeam.structure.beam import Beam
 
@@ -281,6 +282,9 @@ def _kind(node: Any, owner: str, name: str) -> str:
     if isinstance(node, Joint) and name in OF_COORDINATES:
         slides = {each in SLIDES for each in node.coordinates}
         return OF_COORDINATES[name][not slides.pop()] if len(slides) == 1 else ""
+    if isinstance(node, Joint) and name == "coupling":
+        counts = {sum(each in SLIDES for each in str(pair).split("-")) for pair in node.coupling or ()}
+        return COUPLINGS[counts.pop()] if len(counts) == 1 else ""
     return kind_of_argument(owner, name)
 
 

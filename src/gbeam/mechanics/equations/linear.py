@@ -285,6 +285,9 @@ def damping_matrix(ratio: Any, mass: Array, stiffness: Array) -> Array:
             f"lists {len(ratio)} values for the {n} modes of the model",
             f"give one value for all, or {n}, ascending in frequency",
         )
+    if not is_jax(ratio) and not (ratio >= 0).all():
+        least = float(np.min(ratio))
+        raise InputError("damping_ratio", f"is {least:g}", "give zero or more, such as 0.02")
     xp = namespace(ratio, mass, stiffness)
     if not is_jax(ratio) and not np.any(ratio):
         return xp.zeros((n, n))

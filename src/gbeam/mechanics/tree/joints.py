@@ -98,7 +98,7 @@ class Joint(Value):
         or N m, of each coordinate. A ``fixed`` joint gives way along and about the axes that have a stiffness: ``x``,
         ``y``, ``z``, ``rx``, ``ry``, ``rz``, the last three components of a rotation vector.
     coupling : mapping of str to float, optional
-        Stiffness between two coordinates, by both names, such as ``{"y rz": -2e4}``: with the springs of all six
+        Stiffness between two coordinates, by both names, such as ``{"y-rz": -2e4}``: with the springs of all six
         directions the 6 × 6 stiffness of a fixture, N/m, N, or N m.
     stops : pair of float or mapping of str to pairs
         Lowest and highest coordinate, at which stops begin to give way.
@@ -217,10 +217,10 @@ class Joint(Value):
             return None
         names = self.coordinates
         if not isinstance(self.coupling, Mapping):
-            raise InputError("coupling", f"is {self.coupling!r}", 'name pairs of coordinates, such as {"y rz": -2e4}')
+            raise InputError("coupling", f"is {self.coupling!r}", 'name pairs of coordinates, such as {"y-rz": -2e4}')
         coupling = np.zeros((len(names), len(names)))
         for pair, value in self.coupling.items():
-            ends = str(pair).split()
+            ends = str(pair).split("-")
             if len(ends) != 2 or ends[0] == ends[1] or not set(ends) <= set(names) - set(_BALL):
                 fix = f"give two of {', '.join(names)}" if names else "give the springs of the directions as well"
                 raise InputError(f"coupling.{pair}", "is no pair of coordinates", fix)

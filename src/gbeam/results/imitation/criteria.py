@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
 Limit = float | tuple[float, float]
 Value = tuple[float, str]  # and where it occurs
-SETTINGS = ("tolerance", "tolerance_of", "point")  # beside the limits in a table of acceptance
+SETTINGS = ("tolerance", "tolerance_of", "point", "control")  # beside the limits in a table of acceptance
+OF_RESPONSES = ("point", "control")  # of these, those of what responds
 NOT_ACCEPTED, EXCEEDED = "not accepted", "machine limits exceeded"
 BROKEN = "limits exceeded"  # outcome of a plan, a placement or a search
 GOOD = ("done", "accepted")  # states of which nothing is to be said
@@ -222,7 +223,8 @@ class Criterion:
 
 def judging(accept: Mapping[str, Any], *, response: bool = True) -> dict[str, Any]:
     """Arguments of :func:`gbeam.compare`, or without a response of :func:`gbeam.plan`, by a table of acceptance."""
-    settings = {name: value for name, value in accept.items() if name in SETTINGS and (response or name != "point")}
+    names = [name for name in SETTINGS if response or name not in OF_RESPONSES]
+    settings = {name: value for name, value in accept.items() if name in names}
     return settings | {"accept": {name: value for name, value in accept.items() if name not in SETTINGS}}
 
 

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Field, StrictBool, Tag, create_model, model_validator
 from pydantic_core import PydanticCustomError
 
+from gbeam.guards.limits import ENTRIES
 from gbeam.results.imitation.criteria import RULES
 from gbeam.scenario.schema.fields import (
     ONE_OR_LIST,
@@ -54,11 +55,17 @@ class Accept(_Limits):  # type: ignore[misc, valid-type]
         description='point of a system whose displacement is that of the tip: "arm.tip"; left out, the one that moves '
         "farthest in flight",
     )
+    control: dict[str, Share] = Field(
+        default_factory=dict,
+        max_length=ENTRIES,
+        description="weights of control points by the names of points: srs is of the weighted mean of the spectra "
+        "there, in place of the tip's",
+    )
 
     @property
     def given(self) -> dict[str, Any]:
         """Values that are given, by name."""
-        return {name: value for name, value in self if value is not None}
+        return {name: value for name, value in self if value not in (None, {})}
 
 
 def _missing(first: str, second: str) -> tuple[Loc, PydanticCustomError]:

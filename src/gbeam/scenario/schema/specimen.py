@@ -1,4 +1,4 @@
-"""[bodies.NAME] of a solid by its mesh, of matrices of another program, and of a rigid specimen."""
+"""[bodies.NAME] of a solid by its mesh, of what another program or a modal test gives, and of a rigid specimen."""
 
 from __future__ import annotations
 
@@ -159,6 +159,9 @@ _Files = Annotated[
 ]
 
 
+_NodePoints = Annotated[dict[str, StrictInt], Field(max_length=ENTRIES)]
+
+
 class MatricesBody(Reduced):
     """A structure by the matrices of a finite-element program."""
 
@@ -180,9 +183,7 @@ class MatricesBody(Reduced):
         default=(),
         description="numbers of nodes that follow the base; none where the matrices are of the others alone",
     )
-    points: dict[str, StrictInt] = Field(
-        default_factory=dict, max_length=ENTRIES, description="numbers of nodes of output by name"
-    )
+    points: _NodePoints = Field(default_factory=dict, description="numbers of nodes of output by name")
     interfaces: tuple[str, ...] = Field(default=(), description="names of points on which other bodies hang")
     total_mass: Mass | None = Field(default=None, description="mass that the matrices must have, within 1 %")
     centre: Place3 | None = Field(default=None, description="centre of mass that they must have: [x, y, z]")
@@ -199,6 +200,90 @@ class MatricesBody(Reduced):
             yield from ((f"matrices[{i}]", file) for i, file in enumerate(self.matrices))
         if self.nodes is not None:
             yield "nodes", self.nodes
+
+
+class StandardInputBody(Table):
+    """A flexible body of standard input data, as multibody programs exchange them."""
+
+    kind: Literal["standard-input-data"] = Field(
+        default="standard-input-data", description="kind of the body; may be left out beside standard_input_data"
+    )
+    standard_input_data: File = Field(
+        description="file of the body's modal object, in SI; relative to the folder of the scenario file"
+    )
+    damping_ratio: Ratios | None = Field(
+        default=None, description="of critical damping, in place of the damping in the file"
+    )
+    points: _NodePoints = Field(default_factory=dict, description="numbers of nodes of output by name")
+
+    @property
+    def files(self) -> Iterator[tuple[str, str]]:
+        """Files that it names, by their keys."""
+        yield "standard_input_data", self.standard_input_data
+
+
+_Frequencies = Annotated[
+    tuple[Annotated[float, Quantity("frequency", "positive")], ...], Field(min_length=1, max_length=ENTRIES)
+]
+_Masses = Annotated[
+    Annotated[Mass, Tag("one")] | Annotated[tuple[Mass, ...], Field(min_length=1, max_length=ENTRIES), Tag("list")],
+    ONE_OR_LIST,
+]
+_Shape = Annotated[tuple[Direction, ...], Field(max_length=ENTRIES)]
+MEASURED = ("frequency", "damping_ratio", "shapes", "nodes", "modal_mass")
+
+
+class ModalTestBody(Table):
+    """Modes that were measured, or computed elsewhere: frequencies, damping and shapes on a base at rest."""
+
+    kind: Literal["modal-test"] = Field(
+        default="modal-test", description="kind of the body; may be left out beside modal_test"
+    )
+    modal_test: File | None = Field(
+        default=None,
+        description="universal file (.uff, .unv) of the modes and the nodes; or frequency, damping_ratio, shapes, "
+        "nodes and modal_mass. Relative to the folder of the scenario file",
+    )
+    frequency: _Frequencies | None = Field(default=None, description="natural frequencies, without a file")
+    damping_ratio: Ratios | None = Field(
+        default=None, description="of critical damping, of every mode, or a list; beside a file in place of its own"
+    )
+    shapes: Annotated[tuple[_Shape, ...], Field(max_length=ENTRIES)] | None = Field(
+        default=None,
+        description="displacements of the nodes in each mode, without a file: [ [ [x, y, z], ... ], ... ]",
+    )
+    nodes: Annotated[tuple[Place3, ...], Field(max_length=ENTRIES)] | None = Field(
+        default=None, description="places of the nodes from the root, without a file: [ [x, y, z], ... ]"
+    )
+    modal_mass: _Masses | None = Field(
+        default=None,
+        description="that goes with the shapes, of every mode, or a list; beside a file in place of its own",
+    )
+    masses: _Masses = Field(
+        description="share of the specimen's mass at the nodes, in the order of their numbers: a list, or one that all "
+        "have"
+    )
+    points: _NodePoints = Field(
+        default_factory=dict, description="numbers of nodes of output by name; without a file from 0"
+    )
+
+    @property
+    def files(self) -> Iterator[tuple[str, str]]:
+        """Files that it names, by their keys."""
+        if self.modal_test is not None:
+            yield "modal_test", self.modal_test
+
+    @model_validator(mode="after")
+    def _one_way(self) -> ModalTestBody:
+        given = [key for key in MEASURED if getattr(self, key) is not None]
+        beside = [key for key in given if key in ("frequency", "shapes", "nodes")]
+        if self.modal_test is not None and beside:
+            refuse([((beside[0],), wrong("is given beside modal_test", "keep one of them", mark="key"))])
+        missing = [key for key in MEASURED if key not in given]
+        if self.modal_test is None and missing:
+            hint = "give modal_test = FILE, or frequency, damping_ratio, shapes, nodes and modal_mass"
+            refuse([((), wrong(f"{missing[0]} is missing", hint, mark="key"))])
+        return self
 
 
 class PlaceOfBody(Table):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import reduce
+from itertools import combinations
 from operator import or_
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -38,10 +39,12 @@ from gbeam.scenario.schema.scenario import Environments, Model, Titled, motion_n
 from gbeam.scenario.schema.specimen import (
     Direction,
     MatricesBody,
+    ModalTestBody,
     Place3,
     PlaceOfBody,
     RigidKeys,
     SolidBody,
+    StandardInputBody,
     Turn3,
 )
 
@@ -78,8 +81,21 @@ class BeamBody(Beam):
 
 
 # Tables of bodies by their kind: one more is an entry, and its builder one in `gbeam.scenario.build_system`.
-BODIES: dict[str, type[Table]] = {"rigid": RigidBody, "beam": BeamBody, "solid": SolidBody, "matrices": MatricesBody}
-_KNOWN_BY = {"mesh": "solid", "matrices": "matrices"}  # keys beside which a kind may be left out
+BODIES: dict[str, type[Table]] = {
+    "rigid": RigidBody,
+    "beam": BeamBody,
+    "solid": SolidBody,
+    "matrices": MatricesBody,
+    "standard-input-data": StandardInputBody,
+    "modal-test": ModalTestBody,
+}
+# Keys beside which a kind may be left out.
+_KNOWN_BY = {
+    "mesh": "solid",
+    "matrices": "matrices",
+    "standard_input_data": "standard-input-data",
+    "modal_test": "modal-test",
+}
 
 
 def _kind(body: Any) -> str | None:
@@ -112,6 +128,7 @@ def _quantities(slide: str, turn: str) -> _Of:
 
 _LENGTHS = _Of(Offset, Angle)
 _STIFFNESSES = _quantities("stiffness", "rotational stiffness")
+COUPLINGS = ("rotational stiffness", "force", "stiffness")  # of two coordinates, by how many are displacements
 # Of every key about coordinates: its types, what it is, and whether it is of rates.
 _ABOUT: dict[str, tuple[_Of, str, bool]] = {
     "initial": (_LENGTHS, "coordinate at the start", False),
@@ -170,6 +187,18 @@ def _joint(name: str, kind: Kind) -> Any:
             within = {each: _optional(types(each), words) for each in names}
             table = _table(Coordinates, title, f"{words[0].upper()}{words[1:]}, by coordinate.", within)
             fields[key] = _optional(table, f"{words}: {{ {', '.join(names)} }}")
+    if len(kind.given) > 1:
+        words = "stiffness between two coordinates"
+        within = {
+            f"{one}_{two}": (Annotated[float, Quantity(COUPLINGS[(one in SLIDES) + (two in SLIDES)])] | None,
+                             Field(default=None, alias=f"{one}-{two}", description=words))
+            for one, two in combinations(kind.given, 2)
+        }  # fmt: skip
+        table = _table(
+            Coordinates, f"{name}_coupling".title().replace("_", ""), "Coupling, by two coordinates.", within
+        )
+        first = "-".join(kind.given[:2])
+        fields["coupling"] = _optional(table, f"{words} that have springs, by both names: {{ {first}, ... }}")
     return _table(Table, name.title(), f"{kind.words[0].upper()}{kind.words[1:]}.", fields)
 
 
