@@ -210,7 +210,7 @@ else:
 
 
 class PointForces(Vector):
-    """A force by components, each a quantity or a profile; those left out are zero."""
+    """A force on a point by components, each a quantity or a profile; those left out are zero."""
 
     x: ForceOverTime | None = Field(default=None, description="component along x")
     y: ForceOverTime | None = Field(default=None, description="component along y")
@@ -218,7 +218,7 @@ class PointForces(Vector):
 
 
 class PointMoments(Vector):
-    """A moment by components, each a quantity or a profile; those left out are zero."""
+    """A moment on a point by components, each a quantity or a profile; those left out are zero."""
 
     x: MomentOverTime | None = Field(default=None, description="component about x")
     y: MomentOverTime | None = Field(default=None, description="component about y")
