@@ -347,7 +347,7 @@ def linearize(
     frequency, errors = np.zeros(0), None
     if q is None and qd is None:
         if structure.source is not None:
-            frequency, errors = pole_errors(structure, point)
+            frequency, errors = pole_errors(point)
             warnings += doubtful(errors) if errors.within(ACCURATE) == 0 else ()
         warnings += tuple(
             f"the operating point is not stable: {each.kind} {along(each.direction)}, growing with "

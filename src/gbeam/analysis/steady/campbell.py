@@ -11,9 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gbeam.analysis.accuracy.estimate import LIMIT, apart, percent, wrong_by
-from gbeam.analysis.steady.frequency_errors import Richer, doubtful
+from gbeam.analysis.steady.frequency_errors import Richer, doubtful, judgeable
 from gbeam.analysis.steady.stability import critical_speed, turned
-from gbeam.analysis.system.accuracy import RicherModes, judged_beams
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.plausibility import input_warnings
@@ -29,9 +28,6 @@ from gbeam.results.result import Complex, Floats
 CONFIDENT = 0.9  # a mode that resembles itself less from one speed to the next is looked at in between
 SURE = 0.95  # of a critical speed: nearer, a frequency goes to zero and has no relative error
 DEPTH = 8  # halvings of a step at most: what veers faster is a crossing to every eye
-
-
-Judge = Richer | RicherModes
 
 
 class _Speed(NamedTuple):
@@ -174,10 +170,10 @@ def campbell(
         for each in _crossings(at, followed, index, rates, frequency[:, k], k, order)
     ]
     crossings, errors = [crossing for crossing, _, _ in met], None
-    if judged_beams(structure) if isinstance(structure, System) else structure.source is not None:
+    if judgeable(structure):
         until = len(rates) - 1 if lost.value is None else int(np.searchsorted(rates, SURE * last, "right")) - 1
         fastest = point_at(float(rates[until]))
-        richer = RicherModes(fastest) if isinstance(structure, System) else Richer(structure, fastest.base)
+        richer = Richer(fastest)
         looked = [
             _errors(richer, point_at(followed[i].rate), followed[i], index[i]) for i in sorted({0, until // 2, until})
         ]
@@ -208,7 +204,7 @@ def campbell(
     )
 
 
-def _errors(richer: Judge, point: Any, speed: _Speed, track: np.ndarray) -> FrequencyErrors:
+def _errors(richer: Richer, point: Any, speed: _Speed, track: np.ndarray) -> FrequencyErrors:
     """Errors of the modes followed, at one speed; NaN for those that no longer oscillate."""
     oscillating = track >= 0
     chosen = track[oscillating]
@@ -258,7 +254,7 @@ def _crossings(
 
 
 def crossing_errors(
-    crossing: Crossing, mode: Complex, slope: float, richer: Judge, point_at: Callable[[float], Any]
+    crossing: Crossing, mode: Complex, slope: float, richer: Richer, point_at: Callable[[float], Any]
 ) -> ErrorEstimate:
     """Errors of a crossing's speed, from where the mode (n,) of richer models meets the same multiple; infinite if
     nowhere near.
@@ -287,7 +283,7 @@ def crossing_errors(
     exact = root(1)
     same = exact if richer.same is richer.exact else root(0)
     away = ErrorEstimate(0.0, apart(speed, same), apart(same, exact), total=apart(speed, exact))
-    share = float(richer.theory_shares(point_at(speed), mode[None])[0])
+    share = float(richer.by_theory(point_at(speed), mode[None]).shares[0])
     return away.with_theory(share * order / abs(slope - order))
 
 

@@ -5,25 +5,25 @@ They are compared with those of the same model with more shapes, of the exact on
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.analysis.accuracy.beam_theory import described, mode_causes
 from gbeam.analysis.accuracy.estimate import LIMIT, percent, wrong_by
-from gbeam.analysis.steady.equilibrium import equilibrium_about
-from gbeam.analysis.steady.operating_point import OperatingPoint, stepped
+from gbeam.analysis.steady.operating_point import OperatingPoint, Steady
+from gbeam.analysis.system.accuracy import bases_of, judged_beams, richer
+from gbeam.analysis.system.steady import SteadySystem
+from gbeam.arrays.tree import each_leaf
 from gbeam.errors import ComputationError
+from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.enrichment import enrichment
-from gbeam.mechanics.equations.hub import free_hub
-from gbeam.mechanics.equations.residuals import OnHub
 from gbeam.mechanics.models import TORSION
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import theory_of
-from gbeam.motion.bases.base import Base
-from gbeam.numerics.eigen import Linear, mac, matched, vibrations
+from gbeam.mechanics.tree.system import System
+from gbeam.numerics.eigen import mac, matched
 from gbeam.results.errors import PARTS, ErrorEstimate, FrequencyErrors
 from gbeam.results.result import Complex, Floats
 
@@ -56,60 +56,74 @@ class ByTheory(NamedTuple):
     unseen: tuple[float, ...]
 
 
-class Richer:
-    """A structure's model with more shapes, the exact one, and the thick beam, on the base where it turns fastest."""
+class More(NamedTuple):
+    """A structure or a system with more shapes, and names there of coordinates that are called otherwise."""
 
-    def __init__(self, structure: Structure, base: Base) -> None:
-        more, (_, along_y, along_z, *_) = enrichment(structure, base), structure.counts
-        directions = True, along_y > 0, along_z > 0
-        self.structure, self.theory = structure, theory_of(structure)
-        self.exact = more.model("exact", directions=directions)
-        self.same = self.exact if structure.kind == "exact" else more.model(structure.kind, directions=directions)
+    model: Any
+    renamed: Mapping[str, str]
+
+
+class Richer:
+    """Models with more shapes beside a steady state, the fastest of several: of the same kinds, exact, and of one beam
+    the thick ones.
+    """
+
+    def __init__(self, state: OperatingPoint | SteadySystem) -> None:
+        if isinstance(state, SteadySystem):
+            self.theory, bodies = None, [*judged_beams(state.system).values()]
+        else:
+            self.theory, bodies = theory_of(state.structure), [state.structure]
+        self.exact = _with_more(state, exact=True)
+        only_exact = all(body.kind == "exact" for body in bodies)
+        self.same = self.exact if only_exact else _with_more(state, exact=False)
 
     def errors(
-        self, point: OperatingPoint, eigenvalue: Complex, coordinates: Complex, *, gyroscopic: bool = True
+        self, state: Any, eigenvalue: Complex, coordinates: Complex, *, gyroscopic: bool = True
     ) -> FrequencyErrors:
-        """Errors of the frequencies of modes (k, n) with eigenvalues (k,) about an equilibrium."""
+        """Errors of the frequencies of modes (k, n) with eigenvalues (k,) about a steady state."""
         frequency = np.abs(eigenvalue)
-        same, exact = self.references(point, coordinates, gyroscopic=gyroscopic)
-        by_theory = self.by_theory(point, coordinates, gyroscopic=gyroscopic)
+        same, exact = self.references(state, coordinates, gyroscopic=gyroscopic)
+        by_theory = self.by_theory(state, coordinates, gyroscopic=gyroscopic)
         shapes, model, total = (np.abs(a / b - 1) for a, b in ((frequency, same), (same, exact), (frequency, exact)))
-        theory = described(self.structure, by_theory.causes)
+        theory = "" if self.theory is None else described(state.structure, by_theory.causes)
         shares = by_theory.shares
         return FrequencyErrors(shapes, model, shares, total + np.nan_to_num(shares), theory, by_theory.unseen)
 
-    def references(
-        self, point: OperatingPoint, coordinates: Complex, *, gyroscopic: bool = True
-    ) -> tuple[Floats, Floats]:
-        """Circular frequencies (k,) of modes by the model with more shapes and by the exact one; NaN without an
-        equilibrium.
+    def references(self, state: Any, coordinates: Complex, *, gyroscopic: bool = True) -> tuple[Floats, Floats]:
+        """Circular frequencies (k,) of modes by the models with more shapes and by exact ones; NaN where these do not
+        rest.
         """
 
-        def reference(richer: tuple[Structure, NDArray[np.int_]]) -> Floats:
+        def reference(richer: More) -> Floats:
             try:
-                return _frequencies(*richer, point, coordinates, gyroscopic=gyroscopic)
+                other = state.richer(richer.model)
+                rate, modes = _oscillating(other, gyroscopic=gyroscopic)
             except (ComputationError, np.linalg.LinAlgError):
                 return np.full(len(coordinates), np.nan)
+            if not rate.size:
+                return np.full(len(coordinates), np.nan)
+            lifted = np.zeros((len(coordinates), modes.shape[1]), dtype=complex)
+            lifted[:, [other.names.index(richer.renamed.get(name, name)) for name in state.names]] = coordinates
+            mass = other.linear.mass[state.first :, state.first :]
+            return np.asarray(rate[mac(lifted, modes, mass).argmax(axis=1)])
 
         exact = reference(self.exact)
         return exact if self.same is self.exact else reference(self.same), exact
 
-    def theory_shares(self, point: OperatingPoint, coordinates: Complex) -> Floats:
-        """Errors (k,) of these modes' frequencies by the theory of slender beams."""
-        return self.by_theory(point, coordinates).shares
-
-    def by_theory(self, point: OperatingPoint, coordinates: Complex, *, gyroscopic: bool = True) -> ByTheory:
-        """Errors of these modes' frequencies by the theory of slender beams; arguments as above."""
-        theory, first, k = self.theory, point.first, len(coordinates)
+    def by_theory(self, point: Any, coordinates: Complex, *, gyroscopic: bool = True) -> ByTheory:
+        """Errors of these modes' frequencies by the theory of slender beams, which are not known of a system."""
+        theory, k = self.theory, len(coordinates)
+        if theory is None:
+            return ByTheory(np.full(k, np.nan), {}, ())
         plate = theory.plate(np.asarray(np.pad(point.q, (0, theory.thick.size - len(point.q))))[None])
         try:
-            linear = [_about_equilibrium(each, point) for each in (theory.slender, *theory.variants(plate))]
+            others = [point.richer(each) for each in (theory.slender, *theory.variants(plate))]
             (slender, shape), (thick, deep), (plated, flat) = (
-                _oscillating(each, first, gyroscopic=gyroscopic) for each in linear
+                _oscillating(each, gyroscopic=gyroscopic) for each in others
             )
         except (ComputationError, np.linalg.LinAlgError):
             return ByTheory(np.full(k, np.nan), {}, ())
-        mass = linear[1].mass[first:, first:]
+        mass = others[1].linear.mass[point.first :, point.first :]
         mode, shape = (np.pad(each, ((0, 0), (0, len(mass) - each.shape[1]))) for each in (coordinates, shape))
         chosen = mac(mode, shape, mass).argmax(axis=1)
         looked = slice(None, chosen.max(initial=-1) + 1)
@@ -118,8 +132,8 @@ class Richer:
         shares = np.max([np.abs(slender[chosen] / rate[match[chosen]] - 1) for rate, match in pairs], axis=0)
         bent = deep[:, : theory.slender.size]
         moving = np.einsum("ki,ij,kj->k", bent.conj(), mass[: bent.shape[1], : bent.shape[1]], bent).real
-        others = np.setdiff1d(np.arange(len(thick)), among)
-        unseen = [j for j in others if moving[j] > BENT and thick[j] < slender[looked].max(initial=0.0)]
+        alone = np.setdiff1d(np.arange(len(thick)), among)
+        unseen = [j for j in alone if moving[j] > BENT and thick[j] < slender[looked].max(initial=0.0)]
         loads = point.residual.unpack(point.u)[1]
         worst = np.zeros(0, dtype=int) if not k else np.array([np.nan_to_num(shares).argmax()])
         return ByTheory(
@@ -129,50 +143,33 @@ class Richer:
         )
 
 
-def pole_errors(structure: Structure, point: OperatingPoint) -> tuple[Floats, FrequencyErrors]:
+def pole_errors(point: OperatingPoint) -> tuple[Floats, FrequencyErrors]:
     """Frequencies (k,) Hz of the poles that oscillate about an operating point, ascending, and their errors."""
     moving = point.moving
-    errors = Richer(structure, point.base).errors(point, moving.value, moving.modes[point.first :].T)
+    errors = Richer(point).errors(point, moving.value, moving.modes[point.first :].T)
     return moving.frequency / (2 * np.pi), errors
 
 
-def _frequencies(
-    rich: Structure, index: NDArray[np.int_], point: OperatingPoint, coordinates: Complex, *, gyroscopic: bool
-) -> Floats:
-    """Circular frequencies of the rich structure's modes that are most like those given, rad/s."""
-    linear, first = _about_equilibrium(rich, point), point.first
-    rate, modes = _oscillating(linear, first, gyroscopic=gyroscopic)
-    if not rate.size:
-        return np.full(len(coordinates), np.nan)
-    lifted = np.zeros((len(coordinates), rich.size), dtype=complex)
-    lifted[:, index] = coordinates
-    return np.asarray(rate[mac(lifted, modes, linear.mass[first:, first:]).argmax(axis=1)])
+def judgeable(of: Structure | System) -> bool:
+    """Whether frequencies of a beam, or of a system with beams, have estimated errors."""
+    return bool(judged_beams(of)) if isinstance(of, System) else of.source is not None and not of.traced
 
 
-def _oscillating(linear: Linear, first: int, *, gyroscopic: bool) -> tuple[Floats, Complex]:
-    """Circular frequencies (k,) of the modes that oscillate, ascending, and the beam's coordinates in them, (k, n)."""
-    moving = vibrations(linear, gyroscopic=gyroscopic)
-    return moving.frequency, moving.modes[first:].T
+def _with_more(state: OperatingPoint | SteadySystem, *, exact: bool) -> More:
+    """More shapes than a steady state has, in exact models or in models of its own kinds."""
+    if isinstance(state, SteadySystem):
+        point = state.point
+        of = Trajectory(np.zeros(1), point.y[None], point.yd[None], point.ydd[None])
+        bases = bases_of(state.system, of, lambda _, __: each_leaf(lambda x: x[None], point.inputs))
+        rich = richer(state.system, bases, exact=exact)
+        return More(rich.system, rich.renamed)
+    structure, (_, along_y, along_z, *_) = state.structure, state.structure.counts
+    kind, directions = "exact" if exact else structure.kind, (True, along_y > 0, along_z > 0)
+    model, index = enrichment(structure, state.base).model(kind, directions=directions)
+    return More(model, {own: f"q{at + 1}" for own, at in zip(state.names, index, strict=True)})
 
 
-def _about_equilibrium(rich: Structure, point: OperatingPoint) -> Linear:
-    """M, C and K of a rich structure about its own equilibrium on the base of a point."""
-    loads, base = point.residual.unpack(point.u)[1], point.base
-    rich = replace(rich, load_values=loads)
-    if not isinstance(point.residual, OnHub):
-        return resting(rich, base)
-    (q, _), c = equilibrium_about(rich, base)
-    q = q if rich.linear else 0 * q
-    hub = point.residual
-    equations = free_hub(c, hub.mount, hub.equations.ground, hub_force=rich.hub_force)
-    y, yd, ydd = (np.append(x[0], beam) for x, beam in ((point.y, q), (point.yd, 0 * q), (point.ydd, 0 * q)))
-    n = len(y)
-    d = stepped(OnHub(equations, hub.mount), y, yd, ydd, point.u)
-    return Linear(d[:, 2 * n : 3 * n], d[:, n : 2 * n], d[:, :n], -d[:, 3 * n :])
-
-
-def resting(structure: Structure, base: Base) -> Linear:
-    """M, C and K of a structure about its equilibrium on a base, under its loads, by NumPy for complete models too."""
-    _, c = equilibrium_about(structure, base)
-    velocity, stiffness, _ = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, structure.load_values)
-    return Linear(c.mass, velocity, stiffness, np.zeros((structure.size, 0)))
+def _oscillating(state: Steady, *, gyroscopic: bool) -> tuple[Floats, Complex]:
+    """Circular frequencies (k,) of the modes that oscillate, ascending, and the coordinates in them, (k, n)."""
+    moving = state.vibrations(gyroscopic=gyroscopic)
+    return moving.frequency, moving.modes[state.first :].T

@@ -12,11 +12,10 @@ import numpy as np
 
 from gbeam.analysis.accuracy.beam_theory import described, mode_causes
 from gbeam.analysis.accuracy.estimate import LIMIT, apart, percent, wrong_by
+from gbeam.analysis.steady.frequency_errors import Richer, judgeable
 from gbeam.analysis.steady.modal import instabilities
-from gbeam.analysis.steady.operating_point import OperatingPoint, Steady
-from gbeam.analysis.system.accuracy import RicherModes, judged_beams
+from gbeam.analysis.steady.operating_point import Steady
 from gbeam.errors import ComputationError
-from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import theory_of
@@ -95,35 +94,23 @@ CLOSE = 1e-6  # of the critical value: how closely a root is found
 
 def judged(critical: Critical, path: Path, structure: Structure | System, progress: Progress = None) -> Critical:
     """A critical value with its estimated errors, and warnings where they are above one in a hundred."""
-    if isinstance(structure, System):
-        if not critical.value or not judged_beams(structure):
-            return critical
-        at = critical.value
-        richer = RicherModes(path(structure, (1 - CLOSE) * at))  # type: ignore[arg-type]
-        exact = _lost(richer.exact.system, path, at, progress)
-        same = exact if richer.same is richer.exact else _lost(richer.same.system, path, at, progress)
-        errors = _errors(at, same, exact)
-        doubts = doubtful_loss(critical.quantity, "the system", errors)
-        return replace(critical, errors=errors, warnings=critical.warnings + doubts)
-    if structure.source is None or critical.value == 0:
+    if critical.value == 0 or not judgeable(structure):
         return critical
     if critical.value is None:
-        return replace(critical, warnings=critical.warnings + _unseen(critical, path, structure, progress))
-    at, (_, along_y, along_z, *_) = critical.value, structure.counts
-    point = path(structure, (1 - CLOSE) * at)
-    assert isinstance(point, OperatingPoint)
+        doubts = () if isinstance(structure, System) else _unseen(critical, path, structure, progress)
+        return replace(critical, warnings=critical.warnings + doubts)
+    at = critical.value
+    point: Any = path(structure, (1 - CLOSE) * at)
+    richer = Richer(point)
+    exact = _lost(richer.exact.model, path, at, progress)
+    same = exact if richer.same is richer.exact else _lost(richer.same.model, path, at, progress)
+    errors, theory = _errors(at, same, exact), richer.theory
+    if theory is None or isinstance(structure, System):
+        doubts = doubtful_loss(critical.quantity, "the system", errors)
+        return replace(critical, errors=errors, warnings=critical.warnings + doubts)
     base, values = point.base, point.structure.load_values
-    more, directions = enrichment(structure, base), (True, along_y > 0, along_z > 0)
-
-    def lost(kind: str) -> float:
-        return _lost(more.model(kind, directions=directions)[0], path, at, progress)
-
-    theory = theory_of(structure)
     plate = theory.plate(np.zeros((1, theory.thick.size)))
     slender, *thick = (_lost(each, path, at, progress) for each in (theory.slender, *theory.variants(plate)))
-    exact = lost("exact")
-    same = exact if structure.kind == "exact" else lost(structure.kind)
-    errors = _errors(at, same, exact)
     beam_theory = max(apart(at if math.isinf(slender) else slender, each) for each in thick)
     errors = errors.with_theory(0.0 if math.isinf(errors.model) else beam_theory)
     lowest = _lowest(theory.slender, values, base)[:, : theory.own]

@@ -7,15 +7,16 @@ from typing import overload
 
 import numpy as np
 
-from gbeam.analysis.steady.frequency_errors import Richer, doubtful
+from gbeam.analysis.steady.frequency_errors import Richer, doubtful, judgeable
 from gbeam.analysis.steady.operating_point import OperatingPoint, Steady, drawn, extent, operating_point
 from gbeam.analysis.system.linear import system_modes
+from gbeam.analysis.system.steady import Drive, steady
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.eigen import Vibrations, vibrations
+from gbeam.numerics.eigen import Vibrations
 from gbeam.results.modal import Instability, Modes
 from gbeam.results.result import Complex
 from gbeam.results.system import SystemModes
@@ -30,7 +31,7 @@ def modes_at(
     time: float = float("nan"),
 ) -> Modes:
     """Modes about an operating point."""
-    moving = point.moving if gyroscopic else vibrations(point.linear, gyroscopic=False)
+    moving = point.vibrations(gyroscopic=gyroscopic)
     coordinates, direction = moving.modes[point.first :], point.directions(moving.modes)
     shape = np.moveaxis(structure.station_slopes(point.q) @ coordinates, -1, 0)
     # Turn each shape so that its largest component is 1.
@@ -130,16 +131,18 @@ def modes(
     [  36.6  182.6  229.  1138.7 4243.1]
     """
     if isinstance(structure, System):
-        of_system = system_modes(structure, motion, time, gyroscopic=gyroscopic, name=name)
-        doubts = () if of_system.errors is None else doubtful(of_system.errors)
-        return replace(of_system, warnings=of_system.warnings + doubts)
+        state = steady(structure, Drive(motion, time))
+        moving = state.vibrations(gyroscopic=gyroscopic)
+        of_system = system_modes(state, moving, time, name)
+        if not judgeable(structure):
+            return of_system
+        judged = Richer(state).errors(state, moving.value, moving.modes.T, gyroscopic=gyroscopic)
+        return replace(of_system, errors=judged, warnings=of_system.warnings + doubtful(judged))
     point = operating_point(structure, motion, time)
     warnings = input_warnings(structure, motion, name=name, span=(time, time), base=point.base)
     computed = modes_at(structure, point, gyroscopic=gyroscopic, name=name, time=time)
     errors = None
-    if structure.source is not None and not structure.traced:
-        errors = Richer(structure, point.base).errors(
-            point, computed.eigenvalue, computed.coordinates, gyroscopic=gyroscopic
-        )
+    if judgeable(structure):
+        errors = Richer(point).errors(point, computed.eigenvalue, computed.coordinates, gyroscopic=gyroscopic)
         warnings += doubtful(errors)
     return replace(computed, errors=errors, warnings=warnings, **drawn(structure))

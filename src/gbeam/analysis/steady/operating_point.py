@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Protocol
 
@@ -28,8 +28,8 @@ REST = Base(*np.zeros((3, 3)))
 
 @dataclass(frozen=True, eq=False)
 class OperatingPoint:
-    """A state (y, ẏ, ÿ; u) at which a residual vanishes, and the base's motion there; `found` are coefficients already
-    known.
+    """A state (y, ẏ, ÿ; u) at which a residual vanishes, and the base's motion there, with a free hub if it is on one;
+    `found` are coefficients already known.
     """
 
     structure: Structure
@@ -40,6 +40,7 @@ class OperatingPoint:
     u: Array
     base: Base
     found: Coefficients | None = None
+    hub: Any = None
 
     @cached_property
     def about(self) -> Coefficients:
@@ -66,15 +67,32 @@ class OperatingPoint:
         """M, C, K and B of small departures."""
         return linear_matrices(self)
 
+    def vibrations(self, *, gyroscopic: bool = True) -> Vibrations:
+        """Vibrations, growing and decaying motions about it."""
+        return vibrations(self.linear, gyroscopic=gyroscopic)
+
     @cached_property
     def moving(self) -> Vibrations:
-        """Vibrations, growing and decaying motions about it."""
-        return vibrations(self.linear)
+        """These with gyroscopic coupling."""
+        return self.vibrations()
 
     @property
     def margin(self) -> float:
         """Positive while nothing grows: see :func:`stability_margin`."""
         return stability_margin(*self.linear[:3])
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the beam's coordinates."""
+        return [f"q{k + 1}" for k in range(self.structure.size)]
+
+    def richer(self, structure: Structure) -> OperatingPoint:
+        """Relative equilibrium of another structure in the same motion, under the same loads."""
+        structure = replace(structure, load_values=self.structure.load_values)
+        if self.hub is None:
+            return on_base(structure, self.base)
+        angle, rate, acceleration = (float(each[0]) for each in (self.y, self.yd, self.ydd))
+        return on_hub(structure, self.hub, rate, acceleration, angle=angle)
 
     def directions(self, modes: Complex | Floats) -> tuple[str, ...]:
         """Axis along which each mode (n, k) moves the structure most, or twist where that moves the sections' edges
@@ -105,9 +123,13 @@ class Steady(Protocol):
         """M, C and K of small departures."""
         ...
 
+    def vibrations(self, *, gyroscopic: bool = True) -> Vibrations:
+        """Vibrations, growing and decaying motions about it."""
+        ...
+
     @property
     def moving(self) -> Vibrations:
-        """Vibrations, growing and decaying motions about it."""
+        """These with gyroscopic coupling."""
         ...
 
     @property
@@ -271,7 +293,7 @@ def on_hub(
     else:
         ydd[1:] = beam_acceleration(structure, residual, y, yd, ydd, u)
         u[0] = evaluated_at(structure, residual, y, yd, ydd, u)[0][0]
-    return OperatingPoint(structure, residual, y, yd, ydd, u, base, coefficients)
+    return OperatingPoint(structure, residual, y, yd, ydd, u, base, coefficients, hub)
 
 
 def settled_hub(structure: Structure, hub: Any, time: float, q: Array | None, qd: Array | None) -> OperatingPoint:

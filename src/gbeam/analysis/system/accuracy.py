@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.arrays.tree import each_leaf
 from gbeam.errors import ComputationError
 from gbeam.integrate.derivatives import slopes
 from gbeam.integrate.driver import integrate
@@ -25,13 +24,10 @@ from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.equations import Inputs
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.bases.base import Base
-from gbeam.numerics.eigen import RIGID, mac, vibrations
-from gbeam.results.errors import ErrorEstimate, FrequencyErrors, SystemErrors
-from gbeam.results.result import Complex
+from gbeam.results.errors import ErrorEstimate, SystemErrors
 
 if TYPE_CHECKING:
     from gbeam.analysis.system.point import Point
-    from gbeam.analysis.system.steady import SteadySystem
 
 Array = Any
 Floats = NDArray[np.float64]
@@ -242,51 +238,6 @@ def _departing(
         alone = np.zeros_like(residual)
         alone[:, [theirs.index(names[k]) for k in kept]] = answered(one, of, inputs).residual()[:, kept]
         yield at.places(respond(alone, (np.where(its, start[0], 0.0), np.where(its, start[1], 0.0))))
-
-
-class RicherModes:
-    """A system with more shapes in its beams, of their models and exact ones, by which frequencies are judged."""
-
-    def __init__(self, state: SteadySystem) -> None:
-        system, point = state.system, state.point
-        of = Trajectory(np.zeros(1), point.y[None], point.yd[None], point.ydd[None])
-        bases = bases_of(system, of, lambda _, __: each_leaf(lambda x: x[None], point.inputs))
-        self.exact = richer(system, bases, exact=True)
-        exact = all(body.kind == "exact" for body in judged_beams(system).values())
-        self.same = self.exact if exact else richer(system, bases, exact=False)
-
-    def errors(
-        self, state: SteadySystem, eigenvalue: Complex, coordinates: Complex, *, gyroscopic: bool = True
-    ) -> FrequencyErrors:
-        """Errors of the frequencies of modes (k, n) with eigenvalues (k,) about a steady state."""
-        frequency = np.abs(eigenvalue)
-        same, exact = self.references(state, coordinates, gyroscopic=gyroscopic)
-        shapes, model, total = (np.abs(a / b - 1) for a, b in ((frequency, same), (same, exact), (frequency, exact)))
-        return FrequencyErrors(shapes, model, np.full(len(frequency), np.nan), total)
-
-    def references(
-        self, state: SteadySystem, coordinates: Complex, *, gyroscopic: bool = True
-    ) -> tuple[Floats, Floats]:
-        """Circular frequencies (k,) of modes by the models with more shapes and by exact ones; NaN where these do not
-        rest.
-        """
-
-        def reference(rich: Richer) -> Floats:
-            try:
-                other = state.richer(rich.system)
-                moving = vibrations(other.linear, gyroscopic=gyroscopic, zero=RIGID)
-                lifted = np.zeros((len(coordinates), len(other.names)), dtype=complex)
-                lifted[:, [other.names.index(rich.renamed.get(name, name)) for name in state.names]] = coordinates
-                return moving.frequency[mac(lifted, moving.modes.T, other.linear.mass).argmax(axis=1)]
-            except (ComputationError, np.linalg.LinAlgError):
-                return np.full(len(coordinates), np.nan)
-
-        exact = reference(self.exact)
-        return exact if self.same is self.exact else reference(self.same), exact
-
-    def theory_shares(self, state: SteadySystem, coordinates: Complex) -> Floats:
-        """Errors (k,) by the theory of slender beams, which are not known of a system."""
-        return np.full(len(coordinates), np.nan)
 
 
 def bases_of(system: System, of: Trajectory, inputs: InputsOf) -> dict[str, Base]:

@@ -10,14 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.analysis.system.accuracy import RicherModes, judged_beams
 from gbeam.analysis.system.point import Point, started
 from gbeam.analysis.system.steady import Drive, SteadySystem, steady
 from gbeam.guards.checks import choice
 from gbeam.mechanics.tree.signals import drives_of, measurements, signals_of
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.eigen import RIGID, vibrations
+from gbeam.numerics.eigen import Vibrations
 from gbeam.numerics.series import STEP
 from gbeam.results.state_space import Signal, StateSpace
 from gbeam.results.system import SystemModes
@@ -26,10 +25,9 @@ Array = Any
 Floats = NDArray[np.float64]
 
 
-def system_modes(system: System, motion: Motion | None, time: float, *, gyroscopic: bool, name: str) -> SystemModes:
-    """Modes of a system about its static equilibrium."""
-    state = steady(system, Drive(motion, time))
-    local, moving = state.local, state.moving if gyroscopic else vibrations(state.linear, gyroscopic=False, zero=RIGID)
+def system_modes(state: SteadySystem, moving: Vibrations, time: float, name: str) -> SystemModes:
+    """Describe vibrations of a system about a steady state."""
+    system, local = state.system, state.local
     shape = np.einsum("pan,nk->kpa", state.slopes_of_points, moving.modes)
     flat = shape.reshape(len(shape), math.prod(shape.shape[1:]))
     largest = flat[np.arange(len(flat)), np.abs(flat).argmax(axis=1)] if flat.size else np.ones(len(shape))
@@ -48,9 +46,6 @@ def system_modes(system: System, motion: Motion | None, time: float, *, gyroscop
         place=np.stack([frame.p for frame in state.frames]),
         rigid=len(local.y) - len(moving.value) - (len(moving.diverging) + len(moving.decaying)) // 2,
         growing=growing[np.argsort(-growing.real, kind="stable")],
-        errors=RicherModes(state).errors(state, moving.value, moving.modes.T, gyroscopic=gyroscopic)
-        if judged_beams(system)
-        else None,
         warnings=warnings,
     )
 

@@ -87,10 +87,14 @@ class SteadySystem:
         _, k, c, m = self.local.slopes()
         return Linear(m, c, k, np.zeros((len(m), 0)))
 
+    def vibrations(self, *, gyroscopic: bool = True) -> Vibrations:
+        """Vibrations, growing and decaying motions about it."""
+        return vibrations(self.linear, gyroscopic=gyroscopic, zero=RIGID)
+
     @cached_property
     def moving(self) -> Vibrations:
-        """Vibrations, growing and decaying motions about it."""
-        return vibrations(self.linear, zero=RIGID)
+        """These with gyroscopic coupling."""
+        return self.vibrations()
 
     @property
     def margin(self) -> float:
