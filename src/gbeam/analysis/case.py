@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, ClassVar, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -42,9 +42,52 @@ if TYPE_CHECKING:
     from gbeam.scenario.schema.system import SpecimenScenario, SystemScenario
 
 
+class _InEnvironments(Value):
+    """A beam, another specimen or a system that is put into environments."""
+
+    title: str
+    motions: Mapping[str, Motion]
+    response: ResponseSettings
+    no_beam: ClassVar[tuple[str, str]] = ("", "")  # why it is none, and what to ask in place of what is of one beam
+
+    def __repr__(self) -> str:
+        motions = ", ".join(f"{name}: {each.kind}" if each else name for name, each in self.environments.items())
+        of = self.model.kind if isinstance(self, Case) else repr(self.assemble())  # type: ignore[attr-defined]
+        return f"{type(self).__name__}({self.title!r}, {of}, {{{motions}}}, {self.response.duration:g} s)"
+
+    @property
+    def automatic(self) -> bool:
+        """Whether the numbers of shapes are chosen by the errors: never of a specimen that is no beam, or of bodies."""
+        return isinstance(self, Case) and self.model.automatic
+
+    @property
+    def environments(self) -> Mapping[str, Motion | None]:
+        """Motions of the base, by name; the ground at rest where there is none."""
+        return self.motions or {GROUND: None}
+
+    def one_beam(self, where: str, what: str) -> Case:
+        """Return the case if it is of one beam.
+
+        Parameters
+        ----------
+        where, what : str
+            The place of the error, and the answer that is refused.
+
+        Raises
+        ------
+        InputError
+            If it is not.
+        """
+        if isinstance(self, Case):
+            return self
+        problem, fix = self.no_beam
+        at = f"{where}.{self.name}" if isinstance(self, SpecimenCase) else where
+        raise InputError(at, f"{problem}, and {what} is of one beam", fix)
+
+
 @typed
-@dataclass(frozen=True, eq=False)
-class Case(Value):
+@dataclass(frozen=True, eq=False, repr=False)
+class Case(_InEnvironments):
     """Objects that a scenario describes.
 
     Parameters
@@ -91,10 +134,6 @@ class Case(Value):
     # Not an argument, so that dataclasses.replace leaves it behind.
     scenario: Scenario | None = field(default=None, init=False, repr=False, compare=False)
 
-    def __repr__(self) -> str:
-        motions = ", ".join(f"{name}: {motion.kind}" for name, motion in self.motions.items())
-        return f"Case({self.title!r}, {self.model.kind}, {{{motions}}}, {self.response.duration:g} s)"
-
     def assemble(self, stations: ArrayLike | None = None) -> Structure:
         """Put the beam into its model.
 
@@ -114,34 +153,14 @@ class Case(Value):
             raise error.within("response" if error.where.startswith("stations") else "beam") from None
 
     @property
-    def automatic(self) -> bool:
-        """Whether the numbers of shapes are chosen by the errors."""
-        return self.model.automatic
-
-    @property
-    def environments(self) -> Mapping[str, Motion]:
-        """Motions of the base, by name."""
-        return self.motions
-
-    @property
     def extent(self) -> dict[str, Any]:
         """Argument of :func:`gbeam.plan` that says where the specimen is."""
         return {"beam": self.beam}
 
-    def one_beam(self, where: str, what: str) -> Case:
-        """Return the case.
-
-        Parameters
-        ----------
-        where, what : str
-            The place, and the answer, of an error about a system.
-        """
-        return self
-
 
 @typed
-@dataclass(frozen=True, eq=False)
-class SystemCase(Value):
+@dataclass(frozen=True, eq=False, repr=False)
+class SystemCase(_InEnvironments):
     """Objects that a scenario of a system of bodies describes.
 
     Parameters
@@ -184,6 +203,10 @@ class SystemCase(Value):
     accept: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     provenance: Provenance | None = None
     scenario: SystemScenario | None = field(default=None, init=False, repr=False, compare=False)
+    no_beam = (
+        "make a system",
+        "ask for run, static, modes, campbell, critical-speed or linearize, or sweep these; or give one [beam]",
+    )
 
     def __post_init__(self) -> None:
         for name, motion in self.motions.items():
@@ -199,10 +222,6 @@ class SystemCase(Value):
             for point in limits.get("control", ()):
                 self.system.point(f"motion.{name}.accept.control.{point}", point)
 
-    def __repr__(self) -> str:
-        motions = ", ".join(f"{name}: {motion.kind}" for name, motion in self.motions.items()) or GROUND
-        return f"SystemCase({self.title!r}, {self.system!r}, {{{motions}}}, {self.response.duration:g} s)"
-
     def assemble(self, stations: ArrayLike | None = None) -> System:
         """Return the system; it has no stations.
 
@@ -214,40 +233,14 @@ class SystemCase(Value):
         return self.system
 
     @property
-    def automatic(self) -> bool:
-        """Whether the numbers of shapes are chosen by the errors: never of bodies."""
-        return False
-
-    @property
-    def environments(self) -> Mapping[str, Motion | None]:
-        """Motions of the ground, by name; the ground at rest where there is none."""
-        return self.motions or {GROUND: None}
-
-    @property
     def extent(self) -> dict[str, Any]:
         """Argument of :func:`gbeam.plan` that says where the specimen is: its points, undeformed."""
         return {"envelope": undeformed(self.system)}
 
-    def one_beam(self, where: str, what: str) -> Case:
-        """Refuse what is of one beam.
-
-        Parameters
-        ----------
-        where, what : str
-            The place of the error, and the answer that is refused.
-
-        Raises
-        ------
-        InputError
-            Always.
-        """
-        fix = "ask for run, static, modes, campbell, critical-speed or linearize, or sweep these; or give one [beam]"
-        raise InputError(where, f"make a system, and {what} is of one beam", fix)
-
 
 @typed
-@dataclass(frozen=True, eq=False)
-class SpecimenCase(Value):
+@dataclass(frozen=True, eq=False, repr=False)
+class SpecimenCase(_InEnvironments):
     """Objects that a scenario of one specimen that is no beam describes: a solid, matrices, or a rigid box.
 
     Parameters
@@ -292,16 +285,13 @@ class SpecimenCase(Value):
     accept: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     provenance: Provenance | None = None
     scenario: SpecimenScenario | None = field(default=None, init=False, repr=False, compare=False)
+    no_beam = ("is no beam", "ask for run, static, modes, plan or linearize, or sweep these; or give a [beam]")
 
     def __post_init__(self) -> None:
         for name, motion in self.motions.items():
             if motion.free and not self.structure.size:
                 fix = "give the hub a rate: the motion of a rigid specimen follows from it alone"
                 raise InputError(f"motion.{name}", "is a hub that turns freely, and carries a rigid specimen", fix)
-
-    def __repr__(self) -> str:
-        motions = ", ".join(f"{name}: {motion.kind}" for name, motion in self.motions.items())
-        return f"SpecimenCase({self.title!r}, {self.structure!r}, {{{motions}}}, {self.response.duration:g} s)"
 
     def assemble(self, stations: ArrayLike | None = None) -> Structure:
         """Return the structure; its stations are its points.
@@ -314,36 +304,10 @@ class SpecimenCase(Value):
         return self.structure
 
     @property
-    def automatic(self) -> bool:
-        """Whether the numbers of shapes are chosen by the errors: never."""
-        return False
-
-    @property
-    def environments(self) -> Mapping[str, Motion]:
-        """Motions of the base, by name."""
-        return self.motions
-
-    @property
     def extent(self) -> dict[str, Any]:
         """Argument of :func:`gbeam.plan` that says where the specimen is; of bare matrices, which do not, none."""
         recovery = self.structure.recovery
         return {} if recovery is None else {"envelope": recovery.envelope}
-
-    def one_beam(self, where: str, what: str) -> Case:
-        """Refuse what is of one beam.
-
-        Parameters
-        ----------
-        where, what : str
-            The place of the error, and the answer that is refused.
-
-        Raises
-        ------
-        InputError
-            Always.
-        """
-        fix = "ask for run, static, modes, plan or linearize, or sweep these; or give a [beam]"
-        raise InputError(f"{where}.{self.name}", f"is no beam, and {what} is of one beam", fix)
 
 
 AnyCase = Case | SpecimenCase | SystemCase

@@ -49,13 +49,18 @@ class Complete:
         """Residual (..., n) on a base with given acceleration (or specific force), angular velocity and angular
         acceleration (..., 3).
         """
-        along, _, _ = self.inertia.forces(q, qd, qdd, a_WO_B, w_WB_B, alpha_WB_B)
-        along = along + self.inside(q, qd)
-        return along if self.work is None or load_values is None else along - self.work.generalised(q, load_values)[0]
+        return self.demanded(q, qd, qdd, a_WO_B, w_WB_B, alpha_WB_B, load_values)[0]
 
-    def inside(self, q: Array, qd: Array) -> Array:
-        """Elastic and damping forces on the coordinates, (..., n)."""
-        return q @ self.stiffness + qd @ self.damping
+    def demanded(
+        self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array, loads: Array | None
+    ) -> tuple[Array, Array, Array]:
+        """Forces on the coordinates (..., n), and force N and moment N m at the root (..., 3), that motion demands."""
+        along, force, moment = self.inertia.forces(q, qd, qdd, a, w, alpha)
+        along = along + (q @ self.stiffness + qd @ self.damping)
+        if self.work is None or loads is None:
+            return along, force, moment
+        load, pull, turn = self.work.generalised(q, loads)
+        return along - load, force - pull, moment - turn
 
 
 @record
@@ -71,11 +76,8 @@ class CompleteHub:
         (angle, q), (rate, qd), (change, qdd) = ((each[..., 0], each[..., 1:]) for each in (y, yd, ydd))
         _, onward, axis = self.mount.R_HB  # the hub's axes in those of the base
         base = self.mount.base(angle, rate, change)
-        beam, force, moment = self.system.inertia.forces(q, qd, qdd, base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
-        beam = beam + self.system.inside(q, qd)
-        if self.system.work is not None and load_values is not None:
-            along, pull, turn = self.system.work.generalised(q, load_values)
-            beam, force, moment = beam - along, force - pull, moment - turn
+        motion = base.a_WO_B, base.w_WB_B, base.alpha_WB_B
+        beam, force, moment = self.system.demanded(q, qd, qdd, *motion, load_values)
         # About the root, and of the resultant there, e × r_O being along y of the hub.
         about = moment @ axis + self.mount.radius * (force @ onward)
         turning = self.ground.torque(angle, rate, change) + about - torque

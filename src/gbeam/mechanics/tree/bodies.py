@@ -12,9 +12,8 @@ import numpy as np
 
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
-from gbeam.mechanics.equations.inertia import Inertia
+from gbeam.mechanics.equations.dalembert import Complete
 from gbeam.mechanics.equations.linear import Coefficients
-from gbeam.mechanics.equations.virtual_work import LoadWork
 from gbeam.mechanics.fields.components import split
 from gbeam.mechanics.fields.strains import StrainField
 from gbeam.mechanics.fields.taylor import EPSILON, Polynomials
@@ -174,41 +173,35 @@ Points = ExactPoints | PolynomialPoints
 class FieldBody:
     """A body whose particles follow a complete field: exact or CFOAM."""
 
-    inertia: Inertia
-    damping: Array
-    stiffness: Array
-    work: LoadWork | None
+    equations: Complete
     points: Points
 
     @property
     def size(self) -> int:
-        return int(self.stiffness.shape[0])
+        return self.equations.size
 
     def relative(self, q: Array, qd: Array, qdd: Array) -> list[Relative]:
         return self.points.relative(q, qd, qdd)
 
     def demanded(self, q: Array, qd: Array, qdd: Array, root: Frame, loads: Array | None) -> tuple[Array, Wrench]:
-        along, force, moment = self.inertia.forces(q, qd, qdd, root.a, root.w, root.alpha)
-        along = along + q @ self.stiffness + qd @ self.damping
-        if self.work is not None and loads is not None:
-            load, pull, turn = self.work.generalised(q, loads)
-            along, force, moment = along - load, force - pull, moment - turn
-        return along, Wrench(force, moment)
+        along, *wrench = self.equations.demanded(q, qd, qdd, root.a, root.w, root.alpha, loads)
+        return along, Wrench(*wrench)
 
     def along(self, q: Array, wrenches: list[Acting]) -> Array:
         return self.points.along(q, wrenches)
 
     def stored(self, q: Array) -> Array:
-        return ((q @ self.stiffness) * q).sum(axis=-1) / 2
+        return ((q @ self.equations.stiffness) * q).sum(axis=-1) / 2
 
     def mass_moment(self, q: Array) -> tuple[Array, Array]:
-        mass = self.inertia.mass
-        return mass.sum(), (mass[:, None] * self.inertia.field.positions(q)).sum(axis=-2)
+        inertia = self.equations.inertia
+        return inertia.mass.sum(), (inertia.mass[:, None] * inertia.field.positions(q)).sum(axis=-2)
 
     def moving(self, q: Array, qd: Array, root: Frame) -> tuple[Array, Wrench]:
-        r, rd, _ = self.inertia.field.paths(q, qd, 0 * qd)
+        inertia = self.equations.inertia
+        r, rd, _ = inertia.field.paths(q, qd, 0 * qd)
         velocity = root.v[..., None, :] + cross(root.w[..., None, :], r) + rd
-        push = self.inertia.mass[:, None] * velocity
+        push = inertia.mass[:, None] * velocity
         energy = (push * velocity).sum(axis=(-2, -1)) / 2
         return energy, Wrench(push.sum(axis=-2), cross(r, push).sum(axis=-2))
 

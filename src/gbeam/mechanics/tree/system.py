@@ -14,6 +14,7 @@ from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, choice, positive, vector
+from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.fields.strains import StrainField
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.bodies import (
@@ -484,7 +485,7 @@ def body_of(where: str, body: RigidBody | Structure) -> Body:
     if body.damping_ratio is None:
         fix = "give a ratio of critical damping, such as 0.01, or 0 for none"
         raise InputError(f"{where}.damping_ratio", "is missing, and the response depends on it", fix)
-    c, stations = body.coefficients, np.array(list(stations_of(body).values()))
+    equations, stations = body.equations, np.array(list(stations_of(body).values()))
     points: Points
     if isinstance(body.field, StrainField):
         points = ExactPoints(body.field[body.first_station + stations])
@@ -497,7 +498,6 @@ def body_of(where: str, body: RigidBody | Structure) -> Body:
         if body.turns is not None:
             turn = np.nan_to_num(body.turns[stations])
         points = PolynomialPoints(places.r0, places.first, second, turn, none)
-    if body.linear:
-        return LinearBody(c, points)
-    assert body.inertia is not None
-    return FieldBody(body.inertia, c.damping, c.stiffness, body.work, points)
+    if isinstance(equations, Coefficients):
+        return LinearBody(equations, points)
+    return FieldBody(equations, points)
