@@ -218,7 +218,7 @@ class Given:
                     "control": {"tip": 1.0},
                 },
             ),
-            "compare_models": ((self.brief,), {"kinds": ("FOAM",), "progress": None}),
+            "compare_models": ((self.brief,), {"kinds": ("FOAM",), "progress": None, "point": None}),
             "constant": ((1.0,), {}),
             "critical_load": ((self.column, base), {"time": 0.0, "motion": None, "upper": None, "progress": None}),
             "critical_speed": (

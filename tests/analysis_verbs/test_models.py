@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+import gbeam as gb
 from gbeam import Hub, ResponseSettings, SmoothStep, simulate
 from gbeam.analysis.model_study import SHAPES_FINE, shape_tail
 from gbeam.cli import main
@@ -69,4 +71,37 @@ def test_too_few_shapes_show_in_the_last(rotations, fine):
     structure = structure_2009("exact", 3, rotations)
     hub = Hub(radius=0.5, rate=SmoothStep(6.0, 4.0))
     response = simulate(structure, hub, ResponseSettings(duration=5.0, step=0.04))
-    assert (shape_tail(structure, response) < SHAPES_FINE) == fine
+    assert (shape_tail(structure, response.q) < SHAPES_FINE) == fine
+
+
+def test_a_system_of_one_beam_has_the_rows_of_the_beam_on_a_hub() -> None:
+    """The beam turns on a joint as on a hub: exact is the same equations, FOAM keeps terms of third order in a tree."""
+    beam = gb.Beam(2.0, gb.Section.rectangle(0.03, 0.01), gb.Material(2700, 70e9), damping_ratio=0.01)
+    rate = SmoothStep(4.0, 2.0)
+    settings = ResponseSettings(3.0, step=0.01, integrator="gauss", estimate=False, residual_from=2.0)
+    alone = gb.Case("alone", beam, gb.Model("FOAM", 1, 2, 0), {"slew": Hub(radius=0.0, rate=rate)}, settings)
+    structure = gb.assemble(beam, "FOAM", axial=1, y=2)
+    axis = gb.Joint("revolute", "beam", axes=[(0, 0, 1)], rate=rate)
+    held = gb.SystemCase("held", gb.System({"beam": structure}, {"axis": axis}), {}, settings)
+    one, other = (gb.compare_models(case, ["FOAM", "SFOAM"]) for case in (alone, held))
+    (foam, short, exact), (its, none, same) = one.rows, other.rows
+    assert other.direction == {"ground": "beam.tip y"} and one.direction == {"slew": "y"}
+    assert none.outcome == "cannot" and "does not feel the beam" in none.message and short.outcome == "done"
+    np.testing.assert_allclose(same.history, exact.history, atol=1e-9 * exact.peak)
+    assert same.peak == pytest.approx(exact.peak, rel=1e-5)  # between steps, by the model or by samples
+    assert its.difference == pytest.approx(foam.difference, abs=2e-3)
+    assert its.residual == pytest.approx(foam.residual, rel=0.02) and its.phase == pytest.approx(foam.phase, abs=0.02)
+
+
+def test_points_of_a_system_are_compared() -> None:
+    case = gb.read_scenario("examples/robot_arm.toml", ["response.duration=0.5 s", "response.estimate=false"])
+    study = gb.compare_models(case, ["FOAM"], point="forearm.root")
+    assert study.direction["ground"].startswith("forearm.root") and study.rows[0].peak > 0
+    with pytest.raises(gb.InputError, match="no such point"):
+        gb.compare_models(case, ["FOAM"], point="forearm.top")
+    rod = gb.System({"rod": gb.RigidBody(1.0, (1.0, 1.0, 1.0))}, {"axis": gb.Joint("free", "rod")})
+    with pytest.raises(gb.InputError, match="have no beam"):
+        gb.compare_models(gb.SystemCase("rigid", rod, {}, ResponseSettings(1.0)))
+    beam = gb.read_scenario("examples/f16_8g_turn.toml")
+    with pytest.raises(gb.InputError, match="of one beam"):
+        gb.compare_models(beam, ["FOAM"], point="tip")

@@ -6,23 +6,28 @@ import time as clock
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 
-from gbeam.analysis.case import Case
+from gbeam.analysis.case import Case, SystemCase
+from gbeam.analysis.response.peaks import vector_peaks
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
+from gbeam.mechanics.assembly import model_of, remade
 from gbeam.mechanics.models import KINDS, Model
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.system import System, stations_of
 from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress, tell
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.study import Failure, ModelRow, ModelStudy
+from gbeam.results.system import SystemResponse
 
 REFERENCE = "exact"
 CONVERGED = (3, 6)  # strain and rotation shapes at least of the reference five digits with them
@@ -41,18 +46,27 @@ def counterpart(model: Model, kind: str) -> Model:
 
 
 @typed
-def compare_models(case: Case, kinds: Sequence[str] = tuple(KINDS), progress: Progress = None) -> ModelStudy:
+def compare_models(
+    case: Case | SystemCase,
+    kinds: Sequence[str] = tuple(KINDS),
+    progress: Progress = None,
+    *,
+    point: str | None = None,
+) -> ModelStudy:
     """Run a case with every model and compare the tip's displacement with the exact model's.
 
     Parameters
     ----------
-    case : Case
+    case : Case or SystemCase
         Its own kind of model is one among them; the others have as many shapes, exact at least 3 of strain and 6 of
-        rotation.
+        rotation. All beams of a system are of the same model.
     kinds : sequence of str
         Models to run beside exact.
     progress : callable or bool, optional
         Called with what is being done and the fraction done; True shows a bar.
+    point : str, optional
+        Of a system, the one whose displacement is compared, ``body.point``: on a flexible body relative to its root,
+        elsewhere from its place at the start. By default the tip of the beam that deflects most.
 
     Returns
     -------
@@ -64,7 +78,7 @@ def compare_models(case: Case, kinds: Sequence[str] = tuple(KINDS), progress: Pr
     Raises
     ------
     InputError
-        If a kind is unknown, or the beam has no damping ratio.
+        If a kind is unknown, the beam has no damping ratio, or a system has no beam or no such point.
 
     Examples
     --------
@@ -79,81 +93,163 @@ def compare_models(case: Case, kinds: Sequence[str] = tuple(KINDS), progress: Pr
     for kind in kinds:
         if kind not in KINDS:
             raise InputError("kinds", f"has {kind!r}", f"choose from {', '.join(KINDS)}")
+    if isinstance(case, SystemCase):
+        point = _refused(case.system, point)
+    elif point is not None:
+        raise InputError("point", f"is {point!r}, and the case is of one beam", "leave it out: its tip is compared")
     chosen = [REFERENCE, *(k for k in kinds if k != REFERENCE)]
-    answers = {}
+    answers: dict[tuple[str, str], tuple[_Tip | Failure, float]] = {}
     for i, kind in enumerate(chosen):
         structure = _structure(case, kind)
         if isinstance(structure, Structure):
             structure.require_damping("the response")
-        for name, motion in case.motions.items():
+        for name, motion in case.environments.items():
 
             def report(what: str, share: float, doing: str = f"{kind} on {name}", done: int = i) -> None:
                 tell(progress, f"{doing}: {what}", (done + share) / len(chosen))
 
-            run = partial(_answer, structure, motion, case.response, name, report)
+            run = partial(_answer, structure, motion, case.response, name, point, report)
             answers[kind, name] = _timed(run)
+            given = answers[kind, name][0]
+            point = point or (given.point if isinstance(given, _Tip) and isinstance(structure, System) else point)
     rows, direction = [], {}
-    for name in case.motions:
+    for name in case.environments:
         reference = answers[REFERENCE, name][0]
-        axis = _most_moved(answers, name) if isinstance(reference, Failure) else _axis(reference.peaks.max_abs)
-        direction[name] = "xyz"[axis]
+        axis = _most_moved(answers, name) if isinstance(reference, Failure) else _axis(reference.peak)
+        direction[name] = f"{point} {'xyz'[axis]}" if point else "xyz"[axis]
         rows += [_row(kind, name, *answers[kind, name], reference, axis) for kind in KINDS if kind in chosen]
     return ModelStudy(case.title, REFERENCE, direction, tuple(rows), provenance=case.provenance)
 
 
-def _structure(case: Case, kind: str) -> Structure | Failure:
+class _Tip(NamedTuple):
+    """Displacement (t, 3) m of the tip, or of the point that is compared, in a response, with its peaks (3,)."""
+
+    of: Response | SystemResponse
+    point: str
+    moved: Floats
+    peak: Floats
+    time_of_peak: Floats
+    residual: Floats
+    residual_from: float
+    hub_angle: float = float("nan")
+
+
+def _refused(system: System, point: str | None) -> str | None:
+    """The point, if there is one and some beam may be of another model; InputError else."""
+    if not any(isinstance(body, Structure) and body.source for body in system.bodies.values()):
+        raise InputError("bodies", "have no beam, whose model could be another", "ask for run")
+    if point is not None:
+        system.point("point", point)
+    return point
+
+
+def _structure(case: Case | SystemCase, kind: str) -> Structure | System | Failure:
     try:
-        return replace(case, model=counterpart(case.model, kind)).assemble()
+        if isinstance(case, Case):
+            return replace(case, model=counterpart(case.model, kind)).assemble()
+        bodies = {
+            name: remade(body, counterpart(model_of(body), kind), body.stations[:-1])
+            if isinstance(body, Structure) and body.source is not None
+            else body
+            for name, body in case.system.bodies.items()
+        }
+        return replace(case.system, bodies=bodies)
     except InputError as error:
         return Failure("cannot", str(error))
 
 
 def _answer(
-    structure: Structure | Failure,
-    motion: Motion,
+    structure: Structure | System | Failure,
+    motion: Motion | None,
     settings: ResponseSettings,
     name: str,
+    point: str | None,
     progress: Callable[[str, float], None],
-) -> Response | Failure:
-    """Response of one model, or why there is none."""
+) -> _Tip | Failure:
+    """Displacement by one model, or why there is none."""
     if isinstance(structure, Failure):
         return structure
+    model: Any = structure
     try:
-        response = simulate(structure, motion, settings, name=name, progress=progress)
+        response = simulate(model, motion, settings, name=name, progress=progress)
     except InputError as error:
         return Failure("cannot", str(error))
     except ComputationError as error:
         return Failure(error.outcome, str(error))
-    if structure.kind != REFERENCE or response.outcome != "done":
-        return response
-    tail = shape_tail(structure, response)
+    if isinstance(structure, System):
+        assert isinstance(response, SystemResponse)
+        tip = _tip_of(structure, response, point, settings.residual_from)
+        body, q = structure.bodies[tip.point.partition(".")[0]], _coordinates(structure, response, tip.point)
+    else:
+        assert isinstance(response, Response)
+        peaks, hub = response.peaks, response.hub
+        angle = float("nan") if hub is None or not hub.free else float(hub.angle[-1])
+        tip = _Tip(
+            response, "tip", response.tip, peaks.max_abs, peaks.time_of_max, peaks.residual_amplitude,
+            response.residual_from, angle,
+        )  # fmt: skip
+        body, q = structure, response.q
+    if response.outcome != "done" or not isinstance(body, Structure) or body.kind != REFERENCE:
+        return tip
+    tail = shape_tail(body, q)
     if tail <= SHAPES_FINE:
-        return response
+        return tip
     warning = (
         f"the last shapes of exact still move the tip by {tail:.2g} of the peak: it has not converged; "
         "raise model.modes"
     )
-    return replace(response, warnings=(*response.warnings, warning))
+    return tip._replace(of=replace(response, warnings=(*response.warnings, warning)))
 
 
-def shape_tail(structure: Structure, response: Response) -> float:
-    """Share of the largest displacement by which the last shape of each family moves the tip: what a next may add."""
-    q, ends = response.q, np.cumsum(structure.counts) - 1
+def _tip_of(system: System, response: SystemResponse, point: str | None, residual_from: float | None) -> _Tip:
+    """Displacement of a point of a system, or of the tip that its beam moves farthest."""
+    if point is None:
+        tips = [f"{name}.tip" for name, body in system.bodies.items() if isinstance(body, Structure) and body.source]
+        point = max(tips, key=lambda each: float(np.abs(_moved(system, response, each)).max()))
+    moved, start = _moved(system, response, point), np.inf if residual_from is None else residual_from
+    value, when = vector_peaks(response.time, moved)
+    late = moved[response.time >= start]
+    residual = np.ptp(late, axis=0) / 2 if len(late) > 1 else np.full(3, np.nan)
+    return _Tip(response, point, moved, value[:3], when[:3], residual, start)
+
+
+def _coordinates(system: System, response: SystemResponse, point: str) -> Floats:
+    """Coordinates (t, n) of the flexible body that a point is on."""
+    body = point.partition(".")[0]
+    return response.q[:, [each.startswith(f"{body}.q") for each in system.coordinates]]
+
+
+def _moved(system: System, response: SystemResponse, point: str) -> Floats:
+    """Displacement (t, 3) of a point: of a flexible body relative to its root, of another from the start."""
+    name, k = system.point("point", point)
+    body = system.bodies[name]
+    if isinstance(body, Structure) and k < len(stations_of(body)):
+        station = list(stations_of(body).values())[k]
+        return np.asarray(body.displacement(_coordinates(system, response, point))[:, station])
+    return response.at(point) - response.at(point)[0]
+
+
+def shape_tail(structure: Structure, q: Floats) -> float:
+    """Share of the tip's largest displacement over coordinates (t, n) by which the last shape of each family moves it:
+    what a next may add.
+    """
+    ends = np.cumsum(structure.counts) - 1
     last = [int(end) for end, count in zip(ends, structure.counts, strict=True) if count > 1]
-    size = float(response.peaks.max_abs.max())
+    tip = structure.displacement(q)[:, -1]
+    size = float(np.abs(tip).max())
     if not last or size == 0:
         return 0.0
     without = q.copy()
     without[:, last] = 0
-    return float(np.abs(structure.displacement(without)[:, -1] - response.tip).max() / size)
+    return float(np.abs(structure.displacement(without)[:, -1] - tip).max() / size)
 
 
-def _timed(run: Callable[[], Response | Failure]) -> tuple[Response | Failure, float]:
+def _timed(run: Callable[[], _Tip | Failure]) -> tuple[_Tip | Failure, float]:
     """Run, and run again if that is quick: the first time includes compilation."""
     start = clock.perf_counter()
     answer = run()
     seconds = clock.perf_counter() - start
-    if seconds < PATIENCE and isinstance(answer, Response):
+    if seconds < PATIENCE and isinstance(answer, _Tip):
         start = clock.perf_counter()
         run()
         seconds = clock.perf_counter() - start
@@ -164,56 +260,53 @@ def _axis(moved: Floats) -> int:
     return int(np.argmax(moved))
 
 
-def _most_moved(answers: dict[tuple[str, str], tuple[Response | Failure, float]], name: str) -> int:
+def _most_moved(answers: dict[tuple[str, str], tuple[_Tip | Failure, float]], name: str) -> int:
     """Axis along which the models that have an answer move the tip most."""
-    peaks = [
-        answer.peaks.max_abs
-        for (_, where), (answer, _) in answers.items()
-        if where == name and isinstance(answer, Response)
-    ]
+    peaks = [answer.peak for (_, where), (answer, _) in answers.items() if where == name and isinstance(answer, _Tip)]
     return _axis(np.sum(peaks, axis=0)) if peaks else 0
 
 
 def _row(
-    kind: str, name: str, answer: Response | Failure, seconds: float, reference: Response | Failure, axis: int
+    kind: str, name: str, answer: _Tip | Failure, seconds: float, reference: _Tip | Failure, axis: int
 ) -> ModelRow:
     nan = float("nan")
-    if not isinstance(answer, Response) or answer.outcome != "done":
-        warnings = answer.warnings if isinstance(answer, Response) else ()
-        return ModelRow(kind, name, answer.outcome, answer.message, warnings, seconds=seconds)
-    peak, residual = float(answer.peaks.max_abs[axis]), float(answer.peaks.residual_amplitude[axis])
-    angle = nan if answer.hub is None or not answer.hub.free else float(answer.hub.angle[-1])
+    if isinstance(answer, Failure):
+        return ModelRow(kind, name, answer.outcome, answer.message, (), seconds=seconds)
+    of = answer.of
+    if of.outcome != "done":
+        return ModelRow(kind, name, of.outcome, of.message, of.warnings, seconds=seconds)
+    peak, residual = float(answer.peak[axis]), float(answer.residual[axis])
     against = (nan, nan, nan, nan)
-    if isinstance(reference, Response) and reference.outcome == "done":
-        top, left = float(reference.peaks.max_abs[axis]), float(reference.peaks.residual_amplitude[axis])
-        tip = reference.tip[:, axis]
-        if not np.array_equal(reference.time, answer.time):
+    if isinstance(reference, _Tip) and reference.of.outcome == "done":
+        top, left = float(reference.peak[axis]), float(reference.residual[axis])
+        tip = reference.moved[:, axis]
+        if not np.array_equal(reference.of.time, of.time):
             # 40 samples to the lowest period: a cubic is wrong there by 1e-5 of a vibration, a straight line by 0.3 %.
-            tip = CubicSpline(reference.time, tip)(answer.time)
-        largest = float(np.abs(answer.tip[:, axis] - tip).max())
-        after = answer.time >= answer.residual_from
-        phase = _phase(answer.time[after], answer.tip[after, axis], tip[after]) if after.sum() > 8 else nan
+            tip = CubicSpline(reference.of.time, tip)(of.time)
+        largest = float(np.abs(answer.moved[:, axis] - tip).max())
+        after = of.time >= answer.residual_from
+        phase = _phase(of.time[after], answer.moved[after, axis], tip[after]) if after.sum() > 8 else nan
         if top > 0:
             against = (peak / top - 1, residual / left - 1 if left > 0 else nan, phase, largest / top)
     return ModelRow(
         model=kind,
         motion=name,
-        outcome=answer.outcome,
-        message=answer.message,
-        warnings=answer.warnings,
+        outcome=of.outcome,
+        message=of.message,
+        warnings=of.warnings,
         peak=peak,
-        time_of_peak=float(answer.peaks.time_of_max[axis]),
+        time_of_peak=float(answer.time_of_peak[axis]),
         peak_error=against[0],
         residual=residual,
         residual_error=against[1],
         phase=against[2],
         difference=against[3],
-        hub_angle=angle,
-        error_estimate=answer.error_estimate,
-        steps=answer.steps,
+        hub_angle=answer.hub_angle,
+        error_estimate=of.error_estimate,
+        steps=of.steps,
         seconds=seconds,
-        time=answer.time,
-        history=answer.tip[:, axis],
+        time=of.time,
+        history=answer.moved[:, axis],
     )
 
 

@@ -231,7 +231,7 @@ def signed(facts: dict[str, Any], provenance: Provenance | None) -> dict[str, An
 
 
 _MOVING = ("run", "place")  # verbs that need all motions
-_ANY = ("check", "linearize")  # verbs of beams and systems, beside the questions of both
+_ANY = ("check", "linearize", "models")  # verbs of beams and systems, beside the questions of both
 
 
 def read(verb: str, file: Path, overrides: Sequence[str]) -> Input:

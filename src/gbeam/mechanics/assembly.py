@@ -187,9 +187,19 @@ def breaks_of(beam: Beam) -> list[float]:
 
 def at_stations(structure: Structure, stations: ArrayLike) -> Structure:
     """Return the same structure of a beam with other stations of output, m; the tip is added last."""
+    return remade(structure, model_of(structure), stations)
+
+
+def model_of(structure: Structure) -> Model:
+    """Return the model of a structure of a beam."""
     assert structure.source is not None
     axial, y, z, *others = structure.counts
-    model = Model(structure.kind, axial, y, z, structure.source.shapes, False, *others)
+    return Model(structure.kind, axial, y, z, structure.source.shapes, False, *others)
+
+
+def remade(structure: Structure, model: Model, stations: ArrayLike) -> Structure:
+    """Return the beam of a structure in another model, with stations of output, m; the tip is added last."""
+    assert structure.source is not None
     return replace(assemble(structure.source.beam, model, stations), load_values=structure.load_values)
 
 

@@ -71,7 +71,15 @@ def _import_leaves() -> None:
         import gbeam.io.netcdf  # noqa: F401
 
 
-def models(scenario: ScenarioFile, /, *, output: Output = Output()) -> int:
+def models(
+    scenario: ScenarioFile,
+    /,
+    *,
+    point: Annotated[
+        str | None, Parameter(help='Of a system, the point compared, "arm.tip"; else the tip that deflects most.')
+    ] = None,
+    output: Output = Output(),
+) -> int:
     """Compute a scenario by every model, and compare them with the exact one.
 
     Peak, residual vibration, its phase and the cost. A model that diverges or cannot answer has a row that says why.
@@ -81,10 +89,12 @@ def models(scenario: ScenarioFile, /, *, output: Output = Output()) -> int:
     folder = output.folder(scenario)
     loaded = read("models", scenario, output.overrides)
 
+    from gbeam.analysis.case import SystemCase
     from gbeam.analysis.model_study import compare_models
 
-    with Watch() as watch, loaded.placing():
-        study = compare_models(loaded.beam, progress=watch)
+    case = loaded.case if isinstance(loaded.case, SystemCase) else loaded.beam
+    with Watch() as watch, loaded.placing(point="--point"):
+        study = compare_models(case, progress=watch, point=point)
     deliver(study, "models", folder, output, listed=False)
     for row in study.rows:
         if row.model == study.reference and row.outcome != "done":
