@@ -67,6 +67,26 @@ def test_no_digit_that_counts_depends_on_the_windows(make: Any, monkeypatch: pyt
         np.testing.assert_allclose(made.q, expected.q, atol=1e-8)
 
 
+@pytest.mark.parametrize("second", [1e3, 1e-5, 1e5])
+@pytest.mark.parametrize("radian", [1.0, 1e-6, 1e6])
+@pytest.mark.parametrize("make", [newmark, gauss])
+def test_no_digit_that_counts_depends_on_the_units(make: Any, radian: float, second: float) -> None:
+    """In other units of angle and time accelerations are up to 1e16 times as small: they converge as far."""
+
+    def converted(q: Any, qd: Any, qdd: Any, force: Any) -> Any:
+        return Swing()(q / radian, qd * (second / radian), qdd * (second**2 / radian), force)
+
+    def run(residual: Any, angle: float, time: float) -> list[Any]:
+        drive = NonlinearEquations(residual, lambda t: np.stack([8 * np.sin(2 * t / time), 0 * t], axis=-1))
+        start = (each * angle / time**k for k, each in enumerate(START))
+        run = integrate(drive, make(), *start, step=0.01 * time, count=300)
+        assert run.whole
+        return [each * (time**k / angle) for k, each in enumerate((run.q, run.qd, run.qdd))]
+
+    for each, expected in zip(run(converted, radian, second), run(Swing(), 1.0, 1.0), strict=True):
+        np.testing.assert_allclose(each, expected, atol=1e-8 * np.abs(expected).max())
+
+
 def test_a_window_too_long_for_newton_is_cut() -> None:
     """A pendulum that nearly stands on its head, in steps of a tenth of a second: 100 s, energy kept."""
 

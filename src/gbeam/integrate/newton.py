@@ -20,6 +20,7 @@ from gbeam.integrate.schemes import Tableau
 Array = Any
 # By the order of the scheme, since a higher one takes longer steps: corrections per step, steps per Jacobian.
 CORRECTIONS, PER_JACOBIAN = {2: 4, 4: 5}, {2: 20, 4: 2}
+LEAST = 1e-3  # m/s² or rad/s²: beside smaller accelerations errors are not measured
 PATIENT = 8  # corrections where those did not suffice
 ACCEPTED = 1e-8  # of the largest acceleration: the error that the last correction may leave
 
@@ -49,8 +50,7 @@ def _inverse_jacobian(residual: Any, t: Tableau, z: Array, inputs: Any, x: Array
 
 
 def _size(correction: Array, x: Array) -> Array:
-    # An error in q̈ matters as it moves q: measure against what the step itself can move.
-    return jnp.max(jnp.abs(correction)) / (1.0 + jnp.max(jnp.abs(x)))
+    return jnp.max(jnp.abs(correction)) / (LEAST + jnp.max(jnp.abs(x)))
 
 
 def _left(last: Array, before: Array) -> Array:

@@ -44,6 +44,16 @@ class Tableau:
     end_x: Floats
     first: Floats
 
+    def jacobians(self, k: Any, c: Any, m: Any) -> tuple[Any, Any]:
+        """Derivatives of the residuals of stages (t, s n) by their accelerations, J (t, s n, s n), and by the state
+        before, L (t, s n, m n), from their slopes K, C and M (1 or t, s, n, n).
+        """
+        k, c, m = (each[:, :, :, None, :] for each in (k, c, m))
+        c_q, c_v, w_q, w_v = (each[:, :, None, :, None] for each in (self.c_q, self.c_v, self.w_q, self.w_v))
+        (*_, stages, states), n = self.w_q.shape, k.shape[-1]
+        J = c_q * k + c_v * c + np.eye(stages)[:, None, :, None] * m
+        return J.reshape(-1, stages * n, stages * n), (w_q * k + w_v * c).reshape(-1, stages * n, states * n)
+
 
 @dataclass(frozen=True, eq=False)
 class Scheme:

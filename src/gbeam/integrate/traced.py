@@ -98,11 +98,8 @@ def _changes(scheme: Scheme, steps: Steps, run: Any, of: Any, changed: Any, dq: 
     def by_stage(values: Array) -> Array:
         return jnp.moveaxis(values[1 : 1 + stages * count].reshape(stages, count, *values.shape[1:]), 0, 1)
 
-    k, c, m = (by_stage(each)[:, :, :, None, :] for each in slope)
-    c_q, c_v, w_q, w_v = (each[:, :, None, :, None] for each in (t.c_q, t.c_v, t.w_q, t.w_v))
-    jacobian = c_q * k + c_v * c + np.eye(stages)[:, None, :, None] * m
-    inverse = jnp.linalg.inv(jacobian.reshape(count, stages * n, stages * n))
-    onto = (w_q * k + w_v * c).reshape(count, stages * n, -1)
+    jacobian, onto = t.jacobians(*map(by_stage, slope))
+    inverse = jnp.linalg.inv(jacobian)
 
     def step(dz: Array, at: Any) -> Any:
         inverse, onto, own, g, d = at

@@ -39,6 +39,8 @@ SLOW, FAST = 0.3, 0.01  # of the last correction: where one is larger, derivativ
 QUICKEST, STALLED = 0.01, 0.9  # factors of corrections: none is thought to be smaller, and where they do not shrink
 LEAST = 4  # steps behind those that have converged, which go on with what they have: at least
 TOLERANCE, ROUNDING = 1e-9, 1e-6  # of the largest acceleration: error left by the last correction, and where it stalls
+ULP, TINY = float(np.finfo(float).eps), float(np.finfo(float).tiny)
+EARLIER = 0.01  # of the largest acceleration before a step, whose own may all vanish: to be told from none
 
 
 def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, steps: Steps) -> Iterator[Piece]:
@@ -131,14 +133,16 @@ class _Window:
         """
         count, times = len(self.steps), 0
         size, good = np.full(count, np.inf), np.zeros(count, dtype=bool)
+        moved = size
         maps, fresh = self._maps(), False
         for _ in range(ALONE if count == 1 else CORRECTIONS):
-            before, size = size, self._correct(*maps)
+            before, size, last = size, self._correct(*maps), moved.max()
             if count == 1:
                 self._shorten(maps[0])
             # By derivatives of another state corrections may shrink slowly without being rounding.
-            good, fresh = _left(size, before, ROUNDING if fresh else 0.0) <= TOLERANCE, False
-            last, largest = before.max(), size.max()
+            good, fresh = _converged(size, before, self.x, self.noise, stalls=fresh), False
+            moved = size / _reach(self.x)
+            largest = moved.max()
             if good.all() or not np.isfinite(size[0]) or (largest > MOVED and times > FEW and count > 1):
                 break
             if largest > MOVED or not largest <= SLOW * last:
@@ -148,7 +152,7 @@ class _Window:
                 maps, times, fresh = self._maps(), times + 1, True
             elif largest < FAST * last:
                 self.apart = min(self.apart + 1, FAR)
-        return _first(good), _first(size <= MOVED), times
+        return _first(good), _first(moved <= MOVED), times
 
     def ended(self, count: int) -> tuple[Array, Array, Array]:
         """q, q̇, q̈ (count, n) at the ends of the first steps."""
@@ -164,8 +168,8 @@ class _Window:
         for _ in range(CORRECTIONS):  # with the mass at hand, for the equations are linear in q̈
             change = solved(mass[:count], self.residual(q, qd, qdd, inputs)[..., None])[..., 0]
             qdd = qdd - change
-            before, size = size, _size(change, qdd)
-            if (_left(size, before, ROUNDING) <= TOLERANCE).all():
+            before, size = size, _largest(change)
+            if _converged(size, before, qdd, 0.0, stalls=True).all():
                 return q, qd, qdd
         return q, qd, accelerations(self.residual, q, qd, inputs)
 
@@ -208,15 +212,15 @@ class _Window:
 
     def _maps(self) -> tuple[Array, Array, Array]:
         """Inverse J⁻¹ (t, s n, s n) of steps, J⁻¹ L (t, s n, m n), and maps of δz over the steps, (t, m n, m n)."""
-        (k, c, m), t = (each[:, :, :, None, :] for each in self.slope), self.t
-        c_q, c_v, w_q, w_v = (each[:, :, None, :, None] for each in (t.c_q, t.c_v, t.w_q, t.w_v))
-        stages, states, n = t.w_q.shape[1], t.w_q.shape[2], k.shape[-1]
-        own = np.eye(stages)[:, None, :, None]
-        jacobian = (c_q * k + c_v * c + own * m).reshape(-1, stages * n, stages * n)
-        onto = (w_q * k + w_v * c).reshape(-1, stages * n, states * n)
+        t, (_, stages, states), n = self.t, self.t.w_q.shape, self.x.shape[-1]
+        jacobian, onto = t.jacobians(*self.slope)
         unit = np.broadcast_to(np.eye(stages * n), jacobian.shape)
         both = solved(jacobian, np.concatenate([unit, onto], axis=-1))
         inverse, answer = both[..., : stages * n], both[..., stages * n :]
+        # Of forces that cancel something is left, which no correction of the accelerations takes away.
+        sizes = (np.abs(each).reshape(-1, stages, n, 1) for each in self._stages())
+        forces = sum(np.abs(by) @ each for by, each in zip(self.slope, sizes, strict=True))
+        self.noise = _largest(ULP * _products(np.abs(inverse), forces.reshape(-1, stages * n)))
         step = (t.g[:, :, None, :, None] * np.eye(n)[:, None, :]).reshape(-1, states * n, states * n)
         if self.held is not None:
             self.held.push(inverse, t, self._stages(), self.inputs)
@@ -236,7 +240,7 @@ class _Window:
         self.moved = moved.reshape(self.z.shape), change
         self.z += self.moved[0]
         self.x -= change
-        return _size(change, self.x)
+        return _largest(change)
 
     def _moved(self, step: Array, defect: Array) -> Array:
         """Changes δz (t + 1, m n) of the states by δz₊ = S δz + the defects (t, m n)."""
@@ -265,7 +269,7 @@ class _Window:
         whole = np.linalg.norm(change)
         for _ in range(HALVINGS):
             following = inverse @ self.residual(*self._stages(), self.inputs).reshape(1, -1, 1)
-            if np.linalg.norm(following) <= (1 - share / 2) * whole or whole <= ROUNDING:
+            if np.linalg.norm(following) <= (1 - share / 2) * whole or whole <= ROUNDING * np.linalg.norm(self.x):
                 return
             share /= 2
             self.z -= share * state
@@ -297,16 +301,22 @@ def _first(flags: Array) -> int:
     return len(flags) if flags.all() else int(np.argmin(flags))
 
 
-def _size(change: Array, x: Array) -> Array:
-    """Sizes of corrections of accelerations (t, ..., n), relative to what a step can move, (t,)."""
-    axes = tuple(range(1, x.ndim))
-    return np.abs(change).max(axis=axes) / (1.0 + np.abs(x).max(axis=axes))
+def _largest(values: Array) -> Array:
+    """Largest (t,) of values (t, ..., n)."""
+    return np.abs(values).max(axis=tuple(range(1, values.ndim)))
 
 
-def _left(size: Array, before: Array, rounding: float) -> Array:
-    """Errors left after the last of two corrections, which shrink by a constant factor; none where they stall at no
-    more than rounding. The first one moves states of which it does not know what acts there: it leaves any.
+def _reach(x: Array) -> Array:
+    """Accelerations (t,) by which errors in those of steps x (t, ..., n) are measured, in whatever units."""
+    largest = _largest(x)
+    return largest + EARLIER * np.maximum.accumulate(largest) + TINY
+
+
+def _converged(size: Array, before: Array, x: Array, noise: Array | float, *, stalls: bool) -> Array:
+    """Whether the last two sizes (t,) of corrections, which shrink by a constant factor, leave no more than a tolerance
+    and rounding. The first one moves states of which it does not know what acts there: it leaves any. Where they
+    stall at less than a part of the accelerations x (t, ..., n), all that is left is rounding.
     """
-    shrunk = size / np.maximum(before, 1e-300)
+    reach, shrunk = _reach(x), size / np.maximum(before, 1e-300)
     left = np.where(np.isfinite(before), size * np.clip(shrunk, QUICKEST, 1.0), np.inf)
-    return np.where((size > STALLED * before) & (size <= rounding), 0.0, left)
+    return (left <= TOLERANCE * reach + noise) | (stalls & (shrunk > STALLED) & (size <= ROUNDING * reach))
