@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.results.declared import fact, labels, part, quantity
-from gbeam.results.result import Floats, Part
+from gbeam.results.declared import declared, fact, labels, part, quantity
+from gbeam.results.result import Complex, Floats, Part
 
 PARTS = ("shapes", "model", "beam_theory", "total")
 SHAPES, MODEL = "estimated error from too few shapes", "estimated error of the model against exact"
@@ -145,6 +145,33 @@ class FrequencyErrors(Part):
         """Largest of the totals that are known; NaN where none is."""
         known = self.total[np.isfinite(self.total)]
         return float(known.max()) if known.size else math.nan
+
+
+def totals(errors: FrequencyErrors | None, count: int) -> Floats:
+    """Return total errors of frequencies, (k,); NaN where there is no estimate."""
+    return np.full(count, np.nan) if errors is None else errors.total
+
+
+class Oscillating:
+    """A result with eigenvalues that oscillate, and errors of their frequencies."""
+
+    eigenvalue: Complex
+    errors: FrequencyErrors | None
+
+    @declared("Hz", "natural frequency", "mode")
+    def frequency(self) -> Floats:
+        """Natural frequencies |λ|/2π, (k,) Hz."""
+        return np.abs(self.eigenvalue) / (2 * np.pi)
+
+    @declared("", "ratio of critical damping; negative for flutter", "mode")
+    def damping_ratio(self) -> Floats:
+        """Ratios of critical damping −Re λ/|λ|, (k,); negative for flutter."""
+        return -self.eigenvalue.real / np.abs(self.eigenvalue)
+
+    @declared("", "estimated error of the frequency in all", "mode", name=None)
+    def error_estimate(self) -> Floats:
+        """Estimated errors of the frequencies, (k,), fractions; NaN where there is no estimate."""
+        return totals(self.errors, len(self.eigenvalue))
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import numpy as np
 
 from gbeam.results.declared import declared, fact, part, quantity, rows
 from gbeam.results.equilibrium import Critical
-from gbeam.results.errors import ErrorEstimate, FrequencyErrors
+from gbeam.results.errors import ErrorEstimate, FrequencyErrors, Oscillating, totals
 from gbeam.results.response import BaseMotion
 from gbeam.results.result import Complex, Figured, Floats, Part
 
@@ -30,7 +30,7 @@ class Instability(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Modes(Figured):
+class Modes(Oscillating, Figured):
     """Small vibrations about a relative equilibrium, ascending in frequency."""
 
     json_rows: ClassVar[dict[str, str]] = {"mode": "modes"}
@@ -110,21 +110,6 @@ class Modes(Figured):
         if self.twist is None:
             return np.zeros(self.shape.shape[:2], dtype=complex)
         return self.twist * outermost(self.width, self.thickness, is_round=self.round)
-
-    @declared("Hz", "natural frequency", "mode")
-    def frequency(self) -> Floats:
-        """Natural frequencies |λ|/2π, (k,) Hz."""
-        return np.abs(self.eigenvalue) / (2 * np.pi)
-
-    @declared("", "ratio of critical damping; negative for flutter", "mode")
-    def damping_ratio(self) -> Floats:
-        """Ratios of critical damping −Re λ/|λ|, (k,); negative for flutter."""
-        return -self.eigenvalue.real / np.abs(self.eigenvalue)
-
-    @declared("", "estimated error of the frequency in all", "mode", name=None)
-    def error_estimate(self) -> Floats:
-        """Estimated errors of the frequencies, (k,), fractions; NaN where there is no estimate."""
-        return totals(self.errors, len(self.direction))
 
     @declared("", "whether nothing grows", role="fact")
     def stable(self) -> bool:
@@ -224,11 +209,6 @@ class Campbell(Figured):
             f"{self.speed[0]:.4g} to {self.speed[-1]:.4g} rad/s; {len(self.crossings)} crossings with multiples "
             f"{', '.join(str(order) for order in self.orders) or 'none'} of the speed{lost}"
         )
-
-
-def totals(errors: FrequencyErrors | None, count: int) -> Floats:
-    """Return total errors of frequencies, (k,); NaN where there is no estimate."""
-    return np.full(count, np.nan) if errors is None else errors.total
 
 
 def near_multiples(frequency: Floats, speed: Floats, orders: Sequence[int]) -> list[int]:

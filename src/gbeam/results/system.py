@@ -11,7 +11,7 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.results.declared import INSIDE, declared, fact, labels, part, quantity, rows
-from gbeam.results.errors import FrequencyErrors, SystemErrors
+from gbeam.results.errors import FrequencyErrors, Oscillating, SystemErrors
 from gbeam.results.facts import at_place
 from gbeam.results.machine import AxesResult, Driven
 from gbeam.results.parts import LoadPeaks, Loads, Outline
@@ -364,7 +364,7 @@ class SystemRest(Figured):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class SystemModes(Figured):
+class SystemModes(Oscillating, Figured):
     """Small vibrations of a system about a place in which it rests, ascending in frequency.
 
     Examples
@@ -407,25 +407,10 @@ class SystemModes(Figured):
         "1/s", "eigenvalues that grow", "eigenvalue", name="growing", key=None, default_factory=lambda: np.empty(0)
     )
 
-    @declared("Hz", "natural frequency", "mode")
-    def frequency(self) -> Floats:
-        """Natural frequencies |λ|/2π, (k,) Hz."""
-        return np.abs(self.eigenvalue) / (2 * np.pi)
-
-    @declared("", "ratio of critical damping; negative for flutter", "mode")
-    def damping_ratio(self) -> Floats:
-        """Ratios of critical damping −Re λ/|λ|, (k,)."""
-        return -self.eigenvalue.real / np.abs(self.eigenvalue)
-
     @declared("", "whether nothing grows", role="fact")
     def stable(self) -> bool:
         """Whether nothing grows."""
         return not len(self.growing)
-
-    @declared("", "estimated error of the frequency in all", "mode", name=None)
-    def error_estimate(self) -> Floats:
-        """Estimated errors of the frequencies, (k,), fractions; NaN where there is no estimate."""
-        return np.full(len(self.eigenvalue), np.nan) if self.errors is None else self.errors.total
 
     @declared("", "body that moves most", "mode", name=None)
     def foremost(self) -> tuple[str, ...]:

@@ -17,10 +17,9 @@ from gbeam.analysis.accuracy.correction import (
     Correction,
     Sampled,
     Vibration,
-    hub_torque,
+    complete_residual,
     operator,
     responses,
-    structure_on_hub,
 )
 from gbeam.analysis.accuracy.response_errors import Begin, Quantities, Solution, at_rest, lifted, quantities, settled
 from gbeam.errors import ComputationError
@@ -114,8 +113,7 @@ def _gap(theory: Theory, full: Sampled, thin: Sampled, plate: Floats) -> _Gap:
     flat = full.p @ plate
     if full.hub is None:
         return _Gap(beam, flat)
-    pairs = (theory.thick, full), (theory.slender, thin)
-    thick, slender = (hub_torque(structure_on_hub(*each), each[1]) for each in pairs)
+    thick, slender = (complete_residual(*each)[:, 0] for each in ((theory.thick, full), (theory.slender, thin)))
     return _Gap(np.concatenate([(thick - slender)[:, None], beam], axis=1), np.pad(flat, ((0, 0), (1, 0))))
 
 

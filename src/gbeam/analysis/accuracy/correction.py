@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from gbeam.integrate.driver import integrate
 from gbeam.integrate.equations import LinearEquations, LinearTerms
 from gbeam.integrate.schemes import gauss
-from gbeam.mechanics.equations.hub import FreeHub
+from gbeam.mechanics.equations.hub import FreeHub, free_hub, ground_of
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
 from gbeam.numerics.eigen import symmetric_modes
@@ -63,16 +63,6 @@ def linear_residual(structure: Structure, at: Sampled) -> Floats:
     velocity, stiffness, force = structure.coefficients.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, at.loads)
     inside = (velocity @ at.pd[..., None] + stiffness @ at.p[..., None])[..., 0]
     return np.asarray(at.pdd @ structure.coefficients.mass + inside - force)
-
-
-def hub_torque(hub: FreeHub, at: Sampled) -> Floats:
-    """Torque (t,) that the inertia of a linear beam takes from a free hub."""
-    assert at.hub is not None
-    q, qd, qdd, (_, rate, acceleration) = at.p, at.pd, at.pdd, at.hub.T
-    swept, coupling = hub.f2 - q @ hub.k2, hub.b0 + q @ hub.b1.T
-    inertia = hub.rigid + ((hub.f2 + swept) * q).sum(axis=1)
-    quadratic = 2 * rate * (swept * qd).sum(axis=1) + (qd * (qd @ hub.b1.T)).sum(axis=1)
-    return np.asarray(inertia * acceleration + (coupling * qdd).sum(axis=1) + quadratic)
 
 
 State = tuple[Floats, Floats]  # coordinates and rates of the beam, (n,) each
@@ -158,15 +148,7 @@ def operator(structure: Structure, at: Sampled) -> Operator:
     if at.hub is None:
         return OfFeatures(c.mass, c.features(*motion, at.loads), c.terms)
     velocity, stiffness, _ = c.at(*motion, at.loads)
-    hub = structure_on_hub(structure, at)
-    return _hub_operator(hub, at, velocity, stiffness)
-
-
-def structure_on_hub(structure: Structure, at: Sampled) -> FreeHub:
-    """The polynomial equations of the hub and the linear beam."""
-    from gbeam.mechanics.equations.hub import free_hub, ground_of
-
-    return free_hub(structure.coefficients, at.motion.mount, ground_of(at.motion))
+    return _hub_operator(free_hub(c, at.motion.mount, ground_of(at.motion)), at, velocity, stiffness)
 
 
 def _hub_operator(hub: FreeHub, at: Sampled, velocity: Floats, stiffness: Floats) -> OfSamples:
