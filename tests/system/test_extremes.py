@@ -99,9 +99,7 @@ def test_a_flight_without_forces_meets_a_stop(step: float) -> None:
     assert response.qd[-1, 0] == pytest.approx(-1.0, abs=0.3 * (100 * step) ** 2 + 1e-6)
 
 
-@pytest.mark.parametrize(
-    "law", [lambda t, y: "a", lambda t, y: 1j * y, lambda t, y: np.zeros(3), lambda t, y: np.nan * y, lambda t, y: None]
-)
+@pytest.mark.parametrize("law", [lambda t, y: "a", lambda t, y: 1j * y, lambda t, y: np.zeros(3), lambda t, y: None])
 def test_a_law_that_gives_no_effort_is_named(law: object) -> None:
     loop = gb.Feedback(law, ["hinge.angle"], ["hinge.angle"], sample=0.01)
     system = gb.System(hinged().bodies, hinged().joints, controllers={"loop": loop})
@@ -124,3 +122,43 @@ def test_a_controller_of_what_is_prescribed_has_nothing_to_move() -> None:
     system = gb.System(turned.bodies, turned.joints, push, controllers={"loop": loop})
     with pytest.raises(gb.InputError, match="nothing to move"):
         gb.simulate(system, duration=1.0)
+
+
+def test_a_place_at_rest_that_is_not_stable_says_so() -> None:
+    """A rod that stands on its hinge, and a column under 1.05 times Euler's load, as for the beam alone."""
+    upright, hanging = (gb.static(hinged(initial=angle)) for angle in (-np.pi / 2, np.pi / 2))
+    assert hanging.stable and not upright.stable
+    assert f"grows by {np.sqrt(1.5 * 9.81):.4g} per second" in upright.warnings[0] and not hanging.warnings
+    section, material = gb.Section.rectangle(0.02, 0.002), gb.Material(2700, 70e9)
+    euler = np.pi**2 * 70e9 * 0.02 * 0.002**3 / 12 / (4 * 0.5**2)
+    for share, stable in ((0.95, True), (1.05, False)):
+        beam = gb.Beam(0.5, section, material, damping_ratio=0.0, loads=[gb.Load(0.5, (-share * euler, 0, 0))])
+        structure = gb.assemble(beam, "exact", axial=0, y=0, z=4)
+        column = gb.System({"column": structure}, {"clamp": gb.Joint("fixed", "column")})
+        assert gb.static(column).stable is gb.static(structure, gb.Flight(z=0.0)).stable is stable
+
+
+def test_friction_at_rest_is_said_to_be_a_damper() -> None:
+    system = hinged(initial=np.pi / 2, friction=2.0)
+    for answer in (gb.modes(system), gb.linearize(system)):
+        assert any("hinge.angle is a damper of 2e+03 N m s/rad" in each for each in answer.warnings)
+    assert not gb.modes(hinged(initial=np.pi / 2)).warnings
+    turning = gb.linearize(hinged(initial=np.pi / 2, friction=2.0, initial_rate=1.0), at="start")
+    assert not turning.warnings
+
+
+def test_a_linear_model_about_an_unstable_place_says_so() -> None:
+    assert "not stable: it grows with 3.836" in gb.linearize(hinged(initial=-np.pi / 2)).warnings[0]
+
+
+@pytest.mark.parametrize("law", [lambda t, y: np.nan * y, ([[1.0]], [[1.0]], [[1e300]], [[1e300]])])
+def test_a_law_that_leaves_all_bounds_is_a_failed_computation(law: object) -> None:
+    loop = gb.Feedback(law, ["hinge.angle"], ["hinge.angle"], sample=0.01, reference=[1e10])
+    system = gb.System(hinged().bodies, hinged().joints, controllers={"loop": loop})
+    with pytest.raises(gb.ComputationError, match=r"controller of hinge.angle gives .* limit it"):
+        gb.simulate(system, duration=1.0)
+
+
+def test_a_drive_is_named_once() -> None:
+    with pytest.raises(gb.InputError, match=r"has 'hinge\.angle' twice"):
+        gb.Feedback(lambda t, y: y, ["hinge.angle"], ["hinge.angle", "hinge.angle"], sample=0.01)

@@ -106,6 +106,12 @@ class Vibrations(NamedTuple):
         """Which of those that oscillate grow."""
         return np.asarray(self.value.real > growth_limit(self.value, self.largest))
 
+    @property
+    def growing(self) -> Complex:
+        """Eigenvalues 1/s of all that grows, the fastest first."""
+        every = np.concatenate([self.diverging, self.value[self.flutter]])
+        return np.asarray(every[np.argsort(-every.real, kind="stable")])
+
 
 def vibrations(linear: Linear, *, gyroscopic: bool = True, zero: float = ZERO) -> Vibrations:
     """Small motions about an equilibrium, without those whose eigenvalues are less than a share of the largest."""

@@ -307,6 +307,7 @@ class SystemRest(Figured):
     attitude: Floats = quantity("", "Euler parameters of the point's axes in those of the ground", "point", "euler")
     q: Floats = quantity("", "coordinates: m and rad of joints, their own of flexible bodies", "coordinate")
     effort: Floats = quantity("", "force N or torque N m of the drive on each coordinate", "coordinate")
+    stable: bool = fact("whether it comes back after any small disturbance, or stays near")
     ground_force: Floats = quantity("N", "force on the ground", "axis", frame="ground")
     ground_moment: Floats = quantity("N m", "moment on the ground about its origin", "axis", frame="ground")
     loads: Mapping[str, Loads] = rows(

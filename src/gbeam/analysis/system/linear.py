@@ -31,8 +31,7 @@ def system_modes(state: SteadySystem, moving: Vibrations, time: float, name: str
     shape = np.einsum("pan,nk->kpa", state.slopes_of_points, moving.modes)
     flat = shape.reshape(len(shape), math.prod(shape.shape[1:]))
     largest = flat[np.arange(len(flat)), np.abs(flat).argmax(axis=1)] if flat.size else np.ones(len(shape))
-    growing = np.concatenate([moving.diverging, moving.value[moving.flutter]])
-    warnings = system.warnings
+    warnings = system.warnings + state.point.sticking(system)
     if state.changing:
         warnings += (f"the system turns, and its equations with it: these are modes of the place at {time:g} s",)
     return SystemModes(
@@ -45,7 +44,7 @@ def system_modes(state: SteadySystem, moving: Vibrations, time: float, name: str
         share=state.shares(moving.modes),
         place=np.stack([frame.p for frame in state.frames]),
         rigid=len(local.y) - len(moving.value) - (len(moving.diverging) + len(moving.decaying)) // 2,
-        growing=growing[np.argsort(-growing.real, kind="stable")],
+        growing=moving.growing,
         warnings=warnings,
     )
 
@@ -86,7 +85,8 @@ def linearize_system(
         state = steady(system, frozen)
     else:
         state = SteadySystem(system, frozen, started(system, motion, time, "equilibrium"))
-    local = state.local
+    local, growing = state.local, state.moving.growing if at == "rest" else ()
+    unstable = tuple(f"the operating point is not stable: it grows with {each.real:.4g} 1/s" for each in growing[:1])
     _, k, c, m = local.slopes()
     n = len(m)
     b, driving = _inputs(system, local, state.names, inputs)
@@ -111,6 +111,7 @@ def linearize_system(
         model="system",
         motion=name,
         time=time,
+        warnings=system.warnings + state.point.sticking(system) + unstable,
     )
 
 

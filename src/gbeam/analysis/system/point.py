@@ -17,13 +17,16 @@ from gbeam.arrays.tree import each_leaf
 from gbeam.errors import ComputationError, InputError
 from gbeam.integrate.derivatives import slopes
 from gbeam.integrate.equations import Trajectory
-from gbeam.mechanics.tree.equations import Inputs, Tree
+from gbeam.mechanics.tree.equations import SLIP, Inputs, Tree
+from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
+from gbeam.numerics.eigen import RIGID, Linear, vibrations
 from gbeam.results.system import SystemRest
 
 Array = Any
 Floats = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 ITERATIONS = 50
 MASSLESS = 1e-13  # of the largest: a smaller inertia is rounding
 CLOSE = 1e-12  # of the coordinates: a correction that is smaller has converged
@@ -60,6 +63,30 @@ class Point:
         inputs = each_leaf(lambda leaf: leaf[None], self.inputs)
         k, c, m = slopes(self.tree, self.y[None], self.yd[None], self.ydd[None], inputs)
         return self.tree(self.y, self.yd, self.ydd, self.inputs), k[0], c[0], m[0]
+
+    @property
+    def growing(self) -> Complex:
+        """Eigenvalues (k,) 1/s of small departures that grow, the fastest first."""
+        _, k, c, m = self.local.slopes()
+        moving = vibrations(Linear(m, c, k, np.zeros((len(m), 0))), zero=RIGID)
+        return moving.growing
+
+    def sticking(self, system: System) -> tuple[str, ...]:
+        """Warnings of coordinates that friction holds, which small departures see as dampers."""
+        given = self.inputs.prescribed
+        rates = self.yd if given is None else self.tree.whole(self.yd, given[1])
+        said = []
+        for name, joint in system.joints.items():
+            for each, friction in zip(joint.coordinates, np.asarray(joint.holder.friction), strict=True):
+                k = system.coordinates.index(f"{name}.{each}")
+                if friction > 0 and k in self.tree.free and abs(rates[k]) < 3 * SLIP:
+                    size = friction / SLIP / np.cosh(rates[k] / SLIP) ** 2
+                    unit = "N s/m" if each in SLIDES else "N m s/rad"
+                    said.append(
+                        f"friction of {name}.{each} is a damper of {size:.3g} {unit} for small departures, which "
+                        "hardly move it: leave it out for those with the joint free, or give rate = 0 with it held"
+                    )
+        return tuple(said)
 
 
 def refuse_massless(system: System, mass: Floats, free: NDArray[np.int64]) -> None:
@@ -155,6 +182,10 @@ def system_rest(system: System, motion: Motion | None, time: float, name: str) -
     def again(of: System) -> Trajectory:
         return _standing(rested(of, of.tree, of.inputs(np.asarray(time), motion)), time)
 
+    growing = point.growing
+    unstable = (
+        (f"unstable, no system would stay there: grows by {growing[0].real:.4g} per second",) if len(growing) else ()
+    )
     standing, start = _standing(point, time), begun["place"][0]
     errors = system_errors(
         system, standing, lambda of, _: of.inputs(np.array([time]), motion), lambda _: point, again, math.nan, start
@@ -166,7 +197,8 @@ def system_rest(system: System, motion: Motion | None, time: float, name: str) -
         coordinates=system.coordinates,
         displacement=at["place"] - start,
         errors=errors,
-        warnings=errors.doubts(LIMIT) + system.warnings,
+        stable=not len(growing),
+        warnings=unstable + errors.doubts(LIMIT) + system.warnings,
         loads={body: loads_of(beams_of(system)[body], [each], np.array([time])) for body, each in beams.items()},
         **{key: at[key] for key in ("place", "attitude", "q", "effort", "ground_force", "ground_moment")},
     )

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.arrays.tree import Value
-from gbeam.errors import InputError
+from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive
 from gbeam.motion.profiles.combine import as_profile
@@ -78,7 +78,11 @@ class Feedback(Value):
         for name in ("measure", "drive"):
             if not getattr(self, name):
                 raise InputError(name, "is empty", "name one quantity or more")
-            object.__setattr__(self, name, tuple(getattr(self, name)))
+            names = tuple(getattr(self, name))
+            twice = [each for k, each in enumerate(names) if each in names[:k]]
+            if name == "drive" and twice:
+                raise InputError(name, f"has {twice[0]!r} twice", "name every drive once")
+            object.__setattr__(self, name, names)
         positive("sample", self.sample, "s")
         positive("delay", self.delay, "s", zero=True)
         if self.limit is not None:
@@ -158,21 +162,30 @@ class Feedback(Value):
         ------
         InputError
             If a function gives other than `drive` names.
+        ComputationError
+            If an effort is not finite.
         """
         if self.reference is not None:
             measured = np.array([float(each(t)) for each in self.reference]) - measured
         if isinstance(self.law, tuple):
             a, b, c, d = self.law
-            return c @ state + d @ measured, a @ state + b @ measured
+            return self._finite(t, c @ state + d @ measured), a @ state + b @ measured
         if self.stateful:
             efforts, state = self.law(t, measured, state)
         else:
             efforts = self.law(t, measured)
         given = np.asarray(efforts).reshape(-1)
         real = given.dtype.kind in "bifu" and given.shape == (len(self.drive),)
-        if not real or not np.isfinite(given).all():
+        if not real:
             raise InputError("law", f"gives {efforts!r} at {t:.6g} s", f"give {len(self.drive)} finite efforts")
-        return given.astype(float), state
+        return self._finite(t, given.astype(float)), state
+
+    def _finite(self, t: float, efforts: Floats) -> Floats:
+        """Efforts, unless the law has left all bounds."""
+        if not np.isfinite(efforts).all():
+            problem = f"the law of the controller of {', '.join(self.drive)} gives {efforts} at {t:.6g} s"
+            raise ComputationError("diverged", f"{problem}: limit it, or look for what grows there")
+        return efforts
 
     def limited(self, efforts: Floats) -> Floats:
         """Return efforts within the limit.
