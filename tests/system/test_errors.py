@@ -145,3 +145,15 @@ def test_frequencies_are_judged(turns: bool) -> None:
     if turns:
         diagram = gb.campbell(system, end=5.0, count=2, modes=3)
         assert diagram.errors is not None and diagram.errors.total.max() == pytest.approx(true.max(), rel=0.2)
+
+
+@pytest.mark.parametrize("kind", ["FOAM", "exact"])
+def test_a_plant_states_the_errors_that_a_beam_on_a_free_hub_states(kind: str) -> None:
+    beam = gb.assemble(STRIP, kind, axial=0, y=0, z=2)
+    hub = gb.Hub(radius=0.1, inertia=0.05, setting_angle=np.pi / 2)
+    plant, beside = gb.linearize(arm(kind, 0.0, 2)), gb.linearize(beam, hub)
+    assert beside.errors is not None and plant.errors is not None
+    np.testing.assert_allclose(plant.frequency, beside.frequency, rtol=1e-9)
+    np.testing.assert_allclose(plant.errors.total, beside.errors.slender, rtol=1e-5)
+    assert (plant.errors.total > 1e-5).all() and not plant.warnings
+    assert plant.accurate_to == pytest.approx(beside.accurate_to, rel=1e-9)

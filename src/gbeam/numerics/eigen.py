@@ -83,6 +83,13 @@ class Linear(NamedTuple):
     stiffness: Array
     inputs: Array
 
+    def state_space(self, by_y: Floats, by_yd: Floats, by_ydd: Floats, by_u: Floats) -> tuple[Floats, ...]:
+        """A, B, C and D of states (δy, δẏ) and of outputs with such derivatives."""
+        k, c, b = (np.linalg.solve(self.mass, x) for x in (self.stiffness, self.velocity, self.inputs))
+        one, zero = np.eye(len(k)), np.zeros_like(k)
+        a, drive = np.block([[zero, one], [-k, -c]]), np.concatenate([np.zeros_like(b), b])
+        return a, drive, np.concatenate([by_y - by_ydd @ k, by_yd - by_ydd @ c], axis=1), by_ydd @ b + by_u
+
 
 class Vibrations(NamedTuple):
     """Eigenvalues (k,) 1/s of what oscillates, one of each pair and the slowest first, with modes (n, k); of what grows

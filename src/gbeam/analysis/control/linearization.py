@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gbeam.analysis.steady.frequency_errors import doubtful, pole_errors
+from gbeam.analysis.steady.frequency_errors import doubtful, judgeable, pole_errors
 from gbeam.analysis.steady.modal import instabilities
 from gbeam.analysis.steady.operating_point import (
     REST,
@@ -21,7 +21,7 @@ from gbeam.analysis.steady.operating_point import (
     steady_base,
 )
 from gbeam.analysis.steady.stability import hub_of
-from gbeam.analysis.system.linear import linearize_system
+from gbeam.analysis.system.linear import frozen, linearize_system
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import each_leaf, record
 from gbeam.errors import InputError
@@ -38,7 +38,9 @@ from gbeam.mechanics.tree.system import System
 from gbeam.motion.bases.base import mapped
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.series import complex_step
+from gbeam.results.errors import FrequencyErrors
 from gbeam.results.modal import along
+from gbeam.results.result import Floats
 from gbeam.results.state_space import ACCURATE, Gauge, Signal, StateSpace, import_control
 from gbeam.structure.attachments import TIP
 from gbeam.structure.beam import Beam, fibre_strain, names_at
@@ -306,7 +308,12 @@ def linearize(
     [  36.56  183.55  229.04 1139.77 4243.13]
     """
     if isinstance(structure, System):
-        return linearize_system(structure, motion, time, inputs=inputs, outputs=outputs, at=at, loop=loop, name=name)
+        state = frozen(structure, motion, time, at)
+        plant = linearize_system(state, inputs=inputs, outputs=outputs, loop=loop, name=name)
+        if at != "rest" or loop != "open":
+            return plant
+        frequency, errors, doubts = _poles(state, structure)
+        return replace(plant, frequency=frequency, errors=errors, warnings=plant.warnings + doubts)
     choice("loop", loop, ("open",))
     if motion is None:
         raise InputError("motion", "is missing", "give a Flight, a Hub or a Centrifuge")
@@ -323,13 +330,7 @@ def linearize(
     n = len(linear.mass)
     measured = outputs_of(structure, point, gauges)
     value, d = measured.matrices(np.concatenate([point.y, point.yd, point.ydd, point.u]))
-    c_y, c_yd, c_ydd, c_u = d[:, :n], d[:, n : 2 * n], d[:, 2 * n : 3 * n], d[:, 3 * n :]
-    k, c, b = (np.linalg.solve(linear.mass, x) for x in (linear.stiffness, linear.velocity, linear.inputs))
-    zero = np.zeros((n, n))
-    a = np.block([[zero, np.eye(n)], [-k, -c]])
-    drive = np.concatenate([np.zeros_like(b), b])
-    out = np.concatenate([c_y - c_ydd @ k, c_yd - c_ydd @ c], axis=1)
-    through = c_ydd @ b + c_u
+    a, drive, out, through = linear.state_space(*np.split(d, [n, 2 * n, 3 * n], axis=1))
     states = coordinate_signals(structure, point.first)
     begun, given = np.concatenate([point.y, point.yd]), np.asarray(point.u)
     if not point.first:
@@ -346,14 +347,8 @@ def linearize(
     warnings = input_warnings(structure, motion, name=name, span=(time, time), base=point.base)
     frequency, errors = np.zeros(0), None
     if q is None and qd is None:
-        if structure.source is not None:
-            frequency, errors = pole_errors(point)
-            warnings += doubtful(errors) if errors.within(ACCURATE) == 0 else ()
-        warnings += tuple(
-            f"the operating point is not stable: {each.kind} {along(each.direction)}, growing with "
-            f"{each.growth_rate:.4g} 1/s"
-            for each in instabilities(point, point.moving)
-        )
+        frequency, errors, doubts = _poles(point, structure)
+        warnings += doubts
     return StateSpace(
         a=a,
         b=drive,
@@ -372,6 +367,20 @@ def linearize(
         errors=errors,
         warnings=warnings,
     ).select(inputs=inputs, outputs=outputs)
+
+
+def _poles(state: Any, of: Structure | System) -> tuple[Floats, FrequencyErrors | None, tuple[str, ...]]:
+    """Frequencies (k,) Hz of the poles about a steady state, their errors, and doubts about it."""
+    frequency, errors, doubts = np.zeros(0), None, tuple[str, ...]()
+    if judgeable(of):
+        frequency, errors = pole_errors(state)
+        doubts = doubtful(errors) if errors.within(ACCURATE) == 0 else ()
+    growing = (
+        f"the operating point is not stable: {each.kind} {along(each.direction)}, growing with "
+        f"{each.growth_rate:.4g} 1/s"
+        for each in instabilities(state, state.moving)
+    )
+    return frequency, errors, (*doubts, *growing)
 
 
 @typed

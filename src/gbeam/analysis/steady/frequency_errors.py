@@ -143,10 +143,10 @@ class Richer:
         )
 
 
-def pole_errors(point: OperatingPoint) -> tuple[Floats, FrequencyErrors]:
-    """Frequencies (k,) Hz of the poles that oscillate about an operating point, ascending, and their errors."""
-    moving = point.moving
-    errors = Richer(point).errors(point, moving.value, moving.modes[point.first :].T)
+def pole_errors(state: Any) -> tuple[Floats, FrequencyErrors]:
+    """Frequencies (k,) Hz of the poles that oscillate about a steady state, ascending, and their errors."""
+    moving = state.moving
+    errors = Richer(state).errors(state, moving.value, moving.modes[state.first :].T)
     return moving.frequency / (2 * np.pi), errors
 
 

@@ -49,22 +49,24 @@ def system_modes(state: SteadySystem, moving: Vibrations, time: float, name: str
     )
 
 
+def frozen(system: System, motion: Motion | None, time: float, at: str) -> SteadySystem:
+    """A system where it rests, or, `at` its start, in the motion there."""
+    choice("at", at, ("rest", "start"))
+    drive = Drive(motion, time)
+    if at == "rest":
+        return steady(system, drive)
+    return SteadySystem(system, drive, started(system, motion, time, "equilibrium"))
+
+
 def linearize_system(
-    system: System,
-    motion: Motion | None,
-    time: float,
-    *,
-    inputs: Sequence[str] | None,
-    outputs: Sequence[str] | None,
-    at: str,
-    loop: str,
-    name: str,
+    state: SteadySystem, *, inputs: Sequence[str] | None, outputs: Sequence[str] | None, loop: str, name: str
 ) -> StateSpace:
     """State-space model of small departures of a system, with its controllers in the `loop` unless it is open.
 
     The inputs are efforts on joints' coordinates and the components of forces at points; the outputs are the joints'
     coordinates and rates and the places of points, as they are named.
     """
+    system = state.system
     drives = [f"{owner}: {each}" for owner, one in system.controllers.items() for each in one.drive]
     choice("loop", loop, ("open", *(("closed", *drives) if drives else ())))
     if loop != "open":
@@ -74,34 +76,20 @@ def linearize_system(
         measured = [each for one in system.controllers.values() for each in one.measure]
         free = _default_inputs(system) if inputs is None else list(inputs)
         wanted = _default_outputs(system) if outputs is None else list(outputs)
-        plant = linearize_system(
-            system, motion, time, inputs=driven + free, outputs=measured + wanted, at=at, loop="open", name=name
-        )
+        plant = linearize_system(state, inputs=driven + free, outputs=measured + wanted, loop="open", name=name)
         chosen = range(len(measured), len(measured) + len(wanted))
         return closed_loop(plant, dict(system.controllers), chosen, None if loop == "closed" else loop)
-    choice("at", at, ("rest", "start"))
-    frozen = Drive(motion, time)
-    if at == "rest":
-        state = steady(system, frozen)
-    else:
-        state = SteadySystem(system, frozen, started(system, motion, time, "equilibrium"))
-    local, growing = state.local, state.moving.growing if at == "rest" else ()
-    unstable = tuple(f"the operating point is not stable: it grows with {each.real:.4g} 1/s" for each in growing[:1])
-    _, k, c, m = local.slopes()
-    n = len(m)
+    local = state.local
     b, driving = _inputs(system, local, state.names, inputs)
     signals, values, out = _outputs(system, local, outputs)
-    stiffness, damping, drive = (np.linalg.solve(m, each) for each in (k, c, b))
-    zero = np.zeros((n, n))
-    a = np.block([[zero, np.eye(n)], [-stiffness, -damping]])
-    c_y, c_yd, c_ydd = out
+    a, b, c, d = state.linear._replace(inputs=b).state_space(*out, np.zeros((len(values), b.shape[1])))
     names = state.names
     states = [Signal(each, "") for each in names] + [Signal(f"{each}_rate", "") for each in names]
     return StateSpace(
         a=a,
-        b=np.concatenate([0 * drive, drive]),
-        c=np.concatenate([c_y - c_ydd @ stiffness, c_yd - c_ydd @ damping], axis=1),
-        d=c_ydd @ drive,
+        b=b,
+        c=c,
+        d=d,
         states=tuple(states),
         inputs=driving,
         outputs=signals,
@@ -110,8 +98,8 @@ def linearize_system(
         output=values,
         model="system",
         motion=name,
-        time=time,
-        warnings=system.warnings + state.point.sticking(system) + unstable,
+        time=state.drive.time,
+        warnings=system.warnings + state.point.sticking(system),
     )
 
 
