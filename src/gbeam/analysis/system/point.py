@@ -182,10 +182,13 @@ def system_rest(system: System, motion: Motion | None, time: float, name: str) -
     def again(of: System) -> Trajectory:
         return _standing(rested(of, of.tree, of.inputs(np.asarray(time), motion)), time)
 
-    growing = point.growing
-    unstable = (
-        (f"unstable, no system would stay there: grows by {growing[0].real:.4g} per second",) if len(growing) else ()
-    )
+    unstable: tuple[str, ...] = ()
+    try:
+        if len(growing := point.growing):
+            unstable = (f"unstable, no system would stay there: grows by {growing[0].real:.4g} per second",)
+    except np.linalg.LinAlgError:
+        fix = "bent so far a body's model has no positive mass: check with exact"
+        unstable = (f"whether it would stay there is not known, {fix}",)
     standing, start = _standing(point, time), begun["place"][0]
     errors = system_errors(
         system, standing, lambda of, _: of.inputs(np.array([time]), motion), lambda _: point, again, math.nan, start
@@ -197,7 +200,7 @@ def system_rest(system: System, motion: Motion | None, time: float, name: str) -
         coordinates=system.coordinates,
         displacement=at["place"] - start,
         errors=errors,
-        stable=not len(growing),
+        stable=not unstable,
         warnings=unstable + errors.doubts(LIMIT) + system.warnings,
         loads={body: loads_of(beams_of(system)[body], [each], np.array([time])) for body, each in beams.items()},
         **{key: at[key] for key in ("place", "attitude", "q", "effort", "ground_force", "ground_moment")},
