@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -77,3 +77,7 @@ class Trajectory:
     def whole(self) -> bool:
         """Whether it came to its end."""
         return self.converged and not self.stopped
+
+    def at(self, steps: Any) -> Trajectory:
+        """The trajectory at some of its steps."""
+        return replace(self, time=self.time[steps], q=self.q[steps], qd=self.qd[steps], qdd=self.qdd[steps])

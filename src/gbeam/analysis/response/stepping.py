@@ -57,10 +57,14 @@ def first_step(structure: Structure, motion: Motion, settings: ResponseSettings)
     """
     period = 2 * math.pi / float(structure.rest[0][0]) if structure.size else 20 * RIGID
     largest = min(period / 20, settings.duration / 500)
-    times = corners(structure, motion, largest) - settings.start
-    gaps = np.diff(np.unique(np.clip(times, 0.0, settings.duration)))
+    return settings.duration / even_steps(largest, corners(structure, motion, largest), settings)
+
+
+def even_steps(largest: float, corners: Floats, settings: ResponseSettings) -> int:
+    """Least even number of steps over the duration, none longer than the largest, s, or than from corner to corner."""
+    gaps = np.diff(np.unique(np.clip(corners - settings.start, 0.0, settings.duration)))
     largest = min(largest, gaps.min(where=gaps > ONE_CORNER * settings.duration, initial=largest))
-    return settings.duration / (2 * math.ceil(settings.duration / largest / 2))
+    return 2 * math.ceil(settings.duration / largest / 2)
 
 
 def corners(structure: Structure, motion: Motion, step: float) -> Floats:
@@ -159,7 +163,6 @@ def _check_needed(runs: list[Run], left: float) -> float | None:
 
 
 Array = Any
-_HISTORIES = "q", "qd", "qdd"
 
 
 def steps_beyond(motion: Motion, settings: ResponseSettings, step: float) -> tuple[int, int]:
@@ -197,22 +200,18 @@ def going_on(problem: Problem, trajectory: Trajectory) -> Problem:
 def split(trajectory: Trajectory, *counts: int) -> list[Trajectory | None]:
     """Runs of so many steps, one after the other; None where there are none."""
     ends = [0, *np.cumsum(counts)]
-    return [_part(trajectory, slice(a, b + 1)) if b > a else None for a, b in pairwise(ends)]
+    return [trajectory.at(slice(a, b + 1)) if b > a else None for a, b in pairwise(ends)]
 
 
 def joined(up: Trajectory | None, flight: Trajectory, down: Trajectory | None, stride: int) -> tuple[Trajectory, slice]:
     """Every step of spin-up and spin-down with every `stride`-th of the flight's, and where these are."""
-    pieces = [(flight, slice(None, None, stride))]
+    parts = [flight.at(slice(None, None, stride))]
     if up is not None:
-        pieces.insert(0, (up, slice(None, -1)))
+        parts.insert(0, up.at(slice(None, -1)))
     if down is not None:
-        pieces.append((down, slice(1, None)))
+        parts.append(down.at(slice(1, None)))
     xp = namespace(flight.q)
-    histories = {name: xp.concatenate([getattr(run, name)[steps] for run, steps in pieces]) for name in _HISTORIES}
-    time = np.concatenate([run.time[steps] for run, steps in pieces])
+    histories = {name: xp.concatenate([getattr(part, name) for part in parts]) for name in ("q", "qd", "qdd")}
+    time = np.concatenate([part.time for part in parts])
     first = 0 if up is None else len(up.time) - 1
     return replace(flight, time=time, **histories), slice(first, first + len(flight.time[::stride]))
-
-
-def _part(trajectory: Trajectory, steps: slice) -> Trajectory:
-    return replace(trajectory, **{name: getattr(trajectory, name)[steps] for name in ("time", *_HISTORIES)})

@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 
 from gbeam.analysis.response.outcome import yielding
 from gbeam.analysis.response.peaks import load_peaks
+from gbeam.analysis.response.problem import Problem
 from gbeam.analysis.response.record import outline_of
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.step_errors import Run, difference, ratio, share
-from gbeam.analysis.response.stepping import LOADS_STEPS, ONE_CORNER, finer_by, scheme_of, steps_beyond
+from gbeam.analysis.response.stepping import LOADS_STEPS, even_steps, finer_by, integrated, scheme_of, steps_beyond
 from gbeam.analysis.system.accuracy import pieces, system_errors
 from gbeam.analysis.system.assembly import assembly_of
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
@@ -24,7 +25,6 @@ from gbeam.analysis.system.point import Point, started, started_traced
 from gbeam.arrays.namespace import holds_jax, namespace
 from gbeam.errors import InputError
 from gbeam.guards.limits import HISTORY_BYTES, STEPS, refuse_more
-from gbeam.integrate.driver import integrate
 from gbeam.integrate.equations import NonlinearEquations, Trajectory
 from gbeam.integrate.steps import Corners
 from gbeam.mechanics.tree.steps import continuous
@@ -53,14 +53,9 @@ def _moved(system: System, motion: Motion | None, trajectory: Trajectory) -> Flo
     return places - places[0]
 
 
-def _at(of: Trajectory, steps: Any) -> Trajectory:
-    """A trajectory at some of its steps."""
-    return replace(of, **{name: getattr(of, name)[steps] for name in ("time", "q", "qd", "qdd")})
-
-
 def _pieces(trajectory: Trajectory, system: System) -> list[Trajectory]:
     """A trajectory in pieces of which all frames are held in memory at once."""
-    return [_at(trajectory, some) for some in pieces(len(trajectory.time), system.tree.size)]
+    return [trajectory.at(some) for some in pieces(len(trajectory.time), system.tree.size)]
 
 
 def simulate_system(
@@ -106,36 +101,26 @@ def simulate_system(
     if system.controllers:
         commands = np.unique(np.round(equations.controllers.corners(settings.start, end), 12))
         commands = commands[np.abs(commands[:, None] - felt.time).min(axis=1, initial=np.inf) > 1e-9]
-        order = np.argsort(np.concatenate([felt.time, commands]))
-        jumps = np.concatenate([felt.jump, np.ones(len(commands), dtype=bool)])
-        felt = Corners(np.concatenate([felt.time, commands])[order], jumps[order])
-    scheme = scheme_of(settings)
+        both, jumps = np.append(felt.time, commands), np.append(felt.jump, np.ones(len(commands), dtype=bool))
+        felt = Corners(np.sort(both), jumps[np.argsort(both)])
+    order = scheme_of(settings).order
 
-    def integrated(of: NonlinearEquations, begun: Point, step: float, what: str) -> Trajectory:
-        return integrate(
-            of,
-            scheme,
-            begun.y,
-            begun.yd,
-            step=step,
-            count=math.ceil(settings.duration / step - 1e-6),
-            start=settings.start,
-            corners=felt,
-            progress=lambda done: tell(progress, what, done),
-        )
+    def through(of: NonlinearEquations, begun: Point, step: float, what: str) -> Trajectory:
+        how = {"corners": felt, "progress": lambda done: tell(progress, what, done)}
+        return integrated(Problem(of, begun.y, begun.yd, 0, True), settings, step, **how)
 
     def run(step: float, what: str) -> tuple[Run, Floats]:
-        trajectory = integrated(equations, point, step, what)
+        trajectory = through(equations, point, step, what)
         return Run(trajectory, step, None), _moved(system, motion, trajectory)  # type: ignore[arg-type]
 
     runs, error = [run(settings.step or 2 * coarse, "integrating")], math.nan
     if settings.step is None:
         runs.append(run(coarse, "refining"))
         while True:
-            error = _step_error(runs, scheme.order)
+            error = _step_error(runs, order)
             whole = runs[-1][0].whole
             most = int(LOADS_STEPS * runs[-1][0].step / settings.duration)
-            finer = min(finer_by(error / settings.aim if whole else math.nan, scheme.order), most)
+            finer = min(finer_by(error / settings.aim if whole else math.nan, order), most)
             if (error <= settings.aim and whole) or finer < 2:
                 break
             if not (whole or runs[-2][0].whole) and len(runs) > 3:
@@ -144,10 +129,10 @@ def simulate_system(
             runs.append(run(step, f"refining the step to {1e3 * step:.3g} ms"))
     elif settings.estimate:
         runs.insert(0, run(2 * settings.step, "checking with twice the step"))
-        error = _step_error(runs, scheme.order)
+        error = _step_error(runs, order)
     chosen = runs[-1][0]
     stride = 1 if settings.step is not None else round(coarse / chosen.step)
-    kept = _at(chosen.trajectory, slice(None, None, stride))
+    kept = chosen.trajectory.at(slice(None, None, stride))
     if not settings.estimate or not chosen.whole:
         errors = SystemErrors(ErrorEstimate(error))
         return _described(system, motion, settings, chosen, stride, errors, name, equations)
@@ -161,8 +146,8 @@ def simulate_system(
     def again(of: System) -> Trajectory:
         control = SystemControllers(of) if system.controllers else None
         own = NonlinearEquations(of.tree, lambda t: of.inputs(t, motion), control, None if control is None else [])
-        trajectory = integrated(own, begun(of), chosen.step, "errors of shapes and models")
-        return _at(trajectory, slice(None, None, stride))
+        trajectory = through(own, begun(of), chosen.step, "errors of shapes and models")
+        return trajectory.at(slice(None, None, stride))
 
     errors = system_errors(system, kept, inputs, begun, again if system.controllers else None, error)
     return _described(system, motion, settings, chosen, stride, errors, name, equations)
@@ -179,11 +164,9 @@ def _traced(
         raise InputError("controllers", "are in the loop of a traced run", fix)
     step = settings.duration / max(1, round(settings.duration / settings.step))
     settings = _with_ends(motion, settings, step)
-    count, how = round(settings.duration / step), replace(settings, loads=False)
-    y, yd = started_traced(system, motion, settings.start, settings.begin.state)
-    run = integrate(equations, scheme_of(settings), y, yd, step=step, count=count, start=settings.start)
-    whole = Run(run, step, None)  # type: ignore[arg-type]
-    return _described(system, motion, how, whole, 1, SystemErrors(), name, equations)
+    start = started_traced(system, motion, settings.start, settings.begin.state)
+    run = Run(integrated(Problem(equations, *start, 0, True), settings, step), step, None)  # type: ignore[arg-type]
+    return _described(system, motion, replace(settings, loads=False), run, 1, SystemErrors(), name, equations)
 
 
 def _with_ends(motion: Motion | None, settings: ResponseSettings, step: float) -> ResponseSettings:
@@ -217,10 +200,7 @@ def _first_step(system: System, motion: Motion | None, point: Point, settings: R
     oscillating = oscillating[oscillating * settings.duration < 2 * math.pi * LOADS_STEPS]
     if oscillating.size:
         largest = min(largest, 2 * math.pi / float(oscillating.min()) / 20)
-    times = _corners(system, motion, largest) - settings.start
-    gaps = np.diff(np.unique(np.clip(times, 0.0, settings.duration)))
-    largest = min(largest, gaps.min(where=gaps > ONE_CORNER * settings.duration, initial=largest))
-    return settings.duration / min(2 * math.ceil(settings.duration / largest / 2), LOADS_STEPS)
+    return settings.duration / min(even_steps(largest, _corners(system, motion, largest), settings), LOADS_STEPS)
 
 
 def _over_time(
@@ -258,14 +238,14 @@ def _described(
 ) -> SystemResponse:
     """Describe a run at every `stride`-th of its steps."""
     every = run.trajectory
-    kept = _at(every, slice(None, None, stride))
+    kept = every.at(slice(None, None, stride))
     over_time, along, loop = _over_time(system, motion, equations, kept, loads=settings.loads)
     beams, yielded = dict[str, BeamResponse](), []
     for body, loads in along.items():
         beam = beams_of(system)[body]
 
         def between(steps: Any, body: str = body) -> Loads:
-            return _over_time(system, motion, equations, _at(every, steps), loads=True)[1][body]
+            return _over_time(system, motion, equations, every.at(steps), loads=True)[1][body]
 
         peaks = load_peaks(loads, between, every.time, stride)
         first = system.coordinates.index(f"{body}.q1")
