@@ -17,7 +17,6 @@ from gbeam.analysis.system.accuracy import bases_of, judged_beams, richer
 from gbeam.analysis.system.steady import SteadySystem
 from gbeam.arrays.tree import each_leaf
 from gbeam.errors import ComputationError
-from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.models import TORSION
 from gbeam.mechanics.structure import Structure
@@ -159,8 +158,7 @@ def _with_more(state: OperatingPoint | SteadySystem, *, exact: bool) -> More:
     """More shapes than a steady state has, in exact models or in models of its own kinds."""
     if isinstance(state, SteadySystem):
         point = state.point
-        of = Trajectory(np.zeros(1), point.y[None], point.yd[None], point.ydd[None])
-        bases = bases_of(state.system, of, lambda _, __: each_leaf(lambda x: x[None], point.inputs))
+        bases = bases_of(state.system, point.standing(), lambda _, __: each_leaf(lambda x: x[None], point.inputs))
         rich = richer(state.system, bases, exact=exact)
         return More(rich.system, rich.renamed)
     structure, (_, along_y, along_z, *_) = state.structure, state.structure.counts

@@ -15,7 +15,8 @@ from gbeam.analysis.accuracy.estimate import LIMIT, UNKNOWN, cause_and_cure, of_
 from gbeam.analysis.accuracy.response_errors import IntArray, Quantities, driven, quantities
 from gbeam.analysis.steady.equilibrium import keeps, solve_equilibrium
 from gbeam.analysis.steady.operating_point import OperatingPoint, on_base, operating_point
-from gbeam.analysis.system.point import system_rest
+from gbeam.analysis.system.linear import system_rest
+from gbeam.analysis.system.steady import Drive, steady
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.enrichment import enrichment
@@ -185,7 +186,7 @@ def static(
     if isinstance(structure, System):
         if acceleration is not None:
             raise InputError("acceleration", "is given of a system", "give it gravity, which is its opposite")
-        return system_rest(structure, motion, time, name)
+        return system_rest(steady(structure, Drive(motion, time)), name)
     if acceleration is None:
         point = operating_point(structure, motion, time)
     elif motion is not None:

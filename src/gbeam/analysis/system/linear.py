@@ -1,4 +1,4 @@
-"""Small departures of a system from rest or from a motion: its modes, and its state-space model."""
+"""Rest of a system, and small departures from it or from a motion: its modes, and its state-space model."""
 
 from __future__ import annotations
 
@@ -10,19 +10,62 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.analysis.accuracy.estimate import LIMIT
+from gbeam.analysis.system.accuracy import system_errors
+from gbeam.analysis.system.histories import beams_of, histories, loads_of
 from gbeam.analysis.system.point import Point, started
 from gbeam.analysis.system.steady import Drive, SteadySystem, steady
 from gbeam.guards.checks import choice
+from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.tree.signals import drives_of, measurements, signals_of
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.eigen import Vibrations
 from gbeam.numerics.series import STEP
 from gbeam.results.state_space import Signal, StateSpace
-from gbeam.results.system import SystemModes
+from gbeam.results.system import SystemModes, SystemRest
 
 Array = Any
 Floats = NDArray[np.float64]
+
+
+def system_rest(state: SteadySystem, name: str) -> SystemRest:
+    """Describe where a system rests, and what holds it there."""
+    system, point, time, motion = state.system, state.point, state.drive.time, state.drive.motion
+    first, _ = system.start
+
+    def inputs(of: System, _: Any = None) -> Any:
+        return of.inputs(np.array([time]), motion)
+
+    (begun, _), (resting, beams) = (
+        histories(system, y[None], point.yd[None], point.ydd[None], inputs(system), inertial=False)
+        for y in (first[system.tree.free], point.y)
+    )
+    at, unstable = {key: value[0] for key, value in resting.items()}, tuple[str, ...]()
+    try:
+        if len(growing := state.moving.growing):
+            unstable = (f"unstable, no system would stay there: grows by {growing[0].real:.4g} per second",)
+    except np.linalg.LinAlgError:
+        fix = "bent so far a body's model has no positive mass: check with exact"
+        unstable = (f"whether it would stay there is not known, {fix}",)
+
+    def again(of: System) -> Trajectory:
+        return state.richer(of).point.standing(time)
+
+    start = begun["place"][0]
+    errors = system_errors(system, point.standing(time), inputs, lambda _: point, again, math.nan, start)
+    return SystemRest(
+        name=name,
+        time=time,
+        points=system.points,
+        coordinates=system.coordinates,
+        displacement=at["place"] - start,
+        errors=errors,
+        stable=not unstable,
+        warnings=unstable + errors.doubts(LIMIT) + system.warnings,
+        loads={body: loads_of(beams_of(system)[body], [each], np.array([time])) for body, each in beams.items()},
+        **{key: at[key] for key in ("place", "attitude", "q", "effort", "ground_force", "ground_moment")},
+    )
 
 
 def system_modes(state: SteadySystem, moving: Vibrations, time: float, name: str) -> SystemModes:

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.analysis.accuracy.estimate import LIMIT
-from gbeam.analysis.system.accuracy import system_errors
-from gbeam.analysis.system.histories import beams_of, histories, loads_of
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import each_leaf
 from gbeam.errors import ComputationError, InputError
@@ -21,12 +17,9 @@ from gbeam.mechanics.tree.equations import SLIP, Inputs, Tree
 from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.eigen import RIGID, Linear, vibrations
-from gbeam.results.system import SystemRest
 
 Array = Any
 Floats = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 ITERATIONS = 50
 MASSLESS = 1e-13  # of the largest: a smaller inertia is rounding
 CLOSE = 1e-12  # of the coordinates: a correction that is smaller has converged
@@ -64,12 +57,9 @@ class Point:
         k, c, m = slopes(self.tree, self.y[None], self.yd[None], self.ydd[None], inputs)
         return self.tree(self.y, self.yd, self.ydd, self.inputs), k[0], c[0], m[0]
 
-    @property
-    def growing(self) -> Complex:
-        """Eigenvalues (k,) 1/s of small departures that grow, the fastest first."""
-        _, k, c, m = self.local.slopes()
-        moving = vibrations(Linear(m, c, k, np.zeros((len(m), 0))), zero=RIGID)
-        return moving.growing
+    def standing(self, time: float = 0.0) -> Trajectory:
+        """A trajectory of this state alone."""
+        return Trajectory(np.array([time]), self.y[None], self.yd[None], self.ydd[None])
 
     def sticking(self, system: System) -> tuple[str, ...]:
         """Warnings of coordinates that friction holds, which small departures see as dampers."""
@@ -166,46 +156,3 @@ def rested(system: System, tree: Tree, inputs: Inputs, start: Floats | None = No
     if np.abs(acceleration).max(initial=0.0) > 1e-6 * scale:
         raise ComputationError("no equilibrium", "what nothing holds is accelerated, and does not rest")
     return Point(tree, y, still, still, inputs)
-
-
-def system_rest(system: System, motion: Motion | None, time: float, name: str) -> SystemRest:
-    """Describe where a system rests, and what holds it there."""
-    inputs = system.inputs(np.array([time]), motion)
-    point = rested(system, system.tree, system.inputs(np.asarray(time), motion))
-    first, _ = system.start
-    (begun, _), (resting, beams) = (
-        histories(system, y[None], point.yd[None], point.ydd[None], inputs, inertial=False)
-        for y in (first[system.tree.free], point.y)
-    )
-    at = {key: value[0] for key, value in resting.items()}
-
-    def again(of: System) -> Trajectory:
-        return _standing(rested(of, of.tree, of.inputs(np.asarray(time), motion)), time)
-
-    unstable: tuple[str, ...] = ()
-    try:
-        if len(growing := point.growing):
-            unstable = (f"unstable, no system would stay there: grows by {growing[0].real:.4g} per second",)
-    except np.linalg.LinAlgError:
-        fix = "bent so far a body's model has no positive mass: check with exact"
-        unstable = (f"whether it would stay there is not known, {fix}",)
-    standing, start = _standing(point, time), begun["place"][0]
-    errors = system_errors(
-        system, standing, lambda of, _: of.inputs(np.array([time]), motion), lambda _: point, again, math.nan, start
-    )
-    return SystemRest(
-        name=name,
-        time=time,
-        points=system.points,
-        coordinates=system.coordinates,
-        displacement=at["place"] - start,
-        errors=errors,
-        stable=not unstable,
-        warnings=unstable + errors.doubts(LIMIT) + system.warnings,
-        loads={body: loads_of(beams_of(system)[body], [each], np.array([time])) for body, each in beams.items()},
-        **{key: at[key] for key in ("place", "attitude", "q", "effort", "ground_force", "ground_moment")},
-    )
-
-
-def _standing(point: Point, time: float) -> Trajectory:
-    return Trajectory(np.array([time]), point.y[None], point.yd[None], point.ydd[None])
