@@ -152,8 +152,11 @@ def reduced(case: AnyCase, needs: Needs) -> AnyCase:
     """
     if needs.errors or case.automatic:
         return case
+    from gbeam.analysis.case import SystemCase
+
     response = replace(case.response, estimate=False)
-    if response.step is not None and not needs.loads:
+    compared = isinstance(case, SystemCase) and case.tracks  # by what all of its beams carry
+    if response.step is not None and not (needs.loads or compared):
         response = replace(response, loads=False)
     return replace(case, response=response)
 

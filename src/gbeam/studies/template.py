@@ -171,8 +171,7 @@ class CaseTemplate:
 
     @property
     def imitations(self) -> dict[str, bool]:
-        accept = {} if isinstance(self.case, SystemCase) else self.case.accept
-        return {name: bool(accept.get(name)) for name in self.case.tracks}
+        return {name: bool(self.case.accept.get(name)) for name in self.case.tracks}
 
     @property
     def distributions(self) -> Mapping[str, Distribution]:
