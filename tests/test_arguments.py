@@ -300,7 +300,7 @@ class Given:
                 (self.slew,),
                 {
                     "angle": 1.0, "rate": None, "duration": 2.0, "limit": 1e6, "robust": 0.0, "check": "",
-                    "motion": "slew",
+                    "motion": "slew", "joint": None, "point": None,
                     "overrides": (), "progress": None,
                 },
             ),
@@ -308,7 +308,7 @@ class Given:
                 (gb.assemble(self.beam, "FOAM", y=1), self.free_hub),
                 {
                     "angle": 1.0, "rate": None, "duration": 0.5, "limit": 1e6, "robust": 0.0, "pieces": 12,
-                    "check": None,
+                    "check": None, "point": None,
                     "progress": None,
                 },
             ),

@@ -59,7 +59,7 @@ def test_a_robust_command_leaves_least_over_the_span() -> None:
 
 def test_a_beam_that_the_hub_does_not_bend_is_refused() -> None:
     across = gb.assemble(gb.Beam(LENGTH, BOX, METAL, damping_ratio=0.005), "FOAM", z=2)
-    with pytest.raises(gb.InputError, match="no vibration that the hub excites"):
+    with pytest.raises(gb.InputError, match="no vibration that the drive excites"):
         gb.shape_command(across, PRESCRIBED, angle=1.0, duration=6.0)
 
 
@@ -87,3 +87,56 @@ def test_what_is_no_command_is_refused(options: dict[str, float], words: str) ->
         gb.shape_command(MODEL, PRESCRIBED, **options)  # type: ignore[arg-type]
     with pytest.raises(gb.InputError, match="the hub turns already"):
         gb.shape_command(MODEL, gb.Hub(radius=0.5, rate=1.0), angle=1.0, duration=6.0)
+
+
+PANEL = gb.assemble(
+    gb.Beam(3.0, gb.Section.rectangle(0.5, 0.02), gb.Material(100, 1e9), damping_ratio=0.005), "FOAM", z=2
+)
+
+
+def on_axis(**axis: object) -> gb.System:
+    """The panel on a wheel that turns: a system that is a beam on a hub."""
+    rim = gb.Place((0.5, 0, 0), (np.pi / 2, 0, 0))
+    return gb.System(
+        {"wheel": gb.RigidBody(1.0, (50.0, 50.0, 50.0), points={"rim": rim}), "panel": PANEL},
+        {
+            "axis": gb.Joint("revolute", "wheel", axes=[(0, 0, 1)], **axis),  # type: ignore[arg-type]
+            "clamp": gb.Joint("fixed", "panel", "wheel.rim"),
+        },
+    )
+
+
+@pytest.mark.parametrize("free", [True, False])
+def test_a_joint_of_a_system_is_driven_as_a_hub(free: bool) -> None:
+    """The commands are those of the beam on the hub: designed to 1e-10, refined by differences of runs to 1e-6."""
+    hub = gb.Hub(radius=0.5, setting_angle=np.pi / 2, **({"inertia": 50.0} if free else {}))  # type: ignore[arg-type]
+    system = on_axis(effort=0.0) if free else on_axis(rate=0.0)
+    for robust, close in ((0.1, 1e-10), (0.0, 1e-6)):
+        options = {"angle": 0.5, "duration": 6.0, "robust": robust}
+        one = gb.shape_command(PANEL, hub, **options)  # type: ignore[arg-type]
+        other = gb.shape_command(system, "axis.angle", **options)  # type: ignore[arg-type]
+        np.testing.assert_allclose(other.coefficients, one.coefficients, atol=close * np.abs(one.coefficients).max())
+        np.testing.assert_allclose(other.frequency, one.frequency, rtol=1e-10)
+        assert other.kind == one.kind == ("torque" if free else "rate")
+        for a, b in zip(one.runs[1:], other.runs[1:], strict=True):
+            assert b.residual == pytest.approx(a.residual, rel=0.02)
+        assert other.residual < 0.3 * other.runs[1].residual
+
+
+def test_joints_that_no_command_leaves_at_rest_are_refused() -> None:
+    options = {"angle": 0.5, "duration": 6.0}
+    for more, said in (
+        ({"stiffness": 5.0}, "a spring holds"),
+        ({"damping": 5.0}, "a damper brakes"),
+        ({"initial_rate": 1.0}, "moves already"),
+    ):
+        with pytest.raises(gb.InputError, match=said):
+            gb.shape_command(on_axis(effort=0.0, **more), "axis.angle", **options)  # type: ignore[arg-type]
+    with pytest.raises(gb.InputError, match="does not deflect"):
+        gb.shape_command(on_axis(), "axis.angle", point="wheel.rim", **options)  # type: ignore[arg-type]
+    with pytest.raises(gb.InputError, match="choose"):
+        gb.shape_command(on_axis(), "axis.angel", **options)  # type: ignore[arg-type]
+    with pytest.raises(gb.InputError, match="give a Hub"):
+        gb.shape_command(PANEL, "axis.angle", **options)  # type: ignore[arg-type]
+    with pytest.raises(gb.InputError, match="carries a system"):
+        gb.shape_command(on_axis(), FREE, **options)  # type: ignore[arg-type]

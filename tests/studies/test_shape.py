@@ -81,3 +81,59 @@ def test_what_it_refuses(slewing: Path, gbeam: Call) -> None:
     assert answer.status == 1 and "no command of angular acceleration 0.01 or less" in answer.err
     answer = gbeam("shape", slewing, "--set", 'motion.slew.gravity=[0, "-1 g", 0]')
     assert answer.status == 2 and "motion.slew.gravity bends the beam" in answer.err
+
+
+PANEL = """
+[bodies.wheel]
+kind = "rigid"
+mass = "20 kg"
+inertia = ["50 kg m^2", "50 kg m^2", "50 kg m^2"]
+points = { rim = { at = ["0.5 m", 0, 0], turn = ["90 deg", 0, 0] } }
+[bodies.panel]
+kind = "beam"
+length = "3 m"
+damping_ratio = "0.5 %"
+section = { shape = "rectangle", width = "500 mm", thickness = "20 mm" }
+material = { density = "100 kg/m^3", youngs_modulus = "1 GPa" }
+model = { kind = "FOAM", modes = { axial = 0, y = 0, z = 2 } }
+[joints.axis]
+kind = "revolute"
+body = "wheel"
+axes = [[0, 0, 1]]
+rate = { profile = "smooth-step", level = "0.1 rad/s", duration = "6 s" }
+[joints.clamp]
+kind = "fixed"
+body = "panel"
+on = "wheel.rim"
+[response]
+duration = "8 s"
+"""
+
+
+def test_a_joint_of_a_scenario_does_what_its_rate_does_and_its_command_turns_it(slewing: Path, gbeam: Call) -> None:
+    slewing.write_text(PANEL, encoding="utf-8")
+    answer = gbeam("shape", slewing, "--robust", "10 %", "--check", "exact", "--out", "shaped", "--json").json
+    assert answer["goal"] == {"rate": pytest.approx(0.1)} and answer["duration"] == 6.0 and answer["check"] == "exact"
+    left = {name: each["residual_amplitude"] for name, each in answer["commands"].items()}
+    assert left["shaped"] < 0.1 * left["smooth-step"]
+    run = gb.study(gb.read_scenario("shaped/command.json")).responses["ground"]
+    assert run.time[-1] == pytest.approx(8.0) and run.signal("axis.angle_rate")[-1] == pytest.approx(0.1, rel=1e-9)
+    place = run.at("panel.tip") - run.at("panel.root")
+    late = np.linalg.norm(place, axis=1)[run.time > 6.0]
+    assert np.ptp(late) < 0.2 * left["smooth-step"]
+
+
+def test_what_it_refuses_of_systems(slewing: Path, gbeam: Call) -> None:
+    slewing.write_text(PANEL, encoding="utf-8")
+    for option, said in (
+        (("--joint", "axis.angel"), "choose one of axis.angle"),
+        (("--point", "wheel.rim"), "does not deflect"),
+        (("--set", "system.gravity=[0, 0, -9.81]"), "system.gravity bends the beam"),
+    ):
+        answer = gbeam("shape", slewing, "--angle", "1 rad", *option)
+        assert answer.status == 2 and said in answer.err, answer.err
+    flown = '[motion.flight]\nkind = "flight"\nacceleration = { z = { profile = "constant", level = "1 g" } }\n'
+    slewing.write_text(PANEL + flown, encoding="utf-8")
+    assert "shaped on the ground" in gbeam("shape", slewing, "--angle", "1 rad").err
+    slewing.write_text(SLEWING, encoding="utf-8")
+    assert "of one beam" in gbeam("shape", slewing, "--joint", "axis.angle").err

@@ -147,15 +147,20 @@ def _structure(case: Case | SystemCase, kind: str) -> Structure | System | Failu
     try:
         if isinstance(case, Case):
             return replace(case, model=counterpart(case.model, kind)).assemble()
-        bodies = {
-            name: remade(body, counterpart(model_of(body), kind), body.stations[:-1])
-            if isinstance(body, Structure) and body.source is not None
-            else body
-            for name, body in case.system.bodies.items()
-        }
-        return replace(case.system, bodies=bodies)
+        return of_kind(case.system, kind)
     except InputError as error:
         return Failure("cannot", str(error))
+
+
+def of_kind(system: System, kind: str) -> System:
+    """The system with all of its beams in a model, with their shapes."""
+    bodies = {
+        name: remade(body, counterpart(model_of(body), kind), body.stations[:-1])
+        if isinstance(body, Structure) and body.source is not None
+        else body
+        for name, body in system.bodies.items()
+    }
+    return replace(system, bodies=bodies)
 
 
 def _answer(

@@ -10,12 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.case import Case
-from gbeam.analysis.control.commands import driven
+from gbeam.analysis.case import Case, SystemCase
+from gbeam.analysis.control.plants import driven
 from gbeam.analysis.control.shaping import profile_of, shape_command
-from gbeam.analysis.model_study import counterpart
+from gbeam.analysis.model_study import counterpart, of_kind
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
+from gbeam.guards.checks import choice
 from gbeam.mechanics.models import KINDS
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.profiles.piecewise import constant
@@ -33,7 +34,7 @@ _AFTER = 1.25  # times the command: how long a scenario of it lasts at least
 
 @typed
 def shape_hub_command(
-    scenario: str | os.PathLike[str] | Case,
+    scenario: str | os.PathLike[str] | Case | SystemCase,
     *,
     angle: float | None = None,
     rate: float | None = None,
@@ -42,14 +43,17 @@ def shape_hub_command(
     robust: float = 0.0,
     check: str = "",
     motion: str | None = None,
+    joint: str | None = None,
+    point: str | None = None,
     overrides: Sequence[str] = (),
     progress: Progress = None,
 ) -> ShapedCommand:
-    """Find the command of a scenario's hub that leaves the least vibration: see :func:`gbeam.shape_command`.
+    """Find the command of a scenario's hub, or of a joint of its system, that leaves the least vibration: see
+    :func:`gbeam.shape_command`.
 
     Parameters
     ----------
-    scenario : path or Case
+    scenario : path, Case or SystemCase
         The scenario's file, or a case, of :func:`gbeam.read_scenario` or made in Python.
     angle, rate : float, optional
         To turn by, rad, or to reach, rad/s; by default what the scenario's own rate does. A free hub needs one of them.
@@ -63,6 +67,9 @@ def shape_hub_command(
         Kind of model that the commands are run on, such as exact; by default the scenario's.
     motion : str, optional
         Which hub, where there are several.
+    joint, point : str, optional
+        Of a system the angle that turns, ``joint.angle``, where more than one has a rate or a drive, and the point that
+        is to rest, as of :func:`gbeam.shape_command`.
     overrides : sequence of str
         Changes of the scenario, such as ``beam.length=250 mm``.
     progress : callable or bool, optional
@@ -86,25 +93,39 @@ def shape_hub_command(
     >>> gb.shape_hub_command(hub, duration=20.0).outcome
     'done'
     """
-    case = template_of(scenario, overrides).built().one_beam("bodies", "gbeam shape")
-    name, hub = hub_of(case, motion)
-    if case.model.automatic:
+    case = template_of(scenario, overrides).built()
+    if isinstance(case, SystemCase):
+        name, hub = driven_joint(case, joint)
+        structure: Any = case.system
+        turned: Any = name
+    else:
+        case = case.one_beam("bodies", "gbeam shape")
+        if joint is not None:
+            raise InputError("--joint", f"is {joint!r}, and the scenario is of one beam", "name its hub by --motion")
+        name, hub = hub_of(case, motion)
+        structure, turned = case, _at_rest(hub)
+    where = f"joints.{name}" if isinstance(case, SystemCase) else f"motion.{name}"
+    if case.automatic:
         raise InputError("model.modes", "is left out, and a command knows the modes of given shapes", "give it")
     if check and check not in KINDS:
         raise InputError("--check", f"is {check!r}", advise(check, KINDS))
     if angle is None and rate is None:
-        angle, rate = _goal(hub, name)
+        angle, rate = _goal(hub, where)
     if duration is None:
-        duration = _end(hub, name)
-    structure = case.assemble(())
-    tested = replace(case, model=counterpart(case.model, check)).assemble(()) if check else None
+        duration = _end(hub, where)
+    if isinstance(case, Case):
+        structure = case.assemble(())
+        tested: Any = replace(case, model=counterpart(case.model, check)).assemble(()) if check else None
+    else:
+        tested = of_kind(structure, check) if check else None
     try:
         shaped = shape_command(
-            structure, _at_rest(hub), angle=angle, rate=rate, duration=duration, limit=limit, robust=robust,
-            check=tested, progress=progress,
+            structure, turned, angle=angle, rate=rate, duration=duration, limit=limit, robust=robust,
+            check=tested, point=point, progress=progress,
         )  # fmt: skip
     except InputError as error:
-        raise error.within(f"motion.{name}") if error.where == "gravity" else error from None
+        place = "system" if isinstance(case, SystemCase) else where
+        raise error.within(place) if error.where == "gravity" else error from None
     return replace(shaped, motion=name, provenance=case.provenance)
 
 
@@ -119,6 +140,27 @@ def hub_of(case: Case, name: str | None) -> tuple[str, Hub]:
     return chosen, hubs[chosen]
 
 
+def driven_joint(case: SystemCase, name: str | None) -> tuple[str, Hub]:
+    """The angle of a system that a command turns, the only one with a rate or a drive where none is named; and a hub
+    with its rate, or that is free.
+    """
+    if case.motions:
+        raise InputError("motion", "carries the system, and commands are shaped on the ground", "leave it out")
+    given = {
+        f"{owner}.{each}": joint.rates.get(each)
+        for owner, joint in case.system.joints.items()
+        for each in (*joint.rates, *joint.efforts)
+    }
+    if name is None:
+        if len(given) != 1:
+            fix = f"choose from {', '.join(given)}" if given else 'give a joint a rate or an effort, such as "0 N m"'
+            raise InputError("--joint", "is missing: it says which angle turns", fix)
+        name = next(iter(given))
+    choice("--joint", name, [each for each in case.system.coordinates if each.rpartition(".")[2].startswith("angle")])
+    rate = given.get(name)
+    return name, Hub(radius=0.0, inertia=1.0) if rate is None else Hub(radius=0.0, rate=rate)
+
+
 def _at_rest(hub: Hub) -> Hub:
     """The hub without its command, mounted as it is: free, or at rate zero."""
     return driven(hub, constant(0.0))
@@ -128,7 +170,7 @@ def _end(hub: Hub, name: str) -> float:
     """When the scenario's own command has its last corner, s."""
     last = float(np.max(hub.corners(np.inf), initial=0.0))
     if not last > 0:
-        raise InputError("--duration", f"is missing, and motion.{name} has no end of its own", "give it, in s")
+        raise InputError("--duration", f"is missing, and {name} has no end of its own", "give it, in s")
     return last
 
 
@@ -136,7 +178,7 @@ def _goal(hub: Hub, name: str) -> tuple[float | None, float | None]:
     """Angle to turn by or rate to reach: what the scenario's own rate does."""
     if hub.free or hub.rate is None:
         fix = "give --angle or --rate"
-        raise InputError("--angle", f"is missing, and the torque of motion.{name} says of no angle or rate", fix)
+        raise InputError("--angle", f"is missing, and the torque of {name} says of no angle or rate", fix)
     end = _end(hub, name)
     rates = np.asarray(hub.rate(np.linspace(0.0, end, _POINTS)))
     if abs(rates[-1]) > _REST * np.abs(rates).max():
@@ -145,16 +187,24 @@ def _goal(hub: Hub, name: str) -> tuple[float | None, float | None]:
 
 
 def scenario_with(
-    command: ShapedCommand, scenario: str | os.PathLike[str] | Case, overrides: Sequence[str] = ()
+    command: ShapedCommand, scenario: str | os.PathLike[str] | Case | SystemCase, overrides: Sequence[str] = ()
 ) -> str:
-    """Return a scenario, as JSON, in which a table of the shaped command drives the hub; it lasts beyond it."""
+    """Return a scenario, as JSON, in which a table of the shaped command drives hub or joint; it lasts beyond it."""
     base = scenario_of(scenario, overrides)
     assert base.source is not None  # it was read from a file
     data: dict[str, Any] = json.loads(json.dumps(base.source.data))
     times = np.linspace(0.0, command.duration, _POINTS)
     table = {"profile": "table", "times": times.tolist(), "values": np.asarray(profile_of(command)(times)).tolist()}
-    data["motion"] = {command.motion: {**data["motion"][command.motion], command.kind: table}}
+    if "joints" in data:
+        name, _, coordinate = command.motion.rpartition(".")
+        key = "effort" if command.kind == "torque" else "rate"
+        before = data["joints"][name].get(key)
+        several = isinstance(before, dict) and "profile" not in before
+        data["joints"][name][key] = {**before, coordinate: table} if several else table
+    else:
+        data["motion"] = {command.motion: {**data["motion"][command.motion], command.kind: table}}
     lasting = max(base.response.duration or 0.0, _AFTER * command.duration)
-    data["response"] = {**data.get("response", {}), "duration": lasting, "residual_from": command.duration}
+    residual = {} if "joints" in data else {"residual_from": command.duration}
+    data["response"] = {**data.get("response", {}), "duration": lasting, **residual}
     data.pop("sweep", None)
     return json.dumps(data, indent=1)

@@ -6,12 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gbeam.analysis.control.linearization import linearize
-from gbeam.arrays.tree import altered
+from gbeam.analysis.control.plants import Plant
 from gbeam.errors import InputError
-from gbeam.mechanics.structure import Structure
-from gbeam.motion.bases.hub import Hub
-from gbeam.motion.profiles.profile import Profile
 from gbeam.motion.profiles.pulse import SplineProfile, through
 from gbeam.numerics.bspline import DEGREE, Spline
 from gbeam.results.result import Complex, Floats
@@ -34,18 +30,18 @@ class Commands:
     acceleration.
     """
 
-    def __init__(self, structure: Structure, hub: Hub, goal: Goal, pieces: int) -> None:
-        self.hub, self.goal = hub, goal
+    def __init__(self, plant: Plant, goal: Goal, pieces: int) -> None:
+        self.plant, self.goal = plant, goal
         self.time = np.linspace(0.0, goal.duration, _TIMES)
         basis = Spline(0.0, goal.duration / pieces, np.eye(pieces + DEGREE))
-        order = 0 if hub.free else 1
+        order = 0 if plant.free else 1
         drive = np.asarray(basis.series(self.time, 1).derivatives()[order])
         self.ends = np.zeros(pieces + DEGREE)
-        if goal.to_rate and not hub.free:
+        if goal.to_rate and not plant.free:
             self.ends[-DEGREE:] = goal.value
         self.drive, self.fixed = drive[:, DEGREE:-DEGREE], drive @ self.ends
         self.slope = np.diff(self.drive, axis=0) / np.diff(self.time)[:, None]
-        self.inertia = turning_inertia(structure, hub) if hub.free else 1.0
+        self.inertia = plant.inertia if plant.free else 1.0
         rows, aims = self._aims(basis(self.time))
         self.particular: Floats = np.asarray(np.linalg.pinv(rows) @ aims, dtype=np.float64)
         self.free = _kernel(rows)
@@ -53,7 +49,7 @@ class Commands:
     def _aims(self, basis: Floats) -> tuple[Floats, Floats]:
         """Rows of linear conditions on the coefficients, and their values."""
         t, goal = self.time, self.goal
-        if not self.hub.free:
+        if not self.plant.free:
             if goal.to_rate:  # the ends say it
                 return np.zeros((1, self.drive.shape[1])), np.zeros(1)
             return np.asarray(np.trapezoid(basis[:, DEGREE:-DEGREE], t, axis=0))[None], np.array([goal.value])
@@ -71,7 +67,7 @@ class Commands:
 
     def profile(self, drive: Floats) -> SplineProfile:
         """The command that a drive (t,) is."""
-        if not self.hub.free:
+        if not self.plant.free:
             drive = np.concatenate([[0.0], np.cumsum((drive[1:] + drive[:-1]) / 2 * np.diff(self.time))])
         return through(self.goal.duration, self.time, drive, _FINE)
 
@@ -80,22 +76,6 @@ class Commands:
         coefficients = self.ends.copy()
         coefficients[DEGREE:-DEGREE] = inner
         return SplineProfile(self.goal.duration, coefficients)
-
-
-def driven(hub: Hub, profile: Profile) -> Hub:
-    """The hub under a command, mounted as it is."""
-    commanded: Hub = altered(hub, **{"torque" if hub.free else "rate": profile})
-    return commanded
-
-
-def turning_inertia(structure: Structure, hub: Hub) -> float:
-    """Moment of inertia of hub and straight beam about the hub's axis, kg m²."""
-    mass, sx, sy, sz, xx, yy, zz, xy, yz, zx = (float(each) for each in np.asarray(structure.coefficients.rigid))
-    to_hub = np.asarray(hub.mount.R_HB)
-    second = to_hub @ np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]]) @ to_hub.T
-    first, radius = to_hub @ np.array([sx, sy, sz]), float(hub.radius)
-    assert hub.inertia is not None
-    return float(hub.inertia) + mass * radius**2 + 2 * radius * float(first[0]) + float(second[0, 0] + second[1, 1])
 
 
 @dataclass(frozen=True)
@@ -108,21 +88,16 @@ class Vibration:
     gain: Floats
 
     @staticmethod
-    def of(structure: Structure, hub: Hub) -> Vibration:
-        """Modes that a drive of the hub excites."""
-        linear = linearize(structure, hub)
-        if hub.free:
-            column = linear.b[:, 0]
-        else:
-            base = hub.mount.base(np.zeros(1), np.zeros(1), np.ones(1))
-            column = linear.b[:, :3] @ base.a_WO_B[0] + linear.b[:, 3:6] @ base.alpha_WB_B[0]
-        values, right = np.linalg.eig(linear.a)
-        excited = np.linalg.solve(right, column)
-        size = np.linalg.norm(linear.c[:3] @ right, axis=0) * np.abs(excited)
+    def of(plant: Plant) -> Vibration:
+        """Modes that a drive excites."""
+        small = plant.small
+        values, right = np.linalg.eig(small.a)
+        excited = np.linalg.solve(right, small.column)
+        size = np.linalg.norm(small.tip @ right, axis=0) * np.abs(excited)
         some = (values.imag > 1e-6 * np.abs(values).max()) & (size > 1e-9 * size.max())
         if not some.any():
             fix = "give the model shapes in the plane of rotation: y = 1 or more"
-            raise InputError("structure", "has no vibration that the hub excites", fix)
+            raise InputError("structure", "has no vibration that the drive excites", fix)
         order = np.argsort(values[some].imag)
         return Vibration(values[some][order], 2 * size[some][order])
 

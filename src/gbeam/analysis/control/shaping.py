@@ -11,18 +11,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from gbeam.analysis.control.commands import Commands, Vibration, check_goal, driven, usual
-from gbeam.analysis.response.differentiated import Differentiated, Grid
+from gbeam.analysis.control.commands import Commands, Vibration, check_goal, usual
+from gbeam.analysis.control.plants import OnHub, OnJoint, Plant, Ran
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.simulation import simulate
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.system import System
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.profiles.pulse import SplineProfile
 from gbeam.numerics.minimise import solve_quadratic
 from gbeam.progress import Progress, tell
-from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.searches import CommandRun, ShapedCommand
 
@@ -37,8 +36,8 @@ _BETTER = 0.9  # a step that leaves more than this share is the last
 
 @typed
 def shape_command(
-    structure: Structure,
-    hub: Hub,
+    structure: Structure | System,
+    hub: Hub | str,
     *,
     angle: float | None = None,
     rate: float | None = None,
@@ -46,21 +45,23 @@ def shape_command(
     limit: float = np.inf,
     robust: float = 0.0,
     pieces: int = 24,
-    check: Structure | None = None,
+    check: Structure | System | None = None,
+    point: str | None = None,
     progress: Progress = None,
 ) -> ShapedCommand:
-    """Find the command of a hub that leaves the least vibration of its beam.
+    """Find the command of a hub, or of a joint of a system, that leaves the least vibration of its beam.
 
-    The design knows the modes about the hub at rest. Without `robust` it is refined on `structure` itself, by
-    Gauss-Newton steps along the exact derivatives of its response. Then the command is run beside a smooth step of the
-    same duration and one with a ZVD shaper (Singer and Seering 1990) of the first mode.
+    The design knows the modes about rest. Without `robust` it is refined on `structure` itself, by Gauss-Newton steps
+    along the exact derivatives of its response, of a system along differences of runs. Then the command is run beside a
+    smooth step of the same duration and one with a ZVD shaper (Singer and Seering 1990) of the first mode.
 
     Parameters
     ----------
-    structure : Structure
-        To design on.
-    hub : Hub
-        With an inertia and no rate it is free, and the command is its torque; else the command is its rate.
+    structure : Structure or System
+        To design on; a system is on the ground.
+    hub : Hub or str
+        With an inertia and no rate it is free, and the command is its torque; else the command is its rate. Of a system
+        an angle, ``joint.angle``: where it has a rate that is the command, else the torque of its drive.
     angle : float, optional
         To turn, from rest to rest, rad.
     rate : float, optional
@@ -74,8 +75,11 @@ def shape_command(
         least.
     pieces : int
         Of the spline, 12 or more.
-    check : Structure, optional
+    check : Structure or System, optional
         That the commands are run on, such as one of the exact model; by default `structure`.
+    point : str, optional
+        Of a system, whose displacement from the root of its beam is to rest, ``body.point``; by default the tip of its
+        only beam.
     progress : callable or bool, optional
         Called with what is being done and the fraction of it done; True shows a bar.
 
@@ -86,7 +90,8 @@ def shape_command(
     Raises
     ------
     InputError
-        If the hub turns already or gravity acts, there is not one of angle and rate, or a number is impossible.
+        If the hub turns already or gravity acts, there is not one of angle and rate, a number is impossible, or a
+        joint is held by a spring or braked.
     ComputationError
         If no command within the limit does it in that time, or a run diverges.
 
@@ -101,40 +106,38 @@ def shape_command(
     True
     """
     goal = check_goal(angle, rate, duration)
-    if hub.mount.gravity is not None:
-        raise InputError("gravity", "bends the beam as it turns, which no command undoes", "leave it out")
-    if not hub.free and float(np.abs(hub.base(np.zeros(1)).w_WB_B).max()) > 0:
-        raise InputError("rate", "is not zero: the hub turns already", "leave it out")
+    plant = _plant(structure, hub, point)
+    plant.refuse_moving()
     if not pieces >= 12:
         raise InputError("pieces", f"is {pieces}", "give 12 or more")
     if not 0 <= robust < 1:
         raise InputError("robust", f"is {robust:g}", "give a share from 0 to less than 1, such as 0.2")
     if not limit > 0:
         raise InputError("limit", f"is {limit:g}", "give a positive number")
-    commands, vibration = Commands(structure, hub, goal, pieces), Vibration.of(structure, hub)
+    commands, vibration = Commands(plant, goal, pieces), Vibration.of(plant)
     others = usual(commands, vibration)
     scale = float(np.mean(vibration.amplitude(commands.time, others["smooth-step"], np.ones(1))))
     design = _Design(commands, vibration, limit, robust, scale)
     inner = design.linear()
     if robust == 0:
-        inner = _refined(structure, design, inner, progress)
+        inner = _refined(plant, design, inner, progress)
     profiles = {"shaped": commands.of(inner), **{name: commands.profile(drive) for name, drive in others.items()}}
     drives = {"shaped": commands.fixed + commands.drive @ inner, **others}
-    tested = structure if check is None else check
+    tested = plant if check is None else _plant(check, hub, point)
     settings = _settings(vibration, goal.duration)
     runs = []
     for k, (name, profile) in enumerate(profiles.items()):
         tell(progress, f"{tested.kind}: {name}", k / len(profiles))
-        response = simulate(tested, driven(hub, profile), replace(settings, step=None), name=name)
+        response = tested.run(profile, replace(settings, step=None), name)
         runs.append(
             CommandRun(
                 name, np.asarray(profile(commands.time)), float(np.abs(drives[name]).max()),
-                vibration.amplitude(commands.time, drives[name], RATIOS), response.time, np.asarray(response.tip),
-                float(np.linalg.norm(response.peaks.residual_amplitude)), response.outcome,
+                vibration.amplitude(commands.time, drives[name], RATIOS), response.time, response.tip,
+                response.residual, response.outcome,
             )
         )  # fmt: skip
     return ShapedCommand(
-        kind="torque" if hub.free else "rate",
+        kind="torque" if plant.free else "rate",
         goal=goal.value,
         to_rate=goal.to_rate,
         duration=goal.duration,
@@ -145,7 +148,7 @@ def shape_command(
         frequency=np.abs(vibration.eigenvalue) / (2 * np.pi),
         ratio=RATIOS,
         runs=tuple(runs),
-        design=structure.kind,
+        design=plant.kind,
         check=tested.kind,
     )
 
@@ -190,7 +193,7 @@ class _Design:
             csc_array(a.T @ a / size**2), a.T @ b / size**2, csc_array(limited), -1.0 - middle, 1.0 - middle
         )
         if change is None:
-            word = "torque" if commands.hub.free else "angular acceleration"
+            word = "torque" if commands.plant.free else "angular acceleration"
             problem = f"no command of {word} {self.limit:.4g} or less does it in {commands.goal.duration:g} s"
             raise ComputationError("limits exceeded", problem)
         return np.asarray(about + commands.free @ change)
@@ -201,22 +204,35 @@ def _settings(vibration: Vibration, duration: float) -> ResponseSettings:
     return ResponseSettings(duration + after, residual_from=duration, integrator="gauss", estimate=False, loads=False)
 
 
-def _refined(structure: Structure, design: _Design, inner: Floats, progress: Progress) -> Floats:
-    """Gauss-Newton steps on what the structure's own run leaves of the tip's vibration."""
+def _plant(structure: Structure | System, hub: Hub | str, point: str | None) -> Plant:
+    """What the command drives."""
+    if isinstance(structure, System):
+        if not isinstance(hub, str):
+            raise InputError("hub", "is a hub, and carries a system", 'name the angle that turns, "joint.angle"')
+        return OnJoint.of(structure, hub, point)
+    if not isinstance(hub, Hub):
+        raise InputError("hub", f"is {hub!r}, and the structure is one beam", "give a Hub")
+    if point is not None:
+        raise InputError("point", f"is {point!r}, and the structure is one beam", "leave it out: its tip is to rest")
+    return OnHub(structure, hub)
+
+
+def _refined(plant: Plant, design: _Design, inner: Floats, progress: Progress) -> Floats:
+    """Gauss-Newton steps on what the plant's own run leaves of the tip's vibration."""
     commands = design.commands
-    settings = _settings(Vibration.of(structure, commands.hub), commands.goal.duration)
-    grid: Grid | None = None
+    settings = _settings(Vibration.of(plant), commands.goal.duration)
+    done = plant.run(commands.of(inner), settings)
+    if done.outcome != "done":
+        raise ComputationError(done.outcome, done.message)
+    settings = replace(settings, step=done.step)
+    moves = commands.free / np.abs(commands.drive @ commands.free).max(axis=0)
     best, least = inner, np.inf
     for k in range(_ROUNDS):
-        tell(progress, f"{structure.kind}: refining", k / _ROUNDS)
-        hub = driven(commands.hub, commands.of(inner))
-        if grid is None:
-            done = simulate(structure, hub, settings)
-            if done.outcome != "done":
-                raise ComputationError(done.outcome, done.message)
-            grid = Grid.of(structure, hub, settings, done)
-        about = Differentiated(structure, hub, settings, grid, "", loads=False)
-        residual = _left(about.own(), commands.goal.duration) / design.scale
+        tell(progress, f"{plant.kind}: refining", k / _ROUNDS)
+        width = _MOVED * np.abs(commands.drive @ inner + commands.fixed).max()
+        pairs = [(commands.of(inner - width / 2 * move), commands.of(inner + width / 2 * move)) for move in moves.T]
+        now, both = plant.about(commands.of(inner), settings, pairs, width)
+        residual = _left(now, commands.goal.duration) / design.scale
         size = float(np.linalg.norm(residual))
         if size < least:
             better, best, least = size < _BETTER * least, inner, size
@@ -224,15 +240,9 @@ def _refined(structure: Structure, design: _Design, inner: Floats, progress: Pro
             better = False
         if not better or k == _ROUNDS - 1:
             break
-        moves = commands.free / np.abs(commands.drive @ commands.free).max(axis=0)
-        width = _MOVED * np.abs(commands.drive @ inner + commands.fixed).max()
-        pairs = []
-        for move in moves.T:
-            less, more = (commands.of(inner + sign * width / 2 * move) for sign in (-1, 1))
-            pairs.append(about.pair((None, driven(commands.hub, less)), (None, driven(commands.hub, more))))
         slopes = [
             (_left(more, commands.goal.duration) - _left(less, commands.goal.duration)) / width / design.scale
-            for less, more in about.responses(pairs, np.full(len(pairs), width))
+            for less, more in both
         ]
         # In the coefficients: the derivative along every direction that is free.
         rows = np.stack(slopes, axis=1) @ np.linalg.pinv(moves)
@@ -240,9 +250,9 @@ def _refined(structure: Structure, design: _Design, inner: Floats, progress: Pro
     return best
 
 
-def _left(response: Response, duration: float) -> Floats:
+def _left(run: Ran, duration: float) -> Floats:
     """The tip's departures from its mean after the command, each sample by its share, (m,)."""
-    tip = np.asarray(response.tip)[response.time >= duration]
+    tip = run.tip[run.time >= duration]
     return ((tip - tip.mean(axis=0)) * np.sqrt(2 / len(tip))).ravel()
 
 

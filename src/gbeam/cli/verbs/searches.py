@@ -162,19 +162,27 @@ def shape(
         Parameter(help="Model that the commands are run on; the scenario's by default."),
     ] = None,
     motion: MotionName = None,
+    joint: Annotated[
+        str | None,
+        Parameter(help='Of a system, the angle that turns, "axis.angle", where several have a rate or drive.'),
+    ] = None,
+    point: Annotated[
+        str | None, Parameter(help='Of a system, the point that is to rest, "panel.tip", where it has several beams.')
+    ] = None,
     output: Output = Output(),
 ) -> int:
-    """Find the rate or torque of a hub that leaves the least vibration of its beam, beside ZVD and a smooth step.
+    """Find the rate or torque of a hub, or of a joint, that leaves the least vibration, beside ZVD and a smooth step.
 
     It does what the scenario's own rate does, in the same time, unless --angle, --rate or --duration say otherwise;
-    a free hub is driven by a torque and needs --angle or --rate. With --out also writes shaping.nc, command.json, a
-    scenario in which the command drives the hub, and plots of the commands and of what they leave where frequencies
-    are wrong, with --report shaping.html. Exit status: 0 done, 1 no command does it or a run is not done, 2 the
-    input is wrong.
+    a free hub, or a joint with a drive, is driven by a torque and needs --angle or --rate. With --out also writes
+    shaping.nc, command.json, a scenario in which the command drives it, and plots of the commands and of what they
+    leave where frequencies are wrong, with --report shaping.html. Exit status: 0 done, 1 no command does it or a run is
+    not done, 2 the input is wrong.
     """
     folder = output.folder(scenario)
 
-    from gbeam.studies.shape import hub_of, scenario_with
+    from gbeam.analysis.case import SystemCase
+    from gbeam.studies.shape import driven_joint, hub_of, scenario_with
     from gbeam.studies.shape import shape_hub_command as compute
 
     def given(option: str, text: str | None, kind: str) -> float | None:
@@ -182,8 +190,12 @@ def shape(
 
     from gbeam.scenario.build import read_scenario
 
-    case = read_scenario(scenario, output.overrides).one_beam("bodies", "gbeam shape")
-    free = hub_of(case, motion)[1].free
+    case = read_scenario(scenario, output.overrides)
+    if isinstance(case, SystemCase):
+        free = driven_joint(case, joint)[1].free
+    else:
+        case = case.one_beam("bodies", "gbeam shape")
+        free = hub_of(case, motion)[1].free
     bound = given("--limit", limit, "torque" if free else "angular acceleration")
     with Watch() as watch:
         answer = compute(
@@ -195,6 +207,8 @@ def shape(
             robust=number("--robust", robust, "ratio"),
             check=check or "",
             motion=motion,
+            joint=joint,
+            point=point,
             progress=watch,
         )
 
