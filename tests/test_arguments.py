@@ -242,7 +242,7 @@ class Given:
                 },
             ),
             "modal_truncation": ((self.system, 1), {}),
-            "modes": ((self.structure, self.hub, 0.0), {"gyroscopic": True, "name": "hub"}),
+            "modes": ((self.structure, self.hub, 0.0), {"gyroscopic": True, "errors": False, "name": "hub"}),
             "nonlinear_system": ((self.structure, self.free_hub), {"gauges": [gb.Gauge(0.1, z=0.002)]}),
             "optimise": (
                 (self.fast, "flight.tip.z", ["beam.section.width"]),

@@ -220,7 +220,8 @@ def modes(
     from gbeam.analysis.steady import modal
 
     name, time = motion_of(case.environments, motion), _time(case, at)
-    return modal.modes(_structure(case, needs), prepared(case, name), time, gyroscopic=gyroscopic, name=name)
+    options: dict[str, Any] = {"gyroscopic": gyroscopic, "errors": needs.errors, "name": name}
+    return modal.modes(_structure(case, needs), prepared(case, name), time, **options)
 
 
 @question(

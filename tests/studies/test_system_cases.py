@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
+from gbeam.questions import QUESTIONS, Needs
 
 SATELLITE = "examples/satellite_two_panels.toml"
 SHORT = ["response.duration=0.5 s", "response.step=5 ms", "response.estimate=false"]
@@ -83,3 +84,14 @@ def test_a_fit_finds_what_was_measured(modal: bool, tmp_path: Path) -> None:
     np.savetxt(data, table, delimiter=",", header=head, comments="")
     fit = gb.fit(gb.read_scenario(SATELLITE, SHORT), data, [path])
     assert fit.values[0] == pytest.approx(true, rel=1e-4) and fit.before[0] == 100.0
+
+
+def test_errors_that_no_figure_needs_are_not_computed() -> None:
+    case = made()
+    judged, plain = (QUESTIONS["modes"].answer(case, needs=Needs(errors=each)) for each in (True, False))
+    np.testing.assert_array_equal(judged.frequency, plain.frequency)
+    assert np.isfinite(judged.error_estimate).all() and np.isnan(plain.error_estimate).all()
+    beam = gb.read_scenario(
+        "examples/hubbeam2009_slew_2p8.toml", ["model.modes={ axial = 1, y = 2, z = 0 }"]
+    ).assemble()
+    assert gb.modes(beam, errors=False).errors is None and gb.modes(beam).errors is not None

@@ -81,11 +81,23 @@ def _largest(shape: Complex) -> Complex:
 
 @overload
 def modes(
-    structure: System, motion: Motion | None = None, time: float = 0.0, *, gyroscopic: bool = True, name: str = ""
+    structure: System,
+    motion: Motion | None = None,
+    time: float = 0.0,
+    *,
+    gyroscopic: bool = True,
+    errors: bool = True,
+    name: str = "",
 ) -> SystemModes: ...
 @overload
 def modes(
-    structure: Structure, motion: Motion | None = None, time: float = 0.0, *, gyroscopic: bool = True, name: str = ""
+    structure: Structure,
+    motion: Motion | None = None,
+    time: float = 0.0,
+    *,
+    gyroscopic: bool = True,
+    errors: bool = True,
+    name: str = "",
 ) -> Modes: ...
 @typed
 def modes(
@@ -94,6 +106,7 @@ def modes(
     time: float = 0.0,
     *,
     gyroscopic: bool = True,
+    errors: bool = True,
     name: str = "",
 ) -> Modes | SystemModes:
     """Small vibrations of a beam about its relative equilibrium on a base frozen at a time, or of a system of bodies.
@@ -110,6 +123,8 @@ def modes(
         s.
     gyroscopic : bool
         Whether to keep Coriolis coupling.
+    errors : bool
+        Whether to estimate the errors of the frequencies, which takes most of the time.
     name : str
         For the result.
 
@@ -134,15 +149,15 @@ def modes(
         state = steady(structure, Drive(motion, time))
         moving = state.vibrations(gyroscopic=gyroscopic)
         of_system = system_modes(state, moving, time, name)
-        if not judgeable(structure):
+        if not (errors and judgeable(structure)):
             return of_system
         judged = Richer(state).errors(state, moving.value, moving.modes.T, gyroscopic=gyroscopic)
         return replace(of_system, errors=judged, warnings=of_system.warnings + doubtful(judged))
     point = operating_point(structure, motion, time)
     warnings = input_warnings(structure, motion, name=name, span=(time, time), base=point.base)
     computed = modes_at(structure, point, gyroscopic=gyroscopic, name=name, time=time)
-    errors = None
-    if judgeable(structure):
-        errors = Richer(point).errors(point, computed.eigenvalue, computed.coordinates, gyroscopic=gyroscopic)
-        warnings += doubtful(errors)
-    return replace(computed, errors=errors, warnings=warnings, **drawn(structure))
+    stated = None
+    if errors and judgeable(structure):
+        stated = Richer(point).errors(point, computed.eigenvalue, computed.coordinates, gyroscopic=gyroscopic)
+        warnings += doubtful(stated)
+    return replace(computed, errors=stated, warnings=warnings, **drawn(structure))
