@@ -13,6 +13,7 @@ MODULES: tuple[str, ...] = (
     "codes.hermite",
     "codes.calculix",
     "codes.calculix_solid",
+    "codes.calculix_specimens",
     "codes.exudyn_plane",
     "codes.exudyn_space",
     "codes.exudyn_trees",

@@ -292,6 +292,15 @@ def test_an_external_superelement_has_the_frequencies_of_its_f06() -> None:
     np.testing.assert_allclose(model.rest[0][:6] / (2 * np.pi), printed, rtol=5e-7)
 
 
+def test_an_op2_file_has_the_eigenvalues_of_its_f06() -> None:
+    """The modal stiffness in NX Nastran's assemble.op2, and the cycles that assemble.out prints for modes 7 to 12."""
+    stiffness = gb.read_matrix(nastran_file("assemble.op2"), "KHH")
+    stiffness = stiffness.toarray() if sparse.issparse(stiffness) else stiffness
+    printed = [1.698800, 1.767487, 1.857720, 3.419612, 7.024210, 7.025409]
+    np.testing.assert_allclose(np.sqrt(np.diag(stiffness)[6:12]) / (2 * np.pi), printed, rtol=5e-7)
+    assert not (stiffness - np.diag(np.diag(stiffness))).any()
+
+
 def test_op4_is_read_in_every_form(tmp_path: Path) -> None:
     op4 = pytest.importorskip("pyyeti.nastran.op4")
     matrix = reduced().stiffness

@@ -14,9 +14,10 @@ import re
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -44,6 +45,16 @@ SPIN_UP = gb.SmoothStep(level=5.0, duration=0.05)
 def solid() -> gb.SolidMesh:
     """The bracket with its camera."""
     return gb.SolidMesh.read(example.mesh(), materials=example.MATERIALS, clamp="screwed", unit="mm")
+
+
+class Specimen(NamedTuple):
+    """A mesh of hexahedra of 20 nodes and its materials by name."""
+
+    mesh: Callable[[], gb.SolidMesh]
+    materials: Mapping[str, gb.Material]
+
+
+BRACKET = Specimen(solid, example.MATERIALS)
 
 
 @cache
@@ -139,45 +150,50 @@ def moved(tip: int, time: np.ndarray, loads: list[tuple[str, np.ndarray]], force
     return np.stack([np.interp(time, rows[:, 0], each) for each in rows[:, 1:].T], axis=1)
 
 
-def static(load: str) -> tuple[np.ndarray, float]:
+def static(load: str, specimen: Specimen = BRACKET) -> tuple[np.ndarray, float]:
     """Displacements (k, 3) of the nodes, m, and the largest von Mises stress at the points of the elements, Pa."""
-    steps = f"*STEP\n*STATIC\n*DLOAD\n{load}\n*NODE PRINT, NSET=NALL\nU\n*EL PRINT, ELSET=EALL\nS\n*END STEP\n"
-    moved, _, stress = run(steps, "dat").partition(" stresses ")
+    steps = f"*STEP\n*STATIC\n*DLOAD\n{load}\n*NODE PRINT, NSET=NALL\nU\n*EL PRINT, ELSET=SOLID\nS\n*END STEP\n"
+    moved, _, stress = run(steps, "dat", specimen).partition(" stresses ")
     rows = np.array([line.split() for line in moved.splitlines() if re.match(r" +\d+ +[-\d]", line)], dtype=float)
     points = np.array([line.split()[2:] for line in stress.splitlines() if re.match(r" +\d+ +\d+ ", line)], dtype=float)
     return rows[:, 1:], float(von_mises(points[:, [0, 1, 2, 5, 4, 3]]).max())  # xy, xz, yz there
 
 
-def frequencies(rate: float) -> np.ndarray:
+def frequencies(rate: float, specimen: Specimen = BRACKET, radius: float = RADIUS) -> np.ndarray:
     """Natural frequencies at rest or about the stress of a spin, Hz."""
     steps = ""
     if rate:
-        spin = f"EALL, CENTRIF, {rate**2}, {-RADIUS}, 0., 0., 0., 0., 1."
+        spin = f"EALL, CENTRIF, {rate**2}, {-radius}, 0., 0., 0., 0., 1."
         steps = f"*STEP, NLGEOM\n*STATIC\n1., 1.\n*DLOAD\n{spin}\n*END STEP\n"
     steps += f"*STEP{', PERTURBATION' if rate else ''}\n*FREQUENCY\n{COUNT}\n*END STEP\n"
     value = r"([-+]?\d\.\d+E[-+]\d+)"
-    table = re.split(r"E I G E N V A L U E   O U T P U T", run(steps, "dat"))[1]
+    table = re.split(r"E I G E N V A L U E   O U T P U T", run(steps, "dat", specimen))[1]
     found = re.findall(rf"^ +\d+ +{value} +{value} +{value} +{value}$", table, re.MULTILINE)
     return np.array([row[2] for row in found], dtype=float)
 
 
-def run(steps: str, kind: str) -> str:
+def run(steps: str, kind: str, specimen: Specimen = BRACKET) -> str:
     """Run ccx in a folder of its own, and return what it wrote."""
-    mesh = solid()
+    mesh = specimen.mesh()
     lines = ["*NODE, NSET=NALL"]
     lines += [f"{i}, {x:.12g}, {y:.12g}, {z:.12g}" for i, (x, y, z) in enumerate(mesh.points, 1)]
     number = 1
     for block in mesh.blocks:
-        lines.append(f"*ELEMENT, TYPE=C3D20, ELSET={block.material.upper()}")
+        lines.append(f"*ELEMENT, TYPE=C3D20, ELSET={block.material.upper() or 'ALONE'}")
         for nodes in block.nodes + 1:
             lines += [", ".join(map(str, [number, *nodes[:10]])) + ",", ", ".join(map(str, nodes[10:]))]
             number += 1
-    lines += ["*ELSET, ELSET=EALL", *(block.material.upper() for block in mesh.blocks)]
+    kinds = {name.upper() or "ALONE": metal for name, metal in specimen.materials.items()}
+    lines += ["*ELSET, ELSET=SOLID", *kinds, "*ELSET, ELSET=EALL", "SOLID"]
+    for node in np.flatnonzero(mesh.point_masses):
+        name = f"M{node}"
+        lines += [f"*ELEMENT, TYPE=MASS, ELSET={name}", f"{number}, {node + 1}"]
+        lines += [f"*MASS, ELSET={name}", f"{mesh.point_masses[node]:.12g}", "*ELSET, ELSET=EALL", name]
+        number += 1
     lines += ["*NSET, NSET=FOOT", *(f"{i}" for i in np.flatnonzero(mesh.clamped) + 1), "*BOUNDARY", "FOOT, 1, 3"]
-    for name, metal in example.MATERIALS.items():
-        lines += [f"*MATERIAL, NAME={name.upper()}", "*ELASTIC", f"{metal.youngs_modulus}, {metal.poissons_ratio}"]
-        lines += ["*DENSITY", f"{metal.density}"]
-        lines.append(f"*SOLID SECTION, ELSET={name.upper()}, MATERIAL={name.upper()}")
+    for name, metal in kinds.items():
+        lines += [f"*MATERIAL, NAME={name}", "*ELASTIC", f"{metal.youngs_modulus}, {metal.poissons_ratio}"]
+        lines += ["*DENSITY", f"{metal.density}", f"*SOLID SECTION, ELSET={name}, MATERIAL={name}"]
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "solid.inp").write_text("\n".join(lines) + "\n" + steps, encoding="ascii")
         environment = os.environ | {"OMP_NUM_THREADS": "1"}
