@@ -127,7 +127,7 @@ def test_a_run_of_a_system_that_is_not_accepted_fails(tmp_path: Path, capsys: py
     assert main(["run", str(file), *short]) == 1
     printed = capsys.readouterr()
     assert "motion.centrifuge not accepted: damage" in printed.err and "not accepted: tip" in printed.out
-    assert "from standstill to standstill" in printed.out
+    assert "from standstill to standstill" in printed.out and "the tip is strip.tip" in printed.out
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     assert "Verdict" in page and "not accepted" in page
     assert main(["run", str(file), *short, "--set", "motion.centrifuge.accept.damage=5"]) == 0

@@ -188,7 +188,7 @@ def compare(
     >>> print(f"{comparison.relative[2]:.2%}")
     0.26%
     """
-    limits = checked_limits(accept)
+    limits, chosen = checked_limits(accept), ""
     if isinstance(flight, SystemResponse) and isinstance(centrifuge, SystemResponse):
         chosen = flight.points[int(flight.largest.argmax())] if point is None else point
         flight, centrifuge = specimen_of(flight, chosen), specimen_of(centrifuge, chosen)
@@ -256,6 +256,7 @@ def compare(
         margins_of_materials=_of_materials(flight, centrifuge),
         whole=whole,
         kept_every=centrifuge.kept_every,
+        point=chosen,
     )  # fmt: skip
 
 

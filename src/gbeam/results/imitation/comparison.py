@@ -99,6 +99,9 @@ class Comparison(Judged, Figured):
         "s", name=None, key=None, default=None,
     )  # fmt: skip
     kept_every: int = fact("how many samples of the histories make one in a file", name=None, key=None, default=1)
+    point: str = fact(
+        "point of a system whose displacement is that of the tip", name=None, note="empty of one specimen", default=""
+    )
 
     @declared("", "share of the times that are compared", role="fact", name=None, key="covered")
     def covered_share(self) -> float:
