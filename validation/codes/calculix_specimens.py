@@ -1,7 +1,7 @@
 """Three more solids in CalculiX and in gbeam on the same mesh, hexahedra of 20 nodes: the board of examples/board.py on
-its screws, with its components as masses of their nodes, a sector of a steel disc clamped at its bore, and a strip. Each
-under 1 g along every axis, ten modes at rest, and ten in a spin about an axis along z, the root on its radius: CalculiX's
-after a static step with large deformations, gbeam's by coefficients of first order in the load.
+its screws, with its components as masses of their nodes, a sector of a steel disc clamped at its bore, and a strip.
+Under 1 g along every axis, ten modes at rest, and ten in a spin about an axis along z, the root on its radius:
+CalculiX's after a static step with large deformations, gbeam's by coefficients of first order in the load.
 """
 
 from __future__ import annotations

@@ -118,8 +118,7 @@ def fit(
         measurement.instrumented, progress,
     )  # fmt: skip
     solutions = searched(parameters, limits, starts, lambda x: _search(model, measurement, parameters, x, limits))
-    # Of noise that is not known, the likelihood is a product of the weights.
-    best = max(solutions, key=lambda each: float(np.log(each.weights).sum()))
+    best = max(solutions, key=lambda each: each.likelihood)
     solution = replace(best, before=solutions[0].before)
     described = _described(model, measurement, parameters, limits, solution)
     agreed = agreeing([each.values for each in solutions], solution.values, limits)
@@ -221,6 +220,7 @@ class Solution:
     values: Floats
     weights: Floats
     jacobian: Floats
+    likelihood: float
 
 
 def _search(
@@ -257,7 +257,10 @@ def _search(
         weights = new
         if change.max() <= (1 + _SETTLED) * change.min():
             break
-    return Solution(before, x * scale, weights, model.slopes(x * scale) * weights[:, None])
+    misfit = (model(x * scale) - measured) * weights
+    # Of noise that is found from the residuals the last part is the same for all; of too few data the first is.
+    likelihood = float(np.log(weights).sum() - (misfit @ misfit) / 2)
+    return Solution(before, x * scale, weights, model.slopes(x * scale) * weights[:, None], likelihood)
 
 
 def tell_apart(jacobian: Floats, parameters: Sequence[PhysicalValue]) -> float:
