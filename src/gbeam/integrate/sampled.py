@@ -15,6 +15,7 @@ import numpy as np
 from gbeam.integrate.derivatives import accelerations, slopes, solved
 from gbeam.integrate.equations import NonlinearEquations
 from gbeam.integrate.steps import Steps
+from gbeam.numerics.series import STEP
 
 Array = Any
 NEAR = 1e-6  # of a step: nearer to its beginning a sample is taken there
@@ -95,12 +96,9 @@ class Sampling:
 
     def onto(self, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
         """Derivatives (t, n, m) of the residual with respect to what is commanded, at states and inputs (t, ...)."""
-        base = self.residual(q, qd, qdd, inputs)
-        held = np.zeros((len(q), self.count))
-        columns = []
-        for unit in np.eye(self.count):
-            columns.append(self.residual(q, qd, qdd, self.controllers.driven(inputs, held + unit)) - base)
-        return np.stack(columns, axis=-1)
+        units = np.broadcast_to(1j * STEP * np.eye(self.count)[:, None], (self.count, len(q), self.count))
+        values = self.residual(q, qd, qdd, self.controllers.driven(inputs, units))
+        return np.moveaxis(values.imag, 0, -1) / STEP
 
     def measured(self, c: int, at: Array, q: Array, qd: Array, held: Array) -> Array:
         """Measurements (t, k) of a controller at beginnings `at` (t,) of steps, by states and commands before."""
@@ -164,12 +162,10 @@ class Held:
             for c, at in enumerate(self.samples)
         ]
 
-    def push(self, inverse: Array, t: Any, stages: tuple[Array, Array, Array], inputs: Any) -> None:
-        """Find how a step answers to its commands: J⁻¹ of their derivatives (t, s n, m)."""
-        count = len(self.u)
-        onto = self.sampling.onto(*stages, inputs)
+    def push(self, inverse: Array, t: Any, onto: Array) -> None:
+        """Find how a step answers to its commands, J⁻¹ of their derivatives (t s, n, m)."""
+        count, n = len(self.u), onto.shape[1]
         self.answer = inverse @ onto.reshape(count, -1, onto.shape[-1])
-        n = onto.shape[1]
         through = t.d @ self.answer.reshape(count, -1, n * onto.shape[-1])
         self.step = -through.reshape(count, -1, onto.shape[-1])
 

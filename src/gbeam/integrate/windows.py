@@ -197,18 +197,19 @@ class _Window:
 
     def _differentiate(self, *, alone: bool = False) -> None:
         """Find K, C and M at some stages, and between these; at the first `alone`."""
-        count, stages, n = self.x.shape
-        samples = 1 if alone else 1 + math.ceil((count * stages - 1) / (1 if count == 1 else self.apart))
-        at = np.linspace(0, count * stages - 1, samples).round().astype(int)
-        inputs = each_leaf(lambda leaf: leaf[at], self.inputs)
-        q, qd, qdd = (each[at] for each in self._stages())
-        slope: Any = slopes(self.residual, q, qd, qdd, inputs)
-        if samples > 1:
-            every = np.arange(count * stages)
-            slope = tuple(_interpolated(at, each, every).reshape(count, stages, n, n) for each in slope)
-        else:
-            slope = tuple(each[None] for each in slope)
-        self.slope = slope
+        n = self.x.shape[-1]
+        slope = self._between(lambda *state: np.stack(slopes(self.residual, *state), axis=1), alone=alone)
+        self.slope = tuple(np.moveaxis(slope.reshape(*(self.x.shape[:2] if len(slope) > 1 else (1, 1)), 3, n, n), 2, 0))
+
+    def _between(self, function: Any, *, alone: bool = False) -> Array:
+        """Values (t s or 1, ...) of a function of states and inputs at some stages, and between these; at the first
+        `alone`.
+        """
+        count = self.x.shape[0] * self.x.shape[1]
+        samples = 1 if alone else 1 + math.ceil((count - 1) / (1 if len(self.x) == 1 else self.apart))
+        at = np.linspace(0, count - 1, samples).round().astype(int)
+        values = function(*(each[at] for each in self._stages()), each_leaf(lambda leaf: leaf[at], self.inputs))
+        return _interpolated(at, values, np.arange(count)) if samples > 1 else values
 
     def _maps(self) -> tuple[Array, Array, Array]:
         """Inverse J⁻¹ (t, s n, s n) of steps, J⁻¹ L (t, s n, m n), and maps of δz over the steps, (t, m n, m n)."""
@@ -223,7 +224,7 @@ class _Window:
         self.noise = _largest(ULP * _products(np.abs(inverse), forces.reshape(-1, stages * n)))
         step = (t.g[:, :, None, :, None] * np.eye(n)[:, None, :]).reshape(-1, states * n, states * n)
         if self.held is not None:
-            self.held.push(inverse, t, self._stages(), self.inputs)
+            self.held.push(inverse, t, self._between(self.held.sampling.onto))
         through = t.d @ answer.reshape(-1, stages, n * states * n)
         return inverse, answer, step - through.reshape(-1, states * n, states * n)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields, replace
+from functools import cached_property
 from itertools import accumulate
 from typing import Any
 
@@ -105,26 +106,40 @@ class Force:
 
 class State:
     """The motion of the frames of a tree at coordinates and rates, all of them, prescribed ones too: of each body's
-    root, and of its points once they are asked for.
+    root and of its points, once they are asked for.
     """
 
     def __init__(self, tree: Tree, y: Array, yd: Array, ydd: Array, ground: Frame) -> None:
-        xp, shape = namespace(y, ground.a), np.broadcast_shapes(y.shape[:-1], yd.shape[:-1], ydd.shape[:-1])
-        R, *vectors = ground.R, ground.p, ground.v, ground.w, ground.a, ground.alpha
-        ground = Frame(xp.broadcast_to(R, (*shape, 3, 3)), *(xp.broadcast_to(each, (*shape, 3)) for each in vectors))
-        self.links, self._relative, self._points = tree.links, dict[int, list[Any]](), dict[int, list[Frame]]()
+        self.shape = np.broadcast_shapes(y.shape[:-1], yd.shape[:-1], ydd.shape[:-1])
+        self.links, self._ground = tree.links, ground
+        self._moved, self._relative = dict[int, tuple[list[Any], Frame]](), dict[int, list[Any]]()
+        self._points = dict[int, list[Frame]]()
         self.q, self.qd, self.qdd = (tree.parted(each) for each in (y, yd, ydd))
-        self.roots: list[Frame] = []
-        self.steps: list[Any] = []  # of each body: the motion of each step of its joint
-        for k, link in enumerate(tree.links):
-            frame = ground if link.parent < 0 else self.points_of(link.parent)[link.on]
-            steps = []
-            *joint, _ = zip(self.q[k], self.qd[k], self.qdd[k], strict=True)
+
+    @cached_property
+    def ground(self) -> Frame:
+        """Motion of the ground at all states."""
+        xp, of = namespace(*self.q[0], self._ground.a), self._ground
+        R = None if of.R is None else xp.broadcast_to(of.R, (*self.shape, 3, 3))
+        vectors = of.p, of.v, of.w, of.a, of.alpha
+        return Frame(R, *(None if each is None else xp.broadcast_to(each, (*self.shape, 3)) for each in vectors))
+
+    def moved(self, body: int) -> tuple[list[Any], Frame]:
+        """Motions of the steps of a body's joint, and that of its root."""
+        if body not in self._moved:
+            link, steps = self.links[body], list[Any]()
+            frame = self.ground if link.parent < 0 else self.points_of(link.parent)[link.on]
+            *joint, _ = zip(self.q[body], self.qd[body], self.qdd[body], strict=True)
             for step, coordinates in zip(link.steps, joint, strict=True):
                 steps.append(step.motion(*coordinates))
                 frame = frame.carried(steps[-1])
-            self.steps.append(steps)
-            self.roots.append(frame)
+            self._moved[body] = steps, frame
+        return self._moved[body]
+
+    @property
+    def roots(self) -> list[Frame]:
+        """Motions of the roots of all bodies."""
+        return [self.moved(body)[1] for body in range(len(self.links))]
 
     def relative(self, body: int) -> list[Any]:
         """Motions of a body's points in its root's axes."""
@@ -136,7 +151,7 @@ class State:
     def points_of(self, body: int) -> list[Frame]:
         """Motions of a body's points, its root the last."""
         if body not in self._points:
-            root = self.roots[body]
+            _, root = self.moved(body)
             self._points[body] = [*(root.carried(by) for by in self.relative(body)), root]
         return self._points[body]
 
@@ -187,6 +202,9 @@ class Tree:
 
     def __call__(self, y: Array, yd: Array, ydd: Array, inputs: Inputs) -> Array:
         """Residual (..., n) of the unknown coordinates; zero where the equations hold."""
+        if all(force.follower for force in self.forces):  # nothing asks where the frames are
+            ground = replace(inputs.ground, R=None, p=None, v=None)
+            inputs = replace(inputs, ground=ground)
         return self.rows(y, yd, ydd, inputs)[0][..., self.free]
 
     def rows(self, y: Array, yd: Array, ydd: Array, inputs: Inputs) -> tuple[Array, Wrench]:
@@ -215,7 +233,7 @@ class Tree:
         rows: list[Array] = []
         ground = Wrench(xp.zeros(3), xp.zeros(3))
         for k in reversed(range(len(self.links))):
-            link, root = self.links[k], state.roots[k]
+            link, (steps, root) = self.links[k], state.moved(k)
             *joint, body = zip(state.q[k], state.qd[k], state.qdd[k], strict=True)
             along, wrench = link.body.demanded(*body, root, inputs.loads[k])
             if on_points[k]:
@@ -223,7 +241,7 @@ class Tree:
             wrench = sum((each.wrench.brought(each.by) for each in on_points[k]), start=wrench)
             wrench = sum(on_roots[k], start=wrench)
             of_joint: list[Array] = []
-            for step, by, coordinates in reversed(list(zip(link.steps, state.steps[k], joint, strict=True))):
+            for step, by, coordinates in reversed(list(zip(link.steps, steps, joint, strict=True))):
                 of_joint.insert(0, step.rows(*coordinates, wrench))
                 wrench = wrench.brought(by)
             if of_joint:
@@ -245,7 +263,7 @@ class Tree:
         state = self.motion(y, yd, 0 * yd, inputs)
         force = moment = kinetic = elastic = weight = 0.0
         for k, link in enumerate(self.links):
-            q, qd, root = state.q[k], state.qd[k], state.roots[k]
+            q, qd, (_, root) = state.q[k], state.qd[k], state.moved(k)
             energy, momentum = link.body.moving(q[-1], qd[-1], root)
             push, spin = turned(root.R, momentum.force), turned(root.R, momentum.moment)
             force, moment = force + push, moment + spin + cross(root.p, push)

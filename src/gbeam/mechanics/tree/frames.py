@@ -28,12 +28,12 @@ def cross(left: Array, right: Array) -> Array:
 
 def turned(R: Array, v: Array) -> Array:
     """R v of matrices (..., 3, 3) and vectors (..., 3)."""
-    return (R @ v[..., None])[..., 0]
+    return v @ R.T if R.ndim == 2 else (R @ v[..., None])[..., 0]
 
 
 def turned_back(R: Array, v: Array) -> Array:
     """Rᵀ v."""
-    return (v[..., None, :] @ R)[..., 0, :]
+    return v @ R if R.ndim == 2 else (v[..., None, :] @ R)[..., 0, :]
 
 
 def product(left: Array, right: Array) -> Array:
@@ -58,7 +58,8 @@ class Relative:
 @record
 class Frame:
     """Motion of a frame: R_WF (..., 3, 3), its origin in the world (..., 3) m, world axes; velocity, angular velocity,
-    acceleration (specific force where gravity acts) and angular acceleration (..., 3), its own axes.
+    acceleration (specific force where gravity acts) and angular acceleration (..., 3), its own axes. R, p and v are
+    None where only forces are asked for.
     """
 
     R: Array
@@ -70,17 +71,20 @@ class Frame:
 
     def carried(self, by: Relative) -> Frame:
         """Motion of a frame that moves relative to this one."""
-        v = self.v + cross(self.w, by.r)
-        a = self.a + cross(self.alpha, by.r) + cross(self.w, cross(self.w, by.r))
+        swept = cross(self.w, by.r)
+        a = self.a + cross(self.alpha, by.r) + cross(self.w, swept)
         if by.rd is not None:
-            v, a = v + by.rd, a + 2 * cross(self.w, by.rd) + by.rdd
-        p = self.p + turned(self.R, by.r)
-        if by.R is None:
-            return Frame(self.R, p, v, self.w, a, self.alpha)
-        w, alpha, v, a = (turned_back(by.R, each) for each in (self.w, self.alpha, v, a))
+            a = a + 2 * cross(self.w, by.rd) + by.rdd
+        R, p, v, w, alpha = self.R, self.p, self.v, self.w, self.alpha
+        if R is not None:
+            p, v = p + turned(R, by.r), v + swept if by.rd is None else v + swept + by.rd
+        if by.R is not None:
+            w, alpha, a = (turned_back(by.R, each) for each in (w, alpha, a))
+            if R is not None:
+                R, v = product(R, by.R), turned_back(by.R, v)
         if by.w is not None:
             w, alpha = w + by.w, alpha + by.alpha + cross(w, by.w)
-        return Frame(product(self.R, by.R), p, v, w, a, alpha)
+        return Frame(R, p, v, w, a, alpha)
 
 
 @record

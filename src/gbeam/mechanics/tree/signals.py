@@ -56,9 +56,7 @@ def signals_of(system: System) -> dict[str, str]:
 
 def measurements(system: System, tree: Any, y: Array, yd: Array, ydd: Array, inputs: Any, wanted: Sequence[str]) -> Any:
     """Values (..., k) of what is measured, at unknown coordinates of the tree or of one local to it."""
-    xp, state = namespace(y, inputs.ground.a), tree.motion(y, yd, ydd, inputs)
-    shape = state.roots[0].p.shape[:-1]  # joints' coordinates may have fewer leading axes than the rates
-    columns = []
+    xp, state, columns = namespace(y, inputs.ground.a), tree.motion(y, yd, ydd, inputs), []
     for each in wanted:
         owner, _, kind = each.rpartition(".")
         if owner in system.joints:
@@ -67,7 +65,7 @@ def measurements(system: System, tree: Any, y: Array, yd: Array, ydd: Array, inp
             parts = (state.qd if rate else state.q)[body][:-1]
             names = system.joints[owner].coordinates
             k = names.index(kind.removesuffix("_rate"))
-            columns.append(xp.broadcast_to(xp.concatenate(parts, axis=-1)[..., k], shape))
+            columns.append(xp.broadcast_to(xp.concatenate(parts, axis=-1)[..., k], state.shape))
         else:
             of, point = system.point("outputs", owner)
             frame = state.points_of(system.order.index(of))[point]

@@ -180,16 +180,20 @@ def continuous(e: Array) -> Array:
     return e * xp.cumprod(xp.concatenate([xp.ones_like(turn[:1]), turn]), axis=0)[..., None] if len(e) > 1 else e
 
 
-def functions_of_angle(s: Array) -> tuple[Array, ...]:
-    """sin θ/θ, (1 − cos θ)/θ², (θ − sin θ)/θ³ of s = θ², and the derivatives of the last two with respect to s."""
+def functions_of_angle(s: Array, *, plane: bool = False) -> tuple[Array, ...]:
+    """sin θ/θ, (1 − cos θ)/θ² and, unless in a `plane`, (θ − sin θ)/θ³ of s = θ² and the derivatives of the last two
+    with respect to s.
+    """
     xp = namespace(s)
     small = s < SMALL
     safe = xp.where(small, 1.0, s)
     angle = xp.sqrt(safe)
     a, b = xp.sin(angle) / angle, (1 - xp.cos(angle)) / safe
-    c = (1 - a) / safe
     near = 1 - s / 6 * (1 - s / 20 * (1 - s / 42 * (1 - s / 72 * (1 - s / 110))))
     b_near = 0.5 - s / 24 * (1 - s / 30 * (1 - s / 56 * (1 - s / 90 * (1 - s / 132))))
+    if plane:
+        return xp.where(small, near, a), xp.where(small, b_near, b)
+    c = (1 - a) / safe
     c_near = (1 - s / 20 * (1 - s / 42 * (1 - s / 72 * (1 - s / 110 * (1 - s / 156))))) / 6
     b_slope = -1 / 24 * (1 - s / 15 * (1 - 3 * s / 112 * (1 - 2 * s / 135 * (1 - 5 * s / 528))))
     c_slope = -1 / 120 * (1 - s / 21 * (1 - s / 48 * (1 - 2 * s / 165 * (1 - 5 * s / 624))))
@@ -204,7 +208,7 @@ def rotation_by_vector(phi: Array, rate: Array, change: Array, *, plane: bool) -
     """
     xp = namespace(phi)
     s = (phi * phi).sum(axis=-1)
-    a, b, c, of_b, of_c = (each[..., None] for each in functions_of_angle(s))
+    a, b, *more = (each[..., None] for each in functions_of_angle(s, plane=plane))
     x, y, z = (phi[..., i] for i in range(3))
     zero = xp.zeros_like(x)
     skew = xp.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1).reshape(*phi.shape, 3)
@@ -212,6 +216,7 @@ def rotation_by_vector(phi: Array, rate: Array, change: Array, *, plane: bool) -
     R = xp.eye(3) + a[..., None] * skew + b[..., None] * square
     if plane:
         return R, rate, change
+    c, of_b, of_c = more
     once, onto = cross(phi, rate), cross(phi, cross(phi, rate))
     growth = 2 * (phi * rate).sum(axis=-1, keepdims=True)
     w = rate - b * once + c * onto
