@@ -75,15 +75,17 @@ def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, 
                 failed = np.full((1, z.shape[-1]), np.nan)
                 yield failed, failed, failed, np.array([False])
                 return
+            # What is near goes on, in a shorter window than this one.
+            going = near > count + LEAST and near - count < len(part)
             if count == len(part):
                 size = min(size + size // 2 + 1, MOST if times else LONGEST) if times <= FEW else size
-            elif count and near > count + LEAST:
+            elif going:
                 size = near - count
             else:
                 size = max(count, len(part) // 2)
             if count:
                 start = window.z[count], window.x[count - 1, -1], window.slope_at(count - 1)
-            z, x, slope = window.behind(count, near) if count and near > count + LEAST else start
+            z, x, slope = window.behind(count, near) if going else start
             if not count:
                 continue
             q, qd, qdd = window.ended(count)
@@ -143,7 +145,7 @@ class _Window:
             good, fresh = _converged(size, before, self.x, self.noise, stalls=fresh), False
             moved = size / _reach(self.x)
             largest = moved.max()
-            if good.all() or not np.isfinite(size[0]) or (largest > MOVED and times > FEW and count > 1):
+            if good.all() or not np.isfinite(size[0]) or (not largest <= MOVED and times > FEW and count > 1):
                 break
             if largest > MOVED or not largest <= SLOW * last:
                 if times and largest <= MOVED:
