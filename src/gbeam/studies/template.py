@@ -23,7 +23,7 @@ from gbeam.guards.units import UnitError, argument
 from gbeam.mechanics.assembly import assemble
 from gbeam.mechanics.models import Model
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.joints import SLIDES, Joint
+from gbeam.mechanics.tree.joints import COUPLINGS, SLIDES, Joint
 from gbeam.mechanics.tree.system import RigidBody, System
 from gbeam.printable import advise
 from gbeam.results.provenance import Provenance
@@ -33,7 +33,6 @@ from gbeam.scenario.origin import provenance
 from gbeam.scenario.schema import Centrifuge
 from gbeam.scenario.schema.fields import kind_of, quantities
 from gbeam.scenario.schema.scenario import Sweep as SweepTable
-from gbeam.scenario.schema.system import COUPLINGS
 from gbeam.scenario.values import Distribution, Path, parse_path, path_text
 from gbeam.structure.beam import Beam
 

@@ -25,6 +25,7 @@ _EYE = np.eye(3)
 _EASY = ("stiffness", "ease", "damping", "friction", "stop_stiffness")
 DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")
 SLIDES = ("displacement", "x", "y", "z")  # coordinates in m; others are angles
+COUPLINGS = ("rotational stiffness", "force", "stiffness")  # of two coordinates, by how many are displacements
 
 
 class Kind(NamedTuple):

@@ -16,7 +16,7 @@ from pydantic import AfterValidator, ConfigDict, Discriminator, Field, StrictBoo
 from pydantic_core import PydanticCustomError
 
 from gbeam.guards.limits import ENTRIES, NAME
-from gbeam.mechanics.tree.joints import GROUND, KINDS, SLIDES, Kind
+from gbeam.mechanics.tree.joints import COUPLINGS, GROUND, KINDS, SLIDES, Kind
 from gbeam.printable import shortened
 from gbeam.scenario.schema.beam import Beam, Vector
 from gbeam.scenario.schema.control import Controller
@@ -128,7 +128,6 @@ def _quantities(slide: str, turn: str) -> _Of:
 
 _LENGTHS = _Of(Offset, Angle)
 _STIFFNESSES = _quantities("stiffness", "rotational stiffness")
-COUPLINGS = ("rotational stiffness", "force", "stiffness")  # of two coordinates, by how many are displacements
 # Of every key about coordinates: its types, what it is, and whether it is of rates.
 _ABOUT: dict[str, tuple[_Of, str, bool]] = {
     "initial": (_LENGTHS, "coordinate at the start", False),
