@@ -48,8 +48,9 @@ def shape_hub_command(
     overrides: Sequence[str] = (),
     progress: Progress = None,
 ) -> ShapedCommand:
-    """Find the command of a scenario's hub, or of a joint of its system, that leaves the least vibration: see
-    :func:`gbeam.shape_command`.
+    """Find the command of a scenario's hub, or of a joint of its system, that leaves the least vibration.
+
+    It is that of :func:`gbeam.shape_command`.
 
     Parameters
     ----------
