@@ -39,7 +39,8 @@ SLOW, FAST = 0.3, 0.01  # of the last correction: where one is larger, derivativ
 QUICKEST, STALLED = 0.01, 0.9  # factors of corrections: none is thought to be smaller, and where they do not shrink
 LEAST = 4  # steps behind those that have converged, which go on with what they have: at least
 TOLERANCE, ROUNDING = 1e-9, 1e-6  # of the largest acceleration: error left by the last correction, and where it stalls
-ULP, TINY = float(np.finfo(float).eps), float(np.finfo(float).tiny)
+TINY = float(np.finfo(float).tiny)
+CANCELLED = 100 * float(np.finfo(float).eps)  # of the forces at a coordinate, each a sum of many: their rounding
 EARLIER = 0.01  # of the largest acceleration before a step, whose own may all vanish: to be told from none
 
 
@@ -223,7 +224,7 @@ class _Window:
         # Of forces that cancel something is left, which no correction of the accelerations takes away.
         sizes = (np.abs(each).reshape(-1, stages, n, 1) for each in self._stages())
         forces = sum(np.abs(by) @ each for by, each in zip(self.slope, sizes, strict=True))
-        self.noise = _largest(ULP * _products(np.abs(inverse), forces.reshape(-1, stages * n)))
+        self.noise = _largest(CANCELLED * _products(np.abs(inverse), forces.reshape(-1, stages * n)))
         step = (t.g[:, :, None, :, None] * np.eye(n)[:, None, :]).reshape(-1, states * n, states * n)
         if self.held is not None:
             self.held.push(inverse, t, self._between(self.held.sampling.onto))
