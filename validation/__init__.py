@@ -10,6 +10,7 @@ versions that found it; `docs/validation.md` is made from all that is kept.
 # In the page's order, below this package.
 MODULES: tuple[str, ...] = (
     "codes.kane",
+    "codes.kane_trees",
     "codes.hermite",
     "codes.calculix",
     "codes.calculix_solid",
