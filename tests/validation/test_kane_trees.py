@@ -7,7 +7,7 @@ import pytest
 from validation.codes.kane_trees import compared
 
 # All kinds of joints; springs, friction, stops, drives, prescribed rates.
-SEEDS = (1, 2, 3, 4, 5, 7)
+SEEDS = (1, 2, 3, 4, 5, 18)
 KANE = 1e-5  # of the largest: with stops and friction; the smooth ones agree to 1e-9
 
 
@@ -16,4 +16,4 @@ def test_random_trees_move_as_by_kanes_equations(seed: int) -> None:
     apart = compared(seed)
     assert apart is not None
     assert max(apart[:-1]) < (KANE if seed not in (3, 5) else 1e-9)
-    assert apart.place < 5 * apart.stated + 1e-7
+    assert apart.place < 2 * apart.stated + 1e-9

@@ -37,6 +37,11 @@ class Holder:
     stop: Array
     coupling: Array | None = None
 
+    @property
+    def bends(self) -> bool:
+        """Whether a force bends within less than a step, as friction does near rest and a stop where it is met."""
+        return bool((self.friction > 0).any() or (self.stop > 0).any())
+
     def forces(self, q: Array, qd: Array) -> Array:
         """Forces (..., k) that hold the coordinates."""
         xp = namespace(q, qd, self.stiffness)
