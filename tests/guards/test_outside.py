@@ -259,7 +259,7 @@ def test_a_critical_speed_says_what_takes_long(
     fast: Path, without_figures: None, gbeam: Call, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     tlam = ("steady.toml", "--set", 'model.kind="TLAM"')
-    monkeypatch.setenv("GBEAM_PROGRESS", "0.01")
+    monkeypatch.setattr("gbeam.progress._interval", lambda: 1e-3)  # shorter than any step, which none then misses
     answer = gbeam("critical-speed", *tlam)
     assert answer.status == 0, answer.err
     shares = [
