@@ -50,6 +50,7 @@ def _inverse_jacobian(residual: Any, t: Tableau, z: Array, inputs: Any, x: Array
 
 
 def _size(correction: Array, x: Array) -> Array:
+    # An error in q̈ matters as it moves q: measure against what the step itself can move.
     return jnp.max(jnp.abs(correction)) / (LEAST + jnp.max(jnp.abs(x)))
 
 

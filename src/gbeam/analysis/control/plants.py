@@ -1,4 +1,4 @@
-"""What a shaped command drives: a hub with its beam, or a joint of a system."""
+"""Plants of shaped commands: a hub with its beam, or a joint of a system."""
 
 from __future__ import annotations
 
@@ -224,8 +224,8 @@ class OnJoint:
         """The system under a command; at rest without."""
         name, _, coordinate = self.coordinate.rpartition(".")
         joint = self.system.joints[name]
-        given = joint.efforts if self.free else joint.rates
-        command = {**given, coordinate: 0.0 if profile is None else profile}
+        others = joint.efforts if self.free else joint.rates
+        command = {**others, coordinate: 0.0 if profile is None else profile}
         joint = replace(joint, effort=command) if self.free else replace(joint, rate=command)
         return replace(self.system, joints={**self.system.joints, name: joint})
 

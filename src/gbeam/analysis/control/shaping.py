@@ -205,7 +205,7 @@ def _settings(vibration: Vibration, duration: float) -> ResponseSettings:
 
 
 def _plant(structure: Structure | System, hub: Hub | str, point: str | None) -> Plant:
-    """What the command drives."""
+    """The hub with its beam, or the joint of a system, that the command drives."""
     if isinstance(structure, System):
         if not isinstance(hub, str):
             raise InputError("hub", "is a hub, and carries a system", 'name the angle that turns, "joint.angle"')
