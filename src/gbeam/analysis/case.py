@@ -57,8 +57,8 @@ class _InEnvironments(Value):
 
     @property
     def automatic(self) -> bool:
-        """Whether the numbers of shapes are chosen by the errors: never of a specimen that is no beam, or of bodies."""
-        return isinstance(self, Case) and self.model.automatic
+        """Whether the numbers of shapes are chosen by the errors."""
+        return False
 
     @property
     def environments(self) -> Mapping[str, Motion | None]:
@@ -66,23 +66,9 @@ class _InEnvironments(Value):
         return self.motions or {GROUND: None}
 
     def one_beam(self, where: str, what: str) -> Case:
-        """Return the case if it is of one beam.
-
-        Parameters
-        ----------
-        where, what : str
-            The place of the error, and the answer that is refused.
-
-        Raises
-        ------
-        InputError
-            If it is not.
-        """
-        if isinstance(self, Case):
-            return self
+        """Refuse an answer `what` that is of one beam, at a place of the error; return the case where it is of one."""
         problem, fix = self.no_beam
-        at = f"{where}.{self.name}" if isinstance(self, SpecimenCase) else where
-        raise InputError(at, f"{problem}, and {what} is of one beam", fix)
+        raise InputError(where, f"{problem}, and {what} is of one beam", fix)
 
 
 @typed
@@ -151,6 +137,15 @@ class Case(_InEnvironments):
             return assemble(self.beam, self.model, self.stations if stations is None else stations)
         except InputError as error:
             raise error.within("response" if error.where.startswith("stations") else "beam") from None
+
+    @property
+    def automatic(self) -> bool:
+        """Whether the numbers of shapes are chosen by the errors."""
+        return self.model.automatic
+
+    def one_beam(self, where: str, what: str) -> Case:
+        """Return the case itself."""
+        return self
 
     @property
     def extent(self) -> dict[str, Any]:
@@ -302,6 +297,10 @@ class SpecimenCase(_InEnvironments):
             Of beams.
         """
         return self.structure
+
+    def one_beam(self, where: str, what: str) -> Case:
+        """Refuse an answer that is of one beam, at the specimen."""
+        return super().one_beam(f"{where}.{self.name}", what)
 
     @property
     def extent(self) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from scipy.linalg import expm
 from scipy.optimize import brentq
 
 from gbeam.errors import InputError
-from gbeam.mechanics.tree.control import Feedback
+from gbeam.mechanics.tree.control import Feedback, signal_names
 from gbeam.results.state_space import Margin, Signal, StateSpace
 
 Array = Any
@@ -187,13 +187,8 @@ def closed_loop(
 ) -> StateSpace:
     """A plant and its controllers in steps: closed, or cut at a drive, with the margins at every drive."""
     step, channels = channels_of(controllers)
-    drives = [f"{name}: {each}" for name, one in controllers.items() for each in one.drive]
-    aims = [
-        Signal(f"{name}: {each}", signal.unit)
-        for (name, each), signal in zip(
-            ((name, each) for name, one in controllers.items() for each in one.measure), plant.outputs, strict=False
-        )
-    ]
+    drives, measured = signal_names(controllers, "drive"), signal_names(controllers, "measure")
+    aims = [Signal(name, signal.unit) for name, signal in zip(measured, plant.outputs, strict=False)]
     m = len(drives)
     loops = [Loop(plant, step, channels, cut=k) for k in range(m)]
     loop = Loop(plant, step, channels) if cut is None else loops[drives.index(cut)]

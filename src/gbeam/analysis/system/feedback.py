@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.integrate.sampled import NEAR, Sampling
-from gbeam.mechanics.tree.control import Feedback
+from gbeam.mechanics.tree.control import Feedback, signal_names
 from gbeam.mechanics.tree.signals import drives_of, measurements, signals_of
 from gbeam.mechanics.tree.system import System
 from gbeam.results.system import Loop
@@ -81,7 +81,7 @@ class SystemControllers:
 def loop_of(controllers: SystemControllers, sampling: Sampling, time: Floats) -> tuple[Loop, Floats]:
     """Samples and commands of the controllers, held at times (t,) s, and the commands (t, m) that act at these."""
     start, slack = sampling.steps.begin[0], NEAR * float(sampling.steps.length.min())
-    measured, asked, acting = [], [], []
+    measured, asked, acting, beyond = [], [], [], []
     for c, (period, delay) in enumerate(controllers.timing):
         taken = np.floor((time + slack - start) / period).astype(int)
         active = np.floor((time + slack - start - delay) / period).astype(int)
@@ -90,20 +90,15 @@ def loop_of(controllers: SystemControllers, sampling: Sampling, time: Floats) ->
         measured.append(np.stack(sampling.measurements[c])[np.minimum(taken, last)])
         asked.append(np.stack(sampling.asked[c])[np.minimum(taken, last)])
         held = np.stack(sampling.commands[c])[np.clip(active, 0, last)]
+        beyond.append(np.mean(np.stack(sampling.asked[c]) != np.stack(sampling.commands[c]), axis=0))
         acting.append(np.where(active[:, None] >= 0, held, 0.0))
-    named = controllers.system.controllers.items()
     loop = Loop(
-        measurements=tuple(f"{name}: {each}" for name, one in named for each in one.measure),
-        units=tuple(signals_of(controllers.system)[each] for _, one in named for each in one.measure),
-        drives=tuple(f"{name}: {each}" for name, one in named for each in one.drive),
+        measurements=signal_names(controllers.system.controllers, "measure"),
+        units=tuple(signals_of(controllers.system)[each] for one in controllers.every for each in one.measure),
+        drives=signal_names(controllers.system.controllers, "drive"),
         measured=np.concatenate(measured, axis=1),
         asked=np.concatenate(asked, axis=1),
         applied=np.concatenate(acting, axis=1),
-        saturated=np.concatenate(
-            [
-                np.mean(np.stack(sampling.asked[c]) != np.stack(sampling.commands[c]), axis=0)
-                for c in range(len(controllers.every))
-            ]
-        ),
+        saturated=np.concatenate(beyond),
     )
     return loop, loop.applied

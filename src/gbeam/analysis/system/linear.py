@@ -17,6 +17,7 @@ from gbeam.analysis.system.point import Point, started
 from gbeam.analysis.system.steady import Drive, SteadySystem, steady
 from gbeam.guards.checks import choice
 from gbeam.integrate.equations import Trajectory
+from gbeam.mechanics.tree.control import signal_names
 from gbeam.mechanics.tree.signals import drives_of, measurements, signals_of
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
@@ -110,7 +111,7 @@ def linearize_system(
     coordinates and rates and the places of points, as they are named.
     """
     system = state.system
-    drives = [f"{owner}: {each}" for owner, one in system.controllers.items() for each in one.drive]
+    drives = signal_names(system.controllers, "drive")
     choice("loop", loop, ("open", *(("closed", *drives) if drives else ())))
     if loop != "open":
         from gbeam.analysis.system.closed_loop import closed_loop  # takes SciPy's optimisation, 0.2 s to import

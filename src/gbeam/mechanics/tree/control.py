@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from inspect import signature
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -196,3 +196,8 @@ class Feedback(Value):
             What the law asks for.
         """
         return efforts if self.limit is None else np.clip(efforts, -np.asarray(self.limit), np.asarray(self.limit))
+
+
+def signal_names(controllers: Mapping[str, Feedback], kind: Literal["drive", "measure"]) -> tuple[str, ...]:
+    """Names of all that controllers drive or measure, as ``controller: signal``."""
+    return tuple(f"{name}: {each}" for name, one in controllers.items() for each in getattr(one, kind))
