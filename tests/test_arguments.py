@@ -216,6 +216,7 @@ class Given:
                 {
                     "point": None, "tolerance": 0.05, "tolerance_of": "peak", "accept": {"tip": 0.5},
                     "control": {"tip": 1.0},
+                    "damage_at": "tip",
                 },
             ),
             "compare_models": ((self.brief,), {"kinds": ("FOAM",), "progress": None, "point": None}),

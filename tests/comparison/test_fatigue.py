@@ -53,7 +53,7 @@ def test_no_cycles_no_damage() -> None:
     still = flown(1.0)
     assert still.loads is not None
     steady = 1e7 * (1 + 1e-15 * np.random.default_rng(0).normal(size=len(still.time)))
-    still = replace(still, loads=replace(still.loads, root_fibre=steady))
+    still = replace(still, loads=replace(still.loads, fibre=steady[:, None]))
     none = fatigue(still, still)
     assert none is not None and none.flight.total == 0 and np.isnan(none.damage_ratio)
 

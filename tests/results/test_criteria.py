@@ -51,7 +51,7 @@ def judged(**limit: object) -> Criterion:
         ("spread", 0.21, 0.19, -0.2, "at the root at 2.10 s"),
         ("followed", 0.79, 0.81, 0.8, ""),
         ("srs", 2.1, 1.9, 0.5, "at 100 Hz along z"),  # the half is further off than three halves
-        ("damage", 1.7, 1.5, 1.1**5, ""),
+        ("damage", 1.7, 1.5, 1.1**5, "of the root"),
     ],
 )
 def test_every_criterion(name: str, kept: float, broken: float, value: float, where: str) -> None:
@@ -69,7 +69,7 @@ def test_a_band_may_be_wider_one_way() -> None:
     assert judged(srs=(0.49, 1.6)).passed
     assert str(over) == "srs +3.52 dB at 10 Hz along y (limit -6.2 dB to +2.92 dB)"
     assert str(judged(srs=10**0.15)) == "srs -6.02 dB at 100 Hz along z (limit ±3 dB)"
-    assert str(judged(damage=2)) == "damage 1.61 (limit 0.5 to 2)"
+    assert str(judged(damage=2)) == "damage 1.61 of the root (limit 0.5 to 2)"
     assert judged(damage=(0.9, 1.7)).passed and not judged(damage=(1 / 1.7, 1.6)).passed
 
 

@@ -216,6 +216,8 @@ class SystemCase(_InEnvironments):
                 self.system.point(f"motion.{name}.accept.point", limits["point"])
             for point in limits.get("control", ()):
                 self.system.point(f"motion.{name}.accept.control.{point}", point)
+            if limits.get("damage_at") is not None:
+                self.system.point(f"motion.{name}.accept.damage_at", limits["damage_at"])
 
     def assemble(self, stations: ArrayLike | None = None) -> System:
         """Return the system; it has no stations.

@@ -27,7 +27,7 @@ from gbeam.motion.bases.base import Base, mapped
 from gbeam.motion.protocol import Motion
 from gbeam.results.parts import Loads
 from gbeam.results.response import BaseMotion
-from gbeam.structure.section import extreme_stresses, worst_fibre
+from gbeam.structure.section import extreme_stresses, worst_fibres
 from gbeam.structure.stress import von_mises
 
 Array = Any
@@ -89,7 +89,7 @@ def section_forces(
         stress_compression=compression,
         von_mises=None if is_jax(tension) else _equivalent(section_data, section_force, section_moment),
         acceleration=a,
-        root_fibre=None if is_jax(tension) else worst_fibre(section_data.values, 0, section_force, section_moment),
+        fibre=None if is_jax(tension) else worst_fibres(section_data.values, section_force, section_moment),
         yield_strength=section_data.yield_strength,
         fatigue_exponent=section_data.fatigue_exponent,
     )

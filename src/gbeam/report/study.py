@@ -110,9 +110,9 @@ def comparison_lines(comparison: Comparison) -> Iterator[str]:
         )
     if comparison.fatigue is not None and math.isfinite(comparison.fatigue.damage_ratio):
         fatigue = comparison.fatigue
-        ranges = (1e-6 * each.largest for each in (fatigue.flight, fatigue.machine))
+        flown, spun = (1e-6 * each.largest for each in (fatigue.flight, fatigue.machine))
         yield (
-            "stress cycles of the root up to {:.4g} MPa in flight, {:.4g} MPa on the centrifuge: ".format(*ranges)
+            f"stress cycles {fatigue.place} up to {flown:.4g} MPa in flight, {spun:.4g} MPa on the centrifuge: "
             + f"{number(fatigue.damage_ratio, 3)} times flight's damage (Wöhler exponent {fatigue.exponent:g})"
         )
     if comparison.shock is not None and comparison.shock.extremes:

@@ -311,11 +311,12 @@ class Loads(Part):
         note="None where the inertia is unknown",
         default=None,
     )
-    root_fibre: Floats | None = quantity(
+    fibre: Floats | None = quantity(
         "Pa",
-        "normal stress at the extreme fibre of the root where it ranges most",
+        "normal stress at the extreme fibre of the section where it ranges most",
         "time",
-        name="root_fibre_stress",
+        "section",
+        name="fibre_stress",
         key=None,
         note="None where a run is traced",
         default=None,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -27,6 +28,8 @@ class StressAt(Part):
     spread: float = quantity("", "how much the elements that share the node differ, as a fraction",
                              note="an indication of the mesh's error there")  # fmt: skip
     yield_strength: float | None = quantity("Pa", "yield strength of the material", optional=True, default=None)
+    fatigue_exponent: float = quantity("", "exponent of the material's Wöhler curve", name=None, key=None,
+                                       default=math.nan)  # fmt: skip
 
     @declared("", "yield strength over von Mises stress less one", optional=True)
     def margin(self) -> float | None:
@@ -61,6 +64,18 @@ class SolidStress(Figured):
     point_principal: Floats = quantity(
         "Pa", "principal stresses at the point, the largest first", "time", "point", "principal",
         key=None, default_factory=lambda: np.empty((0, 0, 3)),
+    )  # fmt: skip
+    normal: Floats = quantity(
+        "Pa", "normal stress at the worst place, on the plane where it ranges most", "time", name="worst_normal",
+        key=None, default_factory=lambda: np.empty(0),
+    )  # fmt: skip
+    point_normal: Floats = quantity(
+        "Pa", "normal stress at the point, on the plane where it ranges most", "time", "point", key=None,
+        default_factory=lambda: np.empty((0, 0)),
+    )  # fmt: skip
+    point_exponent: Floats = quantity(
+        "", "exponent of the Wöhler curve of the material there", "point", name=None, key=None,
+        default_factory=lambda: np.empty(0),
     )  # fmt: skip
     nodes: Floats = quantity(
         "m", "places of the nodes from the root, undeformed", "node", "axis", name="node_place", key=None,

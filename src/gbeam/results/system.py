@@ -82,6 +82,10 @@ class BeamResponse(Part):
         name=INSIDE,
         note="None unless straight at rest",
     )
+    points: tuple[str, ...] = quantity(
+        "", "name of the station, or its position", "station", name=None, key=None, note="the sections after the root",
+        default=(),
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, repr=False, eq=False)

@@ -172,10 +172,12 @@ def _acceptance(
         for key, limit in limits.items():
             if key in RULES:
                 parts.attempt(f"motion.{name}.accept", RULES[key].checked, limit)
-        unknown = [each for each in limits.get("control", ()) if points and each not in points]
+        named = {f"control.{each}": each for each in limits.get("control", ())}
+        named |= {"damage_at": limits["damage_at"]} if "damage_at" in limits else {}
         parts.errors += [
-            InputError(f"motion.{name}.accept.control.{each}", "is given for no point", advise(each, points))
-            for each in unknown
+            InputError(f"motion.{name}.accept.{key}", f"is no point: {each!r}", advise(each, points))
+            for key, each in named.items()
+            if points and each not in points
         ]
     return limited
 

@@ -65,6 +65,8 @@ class SolidMesh(Value):
         Nodes that are put out, by their names; the last is the tip.
     strengths : dict of float
         Yield strengths of materials by their names, Pa, of those that have one.
+    exponents : dict of float
+        Exponents of the Wöhler curves of materials by their names.
     warnings : tuple of str
         What is implausible in it.
     interfaces : dict of (g,) int
@@ -88,6 +90,7 @@ class SolidMesh(Value):
     strengths: dict[str, float] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
     interfaces: dict[str, Indices] = field(default_factory=dict)
+    exponents: dict[str, float] = field(default_factory=dict)
 
     @classmethod
     @typed
@@ -192,7 +195,9 @@ class SolidMesh(Value):
         strengths = {name: each.yield_strength for name, each in kinds.items() if each.yield_strength is not None}
         refuse_names(interfaces or {}, named | {TIP: tip})
         hung = {name: group(f"interfaces.{name}", of) for name, of in (interfaces or {}).items()}
-        solid = cls(at, blocks, clamped, used, weights, named | {TIP: tip}, strengths, interfaces=hung)
+        exponents = {name: float(each.fatigue_exponent) for name, each in kinds.items()}
+        stations = named | {TIP: tip}
+        solid = cls(at, blocks, clamped, used, weights, stations, strengths, interfaces=hung, exponents=exponents)
         _refuse_folded(solid)
         _refuse_loose(solid)
         return cls(**{**vars(solid), "warnings": tuple(_doubts(solid, unit))})

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import Any, Self
 
 import numpy as np
@@ -15,6 +16,8 @@ from gbeam.solids.elements import TENSOR, Indices, chunks, extrapolation, stress
 
 BLOCK = 2**22  # numbers handled together
 VERTICES, TIMES = 1500, 1000  # of pictures, about
+AROUND = np.array([each for each in product((1.0, 0.0, -1.0), repeat=3) if each > (0.0, 0.0, 0.0)])  # half of all ways
+SETTLED = 1e-9  # of a range of stress
 ENOUGH = 1e-3  # of the largest shape: one that is less is not seen
 # Corners of the faces of elements, by their number.
 FACES = {
@@ -185,11 +188,28 @@ def principal(stress: Floats) -> Floats:
     return np.asarray(np.linalg.eigvalsh(stress[..., TENSOR])[..., ::-1])
 
 
+def ranging(stress: Floats) -> Floats:
+    """Normal stress (t,) of stresses (t, 6) on the plane where it ranges most."""
+    normal = AROUND / np.linalg.norm(AROUND, axis=1, keepdims=True)
+    most = np.full(len(normal), -1.0)
+    while True:
+        # Between the extremes on a plane the stress changes most on a principal plane of that change, or as much.
+        over = np.einsum("tij,ki,kj->tk", stress[:, TENSOR], normal, normal, optimize=True)
+        size = np.ptp(over, axis=0)
+        if not (size > (1 + SETTLED) * most).any():
+            return np.asarray(over[:, size.argmax()])
+        most, change = size, stress[over.argmax(axis=0)] - stress[over.argmin(axis=0)]
+        sizes, axes = np.linalg.eigh(change[:, TENSOR])
+        normal = axes[np.arange(len(axes)), :, np.abs(sizes).argmax(axis=1)]
+
+
 def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> SolidStress:
     """Return the stress at coordinates (t, n) at times (t,)."""
     mesh, of_pair, materials = nodal.mesh, nodal.node, nodal.material
     largest, when, over = nodal.histories(q)
     strengths = np.array([mesh.strengths.get(name, np.inf) for name in materials])
+    exponents = np.array([mesh.exponents.get(name, np.nan) for name in materials])
+    worst = int(largest.argmax())
 
     def at(pair: int) -> StressAt:
         t, node, strength = int(when[pair]), int(of_pair[pair]), float(strengths[pair])
@@ -202,6 +222,7 @@ def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> S
             material=materials[pair],
             spread=nodal.spread(pair, q[t]),
             yield_strength=strength if np.isfinite(strength) else None,
+            fatigue_exponent=float(exponents[pair]),
         )
 
     # At a node of two materials, that which is stressed more.
@@ -212,11 +233,14 @@ def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> S
     return SolidStress(
         time=time,
         von_mises=over,
-        worst=at(int(largest.argmax())),
+        worst=at(worst),
         nearest_yield=at(int((largest / strengths).argmax())) if np.isfinite(strengths).any() else None,
         points=tuple(mesh.stations),
         point_von_mises=von_mises(stress),
         point_principal=principal(stress),
+        normal=ranging(q @ nodal.table[worst].T),
+        point_normal=np.stack([ranging(each) for each in stress.swapaxes(0, 1)], axis=1),
+        point_exponent=exponents[chosen],
         nodes=mesh.points,
         node_von_mises=every,
         **about,

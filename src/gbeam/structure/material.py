@@ -149,6 +149,7 @@ class Orthotropic(Value):
     shear_moduli: Sequence[float]
     axes: Sequence[Sequence[float]]
     yield_strength: ClassVar[None] = None
+    fatigue_exponent: ClassVar[float] = FATIGUE_EXPONENT
 
     def __post_init__(self) -> None:
         possible("density", "density", positive("density", self.density, "kg/m³"))

@@ -379,13 +379,16 @@ def fibre_stress(values: SectionValues, force: Any, moment: Any, y: Any, z: Any)
     return force[..., 0] / values.area + along_z - along_y
 
 
-def worst_fibre(values: SectionValues, section: int, force: Any, moment: Any) -> Any:
-    """Normal stress (t,) Pa, N/A + M_y z/I_y − M_z y/I_z, at that corner of a section, or that of 24 points around a
-    round one, where it ranges most; force and moment (t, s, 3).
+def worst_fibres(values: SectionValues, force: Any, moment: Any) -> Any:
+    """Normal stress (t, s) Pa, N/A + M_y z/I_y − M_z y/I_z, at that corner of every section, or that of 24 points
+    around a round one, where it ranges most; force and moment (t, s, 3).
     """
-    at_section = values[section]
     points = [(1, 1), (1, -1), (-1, 1), (-1, -1)]
     if values.round:
         points = [(np.cos(a), np.sin(a)) for a in 2 * np.pi * np.arange(_ROUND) / _ROUND]
-    fibres = [(y * at_section.extreme_fibre_y, z * at_section.extreme_fibre_z) for y, z in points]
-    return max((fibre_stress(at_section, force[:, section], moment[:, section], y, z) for y, z in fibres), key=np.ptp)
+    fibres = [(y * values.extreme_fibre_y, z * values.extreme_fibre_z) for y, z in points]
+    most = fibre_stress(values, force, moment, *fibres[0])
+    for y, z in fibres[1:]:
+        stress = fibre_stress(values, force, moment, y, z)
+        most = np.where(np.ptp(stress, axis=0) > np.ptp(most, axis=0), stress, most)
+    return most

@@ -37,20 +37,30 @@ from gbeam.results.system import SystemResponse
 _NOTHING = 1e-9  # of the largest stress: a smaller cycle is rounding
 
 
-def fatigue(flight: Response, machine: Response) -> Fatigue | None:
-    """Rainflow cycles of the root's stress in both runs, with the flight's material's exponent; None where one has no
-    stress.
+def fatigue(flight: Response, machine: Response, at: str | None = None) -> Fatigue | None:
+    """Rainflow cycles of the stress at a named point, or where :class:`Fatigue` says, in both runs, with the exponent
+    of the flight's material; None where one has no stress.
     """
-    loads = flight.loads
-    stresses = [None if each.loads is None else each.loads.root_fibre for each in (flight, machine)]
-    if loads is None or any(stress is None or not np.isfinite(stress).all() for stress in stresses):
+    (stress, exponent, place), (other, *_) = (cyclic_stress(each, at) for each in (flight, machine))
+    if stress is None or other is None or not (np.isfinite(stress).all() and np.isfinite(other).all()):
         return None
-    cycles = (
-        stress_cycles(response.time, stress)
-        for response, stress in zip((flight, machine), stresses, strict=True)
-        if stress is not None
-    )
-    return Fatigue(loads.fatigue_exponent, *cycles)
+    return Fatigue(exponent, stress_cycles(flight.time, stress), stress_cycles(machine.time, other), place)
+
+
+def cyclic_stress(response: Response, at: str | None = None) -> tuple[Floats | None, float, str]:
+    """Normal stress (t,) on the fibre or plane where it ranges most, the exponent of the material, and the place."""
+    if at is not None and at not in response.points:
+        raise InputError("damage_at", f"is {at!r}", f"choose from {', '.join(response.points)}")
+    place, solid, loads = f"at {at}", response.solid, response.loads
+    if solid is not None and at is None:
+        return solid.normal, solid.worst.fatigue_exponent, "where it is stressed most"
+    if solid is not None and at in solid.points:
+        k = solid.points.index(at)
+        return solid.point_normal[:, k], float(solid.point_exponent[k]), place
+    if solid is not None or loads is None or loads.fibre is None:
+        return None, np.nan, place
+    section = 0 if at is None else 1 + response.points.index(at)
+    return loads.fibre[:, section], loads.fatigue_exponent, "of the root" if at is None else place
 
 
 def stress_cycles(time: Floats, stress: Floats) -> StressCycles:
@@ -137,6 +147,7 @@ def compare(
     tolerance_of: str = "peak",
     accept: Mapping[str, Limit] | None = None,
     control: Mapping[str, float] | None = None,
+    damage_at: str | None = None,
 ) -> Comparison:
     """Compare the response on a centrifuge with that in the flight it imitates.
 
@@ -158,6 +169,9 @@ def compare(
         and the largest, ``{"srs": (0.84, 1.41)}``.
     control : mapping of str to float, optional
         Weights of named points: the shock response spectra are the weighted mean of those there, in place of the tip's.
+    damage_at : str, optional
+        Named point whose fatigue damage is compared; by default the root of a beam, that of a system's beams which
+        ranges most, and of a solid where its von Mises stress is largest.
 
     Returns
     -------
@@ -169,7 +183,7 @@ def compare(
     Raises
     ------
     InputError
-        If a limit has no such name, or means nothing.
+        If a limit has no such name, or means nothing, or there is no such point.
 
     Examples
     --------
@@ -251,7 +265,7 @@ def compare(
         mismatch=_mismatch(covered, centrifuge, (spun - growth)[..., 0]) if of_beam else None,
         root=root,
         shock=shock,
-        fatigue=fatigue(flight, centrifuge),
+        fatigue=fatigue(flight, centrifuge, damage_at),
         yield_strength=None if centrifuge.loads is None else centrifuge.loads.yield_strength,
         margins_of_materials=_of_materials(flight, centrifuge),
         whole=whole,

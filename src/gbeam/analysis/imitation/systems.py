@@ -7,8 +7,10 @@ import math
 import numpy as np
 
 from gbeam.errors import InputError
+from gbeam.mechanics.tree.system import ROOT
 from gbeam.results.parts import Loads, Peaks
 from gbeam.results.response import Response
+from gbeam.results.result import Floats
 from gbeam.results.system import SystemResponse
 
 
@@ -36,7 +38,9 @@ def specimen_of(response: SystemResponse, point: str) -> Response:
     tension += [each.stress_tension for each in chosen]
     compression += [each.stress_compression for each in chosen]
     unknown = np.full((len(response.time), 1), math.nan)
-    strengths = {each.yield_strength for each in chosen}
+    strengths, exponents = {each.yield_strength for each in chosen}, {each.fatigue_exponent for each in chosen}
+    roots = (each.fibre[:, 0] for each in chosen if each.fibre is not None)
+    fibres = [max(roots, key=np.ptp, default=unknown[:, 0]), *(_fibre(response, response.points[k]) for k in order)]
     loads = Loads(
         stations=np.arange(float(1 + sum(each.stress_tension.shape[1] for each in chosen))),
         force=response.ground_force[:, None],
@@ -46,9 +50,9 @@ def specimen_of(response: SystemResponse, point: str) -> Response:
         stress_tension=np.concatenate(tension, axis=1) if chosen else unknown,
         stress_compression=np.concatenate(compression, axis=1) if chosen else unknown,
         acceleration=felt[-1][:, None],
-        root_fibre=chosen[0].root_fibre if len(chosen) == 1 else None,
+        fibre=np.stack(fibres, axis=1),
         yield_strength=strengths.pop() if len(strengths) == 1 else None,
-        fatigue_exponent=chosen[0].fatigue_exponent if len(chosen) == 1 else math.nan,
+        fatigue_exponent=exponents.pop() if len(exponents) == 1 else math.nan,
     )
     return Response(
         name=response.name,
@@ -75,3 +79,12 @@ def specimen_of(response: SystemResponse, point: str) -> Response:
         envelope=response.assembly.undeformed,
         kept_every=response.kept_every,
     )
+
+
+def _fibre(response: SystemResponse, point: str) -> Floats:
+    """Normal stress (t,) at the extreme fibre of a beam's point where it ranges most; NaN where there is no beam."""
+    body, _, name = point.partition(".")
+    beam = response.beams.get(body)
+    if beam is None or beam.loads.fibre is None or name not in (ROOT, *beam.points):
+        return np.full(len(response.time), math.nan)
+    return np.asarray(beam.loads.fibre[:, 0 if name == ROOT else 1 + beam.points.index(name)])

@@ -37,6 +37,7 @@ from gbeam.results.errors import ErrorEstimate, SystemErrors
 from gbeam.results.parts import Loads
 from gbeam.results.response import BaseMotion
 from gbeam.results.system import BeamResponse, Invariants, Loop, SystemResponse
+from gbeam.structure.beam import names_at
 
 Array = Any
 Floats = NDArray[np.float64]
@@ -257,7 +258,8 @@ def _described(
         peaks = load_peaks(loads, between, every.time, stride)
         first = system.coordinates.index(f"{body}.q1")
         q = over_time["q"][:, first : first + beam.size]
-        beams[body] = BeamResponse(loads, peaks, outline_of(beam, None, kept.time, q))
+        names = () if beam.source is None else names_at(beam.source.beam, beam.stations)
+        beams[body] = BeamResponse(loads, peaks, outline_of(beam, None, kept.time, q), names)
         yielded += yielding(beams[body].peaks, f" of {body}")
     invariants = None
     if motion is None:

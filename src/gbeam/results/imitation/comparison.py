@@ -85,7 +85,7 @@ class Comparison(Judged, Figured):
         "shock response spectra of the tip's acceleration", name=".", optional=True, default=None
     )
     fatigue: Fatigue | None = part(
-        "cycles of the stress at the root in both runs, and their damage", name=".", optional=True, default=None
+        "stress cycles in both runs, and their damage", name=".", optional=True, default=None
     )
     yield_strength: float | None = fact(
         "yield strength of the material, where it is given", "Pa", name=None, key=None, default=None

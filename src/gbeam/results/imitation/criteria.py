@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
 Limit = float | tuple[float, float]
 Value = tuple[float, str]  # and where it occurs
-SETTINGS = ("tolerance", "tolerance_of", "point", "control")  # beside the limits in a table of acceptance
-OF_RESPONSES = ("point", "control")  # of these, those of what responds
+SETTINGS = ("tolerance", "tolerance_of", "point", "control", "damage_at")  # beside the limits in a table of acceptance
+OF_RESPONSES = ("point", "control", "damage_at")  # of these, those of what responds
 NOT_ACCEPTED, EXCEEDED = "not accepted", "machine limits exceeded"
 BROKEN = "limits exceeded"  # outcome of a plan, a placement or a search
 GOOD = ("done", "accepted")  # states of which nothing is to be said
@@ -281,7 +281,7 @@ def _srs(judged: Judged) -> Iterator[Value]:
 
 
 def _damage(judged: Judged) -> Iterator[Value]:
-    yield math.nan if judged.fatigue is None else judged.fatigue.damage_ratio, ""
+    yield (math.nan, "") if judged.fatigue is None else (judged.fatigue.damage_ratio, judged.fatigue.place)
 
 
 RULES = {
@@ -319,8 +319,8 @@ RULES = {
         ),
         Rule(
             "damage",
-            "fatigue damage of the root: largest ratio of machine and flight, either way; or the least and the "
-            "largest of machine to flight, such as [0.5, 2]",
+            "fatigue damage of the root, of a solid where its stress is largest, or at damage_at: largest ratio of "
+            "machine and flight, either way; or the least and the largest of machine to flight, such as [0.5, 2]",
             "ratio", 2.0, _damage,
         ),
     )

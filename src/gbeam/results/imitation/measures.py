@@ -16,7 +16,7 @@ from gbeam.results.result import Floats, Part
 class StressCycles(Part):
     """Rainflow cycles of a stress (ASTM E1049-85, 5.4.4)."""
 
-    range: Floats = quantity("Pa", "range of the root's stress cycle", "cycle_", key=None, note="largest range first")
+    range: Floats = quantity("Pa", "range of the stress cycle", "cycle_", key=None, note="largest range first")
     mean: Floats = quantity("Pa", "its mean", "cycle_", key=None)
     count: Floats = quantity("", "1 of a full cycle, 0.5 of a half", "cycle_", key=None)
 
@@ -37,11 +37,14 @@ class StressCycles(Part):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Fatigue(Part):
-    """Stress cycles at the root in both environments, each at that extreme fibre where the stress ranges most."""
+    """Stress cycles in both environments at the root of a beam, where a solid's von Mises stress is largest, or at a
+    point; each at the extreme fibre, or on the plane, where the normal stress ranges most.
+    """
 
     exponent: float = fact("m of Wöhler's curve, N Δσᵐ = constant")
     flight: StressCycles = part("cycles of the whole run", name="stress_*_flight")
     machine: StressCycles = part("cycles of the whole run, spin-up and spin-down included", name="stress_*_machine")
+    place: str = fact("where the stress is", name="stress_place", default="of the root")
 
     @declared("Pa", "range of the one cycle that does the same damage in flight", role="fact", name=None,
               key="flight.equivalent_range")  # fmt: skip

@@ -61,6 +61,11 @@ class Accept(_Limits):  # type: ignore[misc, valid-type]
         description="weights of control points by the names of points: srs is of the weighted mean of the spectra "
         "there, in place of the tip's",
     )
+    damage_at: str | None = Field(
+        default=None,
+        description="point whose fatigue damage is that of damage; left out, the root of a beam, and of a solid where "
+        "its von Mises stress is largest",
+    )
 
     @property
     def given(self) -> dict[str, Any]:
