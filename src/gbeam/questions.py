@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from gbeam.errors import InputError
 
 if TYPE_CHECKING:
-    from gbeam.analysis.case import AnyCase, Case
+    from gbeam.analysis.case import AnyCase
     from gbeam.results.equilibrium import Critical, Deflection
     from gbeam.results.imitation.comparison import MachinePlan
     from gbeam.results.imitation.placement import Placement
@@ -134,6 +134,8 @@ def motion_of(motions: Mapping[str, Any], name: str | None, kind: str = "") -> s
         return name
     alike = [each for each, motion in motions.items() if motion is not None and motion.kind == kind]
     choice = alike or list(motions)
+    if not choice:
+        raise InputError("motion", "is missing", "add one that answers; `gbeam new` shows how")
     if len(choice) > 1 and (alike or not kind):
         raise InputError("--motion", "is missing", f"name one of {', '.join(choice)}")
     return choice[0]  # without any of the kind it is refused with its reason, as any other would be
@@ -282,15 +284,22 @@ def plan(
     )
 
 
-@question("place", "Find where to put the specimen on the centrifuge.", motion=CENTRIFUGE, differentiable=False)
-def place(case: Case, motion: str | None = None, at: float | None = None, needs: Needs = Needs()) -> Placement:
+@question(
+    "place",
+    "Find where to put the specimen on the centrifuge.",
+    motion=CENTRIFUGE,
+    differentiable=False,
+    deforms=False,
+)
+def place(case: AnyCase, motion: str | None = None, at: float | None = None, needs: Needs = Needs()) -> Placement:
     """The best placement, without the check by simulation, which costs more: ``run`` at the placement is that."""
-    from gbeam.analysis.imitation.place import place
+    from gbeam.analysis.imitation.place import place, usual
     from gbeam.analysis.imitation.place_measures import choice_of
 
     name, current = machine_of(case, motion)
     choice, names = choice_of(current), (case.tracks[name], name)
-    return place(case.assemble(), current.flight, choice, case.response, {"tip": 1.0}, current=current, names=names)
+    structure = case.assemble()
+    return place(structure, current.flight, choice, case.response, usual(structure), current=current, names=names)
 
 
 @question(
@@ -321,7 +330,7 @@ def campbell(
     )  # fmt: skip
 
 
-def machine_of(case: Case, motion: str | None) -> tuple[str, Any]:
+def machine_of(case: AnyCase, motion: str | None) -> tuple[str, Any]:
     """The centrifuge that answers, and its name.
 
     Raises

@@ -218,11 +218,3 @@ def test_thickness_and_material_are_swept(folder: Path) -> None:
     values = next(iter(sweep.measures.values()))
     assert values[1, 0] / values[0, 0] == pytest.approx(1.1, rel=1e-2)
     assert values[0, 1] / values[0, 0] == pytest.approx(np.sqrt(1.1), rel=1e-6)
-
-
-def test_place_refuses_what_is_no_beam() -> None:
-    from gbeam.questions import QUESTIONS
-
-    case = gb.read_scenario("examples/bracket.toml")
-    with pytest.raises(InputError, match="is no beam"):
-        QUESTIONS["place"].answer(case)

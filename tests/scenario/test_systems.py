@@ -222,7 +222,7 @@ def test_sweeps_and_sensitivities_read_the_same_paths() -> None:
     assert 0 < slope.relative[0, 0] < 0.5
     with pytest.raises(gb.InputError, match=r"points\.right\.tipp"):
         gb.sweep(file, over, ["points.right.tipp.displacement_maxx"], verb="run")
-    with pytest.raises(gb.InputError, match="place is of one beam"):
+    with pytest.raises(gb.InputError, match="motion is missing"):
         gb.sweep(file, over, ["best"], verb="place")
     with pytest.raises(gb.InputError, match="--measure is missing"):
         gb.sweep(file, over)

@@ -162,8 +162,11 @@ WriteTo = Annotated[
 
 # Of place.
 Measure = Annotated[
-    str,
-    Parameter(help='root-shear, root-moment, vibration or tip; or a weighted sum, "tip=1, root-moment=0.5".'),
+    str | None,
+    Parameter(
+        help='root-shear, root-moment, vibration, tip or load; or a weighted sum, "tip=1, root-moment=0.5". Without it '
+        "tip, and of a rigid specimen load."
+    ),
 ]
 CentrifugeName = Annotated[str | None, Parameter(help="Which centrifuge, where the scenario has several.")]
 Widths = Annotated[

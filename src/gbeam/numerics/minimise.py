@@ -57,6 +57,34 @@ def refine(evaluate: Evaluate, points: tuple[float, ...]) -> None:
     )
 
 
+_CUTS, _ENDED = 200, 1e-7  # at most; of the least cost, or of the cost at the start where that is nearly nothing
+
+
+def least(evaluate: Callable[[Floats], tuple[float, Floats]], low: Floats, high: Floats) -> Floats:
+    """Find the x (n,) between bounds at which a convex function is least, by its tangents (Kelley 1960).
+
+    `evaluate` gives the value and a slope (n,); `low` and `high` (n,) may be equal.
+    """
+    import scipy.optimize
+
+    width = high - low
+    best, x = (np.inf, low), low + width / 2
+    rows, sides, unit = list[Floats](), list[float](), 0.0
+    for _ in range(_CUTS):
+        value, slope = evaluate(x)
+        unit = unit or value or 1.0
+        best = min(best, (value, x), key=lambda each: each[0])
+        # Unknown are the share of the way between the bounds, and the value, over that at the start.
+        rows.append(np.append(slope * width / unit, -1.0))
+        sides.append(float(slope @ (x - low) - value) / unit)
+        bounds = [*[(0.0, 1.0)] * len(low), (0.0, None)]
+        solved = scipy.optimize.linprog(np.eye(len(low) + 1)[-1], np.array(rows), sides, bounds=bounds)
+        if not solved.success or best[0] / unit - solved.fun <= _ENDED * max(best[0] / unit, _ENDED):
+            break
+        x = low + width * np.clip(solved.x[:-1], 0.0, 1.0)
+    return best[1]
+
+
 _TOLERANCE = 1e-7  # of what limits leave, which are of the order of one, and of the slope
 _GAP = 1e-9, 1e-5  # between the costs of the two programs, alone and beside the cost
 _SCALE = 1e4  # of the cost: the solver adds up to 1e-10 to H, which must be small beside its least eigenvalue

@@ -141,10 +141,12 @@ def placement(placement: Placement, written: str | None = None) -> str:
     measure = (
         " + ".join(f"{weight:g} × {name}" for name, weight in parts.items()) if len(parts) > 1 else next(iter(parts))
     )
+    measure += f" of {placement.point}" if placement.point and {"tip", "vibration"} & parts.keys() else ""
+    share = f", {placement.fraction:.4f} of the length" if placement.straight else ""
     nearest = "" if placement.outcome == "done" else " (nearest to the limits, which none keeps)"
     lines = [
         f"{placement.centrifuge}, tracking {placement.flight}: least {measure}{nearest}",
-        f"  control point  {1e3 * best.control_point:.2f} mm from the root, {placement.fraction:.4f} of the length "
+        f"  control point  {1e3 * best.control_point:.2f} mm from the root{share} "
         f"(now {1e3 * placement.current:.2f} mm)",
         f"  largest load   {largest(best.largest_load, None if before is None else before.largest_load)}",
         f"  mounting       {best.mounting}",
@@ -212,13 +214,16 @@ def _verified(placement: Placement) -> list[str]:
     for place, label in zip(_PLACES, ("now", "placed", "at mid-span"), strict=True):
         check = checks[place]
         values = (
-            f"{1e3 * check.tip_difference:.4g} mm",
-            f"{1e3 * check.vibration:.3g} mm",
-            f"{check.force_difference:.3g} N",
-            f"{check.moment_difference:.3g} N m",
+            (f"{1e3 * check.tip_difference:.4g}", "mm"),
+            (f"{1e3 * check.vibration:.3g}", "mm"),
+            (f"{check.force_difference:.3g}", "N"),
+            (f"{check.moment_difference:.3g}", "N m"),
         )
-        lines.append(f"  {label:<17}" + "".join(value.ljust(13) for value in values).rstrip())
+        words = ("–" if value == "nan" else f"{value} {unit}" for value, unit in values)
+        lines.append(f"  {label:<17}" + "".join(word.ljust(13) for word in words).rstrip())
     gain = placement.vibration_gain
+    if math.isnan(gain):
+        return lines
     return [*lines, f"  {gain:.3g} times less vibration than with the control point at mid-span"]
 
 

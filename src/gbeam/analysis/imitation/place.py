@@ -14,9 +14,10 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from gbeam.analysis.imitation.accounting import largest_load, largest_pair, points_of, times_between
+from gbeam.analysis.imitation.accounting import largest_load, largest_pair, times_between
 from gbeam.analysis.imitation.comparison import CUTOFF, compare
 from gbeam.analysis.imitation.place_measures import Answers, Choice, Histories
+from gbeam.analysis.imitation.systems import specimen_of
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.arrays.namespace import namespace
@@ -25,16 +26,18 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.system import System
 from gbeam.motion import Base, Centrifuge, Flight
 from gbeam.motion.centrifuge.kinematics import forward
 from gbeam.motion.centrifuge.limits import exceeded
 from gbeam.numerics.filters import low_pass
-from gbeam.numerics.minimise import refine
+from gbeam.numerics.minimise import least, refine
 from gbeam.numerics.samples import interpolated
 from gbeam.results.imitation.criteria import BROKEN
 from gbeam.results.imitation.placement import MEASURES, Candidate, Placement, Verification
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
+from gbeam.results.system import SystemResponse
 from gbeam.structure.beam import refuse_curved
 
 
@@ -62,12 +65,25 @@ class _Carried:
 
 
 def verify(
-    structure: Structure, flight: Flight, machines: Mapping[str, Centrifuge], settings: ResponseSettings
+    structure: Structure | System,
+    flight: Flight,
+    machines: Mapping[str, Centrifuge],
+    settings: ResponseSettings,
+    answers: Answers,
 ) -> tuple[Verification, ...]:
     """Simulate flight and machines, prepared for the settings' span and named by their places, and compare."""
     settings = replace(settings, estimate=False)  # a verification states none
-    in_flight = simulate(structure, flight, settings)
-    cutoff = CUTOFF * float(in_flight.frequencies[0]) / (2 * np.pi)
+    mode, across = answers.specimen.mode, slice(1 if answers.specimen.straight else 0, 3)
+
+    def simulated(motion: Any) -> Response:
+        response = simulate(structure, motion, settings)
+        return (
+            specimen_of(response, answers.tip or response.points[-1])
+            if isinstance(response, SystemResponse)
+            else response
+        )
+
+    in_flight = simulated(flight)
     # Machines at different control points share their axis motions, and the current one may be at the middle.
     carried: dict[int, Response] = {}
     responses: dict[tuple[int, float], Response] = {}
@@ -75,36 +91,33 @@ def verify(
     for name, machine in machines.items():
         motion, at = id(machine.course), float(machine.control_point)
         if (motion, at) not in responses:
-            responses[motion, at] = simulate(structure, machine, settings)
-        if motion not in carried:
-            carried[motion] = simulate(structure, _Carried(machine), settings)
+            responses[motion, at] = simulated(machine)
         response = responses[motion, at]
         comparison = compare(in_flight, response)
-        # Whose automatic step may differ.
-        carried_tip = interpolated(response.time, carried[motion].time, carried[motion].tip)
-        swing = response.tip - carried_tip
-        swing -= low_pass(swing, float(response.time[1] - response.time[0]), cutoff)
         compared = np.isin(response.time, comparison.time[comparison.covered])
+        vibration, tip = np.nan, np.nan
+        if mode is not None:
+            if motion not in carried:
+                carried[motion] = simulated(_Carried(machine))
+            # Whose automatic step may differ.
+            carried_tip = interpolated(response.time, carried[motion].time, carried[motion].tip)
+            swing = response.tip - carried_tip
+            step = float(response.time[1] - response.time[0])
+            swing -= low_pass(swing, step, CUTOFF * mode.frequency / (2 * np.pi))
+            vibration, tip = (
+                _largest(each[:, across]) for each in (swing[compared], comparison.difference[comparison.covered])
+            )
         force, moment = np.nan, np.nan
         if comparison.root is not None:
             root = comparison.root
-            force, moment = (float(each[1:].max()) for each in (root.force_difference, root.moment_difference))
-        verifications.append(
-            Verification(
-                name,
-                at,
-                _largest(comparison.difference[comparison.covered]),
-                _largest(swing[compared]),
-                moment,
-                force,
-            )
-        )
+            force, moment = (float(each[across].max()) for each in (root.force_difference, root.moment_difference))
+        verifications.append(Verification(name, at, tip, vibration, moment, force))
     return tuple(verifications)
 
 
 def _largest(vectors: Floats) -> float:
-    """Largest of the parts across the beam."""
-    return float(np.linalg.norm(vectors[:, 1:], axis=1).max(initial=0.0))
+    """Largest size of vectors (t, k)."""
+    return float(np.linalg.norm(vectors, axis=1).max(initial=0.0))
 
 
 _WORTH = 0.02  # of the total error: what another mounting must save at least
@@ -112,7 +125,7 @@ _WORTH = 0.02  # of the total error: what another mounting must save at least
 
 @typed
 def place(
-    structure: Structure,
+    structure: Structure | System,
     flight: Flight,
     choice: Choice,
     settings: ResponseSettings,
@@ -126,7 +139,7 @@ def place(
 
     Parameters
     ----------
-    structure : Structure
+    structure : Structure or System
     flight : Flight
     choice : Choice
         Mountings and widths of smoothing.
@@ -135,8 +148,10 @@ def place(
     weights : mapping of str to float
         Measures to add up, each as a fraction of its peak in flight, across the beam: ``root-shear`` and
         ``root-moment`` (quasi-static), ``vibration`` (of the first mode, at the tip), ``tip`` (quasi-static
-        displacement). For each option they choose the control point by what Δa does, and then the option by that
-        together with what smoothing and tracking change of the load.
+        displacement), ``load`` (at the ends of the beam, or wherever else the specimen's is largest). Shear and moment
+        are the whole force and moment of a specimen that is no straight beam; the tip of a system is the point that
+        the flight displaces most. For each option they choose the control point by what Δa does, and then the option by
+        that together with what smoothing and tracking change of the load.
     current : Centrifuge
         The scenario's own, which the answer is compared with.
     names : tuple of str
@@ -153,8 +168,9 @@ def place(
     Raises
     ------
     InputError
-        If the beam has no damping ratio where vibration is judged, a measure is unknown or none has weight, or no
-        option can be built: the first one's reason.
+        If the beam has no damping ratio where vibration is judged, a measure is unknown, the flight makes none of it or
+        none has weight, something of a system moves at rest or is held by nothing, or no option can be built: the
+        first one's reason.
 
     Examples
     --------
@@ -166,7 +182,7 @@ def place(
     220 mm from the root
     """
     check_weights(weights)
-    if check or "vibration" in weights:
+    if isinstance(structure, Structure) and (check or "vibration" in weights):
         structure.require_damping("the vibration")
     trials = _Trials(structure, flight, choice, settings, weights)
     for width in reversed(choice.widths):  # the widest first, see Answers
@@ -177,33 +193,49 @@ def place(
     if choice.refined:
         leader = trials.ranked()[0].candidate.mounting
         refine(lambda width: trials(leader, width), choice.widths)
-    ranked, before = trials.ranked(), trials.assess(current, at=float(current.control_point))
-    best, middle = ranked[0], structure.length / 2
+    ranked, before = trials.ranked(), trials.assess(current, at=_along(float(current.control_point)))
+    best, specimen = ranked[0], trials.answers.specimen
+    middle = float(specimen.extent[:, 0].mean())
     allowed = not (best.candidate.exceeded and choice.limited)
     places = {"best": (best, best.candidate.control_point), "current": (before, before.candidate.control_point)}
     places["middle"] = best, middle
     machines = {name: each.centrifuge.altered(control_point=at) for name, (each, at) in places.items()}
     values, totals = (
-        {name: {m: h.size(at, total) for m, h in each.histories.items()} for name, (each, at) in places.items()}
+        {name: {m: h.size(_along(at), total) for m, h in each.histories.items()} for name, (each, at) in places.items()}
         for total in (False, True)
     )
     return Placement(
         flight=names[0],
         centrifuge=names[1],
         weights=dict(weights),
-        length=structure.length,
+        length=float(np.ptp(specimen.extent, axis=0).max()),
         best=best.candidate,
         options=tuple(trial.candidate for trial in ranked),
         current=before.candidate.control_point,
         values=values,
         totals=totals,
         before=before.candidate,
-        verifications=verify(structure, flight, machines, settings) if check and allowed else (),
+        verifications=verify(structure, flight, machines, settings, trials.answers) if check and allowed else (),
         refused=tuple(trials.refused),
         widths=(choice.widths[0], choice.widths[-1]),
         outcome="done" if allowed else BROKEN,
-        warnings=input_warnings(structure, flight, name=names[0], span=trials.span),
+        warnings=input_warnings(structure, flight, name=names[0], span=trials.span)
+        if isinstance(structure, Structure)
+        else structure.warnings,
+        point=trials.answers.tip if isinstance(structure, System) else "",
+        straight=specimen.straight,
     )
+
+
+def usual(structure: Structure | System) -> dict[str, float]:
+    """Weights where none are given: of the tip, and of the load where nothing is displaced."""
+    free = structure.size if isinstance(structure, Structure) else len(structure.tree.free)
+    return {"tip" if free else "load": 1.0}
+
+
+def _along(x: float) -> Floats:
+    """Place on the axis, (3,) m."""
+    return np.array([x, 0.0, 0.0])
 
 
 @dataclass(frozen=True)
@@ -220,21 +252,19 @@ class _Trials:
 
     def __init__(
         self,
-        structure: Structure,
+        structure: Structure | System,
         flight: Flight,
         choice: Choice,
         settings: ResponseSettings,
         weights: Mapping[str, float],
     ) -> None:
-        self.answers, self.length, self.flight = Answers(structure, flight, settings), structure.length, flight
+        if isinstance(structure, Structure):
+            refuse_curved(None if structure.source is None else structure.source.beam, "place")
+        self.answers, self.flight = Answers(structure, flight, settings), flight
+        self.answers.refuse_unfelt(weights)
         self.choice, self.weights = choice, weights
         self.span = settings.start, settings.start + settings.duration
-        if structure.recovery is not None:
-            fix = "vary motion.NAME.control_point, and origin and turn of the body, by `gbeam sweep`"
-            raise InputError("bodies", "is no beam, of which alone a place along x is searched", fix)
-        refuse_curved(None if structure.source is None else structure.source.beam, "place")
-        bodies = np.empty((0, 3)) if structure.source is None else structure.source.beam.body_centres
-        self.points = points_of(structure.length, bodies)
+        self.points = dict(self.answers.specimen.ends)
         times = times_between(*self.span)
         self.in_flight = largest_load(times, flight.base(times), self.points)
         self.evaluated: dict[tuple[str, float], _Evaluated] = {}
@@ -265,36 +295,45 @@ class _Trials:
 
         return sorted(self.evaluated.values(), key=rank)
 
-    def assess(self, centrifuge: Centrifuge, *, at: float | None = None) -> _Evaluated:
-        """Evaluate a centrifuge with its best control point, or with one that is given, m."""
-        import scipy.optimize
-
+    def assess(self, centrifuge: Centrifuge, *, at: Floats | None = None) -> _Evaluated:
+        """Evaluate a centrifuge with its best control point, or with one that is given, (3,) m."""
         machine = centrifuge.over(*self.span)
         histories, accelerations = self.answers.histories(self.flight, machine)
+        judged = {name: weight for name, weight in self.weights.items() if weight}
 
-        def size(x: float, total: bool = False) -> float:
-            return sum(weight * histories[name].size(x, total) for name, weight in self.weights.items())
+        def size(x: Floats, total: bool = False) -> float:
+            return sum(weight * histories[name].size(x, total) for name, weight in judged.items())
+
+        def steepest(x: Floats) -> tuple[float, Floats]:
+            parts = [histories[name].steepest(x, False) for name in judged]
+            sizes, slopes = zip(*parts, strict=True)
+            weights = np.array([*judged.values()])
+            return float(weights @ sizes), weights @ np.array(slopes)
 
         if at is None:
-            at = float(
-                scipy.optimize.minimize_scalar(
-                    size, bounds=(0, self.length), method="bounded", options={"xatol": 1e-7 * self.length}
-                ).x
-            )
+            low, high = self.answers.specimen.extent * [1.0, 0.0, 0.0]
+            at = least(steepest, np.maximum(low, 0.0), high)
         uses = machine.usage()
         times = times_between(*(float(end) for end in machine.extent))
         at_c = forward(machine.axes(times), machine.geometry.arm, machine.geometry.gravity)
         most = max(uses, key=lambda use: use.share)
         return _Evaluated(
             Candidate(
-                machine.mounting, float(machine.smoothing or 0.0), at, size(at), size(at, True), accelerations,
-                most.share, exceeded(uses), most_used=most,
-                tracking=sum(w * histories[name].error for name, w in self.weights.items()),
-                largest_load=largest_pair(self.in_flight, largest_load(times, at_c, self.points, at)),
+                mounting=machine.mounting,
+                smoothing=float(machine.smoothing or 0.0),
+                control_point=float(at[0]),
+                mismatch=size(at),
+                total_error=size(at, True),
+                accelerations=accelerations,
+                share=most.share,
+                exceeded=exceeded(uses),
+                most_used=most,
+                tracking=sum(w * histories[name].error for name, w in judged.items()),
+                largest_load=largest_pair(self.in_flight, largest_load(times, at_c, self.points, float(at[0]))),
             ),
             histories,
             machine,
-        )  # fmt: skip
+        )
 
 
 def check_weights(weights: Mapping[str, float], where: str = "measure") -> None:

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.response.record import influence
+from gbeam.analysis.imitation.specimen import Answer, Specimen
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.stepping import first_step
+from gbeam.analysis.response.stepping import RIGID, even_steps
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.system import System
 from gbeam.motion import Flight
-from gbeam.motion.bases.base import gradient
+from gbeam.motion.bases.base import gradients
 from gbeam.motion.centrifuge.centrifuge import MOUNTINGS, Centrifuge
 from gbeam.motion.centrifuge.course import INVERSES
 from gbeam.motion.centrifuge.kinematics import forward
+from gbeam.motion.protocol import SAMPLES
 from gbeam.numerics.filters import displacement
 from gbeam.numerics.minimise import coarse
 from gbeam.results.result import Flags, Floats
@@ -120,94 +124,135 @@ def choice_of(centrifuge: Centrifuge, smoothing: Sequence[float] = (), *, limite
 
 @dataclass(frozen=True)
 class Histories:
-    """A measure over the times compared: of the load's error at C, and of g x and g; (t, k) each; flight's own peak."""
+    """A measure over the times compared: of the load's error at C, of the growth's, and of the growth along x, y and z,
+    (3, ...); (t, ..., k) each; flight's own peak.
+    """
 
     at_control_point: Floats
-    linear: Floats
+    growing: Floats
     uniform: Floats
     scale: float
 
-    def size(self, at: float, total: bool) -> float:
-        """Largest size with the control point at `at` m, over flight's peak; in `total` with the load's error at C."""
-        return self._largest(self.linear - at * self.uniform + (self.at_control_point if total else 0.0))
+    def size(self, at: Floats, total: bool) -> float:
+        """Largest size with the control point at `at` (3,) m, over flight's peak; in `total` with the load's error."""
+        return self.steepest(at, total)[0]
+
+    def steepest(self, at: Floats, total: bool) -> tuple[float, Floats]:
+        """That size, and its slope (3,) in the place of the control point, 1/m."""
+        values = self.growing - np.tensordot(at, self.uniform, 1) + (self.at_control_point if total else 0.0)
+        sizes = np.linalg.norm(values, axis=-1)
+        worst = np.unravel_index(int(np.argmax(sizes)), sizes.shape)
+        slope = -self.uniform[(slice(None), *self._there(worst))] @ values[worst] / max(float(sizes[worst]), 1e-300)
+        return float(sizes[worst]) / self.scale, slope / self.scale
+
+    def _there(self, worst: tuple[Any, ...]) -> tuple[Any, ...]:
+        """Index of what is uniform: where it does not depend on the place, it has one."""
+        return tuple(min(k, size - 1) for k, size in zip(worst, self.uniform.shape[1:-1], strict=True))
 
     @property
     def error(self) -> float:
         """Measure of the load's error at C alone, which no control point changes."""
-        return self._largest(self.at_control_point)
+        return float(np.linalg.norm(self.at_control_point, axis=-1).max(initial=0.0)) / self.scale
 
-    def _largest(self, values: Floats) -> float:
-        return float(np.linalg.norm(values, axis=-1).max(initial=0.0)) / self.scale
+
+MOST = 2_000_000  # numbers in a history of the load at all ends of a specimen
 
 
 class Answers:
-    """Quasi-static answers and the first mode's, to uniform or linear loads, at times when the first centrifuge's
-    target is not held: begin with the widest smoothing, which holds longest.
+    """Quasi-static answers and the first mode's, to the loads of a flight and of a centrifuge, at times when the first
+    centrifuge's target is not held: begin with the widest smoothing, which holds longest.
     """
 
-    def __init__(self, structure: Structure, flight: Flight, settings: ResponseSettings) -> None:
-        self.step = first_step(structure, flight, settings)
+    def __init__(self, structure: Structure | System, flight: Flight, settings: ResponseSettings) -> None:
+        span = np.linspace(settings.start, settings.start + settings.duration, SAMPLES)
+        self.specimen = Specimen.of(structure, span)
+        mode = self.specimen.mode
+        longest = RIGID if mode is None else 2 * np.pi / mode.frequency / 20
+        longest = min(longest, settings.duration / 500)
+        corners = np.concatenate([flight.corners(longest), self.specimen.corners(longest)])
+        self.step = settings.duration / even_steps(longest, corners, settings)
         self.time = settings.start + self.step * np.arange(round(settings.duration / self.step) + 1)
         self.left_out: Flags | None = None
-        self.influence = influence(structure)
-        c = structure.coefficients
-        frequency, modes = structure.rest
-        self.frequency, first = float(frequency[0]), modes[:, 0]
-        self.damping = float(first @ c.damping @ first) / (2 * self.frequency)
-        self.tip = float(np.abs(structure.station_places.first[-1] @ first).max())
-        self.uniform = c.f_a @ first
-        self.linear = np.array([0.0, c.f_al[2] @ first, -c.f_al[1] @ first])
+        flown = flight.base(self.time)
+        self.load, self.growth = flown.a_WO_B, gradients(flown.w_WB_B, flown.alpha_WB_B)
+        displacement, self.tip = self.specimen.displacement, ""
+        if displacement:
+            moved = {name: _largest(each.at(self.load, self.growth)) for name, each in displacement.items()}
+            self.tip = max(moved, key=moved.__getitem__)
+
+    def refuse_unfelt(self, weights: Mapping[str, float]) -> None:
+        """Refuse a measure that has weight, and of which the flight makes none."""
+        of, loads = self.specimen, (self.load, self.growth)
+        known = {"root-shear": of.force, "root-moment": of.moment}
+        if self.tip:
+            known |= dict.fromkeys(("vibration", "tip"), of.displacement[self.tip])
+        felt = [*(name for name, each in known.items() if _largest(self._across(each).at(*loads)) > 0), "load"]
+        for name, weight in weights.items():
+            if weight and name not in felt:
+                raise InputError(
+                    "measure", f"is {name}, of which the flight makes none", f"choose of {', '.join(felt)}"
+                )
+
+    def _across(self, answer: Answer) -> Answer:
+        """The answer without what is along a straight beam, which is stiff there."""
+        return answer.onto(np.diag([0.0, 1.0, 1.0])) if self.specimen.straight else answer
 
     def histories(
         self, flight: Flight, centrifuge: Centrifuge
     ) -> tuple[dict[str, Histories], tuple[float, float, float]]:
-        """Every measure's, and the largest accelerations of the axes, rad/s²."""
-        error, gradient, load, turning, not_followed = self._mismatch(flight, centrifuge)
+        """Every measure that the flight's load has any of, and the largest accelerations of the axes, rad/s²."""
+        axes = centrifuge.axes(self.time)
+        at_c = forward(axes, centrifuge.geometry.arm, centrifuge.geometry.gravity)
+        not_followed = centrifuge.not_followed(self.time)
         self.left_out = not_followed if self.left_out is None else self.left_out
         covered = ~(not_followed | self.left_out)
         if not covered.any():
             raise InputError("tracks", "is never carried: the target is held all the time", "lower idle")
-        static, across = self.influence, np.array([0.0, 1.0, 1.0])
+        error, growth = at_c.a_WO_B - self.load, gradients(at_c.w_WB_B, at_c.alpha_WB_B)
+        # About C the machine adds its growth times the place less C; at the root the flight's load is its own.
+        growing, columns = growth - self.growth, np.moveaxis(growth, -1, 0)
+        specimen = self.specimen
 
-        def quasi_static(uniform: Floats, linear: Floats) -> Histories:
-            parts = error * uniform, gradient * linear, gradient * uniform
-            at_c, growing, even = ((part * across)[covered] for part in parts)
-            return Histories(at_c, growing, even, _peak((load * uniform * across)[covered]))
+        def histories(answer: Answer, shaped: Callable[[Floats], Floats], scale: float) -> Histories:
+            parts = answer.at(error, 0 * growing), answer.at(0 * error, growing)
+            uniform = np.stack([shaped(answer.at(column, 0 * growing)) for column in columns])
+            at_c, grown = map(shaped, parts)
+            return Histories(at_c, grown, uniform, scale)
 
-        def vibration(force: Floats) -> Floats:
-            trend = force / self.frequency**2
-            return self.tip * (displacement(force, self.frequency, self.damping, self.step) - trend)[covered, None]
+        def quasi_static(answer: Answer) -> Histories:
+            answer = self._across(answer)
+            return histories(answer, lambda each: each[covered], _largest(answer.at(self.load, self.growth)[covered]))
 
-        measures = {
-            "root-shear": quasi_static(static.force_uniform, static.force_linear),
-            "root-moment": quasi_static(static.moment_uniform, static.moment_linear),
-            "tip": quasi_static(static.tip_uniform, static.tip_linear),
-        }
-        transverse = self.uniform * across
-        measures["vibration"] = Histories(
-            vibration(error @ transverse), vibration(gradient @ self.linear), vibration(gradient @ transverse),
-            scale=measures["tip"].scale,
-        )  # fmt: skip
-        accelerations = np.abs(turning).max(axis=0)
-        return measures, (float(accelerations[0]), float(accelerations[1]), float(accelerations[2]))
+        measures = {"root-shear": quasi_static(specimen.force), "root-moment": quasi_static(specimen.moment)}
+        if specimen.mode is not None:
+            measures["tip"] = quasi_static(specimen.displacement[self.tip])
+            measures["vibration"] = histories(specimen.mode.force, self._vibration(covered), measures["tip"].scale)
+        measures["load"] = self._loads(covered, error, growing, columns)
+        turning = np.abs(axes.accelerations).max(axis=0)
+        largest = float(turning[0]), float(turning[1]), float(turning[2])
+        return {name: each for name, each in measures.items() if each.scale > 0}, largest
 
-    def _mismatch(self, flight: Flight, centrifuge: Centrifuge) -> tuple[Floats, Floats, Floats, Floats, Flags]:
-        """Load at C and gradient less the flight's, the flight's load; axis accelerations; where it is not followed."""
-        axes = centrifuge.axes(self.time)
-        geometry = centrifuge.geometry
-        at_c, flown = forward(axes, geometry.arm, geometry.gravity), flight.base(self.time)
-        turning = axes.accelerations
-        return (
-            at_c.a_WO_B - flown.a_WO_B,
-            gradient(at_c.w_WB_B, at_c.alpha_WB_B) - gradient(flown.w_WB_B, flown.alpha_WB_B),
-            flown.a_WO_B,
-            turning,
-            centrifuge.not_followed(self.time),
-        )
+    def _vibration(self, covered: Flags) -> Callable[[Floats], Floats]:
+        """Displacement (t, 1) by the first mode beside its trend, of a force on it (t,)."""
+        mode = self.specimen.mode
+        assert mode is not None
+        names = list(self.specimen.displacement)
+        tip = float(np.linalg.norm(mode.shape[names.index(self.tip)]))
+
+        def moved(force: Floats) -> Floats:
+            riding = displacement(force, mode.frequency, mode.damping, self.step) - force / mode.frequency**2
+            return np.asarray(tip * riding[covered, None])
+
+        return moved
+
+    def _loads(self, covered: Flags, error: Floats, growing: Floats, columns: Floats) -> Histories:
+        """Load at every end of the specimen."""
+        ends = np.array([*self.specimen.ends.values()])
+        some = np.flatnonzero(covered)[:: max(1, math.ceil(3 * len(ends) * len(error) / MOST))]
+        in_flight = self.load[some, None] + ends @ self.growth[some].swapaxes(1, 2)
+        at_ends = np.broadcast_to(error[some, None], in_flight.shape)
+        return Histories(at_ends, ends @ growing[some].swapaxes(1, 2), columns[:, some, None], _largest(in_flight))
 
 
-def _peak(values: Floats) -> float:
-    peak = float(np.linalg.norm(values, axis=-1).max(initial=0.0))
-    if peak == 0:
-        raise InputError("tracks", "loads the beam along its axis only", "track a flight that loads it across")
-    return peak
+def _largest(values: Floats) -> float:
+    return float(np.linalg.norm(values, axis=-1).max(initial=0.0))

@@ -104,7 +104,7 @@ def place(
     scenario: ScenarioFile,
     /,
     *,
-    measure: Measure = "tip",
+    measure: Measure = None,
     motion: CentrifugeName = None,
     smoothing: Widths = (),
     check: Check = True,
@@ -122,28 +122,30 @@ def place(
     --ignore-limits is given. With --out also writes place.json, with --report place.html. Exit status: 0 done, 1 every
     option exceeds the limits, 2 the input is wrong.
     """
-    weights = parse(measure)
+    weights = None if measure is None else parse(measure)
     widths = [number("--smoothing", text, "time") for text in smoothing]
     folder = output.folder(scenario)
     loaded = read("place", scenario, output.overrides)
     loaded.motion(motion, kind="centrifuge")
-    name, current = machine_of(loaded.beam, motion)
+    name, current = machine_of(loaded.case, motion)
 
     from gbeam.analysis.imitation import place as analysis
     from gbeam.analysis.imitation.place_measures import choice_of
 
+    structure = loaded.case.assemble()
+    weights = analysis.usual(structure) if weights is None else weights
     analysis.check_weights(weights, "--measure")
     with naming("--smoothing"):
         choice = choice_of(current, widths, limited=not ignore_limits)
-    with loaded.placing():
+    with loaded.placing(measure="--measure"):
         placement = analysis.place(
-            loaded.beam.assemble(),
+            structure,
             current.flight,
             choice,
             loaded.case.response,
             weights,
             current=current,
-            names=(loaded.beam.tracks[name], name),
+            names=(loaded.case.tracks[name], name),
             check=check,
         )
     written = _apply(loaded, scenario, name, placement.changes) if write_back and placement.changes else None

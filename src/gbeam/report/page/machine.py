@@ -152,7 +152,8 @@ _PLACES = {"current": "now", "best": "placed", "middle": "at mid-span"}
 
 def placement_body(facts: Facts, viewer: str, drawn: str) -> str:
     """Best place of the specimen, its effect, and the other options."""
-    best = f"{1e3 * facts['control_point']:.2f} mm from the root, {facts['fraction_of_length']:.4f} of the length"
+    share = facts["fraction_of_length"]
+    best = f"{1e3 * facts['control_point']:.2f} mm from the root" + (f", {share:.4f} of the length" if share else "")
     now = f"{1e3 * facts['current_control_point']:.2f} mm"
     rows = [
         ("control point", f"{best} (now {now})"),

@@ -11,7 +11,7 @@ from gbeam.results.imitation.accounting import PeakPair
 from gbeam.results.machine import LimitUse
 from gbeam.results.result import Part, Result
 
-MEASURES = ("root-shear", "root-moment", "vibration", "tip")
+MEASURES = ("root-shear", "root-moment", "vibration", "tip", "load")
 _LEVER = 0.1  # least part of the total error that a move must save to be worth it
 _FULL = 0.99  # share of a limit from which on it is used up
 _SAME = 1e-3  # of the length: control points nearer than this are one
@@ -96,7 +96,9 @@ class Placement(Result):
     flight: str = fact("name of the flight")
     centrifuge: str = fact("name of the centrifuge")
     weights: Mapping[str, float] = fact("weights of the measures", name="weight_", key="measure")
-    length: float = fact("length of the beam", "m", key=None)
+    length: float = fact(
+        "length of a straight beam, from root to tip; else the specimen's largest extent", "m", key=None
+    )
     best: Candidate = part("the best", name=None, key=None)
     options: tuple[Candidate, ...] = rows("all that were tried, the best first, those that break limits last", "option")
     current: float = fact(
@@ -120,6 +122,8 @@ class Placement(Result):
         default_factory=dict,
     )
     before: Candidate | None = part("the scenario's own", name=None, default=None)
+    point: str = fact("of a system, the point whose displacement and vibration are judged", default="")
+    straight: bool = fact("whether the specimen is one straight beam", name=None, key=None, default=True)
     outcome: str = fact(
         "how it ended", note="done, or limits exceeded where every candidate breaks one: the best is then the nearest",
         default="done",
@@ -175,9 +179,11 @@ class Placement(Result):
             f"makes {100 * best.tracking:.3g} %{limit}"
         )
 
-    @declared("", "best control point over the length", role="fact", name=None, key="fraction_of_length")
+    @declared(
+        "", "best control point over the length of a straight beam", role="fact", name=None, key="fraction_of_length"
+    )
     def fraction(self) -> float:
-        return self.best.control_point / self.length
+        return self.best.control_point / self.length if self.straight else math.nan
 
     @declared(
         "",
@@ -196,9 +202,10 @@ class Placement(Result):
     def __repr__(self) -> str:
         best = self.best
         measure = " + ".join(f"{weight:g} × {name}" for name, weight in self.weights.items() if weight)
+        share = f" ({self.fraction:.4f} of the length)" if self.straight else ""
         lines = [
             f"Placement of {self.centrifuge!r}, tracking {self.flight!r}, by {measure}",
-            f"control point {1e3 * best.control_point:.2f} mm from the root ({self.fraction:.4f} of the length), "
+            f"control point {1e3 * best.control_point:.2f} mm from the root{share}, "
             f"{best.mounting}, smoothing {1e3 * best.smoothing:.4g} ms",
             f"mismatch {100 * best.mismatch:.3g} % of flight's peak, in total {100 * best.total_error:.3g} %; "
             f"{len(self.options)} candidates",

@@ -1,0 +1,182 @@
+"""A specimen as a placement sees it: its static answers, and those of its first mode, to the load of its base.
+
+The load at a place r from the root is a + G r: the root's acceleration, or specific force, and its growth along x, y
+and z, G = α× + ω ωᵀ − ω² 1 (2020 (4)). Everything static is linear in these twelve numbers, of a beam, a system, a
+solid and a rigid box alike.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from gbeam.analysis.imitation.accounting import points_of
+from gbeam.analysis.system.assembly import undeformed
+from gbeam.analysis.system.point import Point
+from gbeam.analysis.system.steady import Drive, steady
+from gbeam.arrays.tree import each_leaf
+from gbeam.errors import InputError
+from gbeam.mechanics.equations.linear import PAIRS, rest_modes
+from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.system import System
+from gbeam.numerics.eigen import RIGID, symmetric
+from gbeam.results.result import Floats
+
+
+class Answer(NamedTuple):
+    """Values of unit accelerations (3, ...) of the root, and of unit growths (3, 3, ...), component by direction."""
+
+    a: Floats
+    growth: Floats
+
+    @classmethod
+    def of(cls, a: Floats, alpha: Floats, ww: Floats) -> Answer:
+        """Answer from values of unit accelerations, angular accelerations (3, ...) and pairs of rates (3, 3, ...)."""
+        unit = np.eye(9).reshape(3, 3, 3, 3)
+        even, odd = ((unit + sign * unit.swapaxes(2, 3)) / 2 for sign in (1, -1))
+        turning = np.stack([odd[..., 2, 1], odd[..., 0, 2], odd[..., 1, 0]], axis=-1)
+        pairs = even - np.trace(even, axis1=2, axis2=3)[..., None, None] / 2 * np.eye(3)
+        return cls(a, np.tensordot(turning, alpha, 1) + np.tensordot(pairs, ww, 2))
+
+    def onto(self, values: Any) -> Answer:
+        """Return the answer by a map (..., k) of its values."""
+        return Answer(self.a @ values, self.growth @ values)
+
+    def at(self, a: Floats, growth: Floats) -> Floats:
+        """Values at accelerations (..., 3) and growths (..., 3, 3) of the root."""
+        return np.asarray(np.tensordot(a, self.a, 1) + np.tensordot(growth, self.growth, 2))
+
+
+@dataclass(frozen=True)
+class Mode:
+    """The slowest mode of a specimen: circular frequency, rad/s, damping ratio, force and displacement (p, 3) of its
+    points by unit amplitude.
+    """
+
+    frequency: float
+    damping: float
+    force: Answer
+    shape: Floats
+
+
+@dataclass(frozen=True)
+class Specimen:
+    """Answers of a specimen: force and moment (3) on its base, displacement (3) of each of its points by name, its
+    slowest mode, None of a rigid one; and the places (p, 3) at which its load is largest, by name, m.
+    """
+
+    force: Answer
+    moment: Answer
+    displacement: Mapping[str, Answer]
+    mode: Mode | None
+    ends: Mapping[str, Floats]
+    straight: bool = False
+    corners: Callable[[float], Floats] = lambda step: np.empty(0)
+
+    @classmethod
+    def of(cls, structure: Structure | System, times: Floats) -> Specimen:
+        """Answers of a structure, or of a system at rest at all of some times (t,), s.
+
+        Raises
+        ------
+        InputError
+            If a coordinate of a system is moved, or held by nothing.
+        """
+        return of_system(structure, times) if isinstance(structure, System) else of_structure(structure)
+
+    @property
+    def extent(self) -> Floats:
+        """Least and largest coordinates (2, 3) of its ends, m."""
+        ends = np.array([*self.ends.values()])
+        return np.stack([ends.min(axis=0), ends.max(axis=0)])
+
+
+def of_structure(structure: Structure) -> Specimen:
+    """Answers of one structure about its place at rest."""
+    c, beam = structure.coefficients, None if structure.source is None else structure.source.beam
+    envelope = None if structure.recovery is None else structure.recovery.envelope
+    ends = points_of(structure.length, np.empty((0, 3)) if beam is None else beam.body_centres, envelope)
+    (mass, *first), second = c.rigid[:4], np.empty((3, 3))
+    for (i, j), value in zip(PAIRS, c.rigid[4:], strict=True):
+        second[i, j] = second[j, i] = value
+    eye = np.eye(3)
+    force = Answer(-mass * eye, -np.einsum("ik,j->ijk", eye, first))
+    moment = Answer(np.cross(eye, first), np.cross(eye[:, None], second[None]))
+    displacement, mode = dict[str, Answer](), None
+    if structure.size:
+        forces = Answer.of(c.f_a, c.f_al, c.f_ww)
+        moved = structure.station_places.first[-1]
+        displacement["tip"] = forces.onto(np.linalg.solve(c.stiffness, moved.T))
+        mode = _mode(c.mass, c.damping, c.stiffness, forces, moved[None])
+    history = structure.history
+    corners = Specimen.corners if history is None else history.corners
+    return Specimen(force, moment, displacement, mode, ends, beam is not None and beam.line is None, corners)
+
+
+def _mode(mass: Floats, damping: Floats, stiffness: Floats, forces: Answer, moved: Floats) -> Mode:
+    """The slowest mode of points that move by coordinates (p, 3, n)."""
+    frequency, modes = rest_modes(mass, stiffness)
+    first = modes[:, 0]
+    ratio = float(first @ damping @ first) / (2 * float(frequency[0]))
+    return Mode(float(frequency[0]), ratio, forces.onto(first), moved @ first)
+
+
+def of_system(system: System, times: Floats) -> Specimen:
+    """Answers of a system where it rests with no load of its base."""
+    _refuse_moved(system, times)
+    state = steady(system, Drive(time=float(times[0])))
+    local, stiffness = state.local, state.linear.stiffness
+    forces, force, moment = _answers(local)
+    displacement, mode, free = dict[str, Answer](), None, len(local.y)
+    if free:
+        square, shapes = np.linalg.eigh(symmetric(stiffness))
+        if not square[0] > RIGID * square[-1]:
+            loose = state.names[int(np.abs(shapes[:, 0]).argmax())]
+            fix = "give it a spring, or hold it, while a place is searched for"
+            raise InputError("joints", f"leave {loose} held by nothing that resists a load at rest", fix)
+        moved = state.slopes_of_points
+        by_load = np.linalg.solve(stiffness, moved.reshape(-1, free).T).reshape(free, -1, 3)
+        displacement = {name: forces.onto(by_load[:, k]) for k, name in enumerate(system.points)}
+        mass, damping, stiffness = (symmetric(each) for each in state.linear[:3])
+        mode = _mode(mass, damping, stiffness, forces, moved)
+    ends = dict(zip(system.points, undeformed(system), strict=True))
+    return Specimen(force, moment, displacement, mode, ends, corners=system.corners)
+
+
+def _refuse_moved(system: System, times: Floats) -> None:
+    """Refuse a system that drives move, which has no one place at rest."""
+    if system.controllers:
+        fix = "give the joints springs in their place, and compare runs with them by `gbeam sweep`"
+        raise InputError("controllers", "hold joints, and a place is judged by what rests", fix)
+    given = system.inputs(times).prescribed
+    if given is not None and np.any(given[:, 1]):
+        name = system.coordinates[system.tree.fixed[int(np.abs(given[:, 1]).max(axis=0).argmax())]]
+        fix = "give it the rate 0, at each position that is of interest"
+        raise InputError("joints", f"move {name}, and a place is judged by what rests", fix)
+
+
+def _answers(local: Point) -> tuple[Answer, Answer, Answer]:
+    """Forces on the coordinates of a point at rest, and force and moment on the ground."""
+    eye = np.eye(3)
+    pairs = [eye[i] + (eye[j] if i != j else 0.0) for i, j in PAIRS]
+    none, count = np.zeros((3, 3)), 13
+    a = np.concatenate([np.zeros((1, 3)), eye, none, none, none])
+    alpha = np.concatenate([np.zeros((1, 3)), none, eye, none, none])
+    w = np.concatenate([np.zeros((1, 3)), none, none, pairs])
+    inputs = each_leaf(lambda leaf: np.broadcast_to(leaf, (count, *np.shape(leaf))), local.inputs)
+    inputs = replace(inputs, ground=replace(inputs.ground, a=a, alpha=alpha, w=w))
+    y, yd, ydd = (np.broadcast_to(each, (count, len(each))) for each in (local.y, local.yd, local.ydd))
+    rows, ground = local.tree.rows(y, yd, ydd, inputs)
+
+    def answer(values: Floats) -> Answer:
+        left = values[0] - np.broadcast_to(values, (count, values.shape[-1]))
+        ww = np.zeros((3, 3, left.shape[-1]))
+        for k, (i, j) in enumerate(PAIRS):
+            both = left[7 + k] if i == j else (left[7 + k] - left[7 + i] - left[7 + j]) / 2
+            ww[i, j] = ww[j, i] = both
+        return Answer.of(left[1:4], left[4:7], ww)
+
+    return answer(rows[:, local.tree.free]), answer(ground.force), answer(ground.moment)
