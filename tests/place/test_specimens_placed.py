@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -40,6 +41,23 @@ def test_a_system_of_one_beam_is_placed_as_the_beam(flight: Any, spin: Any, sett
         # Along its axis too: of the force, which for a beam is the shear.
         assert other.values["current"][name] == pytest.approx(share, rel=2e-2 if name == "root-shear" else 1e-4), name
     assert other.point == "strip.tip" and np.isnan(other.fraction) and one.point == ""
+
+
+@pytest.mark.parametrize("measure", ["root-moment", "tip", "load"])
+def test_a_bracket_with_a_corner_is_placed_as_two_beams(flight: Any, spin: Any, settings: Any, measure: str) -> None:
+    leg = 0.15
+    line = gb.Line.of_points([[0, 0, 0], [leg, 0, 0], [leg, 0, leg]], smooth=False)
+    strip = replace(STRIP, material=gb.Material(2700.0, 70e9, poissons_ratio=0.33))
+    bent = gb.assemble(replace(strip, line=line), "FOAM", [leg], axial=0, y=3, z=4, twist=3)
+    straight = gb.assemble(replace(strip, length=leg), "exact", axial=0, y=3, z=4, twist=3)
+    joints = {
+        "clamp": gb.Joint("fixed", "foot"),
+        "corner": gb.Joint("fixed", "arm", "foot.tip", turn=(0, -np.pi / 2, 0)),
+    }
+    tree = gb.System({"foot": straight, "arm": straight}, joints)
+    one, other = (placed(each, flight, spin, settings, measure) for each in (bent, tree))
+    assert one.best.control_point == pytest.approx(other.best.control_point, abs=1e-4 * leg)
+    assert one.values["best"][measure] == pytest.approx(other.values["best"][measure], rel=1e-3)
 
 
 def test_a_beam_meshed_as_a_solid_is_placed_as_the_beam(flight: Any, spin: Any, settings: Any) -> None:

@@ -15,6 +15,8 @@ import gbeam as gb
 ALUMINIUM = gb.Material(2700.0, 70e9, poissons_ratio=0.33)
 SECTION = gb.Section.rectangle(0.03, 0.02)
 LENGTH = 0.5
+FLIGHT = gb.Flight(z=gb.Sum((gb.constant(20.0), gb.trapezoid(50.0, jerk=100.0, start=0.1, hold=0.2))))
+MACHINE = gb.Centrifuge(FLIGHT, arm=3.3, control_point=0.1, gravity=True, smoothing=0.1, span=(0.0, 1.4))
 
 
 def beam(line: gb.Line | None = None, **changes: Any) -> gb.Beam:
@@ -80,16 +82,51 @@ def test_what_makes_no_line_is_refused(make: Callable[[], Any], message: str) ->
         make()
 
 
-def test_a_centrifuge_takes_straight_beams() -> None:
-    load = gb.Sum((gb.constant(20.0), gb.trapezoid(50.0, jerk=25.0, start=1.0, hold=2.0)))
-    machine = gb.Centrifuge(gb.Flight(z=load), arm=3.3, control_point=0.2, gravity=True, smoothing=0.1, span=(0.0, 8.0))
-    curved = beam(gb.Line.of_pieces([LENGTH], turn_z=0.5))
-    for run in (
-        lambda: gb.plan("centrifuge", machine, beam=curved),
-        lambda: gb.simulate(gb.assemble(curved, "FOAM", y=1, z=1), machine, duration=1.0),
-    ):
-        with pytest.raises(gb.InputError, match=r"beam.line is given, and .* judges the load along a straight beam"):
-            run()
+def flown_and_spun(specimen: Any, point: str | None = None) -> tuple[Any, Any, gb.Comparison]:
+    options: dict[str, Any] = {"duration": 1.4, "step": 4e-3, "integrator": "gauss", "estimate": False}
+    flight, spun = (gb.simulate(specimen, motion, **options) for motion in (FLIGHT, MACHINE))
+    return flight, spun, gb.compare(flight, spun, point=point)
+
+
+def test_a_line_without_curvature_is_flown_and_spun_as_the_straight_beam() -> None:
+    (_, one, of_one), (_, two, of_two) = (
+        flown_and_spun(gb.assemble(each, "exact", axial=0, y=0, z=2))
+        for each in (beam(), beam(gb.Line.of_pieces([LENGTH])))
+    )
+    np.testing.assert_array_equal(one.q, two.q)
+    assert {name: each.machine for name, each in of_one.peaks.items()} == pytest.approx(
+        {name: each.machine for name, each in of_two.peaks.items()}, rel=1e-12
+    )
+
+
+def test_a_bracket_with_a_corner_is_flown_and_spun_as_two_beams_at_right_angles() -> None:
+    leg, thin = 0.12, gb.Section.rectangle(0.03, 0.004)
+    line = gb.Line.of_points([[0, 0, 0], [leg, 0, 0], [leg, 0, leg]], smooth=False)
+    bracket = beam(line, section=thin, damping_ratio=0.0)
+    flight, spun, compared = flown_and_spun(gb.assemble(bracket, "exact", [leg], axial=0, y=3, z=4, twist=3))
+    each = gb.assemble(beam(section=thin, length=leg, damping_ratio=0.0), "exact", axial=0, y=2, z=3, twist=1)
+    joints = {
+        "clamp": gb.Joint("fixed", "foot"),
+        "corner": gb.Joint("fixed", "arm", "foot.tip", turn=(0, -np.pi / 2, 0)),
+    }
+    *_, of_tree = flown_and_spun(gb.System({"foot": each, "arm": each}, joints), "arm.tip")
+    for name in ("tip", "root_force", "root_moment"):
+        one, other = compared.peaks[name], of_tree.peaks[name]
+        assert (one.flight, one.machine) == pytest.approx((other.flight, other.machine), rel=5e-4), name
+    np.testing.assert_allclose(compared.difference, of_tree.difference, atol=2e-3 * compared.peaks["tip"].flight)
+    largest = compared.peaks["largest_load"]
+    growth = gb.plan("spun", MACHINE, beam=bracket).peaks["largest_load"]
+    assert (
+        compared.mismatch is None
+        and spun.influence is None
+        and growth.machine == pytest.approx(largest.machine, rel=1e-3)
+    )
+    outline = spun.outline
+    assert outline is not None and outline.place is not None and outline.across is not None
+    np.testing.assert_allclose(outline.place[[0, -1]], [[0, 0, 0], [leg, 0, leg]], atol=1e-12)
+    np.testing.assert_allclose(outline.across, np.tile([0.0, 1.0, 0.0], (len(outline.points), 1)), atol=1e-12)
+    np.testing.assert_allclose(outline.displacement[-1, -1], spun.tip[-1], atol=1e-6 * np.abs(spun.tip).max())
+    assert flight.outline is not None and not len(beam().envelope)
 
 
 @pytest.mark.parametrize("kind", ["TLAM", "FOAM", "CFOAM", "exact"])

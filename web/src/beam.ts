@@ -26,14 +26,15 @@ export function corners(width: number, thickness: number, round: boolean): [numb
   });
 }
 
-/** Directions y and z of a section whose axis points along `t`: y stays as near to the base's y as it can. */
-export function frame(t: Vector): [Vector, Vector] {
+/** Directions y and z of a section whose axis points along `t`: y stays as near as it can to that at rest. */
+export function frame(t: Vector, across: Vector = [0, 1, 0]): [Vector, Vector] {
   const length = Math.hypot(...t) || 1;
   const [x, y, z] = t.map((each) => each / length) as Vector;
-  // The base's y without its part along the axis; along z where the axis is y itself.
-  const own: Vector = Math.abs(y) > 0.999 ? [0, 0, 1] : [0, 1, 0];
-  const part = own[1] * y + own[2] * z;
-  const first: Vector = [-part * x, own[1] - part * y, own[2] - part * z];
+  // That y without its part along the axis; along z where the axis is y itself.
+  const along = across[0] * x + across[1] * y + across[2] * z;
+  const [a, b, c]: Vector = Math.abs(along) > 0.999 ? [0, 0, 1] : across;
+  const part = a * x + b * y + c * z;
+  const first: Vector = [a - part * x, b - part * y, c - part * z];
   const size = Math.hypot(...first);
   const e: Vector = [first[0] / size, first[1] / size, first[2] / size];
   return [e, [y * e[2] - z * e[1], z * e[0] - x * e[2], x * e[1] - y * e[0]]];
@@ -97,7 +98,7 @@ export class BeamMesh {
     this.move(null, 1, null, 1);
   }
 
-  /** Put the beam where displacements (points × 3, m; null: straight) times a factor take it, turn its sections by twist
+  /** Put the beam where displacements (points × 3, m; null: at rest) times a factor take it, turn its sections by twist
    * (points, rad) times it, and colour it by shares. */
   move(
     displacement: ArrayLike<number> | null,
@@ -106,16 +107,16 @@ export class BeamMesh {
     grey: number,
     twist: ArrayLike<number> | null = null,
   ): void {
-    const { points } = this.shape;
-    const place = (k: number): Vector => [
-      points[k]! + (displacement ? factor * displacement[3 * k]! : 0),
-      displacement ? factor * displacement[3 * k + 1]! : 0,
-      displacement ? factor * displacement[3 * k + 2]! : 0,
-    ];
+    const { points, rest, across } = this.shape;
+    const place = (k: number): Vector => {
+      const at = rest?.[k] ?? [points[k]!, 0, 0];
+      return [0, 1, 2].map((i) => at[i]! + (displacement ? factor * displacement[3 * k + i]! : 0)) as Vector;
+    };
     const last = points.length - 1;
     for (let k = 0; k <= last; k++) {
       const [before, here, after] = [place(Math.max(k - 1, 0)), place(k), place(Math.min(k + 1, last))];
-      const [y, z] = frame([after[0] - before[0], after[1] - before[1], after[2] - before[2]]);
+      const along: Vector = [after[0] - before[0], after[1] - before[1], after[2] - before[2]];
+      const [y, z] = frame(along, across?.[k] as Vector | undefined);
       const angle = twist ? factor * twist[k]! : 0;
       const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
       const colour = shares ? shade(shares[k]!) : ([grey, grey, grey] as const);

@@ -12,6 +12,9 @@ export interface Shape {
   thickness: number[];
   round: boolean;
   bodies?: [number, number][];
+  /** Places of the points at rest and directions of the sections' y, of a beam that is not straight along x. */
+  rest?: number[][];
+  across?: number[][];
 }
 
 export interface Stress {
@@ -20,7 +23,7 @@ export interface Stress {
   largest: number;
 }
 
-/** A beam in axes of its root, which points along x at rest. */
+/** A beam in axes of its root. */
 export interface Beam extends Shape {
   displacement: Ref;
   /** Angles of the sections about the beam's axis. */
@@ -62,7 +65,7 @@ export interface Motion {
   length: number;
   time: Ref;
   largest: number;
-  /** Middle of what is shown, (1, 3) or over time, and its radius, where it is more than one beam on a base. */
+  /** Middle of what is shown, (1, 3) or over time, and its radius, where it is not one straight beam on a base. */
   middle?: Ref;
   radiusShown?: number;
   /** Whether it is a mode's shape, whose size means nothing. */

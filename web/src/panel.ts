@@ -64,7 +64,7 @@ export class Panel {
 
   get title(): string {
     const of = this.motion.name === this.motion.environment ? "" : ` (${this.motion.environment})`;
-    if (this.motion.middle) return `${this.motion.name}${of}`;
+    if (this.motion.middle && !this.whole) return `${this.motion.name}${of}`;
     if (!this.whole) return `${this.motion.name}${of}, base axes`;
     const whole = { hub: "hub", flight: "turning" }[this.motion.environment] ?? "machine";
     return `${this.motion.name}${of}, ${whole}`;

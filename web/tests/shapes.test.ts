@@ -62,6 +62,18 @@ describe("the beam's mesh", () => {
     expect(tip[2]).toBeCloseTo(0.2, 5);
   });
 
+  it("lies where it is at rest, its sections turned as there", () => {
+    const rest = [[0, 0, 0], [0, 1, 0], [0, 2, 0]];
+    const beam = new BeamMesh({ ...shape, rest, across: Array(3).fill([0, 0, 1]) }, false);
+    const mesh = beam.group.children[0] as unknown as { geometry: { getAttribute(name: string): { array: Float32Array } } };
+    const places = mesh.geometry.getAttribute("position").array;
+    for (let k = 8; k < 12; k++) {
+      expect(places[3 * k + 1]!).toBeCloseTo(2, 6);
+      expect(Math.abs(places[3 * k]!)).toBeCloseTo(0.05, 6); // the thickness, along x
+      expect(Math.abs(places[3 * k + 2]!)).toBeCloseTo(0.1, 6);
+    }
+  });
+
   it("keeps sections at right angles to the axis", () => {
     const t = [0.8, 0.3, -0.5] as [number, number, number];
     const [y, z] = frame(t);

@@ -338,6 +338,7 @@ def sections_of(
     beyond = np.concatenate([share, whole], axis=1)
     return Sections(
         values=beam.section.at(np.append(0.0, at)),
+        along=x,
         stresses=beam.section.stresses(np.append(0.0, at)),
         root_axes=np.eye(3) if beam.line is None else beam.line.places(0.0)[1][0],
         mass=beyond[:, particles[1]] * particles[0],

@@ -38,7 +38,8 @@ Array = Any
 @record
 class Sections:
     """Sections at root and stations: values (s,), outboard masses (s, particles) kg, shares of loads (s, loaded),
-    axes of the root's section in columns (3, 3), stresses by unit loads (points, 3, 6, s), strength Pa.
+    axes of the root's section in columns (3, 3), stresses by unit loads (points, 3, 6, s), strength Pa; and `along` the
+    beam, m, where the field's points lie.
     """
 
     values: Any
@@ -48,6 +49,7 @@ class Sections:
     stresses: Array | None = None
     yield_strength: Any = None
     fatigue_exponent: Any = np.nan
+    along: Array = None
 
 
 class Recovery(Protocol):

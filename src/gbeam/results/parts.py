@@ -36,6 +36,18 @@ class Outline(Part):
     displacement: Floats = quantity(
         "m", "displacement of the beam's axis", "outline_time", "point", "axis", name="outline"
     )
+    place: Floats | None = quantity(
+        "m",
+        "place of the point at rest, base axes",
+        "point",
+        "axis",
+        name="outline_place",
+        note="None of a straight beam",
+        default=None,
+    )
+    across: Floats | None = quantity(
+        "", "direction of the section's width at rest", "point", "axis", name="outline_across", default=None
+    )
     arm: float = quantity("m", "from axis 1 of the centrifuge to the control point", optional=True, default=math.nan)
     radius: float = quantity("m", "from the hub's axis to the root", name="hub_radius", optional=True, default=math.nan)
     R_HB: Floats = quantity(

@@ -217,7 +217,7 @@ class Response(Driven, Figured):
     kept_every: int = fact("how many samples of the histories make one in a file", name=None, key=None, default=1)
     envelope: Floats = quantity(
         "m",
-        "corners of the convex hull of a solid or rigid specimen, undeformed, from the root",
+        "corners of the convex hull of a solid, rigid or curved specimen, undeformed, from the root",
         "corner",
         "axis",
         name=None,

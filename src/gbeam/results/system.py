@@ -80,7 +80,7 @@ class BeamResponse(Part):
         "its shape at some of the times, axes of its root",
         key=None,
         name=INSIDE,
-        note="None unless straight at rest",
+        default=None,
     )
     points: tuple[str, ...] = quantity(
         "", "name of the station, or its position", "station", name=None, key=None, note="the sections after the root",

@@ -21,6 +21,7 @@ from gbeam.structure.material import ASSUMED_RATIO, Material
 from gbeam.structure.section import Section
 from gbeam.structure.shapes import ASSUMED_SHEAR, MATRICES
 
+_ON_HULL = 33  # places on a line: chords of a quarter of a circle are off by 3e-4 of its radius
 NO_TWIST = "no twist (section.torsion_constant is not given)"
 
 
@@ -151,6 +152,15 @@ class Beam(Value):
         return at[:, None] * np.eye(3)[0], np.broadcast_to(np.eye(3), (len(at), 3, 3))
 
     @property
+    def envelope(self) -> NDArray[np.float64]:
+        """Places (c, 3) m at rest along the line and of the bodies' centres; none of a straight beam."""
+        if self.line is None:
+            return np.empty((0, 3))
+        edges = {0.0, *self.line.breaks, self.length}
+        x = np.unique([*edges, *np.linspace(0, self.length, _ON_HULL)])
+        return np.concatenate([self.at_rest(x)[0], self.body_centres])
+
+    @property
     def coupled(self) -> bool:
         """Whether it moves in several directions at once: by its line, or by a section's matrices."""
         return self.line is not None or self.material is None
@@ -185,13 +195,6 @@ class Beam(Value):
         shear, area, ratio = self.material.rigidity, self.section.at(x).area, self.material.ratio
         in_shear = (shear * area * k for k in self.section.shear_coefficients(x, ratio))
         return axial, *in_shear, shear * self.section.torsion_constant(x), about_y, about_z
-
-
-def refuse_curved(beam: Beam | None, asked: str) -> None:
-    """Raise InputError where a beam is not straight at rest, and what is `asked` judges loads along a straight one."""
-    if beam is not None and beam.line is not None:
-        fix = "run the beam in flight or on a hub, or leave the line out"
-        raise InputError("beam.line", f"is given, and {asked} judges the load along a straight beam", fix)
 
 
 def assumptions(beam: Beam) -> tuple[str, ...]:

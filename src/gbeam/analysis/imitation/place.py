@@ -38,7 +38,6 @@ from gbeam.results.imitation.placement import MEASURES, Candidate, Placement, Ve
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.system import SystemResponse
-from gbeam.structure.beam import refuse_curved
 
 
 @record
@@ -258,8 +257,6 @@ class _Trials:
         settings: ResponseSettings,
         weights: Mapping[str, float],
     ) -> None:
-        if isinstance(structure, Structure):
-            refuse_curved(None if structure.source is None else structure.source.beam, "place")
         self.answers, self.flight = Answers(structure, flight, settings), flight
         self.answers.refuse_unfelt(weights)
         self.choice, self.weights = choice, weights

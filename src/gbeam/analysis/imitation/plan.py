@@ -26,7 +26,7 @@ from gbeam.results.imitation.comparison import MachinePlan
 from gbeam.results.imitation.criteria import BROKEN, Limit, checked_limits
 from gbeam.results.machine import Commands
 from gbeam.results.result import Floats
-from gbeam.structure.beam import Beam, refuse_curved
+from gbeam.structure.beam import Beam
 
 _FINE = 1e-3  # s: the angle of axis 1 is integrated on times no further apart
 
@@ -79,7 +79,8 @@ def plan(
     'done'
     """
     limits = checked_limits(accept)
-    refuse_curved(beam, "plan")
+    if beam is not None and beam.line is not None:
+        envelope = beam.envelope
     first, last = (float(end) for end in motion.extent)
     time = times_between(first, last)
     axes = axes_result(motion, time)
@@ -93,10 +94,10 @@ def plan(
     ends = tip if envelope is None else envelope
     growth = gradients(flown.w_WB_B, flown.alpha_WB_B), gradients(machine.w_WB_B, machine.alpha_WB_B)[during]
     largest, points = PeakPair(), dict[str, Floats]()
-    if beam is not None:
-        points = points_of(beam.length, beam.body_centres)
-    elif envelope is not None:
+    if envelope is not None:
         points = points_of(0.0, envelope, envelope)
+    elif beam is not None:
+        points = points_of(beam.length, beam.body_centres)
     if points:
         largest = largest_pair(largest_load(time[during], flown, points), largest_load(time, machine, points))
     return MachinePlan(

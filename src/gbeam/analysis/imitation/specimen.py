@@ -97,7 +97,9 @@ class Specimen:
 def of_structure(structure: Structure) -> Specimen:
     """Answers of one structure about its place at rest."""
     c, beam = structure.coefficients, None if structure.source is None else structure.source.beam
-    envelope = None if structure.recovery is None else structure.recovery.envelope
+    envelope = None if beam is None else beam.envelope
+    if structure.recovery is not None:
+        envelope = structure.recovery.envelope
     ends = points_of(structure.length, np.empty((0, 3)) if beam is None else beam.body_centres, envelope)
     (mass, *first), second = c.rigid[:4], np.empty((3, 3))
     for (i, j), value in zip(PAIRS, c.rigid[4:], strict=True):
@@ -133,7 +135,7 @@ def of_system(system: System, times: Floats) -> Specimen:
     displacement, mode, free = dict[str, Answer](), None, len(local.y)
     if free:
         square, shapes = np.linalg.eigh(symmetric(stiffness))
-        if not square[0] > RIGID * square[-1]:
+        if not square[0] > RIGID**2 * square[-1]:
             loose = state.names[int(np.abs(shapes[:, 0]).argmax())]
             fix = "give it a spring, or hold it, while a place is searched for"
             raise InputError("joints", f"leave {loose} held by nothing that resists a load at rest", fix)

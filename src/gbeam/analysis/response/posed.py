@@ -31,7 +31,6 @@ from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.results.errors import StepErrors
 from gbeam.results.result import Floats
-from gbeam.structure.beam import refuse_curved
 
 UNMOVED = 1e-14  # of the length
 NOTHING = 1e-7  # of the other load, over a length of the beam: a force or moment that is less is rounding
@@ -127,8 +126,6 @@ class Posed:
 
 def pose(structure: Structure, motion: Motion, settings: ResponseSettings) -> tuple[Posed, int, int]:
     """Pose a run, from a machine's start if that comes before; and how many steps it takes before and after."""
-    if motion.kind == "centrifuge" and structure.source is not None:
-        refuse_curved(structure.source.beam, "a centrifuge")
     coarse = first_step(structure, motion, settings)
     step = None if settings.step is None else settings.duration / max(1, round(settings.duration / settings.step))
     kept = step or coarse

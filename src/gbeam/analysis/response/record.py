@@ -34,7 +34,7 @@ from gbeam.results.response import BaseMotion, HubResult, Response
 from gbeam.results.result import Floats
 from gbeam.structure.beam import names_at
 
-POINTS = 16  # along the beam, at most
+POINTS = 16  # along a straight beam, at most; twice as many along a line
 TIMES = 1500
 
 
@@ -42,25 +42,24 @@ def outline_of(structure: Structure, motion: Motion | None, time: Floats, q: Flo
     """Return the outline of a response at times `time` (t,) s with coordinates `q` (t, n); None without a beam, and
     without what carries it where there is no `motion`.
     """
-    if structure.field is None or structure.source is None or structure.source.beam.line is not None:
-        return None  # the viewer draws straight beams
+    if structure.field is None or structure.sections is None or structure.source is None:
+        return None
     beam = structure.source.beam
-    field = structure.field
-    outline = field.points(slice(None))
-    places = np.asarray(outline.positions(np.zeros(structure.size)))[:, 0]
-    x, index = np.unique(np.round(places / beam.length, 9), return_index=True)
-    spread = np.unique(np.linspace(0, len(x) - 1, POINTS - 1).round().astype(int))
-    chosen = index[spread]
+    outline = structure.field.points(slice(None))
+    x, index = np.unique(np.round(structure.sections.along / beam.length, 9), return_index=True)
+    count = POINTS if beam.line is None else 2 * POINTS
+    chosen = index[np.unique(np.linspace(0, len(x) - 1, count - 1).round().astype(int))]
     some = np.unique(np.linspace(0, len(time) - 1, TIMES).round().astype(int))
-    rest = places[chosen]
+    rest = structure.sections.along[chosen]
     moved = np.asarray(outline[chosen].positions(q[some]) - outline[chosen].positions(np.zeros(structure.size)))
     # The field has no point at the root: the nodes next to it lie within a hundredth of the length.
     root = moved[:, 0] - (moved[:, 1] - moved[:, 0]) * (rest[0] / (rest[1] - rest[0]))
-    if not structure.source.beam.root.springs:
+    if not beam.root.springs:
         root = np.zeros_like(root)
     points = np.concatenate([[0.0], rest])
     section = beam.section.at(points)
     width, thickness = section.extents()
+    place, axes = (None, None) if beam.line is None else beam.at_rest(points)
     return Outline(
         points=points,
         width=width,
@@ -69,6 +68,8 @@ def outline_of(structure: Structure, motion: Motion | None, time: Floats, q: Flo
         bodies=np.array([(body.at, body.mass) for body in beam.masses], dtype=float).reshape(-1, 2),
         time=time[some],
         displacement=np.concatenate([root[:, None], moved], axis=1),
+        place=place,
+        across=None if axes is None else axes[:, :, 1],
         **_carrier(motion),
         attitude=_attitude(motion, time, some),
     )
@@ -164,6 +165,7 @@ def response_of(
         hub = replace(hub, drive_torque=loads.drive_torque)
     axes = None if traced or motion.kind != "centrifuge" else axes_of(motion, time)
     outcome, message = "done", ""
+    straight = structure.source is None or structure.source.beam.line is None
     felt = None if traced or structure.sections is not None or not settings.loads else accelerations(
         structure, over_time, q[:, beam], qd[:, beam], qdd[:, beam]
     )  # fmt: skip
@@ -223,7 +225,7 @@ def response_of(
         qdd=qdd[:, beam],
         frequencies=structure.rest[0],
         loads=loads,
-        influence=influence(structure) if motion.kind == "centrifuge" and not traced else None,
+        influence=influence(structure) if motion.kind == "centrifuge" and straight and not traced else None,
         damping_ratio=structure.damping_ratio,
         initial=str(settings.begin),
         outline=outline_of(structure, motion, time, q[:, beam]) if settings.loads and not traced else None,
@@ -238,9 +240,9 @@ def response_of(
 def _recovered(
     structure: Structure, motion: Motion, time: Floats, base: BaseMotion, q: Floats, name: str
 ) -> dict[str, Any]:
-    """Parts that only the response of a solid or a rigid specimen has."""
+    """Parts that only the response of a curved beam, a solid or a rigid specimen has."""
     if structure.recovery is None:
-        return {}
+        return {} if structure.source is None else {"envelope": structure.source.beam.envelope}
     parts = structure.recovery.parts(time, base, q, motion=name, model=structure.kind, environment=motion.kind)
     return {"envelope": structure.recovery.envelope, **parts}
 

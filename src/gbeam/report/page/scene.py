@@ -17,6 +17,7 @@ Variables = Mapping[str, Any]
 SHOWN = 33  # points of a mode shape
 TIMES = 1500  # of bodies that have no outline of their own
 SIGNS = np.array(np.meshgrid(*[(-1, 1)] * 3)).reshape(3, -1).T  # of a box's corners
+LINE = (("rest", "place"), ("across", "across"))  # of a beam that is not straight, and where an outline has it
 FAR = 4  # times their own size: bodies that go farther are followed
 WIDE, THICK = 0.03, 0.012  # of the length: of a beam whose section a result does not hold
 
@@ -53,6 +54,10 @@ def motion(name: str, environment: str, variables: Variables, numbers: Numbers) 
         "time": numbers.add(some),
         "largest": _largest(outline),
     }
+    if (rest := of("outline_place")) is not None:
+        header["length"] = _largest(rest)
+        middle, header["radiusShown"] = _view(rest[None])
+        header["middle"] = numbers.add(middle)
     actual = of("load_actual")
     load = of("root_acceleration") if actual is None else actual
     header["load"], header["largestLoad"] = numbers.add(load[index]), _largest(load)
@@ -100,6 +105,7 @@ def _beam(variables: Variables, index: Any, numbers: Numbers) -> dict[str, Any]:
     of: Any = variables.get
     header: dict[str, Any] = {
         **shape(of("point"), of("outline_width"), of("outline_thickness"), of("outline_round")),
+        **{key: of(f"outline_{name}").tolist() for key, name in LINE if of(f"outline_{name}") is not None},
         "bodies": [] if of("body_mass") is None else np.stack([of("body_position"), of("body_mass")], axis=1).tolist(),
         "displacement": numbers.add(of("outline")),
     }
@@ -177,7 +183,7 @@ def _view(place: Floats) -> tuple[Floats, float]:
 
 
 def shape(points: Floats, width: Floats, thickness: Floats, is_round: Any) -> dict[str, Any]:
-    """The straight beam."""
+    """The beam along its axis."""
     return {
         "points": np.asarray(points).tolist(),
         "width": np.asarray(width).tolist(),
