@@ -70,14 +70,14 @@ def laden(kind: str) -> Structure:
     beam = appendage(TIP, BODY, damping_ratio=0.01, root=SPRINGS, loads=LOADS)
     if kind.startswith("composite"):
         beam = replace(beam, section=BLADE, material=None, rotary_inertia=True, line=BOW)
-        model = "FOAM" if kind == "composite FOAM" else "exact"
+        model = kind.partition(" ")[2] or "exact"
         return assemble(beam, model, axial=1, y=1, z=1, twist=1, shear_y=1, shear_z=1)
-    if kind in ("thick", "bow", "bow FOAM"):
+    if kind.startswith(("thick", "bow")):
         section = BOX.altered(torsion_constant=2e-8, shear_coefficient_y=0.8, shear_coefficient_z=0.7)
         beam = replace(beam, section=section, material=replace(METAL, poissons_ratio=0.3), rotary_inertia=True)
-        if kind != "thick":
+        if kind.startswith("bow"):
             beam = replace(beam, line=BOW)
-        model = "FOAM" if kind == "bow FOAM" else "exact"
+        model = kind.partition(" ")[2] or "exact"
         return assemble(beam, model, axial=1, y=1, z=1, twist=1, shear_y=1, shear_z=1)
     return assemble(beam, Model(kind, 0 if kind == "SFOAM" else 1, 1, 1))
 

@@ -27,7 +27,7 @@ def transfer(system, frequency):
     return system.c @ np.linalg.solve(1j * frequency * np.eye(len(system.a)) - system.a, system.b) + system.d
 
 
-@pytest.mark.parametrize("kind", ["TLAM", "FOAM", "CFOAM", "exact"])
+@pytest.mark.parametrize("kind", ["TLAM", "FOAM", "CFOAM", "fourth-order", "exact"])
 def test_matrices_are_finite_differences(kind):
     structure = assemble(beam_2009(0.1), Model(kind, 1, 2, 1))
     q = np.random.default_rng(3).normal(size=4) * [1e-4, 0.1, 0.02, 0.1]

@@ -43,7 +43,7 @@ def call(tmp_path, monkeypatch, capsys):
 
 def test_tlam_beyond_its_critical_speed_says_so_in_its_row(call):
     status, rows, _ = call()
-    assert status == 0 and set(rows) == {"TLAM", "FOAM", "SFOAM", "CFOAM", "exact"}
+    assert status == 0 and set(rows) == {"TLAM", "FOAM", "SFOAM", "CFOAM", "fourth-order", "exact"}
     assert rows["TLAM"]["outcome"] == "diverged" and "2.91" in rows["TLAM"]["message"]
     assert rows["TLAM"]["peak"] is None is rows["TLAM"]["peak_error"]
     assert abs(rows["FOAM"]["peak_error"]) < 0.1 and rows["exact"]["difference"] == 0.0

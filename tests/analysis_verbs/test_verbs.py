@@ -205,7 +205,7 @@ def test_models(call):
     changes = ("motion.slew.rate.level=1 rad/s", "response.residual_from=30 s")
     status, facts, _ = call("models", *(word for change in changes for word in ("--set", change)))
     rows = {row["model"]: row for row in facts["rows"] if row["motion"] == "slew"}
-    assert status == 0 and set(rows) == {"TLAM", "FOAM", "SFOAM", "CFOAM", "exact"}
+    assert status == 0 and set(rows) == {"TLAM", "FOAM", "SFOAM", "CFOAM", "fourth-order", "exact"}
     # The first-order models beat the linear one by far, and the complete one too.
     assert abs(rows["FOAM"]["peak_error"]) < 1e-3 < 0.02 < abs(rows["TLAM"]["peak_error"])
 

@@ -13,17 +13,18 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import BarycentricInterpolator
 from scipy.linalg import expm
 
-from gbeam import Model, Structure, assemble
+from gbeam import Line, Model, Structure, assemble
 from gbeam.mechanics.fields.basis import bar_shapes, bending_shapes, closed_forms, legendre_shapes, quadrature
 from gbeam.mechanics.fields.components import split
 from gbeam.mechanics.fields.projected import ProjectedField, projected_field
 from gbeam.mechanics.fields.rooted import RootedField
 from gbeam.mechanics.fields.rotation import rotation_matrix
+from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import StrainField, strain_field
 
 from ..differences import hessian, jacobian
 from ..lagrange import quickly_compiled
-from ..specimens import LENGTH, SPRINGS, appendage, states
+from ..specimens import BOW, LENGTH, SPRINGS, appendage, states
 
 ROUNDING = 1e-12
 SPECTRAL = 1e-9  # of the shapes' quadrature, at rotations of a radian
@@ -319,10 +320,16 @@ def strained(plane: bool = False, springs: bool = True, offset: bool = True) -> 
     return replace(field, offset=arms) if offset else field
 
 
+def of_fourth_order(field: StrainField) -> SeriesField:
+    return SeriesField.of(replace(field, offset=None), 4).points(slice(None), field.offset)
+
+
 FIELDS = {
     "in space": strained(offset=False, springs=False),
     "in space, on springs, off the axis": strained(),
     "in a plane": strained(plane=True, springs=False),
+    "of fourth order, on springs, off the axis": of_fourth_order(strained()),
+    "of fourth order, in a plane": of_fourth_order(strained(plane=True, springs=False)),
 }
 
 
@@ -364,6 +371,23 @@ def test_forces_come_back_as_motion_goes_out(name: str) -> None:
     wanted = np.einsum("tpa,tpai->ti", force, moved) + np.einsum("tpa,tpai->ti", moment, angle)
     np.testing.assert_allclose(field.along(q, split(force), split(moment)), wanted, atol=1e-11)
     np.testing.assert_allclose(field.along(q[2], split(force[2]), split(moment[2])), wanted[2], atol=1e-11)
+
+
+@pytest.mark.parametrize("order", [1, 2, 4])
+@pytest.mark.parametrize("line", [None, BOW], ids=["straight", "curved"])
+def test_places_of_an_order_leave_out_the_next(line: Line | None, order: int) -> None:
+    """On the axis and beside it, straight at rest or not: halving coordinates divides the gap by 2 ** (order + 1)."""
+    breaks = [] if line is None else line.panels
+    rule = quadrature(LENGTH, 20, breaks)
+    strains = np.zeros((6, len(rule.node), 12))
+    for k in range(6):
+        strains[k, :, 2 * k : 2 * k + 2] = legendre_shapes(rule.node, LENGTH, 2).slope
+    exact = strain_field(rule, np.array([PLACE, LENGTH]), strains, line=line)
+    arms = np.array([[0.1, 0.2, -0.3], [0.0, -0.2, 0.1]])
+    q = states(12, 1, 0.5, seed=9)[0]
+    whole, ended = exact.points(slice(None), arms), SeriesField.of(exact, order).points(slice(None), arms)
+    coarse, fine = (np.abs(whole.positions(s * q) - ended.positions(s * q)).max(axis=1) for s in (0.02, 0.01))
+    np.testing.assert_allclose(np.log2(coarse / fine), order + 1, atol=0.05)
 
 
 @pytest.mark.parametrize("turns", [0.4, 3.0])
@@ -408,13 +432,14 @@ def test_a_field_at_some_points_is_the_field_there(name: str) -> None:
     np.testing.assert_allclose(field.rotation(q, at), field.rotation(q)[at], atol=1e-14)
 
 
-def test_a_field_is_the_same_under_jax() -> None:
+@pytest.mark.parametrize("name", ["in a plane", "of fourth order, in a plane"])
+def test_a_field_is_the_same_under_jax(name: str) -> None:
     """The same lines serve JAX's arrays: positions and rotations compiled, and their derivatives by JAX."""
-    field = FIELDS["in a plane"][-2:]
+    field = FIELDS[name][-2:]
     q = states(field.size, 1, 0.2, seed=5)[0]
 
     @quickly_compiled
-    def compiled(field: StrainField, q: Any) -> Any:
+    def compiled(field: Any, q: Any) -> Any:
         def both(q: Any) -> Any:
             return field.positions(q), field.rotation(q)
 

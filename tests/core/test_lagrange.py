@@ -32,7 +32,8 @@ from ..specimens import HUB_INERTIA, HUB_RADIUS, laden, states
 
 SUMS = 3e-12  # relative to the largest entry
 RESIDUAL = 1e-10  # relative to the largest entry
-KINDS = ["TLAM", "FOAM", "CFOAM", "exact", "thick", "bow", "bow FOAM", "composite", "composite FOAM"]
+KINDS = ["TLAM", "FOAM", "CFOAM", "fourth-order", "exact", "thick", "bow", "bow FOAM", "bow fourth-order", "composite",
+         "composite FOAM"]  # fmt: skip
 R_HB = np.asarray(MOUNTED_HUB.mount.R_HB)
 
 

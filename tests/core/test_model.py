@@ -50,10 +50,11 @@ def test_refused(where: str, problem: str, make: Callable[[], object]) -> None:
 
 
 def test_table_of_models() -> None:
-    """TLAM does not shorten; CFOAM and exact are complete; SFOAM has no Q_θ and no axial coordinates."""
-    assert list(KINDS) == ["TLAM", "FOAM", "SFOAM", "CFOAM", "exact"]
-    assert [k for k, row in KINDS.items() if not row.foreshortening] == ["TLAM"]
-    assert [k for k, row in KINDS.items() if not row.truncated] == ["CFOAM", "exact"]
+    """TLAM does not shorten; three are complete, two by strains; SFOAM has no Q_θ and no axial coordinates."""
+    assert list(KINDS) == ["TLAM", "FOAM", "SFOAM", "CFOAM", "fourth-order", "exact"]
+    assert [row.order for row in KINDS.values()] == [1, 2, 2, 2, 4, None]
+    assert [k for k, row in KINDS.items() if not row.truncated] == ["CFOAM", "fourth-order", "exact"]
+    assert [k for k, row in KINDS.items() if row.strains] == ["fourth-order", "exact"]
     assert [k for k, row in KINDS.items() if not row.hub_force] == ["SFOAM"]
     assert [k for k, row in KINDS.items() if not row.axial] == ["SFOAM"]
     structure = assemble(appendage(TIP), Model("SFOAM", 0, 2, 0))

@@ -44,7 +44,7 @@ def test_what_jax_traces_is_like_itself_alone() -> None:
     jax.jit(answers)(np.ones(3))
 
 
-@pytest.mark.parametrize("kind", ["TLAM", "FOAM", "CFOAM", "exact"])
+@pytest.mark.parametrize("kind", ["TLAM", "FOAM", "CFOAM", "fourth-order", "exact"])
 def test_structures_are_pickled_after_they_were_used(kind: str) -> None:
     structure = assemble(strip_beam(), Model(kind, int(kind in ("CFOAM", "exact")), 0, 2))
     before = modes(structure), static(structure, acceleration=(0.0, 0.0, 5.0)), structure.rest

@@ -15,7 +15,9 @@ from gbeam.numerics.series import STEP
 from tests.system.trees import JOINTS, flexible, tree
 
 LINK = st.tuples(
-    st.sampled_from(["rigid", "rigid", "exact", "FOAM", "CFOAM"]), st.sampled_from(JOINTS), st.integers(0, 8)
+    st.sampled_from(["rigid", "rigid", "exact", "FOAM", "CFOAM", "fourth-order"]),
+    st.sampled_from(JOINTS),
+    st.integers(0, 8),
 )
 GRAVITY = np.array([1.0, 2.0, -9.0])
 
@@ -141,7 +143,7 @@ def test_a_beam_cut_in_two_is_the_beam() -> None:
     assert np.linalg.norm(bent[0].displacement[0]) > 0.3
 
 
-@pytest.mark.parametrize("kind", ["exact", "FOAM", "CFOAM"])
+@pytest.mark.parametrize("kind", ["exact", "fourth-order", "FOAM", "CFOAM"])
 def test_structure_on_a_hub_is_a_system(kind: str) -> None:
     """On a free hub, and on one whose rate is prescribed, by a joint and by the motion of the ground."""
     structure = flexible(kind)

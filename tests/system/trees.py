@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 
 import gbeam as gb
+from gbeam.constants import BY_STRAINS
 
 BEAM = gb.Beam(
     1.0,
@@ -22,7 +23,7 @@ JOINTS = ("fixed", "sprung", "revolute", "prismatic", "cylindrical", "universal"
 
 @cache
 def flexible(kind: str) -> gb.Structure:
-    shapes = {"exact": {"twist": 1, "shear_z": 1}}.get(kind, {})
+    shapes = {"twist": 1, "shear_z": 1} if kind in BY_STRAINS else {}
     return gb.assemble(BEAM, kind, axial=1, y=1, z=2, **shapes)
 
 

@@ -37,9 +37,9 @@ PATIENCE = 5.0  # s: what took longer is not run again to time it without compil
 
 
 def counterpart(model: Model, kind: str) -> Model:
-    """The model of another kind with the same shapes; the reference with enough of its own."""
+    """The model of another kind with the same shapes; one of strains, as the reference is, with enough of them."""
     axial, y, z = model.counts[:3]
-    if kind == REFERENCE:
+    if KINDS[kind].strains:
         axial, y, z = max(axial, CONVERGED[0]), *(max(n, CONVERGED[1]) if n else 0 for n in (y, z))
         return replace(model, kind=kind, axial=axial, y=y, z=z)
     return replace(model, kind=kind, axial=axial if KINDS[kind].axial else 0, twist=0, shear_y=0, shear_z=0)
@@ -58,8 +58,8 @@ def compare_models(
     Parameters
     ----------
     case : Case or SystemCase
-        Its own kind of model is one among them; the others have as many shapes, exact at least 3 of strain and 6 of
-        rotation. All beams of a system are of the same model.
+        Its own kind of model is one among them; the others have as many shapes, exact and fourth-order at least 3 of
+        strain and 6 of rotation. All beams of a system are of the same model.
     kinds : sequence of str
         Models to run beside exact.
     progress : callable or bool, optional

@@ -19,6 +19,7 @@ from gbeam.mechanics.fields.adapted import adapted_shapes
 from gbeam.mechanics.fields.basis import Counts, Families, Quadrature, closed_forms, polynomials, quadrature
 from gbeam.mechanics.fields.projected import projected_field
 from gbeam.mechanics.fields.rooted import Field, RootedField
+from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import ExpandedField, shaped_strains, strain_field
 from gbeam.mechanics.models import KINDS, Kind, Model
 from gbeam.mechanics.structure import Sections, Source, Structure
@@ -122,14 +123,14 @@ def assembled(
     shapes_of = families or forms_of(beam, row, counts)
     strains = np.pad(shaped_strains(rule, shapes_of), ((0, 0), (0, 0), (0, len(springs))))
     field: Field
-    if row.exact or beam.line is not None or any(counts[3:]):
+    if row.strains or beam.line is not None or any(counts[3:]):
         field = strain_field(rule, x, strains, move, turn, beam.line)
-        if not row.exact:
-            field = ExpandedField.of(field, linear=not row.foreshortening)
+        if row.order is not None:
+            field = SeriesField.of(field, row.order) if row.strains else ExpandedField.of(field, linear=row.order < 2)
     else:
-        field = projected_field(rule, x, counts, shapes_of, foreshortening=row.foreshortening)
+        field = projected_field(rule, x, counts, shapes_of, foreshortening=row.order != 1)
         if springs:
-            field = RootedField(field, x, *beam.root.directions(), linear=not row.foreshortening)
+            field = RootedField(field, x, *beam.root.directions(), linear=row.order == 1)
     station, mass, offset = particles_of(beam, rule, rotary=beam.rotary_inertia)
     off_axis = namespace(offset) is not np or offset.any()
     line = len(station) - sum(len(body.particles()[0]) for body in beam.masses)
@@ -177,7 +178,7 @@ def forms_of(beam: Beam, row: Kind, counts: Counts) -> Families:
     """The shapes that are not adapted: of strains, or of a bare straight beam's displacements."""
     if beam.line is not None:
         return polynomials(beam.length, counts, [at for at in beam.line.corners if at > 0])
-    return (polynomials if row.exact else closed_forms)(beam.length, counts)
+    return (polynomials if row.strains else closed_forms)(beam.length, counts)
 
 
 def breaks_of(beam: Beam) -> list[float]:
@@ -205,7 +206,7 @@ def remade(structure: Structure, model: Model, stations: ArrayLike) -> Structure
 
 def _nodes(kind: Kind, shapes: int) -> int:
     """Nodes per panel, for integrals to rounding."""
-    if kind.exact:  # sines of smooth angles are smooth
+    if kind.strains:  # sines of smooth angles are smooth
         return 10 + 2 * shapes
     # Fourth powers of the highest shape (2009's tensors: 32 for five), and products of two integrated to a body midway.
     return 12 + 4 * shapes

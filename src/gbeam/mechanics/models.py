@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from gbeam.constants import BY_STRAINS
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.fields.basis import FAMILIES, Counts
@@ -11,28 +12,30 @@ from gbeam.mechanics.fields.basis import FAMILIES, Counts
 
 @dataclass(frozen=True)
 class Kind:
-    """A row of the table of models: exact or projected field, foreshortening, truncation, Q_θ on a free hub, axial
-    coordinates.
+    """A row of the table of models: order where the places end, or None; coordinates that are strains; truncation;
+    Q_θ on a free hub; axial coordinates.
     """
 
-    exact: bool = False
-    foreshortening: bool = True
+    order: int | None = 2
+    strains: bool = False
     truncated: bool = True
     hub_force: bool = True
     axial: bool = True
 
 
-FIRST, FIRST_EXACT = (1, 3), (2, 4)  # automatic numbers of shapes along and across the beam
+FIRST, FIRST_STRAINS = (1, 3), (2, 4)  # automatic numbers of shapes along and across the beam
 MOST = 9  # across it
 TORSION = "modes.twist gives a model torsion"
 SHAPES = ("clamped-free", "adapted")
-KINDS = {
-    "TLAM": Kind(foreshortening=False),
+_ROWS = {
+    "TLAM": Kind(order=1),
     "FOAM": Kind(),
     "SFOAM": Kind(hub_force=False, axial=False),
     "CFOAM": Kind(truncated=False),
-    "exact": Kind(exact=True, truncated=False),
+    "fourth-order": Kind(order=4, truncated=False),
+    "exact": Kind(order=None, truncated=False),
 }
+KINDS = {name: replace(row, strains=name in BY_STRAINS) for name, row in _ROWS.items()}
 
 
 @typed
@@ -43,14 +46,14 @@ class Model:
     Parameters
     ----------
     kind : str
-        TLAM, FOAM, SFOAM (as printed: no axial coordinates, Q_θ dropped), CFOAM or exact. FOAM with ``axial=0`` is
-        the Lagrangian form of SFOAM.
+        TLAM, FOAM, SFOAM (as printed: no axial coordinates, Q_θ dropped), CFOAM, fourth-order (the exact places'
+        polynomial of that order) or exact. FOAM with ``axial=0`` is the Lagrangian form of SFOAM.
     axial, y, z : int
-        Numbers of axial shapes and of bending shapes along y and along z; for exact: shapes of the stretch and of the
-        curvatures.
+        Numbers of axial shapes and of bending shapes along y and along z; for exact and fourth-order: shapes of the
+        stretch and of the curvatures.
     shapes : str
-        clamped-free: those of the bare uniform beam (for exact, polynomials). adapted: the modes at rest of the beam
-        with its tapers, bodies and root springs.
+        clamped-free: those of the bare uniform beam (for exact and fourth-order, polynomials). adapted: the modes at
+        rest of the beam with its tapers, bodies and root springs.
     twist, shear_y, shear_z : int
         Numbers of shapes of the twist and of the shear strains; a strain without shapes is rigid. With them, and on a
         curved line, the other kinds are the Taylor polynomials of the exact places, to the order of their own.
@@ -87,11 +90,11 @@ class Model:
         ----------
         kind : str
         shapes : str, optional
-            Adapted ones unless given, of which fewer are needed; for exact, polynomials.
+            Adapted ones unless given, of which fewer are needed; for exact and fourth-order, polynomials.
         """
         row = KINDS.get(kind, Kind())
-        axial, across = FIRST_EXACT if row.exact else FIRST
-        default = "clamped-free" if row.exact else "adapted"
+        axial, across = FIRST_STRAINS if row.strains else FIRST
+        default = "clamped-free" if row.strains else "adapted"
         return cls(kind, axial if row.axial else 0, across, across, shapes or default, automatic=True)
 
     def richer(self) -> Model | None:

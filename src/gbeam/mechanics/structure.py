@@ -25,8 +25,9 @@ from gbeam.mechanics.equations.linear import (
 from gbeam.mechanics.equations.virtual_work import LoadHistory, LoadWork
 from gbeam.mechanics.fields.basis import FAMILIES, Counts
 from gbeam.mechanics.fields.rooted import Field
+from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import StrainField
-from gbeam.mechanics.fields.taylor import Places
+from gbeam.mechanics.fields.taylor import Expanded, Places
 from gbeam.numerics.eigen import positive_definite
 
 if TYPE_CHECKING:
@@ -303,16 +304,16 @@ class Structure:
         return self if self.history is None else replace(self, load_values=self.history(np.asarray(float(time))))
 
     @property
-    def particles(self) -> StrainField | Places:
-        """Places of the particles: an exact field, or polynomials."""
+    def particles(self) -> StrainField | SeriesField | Places:
+        """Places of the particles: a field of strains, or polynomials."""
         return self.places if self.linear or self.inertia is None else self.inertia.field
 
     @property
-    def output(self) -> StrainField | Places:
-        """Places of the stations: an exact field, or polynomials."""
-        if isinstance(self.field, StrainField):
-            return self.field[self.first_station :]
-        return self.station_places
+    def output(self) -> StrainField | SeriesField | Places:
+        """Places of the stations: a field of strains, or polynomials."""
+        if self.field is None or isinstance(self.field, Expanded):
+            return self.station_places
+        return self.field[self.first_station :]
 
     @property
     def axes_without_shapes(self) -> tuple[int, ...]:

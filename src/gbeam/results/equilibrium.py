@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
+from gbeam.constants import BY_STRAINS
 from gbeam.results.declared import INSIDE, declared, fact, part, quantity
 from gbeam.results.declared import quantity as entry  # a critical value has a field of that name
 from gbeam.results.errors import MODEL, SHAPES, THEORY, TOTAL, ErrorEstimate, Errors
@@ -28,7 +29,7 @@ class Deflection(Figured):
     )
     displacement: Floats = quantity("m", "displacement relative to the base axes", "station", "axis")
     q: Floats = quantity(
-        lambda self: "" if self.model == "exact" else "m",
+        lambda self: "" if self.model in BY_STRAINS else "m",
         "generalised coordinates of the beam",
         "coordinate",
         name="coordinates",

@@ -10,6 +10,7 @@ from typing import ClassVar, Protocol
 import numpy as np
 
 from gbeam.arrays.namespace import is_traced
+from gbeam.constants import BY_STRAINS
 from gbeam.errors import InputError
 from gbeam.results.declared import INSIDE, declared, fact, part, quantity
 from gbeam.results.errors import Errors
@@ -114,16 +115,16 @@ class Response(Driven, Figured):
     )
     displacement: Floats = quantity("m", "displacement relative to the base axes", "time", "station", "axis", key=None)
     q: Floats = quantity(
-        lambda self: "" if self.model == "exact" else "m",
+        lambda self: "" if self.model in BY_STRAINS else "m",
         "generalised coordinates of the beam",
         "time",
         "coordinate",
         name="coordinates",
         key=None,
-        note="of the exact model angles and strains",
+        note="of the exact model and that of fourth order angles and strains",
     )
     qd: Floats = quantity(
-        lambda self: "1/s" if self.model == "exact" else "m/s",
+        lambda self: "1/s" if self.model in BY_STRAINS else "m/s",
         "rates of the generalised coordinates",
         "time",
         "coordinate",

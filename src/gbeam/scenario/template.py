@@ -32,7 +32,7 @@ damping_ratio = 0.01  # of critical; a list gives one per mode
 # loads = [ { at = "300 mm", force = { z = "5 N" }, follower = false } ]  # moment likewise; or { distributed = ... }
 
 [model]
-kind = "FOAM"  # TLAM | FOAM | SFOAM | CFOAM | exact
+kind = "FOAM"  # TLAM | FOAM | SFOAM | CFOAM | fourth-order | exact
 modes = { axial = 1, y = 3, z = 3 }
 # shapes = "adapted"  # modes of this beam with its tapers, masses and root springs: fewer are needed
 
@@ -97,7 +97,7 @@ damping_ratio = 0  # of critical; a list gives one per mode
 masses = [ { at = "8 m", mass = "0.1 kg" } ]
 
 [model]
-kind = "FOAM"  # TLAM | FOAM | SFOAM | CFOAM | exact
+kind = "FOAM"  # TLAM | FOAM | SFOAM | CFOAM | fourth-order | exact
 modes = { axial = 2, y = 3, z = 0 }  # the hub turns about z: the beam bends along y
 
 [motion.slew]
@@ -137,7 +137,7 @@ material = { density = "2700 kg/m^3", youngs_modulus = "70 GPa" }  # yield_stren
 damping_ratio = 0.005
 points = [ { name = "middle", at = "1.5 m" } ]  # besides tip and root
 # stations = ["1 m", "2 m"]  # further sections with loads and stress
-model = { kind = "FOAM", modes = { axial = 0, y = 0, z = 3 } }  # exact | CFOAM | FOAM | TLAM
+model = { kind = "FOAM", modes = { axial = 0, y = 0, z = 3 } }  # exact | fourth-order | CFOAM | FOAM | TLAM
 
 # One joint for every body, which holds it by its root.
 [joints.axis]

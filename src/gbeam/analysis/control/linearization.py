@@ -24,6 +24,7 @@ from gbeam.analysis.steady.stability import hub_of
 from gbeam.analysis.system.linear import frozen, linearize_system
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import each_leaf, record
+from gbeam.constants import BY_STRAINS
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice
@@ -144,7 +145,7 @@ class Outputs:
 
 def coordinate_signals(structure: Structure, first: int) -> tuple[Signal, ...]:
     """Names and units of (y, ẏ)."""
-    units = ("1", "rad", "rad", "rad", "1", "1") if structure.kind == "exact" else ("m",) * 6
+    units = ("1", "rad", "rad", "rad", "1", "1") if structure.kind in BY_STRAINS else ("m",) * 6
     names = [("hub_angle", "rad")] if first else []
     for group, unit, count in zip(FAMILIES, units, structure.counts, strict=True):
         names += [(f"q_{group}_{k + 1}", unit) for k in range(count)]

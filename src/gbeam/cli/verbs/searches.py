@@ -158,7 +158,7 @@ def shape(
     ] = None,
     robust: Annotated[str, Parameter(help='Share by which all frequencies may be wrong, "20 %".')] = "0",
     check: Annotated[
-        Literal["TLAM", "FOAM", "SFOAM", "CFOAM", "exact"] | None,
+        Literal["TLAM", "FOAM", "SFOAM", "CFOAM", "fourth-order", "exact"] | None,
         Parameter(help="Model that the commands are run on; the scenario's by default."),
     ] = None,
     motion: MotionName = None,

@@ -1,4 +1,4 @@
-"""The equations of a complete model (CFOAM, exact): D'Alembert's sum over the particles of its field.
+"""The equations of a complete model (CFOAM, fourth-order, exact): D'Alembert's sum over the particles of its field.
 
 Σ m (∂r/∂q)·a + K q + C q̇ = Q. On a free hub the moment of the same forces about the axis is the hub's row. All arrays
 may have leading axes: at one instant the sums are compiled by JAX for time steps, over many they are NumPy's.

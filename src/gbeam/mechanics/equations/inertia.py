@@ -26,6 +26,7 @@ from gbeam.mechanics.fields.components import (
     turned,
     turned_back,
 )
+from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import Columns, StrainField, Tangents
 from gbeam.mechanics.fields.taylor import Places
 
@@ -53,7 +54,7 @@ class Demanded(NamedTuple):
 class Particles:
     """Particles (p,) kg of a field."""
 
-    field: StrainField | Places
+    field: StrainField | SeriesField | Places
     mass: Array
 
     def forces(
@@ -216,7 +217,7 @@ class Bodies:
 class Inertia:
     """Particles (p,) kg of a field, quadrature points and bodies; `same` have the same inertia in fewer sums."""
 
-    field: StrainField | Places
+    field: StrainField | SeriesField | Places
     mass: Array
     same: Particles | Bodies
 
@@ -258,8 +259,8 @@ class Inertia:
         """Places of the particles about coordinates (n,), and their geometric stiffness unless they have second
         derivatives.
         """
-        if isinstance(self.field, Places):
-            return Places(self.field.positions(q), self.field.slopes(q), self.field.second), None
+        if not isinstance(self.field, StrainField):
+            return self.field.about(q), None
         places, bent = self.field.about(q, self.mass)
         return places, geometric_of(bent[0], bent[1:])
 
@@ -351,11 +352,11 @@ def _summed(vectors: Vector) -> Vector:
     return x, y, z
 
 
-def inertia_of(field: StrainField | Places, mass: Array, line: int = 0, nodes: int = 0) -> Inertia:
+def inertia_of(field: StrainField | SeriesField | Places, mass: Array, line: int = 0, nodes: int = 0) -> Inertia:
     """Inertia of the particles of a field, of which the first, `line`, are the sections at the nodes of the quadrature,
     once or several times over.
     """
-    if isinstance(field, Places):
+    if not isinstance(field, StrainField):
         return Inertia(field, mass, Particles(field, mass))
     offset = field.offset
     beside = np.zeros(len(mass), bool)

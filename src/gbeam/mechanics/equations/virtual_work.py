@@ -13,6 +13,7 @@ from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
 from gbeam.mechanics.equations.linear import LoadTerms
 from gbeam.mechanics.fields.components import cross, joined, split
+from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import StrainField
 from gbeam.mechanics.fields.taylor import EPSILON, Places, Polynomials
 
@@ -25,7 +26,7 @@ class LoadWork:
     follows.
     """
 
-    field: StrainField | Polynomials
+    field: StrainField | SeriesField | Polynomials
     load: Array
     weight: Array
     follower: Array

@@ -8,6 +8,7 @@ from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record, static
 from gbeam.mechanics.fields.projected import ProjectedField
 from gbeam.mechanics.fields.rotation import rotation_matrix
+from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import ExpandedField, StrainField
 from gbeam.mechanics.fields.taylor import EPSILON, Expanded, Places, Turns, exponential
 
@@ -65,4 +66,4 @@ class RootedField(Expanded):
         return root.after(padded)
 
 
-Field = StrainField | ExpandedField | ProjectedField | RootedField
+Field = StrainField | SeriesField | ExpandedField | ProjectedField | RootedField

@@ -114,11 +114,11 @@ class StrainField:
     def strain(self, q: Array) -> tuple[Any, ...]:
         """Stretch and shears, twist and curvatures at the nodes at coordinates (..., n), each (..., G)."""
         parts = []
-        for part, rest, shaped, present in zip(self._sums(q), self.rest, self.shaped, self.present, strict=True):
+        for part, rest, shaped, present in zip(self.sums(q), self.rest, self.shaped, self.present, strict=True):
             parts.append(0 if not present else part + rest if shaped else rest + 0 * q[..., :1])
         return tuple(parts)
 
-    def _sums(self, q: Array) -> tuple[Any, ...]:
+    def sums(self, q: Array) -> tuple[Any, ...]:
         """Sums of shapes at the nodes; of each strain, 0 where it has none."""
         chosen = [k for k in range(6) if self.shaped[k]]
         xp, nodes = namespace(self.strains, self.offset, q), self.strains.shape[1]
@@ -136,7 +136,7 @@ class StrainField:
     def moving(self, q: Array, qd: Array, qdd: Array) -> Tangents:
         """Rotations, t and its rates at the nodes, and arms."""
         rotation, t, arm, *_ = self.tangents(q)
-        rate, change = (tuple(self._sums(x)) for x in (qd, qdd))
+        rate, change = (tuple(self.sums(x)) for x in (qd, qdd))
         stretching, turn = turned(rotation, rate[:3]), turned(rotation, rate[3:])
         w = mapped(turn, self.node_cumulative)
         turnd = add(turned(rotation, change[3:]), cross(w, turn))
@@ -232,18 +232,18 @@ class StrainField:
         """
         shapes: Any = tuple(part.T if shaped else 0 for part, shaped in zip(self.strains, self.shaped, strict=True))
         strain, turn = (_carried(turned(tangents.rotation, part), tangents) for part in (shapes[:3], shapes[3:]))
-        angle = _mapped(turn, self.node_cumulative)
-        swung = _swung(angle, (tangents.t, tangents.td, tangents.tdd))
-        return Columns(_added(swung, strain), angle, turn)
+        angle = mapped_rates(turn, self.node_cumulative)
+        swung = cross_rates(angle, (tangents.t, tangents.td, tangents.tdd))
+        return Columns(added_rates(swung, strain), angle, turn)
 
     def columns_of_points(self, tangents: Tangents, columns: Columns) -> Columns:
         """How the points move and turn, likewise."""
-        place, angle = (_mapped(each, self.cumulative) for each in (columns.place, columns.turn))
+        place, angle = (mapped_rates(each, self.cumulative) for each in (columns.place, columns.turn))
         if self.offset is None:
             return Columns(place, angle, columns.turn)
         w, alpha = (mapped(each, self.cumulative) for each in (tangents.turn, tangents.turnd))
         arm = tangents.arm, cross(w, tangents.arm), swept(w, alpha, tangents.arm)
-        return Columns(_added(place, _swung(angle, arm)), angle, columns.turn)
+        return Columns(added_rates(place, cross_rates(angle, arm)), angle, columns.turn)
 
     def slopes(self, q: Array) -> Array:
         """∂r/∂q of the points at coordinates (..., n), (..., p, 3, n)."""
@@ -318,7 +318,7 @@ def _carried(vector: Vector, tangents: Tangents) -> tuple[Vector, Vector, Vector
     return vector, cross(tangents.w, vector), swept(tangents.w, tangents.alpha, vector)
 
 
-def _swung(angle: Any, arm: Any) -> tuple[Vector, Vector, Vector]:
+def cross_rates(angle: Any, arm: Any) -> tuple[Vector, Vector, Vector]:
     """Products θ × r with their rates."""
     (turn, rate, change), (r, rd, rdd) = angle, arm
     return (
@@ -328,12 +328,12 @@ def _swung(angle: Any, arm: Any) -> tuple[Vector, Vector, Vector]:
     )
 
 
-def _mapped(vectors: Any, matrix: Array) -> tuple[Vector, Vector, Vector]:
+def mapped_rates(vectors: Any, matrix: Array) -> tuple[Vector, Vector, Vector]:
     value, rate, change = (mapped(each, matrix) for each in vectors)
     return value, rate, change
 
 
-def _added(left: Any, right: Any) -> tuple[Vector, Vector, Vector]:
+def added_rates(left: Any, right: Any) -> tuple[Vector, Vector, Vector]:
     value, rate, change = (add(*pair) for pair in zip(left, right, strict=True))
     return value, rate, change
 

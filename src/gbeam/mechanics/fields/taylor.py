@@ -30,6 +30,10 @@ class Places:
         """The polynomials themselves, which are those about the beam at rest."""
         return self
 
+    def about(self, q: Any) -> Places:
+        """The polynomials about coordinates (n,)."""
+        return Places(self.positions(q), self.slopes(q), self.second)
+
     def slopes(self, q: Any) -> Any:
         """∂r/∂q = J + H q at coordinates (..., n), (..., p, 3, n)."""
         xp = namespace(self.first, q)
@@ -165,8 +169,7 @@ class Polynomials:
 
     def curved(self, q: Any) -> tuple[Places, Any, Turns]:
         """Places about coordinates (n,) to second order, rotations (p, 3, 3), and the derivatives of these."""
-        places = Places(self.positions(q), self.places.slopes(q), self.places.second)
-        return places, self.rotation(q), Turns(self.turns.slopes(q), self.turns.second)
+        return self.places.about(q), self.rotation(q), Turns(self.turns.slopes(q), self.turns.second)
 
 
 class Expanded:

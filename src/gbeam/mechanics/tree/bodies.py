@@ -15,6 +15,7 @@ from gbeam.arrays.tree import record
 from gbeam.mechanics.equations.dalembert import Complete
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.fields.components import split
+from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import StrainField
 from gbeam.mechanics.fields.taylor import EPSILON, Polynomials
 from gbeam.mechanics.tree.frames import Frame, Relative, Wrench, cross, turned, turned_back
@@ -109,10 +110,10 @@ class Rigid:
 
 
 @record
-class ExactPoints:
-    """Sections of a strain field."""
+class StrainedPoints:
+    """Sections of a field of strains."""
 
-    field: StrainField
+    field: StrainField | SeriesField
 
     def relative(self, q: Array, qd: Array, qdd: Array) -> list[Relative]:
         r, rd, rdd = self.field.paths(q, qd, qdd)
@@ -166,12 +167,12 @@ def _one(k: int, path: tuple[Array, Array, Array], R: Array, w: Array, alpha: Ar
     return Relative(r, rd, rdd, R[..., k, :, :], w[..., k, :], alpha[..., k, :])
 
 
-Points = ExactPoints | PolynomialPoints
+Points = StrainedPoints | PolynomialPoints
 
 
 @record
 class FieldBody:
-    """A body whose particles follow a complete field: exact or CFOAM."""
+    """A body whose particles follow a complete field: exact, fourth-order or CFOAM."""
 
     equations: Complete
     points: Points

@@ -15,16 +15,16 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, choice, positive, vector
 from gbeam.mechanics.equations.linear import Coefficients
-from gbeam.mechanics.fields.strains import StrainField
+from gbeam.mechanics.fields.taylor import Expanded
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.bodies import (
     Body,
-    ExactPoints,
     FieldBody,
     LinearBody,
     Points,
     PolynomialPoints,
     Rigid,
+    StrainedPoints,
     polynomial_points,
 )
 from gbeam.mechanics.tree.control import Feedback
@@ -181,7 +181,8 @@ class System(Value):
     Parameters
     ----------
     bodies : mapping of str to RigidBody or Structure
-        Structures are those of :func:`gbeam.assemble` and :meth:`Structure.of_particles`: exact, CFOAM, FOAM or TLAM.
+        Structures are those of :func:`gbeam.assemble` and :meth:`Structure.of_particles`: exact, fourth-order, CFOAM,
+        FOAM or TLAM.
         Their points are the named points of the beam, and ``tip``.
     joints : mapping of str to Joint
         One for every body, which holds it by its root.
@@ -487,10 +488,10 @@ def body_of(where: str, body: RigidBody | Structure) -> Body:
         raise InputError(f"{where}.damping_ratio", "is missing, and the response depends on it", fix)
     equations, stations = body.equations, np.array(list(stations_of(body).values()))
     points: Points
-    if isinstance(body.field, StrainField):
-        points = ExactPoints(body.field[body.first_station + stations])
-    elif body.field is not None:
+    if isinstance(body.field, Expanded):
         points = polynomial_points(body.field.sections(body.first_station + stations))
+    elif body.field is not None:
+        points = StrainedPoints(body.field[body.first_station + stations])
     else:
         places = body.station_places[stations]
         none = np.zeros((*places.first.shape, body.size))

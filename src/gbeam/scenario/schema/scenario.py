@@ -31,9 +31,9 @@ Count = Annotated[StrictInt, Field(ge=0, le=SHAPES)]
 class Modes(Table):
     """Numbers of shape functions."""
 
-    axial: Count = Field(description="axial shapes; for `exact` of the stretch")
-    y: Count = Field(description="bending shapes along y; for `exact` of the curvature")
-    z: Count = Field(description="bending shapes along z; for `exact` of the curvature")
+    axial: Count = Field(description="axial shapes; for `exact` and `fourth-order` of the stretch")
+    y: Count = Field(description="bending shapes along y; for `exact` and `fourth-order` of the curvature")
+    z: Count = Field(description="bending shapes along z; for `exact` and `fourth-order` of the curvature")
     twist: Count = Field(default=0, description="shapes of the twist, whose inertia is beam.rotary_inertia")
     shear_y: Count = Field(default=0, description="shapes of the shear strain along y")
     shear_z: Count = Field(default=0, description="shapes of the shear strain along z")
@@ -42,9 +42,10 @@ class Modes(Table):
 class Model(Table):
     """The model of the beam's deformation."""
 
-    kind: Literal["TLAM", "FOAM", "SFOAM", "CFOAM", "exact"] = Field(
+    kind: Literal["TLAM", "FOAM", "SFOAM", "CFOAM", "fourth-order", "exact"] = Field(
         description="TLAM: linear, no foreshortening. FOAM: first order with foreshortening. SFOAM: FOAM "
-        "without axial coordinates. CFOAM: FOAM's field, complete energy. exact: any rotation"
+        "without axial coordinates. CFOAM: FOAM's field, complete energy. fourth-order: exact's places to that order, "
+        "complete. exact: any rotation"
     )
     modes: Modes | None = Field(
         default=None,
@@ -53,9 +54,9 @@ class Model(Table):
     )
     shapes: Literal["clamped-free", "adapted"] | None = Field(
         default=None,
-        description="clamped-free: shapes of the bare uniform beam (for `exact`, polynomials); the default for `exact` "
-        "and where `modes` are given. adapted: the modes at rest of this beam with its tapers, masses and root "
-        "springs, of which fewer are needed; the default where `modes` are left out",
+        description="clamped-free: shapes of the bare uniform beam (for `exact` and `fourth-order`, polynomials); the "
+        "default for these two and where `modes` are given. adapted: the modes at rest of this beam with its tapers, "
+        "masses and root springs, of which fewer are needed; the default where `modes` are left out",
     )
 
 

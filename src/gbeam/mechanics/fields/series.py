@@ -1,0 +1,213 @@
+"""The field of strains whose places are a polynomial: Picard's iteration of the exact ones, ended at an order.
+
+R' = R [κ]× has the solution S R₀ with R₀ at rest and S' = S [k]×, k = R₀ (κ − κ₀), which S ← 1 + ∫ S [k]× approaches by
+one order in each turn; with t₀ and d = R₀ (ε − ε₀) the places, points beside the axis and their rates are
+
+    r = ∫ S t₀ + S₋ d,  S₋ of one order less,
+
+and what turns, such as bodies on a section and loads that follow it, does so as in the exact field: by rotations.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from gbeam.arrays.namespace import namespace
+from gbeam.arrays.tree import record, static
+from gbeam.mechanics.fields.components import (
+    NONE,
+    UNTURNED,
+    Rotation,
+    Vector,
+    absent,
+    add,
+    cross,
+    dot,
+    joined,
+    mapped,
+    plus,
+    scaled,
+    split,
+    times,
+    turned,
+)
+from gbeam.mechanics.fields.strains import StrainField, Tangents, added_rates, cross_rates, mapped_rates
+from gbeam.mechanics.fields.taylor import Places, Turns
+
+Array = Any
+Rates = tuple[Vector, Vector, Vector]  # a vector with its first and second derivatives with respect to time
+Strains = tuple[Vector, Vector]  # d and k at the nodes, or their derivatives
+STILL: Strains = (NONE, NONE)
+
+
+@record
+class SeriesField:
+    """Points (p,) of a strain field whose places end at an `order`: `axes` (G, 3, 3) of the nodes' sections at rest,
+    None where they are the base's, and `arm` (p, 3) m from the axis at rest, base axes, or None.
+    """
+
+    exact: StrainField
+    axes: Array | None
+    arm: Array | None = None
+    order: int = static(default=4)
+
+    @classmethod
+    def of(cls, exact: StrainField, order: int) -> SeriesField:
+        """The field of an order of points on the axis."""
+        bent = np.any(exact.rest[3:])
+        return cls(exact, _matrices(exact.tangents(np.zeros(exact.size)).rotation) if bent else None, None, order)
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return self.exact.size
+
+    def __getitem__(self, at: Any) -> SeriesField:
+        """The field at some of the points."""
+        return replace(self, exact=self.exact[at], arm=None if self.arm is None else self.arm[at])
+
+    def points(self, at: Any, offset: Array | None = None) -> SeriesField:
+        """The field of points fixed to the sections `at`, `offset` (p, 3) m from the axis, section axes."""
+        exact, arm = self.exact.points(at, offset), None
+        if offset is not None:
+            at_rest = exact.tangents(np.zeros(self.size)).arm
+            arm = joined(namespace(offset), at_rest, (len(exact.cumulative),))
+        return replace(self, exact=exact, arm=arm)
+
+    def sections(self, at: Any) -> SeriesField:
+        """The field of some sections."""
+        return self.points(at)
+
+    # --- motion goes out
+
+    def _at_rest(self) -> tuple[Rotation, Vector, Vector]:
+        """Axes of the nodes' sections, t at the nodes and arms at the points, at rest."""
+        axes: Any = UNTURNED if self.axes is None else tuple(split(self.axes[:, k]) for k in range(3))
+        return axes, turned(axes, (self.exact.rest[0], 0, 0)), NONE if self.arm is None else split(self.arm)
+
+    def _strains(self, q: Array) -> Strains:
+        """d and k at the nodes, of coordinates (..., n) or of their rates."""
+        axes, sums = self._at_rest()[0], self.exact.sums(q)
+        return turned(axes, sums[:3]), turned(axes, sums[3:])
+
+    def _rows(self, k: Rates) -> list[tuple[Rates, ...]]:
+        """Rows of S at the nodes with their rates, of every order from 0."""
+        orders: list[Any] = [tuple((row, NONE, NONE) for row in UNTURNED)]
+        for _ in range(self.order):
+            orders.append(self._next(orders[-1], k, self.exact.node_cumulative))
+        return orders
+
+    @staticmethod
+    def _next(rows: Any, k: Rates, onto: Array) -> tuple[Rates, ...]:
+        """Rows of 1 + ∫ S [k]×."""
+        turned = (mapped_rates(cross_rates(row, k), onto) for row in rows)
+        return tuple((add(unit, value), rate, more) for unit, (value, rate, more) in zip(UNTURNED, turned, strict=True))
+
+    def components(self, q: Array, qd: Array, qdd: Array) -> Rates:
+        """Places, velocities and accelerations of the points relative to the base axes, by components (..., p)."""
+        return self._moved(self._strains(q), self._strains(qd), self._strains(qdd))
+
+    def _moved(self, at: Strains, rate: Strains = STILL, change: Strains = STILL) -> Rates:
+        (d, k), (dd, kd), (ddd, kdd) = at, rate, change
+        _, t, arm = self._at_rest()
+        *_, lower, rows = self._rows((k, kd, kdd))
+        along = [tuple(dot(each, t) for each in row) for row in rows]
+        moved = [_dot_rates(row, (d, dd, ddd)) for row in lower]
+        each: Any = zip(*(map(plus, *pair) for pair in zip(along, moved, strict=True)), strict=True)
+        r, rd, rdd = mapped_rates(each, self.exact.cumulative)
+        if self.arm is None:
+            return r, rd, rdd
+        swung = [[dot(of, arm) for of in row] for row in self._next(lower, (k, kd, kdd), self.exact.cumulative)]
+        return added_rates((r, rd, rdd), tuple(zip(*swung, strict=True)))
+
+    def paths(self, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array, Array]:
+        """Places, velocities and accelerations of the points relative to the base axes, (..., p, 3) each."""
+        r, rd, rdd = (self._joined(each, q) for each in self.components(q, qd, qdd))
+        return r, rd, rdd
+
+    def _joined(self, vectors: Vector, q: Array) -> Array:
+        shape = (*q.shape[:-1], len(self.exact.cumulative))
+        return joined(namespace(self.exact.strains, self.arm, q), vectors, shape)
+
+    def positions(self, q: Array) -> Array:
+        """Places of the points at coordinates (..., n), base axes, (..., p, 3) m."""
+        return self._joined(self._moved(self._strains(q))[0], q)
+
+    def rotation(self, q: Array, at: Any = slice(None)) -> Array:
+        """Rotation matrices R_BS of the sections at all points, or `at` some, (..., p, 3, 3)."""
+        return self.exact.rotation(q, at)
+
+    def turning(self, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array, Array]:
+        """Rotations (..., p, 3, 3) of the sections at the points, and their angular velocities and accelerations (...,
+        p, 3), base axes.
+        """
+        return self.exact.turning(q, qd, qdd)
+
+    # --- forces come back
+
+    def along(self, q: Array, push: Vector, turn: Vector = NONE) -> Array:
+        """Generalised forces (..., n) of forces and moments on the points, base axes, by components (..., p)."""
+        d, k = self._strains(q)
+        axes, t, arm = self._at_rest()
+        *lower, _ = ([row[0] for row in rows] for rows in self._rows((k, NONE, NONE)))
+        force = mapped(push, self.exact.cumulative.T)
+        on_strain = add(*(scaled(each, row) for each, row in zip(force, lower[-1], strict=True)))
+        # On the rows of an order, and what the points' own arms and d add to those of the highest but one.
+        pulls, strained = ([scaled(each, by) for each in force] for by in (t, d))
+        beside, on_turn = [mapped(scaled(each, arm), self.exact.cumulative.T) for each in push], NONE
+        onto = self.exact.node_cumulative.T
+        for rows in reversed(lower):
+            inward = [add(mapped(pull, onto), by) for pull, by in zip(pulls, beside, strict=True)]
+            on_turn = add(on_turn, *(cross(*pair) for pair in zip(inward, rows, strict=True)))
+            pulls = [add(cross(k, each), by) for each, by in zip(inward, strained, strict=True)]
+            beside = strained = [NONE] * 3
+        out = self.exact.inward(Tangents(axes, NONE), on_strain, on_turn)
+        return out if all(map(absent, turn)) else out + self.exact.along(q, NONE, turn)
+
+    # --- how it changes
+
+    def slopes(self, q: Array) -> Array:
+        """∂r/∂q of the points at coordinates (..., n), (..., p, 3, n)."""
+        each = q[..., None, :] + 0 * q[..., None]
+        moved = self._moved(self._strains(each), self._strains(np.eye(self.size)))[1]
+        return namespace(q).moveaxis(self._joined(moved, each), -3, -1)
+
+    def jacobians(self, q: Array) -> tuple[Array, Array]:
+        """∂r/∂q of the points, and the angles by which their sections turn with q, (..., p, 3, n) each."""
+        return self.slopes(q), self.exact.jacobians(q)[1]
+
+    def at_rest(self) -> Places:
+        """Places about the beam at rest, to first order."""
+        rest = np.zeros(self.size)
+        return Places(self.positions(rest), self.slopes(rest))
+
+    def about(self, q: Array) -> Places:
+        """Places of the points about coordinates (n,), to second order."""
+        xp, unit = namespace(self.exact.strains, self.arm, q), np.eye(self.size)
+        pairs = unit[:, None] + unit  # D²(a, b) = ½ (D²(a + b, a + b) − D²(a, a) − D²(b, b))
+        bent = self._joined(self._moved(self._strains(q), self._strains(pairs))[2], pairs)
+        twice = xp.einsum("iipa->ipa", bent) / 4
+        second = xp.moveaxis(bent - twice[:, None] - twice, (0, 1), (2, 3)) / 2
+        return Places(self.positions(q), self.slopes(q), second)
+
+    def curved(self, q: Array) -> tuple[Places, Array, Turns]:
+        """Places of the points about coordinates (n,) to second order, their sections' rotations (p, 3, 3), and the
+        derivatives of these.
+        """
+        _, rotation, turns = self.exact.curved(q)
+        return self.about(q), rotation, turns
+
+
+def _matrices(rotation: Rotation) -> Array:
+    """Rotation matrices (G, 3, 3) of rotations."""
+    size = next(part.shape for row in rotation for part in row if not isinstance(part, int))
+    return np.stack([joined(np, row, size) for row in rotation], axis=-2)
+
+
+def _dot_rates(left: Rates, right: Rates) -> Vector:
+    """Scalar product with its rates."""
+    (a, a1, a2), (b, b1, b2) = left, right
+    return dot(a, b), plus(dot(a1, b), dot(a, b1)), plus(plus(dot(a2, b), times(2.0, dot(a1, b1))), dot(a, b2))
