@@ -8,7 +8,8 @@ export default defineConfig({
     outDir: process.env.GBEAM_WEB_OUT ? `${process.env.GBEAM_WEB_OUT}-app` : "../src/gbeam/app/assets",
     emptyOutDir: true,
     minify: true,
-    rolldownOptions: { output: { minify: true } },
+    rolldownOptions: { output: { minify: true, chunkFileNames: "[name].js" } },
+    chunkSizeWarningLimit: 800,
     target: "es2022",
   },
 });

@@ -16,6 +16,7 @@ import pytest
 from ..scenarios import FAST, RAMPS
 from .axe import violations
 
+BRACKET = Path(__file__).parents[2] / "examples" / "data" / "bracket.msh"
 BIG = FAST.replace('"0.5 s"', '"400 s"').replace('title = "fast"', 'title = "long"')
 
 
@@ -186,7 +187,7 @@ def test_a_person_maps_a_record_and_opens_what_a_verb_made(browser: Any, address
     page.wait_for_selector("html[data-gbeam]")
 
     # A file that is no record, then one whose names, unit of time and sign are its own.
-    file = page.get_by_label("Scenario or record")
+    file = page.get_by_label("Scenario, record or mesh")
     (tmp_path / "no record.csv").write_text("hello\nworld\n")
     file.set_input_files(tmp_path / "no record.csv")
     page.locator(".problems .bad", has_text="rows of numbers").wait_for()
@@ -285,6 +286,52 @@ def test_a_person_maps_a_record_and_opens_what_a_verb_made(browser: Any, address
     _holds(page)
     context.close()
     assert faults == []
+
+
+@pytest.mark.slow
+def test_a_person_drops_a_mesh_and_clicks_its_clamp(browser: Any, address: str) -> None:
+    pytest.importorskip("meshio")
+    faults = list[str]()
+    page = browser.new_context(viewport={"width": 1400, "height": 1000}).new_page()
+    page.on("console", lambda m: faults.append(m.text) if m.type == "error" else None)
+    page.on("pageerror", lambda error: faults.append(str(error)))
+    page.goto(address)
+    page.wait_for_selector("html[data-gbeam]")
+    page.get_by_label("Scenario, record or mesh").set_input_files(BRACKET)
+    page.get_by_role("heading", name="Mesh bracket.msh, not used yet").wait_for()
+    use, canvas, label = page.get_by_role("button", name="Use this mesh"), page.locator(".skin canvas"), "screwed"
+    page.locator(".mesh", has_text="choose the unit").wait_for()
+    page.get_by_label("Unit of the coordinates").select_option("mm")
+    page.locator(".mesh", has_text="104 × 50 × 85.5 mm").wait_for()
+    assert use.is_disabled()
+    # From below the face that is screwed down is seen: a click on it, a second one takes it back.
+    canvas.focus()
+    for _ in range(12):
+        page.keyboard.press("ArrowDown")
+    box = canvas.bounding_box()
+    places = ((i / 40 * box["width"], j / 24 * box["height"]) for j in range(4, 22) for i in range(4, 36))
+    for x, y in places:
+        page.mouse.move(box["x"] + x, box["y"] + y)
+        if page.locator(".skin .gbeam-label").inner_text() == label:
+            break
+    ticked = page.get_by_role("checkbox", name="screwed, 93 nodes")
+    for on in (True, False, True):
+        canvas.click(position={"x": x, "y": y})
+        assert ticked.is_checked() is on and use.is_enabled() is on
+    assert _violations(page) == []
+    use.click()
+    page.get_by_role("heading", name="Mesh of bracket: bracket.msh").wait_for()
+    page.locator(".field .bad", has_text="damping_ratio is missing").wait_for()
+    text = page.get_by_label("scenario as TOML").input_value()
+    assert '[bodies.bracket]\nmesh = "bracket.msh"\nunit = "mm"\nclamp = "screwed"\n' in text
+    # The list does what a click does.
+    page.get_by_role("checkbox", name="camera, 605 nodes").check()
+    page.get_by_role("button", name="Change the mesh").click()
+    page.wait_for_function("""() => document.querySelector('textarea').value.includes('["screwed", "camera"]')""")
+    page.reload()
+    page.wait_for_selector("html[data-gbeam]")
+    page.get_by_role("checkbox", name="camera, 605 nodes").wait_for()
+    assert page.get_by_role("checkbox", name="camera, 605 nodes").is_checked() and faults == []
 
 
 def _holds(page: Any) -> None:

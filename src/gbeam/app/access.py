@@ -19,7 +19,8 @@ from urllib.parse import parse_qs
 from fastapi import HTTPException
 
 KEY = "x-gbeam-key"  # header
-_PAGE = ("/", "/app.js", "/app.css")
+ASSETS = ("app.css", "app.js", "mesh.js", "skin.js")
+_PAGE = ("/", *(f"/{name}" for name in ASSETS))
 _FILES = "/api/runs/"
 # Nothing inline, nothing from elsewhere; reports are shown in a frame with a policy of their own.
 POLICY = (

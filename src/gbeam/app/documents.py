@@ -5,24 +5,29 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import tomlkit
 
 from gbeam.app.files import regular
-from gbeam.app.form import form, known_at, new_table, value_at
+from gbeam.app.form import file_keys, form, known_at, new_table, value_at
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import GbeamError, InputError
+from gbeam.guards.confined import confined
 from gbeam.motion import Flight
 from gbeam.motion.records.record import read_table
 from gbeam.motion.records.units import UNITS, spelled
 from gbeam.scenario import ScenarioError, build, loads
+from gbeam.scenario.schema import kind_of_scenario
 from gbeam.scenario.text.diagnostics import Diagnostic
 from gbeam.scenario.text.revise import toml, with_entry, without_entry
 from gbeam.scenario.text.source import parse
 from gbeam.scenario.values import Path as Place
 from gbeam.scenario.values import parse_path, path_text, walk, written_at
+from gbeam.solids.skin import is_mesh, skin
 
 NAME = "scenario.toml"
 # Of a record: what its columns are.
@@ -102,6 +107,26 @@ def with_record(text: str, motion: str, record: dict[str, str]) -> str:
     return with_entry(text, (*place, "record"), record | kept)
 
 
+def with_mesh(text: str, body: str, mesh: Mapping[str, Any]) -> str:
+    """Return the text with a mesh in its body of that name, of which all else stays, or as another body of its system;
+    else a new scenario of the mesh alone, with the motions and the response of the one before.
+    """
+    from gbeam.scenario.schema.system import SystemScenario  # whose tables are made only where they are wanted
+
+    place, data = ("bodies", body), parse(NAME, text)
+    before = written_at(data, place)
+    if isinstance(before, dict) and "mesh" in before:
+        for key, value in mesh.items():
+            text = with_entry(text, (*place, key), value)
+        return text
+    if issubclass(kind_of_scenario(data), SystemScenario):
+        return with_entry(text, place, mesh)
+    flown = {key: data[key] for key in ("motion", "response") if key in data}
+    if isinstance(flown.get("response"), dict):
+        flown["response"].pop("stations", None)  # of the beam
+    return tomlkit.dumps({"title": body, "bodies": {body: mesh}} | flown)
+
+
 def _place(path: str) -> Place:
     place = parse_path(path)
     if place is None:
@@ -135,13 +160,14 @@ def records(data: Any, folder: Path) -> list[Path]:
     """The files that a scenario names, all of which must be records of the folder."""
     files = []
     for path, value in _leaves(data):
-        if path[-1] == "file":
-            if not isinstance(value, str):
-                raise InputError(path_text(path), "is no text", "give the name of a record")
+        names = value if isinstance(value, list) else [value]
+        for name in names if path[-1] in file_keys() else ():
+            if not isinstance(name, str):
+                continue  # numbers in place of a file; anything else the schema refuses
             try:
-                files.append(regular(folder, value))
+                files.append(regular(folder, name))
             except InputError as error:
-                raise InputError(path_text(path), f"{value[:100]!r} {error.problem}", error.fix) from None
+                raise InputError(path_text(path), f"{name[:100]!r} {error.problem}", error.fix) from None
     return files
 
 
@@ -167,10 +193,27 @@ MOST = 500  # columns
 
 
 def head(file: Path) -> dict[str, Any]:
-    """Name of a record, its columns, and what these are by their names."""
+    """Name of a record, its columns, and what these are by their names; of a mesh its skin."""
+    if is_mesh(file.name):
+        return {"name": file.name, "columns": [], "suggested": {}, "skin": _skin(file, file.stat().st_mtime_ns)}
     columns = read_table(file).columns[:MOST]
     known = suggested((each.name, each.unit) for each in columns)
     return {"name": file.name, "columns": [each.name for each in columns], "suggested": known}
+
+
+@lru_cache(maxsize=4)
+def _skin(file: Path, _changed: int) -> dict[str, Any]:
+    """Skin of a mesh, read in a process that may end as it does."""
+
+    def refuse(problem: str) -> InputError:
+        return InputError("mesh", f"{file.name} {problem}", "mesh it more coarsely, or write it again")
+
+    read = confined(skin, file, refuse=refuse)
+    return {
+        "vertices": [float(f"{each:.6g}") for each in read["vertices"].flat],
+        "triangles": read["triangles"].ravel().tolist(),
+        "groups": [each | {"vertices": each["vertices"].tolist()} for each in read["groups"]],
+    }
 
 
 def load_curves(text: str, folder: Path) -> dict[str, Any]:

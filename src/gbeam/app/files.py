@@ -60,7 +60,9 @@ def store(folder: Path, name: str, content: bytes) -> Path:
     """Write a file into a folder."""
     file = folder / checked(name)
     if len(content) > LARGEST:
-        raise InputError(name, f"has more than {LARGEST // 2**20} MiB", "cut or resample the record")
+        raise InputError(
+            name, f"has more than {LARGEST // 2**20} MiB", "cut or resample the record, or mesh more coarsely"
+        )
     if len(names(made(folder))) >= MANY:
         raise InputError(name, f"is one too many: {MANY} files are kept", f"delete some in {folder}")
     write(file, content)

@@ -46,13 +46,20 @@ def value_at(path: Path, data: Any, text: str) -> Any:
 
 def new_table(path: Path, data: Any, choice: str) -> dict[str, Any]:
     """Return a table of a kind, with the values that the one of another kind at its place shares with it."""
-    table = {_tag(each)[1]: each for each in _tables(_schema_at(path, data))}[choice]
+    table = {_tag(each)[1]: each for each in reversed(_tables(_schema_at(path, data)))}[choice]
     before = written_at(data, path)
     kept = before if isinstance(before, dict) else {}
     key = _tag(table)[0]
     return ({key: choice} if key else {}) | {
         name: value for name, value in kept.items() if name in table["properties"] and name != key
     }
+
+
+@cache
+def file_keys() -> frozenset[str]:
+    """Keys of the schema that name files."""
+    tables = (each.get("properties", {}) for each in _schema()["$defs"].values())
+    return frozenset(key for table in tables for key, each in table.items() if "'file-path'" in repr(each))
 
 
 @cache
@@ -148,8 +155,8 @@ def _quantities(schema: Node) -> Iterator[Node]:
 
 
 def _words(schema: Node) -> list[str]:
-    """The words of the tables that one may choose of; one that is empty where there is but one table."""
-    return [_tag(each)[1] for each in _tables(schema)]
+    """The words of the tables that one may choose of; an empty one for those that only their keys tell apart."""
+    return [*dict.fromkeys(_tag(each)[1] for each in _tables(schema))]
 
 
 def _tables(schema: Node) -> list[Node]:
@@ -157,15 +164,15 @@ def _tables(schema: Node) -> list[Node]:
 
 
 def _table_of(tables: list[Node], raw: Any) -> Node | None:
-    """The table that is written, by its word; without one, that which may leave the word out."""
-    if len(tables) == 1:
-        return tables[0]
+    """The table that is written, by its word and its keys; None where the word is none of theirs."""
     written = raw if isinstance(raw, dict) else {}
-    for table in tables:
-        key, word = _tag(table)
-        if written.get(key, table["properties"][key].get("default")) == word:
-            return table
-    return None
+    tags = [_tag(each) for each in tables]
+    able = [
+        table
+        for table, (key, word) in zip(tables, tags, strict=True)
+        if len(tables) == 1 or not key or written.get(key, table["properties"][key].get("default")) == word
+    ]
+    return max(able, key=lambda table: len(table["properties"].keys() & written.keys()), default=None)
 
 
 def _tag(table: Node) -> tuple[str, str]:

@@ -19,7 +19,7 @@ from pydantic import AfterValidator, Field
 from starlette.requests import ClientDisconnect
 
 from gbeam.app import documents, files, verbs
-from gbeam.app.access import AT_ONCE, REPORT_POLICY, Connections, Door, listening
+from gbeam.app.access import ASSETS, AT_ONCE, REPORT_POLICY, Connections, Door, listening
 from gbeam.app.documents import head, load_curves
 from gbeam.app.jobs import Jobs
 from gbeam.errors import GbeamError, InputError
@@ -82,7 +82,7 @@ def create_app(folder: Path) -> FastAPI:
         problems = [{"loc": each["loc"], "msg": each["msg"], "type": each["type"]} for each in error.errors()]
         return JSONResponse({"detail": problems}, 422)
 
-    for name in ("index.html", "app.js", "app.css"):
+    for name in ("index.html", *ASSETS):
         app.add_api_route("/" if name == "index.html" else f"/{name}", _asset(name), include_in_schema=False)
 
     @app.get("/api/examples")
@@ -120,6 +120,13 @@ def create_app(folder: Path) -> FastAPI:
         """A scenario whose flight follows a record."""
         return documents.described(documents.with_record(text, motion, record), records)
 
+    @app.post("/api/mesh")
+    def map_mesh(
+        text: Text, body: Short, mesh: Annotated[dict[Word, Word | Sequence[Word]], Body(embed=True)]
+    ) -> dict[str, Any]:
+        """A scenario whose specimen, or one of whose bodies, is a mesh."""
+        return documents.described(documents.with_mesh(text, body, mesh), records)
+
     @app.post("/api/preview")
     def preview(text: Text) -> dict[str, Any]:
         """The load of every flight of a scenario over time."""
@@ -133,14 +140,14 @@ def create_app(folder: Path) -> FastAPI:
 
     @app.put("/api/records/{name}", openapi_extra={"requestBody": {"content": {"application/octet-stream": {}}}})
     async def upload(name: str, request: Request) -> dict[str, Any]:
-        """Keep a record; what its columns are."""
+        """Keep a record or a mesh; what its columns are, or its skin."""
         files.checked(name)
         content = await request.body()
         return await run_in_threadpool(lambda: head(files.store(records, name, content)))
 
     @app.get("/api/records/{name}")
     def described_record(name: str) -> dict[str, Any]:
-        """Columns of a record that is kept."""
+        """Columns of a record that is kept, or the skin of a mesh."""
         return head(files.regular(records, name))
 
     @app.get("/api/runs")

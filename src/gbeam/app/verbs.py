@@ -9,6 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gbeam.app.form import file_keys
 from gbeam.cli import program
 from gbeam.errors import InputError
 from gbeam.printable import unprintable
@@ -141,6 +142,7 @@ def records(verb: str, options: Sequence[str]) -> list[str]:
 
 def _refuse_file(path: str, data: Mapping[str, Any]) -> None:
     place = parse_path(path)
-    written = None if place is None or place[-1] == "file" else written_at(data, place)
+    key = next((step for step in reversed(place or ()) if isinstance(step, str)), "file")
+    written = None if place is None or key in file_keys() else written_at(data, place)
     if written is None or isinstance(written, (dict, list)):
         raise InputError(path[:100] or "over", "cannot be varied", "choose a number or a word of the scenario")

@@ -137,9 +137,9 @@ def hull(points: Floats) -> Floats:
         return points
 
 
-def surface_of(mesh: Any) -> tuple[Indices, Indices]:
-    """Nodes (v,) and triangles (f, 3) of them that make up the outer faces; of many nodes those nearest to the middles
-    of cells of a grid.
+def surface_of(mesh: Any, most: int = VERTICES) -> tuple[Indices, Indices]:
+    """Nodes (v,) and triangles (f, 3) of them that make up the outer faces; of more nodes than about `most` those
+    nearest to the middles of cells of a grid.
     """
     corners = {"tetra": 4, "tetra10": 4, "wedge": 6}
     triangles = list[Indices]()
@@ -157,9 +157,9 @@ def surface_of(mesh: Any) -> tuple[Indices, Indices]:
             triangles += [outer[:, [0, k, k + 1]] for k in range(1, size - 1)]
     outside = np.concatenate(triangles)
     nodes, flat = np.unique(outside, return_inverse=True)
-    if len(nodes) > VERTICES:
+    if len(nodes) > most:
         at = mesh.points[nodes] - mesh.points[nodes].min(axis=0)
-        cell = np.sqrt(_area(mesh.points[outside]) / VERTICES)
+        cell = np.sqrt(_area(mesh.points[outside]) / most)
         _, group = np.unique(np.floor(at / cell).astype(int), axis=0, return_inverse=True)
         group = group.ravel()
         totals = np.stack([np.bincount(group, each) for each in at.T], axis=1) / np.bincount(group)[:, None]

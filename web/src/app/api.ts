@@ -65,11 +65,26 @@ export interface Run {
   files: string[];
 }
 
-/** A record's columns, and what their names and units say of them: keys of a scenario's record. */
+/** A group of a mesh: how many nodes it holds, and which vertices of the skin. */
+export interface Group {
+  name: string;
+  nodes: number;
+  vertices: number[];
+}
+
+/** Outer faces of a mesh, in the unit of its file: places of vertices, x, y and z, and corners of triangles. */
+export interface Skin {
+  vertices: number[];
+  triangles: number[];
+  groups: Group[];
+}
+
+/** A record's columns, and what their names and units say of them: keys of a scenario's record; of a mesh its skin. */
 export interface Head {
   name: string;
   columns: string[];
   suggested: Record<string, string>;
+  skin?: Skin;
 }
 
 export interface Curves {
@@ -127,6 +142,8 @@ export const api = {
   remove: (text: string, path: string) => post<Document>("/api/remove", { text, path }),
   map: (text: string, motion: string, record: Record<string, string>) =>
     post<Document>("/api/record", { text, motion, record }),
+  mesh: (text: string, body: string, mesh: Record<string, string | string[]>) =>
+    post<Document>("/api/mesh", { text, body, mesh }),
   preview: (text: string) => post<Curves>("/api/preview", { text }),
   upload: (file: File) =>
     call<Head>(`/api/records/${encodeURIComponent(file.name)}`, "PUT", file, "application/octet-stream"),

@@ -7,6 +7,7 @@ import { axisStyle } from "../plots";
 import { api, type Document, type Problem, problem, Refusal, type Verb } from "./api";
 import { fileName } from "./command";
 import { Form } from "./form";
+import { MeshPanel, meshesOf } from "./mesh";
 import { flightsOf, RecordPanel } from "./record";
 import { Verbs } from "./verbs";
 
@@ -44,6 +45,7 @@ export class Editor {
     if (used) await this.preview();
     return used;
   });
+  private readonly mesh = new MeshPanel((body, mesh) => this.take(api.mesh(this.document.text, body, mesh)));
   private readonly curves = element("div");
   private readonly views: HTMLButtonElement[];
   private readonly look: HTMLButtonElement;
@@ -65,7 +67,7 @@ export class Editor {
     this.look = button("Preview load", () => void this.preview());
     const acts = [this.look, button("Download", () => this.save())];
     this.verbs = new Verbs(() => this.document.text, submitted);
-    this.root.append(this.start(), this.record.root, this.verbs.root, this.row(...this.views, ...acts), this.problems);
+    this.root.append(this.start(), this.record.root, this.mesh.root, this.verbs.root, this.row(...this.views, ...acts), this.problems);
     this.root.append(this.curves, this.form.root, this.text, this.meaning);
     this.show(0);
   }
@@ -118,6 +120,7 @@ export class Editor {
     this.verbs.offer(form, errors.length === 0);
     this.look.disabled = errors.length > 0;
     void this.record.offer(flightsOf(form));
+    void this.mesh.offer(meshesOf(form));
     this.list(errors);
     this.meaning.textContent = meaning;
     this.meaning.hidden = !meaning;
@@ -152,7 +155,7 @@ export class Editor {
   private start(): HTMLElement {
     const row = this.row();
     row.classList.add("start");
-    const label = element("label", "", "Scenario or record ");
+    const label = element("label", "", "Scenario, record or mesh ");
     const input = element("input");
     input.type = "file";
     input.addEventListener("change", () => void this.open(input.files));
@@ -171,7 +174,9 @@ export class Editor {
       try {
         if (/\.(toml|json)$/i.test(file.name)) await this.read(await file.text());
         else {
-          this.record.open(await api.upload(file));
+          const head = await api.upload(file);
+          if (head.skin) this.mesh.open(head);
+          else this.record.open(head);
           await this.verbs.refresh();
         }
       } catch (error) {

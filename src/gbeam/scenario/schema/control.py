@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, Discriminator, Field, model_validator
+from pydantic import Discriminator, Field, model_validator
 
 from gbeam.guards.limits import ENTRIES
-from gbeam.scenario.schema.fields import Duration, Quantity, Ratio, Table, Time, existing_file, refuse, wrong
+from gbeam.scenario.schema.fields import Duration, File, Quantity, Ratio, Table, Time, refuse, wrong
 
 _Rate = Annotated[float, Quantity("angular rate", "positive")]
 _Rows = tuple[tuple[Ratio, ...], ...]
@@ -61,7 +61,7 @@ class Matrices(Table):
     """A law with states of its own: x' = A x + B e, efforts = C x + D e, by rows or from a file."""
 
     kind: Literal["state-space"] = Field(description="kind of the law")
-    file: Annotated[str, AfterValidator(existing_file)] | None = Field(
+    file: File | None = Field(
         default=None,
         description="file of matrices A, B, C, D: .npz, .mat or .json, relative to the scenario's folder; with dt, Ts "
         "or step, s, above zero it is in discrete time, and then the only law",

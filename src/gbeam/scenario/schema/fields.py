@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import pathlib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from pathlib import Path as File
 from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
 
 from pydantic import (
+    AfterValidator,
     BaseModel,
     ConfigDict,
     Discriminator,
@@ -16,6 +17,7 @@ from pydantic import (
     GetJsonSchemaHandler,
     Tag,
     ValidationInfo,
+    WithJsonSchema,
 )
 from pydantic import ValidationError as PydanticError
 from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, core_schema
@@ -52,7 +54,7 @@ def wrong(message: str, hint: str = "", *, mark: Literal["value", "key"] = "valu
 
 def existing_file(file: str, info: ValidationInfo) -> str:
     """Resolve `file` against the scenario's folder, which load passes as context."""
-    path = File((info.context or {}).get("folder", ".")) / file
+    path = pathlib.Path((info.context or {}).get("folder", ".")) / file
     if existing(path) and not path.is_dir():
         return str(path)
     folder = path.parent
@@ -62,7 +64,13 @@ def existing_file(file: str, info: ValidationInfo) -> str:
         neighbours = []
     near = closest(path.name, neighbours)
     looked = f"it is looked for in {folder}"
-    raise wrong("there is no file {value}", f"did you mean {str(File(file).with_name(near))!r}?" if near else looked)
+    raise wrong(
+        "there is no file {value}", f"did you mean {str(pathlib.Path(file).with_name(near))!r}?" if near else looked
+    )
+
+
+# Of a schema "file-path" says which keys name files.
+File = Annotated[str, AfterValidator(existing_file), WithJsonSchema({"type": "string", "format": "file-path"})]
 
 
 def refuse(problems: Iterable[tuple[Loc, PydanticCustomError]]) -> None:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, Field, StrictBool, Tag, model_validator
+from pydantic import Field, StrictBool, Tag, model_validator
 
-from gbeam.scenario.schema.fields import ONE_OR_LIST, Moment, Quantity, Table, existing_file, refuse, wrong
+from gbeam.scenario.schema.fields import ONE_OR_LIST, File, Moment, Quantity, Table, refuse, wrong
 
 _Skipped = Annotated[
     Annotated[StrictBool, Tag("one")]
@@ -18,7 +18,7 @@ _Skipped = Annotated[
 class Record(Table):
     """A measured flight: a file of named columns."""
 
-    file: Annotated[str, AfterValidator(existing_file)] = Field(
+    file: File = Field(
         description="text of any dialect, or by its suffix MAT (.mat), HDF5 (.h5, .hdf5), netCDF (.nc) or UFF 58 "
         "(.uff, .unv), relative to the folder of the scenario file"
     )

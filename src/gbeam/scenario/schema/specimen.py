@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, Discriminator, Field, StrictInt, Tag, model_validator
+from pydantic import Discriminator, Field, StrictInt, Tag, model_validator
 
 from gbeam.guards.limits import ENTRIES
 from gbeam.scenario.schema.beam import Material
@@ -14,6 +14,7 @@ from gbeam.scenario.schema.fields import (
     Angle,
     Density,
     Exponent,
+    File,
     Mass,
     MomentOfInertia,
     Offset,
@@ -22,7 +23,6 @@ from gbeam.scenario.schema.fields import (
     Ratio,
     Ratios,
     Table,
-    existing_file,
     refuse,
     wrong,
 )
@@ -32,7 +32,6 @@ Turn3 = tuple[Angle, Angle, Angle]
 Direction = tuple[Ratio, Ratio, Ratio]
 _Moduli = tuple[Pressure, Pressure, Pressure]
 _Count = Annotated[StrictInt, Field(ge=1, le=1000)]
-File = Annotated[str, AfterValidator(existing_file)]
 _Row = tuple[
     Annotated[float, Quantity("moment of inertia")],
     Annotated[float, Quantity("moment of inertia")],
