@@ -15,10 +15,12 @@ import numpy as np
 from gbeam.errors import InputError
 from gbeam.numerics.eigen import Floats
 from gbeam.numerics.factor import factorised
+from gbeam.numerics.lanczos import lowest_modes
 
 ZERO = 1e-10  # of the largest of the eigenvalues computed: a smaller one is that of a motion without strain
 ALIKE = 1e-9  # of its energy: what is left of a static answer beside the modes and the others adds nothing
 HOLD = "hold the structure so that nothing moves without strain"
+WITHIN, OTHER = 12, 4  # static answers and random vectors with which the search for modes begins
 FAINT = 1e-14  # of the largest: a product of shapes that is rounding
 
 
@@ -48,39 +50,40 @@ def inertial_loads(weights: Floats) -> Floats:
 def reduce(stiffness: Any, mass: Any, loads: Floats, free: Any, modes: int) -> Reduced:
     """Reduce matrices of all unknowns, (u, u), held but for the `free` ones, under `loads` (u, m)."""
     from scipy.sparse import csc_matrix
-    from scipy.sparse.linalg import LinearOperator, eigsh
 
     k_free, m_free, f = csc_matrix(stiffness)[free][:, free], csc_matrix(mass)[free][:, free], loads[free]
+    del stiffness, mass  # which may be a tenth of the factors
     count = len(f)
     if not 1 <= modes <= count:
         raise InputError("modes", f"is {modes}, of {count} unknowns", f"give 1 to {count}")
     with factorised(k_free) as solve:
         static = solve(f)
-        if modes > count // 2:  # too many for Lanczos' iteration: these are small
-            square, vector = _dense(k_free.toarray(), m_free.toarray(), modes)
+        if modes > count // 2:  # the space of Lanczos' iteration would be all
+            inverse, vector = _dense(k_free.toarray(), m_free.toarray())
+            have = _moving(inverse)
+            inverse, vector = inverse[:modes], vector[:, :modes]
         else:
-            inverse = LinearOperator(k_free.shape, matvec=solve, dtype=float)
-            start = np.cos(np.arange(count))  # the same one each time
-            square, vector = eigsh(k_free, k=modes, M=m_free, sigma=0, OPinv=inverse, v0=start)
-    order = np.argsort(square)
-    square, vector = square[order], vector[:, order]
-    if not square[0] > ZERO * square[-1]:
+            # The answers hold most of the lowest modes; what no load moves must begin somewhere too.
+            other = np.random.default_rng(0).standard_normal((count, OTHER))
+            inverse, vector = lowest_modes(solve, m_free, np.hstack([static[:, :WITHIN], other]), modes)
+            have = len(inverse)
+    if have < modes:
+        raise InputError("modes", f"is {modes}, and only {have} motions move mass", f"give at most {have}")
+    if not inverse.min() > ZERO * inverse.max():
         raise InputError("stiffness", "is not positive definite", HOLD)
-    rest = _complement(k_free, m_free, vector, static)
-    basis = np.concatenate([vector, rest], axis=1)
-    inside = basis.T @ (m_free @ basis)
-    if not np.linalg.eigvalsh(inside)[0] > 0:
+    basis = np.concatenate([vector, _complement(k_free, m_free, vector, static)], axis=1)
+    inverse, within = _dense(basis.T @ (k_free @ basis), basis.T @ (m_free @ basis))
+    if _moving(inverse) < len(inverse):
         fix = "give the nodes of interfaces mass in every direction, and inertia where they turn"
         raise InputError("mass", "leaves a static answer to forces or moments without mass", fix)
-    square, within = _dense(basis.T @ (k_free @ basis), inside, basis.shape[1])
     shapes, still = np.zeros((loads.shape[0], basis.shape[1])), np.zeros_like(loads)
     shapes[free], still[free] = basis @ within, static
-    return Reduced(shapes, square, still)
+    return Reduced(shapes, 1 / inverse, still)
 
 
-def _dense(stiffness: Floats, mass: Floats, modes: int) -> tuple[Floats, Floats]:
-    """The lowest eigenvalues and vectors of unit modal mass; of unknowns without mass, whose eigenvalues are infinite,
-    by the inverse.
+def _dense(stiffness: Floats, mass: Floats) -> tuple[Floats, Floats]:
+    """Inverse eigenvalues, the largest first, of which those of motions without mass are zero, and vectors of unit
+    modal mass, or stiffness.
     """
     from scipy.linalg import eigh
 
@@ -88,11 +91,12 @@ def _dense(stiffness: Floats, mass: Floats, modes: int) -> tuple[Floats, Floats]
         inverse, vector = eigh(mass, stiffness)
     except np.linalg.LinAlgError:
         raise InputError("stiffness", "is not positive definite", HOLD) from None
-    inverse, vector = inverse[::-1][:modes], vector[:, ::-1][:, :modes]
-    if not inverse[-1] > ZERO * inverse[0]:
-        have = int((inverse > ZERO * inverse[0]).sum())
-        raise InputError("modes", f"is {modes}, and only {have} motions move mass", f"give at most {have}")
-    return 1 / inverse, vector / np.sqrt(inverse)
+    return inverse[::-1], (vector / np.sqrt(np.where(inverse > ZERO * inverse[-1], inverse, 1.0)))[:, ::-1]
+
+
+def _moving(inverse: Floats) -> int:
+    """Number of motions that move mass."""
+    return int((inverse > ZERO * inverse[0]).sum())
 
 
 def _complement(stiffness: Any, mass: Any, modes: Floats, static: Floats) -> Floats:

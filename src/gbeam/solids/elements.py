@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -149,37 +149,44 @@ def chunks(
             yield block, part, np.linalg.det(jacobians) * weights, gradients, values
 
 
-def _summed(size: int, unknowns: Indices, matrices: Floats) -> Any:
-    """Sparse matrix of elements' unknowns (e, k) and matrices (e, k, k)."""
+def _assembled(size: int, parts: Iterable[tuple[Indices, Floats]]) -> Any:
+    """Sparse matrix of elements' unknowns (e, k) and matrices (e, k, k), part by part."""
     from scipy.sparse import coo_array
 
-    k = unknowns.shape[1]
-    rows, columns = np.repeat(unknowns, k, axis=1).ravel(), np.tile(unknowns, (1, k)).ravel()
-    return coo_array((matrices.ravel(), (rows, columns)), shape=(size, size)).tocsr()
+    summed = []
+    for unknowns, matrices in parts:
+        k = unknowns.shape[1]
+        places = np.repeat(unknowns, k, axis=1).ravel(), np.tile(unknowns, (1, k)).ravel()
+        summed.append(coo_array((matrices.ravel(), places), shape=(size, size)).tocsr().tocoo())
+    values = np.concatenate([each.data for each in summed])
+    rows, columns = (np.concatenate([each.coords[axis] for each in summed]) for axis in (0, 1))
+    del summed
+    return coo_array((values, (rows, columns)), shape=(size, size)).tocsr()
 
 
 def stiffness_matrix(points: Floats, blocks: Sequence[Block]) -> Any:
     """Elastic stiffness (3 k, 3 k), node by node."""
-    size, total = 3 * len(points), None
-    for block, part, volume, gradients, _ in chunks(points, blocks, "stiffness"):
-        e, q, k, _ = gradients.shape
-        strain = np.einsum("vcd,eqkd->eqvkc", STRAIN, gradients, optimize=True).reshape(e, q, 6, 3 * k)
-        stress = np.matmul(block.elasticity, strain) * volume[..., None, None]
-        matrices = strain.reshape(e, q * 6, -1).swapaxes(1, 2) @ stress.reshape(e, q * 6, -1)
-        unknowns = (3 * block.nodes[part][..., None] + np.arange(3)).reshape(e, -1)
-        one = _summed(size, unknowns, matrices)
-        total = one if total is None else total + one
-    return total
+
+    def parts() -> Iterator[tuple[Indices, Floats]]:
+        for block, part, volume, gradients, _ in chunks(points, blocks, "stiffness"):
+            e, q, k, _ = gradients.shape
+            strain = np.einsum("vcd,eqkd->eqvkc", STRAIN, gradients, optimize=True).reshape(e, q, 6, 3 * k)
+            stress = np.matmul(block.elasticity, strain) * volume[..., None, None]
+            matrices = strain.reshape(e, q * 6, -1).swapaxes(1, 2) @ stress.reshape(e, q * 6, -1)
+            yield (3 * block.nodes[part][..., None] + np.arange(3)).reshape(e, -1), matrices
+
+    return _assembled(3 * len(points), parts())
 
 
 def mass_matrix(points: Floats, blocks: Sequence[Block]) -> Any:
     """Consistent mass (k, k) of one component of the displacement."""
-    total = None
-    for block, part, volume, _, values in chunks(points, blocks, "mass"):
-        matrices = np.einsum("eq,qi,qj->eij", block.density * volume, values, values, optimize=True)
-        one = _summed(len(points), block.nodes[part], matrices)
-        total = one if total is None else total + one
-    return total
+    return _assembled(
+        len(points),
+        (
+            (block.nodes[part], np.einsum("eq,qi,qj->eij", block.density * volume, values, values, optimize=True))
+            for block, part, volume, _, values in chunks(points, blocks, "mass")
+        ),
+    )
 
 
 def stress_at(block: Block, nodes: Indices, gradients: Floats, u: Floats) -> Floats:

@@ -259,10 +259,13 @@ class SolidMesh(Value):
         centres, forces = attached(self.points, self.interfaces)
         free = np.repeat(~self.clamped, 3)
         forces[~free] = 0.0  # what the clamp takes
-        stiffness = stiffness_matrix(self.points, self.blocks)
-        of_all = kron(mass, eye_array(3), format="csr")
-        reduced = reduce(stiffness, of_all, np.concatenate([loads, forces], axis=1), free, modes)
-        del stiffness
+        reduced = reduce(
+            stiffness_matrix(self.points, self.blocks),
+            kron(mass, eye_array(3), format="csr"),
+            np.concatenate([loads, forces], axis=1),
+            free,
+            modes,
+        )
         shapes, still = (each.reshape(len(self.points), 3, -1) for each in (reduced.shapes, reduced.static))
         # Of moments on interfaces the stress is left out.
         pushed = [12 + 6 * i + axis for i in range(len(centres)) for axis in range(3)]
