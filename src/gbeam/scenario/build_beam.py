@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
+from gbeam.errors import InputError
+from gbeam.guards.limits import ENTRIES
+from gbeam.guards.units import UnitError, quantity
 from gbeam.scenario import schema
 from gbeam.scenario.origin import Collector
 
 if TYPE_CHECKING:
+    from gbeam.io.tables.table import Table
     from gbeam.mechanics.models import Model
     from gbeam.structure.attachments import Load
     from gbeam.structure.beam import Beam
@@ -59,6 +65,8 @@ def _line(parts: Collector, where: str, table: schema.Line) -> Line | None:
     from gbeam.structure.line import Line
 
     twist = table.twist or 0.0
+    if isinstance(table.points, str):
+        return parts.attempt(f"{where}.points", _through, table.points, table.length_unit, table.twist, table.smooth)
     if table.points is not None:
         return parts.attempt(where, Line.of_points, table.points, twist, smooth=table.smooth)
     if table.stations is not None:
@@ -67,6 +75,65 @@ def _line(parts: Collector, where: str, table: schema.Line) -> Line | None:
     lengths, *turns = zip(*((p.length, p.twist, p.turn_y, p.turn_z) for p in table.pieces or ()), strict=True)
     named = dict(zip(("twist", "turn_y", "turn_z"), turns, strict=True))
     return parts.attempt(where, Line.of_pieces, lengths, **named)
+
+
+_COLUMNS = {"x": "length", "y": "length", "z": "length", "twist": "angle"}  # of a line's file, and what they are
+_POINT = re.compile(r"points\[(\d+)\]")
+_NAMED = "name the columns x [mm], y [mm], z [mm], twist [deg], in units of their own, and leave others out"
+
+
+def _through(file: str, unit: str | None, twist: Any, smooth: bool) -> Line:
+    """The line through the rows of a file of text."""
+    import numpy as np
+
+    from gbeam.motion.records.text import read_text
+    from gbeam.structure.line import Line
+
+    rows: Any = None
+    try:
+        rows = read_text(file)
+        columns = _columns(rows, unit)
+        if twist is not None and "twist" in columns:
+            raise InputError("", "has a column twist, and twist is given too", "leave one of them out")
+        count = len(columns["x"])
+        if not 2 <= count <= ENTRIES:
+            raise InputError("", f"has {count} row(s) of numbers", f"give 2 to {ENTRIES}")
+        if twist is not None and len(twist) != count:
+            raise InputError("", f"has {count} rows, and twist {len(twist)} values", "give one for each row")
+        points = np.stack([columns.get(axis, np.zeros(count)) for axis in "xyz"], axis=1)
+        return Line.of_points(points, columns.get("twist", 0.0 if twist is None else twist), smooth=smooth)
+    except InputError as error:
+        point = f"{error.where} " if error.where.startswith("points[") else ""
+        said = re.sub(_POINT, lambda k: rows.place(int(k[1])), point + error.problem.removeprefix(f"{file} "))
+        raise InputError("", f"is {Path(file).name}: {said}", error.fix) from None
+
+
+def _columns(rows: Table, unit: str | None) -> dict[str, Any]:
+    """Columns of a line's file by their names, in SI."""
+    from gbeam.motion.records.units import unit_in_name, words_of
+
+    columns: dict[str, Any] = {}
+    for column in rows.columns:
+        stated = column.unit.strip("[]() ") or unit_in_name(column.name)
+        name, *others = words_of(column.name) or [""]
+        kind = _COLUMNS.get(name)
+        if kind is None or others not in ([], words_of(stated)) or name in columns:
+            problem = f"has a column {column.name!r}" + (" a second time" if name in columns else "")
+            raise InputError("", problem, _NAMED)
+        given = unit if kind == "length" else None
+        if not (stated or given):
+            also = ', or add length_unit = "mm"' if kind == "length" else ""
+            raise InputError("", f"does not say the unit of {name}", f"{_NAMED}{also}")
+        try:
+            size = quantity(f"1 {stated or given}", kind)
+            if given and size != quantity(f"1 {given}", kind):
+                raise InputError("", f"has {name} in {stated}, and length_unit is {given}", "leave length_unit out")
+        except UnitError as error:
+            raise InputError("", f"has {name} in {stated or given}: {error.problem}", error.hint or _NAMED) from None
+        columns[name] = size * rows.numbers(name, column.name)
+    if "x" not in columns:
+        raise InputError("", "has no column x", _NAMED)
+    return columns
 
 
 def _load(parts: Collector, where: str, table: schema.Load) -> Load | None:

@@ -43,6 +43,7 @@ def _files(scenario: Environments) -> Iterator[tuple[str, str]]:
     for name, motion in scenario.motion.items():
         if isinstance(motion, Flight) and motion.record is not None:
             yield name, motion.record.file
+    yield from ((f"beam.{key}", file) for key, file in getattr(getattr(scenario, "beam", None), "files", ()))
     for name, controller in getattr(scenario, "controllers", {}).items():
         for k, law in enumerate(controller.law):
             if getattr(law, "file", None) is not None:

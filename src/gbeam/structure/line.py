@@ -26,6 +26,7 @@ MOST = 400.0  # rad in all
 _KNOTS, _DEGREE = 33, 7  # of the splines that hold a curve's curvatures between two points
 _EXACT = {"method": "DOP853", "rtol": 1e-11, "atol": 1e-13}
 NEAR = 1e-9  # of the length
+_BACK = 1e-6  # of the sum of two directions: they are opposite
 
 
 @typed
@@ -183,11 +184,14 @@ class Line(Value):
         if angles.shape not in ((), (len(at),)) or not np.isfinite(angles).all():
             raise InputError("twist", f"is an array {angles.shape}", f"give one finite angle, or {len(at)}, rad")
         angles = np.broadcast_to(angles, len(at))
+        ways = np.diff(at, axis=0) / size[:, None]
+        back = np.flatnonzero(np.linalg.norm(ways[1:] + ways[:-1], axis=1) < _BACK)
+        if back.size:
+            raise InputError(f"points[{back[0] + 2}]", "turns the line back onto itself", "give a point beside it")
         if smooth and len(at) > 2:
             return _curve(at, size, angles)
         from scipy.spatial.transform import Rotation
 
-        ways = np.diff(at, axis=0) / size[:, None]
         axes, lengths, turns = Rotation.identity(), [], []
         for i, (way, length) in enumerate(zip(ways, size, strict=True)):
             corner = _shortest(f"points[{i + 1}]", ways[i - 1] if i else np.array([1.0, 0.0, 0.0]), way)

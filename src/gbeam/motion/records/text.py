@@ -185,7 +185,7 @@ def _decoded(path: str | os.PathLike[str]) -> str:
             continue
         if not _NOT_TEXT.search(text):
             return text
-    raise InputError("record.file", f"{path} is not CSV text", "save the record as CSV, UTF-8")
+    raise InputError("record.file", f"{path} is not CSV text", "save it as CSV, UTF-8")
 
 
 def _dialect(path: str | os.PathLike[str], body: list[str]) -> tuple[str, int]:
@@ -201,7 +201,7 @@ def _dialect(path: str | os.PathLike[str], body: list[str]) -> tuple[str, int]:
     if not width:
         if body and all(_NUMBER.fullmatch(line.strip()) for line in body):
             raise InputError("record.file", f"{path} has one column", "give a column of times and one per component")
-        raise InputError("record.file", f"{path} is not CSV text with rows of numbers", "save the record as CSV, UTF-8")
+        raise InputError("record.file", f"{path} is not CSV text with rows of numbers", "save it as CSV, UTF-8")
     return delimiter, width
 
 

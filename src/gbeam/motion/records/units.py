@@ -37,6 +37,9 @@ _SPELLINGS: dict[str, dict[str, str]] = {
         **dict.fromkeys(("min", "mins", "minute", "minutes"), "min"),
         **{unit: unit for unit in ("h", "hour", "hours", "day", "days", "ns", "nanoseconds")},
     },
+    # Of other files than records.
+    "length": {unit: unit for unit in ("m", "mm", "cm", "in", "ft")},
+    "angle": {unit: unit for unit in ("deg", "rad", "°")},
 }
 
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, StrictBool, StringConstraints, Tag, model_validator
+from pydantic import AfterValidator, Discriminator, Field, StrictBool, StringConstraints, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
 from gbeam.guards.limits import ENTRIES
 from gbeam.scenario.schema.fields import (
+    ONE_OR_LIST,
     Angle,
     Areas,
     Density,
@@ -28,6 +29,7 @@ from gbeam.scenario.schema.fields import (
     SecondMoments,
     Stiffness,
     Table,
+    existing_file,
     refuse,
     wrong,
 )
@@ -279,11 +281,23 @@ class Piece(Table):
     turn_z: Angle = Field(default=0.0, description="turn about the section's z, towards +y")
 
 
+_Places = Annotated[
+    Annotated[str, AfterValidator(existing_file), Tag("one")]
+    | Annotated[tuple[tuple[Offset, Offset, Offset], ...], Field(max_length=ENTRIES), Tag("list")],
+    ONE_OR_LIST,
+]
+
+
 class Line(Table):
     """The line along which a beam lies at rest: by points, by pieces, or straight with a twist at stations."""
 
-    points: tuple[tuple[Offset, Offset, Offset], ...] | None = Field(
-        default=None, max_length=ENTRIES, description="places in base axes, [x, y, z], from the root, [0, 0, 0]"
+    points: _Places | None = Field(
+        default=None,
+        description="places in base axes, [x, y, z], from the root, [0, 0, 0]; or a file of text with a row for each, "
+        "relative to the folder of the scenario file: columns x, y, z, of which those left out are zero, and twist",
+    )
+    length_unit: str | None = Field(
+        default=None, description="unit of x, y and z in a file that does not say it, in brackets or a row of units"
     )
     smooth: StrictBool = Field(
         default=True, description="false if the points are corners of straight pieces, not of a cubic spline"
@@ -308,7 +322,10 @@ class Line(Table):
             refuse([((), wrong(problem, "give one of points, pieces and stations", mark="key"))])
         if self.pieces is not None and self.twist is not None:
             refuse([(("twist",), wrong("is given beside pieces", "give each piece its own twist", mark="key"))])
-        listed = self.points or self.stations
+        of_file = isinstance(self.points, str)
+        if self.length_unit is not None and not of_file:
+            refuse([(("length_unit",), wrong("is given without a file", "leave it out", mark="key"))])
+        listed = self.stations if of_file else self.points or self.stations
         if self.stations is not None and self.twist is None:
             refuse([((), wrong("twist is missing beside stations", 'add twist = ["0 deg", "10 deg"]', mark="key"))])
         if listed and self.twist is not None and len(self.twist) != len(listed):
@@ -363,3 +380,9 @@ class Beam(Table):
         if self.length is None and (self.line is None or self.line.stations is not None):
             refuse([((), wrong("length is missing", 'add length = "20 mm": length from root to tip', mark="key"))])
         return self
+
+    @property
+    def files(self) -> Iterator[tuple[str, str]]:
+        """Files that it names, by their keys."""
+        if self.line is not None and isinstance(self.line.points, str):
+            yield "line.points", self.line.points
