@@ -17,6 +17,8 @@ hypothesis.settings.load_profile("gbeam")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # Compiled programs are kept from run to run, in the project's own ignored folder.
 os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(Path(__file__).parents[1] / ".cache" / "jax"))
+# No test reads what another version of it has made.
+os.environ.setdefault("GBEAM_CACHE", "off")
 # As gbeam has it, in whichever order the tests that differentiate something themselves import JAX and gbeam.
 os.environ.setdefault("JAX_ENABLE_X64", "1")
 # A result that is written twice is written at the same time.

@@ -96,7 +96,9 @@ def test_shock_and_damage_are_limited(compared: Comparison) -> None:
     for name, value in {"srs": most.ratio, "damage": ratio}.items():
         near, far = (replace(compared, accept={name: (1 / limit, limit)}) for limit in (0.99 * value, 1.01 * value))
         assert (near.accepted, far.accepted) == (False, True) and near.criteria[0].value == pytest.approx(value)
-    assert f"damage {ratio:.3g} of the root (limit 0.5 to 2)" in "\n".join(lines(replace(compared, accept={"damage": 2.0})))
+    assert f"damage {ratio:.3g} of the root (limit 0.5 to 2)" in "\n".join(
+        lines(replace(compared, accept={"damage": 2.0}))
+    )
 
 
 def test_root_history(compared: Comparison, pair: tuple[Any, Any]) -> None:

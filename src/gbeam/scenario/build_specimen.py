@@ -16,11 +16,13 @@ if TYPE_CHECKING:
     from gbeam.mechanics.tree.system import RigidBody
     from gbeam.scenario.origin import Collector
     from gbeam.scenario.schema import system
+    from gbeam.solids.mesh import SolidModel
     from gbeam.solids.rigid import RigidSpecimen
 
 
 def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure | None:
     """The structure of a mesh."""
+    from gbeam.io.kept import kept
     from gbeam.solids.mesh import SolidMesh
 
     given: Any = (
@@ -50,15 +52,20 @@ def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure
             renamed = one.replace("materials", "material", 1) if table.material is not None else one
             raise InputError(renamed, error.problem, error.fix) from None
 
+    def reduced(file: str, coarser: SolidModel | None = None) -> SolidModel:
+        mesh = read(file)
+        options: dict[str, Any] = {"modes": table.modes, "damping_ratio": table.damping_ratio}
+        source = mesh, options, None if coarser is None else coarser.frequency
+        return kept(f"reducing {file}", source, lambda: mesh.reduced(**options, coarser=coarser))
+
     def model() -> Structure:
         coarser = None
         if table.coarser is not None:
             try:
-                coarser = read(table.coarser).reduced(modes=table.modes, damping_ratio=table.damping_ratio)
+                coarser = reduced(table.coarser)
             except InputError as error:
                 raise InputError("coarser", f"{error.where} {error.problem}", error.fix) from None
-        solid = read(table.mesh)
-        return solid.reduced(modes=table.modes, damping_ratio=table.damping_ratio, coarser=coarser).structure
+        return reduced(table.mesh, coarser).structure
 
     return parts.attempt(where, model)
 

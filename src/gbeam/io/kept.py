@@ -1,0 +1,92 @@
+"""What took long to compute, kept on disk by the hash of what it was made from."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import pickle
+from collections.abc import Callable
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+from tempfile import NamedTemporaryFile
+from time import monotonic
+from typing import Any, TypeVar
+
+from platformdirs import user_cache_path
+
+from gbeam.progress import Bar
+from gbeam.results.provenance import present
+
+FOLDER = "GBEAM_CACHE"  # environment: the folder that keeps it, or "off"
+WORTH = 1.0  # s: what is computed sooner is not kept
+MOST = 2 * 2**30  # bytes of all files: those unused for longest go
+PATIENCE = 2.0  # s without a sign of life
+_ENDING = ".kept"
+
+T = TypeVar("T")
+
+
+def kept(what: str, source: Any, make: Callable[[], T]) -> T:
+    """Return ``make()``, or what it returned for an equal source before; `what` is shown if it takes long."""
+    folder = _folder()
+    # Pickles of values that are read and built alike are alike; if not, it is made once more.
+    file = folder and folder / (hashlib.sha256(_program() + pickle.dumps(source)).hexdigest() + _ENDING)
+    if file:
+        with suppress(Exception):  # missing, damaged, of another program: whatever is wrong with it, it is made again
+            return _read(file)
+    began = monotonic()
+    with Bar(what, patience=PATIENCE):
+        value = make()
+    if file and monotonic() - began > WORTH:
+        with suppress(OSError):  # a full disk is no error
+            _write(file, value)
+    return value
+
+
+def _folder() -> Path | None:
+    given = os.environ.get(FOLDER, "")
+    if given.strip().lower() in ("off", "0"):
+        return None
+    return Path(given) if given else user_cache_path("gbeam") / "models"
+
+
+@cache
+def _program() -> bytes:
+    """Hash of gbeam's own files, versions and platform: what one program made, another does not read."""
+    files = sorted(Path(__file__).parents[1].rglob("*.py"))
+    hashed = hashlib.sha256(repr(present()).encode())
+    for file in files:
+        hashed.update(file.read_bytes())
+    return hashed.digest()
+
+
+def _read(file: Path) -> Any:
+    content = file.read_bytes()
+    digest, value = content[:32], memoryview(content)[32:]
+    if hashlib.sha256(value).digest() != digest:
+        raise ValueError(f"{file} is damaged")
+    os.utime(file)  # used now
+    return pickle.loads(value)
+
+
+def _write(file: Path, value: Any) -> None:
+    """Write a file whole or not at all, and remove those that were not used for longest."""
+    content = pickle.dumps(value)
+    file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+    with NamedTemporaryFile(dir=file.parent, suffix=".new", delete=False) as out:
+        try:
+            out.write(hashlib.sha256(content).digest())
+            out.write(content)
+            out.close()
+            os.replace(out.name, file)
+        except BaseException:
+            out.close()
+            os.unlink(out.name)
+            raise
+    others = [(each.stat(), each) for each in file.parent.glob(f"*{_ENDING}") if each != file]
+    room = MOST - file.stat().st_size
+    for about, each in sorted(others, key=lambda pair: -pair[0].st_mtime):
+        room -= about.st_size
+        if room < 0:
+            each.unlink(missing_ok=True)

@@ -1,0 +1,93 @@
+"""Reduced solids kept on disk: the second reading assembles nothing, and what differs or is damaged is made again."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import meshio
+import numpy as np
+import pytest
+
+import gbeam as gb
+from gbeam.io import kept
+from gbeam.solids import mesh as solids
+
+from ..solids.bodies import block
+from .test_specimens import BODY, FLIGHT
+
+
+@pytest.fixture
+def assembled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Sizes of the matrices that were assembled."""
+    meshio.write(tmp_path / "arm.inp", block("hexahedron20", (4, 1, 1), (0.2, 0.02, 0.01)))
+    monkeypatch.setenv(kept.FOLDER, str(tmp_path / "cache"))
+    monkeypatch.setattr(kept, "WORTH", -1.0)
+    sizes: list[int] = []
+
+    def counted(points: Any, blocks: Any) -> Any:
+        sizes.append(3 * len(points))
+        return original(points, blocks)
+
+    original = solids.stiffness_matrix
+    monkeypatch.setattr(solids, "stiffness_matrix", counted)
+    return sizes
+
+
+def read(folder: Path, text: str = BODY) -> Any:
+    (folder / "scenario.toml").write_text(text + FLIGHT, encoding="utf-8")
+    return gb.read_scenario(folder / "scenario.toml").structure
+
+
+def files(folder: Path) -> list[Path]:
+    return sorted((folder / "cache").glob("*"))
+
+
+def test_a_second_reading_assembles_nothing(tmp_path: Path, assembled: list[int]) -> None:
+    first, second = read(tmp_path), read(tmp_path)
+    assert len(assembled) == 1 and first == second and len(files(tmp_path)) == 1
+    softer = read(tmp_path, BODY.replace("210 GPa", "105 GPa"))
+    assert len(assembled) == 2
+    np.testing.assert_allclose(softer.rest[0][:4], first.rest[0][:4] / np.sqrt(2), rtol=1e-9)
+    meshio.write(tmp_path / "arm.inp", block("hexahedron20", (4, 1, 1), (0.2, 0.02, 0.011)))
+    assert read(tmp_path) != first and len(assembled) == 3
+
+
+@pytest.mark.parametrize("damage", ["cut", "changed", "empty"])
+def test_a_damaged_file_is_made_again(tmp_path: Path, assembled: list[int], damage: str) -> None:
+    first = read(tmp_path)
+    (file,) = files(tmp_path)
+    content = file.read_bytes()
+    other = bytes([content[-100] ^ 1])
+    file.write_bytes({"cut": content[:-9], "changed": content[:-100] + other + content[-99:], "empty": b""}[damage])
+    assert read(tmp_path) == first and len(assembled) == 2
+    assert file.read_bytes() == content and files(tmp_path) == [file]
+    assert read(tmp_path) == first and len(assembled) == 2
+
+
+def test_nothing_is_kept_where_it_is_off_or_quick(
+    tmp_path: Path, assembled: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(kept.FOLDER, "off")
+    assert read(tmp_path) == read(tmp_path) and len(assembled) == 2 and not files(tmp_path)
+    monkeypatch.setenv(kept.FOLDER, str(tmp_path / "cache"))
+    monkeypatch.setattr(kept, "WORTH", 1e3)
+    read(tmp_path)
+    assert len(assembled) == 3 and not files(tmp_path)
+
+
+def test_what_was_not_used_for_longest_goes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(kept.FOLDER, str(tmp_path / "cache"))
+    monkeypatch.setattr(kept, "WORTH", -1.0)
+    monkeypatch.setattr(kept, "MOST", 2500)
+    for i in range(2):
+        kept.kept("", i, lambda: b"." * 1000)
+        for age, file in enumerate(files(tmp_path)):
+            os.utime(file, (1000.0 + age, 1000.0 + age))
+    oldest = min(files(tmp_path), key=lambda each: each.stat().st_mtime)
+    kept.kept("", 2, lambda: b"." * 1000)
+    assert len(files(tmp_path)) == 2 and oldest not in files(tmp_path)
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv(kept.FOLDER, str(tmp_path / "file" / "below"))  # where nothing can be written
+    assert kept.kept("", 3, lambda: 5) == 5
