@@ -51,10 +51,18 @@ def of_system(response: SystemResponse) -> Iterator[str]:
     yield from _by_beam(response.errors)
 
 
-def _by_beam(errors: SystemErrors) -> list[str]:
-    alone = zip(errors.beams, errors.by_beam, strict=True)
-    listed = ", ".join(f"{name} {percent(float(each))}" for name, each in alone)
-    return [f"errors by shapes and model of {listed}"] if listed else []
+def _by_beam(errors: SystemErrors) -> Iterator[str]:
+    if len(errors.by_beam):
+        alone = zip(errors.beams, errors.by_beam, strict=True)
+        yield f"errors by shapes and model of {', '.join(f'{name} {percent(float(each))}' for name, each in alone)}"
+    if len(errors.loads_by_beam):
+        each = zip(errors.beams, errors.loads_by_beam, errors.stress_by_beam, strict=True)
+        listed = ", ".join(
+            f"{name} {percent(float(loads))} and {percent(float(stress))}" for name, loads, stress in each
+        )
+        yield f"errors of root loads and of stress of {listed}"
+    if math.isfinite(errors.displacement.beam_theory):
+        yield f"errors by the theory of slender beams {percent(errors.displacement.beam_theory)}"
 
 
 def system_rest(rests: Iterable[SystemRest]) -> str:

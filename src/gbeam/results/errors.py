@@ -75,6 +75,13 @@ class SystemErrors(Part):
     """Estimated errors of a system's answer, in all and as each of its beams brings them."""
 
     displacement: ErrorEstimate = part("of the points' places", default_factory=ErrorEstimate)
+    loads: ErrorEstimate = part(
+        "of the force and moment at the root of a beam, the largest of all", default_factory=ErrorEstimate
+    )
+    stress: ErrorEstimate = part(
+        "of the largest size of the normal stress over a beam's sections, the largest of all",
+        default_factory=ErrorEstimate,
+    )
     beams: tuple[str, ...] = labels("beam that is judged", "judged", default=())
     by_beam: Floats = quantity(
         "",
@@ -83,25 +90,31 @@ class SystemErrors(Part):
         note="alone; together they may be more or less",
         default_factory=lambda: np.empty(0),
     )
+    loads_by_beam: Floats = quantity(
+        "",
+        "estimated error of the force and moment at the beam's root, the larger of both, of the largest there",
+        "judged",
+        default_factory=lambda: np.empty(0),
+    )
+    stress_by_beam: Floats = quantity(
+        "", "estimated error of the beam's stress, of its largest", "judged", default_factory=lambda: np.empty(0)
+    )
+    theory: tuple[str, ...] = quantity(
+        "",
+        "causes of the error of the beam theory, and what it assumes",
+        "judged",
+        note="such as plate action; assumed: Poisson's ratio 0.3",
+        default=(),
+    )
     note: str = fact("what is not estimated, and why", default="")
-
-    def doubts(self, tolerance: float) -> tuple[str, ...]:
-        """Warnings of what exceeds a tolerance, and of what is not judged."""
-        shapes, model, total = self.displacement.shapes, self.displacement.model, self.displacement.total
-        said = [self.note] if self.note else []
-        if max(shapes, model, 0.0) > tolerance:
-            worst = self.beams[int(np.argmax(self.by_beam))]
-            cure = "raise its model.modes" if shapes >= model else 'check with model.kind = "exact"'
-            cause = "too few shapes" if shapes >= model else "the model"
-            said.append(
-                f"places are wrong by an estimated {100 * total:.2g} % of the largest displacement: {cause}, most of "
-                f"{worst}; {cure}"
-            )
-        return tuple(said)
 
     def __repr__(self) -> str:
         alone = (f"{name} {100 * each:.2g} %" for name, each in zip(self.beams, self.by_beam, strict=True))
-        lines = [f"displacement: {self.displacement}", ", ".join(alone), self.note]
+        lines = [f"{each}: {getattr(self, each)}" for each in ("displacement", "loads", "stress")]
+        lines.insert(1, ", ".join(alone))
+        pairs = zip(self.beams, self.theory, strict=True)
+        lines += [f"beam theory of {name}: {words}" for name, words in pairs if words]
+        lines.append(self.note)
         return "\n  ".join(["SystemErrors", *filter(None, lines)])
 
 

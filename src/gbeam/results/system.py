@@ -185,7 +185,7 @@ class SystemResponse(Driven, Figured):
     step: float = fact("time step", "s", default=math.nan)
     steps: int = fact("number of steps", default=0)
     errors: SystemErrors = part(
-        "of the points' places, as fractions of the largest displacement", name="error_", default_factory=SystemErrors
+        "of places, root loads and stress, as fractions of the largest", name="error_", default_factory=SystemErrors
     )
     kept_every: int = fact("how many samples of the histories make one in a file", name=None, key=None, default=1)
 
@@ -325,7 +325,7 @@ class SystemRest(Figured):
         return {name: replace(at_place(each, 0), stations=each.stations) for name, each in self.loads.items()}
 
     errors: SystemErrors = part(
-        "of the points' places, as fractions of the largest displacement", name=None, default_factory=SystemErrors
+        "of places, root loads and stress, as fractions of the largest", name=None, default_factory=SystemErrors
     )
 
     def at(self, point: str) -> Floats:

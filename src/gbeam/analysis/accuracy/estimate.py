@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -72,6 +72,19 @@ TOO_FAR = "the solution is too far from the exact model's for an estimate; it is
 UNKNOWN = "shapes and model are not judged: the structure was not made of a beam"
 
 
+def negligible(sizes: Mapping[str, float], length: float) -> set[str]:
+    """Quantities whose largest sizes are rounding: a torque alone moves no tip and brings no normal stress, which is
+    beside that of shear.
+    """
+    least = {
+        "tip": UNMOVED / NOTHING * length,
+        "force": sizes["moment"] / length,
+        "moment": sizes["force"] * length,
+        "stress": sizes["sheared"],
+    }
+    return {name for name, each in least.items() if name in sizes and sizes[name] <= NOTHING * each}
+
+
 def response_errors(
     structure: Structure,
     motion: Motion,
@@ -93,10 +106,7 @@ def response_errors(
     every = tip, loads.force[:, 0], loads.moment[:, 0], loads.stress.max(axis=1)
     sizes = dict(zip(Quantities._fields, map(largest, every), strict=True))
     sheared = 0.0 if loads.von_mises is None else float(np.nan_to_num(loads.von_mises).max())
-    # A torque alone moves no tip and brings no normal stress: what is there is rounding.
-    force, moment, length = sizes["force"], sizes["moment"], structure.length
-    rounding = UNMOVED / NOTHING * length, moment / length, force * length, sheared
-    nothing = {name for (name, size), least in zip(sizes.items(), rounding, strict=True) if size <= NOTHING * least}
+    nothing = negligible(sizes | {"sheared": sheared}, structure.length)
     period = 2 * math.pi / float(structure.rest[0][0])
     step, least = float(solution.time[1] - solution.time[0]), math.ceil(len(solution.time) / MOST)
     few = max(1, min(int(period / PER_PERIOD / (stride * step)), len(tip) // FEWEST))

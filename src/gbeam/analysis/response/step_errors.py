@@ -140,18 +140,23 @@ def of_everything(runs: Sequence[Run], order: int) -> StepErrors:
     if not all(run.whole for run in runs[-2:]):
         return StepErrors(displacement)
     runs = runs if runs[0].whole else runs[-2:]
-    return StepErrors(displacement, *_of_loads(runs, lambda differences: share(runs, differences, 4 / order)))
+
+    def read(k: int, stride: int) -> Sequence[Floats]:
+        return runs[k].readings.loads(runs[k].trajectory, stride)
+
+    errors = of_histories(runs, read, lambda differences: share(runs, differences, 4 / order) * differences[-1])
+    return StepErrors(displacement, max(errors[:2]), errors[2]) if errors else StepErrors(displacement)
 
 
-def _of_loads(runs: Sequence[Run], left: Callable[[Sequence[float]], float]) -> tuple[float, float]:
-    """Errors of the last run's loads at the root and of the stress: a share `left` of the last of the differences."""
+def of_histories(
+    runs: Sequence[Run], read: Callable[[int, int], Sequence[Floats]], left: Callable[[Sequence[float]], float]
+) -> list[float]:
+    """Errors of the last run's histories (t, c), read by its index every so many steps: what is `left` of
+    differences.
+    """
     differences = []
-    for coarse, fine in pairwise(runs):
+    for k, (coarse, fine) in enumerate(pairwise(runs)):
         stride = max(1, (len(coarse.trajectory.time) - 1) // _SAMPLES)
-        read = (
-            run.readings.loads(run.trajectory, stride * many)
-            for run, many in ((coarse, 1), (fine, ratio(coarse, fine)))
-        )
-        differences.append([difference(a, b, 1) for a, b in zip(*read, strict=True)])
-    errors = [left(each) * each[-1] for each in zip(*differences, strict=True)]
-    return (max(errors[:2]), errors[2]) if errors else (math.nan, math.nan)
+        both = read(k, stride), read(k + 1, stride * ratio(coarse, fine))
+        differences.append([difference(a, b, 1) for a, b in zip(*both, strict=True)])
+    return [left(each) for each in zip(*differences, strict=True)]

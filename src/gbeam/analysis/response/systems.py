@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
@@ -15,13 +16,14 @@ from gbeam.analysis.response.peaks import load_peaks
 from gbeam.analysis.response.problem import Problem
 from gbeam.analysis.response.record import outline_of
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.step_errors import Run, difference, ratio, share
+from gbeam.analysis.response.step_errors import Run, difference, of_histories, ratio, share
 from gbeam.analysis.response.stepping import LOADS_STEPS, even_steps, finer_by, integrated, scheme_of, steps_beyond
-from gbeam.analysis.system.accuracy import pieces, system_errors
+from gbeam.analysis.system.accuracy import doubts, system_errors
 from gbeam.analysis.system.assembly import assembly_of
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
 from gbeam.analysis.system.histories import Carried, beams_of, histories, loads_of
 from gbeam.analysis.system.point import Point, started, started_traced
+from gbeam.analysis.system.richer import PLACE, Answered, InputsOf, Quantity, itself, judged_beams, pieces
 from gbeam.arrays.namespace import holds_jax, namespace
 from gbeam.errors import InputError
 from gbeam.guards.limits import HISTORY_BYTES, STEPS, refuse_more
@@ -44,14 +46,31 @@ Floats = NDArray[np.float64]
 LEAST = 500  # steps of the results at least
 
 
-def _moved(system: System, motion: Motion | None, trajectory: Trajectory) -> Floats:
-    """Displacements of all points from the start, side by side, (t, 3 p) m."""
-    parts = []
-    for some in _pieces(trajectory, system):
-        state = system.tree.motion(some.q, some.qd, some.qdd, system.inputs(some.time, motion))
-        parts.append(np.concatenate([frame.p for frame in state.every_point], axis=-1))
-    places = np.concatenate(parts)
-    return places - places[0]
+@dataclass(frozen=True)
+class Ran(Run):
+    """A run of a system, with what drives it and the displacements of all points, side by side, (t, 3 p) m."""
+
+    inputs: InputsOf
+    moved: Floats
+
+    @staticmethod
+    def of(system: System, trajectory: Trajectory, step: float, inputs: InputsOf) -> Ran:
+        """Read a run."""
+        places = Answered(itself(system), trajectory, inputs).places()
+        return Ran(trajectory, step, None, inputs, (places - places[0]).reshape(len(places), -1))  # type: ignore[arg-type]
+
+
+def _driving(motion: Motion | None, of: Trajectory, equations: NonlinearEquations) -> InputsOf:
+    """Inputs of the latest run of some equations, controllers included, and of richer systems at its times."""
+    acting = None
+    if equations.controllers is not None:
+        acting = loop_of(equations.controllers, equations.samplings[-1], of.time)[1]
+
+    def inputs(system: System, some: Any) -> Any:
+        plain = system.inputs(of.time[some], motion)
+        return plain if acting is None else SystemControllers(system).driven(plain, acting[some])
+
+    return inputs
 
 
 def _pieces(trajectory: Trajectory, system: System) -> list[Trajectory]:
@@ -110,9 +129,9 @@ def simulate_system(
         how = {"corners": felt, "progress": lambda done: tell(progress, what, done)}
         return integrated(Problem(of, begun.y, begun.yd, 0, True), settings, step, **how)
 
-    def run(step: float, what: str) -> tuple[Run, Floats]:
+    def run(step: float, what: str) -> Ran:
         trajectory = through(equations, point, step, what)
-        return Run(trajectory, step, None), _moved(system, motion, trajectory)  # type: ignore[arg-type]
+        return Ran.of(system, trajectory, step, _driving(motion, trajectory, equations))
 
     runs, error = [run(settings.step or 2 * coarse, "integrating")], math.nan
     bends = any(joint.holder.bends for joint in system.joints.values())
@@ -120,40 +139,42 @@ def simulate_system(
         runs.append(run(coarse, "refining"))
         while True:
             error = _step_error(runs, order, bends)
-            whole = runs[-1][0].whole
-            most = int(LOADS_STEPS * runs[-1][0].step / settings.duration)
+            whole = runs[-1].whole
+            most = int(LOADS_STEPS * runs[-1].step / settings.duration)
             few = bends and len(runs) < 3
             finer = min(max(finer_by(error / settings.aim if whole else math.nan, order), 2 if few else 0), most)
             if (error <= settings.aim and whole and not few) or finer < 2:
                 break
-            if not (whole or runs[-2][0].whole) and len(runs) > 3:
+            if not (whole or runs[-2].whole) and len(runs) > 3:
                 break
-            step = runs[-1][0].step / finer
+            step = runs[-1].step / finer
             runs.append(run(step, f"refining the step to {1e3 * step:.3g} ms"))
     elif settings.estimate:
         coarser = (4, 2) if bends else (2,)
         runs[:0] = [run(k * settings.step, f"checking with {k} times the step") for k in coarser]
         error = _step_error(runs, order, bends)
-    chosen = runs[-1][0]
+    chosen = runs[-1]
     stride = 1 if settings.step is not None else round(coarse / chosen.step)
     kept = chosen.trajectory.at(slice(None, None, stride))
     if not settings.estimate or not chosen.whole:
         errors = SystemErrors(ErrorEstimate(error))
         return _described(system, motion, settings, chosen, stride, errors, name, equations)
 
-    def inputs(of: System, some: Any) -> Any:
-        return of.inputs(kept.time[some], motion)
-
-    def begun(of: System) -> Point:
-        return started(of, motion, settings.start, begin.state)
-
-    def again(of: System) -> Trajectory:
+    def again(of: System) -> tuple[Trajectory, InputsOf]:
         control = SystemControllers(of) if system.controllers else None
         own = NonlinearEquations(of.tree, lambda t: of.inputs(t, motion), control, None if control is None else [])
-        trajectory = through(own, begun(of), chosen.step, "errors of shapes and models")
-        return trajectory.at(slice(None, None, stride))
+        trajectory = through(
+            own, started(of, motion, settings.start, begin.state), chosen.step, "errors of shapes and models"
+        )
+        ran = trajectory.at(slice(None, None, stride))
+        return ran, _driving(motion, ran, own)
 
-    errors = system_errors(system, kept, inputs, begun, again if system.controllers else None, error)
+    def inputs(of: System, some: Any) -> Any:
+        return chosen.inputs(of, np.arange(len(chosen.trajectory.time))[::stride][some])
+
+    steps = {PLACE: error} | _load_errors(system, runs, order, bends)
+    settled, closed = begin.state == "equilibrium", again if system.controllers else None
+    errors = system_errors(system, kept, inputs, closed, steps, settled=settled)
     return _described(system, motion, settings, chosen, stride, errors, name, equations)
 
 
@@ -181,15 +202,37 @@ def _with_ends(motion: Motion | None, settings: ResponseSettings, step: float) -
     return replace(settings, start=settings.start - before, duration=settings.duration + before + after)
 
 
-def _step_error(runs: list[tuple[Run, Floats]], order: int, bends: bool) -> float:
-    """Error of the last of two or more runs, by the order observed in the last three. A law that bends within a step
-    leaves an error that depends on where: no order is observed, and two runs may agree by chance.
-    """
+def _step_error(runs: list[Ran], order: int, bends: bool) -> float:
+    """Error of the last of two or more runs' places."""
     last = runs[-3:]
-    apart = [difference(a, b, ratio(x, y)) for (x, a), (y, b) in pairwise(last)]
-    if bends and len(last) > 2:
-        return max(apart[-1], apart[-2] / ratio(last[-2][0], last[-1][0]))
-    return apart[-1] * share([each for each, _ in last], apart, min(order, 2.0))
+    return _left(last, [difference(x.moved, y.moved, ratio(x, y)) for x, y in pairwise(last)], min(order, 2.0), bends)
+
+
+def _left(runs: Sequence[Run], apart: Sequence[float], order: float, bends: bool) -> float:
+    """Error that differences of two or three runs leave in the last, by the order observed. A law that bends within a
+    step leaves one that depends on where: no order is observed, and two runs may agree by chance.
+    """
+    if bends and len(runs) > 2:
+        return max(apart[-1], apart[-2] / ratio(runs[-2], runs[-1]))
+    return apart[-1] * share(runs, apart, order)
+
+
+def _load_errors(system: System, runs: list[Ran], order: int, bends: bool) -> dict[Quantity, float]:
+    """Errors of the steps in the loads at the beams' roots and in their stress."""
+    beams = judged_beams(system)
+    last = runs[-3:] if runs[-3:][0].whole else runs[-2:]
+    keys = [(name, each) for name in beams for each in ("force", "moment", "stress")]
+    if not keys or len(last) < 2 or not all(run.whole for run in last):
+        return {}
+
+    def read(k: int, stride: int) -> list[Floats]:
+        run = last[k]
+        steps = np.arange(len(run.trajectory.time))[::stride]
+        at = Answered(itself(system), run.trajectory.at(steps), lambda of, some: run.inputs(of, steps[some]))
+        values = at.read(beams)
+        return [values[key] for key in keys]
+
+    return dict(zip(keys, of_histories(last, read, lambda apart: _left(last, apart, 4 / order, bends)), strict=True))
 
 
 def _corners(system: System, motion: Motion | None, step: float) -> Floats:
@@ -272,7 +315,7 @@ def _described(
             f"Newton's method failed at {every.time[-1]:.4g} s: give a smaller step, or look for what breaks there"
         )
     warnings = (*settings.warnings, *yielded)
-    warnings += errors.doubts(settings.tolerance)
+    warnings += doubts(errors, settings.tolerance)
     step_error = errors.displacement.step
     if outcome == "done" and step_error > settings.tolerance:
         warnings += (f"the error of the steps is {100 * step_error:.2g} %: give a smaller step or tolerance",)

@@ -13,7 +13,7 @@ import numpy as np
 from gbeam.analysis.accuracy.beam_theory import described, mode_causes
 from gbeam.analysis.accuracy.estimate import LIMIT, percent, wrong_by
 from gbeam.analysis.steady.operating_point import OperatingPoint, Steady
-from gbeam.analysis.system.accuracy import bases_of, judged_beams, richer
+from gbeam.analysis.system.richer import bases_of, judged_beams, richer
 from gbeam.analysis.system.steady import SteadySystem
 from gbeam.arrays.tree import each_leaf
 from gbeam.errors import ComputationError

@@ -66,10 +66,7 @@ def histories(
         gravity = np.zeros(3) if system.gravity is None else as_array(system.gravity)
         momentum, spin, energy = tree.invariants(y, yd, inputs, gravity)
         out |= {"momentum": momentum, "angular_momentum": spin, "energy": energy}
-    beams = beams_of(system)
-    return out, {
-        name: _carried(state, k, beams[name], acting[k]) for k, name in enumerate(system.order) if name in beams
-    }
+    return out, {name: carried(system, state, name, acting) for name in beams_of(system)}
 
 
 def beams_of(system: System) -> dict[str, Structure]:
@@ -78,16 +75,18 @@ def beams_of(system: System) -> dict[str, Structure]:
     return {name: body for name, body in every if isinstance(body, Structure) and body.sections is not None}
 
 
-def _carried(state: State, k: int, beam: Structure, acting: list[Acting]) -> Carried:
-    places, root = list(stations_of(beam).values()), state.roots[k]
+def carried(system: System, state: State, name: str, acting: list[list[Acting]]) -> Carried:
+    """A beam of a system in motion, by wrenches on the points of all bodies."""
+    k = system.order.index(name)
+    places, root = list(stations_of(system.bodies[name]).values()), state.roots[k]  # type: ignore[arg-type]
     q, qd, qdd = (each[k][-1] for each in (state.q, state.qd, state.qdd))
-    wrenches = [each.wrench.brought(each.by) for each in acting]
+    wrenches = [each.wrench.brought(each.by) for each in acting[k]]
     none = np.zeros((len(q), 0, 3))
     force, moment = (
         namespace(q).stack([getattr(each, name) for each in wrenches], axis=1) if wrenches else none
         for name in ("force", "moment")
     )
-    hung = Hung(np.array([places[each.point] for each in acting], dtype=int), force, moment)
+    hung = Hung(np.array([places[each.point] for each in acting[k]], dtype=int), force, moment)
     return Carried(q, qd, qdd, root.a, root.w, root.alpha, hung)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.analysis.accuracy.estimate import LIMIT
-from gbeam.analysis.system.accuracy import system_errors
+from gbeam.analysis.system.accuracy import doubts, system_errors
 from gbeam.analysis.system.histories import beams_of, histories, loads_of
 from gbeam.analysis.system.point import Point, started
 from gbeam.analysis.system.steady import Drive, SteadySystem, steady
@@ -50,11 +50,11 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
         fix = "bent so far a body's model has no positive mass: check with exact"
         unstable = (f"whether it would stay there is not known, {fix}",)
 
-    def again(of: System) -> Trajectory:
-        return state.richer(of).point.standing(time)
+    def again(of: System) -> tuple[Trajectory, Any]:
+        return state.richer(of).point.standing(time), inputs
 
     start = begun["place"][0]
-    errors = system_errors(system, point.standing(time), inputs, lambda _: point, again, math.nan, start)
+    errors = system_errors(system, point.standing(time), inputs, again, {}, settled=True, start=start)
     return SystemRest(
         name=name,
         time=time,
@@ -63,7 +63,7 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
         displacement=at["place"] - start,
         errors=errors,
         stable=not unstable,
-        warnings=unstable + errors.doubts(LIMIT) + system.warnings,
+        warnings=unstable + doubts(errors, LIMIT) + system.warnings,
         loads={body: loads_of(beams_of(system)[body], [each], np.array([time])) for body, each in beams.items()},
         **{key: at[key] for key in ("place", "attitude", "q", "effort", "ground_force", "ground_moment")},
     )
