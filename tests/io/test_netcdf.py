@@ -377,4 +377,6 @@ def test_histories_as_text_are_those_of_the_file(study: Study, tmp_path: Path) -
             rates = [float(row["axis_rate_2_rad_per_s"]) for row in own]
             np.testing.assert_allclose(rates, response.axes.rate[:, 1], rtol=1e-8)
         if response.loads is not None:
+            carried = [[float(row[f"root_section_force_{axis}_N"]) for axis in "xyz"] for row in own]
+            np.testing.assert_allclose(carried, response.loads.section_force[:, 0], rtol=1e-8, atol=1e-300)
             assert float(own[-1]["stress_Pa"]) == pytest.approx(response.loads.stress[-1, 0])

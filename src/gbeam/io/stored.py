@@ -59,8 +59,8 @@ def _stored(variables: dict[str, Any], attrs: dict[str, dict[str, Any]]) -> Stor
 _HEAD = "motion,time_s"
 _VECTORS = {  # variable, name of its columns, unit
     "tip": ("tip", "m"),
-    "section_force": ("root_force", "N"),
-    "section_moment": ("root_moment", "N_m"),
+    "section_force": ("root_section_force", "N"),
+    "section_moment": ("root_section_moment", "N_m"),
     "root_acceleration": ("root_acceleration", "m_per_s2"),
     "load_reference": ("load_target", "m_per_s2"),
     "load_actual": ("load_made", "m_per_s2"),
@@ -73,7 +73,8 @@ _VECTORS = {  # variable, name of its columns, unit
 def csv_of(stored: Stored) -> str:
     """Return one line for each time of each motion, SI, base axes; what a motion does not have is empty.
 
-    Of the sections' forces, moments and stress it has those of the root, in the axes of its section.
+    Of the sections' forces, moments and stress it has those of the root, in the axes of its section: those of the beam
+    on its base, and so of another sign than root_force and root_moment elsewhere, which are those of the base.
     """
     names = [path.split("/")[1] for path in stored.variables if path.startswith("motions/") and path.endswith("/time")]
     columns = [
