@@ -13,7 +13,7 @@ from gbeam.analysis.response.differentiated import Differentiated, Grid
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.response.systems import simulate_system
-from gbeam.analysis.system.steady import Drive, steady
+from gbeam.analysis.system.steady import Drive, SteadySystem, steady
 from gbeam.arrays.tree import altered
 from gbeam.errors import InputError
 from gbeam.guards.checks import choice
@@ -22,7 +22,7 @@ from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.system import System, stations_of
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.profiles.profile import Profile
-from gbeam.numerics.eigen import RIGID, symmetric, symmetric_modes
+from gbeam.numerics.eigen import RIGID, Linear, symmetric, symmetric_modes
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 
@@ -180,28 +180,25 @@ class OnJoint:
             raise InputError("joint", f"is {self.coordinate!r}, which is no angle", "name one that turns")
 
     @property
-    def _slopes(self) -> tuple[Floats, Floats, Floats, Floats, list[str]]:
-        """K, C, M (n, n) about rest, the drive's force (n,), and the names of the coordinates."""
+    def _rest(self) -> tuple[SteadySystem, Linear]:
+        """The system at rest, and its small motions under the drive."""
         state = steady(self.commanded(None), Drive())
-        _, k, c, m = state.local.slopes()
-        names = state.names
-        if self.free:
-            return k, c, m, np.array([float(each == self.coordinate) for each in names]), names
         local, inputs = state.local, state.local.inputs
-        assert inputs.prescribed is not None
+        if self.free:
+            return state, state.linear._replace(inputs=np.equal(state.names, self.coordinate)[:, None].astype(float))
         moved = np.array(inputs.prescribed)
         moved[2, self.system.tree.fixed.index(self.system.coordinates.index(self.coordinate))] += 1.0
         faster = replace(inputs, prescribed=moved)
-        left = local.tree(local.y, local.yd, local.ydd, faster) - local.tree(local.y, local.yd, local.ydd, inputs)
-        return k, c, m, -left, names
+        left = local.tree(local.y, local.yd, local.ydd, inputs) - local.tree(local.y, local.yd, local.ydd, faster)
+        return state, state.linear._replace(inputs=left[:, None])
 
     @property
     def inertia(self) -> float:
         """Inertia that the effort turns where nothing vibrates, kg m²: of the motions that no spring holds."""
-        k, c, m, force, _ = self._slopes
+        m, c, k, force = self._rest[1]
         square, modes = symmetric_modes(symmetric(k), symmetric(m))
         rigid = modes[:, square <= RIGID**2 * square[-1]]
-        moved = force @ rigid
+        moved = force[:, 0] @ rigid
         if not np.abs(moved).max(initial=0.0) > 0:
             raise InputError("joint", f"is {self.coordinate!r}, which a spring holds", "leave the spring out")
         if np.abs(rigid.T @ c @ rigid).max() > HELD * np.abs(c).max(initial=1e-300):
@@ -212,13 +209,11 @@ class OnJoint:
     @property
     def small(self) -> SmallMotions:
         """Small motions about rest."""
-        k, c, m, force, names = self._slopes
-        n, (beam, station) = len(m), self._beam
-        stiffness, damping, drive = (np.linalg.solve(m, each) for each in (k, c, force))
-        a = np.block([[np.zeros((n, n)), np.eye(n)], [-stiffness, -damping]])
-        tip, first = np.zeros((3, 2 * n)), names.index(f"{self.point.partition('.')[0]}.q1")
+        (state, linear), (beam, station) = self._rest, self._beam
+        tip, first = np.zeros((3, len(linear.mass))), state.names.index(f"{self.point.partition('.')[0]}.q1")
         tip[:, first : first + beam.size] = np.asarray(beam.station_places.first[station])
-        return SmallMotions(a, np.append(np.zeros(n), drive), tip)
+        a, b, c, _ = linear.state_space(tip, 0 * tip, 0 * tip, np.zeros((3, 1)))
+        return SmallMotions(a, b[:, 0], c)
 
     def commanded(self, profile: Profile | None) -> System:
         """The system under a command; at rest without."""
