@@ -10,8 +10,8 @@ import numpy as np
 
 from gbeam.report.words import error_words, number, percent, resting_loads, tidy, warning_lines
 from gbeam.results.equilibrium import Critical, CriticalMap, Deflection
-from gbeam.results.errors import Errors
-from gbeam.results.modal import Campbell, Modes, along
+from gbeam.results.errors import Errors, along
+from gbeam.results.modal import Campbell, Modes
 from gbeam.results.state_space import ACCURATE, Gauge, StateSpace, Truncation
 
 
@@ -54,10 +54,7 @@ def modes(modes: Modes) -> str:
         lines.append("  undamped: beam.damping_ratio is not given")
     if modes.rigid:
         lines.append("  and the free rotation of hub and beam, of zero frequency")
-    lines += [
-        f"  {growing.kind} {along(growing.direction)}: grows by {growing.growth_rate:.4g} per second"
-        for growing in modes.instabilities
-    ]
+    lines += [f"  {each}" for each in modes.instabilities]
     return "\n".join([*lines, *warning_lines(modes)])
 
 

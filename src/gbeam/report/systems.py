@@ -100,5 +100,5 @@ def system_modes(modes: SystemModes) -> str:
         lines.append(f"  {k + 1:>3}  {frequency:12.6g} Hz  damping {damping:8.4g}{known}  {listed}")
     if modes.rigid:
         lines.append(f"  and {modes.rigid} motions of zero frequency")
-    lines += [f"  UNSTABLE: grows by {each.real:.4g} per second" for each in modes.growing]
+    lines += [f"  {each}" for each in modes.instabilities]
     return "\n".join([*lines, *warning_lines(modes)])

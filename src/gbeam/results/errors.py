@@ -165,11 +165,40 @@ def totals(errors: FrequencyErrors | None, count: int) -> Floats:
     return np.full(count, np.nan) if errors is None else errors.total
 
 
+def along(direction: str) -> str:
+    """Words for the direction of a mode: along z, in twist, or of a system's body along its z."""
+    body, _, direction = direction.rpartition(" ")
+    if body:
+        return f"of {body} along its {direction}"
+    return f"in {direction}" if direction == "twist" else f"along {direction}"
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Instability(Part):
+    """An eigenvalue with a positive real part: ``divergence`` without oscillation, ``flutter`` with."""
+
+    kind: str = fact("divergence or flutter")
+    growth_rate: float = fact("real part of the eigenvalue", "1/s")
+    frequency: float = fact("frequency", "Hz", note="zero for divergence")
+    direction: str = fact(
+        "direction of the largest motion", note="x, y or z; of a system its body and an axis of its root"
+    )
+
+    def __str__(self) -> str:
+        return f"{self.kind} {along(self.direction)}, growing with {self.growth_rate:.4g} 1/s"
+
+
 class Oscillating:
-    """A result with eigenvalues that oscillate, and errors of their frequencies."""
+    """A result with eigenvalues that oscillate and errors of their frequencies, and what grows."""
 
     eigenvalue: Complex
     errors: FrequencyErrors | None
+    instabilities: tuple[Instability, ...]
+
+    @declared("", "whether nothing grows", role="fact")
+    def stable(self) -> bool:
+        """Whether nothing grows."""
+        return not self.instabilities
 
     @declared("Hz", "natural frequency", "mode")
     def frequency(self) -> Floats:

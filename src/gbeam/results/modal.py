@@ -10,23 +10,13 @@ import numpy as np
 
 from gbeam.results.declared import declared, fact, part, quantity, rows
 from gbeam.results.equilibrium import Critical
-from gbeam.results.errors import ErrorEstimate, FrequencyErrors, Oscillating, totals
+from gbeam.results.errors import ErrorEstimate, FrequencyErrors, Instability, Oscillating, totals
 from gbeam.results.response import BaseMotion
 from gbeam.results.result import Complex, Figured, Floats, Part
 
 SHOWN = 6  # frequencies in a short description
 FAR = 2.0  # times the highest multiple of the speed: a mode above would press the others to the ground
 FEW = 2  # modes drawn in any case
-
-
-@dataclass(frozen=True, repr=False, eq=False)
-class Instability(Part):
-    """An eigenvalue with a positive real part: ``divergence`` without oscillation, ``flutter`` with."""
-
-    kind: str = fact("divergence or flutter")
-    growth_rate: float = fact("real part of the eigenvalue", "1/s")
-    frequency: float = fact("frequency", "Hz", note="zero for divergence")
-    direction: str = fact("direction in which the beam moves most", note="x, y or z")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -111,25 +101,13 @@ class Modes(Oscillating, Figured):
             return np.zeros(self.shape.shape[:2], dtype=complex)
         return self.twist * outermost(self.width, self.thickness, is_round=self.round)
 
-    @declared("", "whether nothing grows", role="fact")
-    def stable(self) -> bool:
-        return not self.instabilities
-
     def __repr__(self) -> str:
         of = f" {self.motion!r}" if self.motion else ""
         modes = [f"{f:.4g} Hz {way}" for f, way in zip(self.frequency, self.direction, strict=True)]
         more = f" and {len(modes) - SHOWN} more" if len(modes) > SHOWN else ""
         lines = [f"Modes{of} ({self.model}) at {self.time:.4g} s: {', '.join(modes[:SHOWN])}{more}"]
-        lines += [f"{e.kind} {along(e.direction)}, growing with {e.growth_rate:.4g} 1/s" for e in self.instabilities]
+        lines += map(str, self.instabilities)
         return self._with_warnings(*lines)
-
-
-def along(direction: str) -> str:
-    """Words for the direction of a mode: along z, in twist, or of a system's body along its z."""
-    body, _, direction = direction.rpartition(" ")
-    if body:
-        return f"of {body} along its {direction}"
-    return f"in {direction}" if direction == "twist" else f"along {direction}"
 
 
 def outermost(width: Floats, thickness: Floats, *, is_round: bool) -> Floats:

@@ -11,7 +11,7 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.results.declared import INSIDE, declared, fact, labels, part, quantity, rows
-from gbeam.results.errors import FrequencyErrors, Oscillating, SystemErrors
+from gbeam.results.errors import FrequencyErrors, Instability, Oscillating, SystemErrors
 from gbeam.results.facts import at_place
 from gbeam.results.machine import AxesResult, Driven
 from gbeam.results.parts import LoadPeaks, Loads, Outline
@@ -408,14 +408,7 @@ class SystemModes(Oscillating, Figured):
         note="None where there is no estimate; without the theory of slender beams",
         default=None,
     )
-    growing: Complex = quantity(
-        "1/s", "eigenvalues that grow", "eigenvalue", name="growing", key=None, default_factory=lambda: np.empty(0)
-    )
-
-    @declared("", "whether nothing grows", role="fact")
-    def stable(self) -> bool:
-        """Whether nothing grows."""
-        return not len(self.growing)
+    instabilities: tuple[Instability, ...] = rows("eigenvalues that grow", "instability", name=None, default=())
 
     @declared("", "body that moves most", "mode", name=None)
     def foremost(self) -> tuple[str, ...]:
@@ -432,10 +425,7 @@ class SystemModes(Oscillating, Figured):
                 "one motion of zero frequency is" if self.rigid == 1 else f"{self.rigid} motions of zero frequency are"
             )
             lines.append(f"{count} left out")
-        if not self.stable:
-            lines.append(
-                f"not stable: {len(self.growing)} motions grow, the fastest with {self.growing.real.max():.4g} 1/s"
-            )
+        lines += map(str, self.instabilities)
         return self._with_warnings(*lines)
 
 

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gbeam.analysis.steady.frequency_errors import doubtful, judgeable, pole_errors
-from gbeam.analysis.steady.modal import instabilities
 from gbeam.analysis.steady.operating_point import (
     REST,
     OperatingPoint,
@@ -21,7 +20,7 @@ from gbeam.analysis.steady.operating_point import (
     steady_base,
 )
 from gbeam.analysis.steady.stability import hub_of
-from gbeam.analysis.system.linear import frozen, linearize_system
+from gbeam.analysis.system.linear import frozen, instabilities, linearize_system
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import each_leaf, record
 from gbeam.constants import BY_STRAINS
@@ -39,8 +38,7 @@ from gbeam.mechanics.tree.system import System
 from gbeam.motion.bases.base import mapped
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.series import complex_step
-from gbeam.results.errors import FrequencyErrors
-from gbeam.results.modal import along
+from gbeam.results.errors import FrequencyErrors, along
 from gbeam.results.result import Floats
 from gbeam.results.state_space import ACCURATE, Gauge, Signal, StateSpace, import_control
 from gbeam.structure.attachments import TIP

@@ -13,8 +13,8 @@ import numpy as np
 from gbeam.analysis.accuracy.beam_theory import described, mode_causes
 from gbeam.analysis.accuracy.estimate import LIMIT, apart, percent, wrong_by
 from gbeam.analysis.steady.frequency_errors import Richer, judgeable
-from gbeam.analysis.steady.modal import instabilities
 from gbeam.analysis.steady.operating_point import Steady
+from gbeam.analysis.system.linear import instabilities
 from gbeam.errors import ComputationError
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
@@ -24,8 +24,7 @@ from gbeam.motion.bases.base import Base
 from gbeam.numerics.eigen import symmetric, symmetric_modes
 from gbeam.progress import Progress, tell
 from gbeam.results.equilibrium import Critical
-from gbeam.results.errors import ErrorEstimate
-from gbeam.results.modal import along
+from gbeam.results.errors import ErrorEstimate, along
 from gbeam.results.result import Floats
 
 SCAN = 64  # points at which a loss is looked for before its root is closed in on

@@ -8,16 +8,15 @@ from typing import overload
 import numpy as np
 
 from gbeam.analysis.steady.frequency_errors import Richer, doubtful, judgeable
-from gbeam.analysis.steady.operating_point import OperatingPoint, Steady, drawn, extent, operating_point
-from gbeam.analysis.system.linear import system_modes
+from gbeam.analysis.steady.operating_point import OperatingPoint, drawn, extent, operating_point
+from gbeam.analysis.system.linear import instabilities, system_modes
 from gbeam.analysis.system.steady import Drive, steady
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.eigen import Vibrations
-from gbeam.results.modal import Instability, Modes
+from gbeam.results.modal import Modes
 from gbeam.results.result import Complex
 from gbeam.results.system import SystemModes
 
@@ -57,19 +56,6 @@ def modes_at(
         rigid=int(point.first and not np.abs(point.linear.stiffness[:, 0]).any()),
         damping_given=structure.damping_ratio is not None,
         overdamped=moving.decaying,
-    )
-
-
-def instabilities(point: Steady, moving: Vibrations) -> tuple[Instability, ...]:
-    """Growing motions about a steady state."""
-    ways = point.directions(moving.divergence), point.directions(moving.modes)
-    return (
-        *(Instability("divergence", float(v.real), 0.0, d) for v, d in zip(moving.diverging, ways[0], strict=True)),
-        *(
-            Instability("flutter", float(v.real), float(abs(v) / (2 * np.pi)), d)
-            for v, d, grows in zip(moving.value, ways[1], moving.flutter, strict=True)
-            if grows
-        ),
     )
 
 

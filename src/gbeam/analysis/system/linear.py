@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,8 +23,12 @@ from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.eigen import Vibrations
 from gbeam.numerics.series import STEP
+from gbeam.results.errors import Instability
 from gbeam.results.state_space import Signal, StateSpace
 from gbeam.results.system import SystemModes, SystemRest
+
+if TYPE_CHECKING:
+    from gbeam.analysis.steady.operating_point import Steady
 
 Array = Any
 Floats = NDArray[np.float64]
@@ -88,8 +92,21 @@ def system_modes(state: SteadySystem, moving: Vibrations, time: float, name: str
         share=state.shares(moving.modes),
         place=np.stack([frame.p for frame in state.frames]),
         rigid=len(local.y) - len(moving.value) - (len(moving.diverging) + len(moving.decaying)) // 2,
-        growing=moving.growing,
+        instabilities=instabilities(state, moving),
         warnings=warnings,
+    )
+
+
+def instabilities(point: Steady, moving: Vibrations) -> tuple[Instability, ...]:
+    """Growing motions about a steady state."""
+    ways = point.directions(moving.divergence), point.directions(moving.modes)
+    return (
+        *(Instability("divergence", float(v.real), 0.0, d) for v, d in zip(moving.diverging, ways[0], strict=True)),
+        *(
+            Instability("flutter", float(v.real), float(abs(v) / (2 * np.pi)), d)
+            for v, d, grows in zip(moving.value, ways[1], moving.flutter, strict=True)
+            if grows
+        ),
     )
 
 

@@ -12,7 +12,7 @@ from gbeam.report import words
 from gbeam.report.page.parts import Cell, Value, heading, known, listed, paragraph, section, table
 from gbeam.report.steady import RESTING, ROUNDING
 from gbeam.report.words import number, percent
-from gbeam.results.modal import along
+from gbeam.results.errors import along
 
 Facts = Mapping[str, Any]
 
