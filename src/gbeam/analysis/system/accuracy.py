@@ -112,7 +112,7 @@ def system_errors(
         shapes, model = (total, 0.0) if every_exact else (apart(key, same, computed), apart(key, truth, same))
         away = ErrorEstimate(step, shapes, model, total=total + (0.0 if math.isnan(step) else step))
         theory, size = beyond.sizes.get(key, math.nan), sizes[key]
-        return away.with_theory(0.0 if key in nothing or (theory == 0 and size == 0) else theory / size)
+        return away.with_theory(0.0 if key in nothing or size == 0 else theory / size)
 
     def worst(each: Iterable[ErrorEstimate]) -> ErrorEstimate:
         return max(each, key=lambda one: one.total)
