@@ -15,6 +15,8 @@ MODULES: tuple[str, ...] = (
     "codes.calculix",
     "codes.calculix_solid",
     "codes.calculix_specimens",
+    "codes.calculix_flights",
+    "codes.calculix_fillet",
     "codes.exudyn_plane",
     "codes.exudyn_space",
     "codes.exudyn_trees",

@@ -104,15 +104,15 @@ def histories(tip: int, source: str) -> Iterator[Row]:
     # Inertial loads -a, ω²r outwards and -α × r, the last on nodes by the mass matrix.
     mass = mass_matrix(solid().points, solid().blocks)
     x, y, _ = solid().points.T
-    turned = np.stack([mass @ y, -(mass @ x)], axis=1)  # -α × r of unit α about z
+    turned = np.stack([mass @ y, -(mass @ x), 0 * x], axis=1)  # -α × r of unit α about z
     even = [f"EALL, GRAV, 1., {way}" for way in ("0., -1., 0.", "-1., 0., 0.")]
     spun = [(f"EALL, CENTRIF, 1., {-RADIUS}, 0., 0., 0., 0., 1.", rate**2), (even[0], RADIUS * growth)]
     cases = (
-        ("a pulse of 20 m/s² along x", gb.Flight(x=PULSE), [(even[1], pushed)], None),
-        (f"spun up to {5:g} rad/s", gb.Hub(radius=RADIUS, rate=SPIN_UP), spun, (turned, growth)),
+        ("a pulse of 20 m/s² along x", gb.Flight(x=PULSE), [(even[1], pushed)]),
+        (f"spun up to {5:g} rad/s", gb.Hub(radius=RADIUS, rate=SPIN_UP), [*spun, (turned, growth)]),
     )
-    for name, motion, loads, forces in cases:
-        theirs = moved(tip, time, loads, forces)
+    for name, motion, loads in cases:
+        theirs, _ = moved(tip, time, loads)
         ours = gb.simulate(
             bracket, motion, duration=DURATION, step=SAMPLE, integrator="gauss", initial="undeformed", estimate=False
         )
@@ -128,26 +128,36 @@ def histories(tip: int, source: str) -> Iterator[Row]:
                 yield Row(name, name_of, 0.0, away, "%", 100 * MOVED, source)
 
 
-def moved(tip: int, time: np.ndarray, loads: list[tuple[str, np.ndarray]], forces: tuple | None) -> np.ndarray:
-    """Displacements (t, 3) of the tip by CalculiX's modal dynamics, of loads that grow in proportion to histories."""
+def moved(
+    tip: int, time: np.ndarray, loads: list[tuple[str | np.ndarray, np.ndarray]], element: int = 1
+) -> tuple[np.ndarray, np.ndarray]:
+    """Displacements (t, 3) of the tip, m, and stresses xx, yy, zz, yz, xz, xy (t, 27, 6) at the points of an element,
+    Pa, by CalculiX's modal dynamics, of distributed loads or nodal forces (k, 3) that grow in proportion to histories.
+    """
     tables, lines = [], []
-    for k, (load, history) in enumerate([*loads, *([] if forces is None else [("", forces[1])])]):
+    for k, (load, history) in enumerate(loads):
         pairs = [f"{t:.8g}, {value:.10g}" for t, value in zip(time, history, strict=True)]
         tables += [f"*AMPLITUDE, NAME=A{k}", *pairs]
-        lines += [f"*DLOAD, AMPLITUDE=A{k}", load] if load else [f"*CLOAD, AMPLITUDE=A{k}"]
-    if forces is not None:
-        for node, force in enumerate(forces[0], 1):
-            lines += [f"{node}, {way}, {value:.10g}" for way, value in enumerate(force, 1)]
+        if isinstance(load, str):
+            lines += [f"*DLOAD, AMPLITUDE=A{k}", load]
+            continue
+        lines.append(f"*CLOAD, AMPLITUDE=A{k}")
+        lines += [f"{n + 1}, {way + 1}, {load[n, way]:.10g}" for n, way in zip(*np.nonzero(load), strict=True)]
     steps = "\n".join([
-        "*NSET, NSET=TIP", f"{tip + 1}", *tables, "*STEP", "*FREQUENCY, STORAGE=YES", f"{DYNAMIC}", "*END STEP",
-        "*STEP, INC=100000", "*MODAL DYNAMIC", f"{SAMPLE}, {DURATION}", "*MODAL DAMPING", f"1, {DYNAMIC}, {DAMPING}",
-        *lines, "*NODE PRINT, NSET=TIP, FREQUENCY=1", "U", "*END STEP", "",
+        "*NSET, NSET=TIP", f"{tip + 1}", "*ELSET, ELSET=GAUGE", f"{element}", *tables, "*STEP",
+        "*FREQUENCY, STORAGE=YES", f"{DYNAMIC}", "*END STEP", "*STEP, INC=100000", "*MODAL DYNAMIC",
+        f"{time[1]:.8g}, {time[-1]:.8g}", "*MODAL DAMPING", f"1, {DYNAMIC}, {DAMPING}", *lines,
+        "*NODE PRINT, NSET=TIP, FREQUENCY=1", "U", "*EL PRINT, ELSET=GAUGE, FREQUENCY=1", "S", "*END STEP", "",
     ])  # fmt: skip
     text = run(steps, "dat")
-    row = r"time +(\S+)\s+\d+ +(\S+) +(\S+) +(\S+)"
-    rows = np.array(re.findall(row, text), dtype=float)
-    rows = np.concatenate([np.zeros((1, 4)), rows])
-    return np.stack([np.interp(time, rows[:, 0], each) for each in rows[:, 1:].T], axis=1)
+    rows = np.array(re.findall(r"displ.*time +(\S+)\s+\d+ +(\S+) +(\S+) +(\S+)", text), dtype=float)
+    printed = re.findall(r"stresses.*time.*\n\n((?: +\d+ +\d+ .*\n)+)", text)
+    points = np.array([[line.split()[2:] for line in table.splitlines()] for table in printed], dtype=float)
+    stress = points[..., [0, 1, 2, 5, 4, 3]]  # xy, xz, yz there
+    rows = np.concatenate([rows, stress.reshape(len(rows), -1)], axis=1)
+    rows = np.concatenate([np.zeros_like(rows[:1]), rows])
+    over = np.stack([np.interp(time, rows[:, 0], each) for each in rows[:, 1:].T], axis=1)
+    return over[:, :3], over[:, 3:].reshape(len(time), -1, 6)
 
 
 def static(load: str, specimen: Specimen = BRACKET) -> tuple[np.ndarray, float]:

@@ -108,10 +108,10 @@ def extrapolation(kind: str) -> Floats:
     def monomials(at: Floats) -> Floats:
         return np.prod(at[:, None, :] ** powers, axis=-1)
 
-    return monomials(_reference(kind)) @ np.linalg.pinv(monomials(points))
+    return monomials(reference(kind)) @ np.linalg.pinv(monomials(points))
 
 
-def _reference(kind: str) -> Floats:
+def reference(kind: str) -> Floats:
     """Places of the nodes in the reference element, (k, 3), in meshio's order."""
     places = np.array(getattr(import_skfem(), KINDS[kind].element).doflocs)
     return _HEXAHEDRON[: len(places)] if kind.startswith("hexahedron") else places
@@ -121,7 +121,7 @@ def _reference(kind: str) -> Floats:
 def _order(kind: str) -> tuple[int, ...]:
     """Numbers in scikit-fem of an element's nodes."""
     theirs = np.array(getattr(import_skfem(), KINDS[kind].element).doflocs)
-    apart = np.abs(_reference(kind)[:, None] - theirs).max(axis=-1)
+    apart = np.abs(reference(kind)[:, None] - theirs).max(axis=-1)
     return tuple(int(i) for i in apart.argmin(axis=1))
 
 
