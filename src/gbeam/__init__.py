@@ -92,8 +92,8 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.scenario.rerun import rerun as rerun
     from gbeam.solids.imported import ImportedModel as ImportedModel
     from gbeam.solids.mesh import SolidMesh as SolidMesh
-    from gbeam.solids.mesh import SolidModel as SolidModel
     from gbeam.solids.modal_test import ModalTest as ModalTest
+    from gbeam.solids.model import SolidModel as SolidModel
     from gbeam.solids.rigid import RigidSpecimen as RigidSpecimen
     from gbeam.solids.standard_input import read_sid as read_sid
     from gbeam.structure.attachments import Load as Load
@@ -163,7 +163,7 @@ _HOME = {
     "Sine": "motion.profiles.pulse",
     "SmoothStep": "motion.profiles.pulse",
     "SolidMesh": "solids.mesh",
-    "SolidModel": "solids.mesh",
+    "SolidModel": "solids.model",
     "SplineProfile": "motion.profiles.pulse",
     "StateSpace": "results.state_space",
     "Structure": "mechanics.structure",

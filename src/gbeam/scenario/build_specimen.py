@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from gbeam.mechanics.tree.system import RigidBody
     from gbeam.scenario.origin import Collector
     from gbeam.scenario.schema import system
-    from gbeam.solids.mesh import SolidModel
+    from gbeam.solids.model import SolidModel
     from gbeam.solids.rigid import RigidSpecimen
 
 

@@ -1,4 +1,4 @@
-"""A solid of finite elements on a moving base, and its reduction to a structure."""
+"""A solid of finite elements on a moving base, read from a file, and its reduction to a structure."""
 
 from __future__ import annotations
 
@@ -17,34 +17,24 @@ from gbeam.guards.units import UnitError, quantity
 from gbeam.mechanics.equations.linear import coefficients, geometric_of
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.reduction import inertial_loads, linear_fields, particles_of, reduce
-from gbeam.mechanics.structure import Structure, linear_structure
+from gbeam.mechanics.structure import linear_structure
 from gbeam.numerics.factor import refuse_cost
-from gbeam.results.equilibrium import Deflection
-from gbeam.results.response import Response
 from gbeam.results.result import Floats
-from gbeam.results.solids import SolidStress
 from gbeam.solids.elements import (
-    KINDS,
     Block,
     Indices,
     chunks,
-    determinants,
     geometric_stiffness,
     mass_matrix,
-    shape_functions,
     stiffness_matrix,
 )
 from gbeam.solids.foreign import elements_in, no_group, nodes_in, read_mesh, solid_blocks
 from gbeam.solids.interfaces import attached, refuse_names
-from gbeam.solids.stress import NodalStress, solid_stress
+from gbeam.solids.model import SolidModel, mesh_errors
+from gbeam.solids.plausibility import doubts_of, refuse_folded, refuse_loose
+from gbeam.solids.stress import NodalStress
 from gbeam.structure.attachments import TIP, checked_name
 from gbeam.structure.material import Material, Orthotropic
-
-FLAT = 1e-6  # of the largest volume of a part of it: an element with less anywhere is folded
-STRAIGHT = 1e-6  # of the size: points that are nearer to a line do not hold a body
-LARGE, HEAVY = 20.0, 1e4  # m and kg: nobody mounts more on a machine
-SMALL = 1e-3  # m
-ROUGH = 0.05  # of the lowest frequency, between two meshes
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,9 +188,9 @@ class SolidMesh(Value):
         exponents = {name: float(each.fatigue_exponent) for name, each in kinds.items()}
         stations = named | {TIP: tip}
         solid = cls(at, blocks, clamped, used, weights, stations, strengths, interfaces=hung, exponents=exponents)
-        _refuse_folded(solid)
-        _refuse_loose(solid)
-        return cls(**{**vars(solid), "warnings": tuple(_doubts(solid, unit))})
+        refuse_folded(solid)
+        refuse_loose(solid)
+        return cls(**{**vars(solid), "warnings": tuple(doubts_of(solid, unit))})
 
     def __repr__(self) -> str:
         counts: dict[str, int] = {}
@@ -273,7 +263,7 @@ class SolidMesh(Value):
         fields = geometric_stiffness(self.points, self.blocks, stressed, shapes, reduced.squares)
         inertial = fields[:12].reshape(3, 4, *fields.shape[1:])
         frequency = np.sqrt(reduced.squares[:modes]) / (2 * np.pi)
-        error, doubts = _mesh_errors(frequency, coarser)
+        error, doubts = mesh_errors(frequency, coarser)
         masses, *paths = particles_of(self.points, shapes, mass)
         places = Places(*paths)
         stress = geometric_of(inertial[:, 0], inertial[:, 1:].swapaxes(0, 1))
@@ -312,95 +302,6 @@ class SolidMesh(Value):
         turns = np.insert(np.full((len(ends), 3, n), np.nan), [at] * count, moved[:, 1], axis=0)
         r0, first = np.insert(r0, [at] * count, centres, axis=0), np.insert(first, [at] * count, moved[:, 0], axis=0)
         return Places(r0, first, second), turns
-
-
-@dataclass(frozen=True, eq=False)
-class SolidModel(Value):
-    """A solid reduced to a few coordinates; made by :meth:`SolidMesh.reduced`.
-
-    Parameters
-    ----------
-    mesh : SolidMesh
-    structure : Structure
-        That analyses take; its coordinates are modes of unit modal mass, ascending in frequency.
-    shapes : (k, 3, n) displacements of the nodes per coordinate
-    frequency : (m,) natural frequencies of the modes, Hz
-    mesh_error : (m,) estimated errors of the frequencies by the mesh, as fractions
-        Their difference to those of a coarser mesh; NaN where there is none.
-
-    Examples
-    --------
-    >>> metal = gb.Material(density=2700, youngs_modulus=70e9, poissons_ratio=0.33)
-    >>> materials = {"bracket": metal, "camera": metal}
-    >>> solid = gb.SolidMesh.read("examples/data/bracket.msh", materials=materials, clamp="screwed", unit="mm")
-    >>> bracket = solid.reduced(modes=4, damping_ratio=0.02)
-    >>> bracket.structure
-    Structure(solid, 16 coordinates, 0.215 kg)
-    """
-
-    mesh: SolidMesh
-    structure: Structure
-    shapes: Floats
-    frequency: Floats
-    mesh_error: Floats
-
-    def __repr__(self) -> str:
-        shown = ", ".join(f"{each:.4g}" for each in self.frequency[:6])
-        known = np.isfinite(self.mesh_error)
-        error = f"up to {100 * self.mesh_error[known].max():.2g} %" if known.any() else "unknown, give a coarser mesh"
-        return f"SolidModel({self.structure.size} coordinates; {shown} Hz; error of the mesh {error})"
-
-    @typed
-    def stress(self, answer: Response | Deflection) -> SolidStress:
-        """Stress of the solid in a response, or at rest.
-
-        Parameters
-        ----------
-        answer : Response or Deflection
-            Of this model's structure.
-
-        Returns
-        -------
-        SolidStress
-            At the nodes, at the times of the answer.
-
-        Raises
-        ------
-        InputError
-            If the answer is that of another structure.
-
-        Examples
-        --------
-        >>> metal = gb.Material(density=2700, youngs_modulus=70e9, poissons_ratio=0.33, yield_strength=240e6)
-        >>> materials = {"bracket": metal, "camera": metal}
-        >>> solid = gb.SolidMesh.read("examples/data/bracket.msh", materials=materials, clamp="screwed", unit="mm")
-        >>> bracket = solid.reduced(modes=4, damping_ratio=0.02)
-        >>> stress = bracket.stress(gb.static(bracket.structure, acceleration=(78.5, 0.0, 0.0)))
-        >>> print(f"{1e-6 * stress.worst.von_mises:.1f} MPa, margin {stress.nearest_yield.margin:.0f}")
-        14.0 MPa, margin 16
-        """
-        q = np.atleast_2d(np.asarray(answer.q, dtype=float))
-        if answer.model != self.structure.kind or q.shape[1] != self.structure.size:
-            problem = f"is of {answer.model}, with {q.shape[1]} coordinates"
-            raise InputError("answer", problem, f"give one of this {self.structure.kind} with {self.structure.size}")
-        time = np.atleast_1d(np.asarray(answer.time, dtype=float))
-        name = answer.name if isinstance(answer, Response) else answer.motion
-        about = {"motion": name, "model": answer.model, "warnings": answer.warnings, "provenance": answer.provenance}
-        nodal = self.structure.recovery
-        assert isinstance(nodal, NodalStress)
-        return solid_stress(nodal, time, q, **about)
-
-
-def _mesh_errors(frequency: Floats, coarser: SolidModel | None) -> tuple[Floats, tuple[str, ...]]:
-    """Differences of frequencies to those of a coarser mesh, as fractions, and a warning where they are large."""
-    error = np.full(len(frequency), np.nan)
-    if coarser is None:
-        return error, ()
-    both = min(len(error), len(coarser.frequency))
-    error[:both] = np.abs(coarser.frequency[:both] / frequency[:both] - 1)
-    if error[0] <= ROUGH:
-        return error, ()
-    return error, (f"the mesh: a coarser one changes the lowest frequency by {100 * error[0]:.2g} %; mesh it finer",)
 
 
 def _node(at: Floats, name: str, place: Any, group: Any) -> int:
@@ -461,50 +362,3 @@ def _blocks(mesh: Any, solids: list[int], new: Indices, materials: Any, rotation
     if not blocks:
         raise InputError("materials", "give no solid element any", "name the groups of all elements")
     return tuple(blocks)
-
-
-def _refuse_folded(mesh: SolidMesh) -> None:
-    bad: list[int] = []
-    for block in mesh.blocks:
-        slopes = shape_functions(block.kind, KINDS[block.kind].mass)[-1]
-        grown = determinants(mesh.points, block.nodes, slopes)
-        bad += block.numbers[~(grown.min(axis=1) > FLAT * np.abs(grown).max(axis=1))].tolist()
-    if bad:
-        some = ", ".join(map(str, bad[:3])) + (", ..." if len(bad) > 3 else "")
-        fix = "mesh it again, or number their nodes the other way round"
-        raise InputError("mesh", f"has {len(bad)} elements turned inside out or folded: {some}", fix)
-
-
-def _refuse_loose(mesh: SolidMesh) -> None:
-    """Refuse a part of the mesh that the clamp does not hold."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    pairs = [(np.repeat(b.nodes[:, 0], b.nodes.shape[1]), b.nodes.ravel()) for b in mesh.blocks]
-    rows, columns = (np.concatenate(each) for each in zip(*pairs, strict=True))
-    graph = coo_array((np.ones(len(rows), dtype=bool), (rows, columns)), shape=(len(mesh.points),) * 2)
-    count, part = connected_components(graph, directed=False)
-    for i in range(count):
-        nodes = part == i
-        held = mesh.points[nodes & mesh.clamped]
-        size = np.linalg.svd(held - held.mean(axis=0), compute_uv=False) if len(held) > 2 else np.zeros(3)
-        if size[1] > STRAIGHT * np.linalg.norm(np.ptp(mesh.points[nodes], axis=0)):
-            continue
-        middle = ", ".join(f"{each:.3g}" for each in mesh.points[nodes].mean(axis=0))
-        where = "the mesh" if count == 1 else f"a part of {nodes.sum()} nodes about ({middle}) m"
-        fix = "clamp three nodes or more that lie on no line" + ("" if count == 1 else ", or merge coincident nodes")
-        raise InputError("clamp", f"holds {where} at {len(held)} nodes, so that it moves without strain", fix)
-
-
-def _doubts(mesh: SolidMesh, unit: str) -> list[str]:
-    """Warnings of what is implausible in a mesh, or known to be inaccurate."""
-    size, mass = float(np.linalg.norm(np.ptp(mesh.points, axis=0))), mesh.mass
-    doubts = []
-    if size > LARGE or mass > HEAVY or size < SMALL:
-        other = "mm" if size > LARGE or mass > HEAVY else "m"
-        other = other if other != unit else "another one"
-        doubts.append(f"the mesh is {size:.3g} m across and weighs {mass:.3g} kg with unit = {unit!r}; is it {other}?")
-    linear = sum(len(block.nodes) for block in mesh.blocks if KINDS[block.kind].linear)
-    if linear:
-        doubts.append(f"{linear} linear elements bend too stiffly (shear locking): use quadratic ones")
-    return doubts

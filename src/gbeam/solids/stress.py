@@ -137,25 +137,31 @@ def hull(points: Floats) -> Floats:
         return points
 
 
-def surface_of(mesh: Any, most: int = VERTICES) -> tuple[Indices, Indices]:
-    """Nodes (v,) and triangles (f, 3) of them that make up the outer faces; of more nodes than about `most` those
-    nearest to the middles of cells of a grid.
-    """
-    corners = {"tetra": 4, "tetra10": 4, "wedge": 6}
+def corners_of(kind: str) -> int:
+    """Number of corners of an element."""
+    return {"tetra": 4, "tetra10": 4, "wedge": 6}.get(kind, 8)
+
+
+def outer_triangles(mesh: Any) -> Indices:
+    """Corners (f, 3) of the triangles that make up the outer faces."""
     triangles = list[Indices]()
     for size in (3, 4):
         faces = [
-            block.nodes[:, face]
-            for block in mesh.blocks
-            for face in FACES[corners.get(block.kind, 8)]
-            if len(face) == size
+            block.nodes[:, face] for block in mesh.blocks for face in FACES[corners_of(block.kind)] if len(face) == size
         ]
         if faces:
             every = np.concatenate(faces)
             _, index, shared = np.unique(np.sort(every, axis=1), axis=0, return_index=True, return_counts=True)
             outer = every[index[shared == 1]]
             triangles += [outer[:, [0, k, k + 1]] for k in range(1, size - 1)]
-    outside = np.concatenate(triangles)
+    return np.concatenate(triangles)
+
+
+def surface_of(mesh: Any, most: int = VERTICES) -> tuple[Indices, Indices]:
+    """Nodes (v,) and triangles (f, 3) of them that make up the outer faces; of more nodes than about `most` those
+    nearest to the middles of cells of a grid.
+    """
+    outside = outer_triangles(mesh)
     nodes, flat = np.unique(outside, return_inverse=True)
     if len(nodes) > most:
         at = mesh.points[nodes] - mesh.points[nodes].min(axis=0)

@@ -1,0 +1,102 @@
+"""Elements and clamps that cannot be computed, and what is implausible in a mesh or known to be inaccurate."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gbeam.errors import InputError
+from gbeam.results.result import Floats
+from gbeam.solids.elements import KINDS, determinants, shape_functions
+from gbeam.solids.stress import corners_of, outer_triangles
+
+if TYPE_CHECKING:
+    from gbeam.solids.mesh import SolidMesh
+
+FLAT = 1e-6  # of the largest volume of a part of it: an element with less anywhere is folded
+STRAIGHT = 1e-6  # of the size: points that are nearer to a line do not hold a body
+LARGE, HEAVY = 20.0, 1e4  # m and kg: nobody mounts more on a machine
+SMALL = 1e-3  # m
+PART = 0.1  # of the linear elements: fewer that fill a thickness are at edges
+
+
+def refuse_folded(mesh: SolidMesh) -> None:
+    """Refuse elements that are turned inside out or folded."""
+    bad: list[int] = []
+    for block in mesh.blocks:
+        slopes = shape_functions(block.kind, KINDS[block.kind].mass)[-1]
+        grown = determinants(mesh.points, block.nodes, slopes)
+        bad += block.numbers[~(grown.min(axis=1) > FLAT * np.abs(grown).max(axis=1))].tolist()
+    if bad:
+        some = ", ".join(map(str, bad[:3])) + (", ..." if len(bad) > 3 else "")
+        fix = "mesh it again, or number their nodes the other way round"
+        raise InputError("mesh", f"has {len(bad)} elements turned inside out or folded: {some}", fix)
+
+
+def refuse_loose(mesh: SolidMesh) -> None:
+    """Refuse a part of the mesh that the clamp does not hold."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    pairs = [(np.repeat(b.nodes[:, 0], b.nodes.shape[1]), b.nodes.ravel()) for b in mesh.blocks]
+    rows, columns = (np.concatenate(each) for each in zip(*pairs, strict=True))
+    graph = coo_array((np.ones(len(rows), dtype=bool), (rows, columns)), shape=(len(mesh.points),) * 2)
+    count, part = connected_components(graph, directed=False)
+    for i in range(count):
+        nodes = part == i
+        held = mesh.points[nodes & mesh.clamped]
+        size = np.linalg.svd(held - held.mean(axis=0), compute_uv=False) if len(held) > 2 else np.zeros(3)
+        if size[1] > STRAIGHT * np.linalg.norm(np.ptp(mesh.points[nodes], axis=0)):
+            continue
+        middle = ", ".join(f"{each:.3g}" for each in mesh.points[nodes].mean(axis=0))
+        where = "the mesh" if count == 1 else f"a part of {nodes.sum()} nodes about ({middle}) m"
+        fix = "clamp three nodes or more that lie on no line" + ("" if count == 1 else ", or merge coincident nodes")
+        raise InputError("clamp", f"holds {where} at {len(held)} nodes, so that it moves without strain", fix)
+
+
+def doubts_of(mesh: SolidMesh, unit: str) -> list[str]:
+    """Warnings of what is implausible in a mesh, or known to be inaccurate."""
+    size, mass = float(np.linalg.norm(np.ptp(mesh.points, axis=0))), mesh.mass
+    doubts = []
+    if size > LARGE or mass > HEAVY or size < SMALL:
+        other = "mm" if size > LARGE or mass > HEAVY else "m"
+        other = other if other != unit else "another one"
+        doubts.append(f"the mesh is {size:.3g} m across and weighs {mass:.3g} kg with unit = {unit!r}; is it {other}?")
+    alone = _alone(mesh)
+    linear = [each for block, each in zip(mesh.blocks, alone, strict=True) if KINDS[block.kind].linear]
+    if linear:
+        ratios = np.concatenate(linear)
+        thin = ratios[np.isfinite(ratios)]
+        doubt = f"{len(ratios)} linear elements bend too stiffly (shear locking): use quadratic ones"
+        if len(thin) > PART * len(ratios):
+            # Bent, a bilinear element of sides a and b stores (1/(1 − ν) + (a/b)²/2)/(1 + ν) times the energy.
+            times = np.sqrt(1 + 0.385 * np.median(thin) ** 2)
+            doubt += f"; {len(thin)} fill a thickness alone, whose frequencies of bending are about {times:.2g} times"
+            doubt += " those of the solid"
+        doubts.append(doubt)
+    locking = [
+        each[np.isfinite(each) & (each > KINDS[block.kind].long)]
+        for block, each in zip(mesh.blocks, alone, strict=True)
+    ]
+    long = np.concatenate(locking)
+    if len(long):
+        doubts.append(
+            f"{len(long)} elements fill a thickness alone and are up to {long.max():.2g} times as long as it: they may "
+            "lock in bending; make them shorter, or use hexahedra of 27 nodes"
+        )
+    return doubts
+
+
+def _alone(mesh: SolidMesh) -> list[Floats]:
+    """Ratios of length to thickness of the elements of each block, those of the axes of inertia of their corners; not
+    a number where an element has a corner inside the solid, so that others share its thickness.
+    """
+    outside = np.zeros(len(mesh.points), dtype=bool)
+    outside[outer_triangles(mesh)] = True
+    ratios = []
+    for block in mesh.blocks:
+        corners = block.nodes[:, : corners_of(block.kind)]
+        size = np.linalg.svd(mesh.points[corners] - mesh.points[corners].mean(axis=1, keepdims=True), compute_uv=False)
+        ratios.append(np.where(outside[corners].all(axis=1), size[:, 0] / size[:, 2], np.nan))
+    return ratios
