@@ -5,7 +5,9 @@ from __future__ import annotations
 import contextlib
 import io
 import os
+import re
 from collections import Counter
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,6 +19,19 @@ from gbeam.solids.elements import KINDS, Indices
 
 _INTERNAL = "gmsh:"  # begins the names of sets that nobody gave
 _ENTITIES = "gmsh:geometrical"
+# What meshio passes over, by the ending of the file, with the words that carry mass, stiffness or constraints.
+_NASTRAN = re.compile(
+    r"^(CONM[12]|CMASS[1-4]|NSM\w*|CELAS[1-4]|CBUSH\w*|RBE[123]|RBAR|RROD|RSPLINE|MPC|CBAR|CBEAM|CBEND|CROD|CONROD|CTUBE"
+    r"|CWELD|CFAST|CGAP|PSHELL|PCOMP\w?)\b",
+    re.MULTILINE,
+)
+_ABAQUS = re.compile(
+    r"^\* *(MASS|ROTARY INERTIA|NONSTRUCTURAL MASS|SPRING|CONNECTOR SECTION|RIGID BODY|(?:\w+ +)?COUPLING"
+    r"|KINEMATIC|DISTRIBUTING|TIE|EQUATION|MPC|CONTACT PAIR|GAP|(?:BEAM|SHELL)(?: GENERAL)? SECTION"
+    r"|SOLID SECTION[^\n]*COMPOSITE|TRANSFORM) *(?:,|$)",
+    re.MULTILINE | re.IGNORECASE,
+)
+_WORDS = {".bdf": _NASTRAN, ".fem": _NASTRAN, ".nas": _NASTRAN, ".inp": _ABAQUS}
 
 
 def read_mesh(source: str | os.PathLike[str] | Any) -> Any:
@@ -37,6 +52,41 @@ def read_mesh(source: str | os.PathLike[str] | Any) -> Any:
         words = shortened(" ".join((said.getvalue() or str(error)).split()), 200)
         fix = "give a file of Gmsh, Nastran, Abaqus, CalculiX or VTK, with its ending"
         raise InputError("mesh", f"{os.fspath(source)} cannot be read: {words}", fix) from None
+
+
+def refuse_systems(source: Any) -> None:
+    """Refuse a file of Nastran whose nodes have their places in coordinate systems, which meshio takes for the basic
+    one.
+    """
+    if _WORDS.get(_ending(source)) is not _NASTRAN:
+        return
+    for line in _text(source).splitlines():
+        if not line.startswith("GRID"):
+            continue
+        system = line.split(",")[2] if "," in line else line[24:40] if line[4] == "*" else line[16:24]
+        if system.strip() not in ("", "0"):
+            problem = f"{os.fspath(source)} has nodes in coordinate system {system.strip()}, which is not read"
+            raise InputError("mesh", problem, "export them in the basic system")
+
+
+def left_out(source: Any) -> list[str]:
+    """Warnings of what a file of Nastran, Abaqus or CalculiX says of masses, stiffness and constraints besides."""
+    words = _WORDS.get(_ending(source))
+    if words is None:
+        return []
+    counts = Counter(" ".join(each[1].upper().split()) for each in words.finditer(_text(source)))
+    if not counts:
+        return []
+    listed = ", ".join(f"{name} ({count})" for name, count in counts.items())
+    return [f"the mesh: {listed} in {Path(source).name} are not read: their masses, stiffness and constraints lack"]
+
+
+def _ending(source: Any) -> str:
+    return Path(source).suffix.lower() if isinstance(source, (str, os.PathLike)) else ""
+
+
+def _text(source: Any) -> str:
+    return Path(source).read_text(encoding="utf-8", errors="replace")
 
 
 def solid_blocks(mesh: Any) -> list[int]:

@@ -28,7 +28,15 @@ from gbeam.solids.elements import (
     mass_matrix,
     stiffness_matrix,
 )
-from gbeam.solids.foreign import elements_in, no_group, nodes_in, read_mesh, solid_blocks
+from gbeam.solids.foreign import (
+    elements_in,
+    left_out,
+    no_group,
+    nodes_in,
+    read_mesh,
+    refuse_systems,
+    solid_blocks,
+)
 from gbeam.solids.interfaces import attached, refuse_names
 from gbeam.solids.model import SolidModel, mesh_errors
 from gbeam.solids.plausibility import doubts_of, refuse_folded, refuse_loose
@@ -145,6 +153,7 @@ class SolidMesh(Value):
         from scipy.spatial.transform import Rotation
 
         mesh = read_mesh(source)
+        refuse_systems(source)
         try:
             size = quantity(f"1 {unit}", "length")
         except UnitError as error:
@@ -190,7 +199,7 @@ class SolidMesh(Value):
         solid = cls(at, blocks, clamped, used, weights, stations, strengths, interfaces=hung, exponents=exponents)
         refuse_folded(solid)
         refuse_loose(solid)
-        return cls(**{**vars(solid), "warnings": tuple(doubts_of(solid, unit))})
+        return cls(**{**vars(solid), "warnings": (*doubts_of(solid, unit), *left_out(source))})
 
     def __repr__(self) -> str:
         counts: dict[str, int] = {}
