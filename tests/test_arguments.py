@@ -118,13 +118,12 @@ class Given:
                 (self.still,),
                 {
                     "arm": 3.3, "control_point": 0.2, "gravity": False, "inverse": "flat", "start": "idle",
-                    "limits": None,
-                    "idle": None, "smoothing": 0.0, "mounting": "upright", "spin_up": None, "spin_down": None,
-                    "clip": False, "span": (0.0, 0.2),
+                    "limits": None, "idle": None, "smoothing": 0.0, "mounting": "upright", "turn": (0.0, 0.0, 0.1),
+                    "spin_up": None, "spin_down": None, "clip": False, "span": (0.0, 0.2),
                 },
             ),
             "Choice": ((lambda mounting, width: self.centrifuge, ("upright",), (0.0,)), {"refined": True,
-            "limited": True}),
+            "limited": True, "turns": (), "between": False}),
             "Feedback": (
                 (self.law, ["hinge.angle"], ["hinge.angle"], 0.01),
                 {"delay": 0.01, "limit": 5.0, "reference": 0.1, "state": None},
@@ -209,7 +208,7 @@ class Given:
                 "start": 0.0, "end": None, "count": 3, "modes": 2, "orders": (1, 2),
                 "name": "hub"},
             ),
-            "choice_of": ((self.centrifuge, (0.05,)), {"limited": False}),
+            "choice_of": ((self.centrifuge, (0.05,)), {"limited": False, "turns": "own"}),
             "axis_commands": ((self.centrifuge.over(0.0, 0.1), 0.01), {}),
             "compare": (
                 tuple(self.responses),
@@ -255,7 +254,7 @@ class Given:
             "place": (
                 (self.structure, self.still, gb.choice_of(self.centrifuge, (0.0,), limited=False), self.settings,
                 {"tip": 1.0}),
-                {"current": self.centrifuge, "names": ("flight", "machine"), "check": False},
+                {"current": self.centrifuge, "names": ("flight", "machine"), "check": False, "along": "x"},
             ),
             "plan": (
                 ("machine", self.centrifuge.over(0.0, 0.1), "flight"),

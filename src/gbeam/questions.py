@@ -293,12 +293,12 @@ def plan(
 )
 def place(case: AnyCase, motion: str | None = None, at: float | None = None, needs: Needs = Needs()) -> Placement:
     """The best placement, without the check by simulation, which costs more: ``run`` at the placement is that."""
-    from gbeam.analysis.imitation.place import place, usual
+    from gbeam.analysis.imitation.place import place, usual, usual_turns
     from gbeam.analysis.imitation.place_measures import choice_of
 
     name, current = machine_of(case, motion)
-    choice, names = choice_of(current), (case.tracks[name], name)
-    structure = case.assemble()
+    structure, names = case.assemble(), (case.tracks[name], name)
+    choice = choice_of(current, turns=usual_turns(structure))
     return place(structure, current.flight, choice, case.response, usual(structure), current=current, names=names)
 
 

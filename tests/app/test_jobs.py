@@ -125,8 +125,9 @@ def test_a_result_that_is_not_what_was_asked_for_says_so(tmp_path: Path, answer:
 
 
 def test_a_scenario_that_a_verb_writes_into_stays_as_it_came_beside_what_it_becomes(tmp_path: Path) -> None:
-    text = FAST.replace('inverse = "flat"', 'inverse = "flat"  # kept')
-    numbers = []
+    turning = '"table", times = [0, 0.2, 0.4], values = ["5 g", "5 g", "7 g"]'
+    text = FAST.replace('inverse = "flat"', 'inverse = "flat"  # kept\nsmoothing = "60 ms"')
+    text, numbers = text.replace('"constant", level = "6 g"', turning), []
 
     async def act(jobs: Jobs) -> None:
         for arguments in (["--no-proof", "--write"], ["--no-proof"]):

@@ -135,10 +135,9 @@ def test_a_shell_completes_verbs_options_and_choices(
     assert answer.stdout.splitlines() == ["critical-speed", "--motion", "run static modes critical-speed plan"]
 
 
-@pytest.mark.parametrize("verb", ["place"])
-def test_what_is_of_one_beam_refuses_a_system(verb: str, gbeam: Call) -> None:
-    answer = gbeam(verb, EXAMPLES / "robot_arm.toml")
-    assert answer.status == 2 and f"bodies: make a system, and gbeam {verb} is of one beam" in answer.err
+def test_a_place_needs_a_motion(gbeam: Call) -> None:
+    answer = gbeam("place", EXAMPLES / "robot_arm.toml")
+    assert answer.status == 2 and "motion is missing; add one that answers" in answer.err
 
 
 def test_a_joint_that_turns_has_a_diagram(tmp_path: Path, gbeam: Call) -> None:

@@ -12,9 +12,10 @@ import pytest
 
 import gbeam as gb
 from gbeam.analysis.imitation.place import place
-from gbeam.analysis.imitation.place_measures import Choice
+from gbeam.analysis.imitation.place_measures import Choice, choice_of
 from gbeam.analysis.imitation.specimen import Specimen
 from gbeam.cli import main
+from gbeam.motion.bases.base import gradients
 from gbeam.questions import QUESTIONS
 
 from ..scenarios import FLIGHT, SPIN, response
@@ -158,3 +159,110 @@ def test_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert main(["place", str(file), "--measure", "tip"]) == 2
     assert "--measure is tip" in capsys.readouterr().err
     assert QUESTIONS["place"].answer(gb.read_scenario(file)).weights == {"load": 1.0}
+
+
+PULL = gb.Sum((gb.constant(25.0), gb.trapezoid(30.0, jerk=40.0, start=0.5, hold=1.0)))
+ROUND = gb.Flight(x=gb.trapezoid(12.0, jerk=30.0, start=0.4, hold=0.8), y=gb.constant(14.0), z=PULL)
+SPELL = gb.ResponseSettings(start=0.0, duration=3.5, step=2e-3, integrator="gauss", estimate=False)
+# A box of instruments whose root is a corner of its base.
+CASE = gb.RigidSpecimen(
+    6.5, (0.17, 0.09, 0.05), np.diag([0.030, 0.063, 0.076]),
+    corners=[(x, y, z) for x in (0, 0.32) for y in (0, 0.2) for z in (0, 0.12)],
+)  # fmt: skip
+
+
+def spun(**more: Any) -> gb.Centrifuge:
+    options = {"control_point": (0.1, 0.0, 0.0), "arm": 3.3, "inverse": "flat", "gravity": True, "smoothing": 0.1}
+    return gb.Centrifuge(ROUND, **{**options, "span": (0.0, 3.5), **more})
+
+
+def test_a_rigid_bodys_force_is_the_flights_at_its_centre_of_mass_whichever_way_round() -> None:
+    machine = spun()
+    found = place(CASE.structure, ROUND, choice_of(machine, [0.1]), SPELL, {"root-shear": 1.0}, current=machine)
+    np.testing.assert_allclose(found.best.place, CASE.centre, atol=1e-5)
+    turned = replace(choice_of(machine, [0.1]), turns=((0.3, -0.5, 0.8),))
+    for each in place(CASE.structure, ROUND, turned, SPELL, {"root-shear": 1.0}, current=machine).options:
+        np.testing.assert_allclose(each.place, CASE.centre, atol=1e-5)
+    # Where nothing may be moved but along x, the rest of the way to the centre of mass stays.
+    along = place(
+        CASE.structure, ROUND, choice_of(machine, [0.1]), SPELL, {"root-shear": 1.0}, current=machine, along="x"
+    )
+    assert along.best.place[1:] == (0.0, 0.0) and along.best.mismatch > 100 * found.best.mismatch
+    with pytest.raises(gb.InputError, match="along is 'q'"):
+        place(CASE.structure, ROUND, choice_of(machine), SPELL, {"load": 1.0}, current=machine, along="q")
+
+
+def largest_difference(machine: gb.Centrifuge, times: np.ndarray) -> float:
+    """Of the loads at the box's corners from those in flight, which does not turn, over its largest load, as run."""
+    loads = [CASE.loads(each, 3.5, sample=5e-3) for each in (ROUND, machine)]
+    felt = [
+        np.stack([np.interp(times, each.time, column) for column in each.acceleration.reshape(len(each.time), -1).T])
+        for each in loads
+    ]
+    apart = (felt[1] - felt[0]).reshape(8, 3, -1)
+    return float(np.linalg.norm(apart, axis=1).max() / np.linalg.norm(felt[0].reshape(8, 3, -1), axis=1).max())
+
+
+def test_where_and_which_way_round_beats_a_grid_of_both() -> None:
+    """The search beside every place of a grid in the box and 98 directions of axis 3, and beside running them."""
+    machine, weights = spun(), {"load": 1.0}
+    choice = choice_of(machine, [0.1], turns="any")
+    assert len(choice.turns) == 13
+    found = place(CASE.structure, ROUND, choice, SPELL, weights, current=machine)
+    rng = np.random.default_rng(26)
+    times = np.linspace(0.1, 3.4, 331)
+    grid = [np.linspace(0, edge, 4) for edge in (0.32, 0.2, 0.12)]
+    places = np.stack(np.meshgrid(*grid), axis=-1).reshape(-1, 3)
+    # Values at the corners, from the motion alone: what the search has not been told.
+    in_flight = np.linalg.norm(ROUND.base(times).a_WO_B, axis=1).max()
+    least = np.inf
+    for turn in [(0.0, 0.0, 0.0), *(rng.normal(size=(60, 3)) * [0, 1, 1])]:
+        for mounting in ("upright", "inverted"):
+            try:
+                at_c = spun(turn=tuple(turn), mounting=mounting).at_control_point(times)
+            except gb.InputError:
+                continue  # out of the gimbals' reach
+            growth = gradients(at_c.w_WB_B, at_c.alpha_WB_B)
+            away = np.asarray(CASE.corners)[None] - places[:, None]
+            apart = np.einsum("tij,pcj->tpci", growth, away)
+            least = min(least, float(np.linalg.norm(apart, axis=-1).max(axis=(0, 2)).min() / in_flight))
+    assert found.best.mismatch < least
+    best = spun(control_point=found.best.place, turn=found.best.turn, mounting=found.best.mounting)
+    assert largest_difference(best, times) == pytest.approx(found.totals["best"]["load"], rel=0.05)
+    assert largest_difference(best, times) < 0.6 * largest_difference(machine, times)
+    assert found.changes.keys() >= {"control_point", "turn"}
+
+
+SLANTED = """\
+[motion.flight]
+kind = "flight"
+
+[motion.flight.acceleration]
+x = { profile = "constant", level = "3 m/s^2" }
+y = { profile = "constant", level = "12 m/s^2" }
+z = { profile = "table", times = [0, 0.5, 1], values = ["5 g", "5 g", "7 g"] }
+"""
+
+
+def test_a_place_in_space_is_written_and_read_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file, box = tmp_path / "s.toml", BOX.replace('["160 mm", 0, 0]', '["160 mm", "100 mm", "60 mm"]')
+    machine = SPIN.replace("false", "true") + 'smoothing = "60 ms"  # kept\n'
+    file.write_text(box + SLANTED + machine + response("1.2 s"), encoding="utf-8")
+    command = ["place", str(file), "--no-proof", "--smoothing", "60 ms"]
+    assert main([*command, "--json"]) == 0
+    first = json.loads(capsys.readouterr().out)
+    place, turn = ([first[key][axis] for axis in "xyz"] for key in ("place", "turn"))
+    assert len(first["options"]) == 6 and any(turn) and place[0] == pytest.approx(0.15) and all(place[1:])
+    settings = [part for each in first["set"] for part in ("--set", each)]
+    assert main([*command, *settings, "--json"]) == 0
+    again = json.loads(capsys.readouterr().out)
+    assert again["set"] == []
+    assert again["before"]["mismatch"] == pytest.approx(first["options"][0]["mismatch"], rel=1e-4)
+    assert main([*command, "--write", "--out", str(tmp_path / "out"), "--report"]) == 0
+    assert "turned by (" in capsys.readouterr().out and "# kept" in file.read_text(encoding="utf-8")
+    assert "turned by (" in (tmp_path / "out" / "place.html").read_text(encoding="utf-8")
+    assert main([*command, "--write"]) == 0 and "already" in capsys.readouterr().out
+    np.testing.assert_allclose(gb.read_scenario(file).motions["spin"].place, place, atol=1e-7)  # type: ignore[union-attr]
+    assert main(["plan", str(file), "--out", str(tmp_path / "out")]) == 0
+    head = (tmp_path / "out" / "commands_spin.csv").read_text(encoding="utf-8")
+    assert "Control point (" in head and "rotation vector (" in head

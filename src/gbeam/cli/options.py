@@ -177,6 +177,22 @@ Widths = Annotated[
         "from a quarter to four times the scenario's.",
     ),
 ]
+Along = Annotated[
+    str,
+    Parameter(
+        help="Directions in which the control point may be moved, such as xz. Without it x in a straight beam, and xyz "
+        "in another specimen."
+    ),
+]
+Way = Literal["own", "right-angles", "any"]
+WayRound = Annotated[
+    Way | None,
+    Parameter(
+        name="--turn",
+        help="Which way round it sits: own, as the scenario says; right-angles, with x, y and z along axis 3; any, "
+        "from the best of these and others on. Without it own of a beam, and right-angles of another specimen.",
+    ),
+]
 Check = Annotated[
     bool, Parameter(name="--proof", negative="--no-proof", help="Check the answer by simulation with the model.")
 ]

@@ -48,7 +48,8 @@ def write_commands(plan: MachinePlan, commands: Commands, folder: Path) -> list[
             "sample": commands.sample,
             "arm": plan.arm,
             "title": plan.title,
-            "control_point": plan.axes.control_point,
+            "control_point": plan.axes.control_point if plan.axes.place is None else plan.axes.place,
+            "turn": np.zeros(3) if plan.axes.turn is None else plan.axes.turn,
             "gravity": plan.gravity,
             "mounting": plan.mounting,
             "limits": _limits(plan),
@@ -68,7 +69,7 @@ def header(plan: MachinePlan, commands: Commands) -> list[str]:
         f"Gravity {plan.gravity:g} m/s^2 on the machine is a part of the load, which is specific force."
         if plan.gravity
         else "NO GRAVITY: the load is acceleration; a machine on the earth adds its gravity of 9.80665 m/s^2.",
-        f"Control point {plan.axes.control_point:g} m from the root along the beam; mounting {plan.mounting}.",
+        _mounted(plan),
         _limit_words(plan),
         f"Arm {plan.arm:g} m; sample time {commands.sample:g} s; {len(commands.time)} samples.",
         f"Time is the flight's: it lasts from {first:.6g} to {last:.6g} s."
@@ -85,6 +86,20 @@ def header(plan: MachinePlan, commands: Commands) -> list[str]:
     if plan.outcome != "done":
         lines.insert(1, f"{plan.outcome.upper()}: {plan.message}")
     return lines
+
+
+def _mounted(plan: MachinePlan) -> str:
+    """How the specimen sits in the machine."""
+    place, turn = plan.axes.place, plan.axes.turn
+    at = f"{plan.axes.control_point:g} m from the root along the beam"
+    if place is not None:
+        at = "({:g}, {:g}, {:g}) m from the root".format(*place)
+    way = (
+        ""
+        if turn is None
+        else "; specimen turned from axis 3's axes by the rotation vector ({:g}, {:g}, {:g}) rad".format(*turn)
+    )
+    return f"Control point {at}; mounting {plan.mounting}{way}."
 
 
 def _limits(plan: MachinePlan) -> dict[str, list[float]]:

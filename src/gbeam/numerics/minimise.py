@@ -57,31 +57,40 @@ def refine(evaluate: Evaluate, points: tuple[float, ...]) -> None:
     )
 
 
-_CUTS, _ENDED = 200, 1e-7  # at most; of the least cost, or of the cost at the start where that is nearly nothing
+_CUTS, _ENDED = 200, 1e-7  # at most, and what the last one can still gain of the value at the start
+_WORTH = 1e-6  # of the value at the start: a move that gains less is none
+_NOTHING = 1e-9  # a value at the start that is less is rounding
 
 
-def least(evaluate: Callable[[Floats], tuple[float, Floats]], low: Floats, high: Floats) -> Floats:
-    """Find the x (n,) between bounds at which a convex function is least, by its tangents (Kelley 1960).
-
-    `evaluate` gives the value and a slope (n,); `low` and `high` (n,) may be equal.
+def least(evaluate: Callable[[Floats], tuple[float, Floats]], low: Floats, high: Floats, x: Floats) -> Floats:
+    """Find the point between bounds (n,), the nearest to `x` of several, at which a convex function is least, by its
+    tangents (Kelley 1960); `evaluate` gives the value and a slope (n,), and the bounds may be equal.
     """
     import scipy.optimize
 
-    width = high - low
-    best, x = (np.inf, low), low + width / 2
-    rows, sides, unit = list[Floats](), list[float](), 0.0
+    start, width, n = np.clip(x, low, high), high - low, len(low)
+    begun = (start - low) / np.where(width > 0, width, 1.0)
+    # Unknown are shares of the way between the bounds, the value over that at the start, and ways from the start.
+    near = np.block([[np.eye(n), np.zeros((n, 1)), -np.eye(n)], [-np.eye(n), np.zeros((n, 1)), -np.eye(n)]])
+    rows, sides = [*near], [*begun, *-begun]
+    bounds, costs = [*[(0.0, 1.0)] * n, (0.0, np.inf), *[(0.0, 1.0)] * n], np.zeros(2 * n + 1)
+    costs[n], x, unit, best = 1.0, start, 0.0, (np.inf, start)
     for _ in range(_CUTS):
         value, slope = evaluate(x)
-        unit = unit or value or 1.0
+        unit = unit or max(value, _NOTHING)
+        if costs[n] == 0 and value <= best[0] + _WORTH * unit:
+            return x
         best = min(best, (value, x), key=lambda each: each[0])
-        # Unknown are the share of the way between the bounds, and the value, over that at the start.
-        rows.append(np.append(slope * width / unit, -1.0))
+        rows.append(np.concatenate([slope * width / unit, [-1.0], np.zeros(n)]))
         sides.append(float(slope @ (x - low) - value) / unit)
-        bounds = [*[(0.0, 1.0)] * len(low), (0.0, None)]
-        solved = scipy.optimize.linprog(np.eye(len(low) + 1)[-1], np.array(rows), sides, bounds=bounds)
-        if not solved.success or best[0] / unit - solved.fun <= _ENDED * max(best[0] / unit, _ENDED):
+        solved = scipy.optimize.linprog(costs, np.array(rows), sides, bounds=bounds)
+        if costs[n] and (not solved.success or best[0] / unit - solved.x[n] <= _ENDED):
+            costs[:], costs[n + 1 :] = 0.0, 1.0  # the least is known: now the nearest of those
+            bounds[n] = 0.0, best[0] / unit + _WORTH / 2
+            solved = scipy.optimize.linprog(costs, np.array(rows), sides, bounds=bounds)
+        if not solved.success:
             break
-        x = low + width * np.clip(solved.x[:-1], 0.0, 1.0)
+        x = low + width * np.clip(solved.x[:n], 0.0, 1.0)
     return best[1]
 
 

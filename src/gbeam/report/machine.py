@@ -11,7 +11,7 @@ from typing import Any
 from gbeam.report.words import number, percent, sentence, warning_lines
 from gbeam.results.imitation.accounting import Accounting, PeakPair
 from gbeam.results.imitation.criteria import Judged
-from gbeam.results.imitation.placement import Candidate, Placement
+from gbeam.results.imitation.placement import Candidate, Placement, degrees
 from gbeam.results.imitation.verdict import change, in_g
 from gbeam.results.imitation.verdict import percent as share_of
 from gbeam.results.machine import AxesResult, Driven
@@ -143,13 +143,13 @@ def placement(placement: Placement, written: str | None = None) -> str:
     )
     measure += f" of {placement.point}" if placement.point and {"tip", "vibration"} & parts.keys() else ""
     share = f", {placement.fraction:.4f} of the length" if placement.straight else ""
+    now = _place(before) if before is not None else f"{1e3 * placement.current:.2f} mm"
     nearest = "" if placement.outcome == "done" else " (nearest to the limits, which none keeps)"
     lines = [
         f"{placement.centrifuge}, tracking {placement.flight}: least {measure}{nearest}",
-        f"  control point  {1e3 * best.control_point:.2f} mm from the root{share} "
-        f"(now {1e3 * placement.current:.2f} mm)",
+        f"  control point  {_place(best)} from the root{share} (now {now})",
         f"  largest load   {largest(best.largest_load, None if before is None else before.largest_load)}",
-        f"  mounting       {best.mounting}",
+        f"  mounting       {best.mounting}{_turned(best)}",
         f"  smoothing      {1e3 * best.smoothing:.4g} ms{_range(placement)}",
     ]
     if placement.changes:
@@ -188,6 +188,16 @@ def _measures(placement: Placement) -> list[str]:
 
 def _percent(share: float) -> str:
     return f"{100 * share:.3g} %" if share > 1e-8 else "0 %"  # below, it is rounding
+
+
+def _place(candidate: Candidate) -> str:
+    """A control point, along x or anywhere."""
+    place = [f"{1e3 * each:.2f}" for each in candidate.place]
+    return f"({', '.join(place)}) mm" if any(candidate.place[1:]) else f"{place[0]} mm"
+
+
+def _turned(candidate: Candidate) -> str:
+    return f", turned by {degrees(candidate.turn)}" if any(candidate.turn) else ""
 
 
 def _range(placement: Placement) -> str:
@@ -239,8 +249,8 @@ def _candidates(placement: Placement, measure: str) -> list[str]:
 
 
 def _candidate(candidate: Candidate) -> str:
-    words = f"  {candidate.mounting}, {1e3 * candidate.smoothing:.4g} ms: {100 * candidate.total_error:.3g} % "
-    words += f"at {1e3 * candidate.control_point:.2f} mm; "
+    words = f"  {candidate.mounting}{_turned(candidate)}, {1e3 * candidate.smoothing:.4g} ms: "
+    words += f"{100 * candidate.total_error:.3g} % at {_place(candidate)}; "
     if candidate.exceeded:
         worst, others = max(candidate.exceeded, key=lambda use: use.share), len(candidate.exceeded) - 1
         return words + f"exceeds {worst}" + (f" and {others} more" if others else "")

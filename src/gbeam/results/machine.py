@@ -131,6 +131,17 @@ class AxesResult(Part):
         note="which the target rounds off; before and after the flight that of its first and last time",
         default=None,
     )
+    place: Floats | None = entry(
+        "m",
+        "control point, from the root, where it lies beside x",
+        "axis",
+        name="control_place",
+        key="control_place",
+        default=None,
+    )
+    turn: Floats | None = entry(
+        "rad", "rotation vector of the specimen in the machine, where it is turned", "axis", name="turn", default=None
+    )
 
     @declared(
         "", "stretches in which the target is held", "episode", role="rows", name="not_followed_", key="not_followed"

@@ -69,6 +69,7 @@ def centrifuge_of(
         idle=idle,
         smoothing=table.smoothing,
         mounting=table.mounting,
+        turn=table.turn,
         start=table.start,
         spin_up=table.spin_up,
         spin_down=table.spin_down,

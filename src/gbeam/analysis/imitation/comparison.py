@@ -327,6 +327,8 @@ def _statistics(
 def _mismatch(covered: Flags, centrifuge: Response, gradient: Floats) -> Mismatch | None:
     if centrifuge.axes is None or not np.isfinite(centrifuge.axes.control_point) or not covered.any():
         return None
+    if centrifuge.axes.place is not None:  # beside the beam
+        return None
     at, length = centrifuge.axes.control_point, float(centrifuge.stations[-1])
     largest, influence = _largest(gradient, covered), centrifuge.influence
     unknown = np.full(3, np.nan)

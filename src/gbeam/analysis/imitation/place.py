@@ -16,7 +16,7 @@ import numpy as np
 
 from gbeam.analysis.imitation.accounting import largest_load, largest_pair, times_between
 from gbeam.analysis.imitation.comparison import CUTOFF, compare
-from gbeam.analysis.imitation.place_measures import Answers, Choice, Histories
+from gbeam.analysis.imitation.place_measures import Answers, Choice, Histories, Turn, bringing
 from gbeam.analysis.imitation.systems import specimen_of
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
@@ -28,13 +28,12 @@ from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion import Base, Centrifuge, Flight
-from gbeam.motion.centrifuge.kinematics import forward
 from gbeam.motion.centrifuge.limits import exceeded
 from gbeam.numerics.filters import low_pass
 from gbeam.numerics.minimise import least, refine
 from gbeam.numerics.samples import interpolated
 from gbeam.results.imitation.criteria import BROKEN
-from gbeam.results.imitation.placement import MEASURES, Candidate, Placement, Verification
+from gbeam.results.imitation.placement import MEASURES, Candidate, Placement, Verification, degrees
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.system import SystemResponse
@@ -85,10 +84,11 @@ def verify(
     in_flight = simulated(flight)
     # Machines at different control points share their axis motions, and the current one may be at the middle.
     carried: dict[int, Response] = {}
-    responses: dict[tuple[int, float], Response] = {}
+    responses: dict[tuple[int, bytes], Response] = {}
     verifications = []
     for name, machine in machines.items():
-        motion, at = id(machine.course), float(machine.control_point)
+        place = np.asarray(machine.place)
+        motion, at = id(machine.course), place.tobytes()
         if (motion, at) not in responses:
             responses[motion, at] = simulated(machine)
         response = responses[motion, at]
@@ -110,7 +110,7 @@ def verify(
         if comparison.root is not None:
             root = comparison.root
             force, moment = (float(each[across].max()) for each in (root.force_difference, root.moment_difference))
-        verifications.append(Verification(name, at, tip, vibration, moment, force))
+        verifications.append(Verification(name, float(place[0]), tip, vibration, moment, force))
     return tuple(verifications)
 
 
@@ -120,6 +120,7 @@ def _largest(vectors: Floats) -> float:
 
 
 _WORTH = 0.02  # of the total error: what another mounting must save at least
+TILT, NEAR, TILTS = 0.35, 0.01, 40  # rad, by which a turn is varied at first and at last, and how often at most
 
 
 @typed
@@ -133,6 +134,7 @@ def place(
     current: Centrifuge,
     names: tuple[str, str] = ("flight", "centrifuge"),
     check: bool = False,
+    along: str = "",
 ) -> Placement:
     """Find the control point, mounting and smoothing that change a specimen's response least.
 
@@ -156,7 +158,10 @@ def place(
     names : tuple of str
         Of flight and centrifuge.
     check : bool
-        Whether to check the answer, the current placement and the middle of the beam by simulation.
+        Whether to check the answer, the current placement and the middle of the specimen by simulation.
+    along : str
+        Directions in which the control point may be moved within the specimen, such as ``"xz"``; by default x in a
+        straight beam, and all three in another specimen.
 
     Returns
     -------
@@ -183,24 +188,27 @@ def place(
     check_weights(weights)
     if isinstance(structure, Structure) and (check or "vibration" in weights):
         structure.require_damping("the vibration")
-    trials = _Trials(structure, flight, choice, settings, weights)
+    trials = _Trials(structure, flight, choice, settings, weights, along, np.asarray(current.place))
     for width in reversed(choice.widths):  # the widest first, see Answers
-        for mounting in choice.mountings:
-            trials(mounting, width)
+        for turn in choice.turns or (None,):
+            for mounting in choice.mountings:
+                trials(mounting, width, turn)
     if not trials.evaluated:
         raise trials.reasons[0].within(f"motion.{names[1]}")
     if choice.refined:
-        leader = trials.ranked()[0].candidate.mounting
-        refine(lambda width: trials(leader, width), choice.widths)
-    ranked, before = trials.ranked(), trials.assess(current, at=_along(float(current.control_point)))
+        of = trials.ranked()[0]
+        refine(lambda width: trials(of.candidate.mounting, width, of.turn), choice.widths)
+    if choice.between:
+        trials.turn_on()
+    ranked, before = trials.ranked(), trials.assess(current, at=np.array(current.place))
     best, specimen = ranked[0], trials.answers.specimen
-    middle = float(specimen.extent[:, 0].mean())
+    middle = np.where(trials.moved, specimen.extent.mean(axis=0), current.place)
     allowed = not (best.candidate.exceeded and choice.limited)
-    places = {"best": (best, best.candidate.control_point), "current": (before, before.candidate.control_point)}
+    places = {"best": (best, np.array(best.candidate.place)), "current": (before, np.array(current.place))}
     places["middle"] = best, middle
-    machines = {name: each.centrifuge.altered(control_point=at) for name, (each, at) in places.items()}
+    machines = {name: each.centrifuge.altered(control_point=_written(at)) for name, (each, at) in places.items()}
     values, totals = (
-        {name: {m: h.size(_along(at), total) for m, h in each.histories.items()} for name, (each, at) in places.items()}
+        {name: {m: h.size(at, total) for m, h in each.histories.items()} for name, (each, at) in places.items()}
         for total in (False, True)
     )
     return Placement(
@@ -232,9 +240,15 @@ def usual(structure: Structure | System) -> dict[str, float]:
     return {"tip" if free else "load": 1.0}
 
 
-def _along(x: float) -> Floats:
-    """Place on the axis, (3,) m."""
-    return np.array([x, 0.0, 0.0])
+def usual_turns(structure: Structure | System) -> str:
+    """Ways round where none are named: those of a beam are its mountings."""
+    beam = isinstance(structure, Structure) and structure.source is not None
+    return "own" if beam else "right-angles"
+
+
+def _written(at: Floats) -> Any:
+    """A place as a centrifuge takes it: along x where it lies there."""
+    return at if np.any(at[1:]) or at[0] < 0 else float(at[0])
 
 
 @dataclass(frozen=True)
@@ -244,6 +258,7 @@ class _Evaluated:
     candidate: Candidate
     histories: dict[str, Histories]
     centrifuge: Centrifuge
+    turn: Turn | None
 
 
 class _Trials:
@@ -256,6 +271,8 @@ class _Trials:
         choice: Choice,
         settings: ResponseSettings,
         weights: Mapping[str, float],
+        along: str,
+        start: Floats,
     ) -> None:
         self.answers, self.flight = Answers(structure, flight, settings), flight
         self.answers.refuse_unfelt(weights)
@@ -264,21 +281,46 @@ class _Trials:
         self.points = dict(self.answers.specimen.ends)
         times = times_between(*self.span)
         self.in_flight = largest_load(times, flight.base(times), self.points)
-        self.evaluated: dict[tuple[str, float], _Evaluated] = {}
+        along = along or ("x" if self.answers.specimen.straight else "xyz")
+        if not along or set(along) - set("xyz"):
+            raise InputError("along", f"is {along!r}", "give some of x, y and z")
+        self.moved = np.array([axis in along for axis in "xyz"])
+        self.start = start
+        self.evaluated: dict[tuple[str, float, Turn | None], _Evaluated] = {}
         self.refused: list[str] = []
         self.reasons: list[InputError] = []
 
-    def __call__(self, mounting: str, width: float) -> tuple[float, float]:
+    def __call__(self, mounting: str, width: float, turn: Turn | None = None) -> tuple[float, float]:
         """Weighted measure at the best control point, and the largest share of a limit."""
-        if (mounting, width) not in self.evaluated:
+        key, options = (mounting, width, turn), (mounting, width) if turn is None else (mounting, width, turn)
+        if key not in self.evaluated:
             try:
-                self.evaluated[mounting, width] = self.assess(self.choice.make(mounting, width))
+                self.evaluated[key] = self.assess(self.choice.make(*options), turn=turn)
             except InputError as error:
-                self.refused.append(f"{mounting}, {1e3 * width:.4g} ms: {error}")
+                way = "" if turn is None else f", turned by {degrees(turn)}"
+                self.refused.append(f"{mounting}, {1e3 * width:.4g} ms{way}: {error}")
                 self.reasons.append(error)
                 return np.inf, np.inf
-        candidate = self.evaluated[mounting, width].candidate
+        candidate = self.evaluated[key].candidate
         return candidate.total_error, candidate.share if self.choice.limited else 0.0
+
+    def turn_on(self) -> None:
+        """Turn the best one on, to where the error is least."""
+        import scipy.optimize
+        from scipy.spatial.transform import Rotation
+
+        of = self.ranked()[0]
+        begun = Rotation.from_rotvec(of.centrifuge.turn)
+
+        def error(tilt: Floats) -> float:
+            # About the other two axes of the module: about axis 3 the specimen may be rolled as one likes.
+            direction = (Rotation.from_rotvec([0.0, *tilt]) * begun).as_matrix()[0]
+            value, share = self(of.candidate.mounting, of.candidate.smoothing, bringing(direction))
+            return value if share <= 1 else np.inf
+
+        simplex = TILT * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+        options = {"initial_simplex": simplex, "xatol": NEAR, "fatol": 0.0, "maxfev": TILTS}
+        scipy.optimize.minimize(error, np.zeros(2), method="Nelder-Mead", options=options)
 
     def ranked(self) -> list[_Evaluated]:
         """Best first; those that break limits last, by how much."""
@@ -287,12 +329,13 @@ class _Trials:
             candidate = trial.candidate
             excess = candidate.share if self.choice.limited and candidate.exceeded else 0.0
             # Mirror images differ by rounding, and by what a search leaves: then the scenario's own comes first.
-            as_mounted = candidate.mounting == self.choice.mountings[0]
+            own = self.choice.turns[0] if self.choice.turns else None
+            as_mounted = candidate.mounting == self.choice.mountings[0] and trial.turn == own
             return excess, candidate.total_error * (1.0 if as_mounted else 1 + _WORTH)
 
         return sorted(self.evaluated.values(), key=rank)
 
-    def assess(self, centrifuge: Centrifuge, *, at: Floats | None = None) -> _Evaluated:
+    def assess(self, centrifuge: Centrifuge, *, at: Floats | None = None, turn: Turn | None = None) -> _Evaluated:
         """Evaluate a centrifuge with its best control point, or with one that is given, (3,) m."""
         machine = centrifuge.over(*self.span)
         histories, accelerations = self.answers.histories(self.flight, machine)
@@ -308,17 +351,19 @@ class _Trials:
             return float(weights @ sizes), weights @ np.array(slopes)
 
         if at is None:
-            low, high = self.answers.specimen.extent * [1.0, 0.0, 0.0]
-            at = least(steepest, np.maximum(low, 0.0), high)
+            low, high = (np.where(self.moved, each, self.start) for each in self.answers.specimen.extent)
+            at = least(steepest, low, high, self.start)
         uses = machine.usage()
         times = times_between(*(float(end) for end in machine.extent))
-        at_c = forward(machine.axes(times), machine.geometry.arm, machine.geometry.gravity)
+        placed = machine.altered(control_point=_written(at))
         most = max(uses, key=lambda use: use.share)
         return _Evaluated(
             Candidate(
                 mounting=machine.mounting,
                 smoothing=float(machine.smoothing or 0.0),
                 control_point=float(at[0]),
+                beside=(float(at[1]), float(at[2])),
+                turn=machine.turn,
                 mismatch=size(at),
                 total_error=size(at, True),
                 accelerations=accelerations,
@@ -326,10 +371,11 @@ class _Trials:
                 exceeded=exceeded(uses),
                 most_used=most,
                 tracking=sum(w * histories[name].error for name, w in judged.items()),
-                largest_load=largest_pair(self.in_flight, largest_load(times, at_c, self.points, float(at[0]))),
+                largest_load=largest_pair(self.in_flight, largest_load(times, placed.base(times), self.points)),
             ),
             histories,
             machine,
+            turn,
         )
 
 

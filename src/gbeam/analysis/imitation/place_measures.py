@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -14,30 +15,34 @@ from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.stepping import RIGID, even_steps
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
+from gbeam.guards.checks import choice
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion import Flight
 from gbeam.motion.bases.base import gradients
-from gbeam.motion.centrifuge.centrifuge import MOUNTINGS, Centrifuge
+from gbeam.motion.centrifuge.centrifuge import MOUNTINGS, Centrifuge, rotation_of
 from gbeam.motion.centrifuge.course import INVERSES
-from gbeam.motion.centrifuge.kinematics import forward
 from gbeam.motion.protocol import SAMPLES
 from gbeam.numerics.filters import displacement
 from gbeam.numerics.minimise import coarse
 from gbeam.results.result import Flags, Floats
 
+Turn = tuple[float, float, float]
+WAYS = ("own", "right-angles", "any")
+SAME = 1e-9
 _FACTOR = 4.0  # of the centrifuge's own smoothing, either way
 
 
 @typed
 @dataclass(frozen=True)
 class Choice:
-    """Options beside the control point: mountings and widths of smoothing.
+    """Options beside the control point: mountings, ways round and widths of smoothing.
 
     Parameters
     ----------
     make : callable
-        Of mounting and width of smoothing, s: a centrifuge that tracks the flight; InputError where it cannot.
+        Of mounting and width of smoothing, s, and of a turn where `turns` has some: a centrifuge that tracks the
+        flight; InputError where it cannot.
     mountings : tuple of str
         The scenario's own first.
     widths : tuple of float
@@ -46,6 +51,11 @@ class Choice:
         Whether to search on between the best of them and its neighbours.
     limited : bool
         Whether the machine's limits must be kept.
+    turns : tuple of (3,)
+        Rotation vectors of the specimen in the machine, rad, the scenario's own first; where none is given, its own
+        alone.
+    between : bool
+        Whether to search on between them for the best direction of axis 3.
 
     Examples
     --------
@@ -57,23 +67,28 @@ class Choice:
     ('upright', 'inverted')
     """
 
-    make: Callable[[str, float], Centrifuge]
+    make: Callable[..., Centrifuge]
     mountings: tuple[str, ...]
     widths: tuple[float, ...]
     refined: bool = True
     limited: bool = True
+    turns: tuple[Turn, ...] = ()
+    between: bool = False
 
 
 @dataclass(frozen=True)
 class Altered:
-    """A centrifuge with another mounting and width of smoothing."""
+    """A centrifuge with another mounting, width of smoothing and turn."""
 
     centrifuge: Centrifuge
 
-    def __call__(self, mounting: str, width: float) -> Centrifuge:
-        """Return the centrifuge itself where both are its own: it need not be planned again."""
-        same = mounting == self.centrifuge.mounting and width == width_of(self.centrifuge)
-        return self.centrifuge if same else self.centrifuge.altered(mounting=mounting, smoothing=width)
+    def __call__(self, mounting: str, width: float, turn: Turn | None = None) -> Centrifuge:
+        """Return the centrifuge itself where all are its own: it need not be planned again."""
+        of = self.centrifuge
+        wanted = mounting, width, of.turn if turn is None else turn
+        if wanted == (of.mounting, width_of(of), of.turn):
+            return of
+        return of.altered(mounting=mounting, smoothing=width, turn=wanted[2])
 
 
 def width_of(centrifuge: Centrifuge) -> float:
@@ -82,7 +97,9 @@ def width_of(centrifuge: Centrifuge) -> float:
 
 
 @typed
-def choice_of(centrifuge: Centrifuge, smoothing: Sequence[float] = (), *, limited: bool = True) -> Choice:
+def choice_of(
+    centrifuge: Centrifuge, smoothing: Sequence[float] = (), *, limited: bool = True, turns: str = "own"
+) -> Choice:
     """Return both mountings of a centrifuge, its own first, and widths of smoothing.
 
     Parameters
@@ -94,11 +111,14 @@ def choice_of(centrifuge: Centrifuge, smoothing: Sequence[float] = (), *, limite
         centrifuge's own, or, where the axis motions are planned within the limits and need no smoothing, its own.
     limited : bool
         Whether the machine's limits must be kept.
+    turns : str
+        Ways round that are tried. ``own``: the centrifuge's; ``right-angles``: with x, y and z along axis 3 too;
+        ``any``: these, the directions between them and, from the best, any. A roll about axis 3 changes nothing.
 
     Raises
     ------
     InputError
-        If there are more than two widths, or one of two is not positive.
+        If `turns` has no such name, there are more than two widths, or one of two is not positive.
 
     Examples
     --------
@@ -118,8 +138,36 @@ def choice_of(centrifuge: Centrifuge, smoothing: Sequence[float] = (), *, limite
     ends = sorted(smoothing) or searched
     widths = coarse(ends[0], ends[-1])
 
+    choice("turns", turns, WAYS)
     others = tuple(name for name in MOUNTINGS if name != centrifuge.mounting)
-    return Choice(Altered(centrifuge), (centrifuge.mounting, *others), widths, len(widths) > 1, limited)
+    return Choice(
+        Altered(centrifuge), (centrifuge.mounting, *others), widths, len(widths) > 1, limited,
+        turns_of(centrifuge.turn, turns), between=turns == "any",
+    )  # fmt: skip
+
+
+def turns_of(own: Turn, ways: str) -> tuple[Turn, ...]:
+    """Turns by name: the scenario's own first, then those that bring other directions of the specimen along axis 3,
+    each once of the two that are opposite, which are the two mountings.
+    """
+    if ways == "own":
+        return ()
+    directions = [each for each in product((1, 0, -1), repeat=3) if each > (0, 0, 0)]
+    turns, along = [own], [rotation_of(own)[0]]
+    for each in sorted(directions, key=np.count_nonzero):
+        direction = np.array(each) / np.linalg.norm(each)
+        if (np.count_nonzero(each) == 1 or ways == "any") and max(np.abs(along @ direction)) < 1 - SAME:
+            along.append(direction)
+            turns.append(bringing(direction))
+    return tuple(turns)
+
+
+def bringing(direction: Floats) -> Turn:
+    """Shortest turn that brings a direction of the specimen along x, as axis 3 lies."""
+    axis = np.cross(direction, [1.0, 0.0, 0.0])
+    size = float(np.linalg.norm(axis))
+    x, y, z = (axis / size * math.atan2(size, direction[0])).tolist() if size else (0.0, 0.0, 0.0)
+    return x, y, z
 
 
 @dataclass(frozen=True)
@@ -201,11 +249,10 @@ class Answers:
         self, flight: Flight, centrifuge: Centrifuge
     ) -> tuple[dict[str, Histories], tuple[float, float, float]]:
         """Every measure that the flight's load has any of, and the largest accelerations of the axes, rad/s²."""
-        axes = centrifuge.axes(self.time)
-        at_c = forward(axes, centrifuge.geometry.arm, centrifuge.geometry.gravity)
-        not_followed = centrifuge.not_followed(self.time)
-        self.left_out = not_followed if self.left_out is None else self.left_out
-        covered = ~(not_followed | self.left_out)
+        axes, at_c = centrifuge.axes(self.time), centrifuge.at_control_point(self.time)
+        # What the first leaves out is nobody's; what another one does not follow is its error.
+        self.left_out = centrifuge.not_followed(self.time) if self.left_out is None else self.left_out
+        covered = ~self.left_out
         if not covered.any():
             raise InputError("tracks", "is never carried: the target is held all the time", "lower idle")
         error, growth = at_c.a_WO_B - self.load, gradients(at_c.w_WB_B, at_c.alpha_WB_B)

@@ -10,6 +10,7 @@ from cyclopts import Parameter
 
 from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.options import (
+    Along,
     CentrifugeName,
     Check,
     IgnoreLimits,
@@ -17,6 +18,7 @@ from gbeam.cli.options import (
     Measure,
     Output,
     ScenarioFile,
+    WayRound,
     Widths,
     naming,
     number,
@@ -106,6 +108,8 @@ def place(
     *,
     measure: Measure = None,
     motion: CentrifugeName = None,
+    along: Along = "",
+    turn: WayRound = None,
     smoothing: Widths = (),
     check: Check = True,
     output: Output = Output(),
@@ -115,7 +119,7 @@ def place(
         option("--write", "Write the answer into the scenario file."),
     ] = False,
 ) -> int:
-    """Find the control point, mounting and smoothing that change the specimen's response least.
+    """Find where and which way round to mount a specimen so that its response changes least.
 
     Prints the --set options that apply the answer; --write writes it, and no change made by --set, into the scenario
     file, whose comments stay. Options that exceed the machine's limits are listed but not chosen, unless
@@ -136,8 +140,9 @@ def place(
     weights = analysis.usual(structure) if weights is None else weights
     analysis.check_weights(weights, "--measure")
     with naming("--smoothing"):
-        choice = choice_of(current, widths, limited=not ignore_limits)
-    with loaded.placing(measure="--measure"):
+        ways = turn or analysis.usual_turns(structure)
+        choice = choice_of(current, widths, limited=not ignore_limits, turns=ways)
+    with loaded.placing(measure="--measure", along="--along"):
         placement = analysis.place(
             structure,
             current.flight,
@@ -147,6 +152,7 @@ def place(
             current=current,
             names=(loaded.case.tracks[name], name),
             check=check,
+            along=along,
         )
     written = _apply(loaded, scenario, name, placement.changes) if write_back and placement.changes else None
     deliver(
@@ -159,7 +165,7 @@ def place(
     return 0
 
 
-def _apply(loaded: Input, file: Path, name: str, changes: dict[str, str]) -> str:
+def _apply(loaded: Input, file: Path, name: str, changes: dict[str, str | list[str]]) -> str:
     """Write the changes of one centrifuge into the scenario file; return its name."""
     from gbeam.scenario.text.revise import edited
 

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import copy
+from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.arrays.namespace import as_array, namespace
+from gbeam.arrays.namespace import as_array, holds_jax, namespace
 from gbeam.arrays.tree import assign, record, static
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import choice, positive
+from gbeam.guards.checks import choice, positive, vector
 from gbeam.guards.ranges import possible
-from gbeam.motion.bases.base import Base
+from gbeam.motion.bases.base import Base, mapped
 from gbeam.motion.bases.flight import Flight
 from gbeam.motion.centrifuge.course import INVERSES, Course, prepare
 from gbeam.motion.centrifuge.inverses.closed_form import Geometry, Inverse
@@ -23,7 +25,8 @@ from gbeam.motion.centrifuge.kinematics import Axes, control_point_load, forward
 from gbeam.motion.centrifuge.limits import Ends, Limits, Machine, MachineLimits, usage
 from gbeam.motion.centrifuge.target.reachability import shortfalls
 from gbeam.motion.centrifuge.target.target import Episode, Target
-from gbeam.motion.profiles.profile import sampled
+from gbeam.motion.profiles.combine import Turned
+from gbeam.motion.profiles.profile import Profile, sampled
 from gbeam.results.machine import LimitUse, Shortfall
 
 _GRID, _MOST = 1e-3, 500_000  # s between the times at which limits are looked at; most of them
@@ -45,8 +48,8 @@ class Centrifuge:
         Whose load is tracked.
     arm : float
         R, from axis 1 to the control point, m; left out, that of the Machine given as `limits`.
-    control_point : float
-        x_c, from the root along the beam to the point where axes 2 and 3 meet, m.
+    control_point : float or (3,)
+        From the root to the point where axes 2 and 3 meet: x_c along the beam, or along x, y and z, m.
     inverse : str
         ``planned``, ``flat``, ``exact`` or ``quasi-static`` (docs/theory.md, section 8.2).
     limits : MachineLimits, Machine or Limits, optional
@@ -62,6 +65,10 @@ class Centrifuge:
     mounting : str
         Under a load across the beam its tip points along the arm's motion (``upright``) or against it (``inverted``):
         docs/mounting.svg.
+    turn : (3,)
+        Which way round the specimen sits: rotation vector of its axes in those of the module that axis 3 turns, rad.
+        Where it is zero, x lies along axis 3; along x it changes nothing that the specimen feels, and half a turn about
+        z is the other mounting.
     start : str
         ``rest``: from standstill to standstill, the arm's tangential acceleration on the way ignored; ``pre-yawed``:
         likewise, with axis 2 turned across the arm at standstill so that the load has its direction on the way;
@@ -93,6 +100,7 @@ class Centrifuge:
     flight: Flight
     geometry: Geometry
     control_point: Any
+    turn: tuple[float, float, float] = static()
     limits: Limits
     method: str = static()
     ends: Ends = static()
@@ -113,6 +121,7 @@ class Centrifuge:
         idle: Any | None = None,
         smoothing: Any | None = 0.0,
         mounting: str = "upright",
+        turn: Sequence[float] = (0.0, 0.0, 0.0),
         start: str = "rest",
         spin_up: float | None = None,
         spin_down: float | None = None,
@@ -139,6 +148,7 @@ class Centrifuge:
             flight=flight,
             geometry=Geometry(radius, STANDARD_GRAVITY if gravity else 0.0, np.asarray(MOUNTINGS[mounting])),
             control_point=_position(control_point),
+            turn=_turn(turn),
             limits=limits if isinstance(limits, Limits) else Limits(limits),
             method=inverse,
             ends=Ends(start, spin_up, spin_down),
@@ -198,6 +208,7 @@ class Centrifuge:
             "idle": self.idle,
             "smoothing": self.smoothing,
             "mounting": self.mounting,
+            "turn": self.turn,
             **vars(self.ends),
             "clip": self.clip,
             "span": None if self.course is None else self.course.target.span,
@@ -205,8 +216,21 @@ class Centrifuge:
 
     def base(self, t: Any) -> Base:
         """Motion of the root at times `t` (s, any shape)."""
+        return moved(self.at_control_point(t), -self.place)
+
+    def at_control_point(self, t: Any) -> Base:
+        """Motion of the control point at times `t` (s, any shape), axes of the specimen."""
         base = forward(self.axes(t), self.geometry.arm, self.geometry.gravity)
-        return moved(base, self.control_point * np.array([-1.0, 0.0, 0.0]))
+        return mapped(base, self._felt) if any(self.turn) else base
+
+    @property
+    def place(self) -> Any:
+        """Place of the control point from the root, (3,) m."""
+        return self.control_point if np.ndim(self.control_point) else self.control_point * np.array([1.0, 0.0, 0.0])
+
+    def _felt(self, vectors: Any) -> Any:
+        """Vectors (..., 3) in axes of the specimen, of such in axes of the module that axis 3 turns."""
+        return vectors @ rotation_of(self.turn) if any(self.turn) else vectors
 
     @property
     def extent(self) -> tuple[Any, Any]:
@@ -260,7 +284,7 @@ class Centrifuge:
 
     def reference(self, t: Any) -> Any:
         """Load to be made at the control point at times `t` (s), base axes, m/s², shape (..., 3)."""
-        return self._solved.reference(t)
+        return self._felt(self._solved.reference(t))
 
     def actual(self, t: Any) -> Any:
         """Load that the axes make at the control point at times `t` (s), base axes, m/s², shape (..., 3)."""
@@ -268,7 +292,7 @@ class Centrifuge:
 
     def actual_by(self, axes: Axes) -> Any:
         """Load that given states of the `axes` make at the control point, base axes, m/s², shape (..., 3)."""
-        return control_point_load(axes, self.geometry.arm, self.geometry.gravity)
+        return self._felt(control_point_load(axes, self.geometry.arm, self.geometry.gravity))
 
     def tracking_error(self, t: Any) -> Any:
         """Actual load less the reference at times `t` (s), base axes, m/s², shape (..., 3)."""
@@ -301,8 +325,11 @@ class Centrifuge:
         return next(name for name, sign in MOUNTINGS.items() if sign == self.geometry.sign)
 
     def _prepared(self, start: float, end: float) -> Course:
+        load: Profile = self.flight.acceleration
+        if any(self.turn):
+            load = Turned(load, rotation_of(self.turn))
         return prepare(
-            self.flight.acceleration, self.geometry, self.limits, inverse=self.method, ends=self.ends, idle=self.idle,
+            load, self.geometry, self.limits, inverse=self.method, ends=self.ends, idle=self.idle,
             smoothing=self.smoothing, clip=self.clip, span=(start, end),
         )  # fmt: skip
 
@@ -313,4 +340,21 @@ class Centrifuge:
 
 
 def _position(control_point: Any) -> Any:
+    if np.ndim(control_point):
+        return as_array(vector("control_point", control_point))
     return as_array(positive("control_point", control_point, "m", zero=True))
+
+
+def _turn(turn: Any) -> tuple[float, float, float]:
+    if holds_jax(turn):
+        raise InputError("turn", "is traced by JAX", "give three numbers")
+    x, y, z = map(float, vector("turn", turn))
+    return x, y, z
+
+
+@lru_cache(maxsize=64)
+def rotation_of(turn: tuple[float, float, float]) -> NDArray[np.float64]:
+    """Rotation matrix of a rotation vector, rad."""
+    from scipy.spatial.transform import Rotation  # 0.2 s to import, which few machines need
+
+    return np.asarray(Rotation.from_rotvec(turn).as_matrix())

@@ -33,7 +33,9 @@ def axes_result(motion: Centrifuge, time: Floats) -> AxesResult:
         episodes=tuple((e.start, e.end, e.reason) for e in motion.episodes()),
         limits=limits,
         shortfalls=motion.shortfalls(),
-        control_point=float(motion.control_point),
+        control_point=float(motion.place[0]),
+        place=np.asarray(motion.place) if np.any(motion.place[1:]) else None,
+        turn=np.array(motion.turn) if any(motion.turn) else None,
         warnings=(
             *_broken_promise(motion, time, reference, actual - reference, not_followed, limits),
             *_short_ramps(motion),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import reduce
 from operator import add
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,9 @@ from gbeam.motion.profiles.convolution import Convolved, beside
 from gbeam.motion.profiles.piecewise import PiecewiseLinear, constant
 from gbeam.motion.profiles.profile import Profile
 from gbeam.numerics.series import Series, stack, where
+
+if TYPE_CHECKING:
+    from gbeam.results.description import RecordSummary
 
 
 class _Combined(Profile):
@@ -96,6 +99,44 @@ class Vector(_Combined):
         return Vector((x, y, z))
 
 
+@record
+class Turned(Profile):
+    """A vector profile in other axes: `matrix` (3, 3) times another."""
+
+    profile: Profile
+    matrix: Any
+
+    def series(self, t: Any, order: int) -> Series:
+        return self.profile.series(t, order).each(lambda c: c @ self.matrix.T)
+
+    @property
+    def breaks(self) -> Any:
+        """Times of the other's jumps, s."""
+        return self.profile.breaks
+
+    def corners(self, step: float) -> NDArray[np.float64]:
+        """The other's, s."""
+        return self.profile.corners(step)
+
+    def knots(self, step: float) -> NDArray[np.float64]:
+        """The other's, s."""
+        return self.profile.knots(step)
+
+    @property
+    def extent(self) -> tuple[float, float] | None:
+        """The other's, s."""
+        return self.profile.extent
+
+    @property
+    def record(self) -> RecordSummary | None:
+        """The flight's record that the other is, if it is one."""
+        return self.profile.record
+
+    def smoothed(self, width: Any) -> Profile:
+        """Convolution is linear: the smoothed one in other axes."""
+        return Turned(self.profile.smoothed(width), self.matrix)
+
+
 @typed
 def vector(x: Any | None = None, y: Any | None = None, z: Any | None = None) -> Vector:
     """Return the vector profile of three components; one left out is zero.
@@ -168,6 +209,8 @@ def clamped(profile: Profile, first: float, last: float) -> Profile:
         case Vector():
             x, y, z = (clamped(part, first, last) for part in profile.parts)
             return Vector((x, y, z))
+        case Turned():
+            return Turned(clamped(profile.profile, first, last), profile.matrix)
     return Clamped(profile, first, last)
 
 

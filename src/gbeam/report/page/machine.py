@@ -153,12 +153,12 @@ _PLACES = {"current": "now", "best": "placed", "middle": "at mid-span"}
 def placement_body(facts: Facts, viewer: str, drawn: str) -> str:
     """Best place of the specimen, its effect, and the other options."""
     share = facts["fraction_of_length"]
-    best = f"{1e3 * facts['control_point']:.2f} mm from the root" + (f", {share:.4f} of the length" if share else "")
-    now = f"{1e3 * facts['current_control_point']:.2f} mm"
+    best = f"{_point(facts)} from the root" + (f", {share:.4f} of the length" if share else "")
+    now = _point(facts["before"]) if facts["before"] else f"{1e3 * facts['current_control_point']:.2f} mm"
     rows = [
         ("control point", f"{best} (now {now})"),
         ("largest load", largest(_pair(facts["options"][0]), facts["before"] and _pair(facts["before"]))),
-        ("mounting", facts["mounting"]),
+        ("mounting", facts["mounting"] + _turned(facts)),
         ("smoothing", f"{number(1e3 * facts['smoothing'])} ms"),
     ]
     parts = [heading("Placement"), table(("", ""), rows, words=(0, 1))]
@@ -201,13 +201,32 @@ def _options(options: list[Facts]) -> str:
         words = "; ".join(map(_use, each["exceeded"]))
         share = f"{100 * each['share']:.0f} % of a limit" if each["share"] else ""
         limits = Cell(f"exceeds {words}", "bad") if words else share
-        point = 1e3 * each["control_point"]
         largest = each["largest_load"]
         load = [known(largest["machine"]) / STANDARD_GRAVITY, largest.get("place_machine", "").removeprefix("the ")]
-        return [each["mounting"], 1e3 * each["smoothing"], point, _of_peak(each["total_error"]), *load, limits]
+        mounted = each["mounting"] + _turned(each)
+        return [
+            mounted,
+            1e3 * each["smoothing"],
+            _point(each).removesuffix(" mm"),
+            _of_peak(each["total_error"]),
+            *load,
+            limits,
+        ]
 
     head = ("mounting", "smoothing, ms", "control point, mm", "error", "largest load, g", "at", "limits")
     return table(head, map(row, options), "Best first; those that break limits last", words=(0, 5, 6))
+
+
+def _point(facts: Facts) -> str:
+    """A control point, along x or anywhere."""
+    place = [facts["place"][axis] for axis in "xyz"]
+    words = [f"{1e3 * each:.2f}" for each in place]
+    return f"({', '.join(words)}) mm" if any(place[1:]) else f"{words[0]} mm"
+
+
+def _turned(facts: Facts) -> str:
+    turn = [facts["turn"][axis] for axis in "xyz"]
+    return f", turned by ({', '.join(f'{math.degrees(each):.4g}' for each in turn)}) deg" if any(turn) else ""
 
 
 def _use(use: Facts) -> str:

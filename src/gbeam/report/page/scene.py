@@ -64,7 +64,8 @@ def motion(name: str, environment: str, variables: Variables, numbers: Numbers) 
     if actual is not None:
         header["reference"] = numbers.add(of("load_reference")[index])
         header["controlPoint"] = float(of("control_point"))
-        header["axes"], header["arm"] = numbers.add(of("axis_angle")[index]), float(of("arm"))
+        if of("turn") is None and of("control_place") is None:  # the machine is drawn about a beam on its axis
+            header["axes"], header["arm"] = numbers.add(of("axis_angle")[index]), float(of("arm"))
         header["span"] = [max(float(of("flight_from")), float(time[0])), min(float(of("flight_to")), float(time[-1]))]
     if of("attitude") is not None:
         header["attitude"] = numbers.add(of("attitude"))

@@ -12,6 +12,13 @@ from gbeam.results.machine import LimitUse
 from gbeam.results.result import Part, Result
 
 MEASURES = ("root-shear", "root-moment", "vibration", "tip", "load")
+
+
+def degrees(turn: tuple[float, float, float]) -> str:
+    """A rotation vector in words."""
+    return "({}) deg".format(", ".join(f"{math.degrees(each):.4g}" for each in turn))
+
+
 _LEVER = 0.1  # least part of the total error that a move must save to be worth it
 _FULL = 0.99  # share of a limit from which on it is used up
 _SAME = 1e-3  # of the length: control points nearer than this are one
@@ -23,7 +30,7 @@ class Candidate(Part):
 
     mounting: str = quantity("", "which way up the specimen is mounted", note="upright or inverted")
     smoothing: float = quantity("s", "width of the target's kernel")
-    control_point: float = quantity("m", "control point, from the root", note="best for this candidate")
+    control_point: float = quantity("m", "control point, from the root along x", note="best for this candidate")
     mismatch: float = quantity("", "weighted measure of the mismatch field", note="as a fraction of flight's peak")
     total_error: float = quantity(
         "", "the same with what smoothing and tracking change", note="what candidates are chosen by"
@@ -50,6 +57,15 @@ class Candidate(Part):
         note="on the machine from the beginning of its spin-up to the end of its spin-down",
         default_factory=PeakPair,
     )
+
+    beside: tuple[float, float] = fact("control point along y and z", "m", name=None, key=None, default=(0.0, 0.0))
+    turn: tuple[float, float, float] = quantity(
+        "rad", "rotation vector of the specimen in the machine", "axis", default=(0.0, 0.0, 0.0)
+    )
+
+    @declared("m", "control point, from the root", "axis", name="control_place", key="place")
+    def place(self) -> tuple[float, float, float]:
+        return (self.control_point, *self.beside)
 
     @declared("m/s^2", "largest load anywhere on the specimen", name="largest_load", key=None)
     def load(self) -> float:
@@ -87,6 +103,8 @@ class Setting(Part):
     control_point: float = quantity("m", "control point, from the root")
     mounting: str = fact("upright or inverted")
     smoothing: float = quantity("s", "width of the target's kernel")
+    place: tuple[float, float, float] = quantity("m", "control point, from the root", "axis", name="control_place")
+    turn: tuple[float, float, float] = quantity("rad", "rotation vector of the specimen in the machine", "axis")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -135,21 +153,26 @@ class Placement(Result):
 
     @declared("", "control point, mounting and smoothing of the best", role="part", name=None, key=INSIDE)
     def placed(self) -> Setting:
-        return Setting(self.best.control_point, self.best.mounting, self.best.smoothing)
+        best = self.best
+        return Setting(best.control_point, best.mounting, best.smoothing, best.place, best.turn)
 
     @declared("", "the changes as KEY=VALUE of --set", role="fact", name=None, key="set")
     def settings(self) -> tuple[str, ...]:
         return tuple(f"motion.{self.centrifuge}.{key}={value}" for key, value in self.changes.items())
 
     @property
-    def changes(self) -> dict[str, str]:
+    def changes(self) -> dict[str, str | list[str]]:
         """Changes of the centrifuge, as in a scenario; empty where it is the best already, or none may be."""
         best, before = self.best, self.before
         if self.outcome != "done":
             return {}
-        changes = {}
-        if abs(best.control_point - self.current) > _SAME * self.length:
-            changes["control_point"] = f"{1e3 * best.control_point:.6g} mm"
+        changes: dict[str, str | list[str]] = {}
+        now = (self.current, 0.0, 0.0) if before is None else before.place
+        if math.dist(best.place, now) > _SAME * self.length:
+            place = [f"{1e3 * each:.6g} mm" for each in best.place]
+            changes["control_point"] = place if any(best.place[1:]) or best.place[0] < 0 else place[0]
+        if before is not None and best.turn != before.turn:
+            changes["turn"] = [f"{math.degrees(each):.6g} deg" for each in best.turn]
         if before is not None and best.mounting != before.mounting:
             changes["mounting"] = best.mounting
         if before is not None and abs(best.smoothing - before.smoothing) > 1e-3 * before.smoothing:

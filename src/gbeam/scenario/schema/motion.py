@@ -15,10 +15,12 @@ from gbeam.scenario.schema.fields import (
     Duration,
     Length,
     Loc,
+    Place3,
     Position,
     Quantity,
     Table,
     Time,
+    Turn3,
     refuse,
     wrong,
 )
@@ -159,7 +161,9 @@ class Centrifuge(Table):
         default=None, description="an example machine, which gives arm, idle and limits where they are left out"
     )
     arm: Length | None = Field(default=None, description="radius from the main axis to the control point; or machine")
-    control_point: Position = Field(description="point of the beam that feels the flight's load, from the root")
+    control_point: Annotated[Annotated[Position, Tag("one")] | Annotated[Place3, Tag("list")], ONE_OR_LIST] = Field(
+        description="point of the specimen that feels the flight's load, from the root: along x, or [x, y, z]"
+    )
     inverse: Literal["quasi-static", "flat", "exact", "planned"] = Field(
         default="planned",
         description="how the axis motions are found. planned: the least tracking error within the limits, to 1 % of "
@@ -200,11 +204,21 @@ class Centrifuge(Table):
         description="which of the two ways the specimen sits in the gimbals. Under a load across it, its tip points "
         "along the arm's motion (upright) or against it (inverted): docs/mounting.svg",
     )
+    turn: Turn3 = Field(
+        default=(0.0, 0.0, 0.0),
+        description="which way round the specimen sits in the gimbals: rotation vector of its axes, whose x lies along "
+        "axis 3 where it is zero",
+    )
     limits: Limits = Field(
         default_factory=Limits, description="what the machine can do: { axis1, axis2, axis3, inertia, power }"
     )
     commands: Commands | None = Field(default=None, description="axis motions for the controller: { sample }")
     accept: Accept | None = Field(default=None, description="how well it must reproduce the flight: { tip, peaks }")
+
+    @property
+    def along(self) -> float:
+        """The control point along x, m."""
+        return self.control_point[0] if isinstance(self.control_point, tuple) else self.control_point
 
     @property
     def limits_of_acceptance(self) -> dict[str, Any]:

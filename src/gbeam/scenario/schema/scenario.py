@@ -181,7 +181,7 @@ class Scenario(Environments, _Structure):
         """Motions that do not agree with the beam or its model."""
         for name, motion in self.motion.items():
             length = math.inf if self.beam.length is None else self.beam.length
-            if isinstance(motion, Centrifuge) and motion.control_point > length * (1 + 1e-12):
+            if isinstance(motion, Centrifuge) and motion.along > length * (1 + 1e-12):
                 hint = "give 0 to {beam.length} from the root"
                 yield ("motion", name, "control_point"), wrong("{value} is beyond the tip", hint)
             if isinstance(motion, Hub):

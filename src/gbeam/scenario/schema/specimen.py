@@ -11,24 +11,23 @@ from gbeam.guards.limits import ENTRIES
 from gbeam.scenario.schema.beam import Material
 from gbeam.scenario.schema.fields import (
     ONE_OR_LIST,
-    Angle,
     Density,
     Exponent,
     File,
     Mass,
     MomentOfInertia,
     Offset,
+    Place3,
     Pressure,
     Quantity,
     Ratio,
     Ratios,
     Table,
+    Turn3,
     refuse,
     wrong,
 )
 
-Place3 = tuple[Offset, Offset, Offset]
-Turn3 = tuple[Angle, Angle, Angle]
 Direction = tuple[Ratio, Ratio, Ratio]
 _Moduli = tuple[Pressure, Pressure, Pressure]
 _Count = Annotated[StrictInt, Field(ge=1, le=1000)]

@@ -26,10 +26,12 @@ from gbeam.scenario.schema.fields import (
     AngularRate,
     Loc,
     Offset,
+    Place3,
     Position,
     Quantity,
     Speed,
     Table,
+    Turn3,
     refuse,
     wrong,
 )
@@ -40,12 +42,10 @@ from gbeam.scenario.schema.specimen import (
     Direction,
     MatricesBody,
     ModalTestBody,
-    Place3,
     PlaceOfBody,
     RigidKeys,
     SolidBody,
     StandardInputBody,
-    Turn3,
 )
 
 

@@ -18,7 +18,7 @@ from gbeam.scenario.text.source import Source, is_json, parse
 from gbeam.scenario.values import Path, parse_path, path_text, written_at
 
 
-def edited(source: Source, table: Path, changes: Mapping[str, str | float]) -> str:
+def edited(source: Source, table: Path, changes: Mapping[str, str | float | list[str]]) -> str:
     """Return the text with some entries of one table set to other text."""
     text = source.text
     lines = ", ".join(f"{path_text((*table, key))}={value}" for key, value in changes.items())
