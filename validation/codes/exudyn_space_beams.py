@@ -108,12 +108,19 @@ class HubAndBody:
 
 
 def hub_with_body(
-    case: HubAndBody, torque: Callable[[float], float], torsion: float, end: float, step: float, elements: int
+    case: HubAndBody,
+    torque: Callable[[float], float],
+    torsion: float,
+    end: float,
+    step: float,
+    elements: int,
+    angle: Callable[[float], float] | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Times (t,) s; displacement of the tip m, force N and moment N m of the hub on the root in its axes, and its angle
     rad, (t, 10).
 
-    `torsion` is the torsional stiffness, N m²; the stiffness in shear is that in tension.
+    `torsion` is the torsional stiffness, N m²; the stiffness in shear is that in tension. A hub whose `angle` is given,
+    rad, is driven by it, and by no torque.
     """
     system = exudyn.SystemContainer().AddSystem()
     section = exudyn.BeamSection()
@@ -140,7 +147,14 @@ def hub_with_body(
         system.AddMarker(items.MarkerNodeRigid(nodeNumber=nodes[0])),
     )
     rim = system.AddMarker(items.MarkerBodyRigid(bodyNumber=hub, localPosition=[case.radius, 0, 0]))
-    system.AddObject(items.ObjectJointGeneric(markerNumbers=[ground, axle], constrainedAxes=[1, 1, 1, 1, 1, 0]))
+    axis = {"constrainedAxes": [1, 1, 1, 1, 1, 0]}
+    if angle is not None:
+
+        def driven(mbs, t, itemNumber, parameters):  # type: ignore[no-untyped-def]
+            return [0, 0, 0, 0, 0, angle(t)]
+
+        axis = {"offsetUserFunction": driven}
+    system.AddObject(items.ObjectJointGeneric(markerNumbers=[ground, axle], **axis))
     clamp = system.AddObject(items.ObjectJointGeneric(markerNumbers=[rim, root]))
 
     def drive(mbs, t, loadVector):  # type: ignore[no-untyped-def]
