@@ -100,6 +100,29 @@ def test_a_flight_without_forces_meets_a_stop(step: float) -> None:
     assert response.qd[-1, 0] == pytest.approx(-1.0, abs=0.3 * (100 * step) ** 2 + 1e-6)
 
 
+def test_a_stop_that_is_met_between_two_times_is_not_overlooked() -> None:
+    """An oscillator of one second grazes its stop, 10 µm before its turn, for less than a step."""
+    rate, stop, end = 2 * np.pi, 1e6, 1 - 1e-5
+    held = {"stiffness": rate**2, "stops": (-2.0, end), "stop_stiffness": stop}
+    slide = gb.Joint("prismatic", "block", axes=[(1, 0, 0)], initial_rate=rate, **held)
+    system = gb.System({"block": gb.RigidBody(1.0)}, {"slide": slide})
+    given = gb.simulate(system, duration=0.6, step=5e-3)
+    assert any("meets a stop and leaves it within one step, at 0.2" in each for each in given.warnings)
+    assert np.isnan(given.errors.displacement.step)
+    automatic = gb.simulate(system, duration=0.6)
+    assert not any("stop" in each for each in automatic.warnings)
+    # Before and behind the contact it is that oscillator; in it, one about another place, as stiff as both springs.
+    meets, together = np.arcsin(end) / rate, np.sqrt(rate**2 + stop)
+    ease, speed = stop * end / together**2, rate * np.cos(rate * meets)
+    contact = (np.pi - 2 * np.arctan2((end - ease) * together, speed)) / together
+    late = contact + 2 * meets - 0.5  # than without a stop
+    behind = automatic.time > meets + contact
+    expected = np.sin(rate * (automatic.time[behind] - late))
+    away = np.abs(automatic.q[behind, 0] - expected).max()
+    assert away < max(automatic.errors.displacement.step, 1e-5) < 1e-3
+    assert np.abs(given.q[-1, 0] - expected[-1]) > 5e-4  # what the steps overlook
+
+
 @pytest.mark.parametrize("law", [lambda t, y: "a", lambda t, y: 1j * y, lambda t, y: np.zeros(3), lambda t, y: None])
 def test_a_law_that_gives_no_effort_is_named(law: object) -> None:
     loop = gb.Feedback(law, ["hinge.angle"], ["hinge.angle"], sample=0.01)

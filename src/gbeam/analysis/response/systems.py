@@ -44,6 +44,8 @@ from gbeam.structure.beam import names_at
 Array = Any
 Floats = NDArray[np.float64]
 LEAST = 500  # steps of the results at least
+BENT = 4  # into how many a step is divided at most where a law bends, for errors to be seen to fall
+BEYOND = 1e-8  # of a coordinate's range: less beyond a stop is no contact
 
 
 @dataclass(frozen=True)
@@ -134,16 +136,19 @@ def simulate_system(
         return Ran.of(system, trajectory, step, _driving(motion, trajectory, equations))
 
     runs, error = [run(settings.step or 2 * coarse, "integrating")], math.nan
+    missed = _missed_stop(system, runs[-1].trajectory)
     bends = any(joint.holder.bends for joint in system.joints.values())
     if settings.step is None:
         runs.append(run(coarse, "refining"))
         while True:
             error = _step_error(runs, order, bends)
-            whole = runs[-1].whole
+            whole, missed = runs[-1].whole, _missed_stop(system, runs[-1].trajectory)
             most = int(LOADS_STEPS * runs[-1].step / settings.duration)
             few = bends and len(runs) < 3
-            finer = min(max(finer_by(error / settings.aim if whole else math.nan, order), 2 if few else 0), most)
-            if (error <= settings.aim and whole and not few) or finer < 2:
+            needed = few or bool(missed)
+            finer = max(finer_by(error / settings.aim if whole else math.nan, order), 2 if needed else 0)
+            finer = min(finer, BENT if bends else finer, most)
+            if (error <= settings.aim and whole and not needed) or finer < 2:
                 break
             if not (whole or runs[-2].whole) and len(runs) > 3:
                 break
@@ -153,12 +158,13 @@ def simulate_system(
         coarser = (4, 2) if bends else (2,)
         runs[:0] = [run(k * settings.step, f"checking with {k} times the step") for k in coarser]
         error = _step_error(runs, order, bends)
+    error = math.nan if missed else error
     chosen = runs[-1]
     stride = 1 if settings.step is not None else round(coarse / chosen.step)
     kept = chosen.trajectory.at(slice(None, None, stride))
     if not settings.estimate or not chosen.whole:
         errors = SystemErrors(ErrorEstimate(error))
-        return _described(system, motion, settings, chosen, stride, errors, name, equations)
+        return _described(system, motion, settings, chosen, stride, errors, name, equations, missed)
 
     def again(of: System) -> tuple[Trajectory, InputsOf]:
         control = SystemControllers(of) if system.controllers else None
@@ -173,9 +179,10 @@ def simulate_system(
         return chosen.inputs(of, np.arange(len(chosen.trajectory.time))[::stride][some])
 
     steps = {PLACE: error} | _load_errors(system, runs, order, bends)
+    steps = dict.fromkeys(steps, math.nan) if missed else steps
     settled, closed = begin.state == "equilibrium", again if system.controllers else None
     errors = system_errors(system, kept, inputs, closed, steps, settled=settled)
-    return _described(system, motion, settings, chosen, stride, errors, name, equations)
+    return _described(system, motion, settings, chosen, stride, errors, name, equations, missed)
 
 
 def _traced(
@@ -235,6 +242,33 @@ def _load_errors(system: System, runs: list[Ran], order: int, bends: bool) -> di
     return dict(zip(keys, of_histories(last, read, lambda apart: _left(last, apart, 4 / order, bends)), strict=True))
 
 
+def _missed_stop(system: System, run: Trajectory) -> tuple[str, ...]:
+    """Warn of a stop that a coordinate meets and leaves between two of a run's times, of which the steps may know
+    nothing.
+    """
+    holders = [(link.holder, np.full(link.body.size, np.inf)) for link in system.tree.links]
+    low, high = (
+        np.concatenate([np.append(sign * getattr(of, side), off) for of, off in holders])[system.tree.free]
+        for side, sign in (("low", -1.0), ("high", 1.0))
+    )
+    h = np.diff(run.time)
+    for sign, ends in ((1.0, high), (-1.0, low)):
+        for k in np.flatnonzero(np.isfinite(ends)):
+            q, v = sign * run.q[:, k], sign * run.qd[:, k]
+            at = np.flatnonzero((v[:-1] > 0) & (v[1:] <= 0) & (np.minimum(q[:-1], q[1:]) <= ends[k]))
+            # The rate is a parabola between two times, c + b s + a s²: the cubic through places and rates.
+            c, mean, last = v[at], (q[at + 1] - q[at]) / h[at], v[at + 1]
+            a, b = 3 * (c + last - 2 * mean), 6 * mean - 4 * c - 2 * last
+            s = 2 * c / (np.sqrt(b**2 - 4 * a * c) - b)
+            beyond = q[at] + h[at] * s * (c + s * (b / 2 + s * a / 3)) - ends[k]
+            if beyond.size and beyond.max() > BEYOND * np.ptp(q):
+                first = run.time[at[np.argmax(beyond > BEYOND * np.ptp(q))]]
+                name = system.coordinates[system.tree.free[k]]
+                words = f"{name} meets a stop and leaves it within one step, at {first:.4g} s"
+                return (f"{words}: the steps may miss it, and their error is not known; give a smaller step",)
+    return ()
+
+
 def _corners(system: System, motion: Motion | None, step: float) -> Floats:
     moved = [] if motion is None else [motion.corners(step)]
     return np.concatenate([system.corners(step), *moved])
@@ -286,6 +320,7 @@ def _described(
     errors: SystemErrors,
     name: str,
     equations: NonlinearEquations,
+    warnings: tuple[str, ...] = (),
 ) -> SystemResponse:
     """Describe a run at every `stride`-th of its steps."""
     every = run.trajectory
@@ -314,7 +349,7 @@ def _described(
         message = (
             f"Newton's method failed at {every.time[-1]:.4g} s: give a smaller step, or look for what breaks there"
         )
-    warnings = (*settings.warnings, *yielded)
+    warnings += (*settings.warnings, *yielded)
     warnings += doubts(errors, settings.tolerance)
     step_error = errors.displacement.step
     if outcome == "done" and step_error > settings.tolerance:
