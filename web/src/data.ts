@@ -70,6 +70,8 @@ export interface Motion {
   radiusShown?: number;
   /** Whether it is a mode's shape, whose size means nothing. */
   relative?: boolean;
+  /** s, after which it begins again. */
+  period?: number;
   controlPoint?: number;
   load?: Ref;
   reference?: Ref;
@@ -84,17 +86,10 @@ export interface Motion {
   attitude?: Ref;
 }
 
-/** Complex mode shapes of one beam. */
+/** Mode shapes, each as a motion of one period. */
 export interface Modes {
-  points: number[];
-  width: number[];
-  thickness: number[];
-  round: boolean;
   labels: string[];
-  real: Ref;
-  imaginary: Ref;
-  /** Real and imaginary angles of the sections about the beam's axis, rad for shapes in m. */
-  twist?: [Ref, Ref];
+  motions: Motion[];
 }
 
 export interface Series {

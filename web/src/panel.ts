@@ -76,6 +76,7 @@ export class Panel {
 
   /** What there is at a time, in words: before, during or after the flight. */
   state(t: number): string {
+    if (this.motion.period) return "";
     const times = view(this.numbers, this.motion.time);
     const slack = 1e-6 * Math.max(1, Math.abs(t));
     if (t < times[0]! - slack) return "not begun";
@@ -90,7 +91,7 @@ export class Panel {
   update(t: number, settings: Settings, dark: boolean): void {
     const { motion, numbers } = this;
     this.deflection = settings.factor * motion.largest;
-    const place = locate(view(numbers, motion.time), t);
+    const place = locate(view(numbers, motion.time), motion.period ? t % motion.period : t);
     for (const each of this.bodies) each.update(place, settings, dark);
     if (motion.middle && motion.middle.shape[0]! > 1) {
       this.middle = [...interpolate(view(numbers, motion.middle), 3, place, new Float32Array(3))] as typeof this.middle;

@@ -3,7 +3,6 @@
 import { button, choice, element, reachable } from "./controls";
 import { type Data, decode, type Header } from "./data";
 import { heatMap } from "./maps";
-import { shapes } from "./modes";
 import { Plots } from "./plots";
 import { Viewer } from "./viewer";
 
@@ -51,7 +50,8 @@ export function showModesIn(stage: HTMLElement, data: Data): { viewer: () => Vie
   const show = (which: number): void => {
     viewer?.dispose();
     place.replaceChildren();
-    viewer = Viewer.mount(place, shapes(modes, which, data.numbers));
+    const scene = { motions: [modes.motions[which]!], start: 0 };
+    viewer = Viewer.mount(place, { header: { scene, plots: [], maps: [] }, numbers: data.numbers });
     if (window.gbeam) window.gbeam.viewer = viewer;
   };
   const row = element("div", "gbeam-row");

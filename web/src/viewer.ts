@@ -10,6 +10,7 @@ import { Orbit } from "./orbit";
 import { Panel } from "./panel";
 
 const NO_WEBGL = "This browser shows no WebGL, so there is no view in three dimensions; the plots and tables have it all.";
+const PERIODS = 50; // of a motion that begins again
 const SPEEDS = [0.05, 0.1, 0.25, 0.5, 1, 2, 4];
 
 /** A factor that makes a deflection visible: 1, 2 or 5 times a power of ten; 1 where it is large itself. */
@@ -44,7 +45,7 @@ export class Viewer {
     const beams = parts.flatMap((part) => part.beam ?? []);
     const stresses = [...beams.flatMap((each) => each.stress ?? []), ...parts.flatMap((part) => part.surface ?? [])];
     this.settings = {
-      factor: visible(largest, motions[0]!.length),
+      factor: motions.every((each) => each.relative) ? 1 : visible(largest, motions[0]!.length),
       ghost: true,
       loads: true,
       colouring: stresses.length ? "stress" : beams.length ? "deflection" : "none",
@@ -55,7 +56,7 @@ export class Viewer {
     const ends = motions.map((each) => view(data.numbers, each.time));
     this.clock = new Clock(
       Math.min(...ends.map((each) => each[0]!)),
-      Math.max(...ends.map((each) => each[each.length - 1]!)),
+      Math.max(...ends.map((each, i) => each[each.length - 1]! * (motions[i]!.period ? PERIODS : 1))),
       data.header.scene!.start,
     );
     this.panels = motions.flatMap((motion) => {
@@ -207,7 +208,8 @@ export class Viewer {
     });
     const relative = this.panels.every((panel) => panel.motion.relative);
     const bends = this.panels.some((panel) => panel.motion.parts.some((part) => part.beam ?? part.surface));
-    const parts: HTMLElement[] = !bends ? [speed] : relative ? [speed, colour, ghost] : [speed, scale, colour, ghost];
+    const bending = relative ? [colour, ghost] : [scale, colour, ghost];
+    const parts: HTMLElement[] = [...(clock.end > clock.start ? [speed] : []), ...(bends ? bending : [])];
     if (settings.largestLoad > 0) {
       parts.push(
         tick("load", settings.loads, (on) => {
@@ -221,7 +223,7 @@ export class Viewer {
     first.append(play, slider, readout);
     const second = element("div", "gbeam-row");
     second.append(...parts);
-    return [first, second, legend];
+    return clock.end > clock.start ? [first, second, legend] : [second, legend];
   }
 
   /** What colours and arrows mean. */

@@ -4,8 +4,6 @@ import { BeamMesh, corners, frame } from "../src/beam";
 import { along, Body, type Settings } from "../src/bodies";
 import { centrifuge, hub } from "../src/carriers";
 import { shade } from "../src/colours";
-import { type Ref, view } from "../src/data";
-import { shapes } from "../src/modes";
 import { visible } from "../src/viewer";
 
 describe("a centrifuge's pose", () => {
@@ -102,29 +100,7 @@ it("takes stress linearly from the sections to the points", () => {
   expect([...out]).toEqual([10, 12.5, 20, 20]);
 });
 
-it("moves a mode's shape by Re(shape e^iφ), the same after every period", () => {
-  const modes = {
-    points: [0, 2], width: [1, 1], thickness: [1, 1], round: false, labels: ["1"],
-    real: { at: 0, shape: [1, 2, 3] }, imaginary: { at: 6, shape: [1, 2, 3] },
-  };
-  const numbers = new Float32Array([0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0.5, 0]);
-  const { header, numbers: made } = shapes(modes, 0, numbers, 2);
-  const motion = header.scene!.motions[0]!;
-  const rows = view(made, motion.parts[0]!.beam!.displacement);
-  expect([...rows.slice(0, 6)]).toEqual([0, 0, 0, 0, 0, expect.closeTo(0.3, 6)]);
-  expect(rows[12 * 6 + 4]).toBeCloseTo(-0.15, 6); // a quarter of a period later
-  expect(rows[48 * 6 + 5]).toBeCloseTo(0.3, 6);
-});
-
-it("turns the sections of a mode with twist, and none by more than 0.6 rad", () => {
-  const modes = {
-    points: [0, 2], width: [1, 1], thickness: [1, 1], round: false, labels: ["1"],
-    real: { at: 0, shape: [1, 2, 3] }, imaginary: { at: 0, shape: [1, 2, 3] },
-    twist: [{ at: 6, shape: [1, 2] }, { at: 8, shape: [1, 2] }] as [Ref, Ref],
-  };
-  const { header, numbers: made } = shapes(modes, 0, new Float32Array([0, 0, 0, 0, 0, 0, 0, 10, 0, 0]), 2);
-  const motion = header.scene!.motions[0]!;
-  expect([...view(made, motion.parts[0]!.beam!.twist!).slice(0, 2)]).toEqual([0, expect.closeTo(0.6, 6)]);
+it("turns the sections by twist", () => {
   const beam = new BeamMesh({ points: [0, 2], width: [2, 2], thickness: [1, 1], round: false }, false);
   beam.move([0, 0, 0, 0, 0, 0], 1, null, 1, [0, Math.PI / 2]);
   const mesh = beam.group.children[0] as unknown as { geometry: { getAttribute(name: string): { array: Float32Array } } };

@@ -148,7 +148,7 @@ class Figured(Result):
     """A result that has figures."""
 
     def view(self) -> Any:
-        """Show the beam in motion in a notebook: a study, a response, or the shapes of modes.
+        """Show what moves in a notebook: a study, a response, the shapes of modes, or where a system rests.
 
         Returns
         -------

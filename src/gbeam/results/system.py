@@ -89,6 +89,17 @@ class BeamResponse(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
+class BeamShape(Part):
+    """One beam in the modes of its system: where it rests and how its axis moves from there, in axes of its root."""
+
+    outline: Outline = part("its shape at rest, axes of its root", key=None, name=INSIDE)
+    shape: Complex = quantity(
+        "", "displacement of the beam's axis, in the size of the mode's shape", "mode", "point", "axis",
+        name="outline_shape", key=None,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, repr=False, eq=False)
 class Assembly(Part):
     """Parents of bodies, and the size of rigid ones, for pictures."""
 
@@ -327,6 +338,13 @@ class SystemRest(Figured):
     errors: SystemErrors = part(
         "of places, root loads and stress, as fractions of the largest", name=None, default_factory=SystemErrors
     )
+    assembly: Assembly | None = part(
+        "how the bodies hang together", key=None, name=INSIDE, note="None where nothing is to be drawn", default=None
+    )
+    outlines: Mapping[str, Outline] = rows(
+        "shapes of the beams at rest, by the name of the body", "body", optional=True, name="", key=None,
+        default_factory=dict,
+    )  # fmt: skip
 
     def at(self, point: str) -> Floats:
         """Return the place of a named point in axes of the ground, (3,) m.
@@ -409,6 +427,20 @@ class SystemModes(Oscillating, Figured):
         default=None,
     )
     instabilities: tuple[Instability, ...] = rows("eigenvalues that grow", "instability", name=None, default=())
+    attitude: Floats = quantity(
+        "", "Euler parameters of the point's axes at rest in those of the ground", "point", "euler", key=None,
+        default_factory=lambda: np.empty((0, 4)),
+    )  # fmt: skip
+    turn: Complex = quantity(
+        "rad/m", "rotation of the point's axes, for shapes in m", "mode", "point", "axis", key=None, frame="ground",
+        default_factory=lambda: np.empty((0, 0, 3)),
+    )  # fmt: skip
+    assembly: Assembly | None = part(
+        "how the bodies hang together", key=None, name=INSIDE, note="None where nothing is to be drawn", default=None
+    )
+    beams: Mapping[str, BeamShape] = rows(
+        "beams, by the name of the body", "body", optional=True, name="", key=None, default_factory=dict
+    )
 
     @declared("", "body that moves most", "mode", name=None)
     def foremost(self) -> tuple[str, ...]:

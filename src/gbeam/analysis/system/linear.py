@@ -11,7 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.analysis.accuracy.estimate import LIMIT
+from gbeam.analysis.response.record import outline_of
 from gbeam.analysis.system.accuracy import doubts, system_errors
+from gbeam.analysis.system.assembly import assembly_of
 from gbeam.analysis.system.histories import beams_of, histories, loads_of
 from gbeam.analysis.system.point import Point, started
 from gbeam.analysis.system.steady import Drive, SteadySystem, steady
@@ -19,13 +21,14 @@ from gbeam.guards.checks import choice
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.tree.control import signal_names
 from gbeam.mechanics.tree.signals import drives_of, measurements, signals_of
+from gbeam.mechanics.tree.steps import parameters_of_all
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.eigen import Vibrations
 from gbeam.numerics.series import STEP
 from gbeam.results.errors import Instability
 from gbeam.results.state_space import Signal, StateSpace
-from gbeam.results.system import SystemModes, SystemRest
+from gbeam.results.system import BeamShape, SystemModes, SystemRest
 
 if TYPE_CHECKING:
     from gbeam.analysis.steady.operating_point import Steady
@@ -68,6 +71,12 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
         errors=errors,
         stable=not unstable,
         warnings=unstable + doubts(errors, LIMIT) + system.warnings,
+        assembly=assembly_of(system),
+        outlines={
+            body: outline
+            for body, each in beams.items()
+            if (outline := outline_of(beams_of(system)[body], None, np.array([time]), each.q)) is not None
+        },
         loads={body: loads_of(beams_of(system)[body], [each], np.array([time])) for body, each in beams.items()},
         **{key: at[key] for key in ("place", "attitude", "q", "effort", "ground_force", "ground_moment")},
     )
@@ -76,9 +85,10 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
 def system_modes(state: SteadySystem, moving: Vibrations, time: float, name: str) -> SystemModes:
     """Describe vibrations of a system about a steady state."""
     system, local = state.system, state.local
-    shape = np.einsum("pan,nk->kpa", state.slopes_of_points, moving.modes)
+    shape, turn = (np.einsum("pan,nk->kpa", each, moving.modes) for each in state.slopes_of_frames)
     flat = shape.reshape(len(shape), math.prod(shape.shape[1:]))
     largest = flat[np.arange(len(flat)), np.abs(flat).argmax(axis=1)] if flat.size else np.ones(len(shape))
+    scale = np.where(largest == 0, 1, largest)
     warnings = system.warnings + state.point.sticking(system)
     if state.changing:
         warnings += (f"the system turns, and its equations with it: these are modes of the place at {time:g} s",)
@@ -88,9 +98,13 @@ def system_modes(state: SteadySystem, moving: Vibrations, time: float, name: str
         eigenvalue=moving.value,
         points=system.points,
         bodies=system.order,
-        shape=shape / np.where(largest == 0, 1, largest)[:, None, None],
+        shape=shape / scale[:, None, None],
+        turn=turn / scale[:, None, None],
         share=state.shares(moving.modes),
         place=np.stack([frame.p for frame in state.frames]),
+        attitude=parameters_of_all(np.stack([frame.R for frame in state.frames])),
+        assembly=assembly_of(system),
+        beams=_shapes(state, moving.modes / scale),
         rigid=len(local.y) - len(moving.value) - (len(moving.diverging) + len(moving.decaying)) // 2,
         instabilities=instabilities(state, moving),
         warnings=warnings,
@@ -108,6 +122,20 @@ def instabilities(point: Steady, moving: Vibrations) -> tuple[Instability, ...]:
             if grows
         ),
     )
+
+
+def _shapes(state: SteadySystem, modes: Array) -> dict[str, BeamShape]:
+    """Shapes of the beams at rest, and in modes (n, k)."""
+    beams = dict[str, BeamShape]()
+    for name, beam in beams_of(state.system).items() if modes.size else ():
+        own = [k for k, each in enumerate(state.names) if each.startswith(f"{name}.q")]
+        q, time = state.local.y[own], np.arange(modes.shape[1])
+        outline = outline_of(beam, None, np.zeros(1), q[None])
+        if outline is not None:
+            moved = [outline_of(beam, None, time, q + 1j * STEP * each[own].T) for each in (modes.real, modes.imag)]
+            real, imaginary = (each.displacement.imag / STEP for each in moved if each is not None)
+            beams[name] = BeamShape(outline, real + 1j * imaginary)
+    return beams
 
 
 def frozen(system: System, motion: Motion | None, time: float, at: str) -> SteadySystem:

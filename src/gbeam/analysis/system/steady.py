@@ -115,11 +115,22 @@ class SteadySystem:
         return self.local.tree.motion(self.local.y, self.local.yd, self.local.ydd, self.local.inputs).every_point
 
     @cached_property
-    def slopes_of_points(self) -> Floats:
-        """Derivatives of the places of all points with respect to the coordinates, (p, 3, n), by a complex step."""
-        moved = self.local.y + 1j * STEP * np.eye(len(self.local.y))
+    def slopes_of_frames(self) -> tuple[Floats, Floats]:
+        """Derivatives of the places of all points and of their rotations, ground's axes, with respect to the
+        coordinates, (p, 3, n) each, by a complex step.
+        """
+        n = len(self.local.y)
+        moved = self.local.y + 1j * STEP * np.eye(n)
         frames = self.local.tree.motion(moved, 0 * moved, 0 * moved, self.local.inputs).every_point
-        return np.stack([frame.p.imag.T / STEP for frame in frames])
+        rotations = [np.broadcast_to(frame.R, (n, 3, 3)) for frame in frames]
+        skew = np.stack([R.imag @ np.swapaxes(R.real, -1, -2) / STEP for R in rotations])
+        turns = np.stack([skew[..., 2, 1], skew[..., 0, 2], skew[..., 1, 0]], axis=1)
+        return np.stack([frame.p.imag.T / STEP for frame in frames]), turns
+
+    @property
+    def slopes_of_points(self) -> Floats:
+        """Derivatives of the places of all points with respect to the coordinates, (p, 3, n)."""
+        return self.slopes_of_frames[0]
 
     def shares(self, modes: Complex) -> Floats:
         """Shares (k, bodies) of the bodies in the kinetic energy of modes (n, k), beside that of the steady state."""

@@ -20,7 +20,7 @@ from gbeam.report.page import machine, searches, steady, study
 from gbeam.report.page.curves import Numbers, drawn
 from gbeam.report.page.parts import Value, badge, escaped, folded, heading, listed, paragraph, section, table, verbatim
 from gbeam.report.page.records import figures_in, modes_in
-from gbeam.report.page.scene import scene, shapes
+from gbeam.report.page.scene import scene, shapes, shapes_of_system
 from gbeam.report.words import as_json
 from gbeam.results.result import Result
 
@@ -42,7 +42,7 @@ _APART = ("form", "units", "provenance", "warnings", "files", "title", "outcome"
 def _quantities(facts: Mapping[str, Any], viewer: str, plots: str) -> str:
     """The inside of the page of a kind that has none of its own: its quantities, and a table for each list of them."""
     known = {key: value for key, value in facts.items() if key not in _APART}
-    return "".join([section("Motion", viewer), *_inside(known, facts.get("units", {}), ""), section("Figures", plots)])
+    return "".join([section("View", viewer), *_inside(known, facts.get("units", {}), ""), section("Figures", plots)])
 
 
 def _system_study(facts: Mapping[str, Any], viewer: str, plots: str) -> str:
@@ -171,7 +171,11 @@ def _viewer(
     """Viewer of a kind, if it has one."""
     if kind == "Modes" and facts["modes"]:
         return {"modes": shapes(modes_in(facts), numbers)}
+    if kind == "SystemModes" and facts["modes"] and "hangs_on" in variables:
+        return {"modes": shapes_of_system(facts, variables, numbers)}
     motions = facts["motions"] if kind in ("Study", "SystemStudy") else {}
+    if kind == "SystemRest":
+        motions = {name: {"environment": "rest"} for name in facts["motions"]}
     if kind == "SystemResponse":  # of one motion, alone
         motions = {facts["name"] or facts["environment"]: facts}
         variables = {f"motions/{name}/{key}": each for name in motions for key, each in variables.items()}

@@ -19,15 +19,15 @@ from gbeam.io.stored import read_stored
 from gbeam.report.facts import facts, origin_json, whole
 from gbeam.report.page.curves import Numbers
 from gbeam.report.page.document import html
-from gbeam.report.page.scene import scene, shapes
+from gbeam.report.page.scene import scene, shapes, shapes_of_system
 from gbeam.results.modal import Modes
 from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response
 from gbeam.results.result import Result
 from gbeam.results.study import Study, SystemStudy
-from gbeam.results.system import SystemResponse
+from gbeam.results.system import SystemModes, SystemResponse, SystemRest
 
-SHOWN = Study, Response, SystemStudy, SystemResponse  # in motion
+SHOWN = Study, Response, SystemStudy, SystemResponse, SystemModes, SystemRest  # in motion, or in three dimensions
 _FIX = "give the result.nc of `gbeam run`, its folder, or the JSON of another verb"
 
 
@@ -38,14 +38,18 @@ def report_of(
     if known is None:
         known = facts(result) | {"provenance": origin_json(result.provenance or Provenance())}
         figures = figures_of(whole(result))
-    return html(known, variables_of(result) if isinstance(result, SHOWN) else {}, figures=figures)
+    every = result if isinstance(result, tuple) else (result,)
+    variables = {key: value for each in every if isinstance(each, SHOWN) for key, value in variables_of(each).items()}
+    return html(known, variables, figures=figures)
 
 
 def variables_of(result: Result) -> dict[str, Any]:
-    """The arrays that the file of a result holds, by path."""
+    """The arrays that the file of a result holds, by path, of a place at rest that of its motion."""
+    of = whole(result)
+    within = f"motions/{of.name}" if isinstance(of, SystemRest) else ""
     return {
-        f"{path}/{name}" if path else name: each.values
-        for path, group in groups_of(whole(result)).items()
+        f"{path or within}/{name}" if path or within else name: each.values
+        for path, group in groups_of(of).items()
         for name, each in (group.variables | group.coordinates).items()
     }
 
@@ -57,10 +61,15 @@ def shown(result: Result) -> tuple[dict[str, Any], Numbers]:
     if isinstance(result, Modes):
         header["modes"] = shapes(result, numbers)
         return header, numbers
+    if isinstance(result, SystemModes) and result.assembly is not None and len(result.frequency):
+        header["modes"] = shapes_of_system(facts(result), variables_of(result), numbers)
+        return header, numbers
     of = SystemStudy("", {result.name or "ground": result}) if isinstance(result, SystemResponse) else whole(result)
     if isinstance(of, (Study, SystemStudy)):
         environments = {name: each.environment for name, each in of.responses.items()}
         header["scene"] = scene(environments, variables_of(of), numbers)
+    if isinstance(of, SystemRest):
+        header["scene"] = scene({of.name: "rest"}, variables_of(of), numbers)
     if header.get("scene") is None:
         raise InputError("result", f"{type(result).__name__} has no beam in motion to show", "print it, or plot it")
     return header, numbers
@@ -92,7 +101,9 @@ def _page_of(file: Path) -> str:
     if not isinstance(text, str):
         raise InputError(str(file), "holds no figures of a result that has a report", _FIX)
     facts, variables = parse_json(text), stored.variables
-    if "time" in variables and len(facts.get("motions", ())) == 1:  # of one motion, which is the file's root
+    if (
+        variables.keys() & {"time", "hangs_on"} and len(facts.get("motions", ())) == 1
+    ):  # of one motion, which is the file's root
         variables = {f"motions/{name}/{key}": each for name in facts["motions"] for key, each in variables.items()}
     return html(facts, variables, origin_json(stored.provenance))
 

@@ -19,6 +19,9 @@ TIMES = 1500  # of bodies that have no outline of their own
 SIGNS = np.array(np.meshgrid(*[(-1, 1)] * 3)).reshape(3, -1).T  # of a box's corners
 LINE = (("rest", "place"), ("across", "across"))  # of a beam that is not straight, and where an outline has it
 FAR = 4  # times their own size: bodies that go farther are followed
+AMPLITUDE, TURN = 0.15, 0.6  # of a mode: of the length, of the largest displacement; rad, the largest rotation
+PERIOD = 2.0  # s, in which a mode is shown
+PHASES = np.linspace(0.0, PERIOD, 25)
 WIDE, THICK = 0.03, 0.012  # of the length: of a beam whose section a result does not hold
 
 
@@ -33,7 +36,7 @@ def scene(motions: Mapping[str, str], variables: Variables, numbers: Numbers) ->
         elif "surface_vertices" in of:
             shown.append(_solid(name, environment, of, numbers))
         elif "hangs_on" in of:
-            shown.append(_system(name, environment, of, numbers))
+            shown.append(_system(name, environment, of if of["place"].ndim == 3 else _resting(of), numbers))
     if not shown:
         return None
     _, time, moved = shown[0]
@@ -193,8 +196,13 @@ def shape(points: Floats, width: Floats, thickness: Floats, is_round: Any) -> di
     }
 
 
+def _resting(v: Variables) -> Variables:
+    """A system at rest as one that moves, at one time."""
+    return {**v, "time": np.zeros(1), "place": v["place"][None], "attitude": v["attitude"][None]}
+
+
 def shapes(modes: Modes, numbers: Numbers) -> dict[str, Any]:
-    """Shapes of every mode at some of the stations."""
+    """Shapes of every mode of a beam, at some of the stations, as motions of a period."""
     x = modes.stations
     some = np.unique(np.linspace(0, len(x) - 1, SHOWN).round().astype(int))
     sizes = [
@@ -202,17 +210,63 @@ def shapes(modes: Modes, numbers: Numbers) -> dict[str, Any]:
         for each, part in ((modes.width, WIDE), (modes.thickness, THICK))
     ]
     ways = zip(modes.frequency, modes.direction, strict=True)
-    return {
-        **shape(x[some], sizes[0], sizes[1], modes.round),
-        "labels": [f"{i}: {number(frequency)} Hz, {way}" for i, (frequency, way) in enumerate(ways, 1)],
-        "real": numbers.add(modes.shape.real[:, some]),
-        "imaginary": numbers.add(modes.shape.imag[:, some]),
-        **(
-            {}
-            if modes.twist is None
-            else {"twist": [numbers.add(part[:, some]) for part in (modes.twist.real, modes.twist.imag)]}
-        ),
-    }
+    labels, motions = [f"{i}: {number(frequency)} Hz, {way}" for i, (frequency, way) in enumerate(ways, 1)], []
+    for k, label in enumerate(labels):
+        twist = np.zeros(1) if modes.twist is None else modes.twist[k, some]
+        amplitude = _amplitude(x[-1], 1.0, float(np.abs(twist).max()))
+        beam = {
+            **shape(x[some], sizes[0], sizes[1], modes.round),
+            "displacement": numbers.add(amplitude * _swung(modes.shape[k, some])),
+        }
+        if modes.twist is not None:
+            beam["twist"] = numbers.add(amplitude * _swung(twist))
+        motion = {"parts": [{"beam": beam}], "length": float(x[-1]), "time": numbers.add(PHASES), "largest": amplitude}
+        motions.append(_mode(label, motion))
+    return {"labels": labels, "motions": motions}
+
+
+def shapes_of_system(facts: Mapping[str, Any], v: Variables, numbers: Numbers) -> dict[str, Any]:
+    """Every mode of a system as a motion of a period."""
+    rows = enumerate(zip(facts["modes"], v["share"], strict=True), 1)
+    labels = [f"{i}: {number(each['frequency'])} Hz, {v['body'][share.argmax()]}" for i, (each, share) in rows]
+    beams, motions = [body for body in v["body"] if f"{body}_outline" in v], []
+    rest = Rotation.from_quat(np.roll(v["attitude"], -1, axis=-1))
+    resting = _resting(v)
+    _, radius = _view(resting["place"])
+
+    def of(name: str, k: int) -> Any:
+        return v[f"{name}_real"][k] + 1j * v[f"{name}_imag"][k]
+
+    for k, label in enumerate(labels):
+        most = [np.abs(of(each, k)).max() for each in ("shape", *(f"{body}_outline_shape" for body in beams))]
+        amplitude = _amplitude(2 * radius, float(max(most)), float(np.abs(of("turn", k)).max()))
+        turned = [Rotation.from_rotvec(amplitude * each) * rest for each in _swung(of("turn", k))]
+        moving = {
+            **v,
+            "time": PHASES,
+            "place": v["place"] + amplitude * _swung(of("shape", k)),
+            "attitude": np.stack([np.roll(each.as_quat(), 1, axis=-1) for each in turned]),
+        }
+        for body in beams:
+            moving[f"{body}_outline_time"] = PHASES
+            moving[f"{body}_outline"] = v[f"{body}_outline"] + amplitude * _swung(of(f"{body}_outline_shape", k))
+        motions.append(_mode(label, _system(label, label, moving, numbers)[0]))
+    return {"labels": labels, "motions": motions}
+
+
+def _amplitude(length: float, largest: float, turn: float) -> float:
+    """Size in which a mode is drawn."""
+    return min(AMPLITUDE * length / (largest or 1.0), TURN / turn if turn else np.inf)
+
+
+def _swung(shape: Any) -> Floats:
+    """Complex shapes over a period, (t, ...)."""
+    phase = np.exp(2j * np.pi * PHASES / PERIOD).reshape(-1, *[1] * np.ndim(shape))
+    return np.asarray((phase * shape).real)
+
+
+def _mode(label: str, motion: dict[str, Any]) -> dict[str, Any]:
+    return motion | {"name": label, "environment": label, "relative": True, "period": PERIOD}
 
 
 def _largest(vectors: Floats) -> float:

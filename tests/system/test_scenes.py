@@ -1,0 +1,92 @@
+"""Modes of systems and places at rest in three dimensions: what the viewer draws hangs together."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import gbeam as gb
+from gbeam.report.facts import facts
+from gbeam.report.page.result import report_of, report_of_file, shown, variables_of
+
+STRIP = gb.Beam(1.0, gb.Section.rectangle(0.04, 0.004), gb.Material(2700.0, 70e9), damping_ratio=0.01)
+SIZE = 0.15  # of the length, of what a mode moves most
+
+
+def mast() -> gb.System:
+    """A strip that leans on a sprung foot, with a rod on a hinge at its tip: it bends by its weight, and turns."""
+    foot = gb.RigidBody(0.5, (1e-3,) * 3, points={"top": gb.Place((0.05, 0, 0.1), (0, -0.4, 0.3))})
+    rod = gb.RigidBody(0.02, (1e-5, 1e-4, 1e-4), centre=(0.1, 0, 0), points={"end": (0.2, 0, 0)})
+    stiffness = {"angle_1": 20.0, "angle_2": 20.0}
+    joints = {
+        "sprung": gb.Joint("universal", "foot", axes=[(0, 1, 0), (0, 0, 1)], stiffness=stiffness),
+        "clamp": gb.Joint("fixed", "strip", on="foot.top"),
+        "hinge": gb.Joint("revolute", "rod", on="strip.tip", axes=[(0, 1, 0)], stiffness=0.05),
+    }
+    strip = gb.assemble(STRIP, "exact", axial=0, y=1, z=2)
+    return gb.System({"foot": foot, "strip": strip, "rod": rod}, joints, gravity=(0, 0, -3.0))
+
+
+def test_points_beams_and_turns_of_a_mode_belong_together() -> None:
+    """To first order a point moves as its body's root does, by its turning, and as its beam bends."""
+    modes = gb.modes(mast(), errors=False)
+    at = modes.points.index
+    foot, root, tip, end, hinge = (at(name) for name in ("foot.root", "strip.root", "strip.tip", "rod.end", "rod.root"))
+    arms = modes.place[[root, end]] - modes.place[[foot, hinge]]
+    for moved, from_, arm in zip((root, end), (foot, hinge), arms, strict=True):
+        carried = modes.shape[:, from_] + np.cross(modes.turn[:, from_], arm)
+        np.testing.assert_allclose(modes.shape[:, moved], carried, atol=1e-12)
+    np.testing.assert_allclose(modes.turn[:, root], modes.turn[:, foot], atol=1e-12)
+    beam, axes = modes.beams["strip"], Rotation.from_quat(np.roll(modes.attitude[root], -1)).as_matrix()
+    bent = modes.place[tip] - modes.place[root]
+    np.testing.assert_allclose(bent, axes @ ([1, 0, 0] + beam.outline.displacement[0, -1]), atol=1e-9)
+    swung = modes.shape[:, root] + np.cross(modes.turn[:, root], bent) + beam.shape[:, -1] @ axes.T
+    np.testing.assert_allclose(modes.shape[:, tip], swung, atol=1e-9)
+    assert np.abs(modes.turn[:, at("rod.root")] - modes.turn[:, tip]).max() > 0.1  # the hinge turns
+
+
+def test_a_mode_is_drawn_as_a_motion_of_a_period() -> None:
+    modes = gb.modes(mast(), errors=False)
+    header, numbers = shown(modes)
+    assert header["modes"]["labels"][0].startswith(f"1: {modes.frequency[0]:.4g} Hz, ")
+    array = numbers.array
+    for motion in header["modes"]["motions"]:
+        assert motion["relative"] and motion["period"] == 2.0
+        foot, strip, rod = motion["parts"]
+        frames = [_read(array, each["frame"]) for each in (foot, strip, rod)]
+        np.testing.assert_allclose([each[0] for each in frames], [each[-1] for each in frames], atol=1e-6)
+        assert foot["box"] and foot["joint"] and rod["joint"] and "joint" not in strip
+        bent = _read(array, strip["beam"]["displacement"])
+        # What moves most moves by a share of the system's size, unless it turns too far.
+        most = max(np.abs(bent - bent.mean(axis=0)).max(), *(np.ptp(each[:, :3], axis=0).max() / 2 for each in frames))
+        assert 0.01 < most < SIZE * 2 * motion["radiusShown"]
+        # The rod hangs on the tip as it swings: to the second order of what is drawn.
+        root = frames[1]
+        tip = root[:, :3] + Rotation.from_quat(np.roll(root[:, 3:7], -1, axis=1)).apply(bent[:, -1] + [1, 0, 0])
+        assert np.abs(tip - frames[2][:, :3]).max() < 0.1
+
+
+def _read(array: np.ndarray, ref: dict[str, object]) -> np.ndarray:
+    shape: list[int] = ref["shape"]  # type: ignore[assignment]
+    first: int = ref["at"]  # type: ignore[assignment]
+    return np.asarray(array[first : first + int(np.prod(shape))]).reshape(shape).astype(float)
+
+
+@pytest.mark.parametrize("question", [gb.modes, gb.static])
+def test_a_page_and_a_file_show_what_a_notebook_shows(question: object, tmp_path: object) -> None:
+    result = question(mast())  # type: ignore[operator]
+    page = report_of(result)
+    header = json.loads(page.split('id="gbeam-header">')[1].split("</script>")[0])
+    assert '<div id="gbeam-viewer">' in page
+    key = "modes" if question is gb.modes else "scene"
+    assert json.loads(json.dumps(shown(result)[0][key]))["motions"][0]["parts"] and header[key]["motions"][0]["parts"]
+    result.save(tmp_path / "result.nc")  # type: ignore[operator]
+    assert report_of_file(tmp_path) == page  # type: ignore[arg-type]
+    if question is gb.static:
+        (motion,) = header["scene"]["motions"]
+        assert motion["time"]["shape"] == [1] and motion["largest"] > 0.01
+        assert {part["frame"]["shape"][0] for part in motion["parts"]} == {1}
+        assert facts(result)["motions"]["ground"]["points"] and "motions/ground/hangs_on" in variables_of(result)
