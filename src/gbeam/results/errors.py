@@ -110,7 +110,8 @@ class SystemErrors(Part):
 
     def __repr__(self) -> str:
         alone = (f"{name} {100 * each:.2g} %" for name, each in zip(self.beams, self.by_beam, strict=True))
-        lines = [f"{each}: {getattr(self, each)}" for each in ("displacement", "loads", "stress")]
+        named = ("displacement", "loads", "stress") if self.beams else ("displacement",)
+        lines = [f"{each}: {getattr(self, each)}" for each in named]
         lines.insert(1, ", ".join(alone))
         pairs = zip(self.beams, self.theory, strict=True)
         lines += [f"beam theory of {name}: {words}" for name, words in pairs if words]

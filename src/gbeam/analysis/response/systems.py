@@ -246,25 +246,24 @@ def _missed_stop(system: System, run: Trajectory) -> tuple[str, ...]:
     """Warn of a stop that a coordinate meets and leaves between two of a run's times, of which the steps may know
     nothing.
     """
+    from scipy.interpolate import CubicHermiteSpline  # which takes a while to import
+
     holders = [(link.holder, np.full(link.body.size, np.inf)) for link in system.tree.links]
     low, high = (
         np.concatenate([np.append(sign * getattr(of, side), off) for of, off in holders])[system.tree.free]
         for side, sign in (("low", -1.0), ("high", 1.0))
     )
-    h = np.diff(run.time)
     for sign, ends in ((1.0, high), (-1.0, low)):
         for k in np.flatnonzero(np.isfinite(ends)):
-            q, v = sign * run.q[:, k], sign * run.qd[:, k]
-            at = np.flatnonzero((v[:-1] > 0) & (v[1:] <= 0) & (np.minimum(q[:-1], q[1:]) <= ends[k]))
-            # The rate is a parabola between two times, c + b s + a s²: the cubic through places and rates.
-            c, mean, last = v[at], (q[at + 1] - q[at]) / h[at], v[at + 1]
-            a, b = 3 * (c + last - 2 * mean), 6 * mean - 4 * c - 2 * last
-            s = 2 * c / (np.sqrt(b**2 - 4 * a * c) - b)
-            beyond = q[at] + h[at] * s * (c + s * (b / 2 + s * a / 3)) - ends[k]
-            if beyond.size and beyond.max() > BEYOND * np.ptp(q):
-                first = run.time[at[np.argmax(beyond > BEYOND * np.ptp(q))]]
+            q = sign * run.q[:, k]
+            between = CubicHermiteSpline(run.time, q, sign * run.qd[:, k])
+            turns = between.derivative().roots(extrapolate=False)
+            step = np.clip(np.searchsorted(run.time, turns, side="right") - 1, 0, len(q) - 2)
+            beyond = between(turns) > ends[k] + BEYOND * np.ptp(q)
+            missed = turns[beyond & (np.minimum(q[step], q[step + 1]) <= ends[k])]
+            if missed.size:
                 name = system.coordinates[system.tree.free[k]]
-                words = f"{name} meets a stop and leaves it within one step, at {first:.4g} s"
+                words = f"{name} meets a stop and leaves it within one step, at {missed[0]:.4g} s"
                 return (f"{words}: the steps may miss it, and their error is not known; give a smaller step",)
     return ()
 
