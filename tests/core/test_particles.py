@@ -269,7 +269,7 @@ def test_particles_of_a_beam_are_linearized_as_the_beam(by_stress: bool, motion:
         np.testing.assert_allclose(getattr(ours, name), theirs, atol=1e-12 * np.abs(theirs).max())
     assert (ours.inputs, ours.outputs) == (whole.inputs, whole.outputs)
     assert [each.name for each in ours.states if "q_1" in each.name] == ["q_1", "rate_q_1"]
-    with pytest.raises(InputError, match="gauges are given of particles"):
+    with pytest.raises(InputError, match="gauges are given of no beam and no mesh"):
         linearize(particles(by_stress=by_stress), motion, gauges=[Gauge(1.0)])
 
 

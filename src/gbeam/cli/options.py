@@ -126,7 +126,11 @@ Balanced = Annotated[
 ]
 StrainAt = Annotated[
     tuple[str, ...],
-    option("--strain-at", 'Strain at a station, "10 mm", on the faces towards +z and +y; any number of times.'),
+    option(
+        "--strain-at",
+        'Strain at a station, "10 mm", on the faces towards +z and +y, or at a point of a solid, "fillet", along its '
+        "axes; any number of times.",
+    ),
 ]
 Inputs = Annotated[
     str | None, Parameter(name="--inputs", help='Only these, "torque"; by default all. So with --outputs.')

@@ -65,6 +65,10 @@ class Recovery(Protocol):
         """Fields of a response, by name, from its times (t,), base motion (t, 3) and coordinates (t, n)."""
         ...
 
+    def strain(self, point: str, along: Any) -> Array:
+        """Normal strain at a named point in a direction of its axes, by unit coordinates, (n,)."""
+        ...
+
 
 @dataclass(frozen=True, eq=False)
 class Source(Value):

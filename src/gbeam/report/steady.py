@@ -138,7 +138,9 @@ def state_space(system: StateSpace, gauges: Iterable[Gauge] = ()) -> str:
     for k, gauge in enumerate(gauges, 1):
         if f"strain_{k}" in names:
             fibre = f"fibre y {1e3 * gauge.y:g} mm, z {1e3 * gauge.z:g} mm"
-            lines.append(f"  strain_{k} at {gauge.at:g} m, {fibre}")
+            x, y, z = gauge.along
+            at = f"{gauge.at}, along ({x:g}, {y:g}, {z:g})" if isinstance(gauge.at, str) else f"{gauge.at:g} m, {fibre}"
+            lines.append(f"  strain_{k} at {at}")
     lines += _accuracy(system) + _in_steps(system)
     if system.truncation is not None:
         lines += _left_out(system, system.truncation)

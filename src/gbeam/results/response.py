@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
@@ -298,6 +298,25 @@ class Response(Driven, Figured):
             raise InputError("response", "has no accelerations", "leave loads = true in its settings")
         felt = every[:, station]
         return felt if sensor is None else sensor.reads(felt, float(self.time[1] - self.time[0]))
+
+    def strain_at(self, point: str, along: Sequence[float] = (1.0, 0.0, 0.0)) -> Floats:
+        """Return what a strain gauge at a named point of a solid reads, (t,).
+
+        Parameters
+        ----------
+        point : str
+            A node with a name.
+        along : (3,)
+            Direction of its grid, in axes of the point.
+
+        Raises
+        ------
+        InputError
+            If it is no solid with loads, or has no such point.
+        """
+        if self.solid is None:
+            raise InputError("response", "has no stress of a solid", "simulate a mesh, with loads = true")
+        return self.solid.strain_at(point, along)
 
     @property
     def tip(self) -> Floats:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -10,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.constants import STANDARD_GRAVITY
+from gbeam.errors import InputError
+from gbeam.guards.checks import vector
 from gbeam.results.declared import declared, fact, labels, part, quantity
 from gbeam.results.parts import yield_margin
 from gbeam.results.result import Figured, Floats, Part
@@ -77,6 +80,14 @@ class SolidStress(Figured):
         "", "exponent of the Wöhler curve of the material there", "point", name=None, key=None,
         default_factory=lambda: np.empty(0),
     )  # fmt: skip
+    point_stress: Floats = quantity(
+        "Pa", "stress xx, yy, zz, yz, xz, xy at the point", "time", "point", "stress_component", key=None,
+        frame="axes of the point", default_factory=lambda: np.empty((0, 0, 6)),
+    )  # fmt: skip
+    point_strain: Floats = quantity(
+        "", "strain xx, yy, zz, yz, xz, xy at the point, with twice the tensor's shear", "time", "point",
+        "stress_component", key=None, frame="axes of the point", default_factory=lambda: np.empty((0, 0, 6)),
+    )  # fmt: skip
     nodes: Floats = quantity(
         "m", "places of the nodes from the root, undeformed", "node", "axis", name="node_place", key=None,
         default_factory=lambda: np.empty((0, 3)),
@@ -92,6 +103,30 @@ class SolidStress(Figured):
     @declared("s", "time of that stress", "point", name=None, key="time_of_max")
     def point_time_of_max(self) -> Floats:
         return self.time[self.point_von_mises.argmax(axis=0)]
+
+    def strain_at(self, point: str, along: Sequence[float] = (1.0, 0.0, 0.0)) -> Floats:
+        """Return what a strain gauge at a named point reads, (t,).
+
+        Parameters
+        ----------
+        point : str
+            A node with a name.
+        along : (3,)
+            Direction of its grid, in axes of the point.
+
+        Raises
+        ------
+        InputError
+            If there is no such point, or the direction is none.
+        """
+        if point not in self.points:
+            raise InputError("point", f"is {point!r}", f"choose from {', '.join(self.points)}")
+        way = np.asarray(vector("along", along), dtype=float)
+        if not way.any():
+            raise InputError("along", "is zero", "give a direction, such as (1, 0, 0)")
+        x, y, z = way / np.linalg.norm(way)
+        strain = self.point_strain[:, self.points.index(point)]
+        return np.asarray(strain @ np.array([x * x, y * y, z * z, y * z, x * z, x * y]))
 
     @property
     def lines(self) -> tuple[str, str]:

@@ -13,6 +13,7 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
+from gbeam.guards.checks import vector
 from gbeam.results.declared import INSIDE, declared, fact, labels, part, quantity, rows
 from gbeam.results.errors import FrequencyErrors
 from gbeam.results.result import Complex, Floats, Part, Result
@@ -31,24 +32,37 @@ class Signal(Part):
 @typed
 @dataclass(frozen=True)
 class Gauge:
-    """A strain gauge along the beam; it measures the normal strain of what its section carries.
+    """A strain gauge: along a beam it measures the normal strain of what its section carries, on a solid that of a
+    direction.
 
     Parameters
     ----------
-    at : float
-        Position from the root, m.
+    at : float or str
+        Position from the root of a beam, m; of a solid the name of a point.
     y, z : float
-        Where it sits in the section, m from the axis.
+        Where it sits in the section of a beam, m from the axis.
+    along : (3,)
+        Direction of its grid on a solid, in axes of the point.
+
+    Raises
+    ------
+    InputError
+        If the direction is none.
 
     Examples
     --------
     >>> gb.Gauge(at=0.01, z=0.002)
-    Gauge(at=0.01, y=0.0, z=0.002)
+    Gauge(at=0.01, y=0.0, z=0.002, along=(1.0, 0.0, 0.0))
     """
 
-    at: float
+    at: float | str
     y: float = 0.0
     z: float = 0.0
+    along: Sequence[float] = (1.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        if not np.any(vector("along", self.along)):
+            raise InputError("along", "is zero", "give a direction, such as (1, 0, 0)")
 
 
 @dataclass(frozen=True, repr=False, eq=False)

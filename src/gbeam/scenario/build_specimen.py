@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure | None:
     """The structure of a mesh."""
     from gbeam.io.kept import kept
+    from gbeam.mechanics.tree.system import Place
     from gbeam.solids.mesh import SolidMesh
 
     given: Any = (
@@ -33,6 +34,11 @@ def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure
     if given is None or (isinstance(given, dict) and None in given.values()):
         return None
 
+    points: Any = {
+        name: Place(each.at, each.turn) if isinstance(each, schema.PlaceOfBody) else each
+        for name, each in table.points.items()
+    }
+
     def read(file: str) -> SolidMesh:
         try:
             return SolidMesh.read(
@@ -40,7 +46,7 @@ def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure
                 materials=given,
                 clamp=table.clamp,
                 unit=table.unit,
-                points=table.points,
+                points=points,
                 point_masses=table.masses,
                 interfaces=table.interfaces,
                 origin=table.origin,

@@ -18,6 +18,7 @@ from gbeam.mechanics.equations.linear import coefficients, geometric_of
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.reduction import inertial_loads, linear_fields, particles_of, reduce
 from gbeam.mechanics.structure import linear_structure
+from gbeam.mechanics.tree.system import Place
 from gbeam.numerics.factor import refuse_cost
 from gbeam.results.result import Floats
 from gbeam.solids.elements import (
@@ -65,6 +66,8 @@ class SolidMesh(Value):
         Yield strengths of materials by their names, Pa, of those that have one.
     exponents : dict of float
         Exponents of the Wöhler curves of materials by their names.
+    turns : dict of (3,)
+        Rotation vectors of the axes of points in the base axes, by their names, of those that are turned, rad.
     warnings : tuple of str
         What is implausible in it.
     interfaces : dict of (g,) int
@@ -89,6 +92,7 @@ class SolidMesh(Value):
     warnings: tuple[str, ...] = ()
     interfaces: dict[str, Indices] = field(default_factory=dict)
     exponents: dict[str, float] = field(default_factory=dict)
+    turns: dict[str, Sequence[float]] = field(default_factory=dict)
 
     @classmethod
     @typed
@@ -122,8 +126,9 @@ class SolidMesh(Value):
         unit : str
             Of the mesh's coordinates, such as ``mm``.
         points : dict, optional
-            Places of output by name: (x, y, z) in m and base axes, for the nearest node, or a group of one node. The
-            ``tip`` is the node farthest from the root where it is not given.
+            Places of output by name: (x, y, z) in m and base axes, for the nearest node, or a group of one node; a
+            :class:`gbeam.Place` has axes too, in which stress and strain there are put out. The ``tip`` is the node
+            farthest from the root where it is not given.
         point_masses : dict, optional
             Masses by the name of a point, or of a group over whose nodes it is spread evenly, kg.
         interfaces : dict of str, optional
@@ -182,7 +187,8 @@ class SolidMesh(Value):
         clamped = np.zeros(len(used), dtype=bool)
         for name in [clamp] if isinstance(clamp, str) else clamp:
             clamped[group("clamp", name)] = True
-        named = {} if points is None else {name: _node(at, name, place, group) for name, place in points.items()}
+        given = {} if points is None else points
+        named = {name: _node(at, name, getattr(place, "at", place), group) for name, place in given.items()}
         tip = named.pop(TIP, int(np.argmax(np.linalg.norm(at, axis=1))))
         weights = np.zeros(len(used))
         for name, mass in (point_masses or {}).items():
@@ -195,8 +201,9 @@ class SolidMesh(Value):
         refuse_names(interfaces or {}, named | {TIP: tip})
         hung = {name: group(f"interfaces.{name}", of) for name, of in (interfaces or {}).items()}
         exponents = {name: float(each.fatigue_exponent) for name, each in kinds.items()}
-        stations = named | {TIP: tip}
-        solid = cls(at, blocks, clamped, used, weights, stations, strengths, interfaces=hung, exponents=exponents)
+        about: dict[str, Any] = {"strengths": strengths, "exponents": exponents, "interfaces": hung}
+        about["turns"] = {name: tuple(place.turn) for name, place in given.items() if isinstance(place, Place)}
+        solid = cls(at, blocks, clamped, used, weights, named | {TIP: tip}, **about)
         refuse_folded(solid)
         refuse_loose(solid)
         return cls(**{**vars(solid), "warnings": (*doubts_of(solid, unit), *left_out(source))})
@@ -296,6 +303,12 @@ class SolidMesh(Value):
         """Names of the points that are put out: nodes, interfaces, and the tip."""
         *names, tip = self.stations
         return (*names, *self.interfaces, tip)
+
+    def axes(self, point: str) -> Floats:
+        """Axes of a named point in the base axes, in columns (3, 3)."""
+        from scipy.spatial.transform import Rotation
+
+        return np.asarray(Rotation.from_rotvec(self.turns.get(point, (0.0, 0.0, 0.0))).as_matrix())
 
     def _outputs(self, centres: Floats, forces: Floats, shapes: Floats, pushed: Floats) -> tuple[Places, Floats | None]:
         """Places of the named points, and their rotations (s, 3, n), not a number where unknown."""

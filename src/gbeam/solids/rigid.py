@@ -281,6 +281,10 @@ class RigidSpecimen(Value):
         """
         return {"specimen": self._loads(time, base, motion, environment)}
 
+    def strain(self, point: str, along: Any) -> Floats:
+        """Refuse a strain, which a rigid body has none of."""
+        raise InputError("at", f"is {point!r}, on a rigid body, which has no strain", "give a mesh, or leave it out")
+
     def _shared(self, bolts: Floats, force: Floats, moment: Floats) -> dict[str, Any]:
         """Forces (t, b, 3) of bolts that are alike, between rigid bodies, with their places and direction."""
         centroid, axis = bolts.mean(axis=0), np.asarray(self.bolt_axis)

@@ -10,6 +10,7 @@ from typing import Any, Self
 import numpy as np
 
 from gbeam.arrays.tree import Value
+from gbeam.errors import InputError
 from gbeam.results.result import Floats
 from gbeam.results.solids import SolidStress, StressAt, Surface
 from gbeam.solids.elements import TENSOR, Indices, chunks, extrapolation, stress_at
@@ -17,6 +18,7 @@ from gbeam.solids.elements import TENSOR, Indices, chunks, extrapolation, stress
 BLOCK = 2**22  # numbers handled together
 VERTICES, TIMES = 1500, 1000  # of pictures, about
 AROUND = np.array([each for each in product((1.0, 0.0, -1.0), repeat=3) if each > (0.0, 0.0, 0.0)])  # half of all ways
+HALVES = np.array([1.0, 1.0, 1.0, 0.5, 0.5, 0.5])  # of strains with twice the tensor's shear, in the tensor
 SETTLED = 1e-9  # of a range of stress
 ENOUGH = 1e-3  # of the largest shape: one that is less is not seen
 # Corners of the faces of elements, by their number.
@@ -62,6 +64,21 @@ class NodalStress(Value):
         """Materials of the pairs."""
         names = _materials(self.mesh)
         return [names[i] for i in self.known // len(self.mesh.points)]
+
+    def strain(self, point: str, along: Any) -> Floats:
+        """Normal strain at a named point in a direction of its axes, by unit coordinates, (n,)."""
+        if point not in self.mesh.stations:
+            raise InputError("at", f"is {point!r}", f"choose from {', '.join(self.mesh.stations)}")
+        pair = int(np.flatnonzero(self.node == self.mesh.stations[point])[0])
+        x, y, z = self.mesh.axes(point) @ np.asarray(along, dtype=float) / np.linalg.norm(along)
+        shares = np.array([x * x, y * y, z * z, y * z, x * z, x * y])  # of strains with twice the tensor's shear
+        return np.asarray(shares @ self.compliance(pair) @ self.table[pair])
+
+    def compliance(self, pair: Any) -> Floats:
+        """Strains (6, 6) of unit stresses in the material of a pair."""
+        name = self.material[pair]
+        elasticity = next(block.elasticity for block in self.mesh.blocks if block.material == name)
+        return np.asarray(np.linalg.inv(elasticity))
 
     def parts(self, time: Floats, base: Any, q: Floats, *, motion: str, model: str, environment: str) -> dict[str, Any]:
         """The stress of a response."""
@@ -194,6 +211,12 @@ def principal(stress: Floats) -> Floats:
     return np.asarray(np.linalg.eigvalsh(stress[..., TENSOR])[..., ::-1])
 
 
+def turned(tensor: Floats, axes: Floats) -> Floats:
+    """Components xx, yy, zz, yz, xz, xy (..., 6) of tensors along axes (3, 3), in columns."""
+    along = axes.T @ tensor[..., TENSOR] @ axes
+    return np.asarray(along[..., [0, 1, 2, 1, 0, 0], [0, 1, 2, 2, 2, 1]])
+
+
 def ranging(stress: Floats) -> Floats:
     """Normal stress (t,) of stresses (t, 6) on the plane where it ranges most."""
     normal = AROUND / np.linalg.norm(AROUND, axis=1, keepdims=True)
@@ -234,6 +257,12 @@ def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> S
     # At a node of two materials, that which is stressed more.
     chosen = [max(np.flatnonzero(of_pair == node), key=largest.__getitem__) for node in mesh.stations.values()]
     stress = np.einsum("pvn,tn->tpv", nodal.table[chosen], q, optimize=True)
+    axes = [mesh.axes(name) for name in mesh.stations]
+    along = [turned(each, of) for each, of in zip(stress.swapaxes(0, 1), axes, strict=True)]
+    strained = (
+        each @ nodal.compliance(pair).T * HALVES for each, pair in zip(stress.swapaxes(0, 1), chosen, strict=True)
+    )
+    strains = [turned(each, of) / HALVES for each, of in zip(strained, axes, strict=True)]
     every = np.zeros(len(mesh.points))
     np.maximum.at(every, of_pair, largest)
     return SolidStress(
@@ -244,6 +273,8 @@ def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> S
         points=tuple(mesh.stations),
         point_von_mises=von_mises(stress),
         point_principal=principal(stress),
+        point_stress=np.stack(along, axis=1),
+        point_strain=np.stack(strains, axis=1),
         normal=ranging(q @ nodal.table[worst].T),
         point_normal=np.stack([ranging(each) for each in stress.swapaxes(0, 1)], axis=1),
         point_exponent=exponents[chosen],

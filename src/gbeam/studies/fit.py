@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.case import Case, SystemCase
+from gbeam.analysis.case import Case, SpecimenCase, SystemCase
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.progress import Progress
@@ -29,7 +29,7 @@ _VISIBLE = 1e-5  # of the largest datum: residuals that are less are rounding
 
 @typed
 def fit(
-    scenario: str | os.PathLike[str] | Case | SystemCase,
+    scenario: str | os.PathLike[str] | Case | SpecimenCase | SystemCase,
     data: str | os.PathLike[str],
     free: Sequence[str],
     *,
@@ -47,7 +47,7 @@ def fit(
 
     Parameters
     ----------
-    scenario : path, Case or SystemCase
+    scenario : path, Case, SpecimenCase or SystemCase
         The scenario's file, or a case, of :func:`gbeam.read_scenario` or made in Python.
         Its values are where the search starts.
     data : path
@@ -100,8 +100,7 @@ def fit(
         raise InputError(OPTION, "is missing", 'name values: --free "beam.material.youngs_modulus"')
     parameters = named(template, free, OPTION)
     question = Question(template, "run", motion, at)
-    given = question.case(())
-    case = given if isinstance(given, SystemCase) else given.one_beam("bodies", "gbeam fit")
+    case = question.case(())
     measurement = read_measurement(data, case, motion)
     if len(measurement.values) <= len(parameters):
         problem = f"names {len(parameters)} values for {len(measurement.values)} data"
@@ -110,7 +109,7 @@ def fit(
     question = replace(question, verb="modes") if measurement.modal else question
     start = (
         None
-        if measurement.modal or isinstance(case, SystemCase)
+        if measurement.modal or not isinstance(case, Case)
         else Neighbourhood(question, parameters, progress=progress)
     )
     model = Quantities(

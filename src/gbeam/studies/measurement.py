@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.case import Case, SystemCase
+from gbeam.analysis.case import AnyCase, Case, SpecimenCase, SystemCase
 from gbeam.analysis.control.linearization import surface_gauge
 from gbeam.errors import InputError
 from gbeam.guards.kinds import KINDS
@@ -36,7 +36,7 @@ _KINDS = {
     "hub.angle": "angle",
     "hub.rate": "angular rate",
 }
-_STRAIN = re.compile(r"strain\.(-?[yz])@(.+)")
+_STRAIN = re.compile(r"strain\.(-?[xyz])@(.+)")
 _MODAL = {"frequency": "frequency", "damping_ratio": "ratio"}
 _USUAL = {"history": 1e-2, "frequency": 1e-3, "damping_ratio": 0.1}  # noise, of the largest or of the value
 _LEAST = 1e-6  # of that: the noise of data that were computed
@@ -48,7 +48,7 @@ _MICROSTRAIN = {"µm/m": 1e-6, "um/m": 1e-6, "microstrain": 1e-6}
 @dataclass(frozen=True)
 class Measured:
     """A column of the data: `values` (t,), SI, of a quantity such as ``tip.z`` of a motion; of a strain at `at`, m, on
-    `face`.
+    `face`, or at a point of a solid along an axis.
     """
 
     name: str
@@ -56,7 +56,7 @@ class Measured:
     quantity: str
     values: Floats
     unit: str
-    at: float = math.nan
+    at: float | str = math.nan
     face: str = ""
 
 
@@ -105,22 +105,22 @@ class Measurement:
 
     def instrumented(self, case: Any) -> Any:
         """The case with the gauges among its stations."""
-        if isinstance(case, SystemCase):
+        if isinstance(case, (SystemCase, SpecimenCase)):
             return case
-        gauges = {each.at for each in self.columns if each.face and each.at > 0}
+        gauges = {float(each.at) for each in self.columns if each.face and float(each.at) > 0}
         return replace(case, stations=tuple(sorted({*case.stations, *gauges}))) if gauges else case
 
-    def read(self, case: Case | SystemCase, answer: Any) -> Floats:
+    def read(self, case: AnyCase, answer: Any) -> Floats:
         """Measured quantities of a case, (m,)."""
         if self.modal:
             return np.array([_modal(answer, each.quantity, int(k)) for each in self.columns for k in self.at])
         if isinstance(case, SystemCase):
             every = [SystemHistory(each.name, each.motion, each.quantity, each.unit) for each in self.columns]
             return np.concatenate([each.at(answer["study"], self.at) for each in every])
-        assert isinstance(answer, Study)
-        return np.concatenate([self._history(case, answer, each) for each in self.columns])
+        study = answer if isinstance(answer, Study) else answer["study"]
+        return np.concatenate([self._history(case, study, each) for each in self.columns])
 
-    def _history(self, case: Case, answer: Study, column: Measured) -> Floats:
+    def _history(self, case: Case | SpecimenCase, answer: Study, column: Measured) -> Floats:
         from scipy.interpolate import CubicSpline
 
         response = answer.responses[column.motion]
@@ -128,13 +128,14 @@ class Measurement:
         return np.asarray(CubicSpline(response.time, values)(self.at))
 
 
-def read_measurement(path: str | os.PathLike[str], case: Case | SystemCase, motion: str | None = None) -> Measurement:
+def read_measurement(path: str | os.PathLike[str], case: AnyCase, motion: str | None = None) -> Measurement:
     """Read measured histories (a column ``time``) or modes (a column ``mode``) from a text file.
 
     Histories are ``tip.z``, ``root_moment.y``, ``root_force.z``, ``hub.angle``, ``hub.rate`` and ``strain.z@10 mm`` (on
     the face towards +z; ``strain.-z@...`` towards −z), with a unit in brackets, ``tip.z [mm]``, or SI, and where
     several motions could be meant after a name, ``flight.tip.z``; columns of modes are ``frequency`` and
-    ``damping_ratio``. Of a system histories are what its sensors read, ``strip.tip.place_z``.
+    ``damping_ratio``. Of a solid ``strain.x@fillet`` is along an axis of a point; of a system histories are what its
+    sensors read, ``strip.tip.place_z``.
     """
     try:
         return _read(os.fspath(path), case, motion)
@@ -143,7 +144,7 @@ def read_measurement(path: str | os.PathLike[str], case: Case | SystemCase, moti
         raise InputError(where, error.problem, error.fix) from None
 
 
-def _read(path: str, case: Case | SystemCase, motion: str | None) -> Measurement:
+def _read(path: str, case: AnyCase, motion: str | None) -> Measurement:
     table = read_text(path)
     names = {(column.aliases or (column.name,))[0]: column.unit for column in table.columns}
     clock = next((name for name in names if name.lower() in (*_TIME, _MODE)), None)
@@ -159,7 +160,7 @@ def _read(path: str, case: Case | SystemCase, motion: str | None) -> Measurement
     return Measurement(path, at, modal, columns)
 
 
-def _check_clock(at: Floats, path: str, modal: bool, case: Case | SystemCase) -> None:
+def _check_clock(at: Floats, path: str, modal: bool, case: AnyCase) -> None:
     if modal:
         if (at < 1).any() or (at % 1 != 0).any() or len(set(at)) < len(at):
             raise InputError(OPTION, f"{path} has modes that are no numbers 1, 2, …", "number each mode once")
@@ -175,7 +176,7 @@ def _check_clock(at: Floats, path: str, modal: bool, case: Case | SystemCase) ->
         raise InputError(OPTION, problem, "give response.duration the data's, or cut the data")
 
 
-def _column(table: Table, name: str, unit: str, modal: bool, case: Case | SystemCase, motion: str | None) -> Measured:
+def _column(table: Table, name: str, unit: str, modal: bool, case: AnyCase, motion: str | None) -> Measured:
     values = table.numbers("file", name)
     if modal:
         if name not in _MODAL:
@@ -190,11 +191,14 @@ def _column(table: Table, name: str, unit: str, modal: bool, case: Case | System
     if of not in case.motions:
         raise InputError("--motion", f"is {of!r}", f"the scenario has {', '.join(case.motions)}")
     strain = _STRAIN.fullmatch(quantity)
-    if strain is not None:
+    if strain is not None and (isinstance(case, SpecimenCase) or not strain[1].endswith("x")):
         factor = _MICROSTRAIN.get(unit) or _factor(unit, "ratio", name)
+        if isinstance(case, SpecimenCase):
+            return Measured(name, of, "strain", values * factor, "", _gauged(strain[2], strain[1], case), strain[1])
         return Measured(name, of, "strain", values * factor, "", _position(strain[2], strain[1], case), strain[1])
     point, _, axis = quantity.partition(".")
-    if axis in tuple("xyz") and point in case.beam.named_points:
+    points = case.structure.points if isinstance(case, SpecimenCase) else case.beam.named_points
+    if axis in tuple("xyz") and point in points:
         return Measured(name, of, quantity, values * _factor(unit, "length", name), _si("length"))
     if quantity not in _KINDS:
         raise InputError(OPTION, f"has the column {name!r}", advise(quantity, [*_KINDS, "strain.z@10 mm"]))
@@ -220,6 +224,22 @@ def _factor(unit: str, kind: str, name: str) -> float:
         raise InputError(OPTION, f"has the column {name!r} in {unit!r}: {error.problem}", error.hint) from None
 
 
+def _gauged(text: str, axis: str, case: SpecimenCase) -> str:
+    """Name of a point of a solid at which there is a strain."""
+    name, recovery = text.strip(), case.structure.recovery
+    if recovery is None:
+        raise InputError(OPTION, f"has a gauge at {name!r}, on no mesh", "leave it out")
+    try:
+        recovery.strain(name, _way(axis))
+    except InputError as error:
+        raise InputError(OPTION, f"has a gauge that {error.problem}", error.fix) from None
+    return name
+
+
+def _way(axis: str) -> Floats:
+    return np.eye(3)["xyz".index(axis[-1])]
+
+
 def _position(text: str, face: str, case: Case) -> float:
     """Position of a gauge on a face of the beam, m."""
     try:
@@ -233,7 +253,7 @@ def _position(text: str, face: str, case: Case) -> float:
     return at
 
 
-def _only_motion(case: Case, name: str) -> str:
+def _only_motion(case: Case | SpecimenCase, name: str) -> str:
     if len(case.motions) > 1:
         choice = " or ".join(f"{each}.{name}" for each in case.motions)
         raise InputError(OPTION, f"has the column {name!r}, and the scenario several motions", f"name it {choice}")
@@ -247,15 +267,17 @@ def _modal(facts: Mapping[str, Any], quantity: str, mode: int) -> float:
     return float(modes[mode - 1][quantity])
 
 
-def _values(case: Case, response: Response, column: Measured) -> Floats:
+def _values(case: Case | SpecimenCase, response: Response, column: Measured) -> Floats:
     kind, _, axis = column.quantity.partition(".")
     if kind == "hub":
         assert response.hub is not None
         return np.asarray(getattr(response.hub, axis))
     if not column.face:
         return component(response, kind, "xyz".index(axis))
+    if isinstance(case, SpecimenCase):
+        return response.strain_at(str(column.at), _way(column.face).tolist())
     assert response.loads is not None
-    loads, gauge = response.loads, surface_gauge(case.beam, column.at, column.face)
-    k = int(np.argmin(np.abs(loads.stations - gauge.at)))
+    loads, gauge = response.loads, surface_gauge(case.beam, float(column.at), column.face)
+    k = int(np.argmin(np.abs(loads.stations - float(column.at))))
     carried = loads.section_force[:, k], loads.section_moment[:, k]
     return np.asarray(fibre_strain(case.beam, gauge.at, *carried, gauge.y, gauge.z))

@@ -65,7 +65,7 @@ def surface_gauges(beam: Beam, stations: Iterable[float]) -> list[Gauge]:
     >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
     >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
     >>> gb.surface_gauges(beam, [0.01])
-    [Gauge(at=0.01, y=0.0, z=0.002), Gauge(at=0.01, y=0.01, z=0.0)]
+    [Gauge(at=0.01, y=0.0, z=0.002, along=(1.0, 0.0, 0.0)), Gauge(at=0.01, y=0.01, z=0.0, along=(1.0, 0.0, 0.0))]
     """
     gauges: list[Gauge] = []
     for i, at in enumerate(stations):
@@ -84,7 +84,7 @@ def surface_gauge(beam: Beam, at: float, face: str) -> Gauge:
     fibre = sign * float(getattr(beam.section.at(at), f"extreme_fibre_{axis}"))
     if not math.isfinite(fibre):
         raise InputError("", "needs the extreme fibres", "add extreme_fibre_y and extreme_fibre_z to beam.section")
-    return Gauge(at, **{axis: fibre})
+    return Gauge(at, y=fibre) if axis == "y" else Gauge(at, z=fibre)
 
 
 Array = Any
@@ -93,9 +93,9 @@ BASE_RATES = tuple(Signal(f"base_rate_{i}", "rad/s") for i in "xyz")
 
 @record
 class Outputs:
-    """Outputs of (y, ẏ, ÿ, u): tip displacement and (absolute) acceleration, root moment, strains (from gauges' section
-    forces by `strains` (gauges, 6)), those of the tip at other `points`, stations by their numbers, and a free hub's
-    angle and rate, in base axes.
+    """Outputs of (y, ẏ, ÿ, u): tip displacement and (absolute) acceleration, root moment, strains (of a beam from
+    gauges' section forces by `strains` (gauges, 6), of a solid from coordinates by `shares` (gauges, n)), those of the
+    tip at other `points`, stations by their numbers, and a free hub's angle and rate, in base axes.
     """
 
     structure: Structure
@@ -103,6 +103,7 @@ class Outputs:
     outboard: Sections
     at: Array
     strains: Array
+    shares: Array
     points: Array
 
     def __call__(self, y: Array, yd: Array, ydd: Array, u: Array) -> Array:
@@ -119,6 +120,7 @@ class Outputs:
         moved = self.structure.displacement(q)
         # Stations are counted from the first behind the root, which accelerations have as well.
         named = xp.concatenate([moved[self.points], a[0, self.points + 1]], axis=-1).reshape(-1)
+        strain = xp.concatenate([strain, self.shares @ q])
         return xp.concatenate([moved[-1], a[0, -1], -moment[0, 0], strain, named, hub])
 
     def stacked(self, z: Array) -> Array:
@@ -201,22 +203,18 @@ def points_of(structure: Structure) -> dict[str, int]:
 
 def outputs_of(structure: Structure, point: OperatingPoint, gauges: Sequence[Gauge]) -> Outputs:
     """Build the outputs at an operating point."""
-    for i, gauge in enumerate(gauges):
-        if not 0 <= gauge.at <= structure.length:
-            fix = f"give 0 to {structure.length:g} m"
-            raise InputError(f"gauges[{i}].at", f"is {gauge.at:g} m, off the beam", fix)
+    every, shares = structure.sections, np.zeros((0, structure.size))
     strains, which, rows = np.zeros((0, 6)), np.zeros(0, dtype=int), [0, -1]  # of the sections, root and tip
-    every = structure.sections
     if every is None:
-        if gauges:
-            raise InputError("gauges", "are given of particles, which have no sections", "leave them out")
+        shares = np.array([_of_solid(structure, i, each) for i, each in enumerate(gauges)]).reshape(-1, structure.size)
+        gauges = ()
         mass, count = structure.mass, len(structure.stations)
         outboard_mass = np.concatenate([mass[None], np.zeros((count, len(mass)))])
         every = Sections(None, outboard_mass, np.zeros((count + 1, 0)), np.eye(3))
     if gauges:
         assert structure.source is not None
         beam, unit = structure.source.beam, np.eye(6)[:, None]
-        where, y, z = np.array([[gauge.at, gauge.y, gauge.z] for gauge in gauges]).T
+        where, y, z = np.array([[_of_beam(beam, i, gauge), gauge.y, gauge.z] for i, gauge in enumerate(gauges)]).T
         structure = at_stations(structure, where)
         every = structure.sections
         assert every is not None
@@ -228,7 +226,28 @@ def outputs_of(structure: Structure, point: OperatingPoint, gauges: Sequence[Gau
     outboard = replace(every, mass=every.mass[rows], loaded=every.loaded[rows])
     # Without its words, which are a part of compiled programs: beams of one size share them.
     structure = replace(structure, source=None, warnings=(), points=())
-    return Outputs(structure, point.residual, outboard, which, strains, points)
+    return Outputs(structure, point.residual, outboard, which, strains, shares, points)
+
+
+def _of_beam(beam: Beam, i: int, gauge: Gauge) -> float:
+    """Position of a gauge on a beam, m."""
+    at = gauge.at
+    if isinstance(at, str):
+        raise InputError(f"gauges[{i}].at", f"is {at!r}, on a beam", "give the position along it, m")
+    if not 0 <= at <= beam.length:
+        raise InputError(f"gauges[{i}].at", f"is {at:g} m, off the beam", f"give 0 to {beam.length:g} m")
+    return float(at)
+
+
+def _of_solid(structure: Structure, i: int, gauge: Gauge) -> Floats:
+    """Strain of a gauge on a solid by unit coordinates, (n,)."""
+    if structure.recovery is None:
+        fix = "leave them out: particles, matrices and modes have no strain"
+        raise InputError("gauges", "are given of no beam and no mesh", fix)
+    try:
+        return np.asarray(structure.recovery.strain(str(gauge.at), gauge.along))
+    except InputError as error:
+        raise error.within(f"gauges[{i}]") from None
 
 
 @typed
@@ -290,8 +309,8 @@ def linearize(
     Raises
     ------
     InputError
-        If the beam has no damping ratio, a gauge lies off the beam or is one of particles, a rate is asked of a motion
-        without a hub, or a time of a hub that swings.
+        If the beam has no damping ratio, a gauge lies off the beam or at no point of a mesh, a rate is asked of a
+        motion without a hub, or a time of a hub that swings.
     ComputationError
         If there is no relative equilibrium.
 

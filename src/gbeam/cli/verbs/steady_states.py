@@ -193,9 +193,15 @@ def linearize(
     name, chosen = loaded.motion(motion, kind="" if rate is None else "hub")
     time = loaded.time(at)
     steady = None if rate is None else number("--rate", rate, "angular rate")
-    for option, wanted in (("--strain-at", bool(strain_at)), ("--rate", rate is not None)):
+    from gbeam.analysis.case import SpecimenCase
+
+    case = loaded.case
+    for option, wanted in (
+        ("--strain-at", bool(strain_at) and not isinstance(case, SpecimenCase)),
+        ("--rate", rate is not None),
+    ):
         if wanted:
-            loaded.case.one_beam(option, option)
+            case.one_beam(option, option)
     for option, beside, both in (
         ("--loop", "--balanced or --modes", loop != "open" and (modes is not None or balanced is not None)),
         ("--balanced", "--modes", modes is not None and balanced is not None),
@@ -205,9 +211,16 @@ def linearize(
             raise InputError(option, f"stands beside {beside}", "give one of them")
 
     from gbeam.analysis.control.linearization import linearize, surface_gauges
+    from gbeam.results.state_space import Gauge
 
     gauges: Any = ()
-    if strain_at:
+    if isinstance(case, SpecimenCase):
+        names = case.structure.points
+        for text in strain_at:
+            if text not in names:
+                raise InputError("--strain-at", f"is {text!r}", f"choose from {', '.join(names)}")
+        gauges = [Gauge(text, along=way) for text in strain_at for way in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
+    elif strain_at:
         beam = loaded.beam.beam
         points = beam.named_points
         stations = [points[text] if text in points else number("--strain-at", text, "length") for text in strain_at]

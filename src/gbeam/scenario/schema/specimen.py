@@ -73,7 +73,27 @@ SolidMaterial = Annotated[
     Annotated[Material, Tag("isotropic")] | Annotated[Orthotropic, Tag("orthotropic")], Discriminator(_symmetry)
 ]
 _Groups = Annotated[Annotated[str, Tag("one")] | Annotated[tuple[str, ...], Tag("list")], ONE_OR_LIST]
-_Point = Annotated[Annotated[str, Tag("one")] | Annotated[Place3, Tag("list")], ONE_OR_LIST]
+
+
+class PlaceOfBody(Table):
+    """A named point of a rigid body, or of a mesh at the nearest node, with axes."""
+
+    at: Place3 = Field(default=(0.0, 0.0, 0.0), description="place from the body's root, in its axes: [x, y, z]")
+    turn: Turn3 = Field(
+        default=(0.0, 0.0, 0.0), description="rotation vector of the point's axes in those of the root: [x, y, z]"
+    )
+
+
+def _placed(point: Any) -> str:
+    if isinstance(point, (Mapping, PlaceOfBody)):
+        return "table"
+    return "list" if isinstance(point, (list, tuple)) else "one"
+
+
+_Point = Annotated[
+    Annotated[str, Tag("one")] | Annotated[Place3, Tag("list")] | Annotated[PlaceOfBody, Tag("table")],
+    Discriminator(_placed),
+]
 
 
 class Reduced(Table):
@@ -112,7 +132,8 @@ class SolidBody(Reduced):
         default_factory=dict,
         max_length=ENTRIES,
         description="points of output by name: the place [x, y, z] from the root for the nearest node, or a group of "
-        "one node; tip is the node farthest from the root where it is not given",
+        "one node, or with axes of stress and strain { at, turn }; tip is the node farthest from the root where it is "
+        "not given",
     )
     interfaces: dict[str, str] = Field(
         default_factory=dict,
@@ -282,15 +303,6 @@ class ModalTestBody(Table):
             hint = "give modal_test = FILE, or frequency, damping_ratio, shapes, nodes and modal_mass"
             refuse([((), wrong(f"{missing[0]} is missing", hint, mark="key"))])
         return self
-
-
-class PlaceOfBody(Table):
-    """A named point of a rigid body, with axes."""
-
-    at: Place3 = Field(default=(0.0, 0.0, 0.0), description="place from the body's root, in its axes: [x, y, z]")
-    turn: Turn3 = Field(
-        default=(0.0, 0.0, 0.0), description="rotation vector of the point's axes in those of the root: [x, y, z]"
-    )
 
 
 _OF_SPECIMEN = "of a specimen alone on its base: "

@@ -1,0 +1,195 @@
+"""Strain and stress at points of a solid as gauges read them, beside a beam's gauges."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from functools import cache
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gbeam as gb
+from gbeam.cli import main
+from gbeam.scenario import ScenarioError
+from gbeam.structure.beam import fibre_strain
+
+from .bodies import STEEL, block, solid
+from .test_damage_at_points import HALF, B, H, L, beam, runs
+
+TURN = (0.0, 0.0, np.pi / 6)
+
+
+@cache
+def model() -> gb.SolidModel:
+    points: dict[str, Any] = {
+        "half": (HALF, 0.0, 0.5 * H),
+        "askew": gb.Place((HALF, 0.0, 0.5 * H), TURN),
+    }
+    metal = gb.Material(2700, 70e9, poissons_ratio=0.0, fatigue_exponent=4.0)
+    mesh = block("hexahedron20", (12, 2, 1), (L, B, H))
+    return solid(mesh, metal, points=points).reduced(modes=4, damping_ratio=0.02)
+
+
+@cache
+def flown() -> tuple[gb.Response, gb.Response]:
+    return runs(model().structure)
+
+
+def test_a_gauge_on_a_solid_beam_reads_the_beams_strain() -> None:
+    """Over time, in flight and on the machine: M z/EI half-way on the face towards +z."""
+    for ours, theirs in zip(flown(), runs(beam()), strict=True):
+        k = theirs.points.index("half") + 1
+        assert theirs.loads is not None
+        carried = theirs.loads.section_force[:, k], theirs.loads.section_moment[:, k]
+        source = beam().source
+        assert source is not None
+        wanted = fibre_strain(source.beam, HALF, *carried, 0.0, H / 2)
+        read = ours.strain_at("half")
+        assert np.abs(read - wanted).max() < 6e-3 * np.abs(wanted).max() and np.abs(wanted).max() > 1e-5
+
+
+def test_axes_of_a_gauge_are_those_of_its_point() -> None:
+    """Mohr's circle: 30 degrees off a pull, with ν = 0, cos² of the strain, and half of the sine of twice the angle."""
+    flight, _ = flown()
+    along = flight.strain_at("half")
+    size = np.abs(along).max()
+    np.testing.assert_allclose(flight.strain_at("askew"), 0.75 * along, atol=5e-3 * size)
+    undone = (np.cos(np.pi / 6), -np.sin(np.pi / 6), 0.0)  # x in axes of the point
+    np.testing.assert_allclose(flight.strain_at("askew", undone), along, atol=1e-12)
+    assert flight.solid is not None
+    strain, stress = flight.solid.point_strain[:, 1], flight.solid.point_stress[:, 1]
+    np.testing.assert_allclose(strain[:, 5], -np.sin(np.pi / 3) * along, atol=5e-3 * size)
+    np.testing.assert_allclose(stress[:, 0], 70e9 * strain[:, 0], atol=1e-9 * 70e9)
+    for point, words in (("nose", "point is 'nose'; choose from half, askew, tip"), ("half", "along is zero")):
+        with pytest.raises(gb.InputError, match=words):
+            flight.strain_at(point, (0.0, 0.0, 0.0) if point == "half" else (1.0, 0.0, 0.0))
+
+
+def test_strain_is_that_of_hookes_law() -> None:
+    """A pull by inertia of steel: ρ a (L − x)/E along, −ν of it across, both halves of a rosette at 45 degrees."""
+    mesh = block("hexahedron20", (12, 1, 1), (L, B, H))
+    bar = solid(mesh, STEEL, points={"half": (HALF, 0.0, H / 2)}).reduced(modes=2, damping_ratio=0.0)
+    stress = bar.stress(gb.static(bar.structure, acceleration=(-0.5, 0.0, 0.0)))
+    pull = STEEL.density * 0.5 * HALF / STEEL.youngs_modulus
+    for way, share in (((1, 0, 0), 1.0), ((0, 2, 0), -0.3), ((1, 1, 0), 0.35), ((-1, 1, 0), 0.35)):
+        assert stress.strain_at("half", way)[0] == pytest.approx(share * pull, rel=1e-3)
+
+
+def test_gauges_of_a_linear_model_are_those_of_the_beam() -> None:
+    """Of the static gain of the acceleration to the strain; and of the run at rest."""
+    solid_gauge, beam_gauge = gb.Gauge("half"), gb.Gauge(HALF, z=H / 2)
+    ours = gb.linearize(model().structure, gb.Flight(z=0.0), gauges=[solid_gauge])
+    theirs = gb.linearize(beam(), gb.Flight(z=0.0), gauges=[beam_gauge])
+    gains = []
+    for plant in (ours, theirs):
+        chosen = plant.select(inputs=["base_acceleration_z"], outputs=["strain_1"])
+        gains.append(float((chosen.d - chosen.c @ np.linalg.solve(chosen.a, chosen.b))[0, 0]))
+    assert gains[0] == pytest.approx(gains[1], rel=5e-3)
+    rest = model().stress(gb.static(model().structure, acceleration=(0.0, 0.0, 1.0)))
+    assert rest.strain_at("half")[0] == pytest.approx(gains[0], rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("structure", "gauge", "words"),
+    [
+        ("solid", gb.Gauge("nose"), r"gauges\[0\].at is 'nose'; choose from half, askew, tip"),
+        ("solid", gb.Gauge(0.1), r"gauges\[0\].at is '0.1'; choose from"),
+        ("beam", gb.Gauge("half"), r"gauges\[0\].at is 'half', on a beam; give the position along it, m"),
+        ("box", gb.Gauge("tip"), r"gauges\[0\].at is 'tip', on a rigid body, which has no strain"),
+    ],
+)
+def test_gauges_that_read_nothing_are_refused(structure: str, gauge: gb.Gauge, words: str) -> None:
+    box = gb.RigidSpecimen.box(3.0, (0.3, 0.2, 0.1), (0.0, 0.0, 0.05))
+    chosen = {"solid": model().structure, "beam": beam(), "box": box.structure}[structure]
+    with pytest.raises(gb.InputError, match=words):
+        gb.linearize(chosen, gb.Flight(z=0.0), gauges=[gauge])
+
+
+SCENARIO = """
+[bodies.bar]
+mesh = "bar.vtk"
+unit = "m"
+clamp = "wall"
+modes = 2
+damping_ratio = "2 %"
+material = { density = "2700 kg/m^3", youngs_modulus = "70 GPa", poissons_ratio = 0.0 }
+[bodies.bar.points]
+gauge = { at = ["150 mm", 0, "5 mm"], turn = [0, 0, "30 deg"] }
+[motion.flight]
+kind = "flight"
+acceleration = { z = { profile = "trapezoid", level = "8 g", jerk = "40 g/s", start = "0.1 s", hold = "0.3 s" } }
+[response]
+duration = "1 s"
+step = "4 ms"
+integrator = "gauss"
+estimate = false
+"""
+
+
+@pytest.fixture
+def scenario(tmp_path: Path) -> Path:
+    import meshio
+
+    mesh = block("hexahedron20", (6, 1, 1), (L, B, H))
+    wall = mesh.point_sets["wall"]
+    cells = mesh.cells_dict["hexahedron20"]
+    used, number = np.unique(cells, return_inverse=True)
+    held = np.flatnonzero(np.isin(used, wall))
+    kept = meshio.Mesh(mesh.points[used], {"hexahedron20": number.reshape(-1, 20)}, point_sets={"wall": held})
+    meshio.write(tmp_path / "bar.inp", kept)
+    file = tmp_path / "bar.toml"
+    file.write_text(SCENARIO.replace("bar.vtk", "bar.inp"), encoding="utf-8")
+    return file
+
+
+def test_the_stiffness_of_a_solid_is_fitted_to_a_gauge(scenario: Path) -> None:
+    """A strain of a bar twice as soft is twice as large; the gauge's axis lies 30 degrees off."""
+    case = gb.read_scenario(scenario)
+    response = gb.study(case).responses["flight"]
+    strain = response.strain_at("gauge")
+    data = scenario.parent / "gauge.csv"
+    np.savetxt(
+        data, np.stack([response.time, 1e6 * strain], axis=1), delimiter=",", header="time,strain.x@gauge [µm/m]",
+        comments="", encoding="utf-8",
+    )  # fmt: skip
+    path = "bodies.bar.material.youngs_modulus"
+    found = gb.fit(scenario, data, [path], overrides=[f'{path}="60 GPa"'])
+    assert found.values[0] == pytest.approx(70e9, rel=1e-4) and found.before[0] == 60e9
+    wrong = scenario.parent / "wrong.csv"
+    np.savetxt(
+        wrong, np.stack([response.time, strain], axis=1), delimiter=",", header="time,strain.x@nose", comments=""
+    )
+    with pytest.raises(gb.InputError, match="has a gauge that is 'nose'; choose from gauge, tip"):
+        gb.fit(scenario, wrong, [path])
+
+
+def test_a_gauge_says_where_it_is() -> None:
+    gauge = gb.Gauge("half", along=(0.0, 1.0, 0.0))
+    assert asdict(gauge) == {"at": "half", "y": 0.0, "z": 0.0, "along": (0.0, 1.0, 0.0)}
+    with pytest.raises(gb.InputError, match="along is zero"):
+        gb.Gauge("half", along=(0.0, 0.0, 0.0))
+    assert all(a <= b for a, b in pairwise(flown()[0].time))
+
+
+def test_gauges_of_a_scenario_from_the_command_line(scenario: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Three at a point, along its axes; a point that is not there is named."""
+    assert main(["linearize", str(scenario), "--strain-at", "gauge"]) == 0
+    assert "strain_2 at gauge, along (0, 1, 0)" in capsys.readouterr().out
+    assert main(["linearize", str(scenario), "--strain-at", "nose"]) == 2
+    assert "--strain-at is 'nose'; choose from gauge, tip" in capsys.readouterr().err
+
+
+def test_a_bad_place_of_a_gauge_is_read_aloud(scenario: Path) -> None:
+    text = scenario.read_text(encoding="utf-8")
+    for before, after, place in (
+        ('turn = [0, 0, "30 deg"]', 'turn = [0, "30 deg"]', "bodies.bar.points.gauge.turn"),
+        ('"5 mm"], turn', '"5 mm"], turns', "bodies.bar.points.gauge.turns"),
+        ('at = ["150 mm", 0, "5 mm"]', 'at = ["9 m", 0, "5 mm"]', "bodies.bar.points.gauge"),
+    ):
+        scenario.write_text(text.replace(before, after), encoding="utf-8")
+        with pytest.raises(ScenarioError) as caught:
+            gb.read_scenario(scenario)
+        assert place in str(caught.value)
