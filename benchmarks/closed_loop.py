@@ -16,14 +16,17 @@ import sys
 import time
 from collections.abc import Callable
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 sys.path.pop(0)
+sys.path.insert(0, str(Path(__file__).parents[1]))
 import exudyn
 import numpy as np
 from exudyn import itemInterface as items
 
 import gbeam as gb
+from benchmarks.exudyn_hub_beam import cable, clamp, node
 
 LENGTH, WIDTH, THICKNESS, DENSITY, MODULUS = 3.0, 0.5, 0.02, 2700.0, 70e9
 RADIUS, INERTIA, SAMPLE, END, LIMIT = 0.5, 50.0, 0.01, 20.0, 20.0
@@ -60,31 +63,11 @@ def theirs(elements: int, steps: int) -> np.ndarray:
     for coordinate in (0, 1):
         marker = system.AddMarker(items.MarkerNodeCoordinate(nodeNumber=centre, coordinate=coordinate))
         system.AddObject(items.ObjectConnectorCoordinate(markerNumbers=[ground, marker]))
-    c, s = np.cos(START), np.sin(START)
-    nodes = []
-    for x in np.linspace(RADIUS, RADIUS + LENGTH, elements + 1):
-        turned = [c * x - x, s * x, c - 1, s]
-        nodes.append(
-            system.AddNode(items.NodePoint2DSlope1(referenceCoordinates=[x, 0, 1, 0], initialCoordinates=turned))
-        )
+    nodes = [node(system, x, START) for x in np.linspace(RADIUS, RADIUS + LENGTH, elements + 1)]
     area, second = WIDTH * THICKNESS, WIDTH * THICKNESS**3 / 12
-    cables = [
-        system.AddObject(
-            items.ObjectANCFCable2D(
-                length=LENGTH / elements,
-                massPerLength=DENSITY * area,
-                bendingStiffness=MODULUS * second,
-                axialStiffness=MODULUS * area,
-                nodeNumbers=list(pair),
-            )
-        )
-        for pair in pairwise(nodes)
-    ]
-    markers = [
-        system.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=[at, 0, 0]))
-        for body, at in ((hub, RADIUS), (cables[0], 0.0))
-    ]
-    system.AddObject(items.ObjectJointGeneric(markerNumbers=markers, constrainedAxes=[1, 1, 0, 0, 0, 1]))
+    values = LENGTH / elements, DENSITY * area, MODULUS * second, MODULUS * area
+    cables = [cable(system, pair, *values) for pair in pairwise(nodes)]
+    clamp(system, hub, RADIUS, cables[0])
     kind = exudyn.OutputVariableType.Coordinates
     sensor = system.AddSensor(items.SensorNode(nodeNumber=centre, storeInternal=True, outputVariableType=kind))
     held = {"sample": -1, "torque": 0.0}

@@ -10,6 +10,8 @@ from __future__ import annotations
 import sys
 import time
 from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -69,6 +71,36 @@ class Setting:
         return ", ".join([*words, f"contractivity {self.contractivity:g}", self.method, *filter(None, special)])
 
 
+def node(system: Any, x: float, turned: float = 0.0) -> Any:
+    """Node of a planar beam along x, turned about the origin by an angle at the start."""
+    c, s = np.cos(turned), np.sin(turned)
+    moved = [c * x - x, s * x, c - 1, s]
+    return system.AddNode(items.NodePoint2DSlope1(referenceCoordinates=[x, 0, 1, 0], initialCoordinates=moved))
+
+
+def cable(system: Any, nodes: Any, length: float, line: float, bending: float, axial: float, points: int = 0) -> Any:
+    """Cubic ANCF element between two nodes, of a mass per length and stiffnesses."""
+    return system.AddObject(
+        items.ObjectANCFCable2D(
+            length=length,
+            massPerLength=line,
+            bendingStiffness=bending,
+            axialStiffness=axial,
+            nodeNumbers=list(nodes),
+            useReducedOrderIntegration=points,
+        )
+    )
+
+
+def clamp(system: Any, hub: Any, at: float, element: Any, place: float = 0.0) -> None:
+    """Hold a place along an element on one of a rigid hub."""
+    markers = [
+        system.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=[x, 0, 0]))
+        for body, x in ((hub, at), (element, place))
+    ]
+    system.AddObject(items.ObjectJointGeneric(markerNumbers=markers, constrainedAxes=[1, 1, 0, 0, 0, 1]))
+
+
 class HubBeam:
     """The assembled system of a drive and a setting."""
 
@@ -80,11 +112,9 @@ class HubBeam:
         self._ground = self.system.AddMarker(
             items.MarkerNodeCoordinate(nodeNumber=self.system.AddNode(items.NodePointGround()), coordinate=0)
         )
-        self.nodes = [self._node(HUB_RADIUS + x) for x in np.linspace(0, LENGTH, setting.elements + 1)]
-        self.elements = [
-            self._element(a, b, LENGTH / setting.elements, DENSITY * AREA, YOUNG * INERTIA, YOUNG * AREA)
-            for a, b in zip(self.nodes[:-1], self.nodes[1:], strict=True)
-        ]
+        self.nodes = [node(self.system, HUB_RADIUS + x) for x in np.linspace(0, LENGTH, setting.elements + 1)]
+        values = LENGTH / setting.elements, DENSITY * AREA, YOUNG * INERTIA, YOUNG * AREA, setting.points
+        self.elements = [cable(self.system, pair, *values) for pair in pairwise(self.nodes)]
         if drive.mass:
             self.system.AddObject(items.ObjectMassPoint2D(mass=drive.mass, nodeNumber=self.nodes[-1]))
         hub = {"rigid": self._rigid_hub, "element": self._element_hub, "node": self._prescribed_node}[setting.hub]()
@@ -100,21 +130,6 @@ class HubBeam:
             for node in (self.nodes[-1], hub)
         ]
         self.system.Assemble()
-
-    def _node(self, x: float) -> object:
-        return self.system.AddNode(items.NodePoint2DSlope1(referenceCoordinates=[x, 0, 1, 0]))
-
-    def _element(self, a: object, b: object, length: float, line: float, bending: float, axial: float) -> object:
-        return self.system.AddObject(
-            items.ObjectANCFCable2D(
-                length=length,
-                massPerLength=line,
-                bendingStiffness=bending,
-                axialStiffness=axial,
-                nodeNumbers=[a, b],
-                useReducedOrderIntegration=self.setting.points,
-            )
-        )
 
     def _function(self, name: str, item: object, function: object) -> object:
         made = CreateSymbolicUserFunction(self.system, function, name, item)
@@ -134,13 +149,7 @@ class HubBeam:
         body = self.system.AddObject(items.ObjectRigidBody2D(mass=1.0, inertia=HUB_INERTIA, nodeNumber=node))
         self._fix(node, 0)
         self._fix(node, 1)
-        at_rim, at_root = (
-            self.system.AddMarker(items.MarkerBodyRigid(bodyNumber=number, localPosition=[x, 0, 0]))
-            for number, x in ((body, HUB_RADIUS), (self.elements[0], 0.0))
-        )
-        self.system.AddObject(
-            items.ObjectJointGeneric(markerNumbers=[at_rim, at_root], constrainedAxes=[1, 1, 0, 0, 0, 1])
-        )
+        clamp(self.system, body, HUB_RADIUS, self.elements[0])
         if self.drive.rate is not None:
             self._fix(node, 2, self._angle, self._rate)
             return node
@@ -155,10 +164,10 @@ class HubBeam:
 
     def _element_hub(self) -> object:
         """A free hub without a joint: continuous with the beam in place and slope."""
-        centre = self._node(0.0)
+        centre = node(self.system, 0.0)
         # Of a bar about its end: m L²/3 is the inertia.
         line = 3 * HUB_INERTIA / HUB_RADIUS**3
-        bar = self._element(centre, self.nodes[0], HUB_RADIUS, line, STIFF, STIFF)
+        bar = cable(self.system, [centre, self.nodes[0]], HUB_RADIUS, line, STIFF, STIFF, self.setting.points)
         self._fix(centre, 0)
         self._fix(centre, 1)
         marker = self.system.AddMarker(items.MarkerBodyRigid(bodyNumber=bar, localPosition=[0, 0, 0]))

@@ -120,6 +120,8 @@ def _spun_in_exudyn(elements: int, steps: int) -> np.ndarray:
     from exudyn import itemInterface as items
     from exudyn.utilities import SensorNode
 
+    from benchmarks.exudyn_hub_beam import cable, clamp, node
+
     system = exudyn.SystemContainer().AddSystem()
     centre = system.AddNode(items.NodeRigidBody2D(referenceCoordinates=[0, 0, 0]))
     hub = system.AddObject(items.ObjectRigidBody2D(mass=MASS, inertia=INERTIA, nodeNumber=centre))
@@ -127,25 +129,10 @@ def _spun_in_exudyn(elements: int, steps: int) -> np.ndarray:
     tips = []
     for way, length in zip((1.0, -1.0), LENGTHS, strict=True):
         x = np.sort(way * np.linspace(RADIUS, RADIUS + length, elements + 1))  # all along x
-        nodes = [system.AddNode(items.NodePoint2DSlope1(referenceCoordinates=[each, 0, 1, 0])) for each in x]
-        cables = [
-            system.AddObject(
-                items.ObjectANCFCable2D(
-                    length=length / elements,
-                    massPerLength=DENSITY * area,
-                    bendingStiffness=MODULUS * second,
-                    axialStiffness=MODULUS * area,
-                    nodeNumbers=list(pair),
-                )
-            )
-            for pair in pairwise(nodes)
-        ]
-        root, place = (cables[0], 0.0) if way > 0 else (cables[-1], length / elements)
-        markers = [
-            system.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=[at, 0, 0]))
-            for body, at in ((hub, way * RADIUS), (root, place))
-        ]
-        system.AddObject(items.ObjectJointGeneric(markerNumbers=markers, constrainedAxes=[1, 1, 0, 0, 0, 1]))
+        nodes = [node(system, each) for each in x]
+        values = length / elements, DENSITY * area, MODULUS * second, MODULUS * area
+        cables = [cable(system, pair, *values) for pair in pairwise(nodes)]
+        clamp(system, hub, way * RADIUS, *((cables[0], 0.0) if way > 0 else (cables[-1], length / elements)))
         tips.append(nodes[-1] if way > 0 else nodes[0])
 
     def torque(mbs, t, load):  # type: ignore[no-untyped-def]  # names that Exudyn checks
