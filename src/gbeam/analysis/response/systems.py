@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property, partial
 from itertools import pairwise
 from typing import Any
 
@@ -28,7 +29,9 @@ from gbeam.arrays.namespace import holds_jax, namespace
 from gbeam.errors import InputError
 from gbeam.guards.limits import HISTORY_BYTES, STEPS, refuse_more
 from gbeam.integrate.equations import NonlinearEquations, Trajectory
+from gbeam.integrate.sampled import Sampling
 from gbeam.integrate.steps import Corners
+from gbeam.mechanics.tree.equations import Inputs
 from gbeam.mechanics.tree.steps import continuous
 from gbeam.mechanics.tree.system import System
 from gbeam.motion import Centrifuge
@@ -49,35 +52,99 @@ BEYOND = 1e-8  # of a coordinate's range: less beyond a stop is no contact
 
 
 @dataclass(frozen=True)
+class PosedSystem:
+    """A system on the ground or on a moving base, with the equations of its motion."""
+
+    system: System
+    motion: Motion | None
+
+    @cached_property
+    def equations(self) -> NonlinearEquations:
+        """Its equations, with its controllers, if any, in the loop."""
+        control = SystemControllers(self.system) if self.system.controllers else None
+        drive = partial(self.system.inputs, motion=self.motion)
+        return NonlinearEquations(self.system.tree, drive, control, None if control is None else [])
+
+    def start(self, settings: ResponseSettings) -> Point:
+        """Where it starts."""
+        return started(self.system, self.motion, settings.start, settings.begin.state)
+
+    def corners(self, step: float) -> Floats:
+        """Times that steps of a length should not pass unseen, s."""
+        moved = [] if self.motion is None else [self.motion.corners(step)]
+        return np.concatenate([self.system.corners(step), *moved])
+
+    def jumps(self, settings: ResponseSettings, step: float) -> Corners:
+        """Corners in a run of steps of about a length, and jumps of its controllers' commands."""
+        end = settings.start + settings.duration
+        felt = Corners.of(self.corners(step), self.equations.drive, settings.start, end)
+        if self.equations.controllers is None:
+            return felt
+        commands = np.unique(np.round(self.equations.controllers.corners(settings.start, end), 12))
+        commands = commands[np.abs(commands[:, None] - felt.time).min(axis=1, initial=np.inf) > 1e-9]
+        both, jumps = np.append(felt.time, commands), np.append(felt.jump, np.ones(len(commands), dtype=bool))
+        return Corners(np.sort(both), jumps[np.argsort(both)])
+
+    def run(self, settings: ResponseSettings, q: Array, qd: Array, step: float, **how: Any) -> Ran:
+        """Integrate it from coordinates and rates."""
+        trajectory = integrated(Problem(self.equations, q, qd, 0, True), settings, step, **how)
+        sampling = self.equations.samplings[-1] if self.equations.samplings else None
+        return Ran(trajectory, step, None, self, sampling)  # type: ignore[arg-type]
+
+
+@dataclass(frozen=True)
 class Ran(Run):
-    """A run of a system, with what drives it and the displacements of all points, side by side, (t, 3 p) m."""
+    """A run of a system, with the samples of its controllers."""
 
-    inputs: InputsOf
-    moved: Floats
+    posed: PosedSystem
+    sampling: Sampling | None
 
-    @staticmethod
-    def of(system: System, trajectory: Trajectory, step: float, inputs: InputsOf) -> Ran:
-        """Read a run."""
-        places = Answered(itself(system), trajectory, inputs).places()
-        return Ran(trajectory, step, None, inputs, (places - places[0]).reshape(len(places), -1))  # type: ignore[arg-type]
+    def loop(self, time: Floats) -> tuple[Loop | None, Floats | None]:
+        """What its controllers did, and their commands (t, m) that act at times."""
+        return (None, None) if self.sampling is None else loop_of(self.posed.equations.controllers, self.sampling, time)
 
+    @cached_property
+    def acting(self) -> Floats | None:
+        """Commands of its controllers that act at its times."""
+        return self.loop(self.trajectory.time)[1]
 
-def _driving(motion: Motion | None, of: Trajectory, equations: NonlinearEquations) -> InputsOf:
-    """Inputs of the latest run of some equations, controllers included, and of richer systems at its times."""
-    acting = None
-    if equations.controllers is not None:
-        acting = loop_of(equations.controllers, equations.samplings[-1], of.time)[1]
+    @cached_property
+    def moved(self) -> Floats:
+        """Displacements of all points, side by side, (t, 3 p) m."""
+        places = Answered(itself(self.posed.system), *self.every(1)).places()
+        return np.asarray((places - places[0]).reshape(len(places), -1))
 
-    def inputs(system: System, some: Any) -> Any:
-        plain = system.inputs(of.time[some], motion)
-        return plain if acting is None else SystemControllers(system).driven(plain, acting[some])
+    @cached_property
+    def missed(self) -> tuple[str, ...]:
+        """Warning of a stop that its steps may miss."""
+        return _missed_stop(self.posed.system, self.trajectory)
 
-    return inputs
+    def inputs(self, of: System, steps: Any) -> Inputs:
+        """Inputs at some of its steps of its system, or of another with the same controllers."""
+        plain = of.inputs(self.trajectory.time[steps], self.posed.motion)
+        return plain if self.acting is None else SystemControllers(of).driven(plain, self.acting[steps])
 
+    def every(self, stride: int) -> tuple[Trajectory, InputsOf]:
+        """Each `stride`-th of its steps, and the inputs at some of these."""
+        steps = np.arange(len(self.trajectory.time))[::stride]
+        return self.trajectory.at(steps), lambda of, some: self.inputs(of, steps[some])
 
-def _pieces(trajectory: Trajectory, system: System) -> list[Trajectory]:
-    """A trajectory in pieces of which all frames are held in memory at once."""
-    return [trajectory.at(some) for some in pieces(len(trajectory.time), system.tree.size)]
+    def histories(self, steps: Any, *, loads: bool) -> tuple[dict[str, Any], dict[str, Loads]]:
+        """Histories at some of its steps, and loads along the beams by name."""
+        system, inertial = self.posed.system, self.posed.motion is None
+        chosen = np.arange(len(self.trajectory.time))[steps]
+        columns, beams = dict[str, list[Floats]](), dict[str, list[Carried]]()
+        for part in pieces(len(chosen), system.tree.size):  # of which all frames are held in memory at once
+            at, inputs = self.trajectory.at(chosen[part]), self.inputs(system, chosen[part])
+            values, carried = histories(system, at.q, at.qd, at.qdd, inputs, inertial=inertial)
+            for key, value in values.items():
+                columns.setdefault(key, []).append(value)
+            for name, each in carried.items():
+                beams.setdefault(name, []).append(each)
+        time = self.trajectory.time[chosen]
+        along = {name: loads_of(beams_of(system)[name], each, time) for name, each in beams.items() if loads}
+        over_time = {key: namespace(*values).concatenate(values) for key, values in columns.items()}
+        return over_time | {"attitude": continuous(over_time["attitude"])}, along
 
 
 def simulate_system(
@@ -91,114 +158,93 @@ def simulate_system(
             fix = "leave one out: a motion carries its own, as specific force"
             raise InputError("gravity", "is given beside a motion of the base", fix)
         motion = motion.over(settings.start, settings.start + settings.duration)
-    begin = settings.begin
+    begin, posed = settings.begin, PosedSystem(system, motion)
     if begin != type(begin)(begin.state):
         raise InputError("initial", "displaces a tip", 'give "equilibrium" or "undeformed"; joints have initial values')
-    equations = NonlinearEquations(system.tree, lambda t: system.inputs(t, motion))
     if system.holds_jax or holds_jax(motion):
-        return _traced(system, motion, settings, name, equations)
-    point = started(system, motion, settings.start, begin.state)
-    coarse = _first_step(system, motion, point, settings)
+        return _traced(posed, settings, name)
+    point = posed.start(settings)
+    coarse = _first_step(posed, point, settings)
     flight, settings = settings, _with_ends(motion, settings, settings.step or coarse)
     if settings.start < flight.start:
-        point = started(system, motion, settings.start, begin.state)
+        point = posed.start(settings)
+    _refuse_long(system, settings, settings.step or coarse)
+    jumps = posed.jumps(settings, coarse)
+
+    def run(of: PosedSystem, begun: Point, step: float, what: str) -> Ran:
+        return of.run(settings, begun.y, begun.yd, step, corners=jumps, progress=partial(tell, progress, what))
+
+    bends = any(joint.holder.bends for joint in system.joints.values())
+    runs, error = _stepped(lambda step, what: run(posed, point, step, what), coarse, settings, bends)
+    chosen = runs[-1]
+    error = math.nan if chosen.missed else error
+    stride = 1 if settings.step is not None else round(coarse / chosen.step)
+    errors = SystemErrors(ErrorEstimate(error))
+
+    def again(of: System) -> tuple[Trajectory, InputsOf]:
+        richer = PosedSystem(of, motion)
+        return run(richer, richer.start(settings), chosen.step, "errors of shapes and models").every(stride)
+
+    if settings.estimate and chosen.whole:
+        loads = {} if chosen.missed else _load_errors(runs, scheme_of(settings).order, bends)
+        settled, closed = begin.state == "equilibrium", again if system.controllers else None
+        errors = system_errors(system, *chosen.every(stride), closed, {PLACE: error} | loads, settled=settled)
+    return _described(chosen, settings, stride, errors, name, chosen.missed)
+
+
+def _refuse_long(system: System, settings: ResponseSettings, step: float) -> None:
+    """Refuse controllers that cannot be sampled, and a run of too many samples or steps."""
     for key, controller in system.controllers.items():
         fix = f"give {settings.duration / LOADS_STEPS:.3g} s or more, or a shorter run"
         samples = settings.duration / controller.sample
         refuse_more(f"controllers.{key}.sample", "samples", samples, STEPS, 8.0 * 3 * system.tree.size, fix)
     if system.controllers and not len(system.tree.free):
         raise InputError("controllers", "have nothing to move: all motion is prescribed", "leave them out, or a rate")
-    if system.controllers:
-        if settings.integrator != "gauss":
-            fix = "leave it out: controllers are sampled by Gauss's method"
-            raise InputError("integrator", f"is {settings.integrator!r}", fix)
-        equations = replace(equations, controllers=SystemControllers(system), samplings=[])
+    if system.controllers and settings.integrator != "gauss":
+        fix = "leave it out: controllers are sampled by Gauss's method"
+        raise InputError("integrator", f"is {settings.integrator!r}", fix)
     each = 8.0 * (3 * system.tree.size + 16 * len(system.points))
-    most, step = int(HISTORY_BYTES / each), settings.step or coarse
+    most = int(HISTORY_BYTES / each)
     fix = f"give {most * step:.3g} s or less, or longer steps"
     refuse_more("response.duration", "steps", settings.duration / step, most, each, fix)
-    end = settings.start + settings.duration
-    times = _corners(system, motion, coarse)
-    felt = Corners.of(times, equations.drive, settings.start, end)
-    if system.controllers:
-        commands = np.unique(np.round(equations.controllers.corners(settings.start, end), 12))
-        commands = commands[np.abs(commands[:, None] - felt.time).min(axis=1, initial=np.inf) > 1e-9]
-        both, jumps = np.append(felt.time, commands), np.append(felt.jump, np.ones(len(commands), dtype=bool))
-        felt = Corners(np.sort(both), jumps[np.argsort(both)])
-    order = scheme_of(settings).order
 
-    def through(of: NonlinearEquations, begun: Point, step: float, what: str) -> Trajectory:
-        how = {"corners": felt, "progress": lambda done: tell(progress, what, done)}
-        return integrated(Problem(of, begun.y, begun.yd, 0, True), settings, step, **how)
 
-    def run(step: float, what: str) -> Ran:
-        trajectory = through(equations, point, step, what)
-        return Ran.of(system, trajectory, step, _driving(motion, trajectory, equations))
-
-    runs, error = [run(settings.step or 2 * coarse, "integrating")], math.nan
-    missed = _missed_stop(system, runs[-1].trajectory)
-    bends = any(joint.holder.bends for joint in system.joints.values())
-    if settings.step is None:
-        runs.append(run(coarse, "refining"))
-        while True:
-            error = _step_error(runs, order, bends)
-            whole, missed = runs[-1].whole, _missed_stop(system, runs[-1].trajectory)
-            most = int(LOADS_STEPS * runs[-1].step / settings.duration)
-            few = bends and len(runs) < 3
-            needed = few or bool(missed)
-            finer = max(finer_by(error / settings.aim if whole else math.nan, order), 2 if needed else 0)
-            finer = min(finer, BENT if bends else finer, most)
-            if (error <= settings.aim and whole and not needed) or finer < 2:
-                break
-            if not (whole or runs[-2].whole) and len(runs) > 3:
-                break
-            step = runs[-1].step / finer
-            runs.append(run(step, f"refining the step to {1e3 * step:.3g} ms"))
-    elif settings.estimate:
-        coarser = (4, 2) if bends else (2,)
+def _stepped(
+    run: Callable[[float, str], Ran], coarse: float, settings: ResponseSettings, bends: bool
+) -> tuple[list[Ran], float]:
+    """Runs, of which the last counts, by a given or an automatic step, and the error of its steps in the places."""
+    order, runs = scheme_of(settings).order, [run(settings.step or 2 * coarse, "integrating")]
+    if settings.step is not None:
+        coarser = () if not settings.estimate else (4, 2) if bends else (2,)
         runs[:0] = [run(k * settings.step, f"checking with {k} times the step") for k in coarser]
+        return runs, _step_error(runs, order, bends) if coarser else math.nan
+    runs.append(run(coarse, "refining"))
+    while True:
         error = _step_error(runs, order, bends)
-    error = math.nan if missed else error
-    chosen = runs[-1]
-    stride = 1 if settings.step is not None else round(coarse / chosen.step)
-    kept = chosen.trajectory.at(slice(None, None, stride))
-    if not settings.estimate or not chosen.whole:
-        errors = SystemErrors(ErrorEstimate(error))
-        return _described(system, motion, settings, chosen, stride, errors, name, equations, missed)
-
-    def again(of: System) -> tuple[Trajectory, InputsOf]:
-        control = SystemControllers(of) if system.controllers else None
-        own = NonlinearEquations(of.tree, lambda t: of.inputs(t, motion), control, None if control is None else [])
-        trajectory = through(
-            own, started(of, motion, settings.start, begin.state), chosen.step, "errors of shapes and models"
-        )
-        ran = trajectory.at(slice(None, None, stride))
-        return ran, _driving(motion, ran, own)
-
-    def inputs(of: System, some: Any) -> Any:
-        return chosen.inputs(of, np.arange(len(chosen.trajectory.time))[::stride][some])
-
-    steps = {PLACE: error} | _load_errors(system, runs, order, bends)
-    steps = dict.fromkeys(steps, math.nan) if missed else steps
-    settled, closed = begin.state == "equilibrium", again if system.controllers else None
-    errors = system_errors(system, kept, inputs, closed, steps, settled=settled)
-    return _described(system, motion, settings, chosen, stride, errors, name, equations, missed)
+        whole = runs[-1].whole
+        most = int(LOADS_STEPS * runs[-1].step / settings.duration)
+        few = bends and len(runs) < 3
+        needed = few or bool(runs[-1].missed)
+        finer = max(finer_by(error / settings.aim if whole else math.nan, order), 2 if needed else 0)
+        finer = min(finer, BENT if bends else finer, most)
+        lost = not (whole or runs[-2].whole) and len(runs) > 3
+        if (error <= settings.aim and whole and not needed) or finer < 2 or lost:
+            return runs, error
+        step = runs[-1].step / finer
+        runs.append(run(step, f"refining the step to {1e3 * step:.3g} ms"))
 
 
-def _traced(
-    system: System, motion: Motion | None, settings: ResponseSettings, name: str, equations: NonlinearEquations
-) -> SystemResponse:
+def _traced(posed: PosedSystem, settings: ResponseSettings, name: str) -> SystemResponse:
     """A run whose values JAX traces: of a given step, without a look at them."""
     if settings.step is None:
         raise InputError("step", "is automatic, and a traced run has no numbers to choose it by", "give a step, s")
-    if system.controllers:
+    if posed.system.controllers:
         fix = "trace the system without them: a law that is sampled is no part of a compiled program"
         raise InputError("controllers", "are in the loop of a traced run", fix)
     step = settings.duration / max(1, round(settings.duration / settings.step))
-    settings = _with_ends(motion, settings, step)
-    start = started_traced(system, motion, settings.start, settings.begin.state)
-    run = Run(integrated(Problem(equations, *start, 0, True), settings, step), step, None)  # type: ignore[arg-type]
-    return _described(system, motion, replace(settings, loads=False), run, 1, SystemErrors(), name, equations)
+    settings = _with_ends(posed.motion, settings, step)
+    start = started_traced(posed.system, posed.motion, settings.start, settings.begin.state)
+    return _described(posed.run(settings, *start, step), replace(settings, loads=False), 1, SystemErrors(), name)
 
 
 def _with_ends(motion: Motion | None, settings: ResponseSettings, step: float) -> ResponseSettings:
@@ -224,8 +270,9 @@ def _left(runs: Sequence[Run], apart: Sequence[float], order: float, bends: bool
     return apart[-1] * share(runs, apart, order)
 
 
-def _load_errors(system: System, runs: list[Ran], order: int, bends: bool) -> dict[Quantity, float]:
+def _load_errors(runs: list[Ran], order: int, bends: bool) -> dict[Quantity, float]:
     """Errors of the steps in the loads at the beams' roots and in their stress."""
+    system = runs[-1].posed.system
     beams = judged_beams(system)
     last = runs[-3:] if runs[-3:][0].whole else runs[-2:]
     keys = [(name, each) for name in beams for each in ("force", "moment", "stress")]
@@ -233,10 +280,7 @@ def _load_errors(system: System, runs: list[Ran], order: int, bends: bool) -> di
         return {}
 
     def read(k: int, stride: int) -> list[Floats]:
-        run = last[k]
-        steps = np.arange(len(run.trajectory.time))[::stride]
-        at = Answered(itself(system), run.trajectory.at(steps), lambda of, some: run.inputs(of, steps[some]))
-        values = at.read(beams)
+        values = Answered(itself(system), *last[k].every(stride)).read(beams)
         return [values[key] for key in keys]
 
     return dict(zip(keys, of_histories(last, read, lambda apart: _left(last, apart, 4 / order, bends)), strict=True))
@@ -268,12 +312,7 @@ def _missed_stop(system: System, run: Trajectory) -> tuple[str, ...]:
     return ()
 
 
-def _corners(system: System, motion: Motion | None, step: float) -> Floats:
-    moved = [] if motion is None else [motion.corners(step)]
-    return np.concatenate([system.corners(step), *moved])
-
-
-def _first_step(system: System, motion: Motion | None, point: Point, settings: ResponseSettings) -> float:
+def _first_step(posed: PosedSystem, point: Point, settings: ResponseSettings) -> float:
     """Step of the results, s: 500 at least, twenty to the period of the slowest vibration of which the most steps are
     one to a period, and none over a corner, as far as there are not too many.
     """
@@ -284,64 +323,33 @@ def _first_step(system: System, motion: Motion | None, point: Point, settings: R
     oscillating = oscillating[oscillating * settings.duration < 2 * math.pi * LOADS_STEPS]
     if oscillating.size:
         largest = min(largest, 2 * math.pi / float(oscillating.min()) / 20)
-    return settings.duration / min(even_steps(largest, _corners(system, motion, largest), settings), LOADS_STEPS)
-
-
-def _over_time(
-    system: System, motion: Motion | None, equations: NonlinearEquations, of: Trajectory, *, loads: bool
-) -> tuple[dict[str, Any], dict[str, Loads], Loop | None]:
-    """Histories of a trajectory, loads along the beams by name, and what controllers did."""
-    loop, acting, done = None, None, 0
-    if equations.controllers is not None:
-        loop, acting = loop_of(equations.controllers, equations.samplings[-1], of.time)
-    columns, beams = dict[str, list[Floats]](), dict[str, list[Carried]]()
-    for some in _pieces(of, system):
-        inputs = system.inputs(some.time, motion)
-        if acting is not None:
-            inputs = equations.controllers.driven(inputs, acting[done : done + len(some.time)])
-        done += len(some.time)
-        values, carried = histories(system, some.q, some.qd, some.qdd, inputs, inertial=motion is None)
-        for key, value in values.items():
-            columns.setdefault(key, []).append(value)
-        for name, each in carried.items():
-            beams.setdefault(name, []).append(each)
-    along = {name: loads_of(beams_of(system)[name], each, of.time) for name, each in beams.items() if loads}
-    over_time = {key: namespace(*values).concatenate(values) for key, values in columns.items()}
-    return over_time | {"attitude": continuous(over_time["attitude"])}, along, loop
+    return settings.duration / min(even_steps(largest, posed.corners(largest), settings), LOADS_STEPS)
 
 
 def _described(
-    system: System,
-    motion: Motion | None,
-    settings: ResponseSettings,
-    run: Run,
-    stride: int,
-    errors: SystemErrors,
-    name: str,
-    equations: NonlinearEquations,
-    warnings: tuple[str, ...] = (),
+    run: Ran, settings: ResponseSettings, stride: int, errors: SystemErrors, name: str, warnings: tuple[str, ...] = ()
 ) -> SystemResponse:
     """Describe a run at every `stride`-th of its steps."""
-    every = run.trajectory
-    kept = every.at(slice(None, None, stride))
-    over_time, along, loop = _over_time(system, motion, equations, kept, loads=settings.loads)
+    every, system, motion = run.trajectory, run.posed.system, run.posed.motion
+    time = every.time[::stride]
+    over_time, along = run.histories(slice(None, None, stride), loads=settings.loads)
     beams, yielded = dict[str, BeamResponse](), []
     for body, loads in along.items():
         beam = beams_of(system)[body]
 
         def between(steps: Any, body: str = body) -> Loads:
-            return _over_time(system, motion, equations, every.at(steps), loads=True)[1][body]
+            return run.histories(steps, loads=True)[1][body]
 
         peaks = load_peaks(loads, between, every.time, stride)
         first = system.coordinates.index(f"{body}.q1")
         q = over_time["q"][:, first : first + beam.size]
         names = () if beam.source is None else names_at(beam.source.beam, beam.stations)
-        beams[body] = BeamResponse(loads, peaks, outline_of(beam, None, kept.time, q), names)
+        beams[body] = BeamResponse(loads, peaks, outline_of(beam, None, time, q), names)
         yielded += yielding(beams[body].peaks, f" of {body}")
     invariants = None
     if motion is None:
         invariants = Invariants(*(over_time.pop(key) for key in ("momentum", "angular_momentum", "energy")))
-    base: Any = None if motion is None else motion.base(kept.time)
+    base: Any = None if motion is None else motion.base(time)
     outcome, message = "done", ""
     if not every.whole:
         outcome = "not converged"
@@ -358,20 +366,20 @@ def _described(
         environment="ground" if motion is None else motion.kind,
         outcome=outcome,
         message=message,
-        time=kept.time,
+        time=time,
         points=system.points,
         coordinates=system.coordinates,
         invariants=invariants,
-        loop=loop,
+        loop=run.loop(time)[0],
         beams=beams,
         base=None if motion is None else BaseMotion(base.a_WO_B, base.w_WB_B, base.alpha_WB_B),
-        axes=axes_result(motion, kept.time) if isinstance(motion, Centrifuge) else None,
+        axes=axes_result(motion, time) if isinstance(motion, Centrifuge) else None,
         assembly=assembly_of(system) if settings.loads else None,
         integrator=scheme_of(settings).name,
         step=run.step,
         steps=len(every.time) - 1,
         errors=errors,
-        kept_every=settings.kept_every(len(kept.time), run.step * stride),
+        kept_every=settings.kept_every(len(time), run.step * stride),
         warnings=warnings + system.warnings,
         **over_time,
     )
