@@ -49,6 +49,9 @@ def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure
                 points=points,
                 point_masses=table.masses,
                 interfaces=table.interfaces,
+                links=table.links,
+                carried={name: _carried(name, each) for name, each in table.carried.items()},
+                springs={name: each.model_dump() for name, each in table.springs.items()},
                 origin=table.origin,
                 turn=table.turn,
                 scale=table.scale,
@@ -74,6 +77,16 @@ def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure
         return reduced(table.mesh, coarser).structure
 
     return parts.attempt(where, model)
+
+
+def _carried(name: str, table: schema.Carried) -> RigidBody:
+    """A body on a rigid link."""
+    from gbeam.mechanics.tree.system import RigidBody
+
+    try:
+        return RigidBody(table.mass, table.inertia, table.centre)
+    except InputError as error:
+        raise error.within(f"carried.{name}") from None
 
 
 def _material(parts: Collector, where: str, table: Any) -> Any:

@@ -18,7 +18,7 @@ from gbeam.mechanics.equations.linear import coefficients, geometric_of
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.reduction import inertial_loads, linear_fields, particles_of, reduce
 from gbeam.mechanics.structure import linear_structure
-from gbeam.mechanics.tree.system import Place
+from gbeam.mechanics.tree.system import Place, RigidBody
 from gbeam.numerics.factor import refuse_cost
 from gbeam.results.result import Floats
 from gbeam.solids.elements import (
@@ -39,6 +39,7 @@ from gbeam.solids.foreign import (
     solid_blocks,
 )
 from gbeam.solids.interfaces import attached, refuse_names
+from gbeam.solids.links import Linked, Links
 from gbeam.solids.model import SolidModel, mesh_errors
 from gbeam.solids.plausibility import doubts_of, refuse_folded, refuse_loose
 from gbeam.solids.stress import NodalStress
@@ -72,6 +73,8 @@ class SolidMesh(Value):
         What is implausible in it.
     interfaces : dict of (g,) int
         Nodes of the groups on which other bodies hang, by their names.
+    links : Links
+        Nodes that move as rigid bodies, what they carry, and springs between them.
 
     Examples
     --------
@@ -91,6 +94,7 @@ class SolidMesh(Value):
     strengths: dict[str, float] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
     interfaces: dict[str, Indices] = field(default_factory=dict)
+    links: Links = field(default_factory=Links)
     exponents: dict[str, float] = field(default_factory=dict)
     turns: dict[str, Sequence[float]] = field(default_factory=dict)
 
@@ -106,6 +110,9 @@ class SolidMesh(Value):
         points: Mapping[str, Any] | None = None,
         point_masses: Mapping[str, float] | None = None,
         interfaces: Mapping[str, str] | None = None,
+        links: Mapping[str, str | Sequence[str]] | None = None,
+        carried: Mapping[str, RigidBody] | None = None,
+        springs: Mapping[str, Any] | None = None,
         origin: Sequence[float] = (0.0, 0.0, 0.0),
         turn: Sequence[float] = (0.0, 0.0, 0.0),
         scale: Sequence[float] = (1.0, 1.0, 1.0),
@@ -134,6 +141,15 @@ class SolidMesh(Value):
         interfaces : dict of str, optional
             Groups of nodes or elements by the name of a point that moves and turns as their nodes do on average: bodies
             of a :class:`gbeam.System` hang on it by joints, and it is put out.
+        links : dict of str or of sequence of str, optional
+            Rigid links by name: groups of nodes that move together as one rigid body.
+        carried : dict of RigidBody, optional
+            Bodies by the name of the rigid link that carries each: its root is in the middle of the link's nodes, its
+            axes are those of the base.
+        springs : dict, optional
+            Springs by name: ``between``, the names of two rigid links or of one that a spring holds to the base, and
+            ``stiffness``, a dict of ``x``, ``y`` and ``z`` in N/m and of ``rx``, ``ry`` and ``rz`` in N m/rad, in the
+            middle of the first link's nodes and along the axes of the base.
         origin : (3,)
             Root in the mesh's coordinates, m: the point whose acceleration the motion gives.
         turn : (3,)
@@ -202,6 +218,7 @@ class SolidMesh(Value):
         hung = {name: group(f"interfaces.{name}", of) for name, of in (interfaces or {}).items()}
         exponents = {name: float(each.fatigue_exponent) for name, each in kinds.items()}
         about: dict[str, Any] = {"strengths": strengths, "exponents": exponents, "interfaces": hung}
+        about["links"] = Links.of(group, links or {}, carried or {}, springs or {}, at, clamped)
         about["turns"] = {name: tuple(place.turn) for name, place in given.items() if isinstance(place, Place)}
         solid = cls(at, blocks, clamped, used, weights, named | {TIP: tip}, **about)
         refuse_folded(solid)
@@ -217,9 +234,9 @@ class SolidMesh(Value):
 
     @property
     def mass(self) -> float:
-        """Mass with that on the nodes, kg."""
+        """Mass with that on the nodes and of the bodies that it carries, kg."""
         parts = (block.density * volume.sum() for block, _, volume, _, _ in chunks(self.points, self.blocks, "mass"))
-        return float(sum(parts) + self.point_masses.sum())
+        return float(sum(parts) + self.point_masses.sum() + sum(each.mass for each in self.links.bodies.values()))
 
     @typed
     def reduced(
@@ -259,28 +276,34 @@ class SolidMesh(Value):
         """
         from scipy.sparse import diags_array, eye_array, kron
 
-        mass = (mass_matrix(self.points, self.blocks) + diags_array(self.point_masses)).tocsr()
+        linked = Linked(self)
+        count = len(self.points)
+        mass = (linked.widened(mass_matrix(self.points, self.blocks), 1) + diags_array(linked.masses)).tocsr()
         # Body forces −1, −x, −y and −z along x, then along y, then along z.
-        loads = inertial_loads(mass @ linear_fields(self.points))
+        loads = inertial_loads(mass @ linear_fields(linked.points))
         centres, forces = attached(self.points, self.interfaces)
-        free = np.repeat(~self.clamped, 3)
-        forces[~free] = 0.0  # what the clamp takes
+        forces[np.repeat(self.clamped, 3)] = 0.0  # what the clamp takes
+        loads = np.concatenate([loads, linked.widened_loads(forces)], axis=1)
+        stiffness = linked.elastic(stiffness_matrix(self.points, self.blocks))
         reduced = reduce(
-            stiffness_matrix(self.points, self.blocks),
-            kron(mass, eye_array(3), format="csr"),
-            np.concatenate([loads, forces], axis=1),
-            free,
+            linked.condensed_stiffness(stiffness),
+            linked.condensed(kron(mass, eye_array(3), format="csr")),
+            linked.condensed(loads),
+            linked.free,
             modes,
         )
-        shapes, still = (each.reshape(len(self.points), 3, -1) for each in (reduced.shapes, reduced.static))
+        everywhere, still = (linked.displacements(each) for each in (reduced.shapes, reduced.static))
+        shapes = everywhere[:count]
         # Of moments on interfaces the stress is left out.
         pushed = [12 + 6 * i + axis for i in range(len(centres)) for axis in range(3)]
-        stressed = still[..., [*range(12), *pushed]]
-        fields = geometric_stiffness(self.points, self.blocks, stressed, shapes, reduced.squares)
+        stressed = [*range(12), *pushed]
+        fields = geometric_stiffness(self.points, self.blocks, still[:count, :, stressed], shapes, reduced.squares)
+        fields += linked.geometric_stiffness(stiffness, still[..., stressed], loads[:, stressed], reduced.shapes)
+        del stiffness
         inertial = fields[:12].reshape(3, 4, *fields.shape[1:])
         frequency = np.sqrt(reduced.squares[:modes]) / (2 * np.pi)
         error, doubts = mesh_errors(frequency, coarser)
-        masses, *paths = particles_of(self.points, shapes, mass)
+        masses, *paths = particles_of(linked.points, everywhere, mass)
         places = Places(*paths)
         stress = geometric_of(inertial[:, 0], inertial[:, 1:].swapaxes(0, 1))
         stations, turns = self._outputs(centres, forces, shapes, fields[12:])
@@ -289,7 +312,7 @@ class SolidMesh(Value):
             masses,
             places,
             stations,
-            length=float(np.linalg.norm(self.points, axis=1).max()),
+            length=float(np.linalg.norm(linked.points, axis=1).max()),
             turns=turns,
             damping_ratio=damping_ratio,
             points=self.named_points,

@@ -40,11 +40,14 @@ def refuse_loose(mesh: SolidMesh) -> None:
     from scipy.sparse.csgraph import connected_components
 
     pairs = [(np.repeat(b.nodes[:, 0], b.nodes.shape[1]), b.nodes.ravel()) for b in mesh.blocks]
+    pairs += [(np.full(len(nodes), nodes[0]), nodes) for nodes in mesh.links.joined]
     rows, columns = (np.concatenate(each) for each in zip(*pairs, strict=True))
     graph = coo_array((np.ones(len(rows), dtype=bool), (rows, columns)), shape=(len(mesh.points),) * 2)
     count, part = connected_components(graph, directed=False)
     for i in range(count):
         nodes = part == i
+        if any(nodes[each].any() for each in mesh.links.on_base):
+            continue  # whether the springs hold it the factors say
         held = mesh.points[nodes & mesh.clamped]
         size = np.linalg.svd(held - held.mean(axis=0), compute_uv=False) if len(held) > 2 else np.zeros(3)
         if size[1] > STRAIGHT * np.linalg.norm(np.ptp(mesh.points[nodes], axis=0)):

@@ -96,6 +96,43 @@ _Point = Annotated[
 ]
 
 
+class Carried(Table):
+    """A body that a rigid link carries, its root in the middle of the link's nodes."""
+
+    mass: Mass = Field(description="mass")
+    centre: Place3 = Field(
+        default=(0.0, 0.0, 0.0), description="centre of mass from the middle of the link's nodes: [x, y, z]"
+    )
+    inertia: Inertia = Field(
+        default=(0.0, 0.0, 0.0),
+        description="moments about the centre of mass and the axes of the base, or three rows of the tensor",
+    )
+
+
+_Spring = Annotated[float, Quantity("stiffness", "zero or more")]
+_TurnSpring = Annotated[float, Quantity("rotational stiffness", "zero or more")]
+
+
+class SpringStiffness(Table):
+    """Stiffness along and about the axes of the base."""
+
+    x: _Spring = Field(default=0.0, description="along x")
+    y: _Spring = Field(default=0.0, description="along y")
+    z: _Spring = Field(default=0.0, description="along z")
+    rx: _TurnSpring = Field(default=0.0, description="about x")
+    ry: _TurnSpring = Field(default=0.0, description="about y")
+    rz: _TurnSpring = Field(default=0.0, description="about z")
+
+
+class Spring(Table):
+    """A spring in the middle of the nodes of a rigid link."""
+
+    between: Annotated[tuple[str, ...], Field(min_length=1, max_length=2)] = Field(
+        description="names of two links, or of one that the spring holds to the base"
+    )
+    stiffness: SpringStiffness = Field(description="{ x, y, z, rx, ry, rz }, those left out are zero")
+
+
 class Reduced(Table):
     """Keys of what is reduced to modes."""
 
@@ -140,6 +177,21 @@ class SolidBody(Reduced):
         max_length=ENTRIES,
         description="groups by the name of a point that moves and turns as their nodes do on average: other bodies "
         "hang on it, and it is put out",
+    )
+    links: dict[str, _Groups] = Field(
+        default_factory=dict,
+        max_length=ENTRIES,
+        description="rigid links by name: a group, or a list of them, whose nodes move together as one rigid body",
+    )
+    carried: dict[str, Carried] = Field(
+        default_factory=dict,
+        max_length=ENTRIES,
+        description="bodies by the name of the rigid link that carries each: { mass, centre, inertia }",
+    )
+    springs: dict[str, Spring] = Field(
+        default_factory=dict,
+        max_length=ENTRIES,
+        description="springs by name, between two rigid links or one and the base: { between, stiffness }",
     )
     origin: Place3 = Field(
         default=(0.0, 0.0, 0.0), description="the root in the mesh, whose acceleration the motion gives: [x, y, z]"
