@@ -231,6 +231,11 @@ def test_control_points_of_a_scenario_judge_a_box(folder: Path) -> None:
         ("lid = 3", "lit = 3", "motion.machine.accept.control.lit", "did you mean 'lid'"),
         ("lid = 3", "lid = 0", "motion.machine.accept.control.lid", "zero"),
         ("{ lid = 3, edge = 1 }", "3", "motion.machine.accept.control", "table"),
+        ('srs = "40 dB"', "damage = 2", "motion.machine.accept.damage", "is of a stress, and box is rigid"),
+        ('srs = "40 dB"', 'tip = "5 %"', "motion.machine.accept.tip", "is of a displacement, and box is rigid"),
+        ('srs = "40 dB"', 'damage_at = "lit"', "motion.machine.accept.damage_at", "did you mean 'lid'"),
+        ('srs = "40 dB"', "damage_at = 2", "motion.machine.accept.damage_at", "text"),
+        ('srs = "40 dB"', 'point = "lid"', "motion.machine.accept.point", "is of a system"),
     ],
 )  # fmt: skip
 def test_control_points_that_are_none_are_placed(folder: Path, before: str, after: str, place: str, words: str) -> None:

@@ -138,7 +138,10 @@ def scenario(tmp_path: Path) -> Path:
     cells = mesh.cells_dict["hexahedron20"]
     used, number = np.unique(cells, return_inverse=True)
     held = np.flatnonzero(np.isin(used, wall))
-    kept = meshio.Mesh(mesh.points[used], {"hexahedron20": number.reshape(-1, 20)}, point_sets={"wall": held})
+    end = np.flatnonzero(mesh.points[used][:, 0] > 0.99 * L)
+    kept = meshio.Mesh(
+        mesh.points[used], {"hexahedron20": number.reshape(-1, 20)}, point_sets={"wall": held, "end": end}
+    )
     meshio.write(tmp_path / "bar.inp", kept)
     file = tmp_path / "bar.toml"
     file.write_text(SCENARIO.replace("bar.vtk", "bar.inp"), encoding="utf-8")
@@ -193,3 +196,53 @@ def test_a_bad_place_of_a_gauge_is_read_aloud(scenario: Path) -> None:
         with pytest.raises(ScenarioError) as caught:
             gb.read_scenario(scenario)
         assert place in str(caught.value)
+
+
+MACHINE = """
+[motion.machine]
+kind = "centrifuge"
+tracks = "flight"
+arm = "3.3 m"
+control_point = "220 mm"
+gravity = true
+idle = "1.3 g"
+clip = true
+smoothing = "50 ms"
+accept = { srs = "40 dB", damage = 1000, damage_at = "gauge", control = { gauge = 1, tip = 1 } }
+"""
+
+
+def test_a_scenario_of_a_mesh_is_judged_at_its_points(scenario: Path) -> None:
+    """Spectra and damage by names of points; those that are none, and have no stress, are read aloud."""
+    text = scenario.read_text(encoding="utf-8").replace("[response]", MACHINE + "[response]")
+    scenario.write_text(text, encoding="utf-8")
+    (compared,) = gb.study(gb.read_scenario(scenario)).comparisons
+    srs, damage = compared.criteria
+    assert (srs.name, damage.name, damage.where) == ("srs", "damage", "at gauge")
+    assert np.isfinite(srs.value) and np.isfinite(damage.value) and compared.accepted
+    assert compared.shock is not None and compared.shock.control == "gauge (50 %), tip (50 %)"
+    scenario.write_text(text.replace('damage_at = "gauge"', 'damage_at = "gouge"'), encoding="utf-8")
+    with pytest.raises(ScenarioError, match="did you mean 'gauge'"):
+        gb.read_scenario(scenario)
+    seated = text.replace("[bodies.bar.points]", '[bodies.bar.interfaces]\nseat = "end"\n[bodies.bar.points]')
+    scenario.write_text(seated.replace('damage_at = "gauge"', 'damage_at = "seat"'), encoding="utf-8")
+    with pytest.raises(ScenarioError, match="(?s)damage_at: is 'seat'.*choose from gauge, tip"):
+        gb.read_scenario(scenario)
+
+
+def test_limits_of_what_a_system_does_not_have_are_refused() -> None:
+    rod = gb.RigidBody(1.0, (0.0, 1 / 12, 1 / 12), centre=(0.5, 0, 0), points={"end": (1, 0, 0)})
+    bodies: dict[str, Any] = {"rod": rod}
+    joints = {"clamp": gb.Joint("fixed", "rod")}
+    for more, accept, words in (
+        ({}, {"stress": 0.1}, "motion.spun.accept.stress is of a stress, and no body is a beam"),
+        (
+            {"strip": beam()},
+            {"damage": 2.0, "damage_at": "rod.end"},
+            "is on rod, which is no beam; choose a point of strip",
+        ),
+    ):
+        held = joints | {name: gb.Joint("fixed", name) for name in more}
+        system = gb.System(bodies | more, held)
+        with pytest.raises(gb.InputError, match=words):
+            gb.SystemCase("", system, {}, gb.ResponseSettings(duration=1.0), accept={"spun": accept})

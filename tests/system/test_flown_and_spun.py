@@ -139,6 +139,9 @@ def test_the_point_that_is_judged_is_one_of_the_system(tmp_path: Path) -> None:
     with pytest.raises(ScenarioError, match="no such point") as caught:
         read(OF_SYSTEM, tmp_path, 'motion.centrifuge.accept.point="strip.top"')
     assert "motion.centrifuge.accept.point" in str(caught.value)
+    with pytest.raises(ScenarioError, match="no such point") as caught:
+        read(OF_SYSTEM, tmp_path, 'motion.centrifuge.accept.damage_at="strip.top"')
+    assert "motion.centrifuge.accept.damage_at" in str(caught.value)
     with pytest.raises(ScenarioError, match="is of a system"):
         read(OF_BEAM, tmp_path, 'motion.centrifuge.accept.point="strip.tip"')
 

@@ -34,6 +34,7 @@ from gbeam.results.description import (
     SpecimenDescription,
     SystemDescription,
 )
+from gbeam.results.imitation.criteria import DISPLACEMENT, STRESS, refuse_unknown
 from gbeam.results.provenance import Provenance
 from gbeam.structure.beam import Beam
 
@@ -216,8 +217,13 @@ class SystemCase(_InEnvironments):
                 self.system.point(f"motion.{name}.accept.point", limits["point"])
             for point in limits.get("control", ()):
                 self.system.point(f"motion.{name}.accept.control.{point}", point)
+            beams = [key for key, body in self.system.bodies.items() if getattr(body, "sections", None) is not None]
+            refuse_unknown(f"motion.{name}.accept", limits, {} if beams else {STRESS: "no body is a beam"})
             if limits.get("damage_at") is not None:
-                self.system.point(f"motion.{name}.accept.damage_at", limits["damage_at"])
+                where = f"motion.{name}.accept.damage_at"
+                body, _ = self.system.point(where, limits["damage_at"])
+                if body not in beams:
+                    raise InputError(where, f"is on {body}, which is no beam", f"choose a point of {', '.join(beams)}")
 
     def assemble(self, stations: ArrayLike | None = None) -> System:
         """Return the system; it has no stations.
@@ -264,7 +270,7 @@ class SpecimenCase(_InEnvironments):
     Raises
     ------
     InputError
-        If a motion is a hub that turns freely, and the specimen is rigid.
+        If a motion is a hub that turns freely, and the specimen is rigid; or a limit is of what it does not have.
 
     Examples
     --------
@@ -289,6 +295,17 @@ class SpecimenCase(_InEnvironments):
             if motion.free and not self.structure.size:
                 fix = "give the hub a rate: the motion of a rigid specimen follows from it alone"
                 raise InputError(f"motion.{name}", "is a hub that turns freely, and carries a rigid specimen", fix)
+        rigid, recovery = not self.structure.size, self.structure.recovery
+        lacking = {STRESS: f"{self.name} is {'rigid' if rigid else 'no mesh'}"} if rigid or recovery is None else {}
+        lacking |= {DISPLACEMENT: f"{self.name} is rigid"} if rigid else {}
+        for name, limits in self.accept.items():
+            where, at = f"motion.{name}.accept", limits.get("damage_at")
+            refuse_unknown(where, limits, lacking)
+            if at is not None and recovery is not None:
+                try:
+                    recovery.strain(at, (1.0, 0.0, 0.0))
+                except InputError as error:
+                    raise InputError(f"{where}.damage_at", error.problem, error.fix) from None
 
     def assemble(self, stations: ArrayLike | None = None) -> Structure:
         """Return the structure; its stations are its points.

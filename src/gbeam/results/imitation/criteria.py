@@ -6,7 +6,7 @@ The schema of scenarios reads it, so that importing it loads no NumPy.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -21,6 +21,7 @@ Limit = float | tuple[float, float]
 Value = tuple[float, str]  # and where it occurs
 SETTINGS = ("tolerance", "tolerance_of", "point", "control", "damage_at")  # beside the limits in a table of acceptance
 OF_RESPONSES = ("point", "control", "damage_at")  # of these, those of what responds
+STRESS, DISPLACEMENT = "a stress", "a displacement"  # that not every specimen has
 NOT_ACCEPTED, EXCEEDED = "not accepted", "machine limits exceeded"
 BROKEN = "limits exceeded"  # outcome of a plan, a placement or a search
 GOOD = ("done", "accepted")  # states of which nothing is to be said
@@ -118,6 +119,7 @@ class Rule:
     # values of an imitation, each with where it occurs; the worst of them is judged
     values: Callable[[Judged], Iterator[Value]]
     response: bool = True  # whether it needs the responses; the others follow from what the machine does alone
+    needs: str = ""  # quantity that not every specimen has
 
     @property
     def band(self) -> bool:
@@ -228,6 +230,17 @@ def judging(accept: Mapping[str, Any], *, response: bool = True) -> dict[str, An
     return settings | {"accept": {name: value for name, value in accept.items() if name not in SETTINGS}}
 
 
+def refuse_unknown(where: str, limits: Iterable[str], lacking: Mapping[str, str]) -> None:
+    """Refuse limits of quantities that a specimen does not have, and why it has none by their names."""
+    for name in limits:
+        rule = RULES.get(name)
+        if rule is not None and rule.needs in lacking:
+            others = ", ".join(each.name for each in RULES.values() if each.needs not in lacking)
+            raise InputError(
+                f"{where}.{name}", f"is of {rule.needs}, and {lacking[rule.needs]}", f"choose from {others}"
+            )
+
+
 def checked_limits(accept: Mapping[str, object] | None) -> dict[str, Limit]:
     """Return limits by name, as floats; InputError of one that has no such name, or means nothing."""
     limits = {}
@@ -287,10 +300,11 @@ def _damage(judged: Judged) -> Iterator[Value]:
 RULES = {
     rule.name: rule
     for rule in (
-        Rule("tip", "largest change of the tip's peak displacement", "most", 0.02, _change("tip")),
+        Rule("tip", "largest change of the tip's peak displacement", "most", 0.02, _change("tip"),
+             needs=DISPLACEMENT),
         Rule("root_force", "largest change of the peak force at the root", "most", 0.05, _change("root_force")),
         Rule("root_moment", "largest change of the peak moment at the root", "most", 0.05, _change("root_moment")),
-        Rule("stress", "largest change of the peak stress", "most", 0.05, _change("stress")),
+        Rule("stress", "largest change of the peak stress", "most", 0.05, _change("stress"), needs=STRESS),
         Rule(
             "largest_load",
             "largest change of the largest load anywhere on the specimen, which is that of the machine's whole run, "
@@ -321,7 +335,7 @@ RULES = {
             "damage",
             "fatigue damage of the root, of a solid where its stress is largest, or at damage_at: largest ratio of "
             "machine and flight, either way; or the least and the largest of machine to flight, such as [0.5, 2]",
-            "ratio", 2.0, _damage,
+            "ratio", 2.0, _damage, needs=STRESS,
         ),
     )
 }  # fmt: skip
