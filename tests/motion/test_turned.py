@@ -51,6 +51,10 @@ def test_the_control_point_feels_the_flight_whichever_way_round(turn: tuple[floa
 
 
 def test_bad_turns_are_refused() -> None:
+    with pytest.raises(
+        gb.InputError, match=r"loads the beam across by .*; of a specimen that is turned, the beam stands"
+    ):
+        gb.Centrifuge(gb.Flight(z=LOAD), **OPTIONS, control_point=0.0, turn=(0.0, np.pi / 2, 0.0))
     with pytest.raises(gb.InputError, match="turn"):
         bases(turn=(0.0, 1.0))
     with pytest.raises(gb.InputError, match="control_point"):

@@ -17,6 +17,7 @@ from gbeam.analysis.imitation.specimen import Specimen
 from gbeam.cli import main
 from gbeam.motion.bases.base import gradients
 from gbeam.questions import QUESTIONS
+from gbeam.report.machine import placement as describe
 
 from ..scenarios import FLIGHT, SPIN, response
 from ..solids.bodies import STIFF, block, solid
@@ -266,3 +267,38 @@ def test_a_place_in_space_is_written_and_read_again(tmp_path: Path, capsys: pyte
     assert main(["plan", str(file), "--out", str(tmp_path / "out")]) == 0
     head = (tmp_path / "out" / "commands_spin.csv").read_text(encoding="utf-8")
     assert "Control point (" in head and "rotation vector (" in head
+
+
+def test_a_camera_beside_a_boom_bends_it_less_where_it_is_placed() -> None:
+    """A system that is run in flight, as it is mounted, and where the search puts it, off the boom."""
+    boom = gb.assemble(STRIP, "FOAM", axial=0, y=1, z=2)
+    camera = gb.RigidBody(0.05, (2e-5, 2e-5, 2e-5), (0.0, 0.03, 0.05))
+    joints = CLAMP | {"screws": gb.Joint("fixed", "camera", "strip.tip")}
+    system = gb.System({"strip": boom, "camera": camera}, joints)
+    machine, weights = spun(control_point=0.15), {"tip": 1.0}
+    choice = choice_of(machine, [0.1], turns="right-angles")
+    found = place(system, ROUND, choice, SPELL, weights, current=machine, check=True)
+    run = {each.name: each for each in found.verifications}
+    assert found.best.place[2] > 0.01 and found.point.startswith(("strip", "camera"))
+    assert run["best"].tip_difference < 0.2 * run["current"].tip_difference
+    assert run["best"].tip_difference < run["middle"].tip_difference
+    words = str(describe(found))
+    assert "in the middle" in words and "root force" in words
+
+
+def test_bare_matrices_are_placed_by_their_points() -> None:
+    first = np.zeros((2, 3, 2))
+    first[0, 2, 0] = first[1, 1, 1] = 1.0
+    structure = gb.Structure.of_particles(
+        np.array([1.0, 2.0]), np.array([[0.0, 0.3, 0.1], [0.0, 0.4, -0.1]]), first, np.diag([1e4, 2e4]),
+        second=np.zeros((2, 3, 2, 2)), damping_ratio=0.02, stations=np.array([0, 1]), points=("a", "tip"),
+    )  # fmt: skip
+    specimen = Specimen.of(structure, NOW)
+    assert list(specimen.ends) == ["the root", "a", "tip"]
+    np.testing.assert_allclose(specimen.extent, [[0, 0, -0.1], [0, 0.4, 0.1]])
+    # A particle of 2 kg on a spring along y, at its place: the force of its load over the spring.
+    load, growth = np.array([1.0, 2.0, 3.0]), np.arange(9.0).reshape(3, 3)
+    felt = load + growth @ [0.0, 0.4, -0.1]
+    np.testing.assert_allclose(
+        specimen.displacement["tip"].at(load, growth), [0.0, -2 * felt[1] / 2e4, 0.0], atol=1e-15
+    )

@@ -129,7 +129,7 @@ def peak_lines(peaks: Mapping[str, PeakPair]) -> Iterator[str]:
         yield f"{'; '.join(words)} on the centrifuge"
 
 
-_PLACES = ("current", "best", "middle")
+_PLACES = {"current": "now", "best": "placed", "middle": "at mid-span"}
 _LISTED = 6  # candidates of either kind
 _WIDTH = 110  # columns
 
@@ -178,12 +178,16 @@ def _load(load: PeakPair) -> str:
 def _measures(placement: Placement) -> list[str]:
     """Every measure at every place: the mismatch field alone, and with the load's own error at the control point."""
     lines = ["", "Of flight's peak".ljust(19) + "".join(each.ljust(39) for each in ("mismatch field", "with tracking"))]
-    lines.append(" " * 19 + 2 * "".join(place.ljust(13) for place in ("now", "placed", "at mid-span")))
+    lines.append(" " * 19 + 2 * "".join(place.ljust(13) for place in _labels(placement).values()))
     for name in placement.values["best"]:
         rows = (placement.values, placement.totals)
         cells = [_percent(each[place][name]) if each else "–" for each in rows for place in _PLACES]
         lines.append(f"  {name:<17}" + "".join(cell.ljust(13) for cell in cells))
     return [line.rstrip() for line in lines]
+
+
+def _labels(placement: Placement) -> dict[str, str]:
+    return _PLACES if placement.straight else _PLACES | {"middle": "in the middle"}
 
 
 def _percent(share: float) -> str:
@@ -219,9 +223,9 @@ def _verified(placement: Placement) -> list[str]:
     lines = [
         "",
         "By simulation, largest difference from flight",
-        " " * 19 + "tip          vibration    root shear   moment",
+        " " * 19 + f"tip          vibration    root {'shear' if placement.straight else 'force'}   moment",
     ]
-    for place, label in zip(_PLACES, ("now", "placed", "at mid-span"), strict=True):
+    for place, label in _labels(placement).items():
         check = checks[place]
         values = (
             (f"{1e3 * check.tip_difference:.4g}", "mm"),
@@ -234,7 +238,8 @@ def _verified(placement: Placement) -> list[str]:
     gain = placement.vibration_gain
     if math.isnan(gain):
         return lines
-    return [*lines, f"  {gain:.3g} times less vibration than with the control point at mid-span"]
+    middle = _labels(placement)["middle"]
+    return [*lines, f"  {gain:.3g} times less vibration than with the control point {middle}"]
 
 
 def _candidates(placement: Placement, measure: str) -> list[str]:

@@ -21,7 +21,7 @@ from gbeam.arrays.tree import each_leaf
 from gbeam.errors import InputError
 from gbeam.mechanics.equations.linear import PAIRS, rest_modes
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.system import System
+from gbeam.mechanics.tree.system import RigidBody, System
 from gbeam.numerics.eigen import RIGID, symmetric
 from gbeam.results.result import Floats
 
@@ -101,6 +101,9 @@ def of_structure(structure: Structure) -> Specimen:
     if structure.recovery is not None:
         envelope = structure.recovery.envelope
     ends = points_of(structure.length, np.empty((0, 3)) if beam is None else beam.body_centres, envelope)
+    if beam is None and structure.recovery is None:  # matrices and particles, of which the points are known
+        names = structure.points or tuple(f"point {k + 1}" for k in range(len(structure.stations)))
+        ends = {"the root": np.zeros(3), **dict(zip(names, np.asarray(structure.station_places.r0), strict=True))}
     (mass, *first), second = c.rigid[:4], np.empty((3, 3))
     for (i, j), value in zip(PAIRS, c.rigid[4:], strict=True):
         second[i, j] = second[j, i] = value
@@ -145,6 +148,12 @@ def of_system(system: System, times: Floats) -> Specimen:
         mass, damping, stiffness = (symmetric(each) for each in state.linear[:3])
         mode = _mode(mass, damping, stiffness, forces, moved)
     ends = dict(zip(system.points, undeformed(system), strict=True))
+    for name, root in zip(
+        system.order, local.tree.motion(local.y, local.yd, local.ydd, local.inputs).roots, strict=True
+    ):
+        body = system.bodies[name]
+        if isinstance(body, RigidBody):
+            ends[f"the centre of mass of {name}"] = np.asarray(root.p + root.R @ np.asarray(body.centre, dtype=float))
     return Specimen(force, moment, displacement, mode, ends, corners=system.corners)
 
 

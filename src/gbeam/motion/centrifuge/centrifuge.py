@@ -328,10 +328,16 @@ class Centrifuge:
         load: Profile = self.flight.acceleration
         if any(self.turn):
             load = Turned(load, rotation_of(self.turn))
-        return prepare(
-            load, self.geometry, self.limits, inverse=self.method, ends=self.ends, idle=self.idle,
-            smoothing=self.smoothing, clip=self.clip, span=(start, end),
-        )  # fmt: skip
+        try:
+            return prepare(
+                load, self.geometry, self.limits, inverse=self.method, ends=self.ends, idle=self.idle,
+                smoothing=self.smoothing, clip=self.clip, span=(start, end),
+            )  # fmt: skip
+        except InputError as error:
+            if not any(self.turn):
+                raise
+            fix = f"{error.fix}; of a specimen that is turned, the beam stands for what lies along axis 3"
+            raise InputError(error.where, error.problem, fix) from None
 
     def _changed(self, **fields: Any) -> Self:
         other = copy.copy(self)

@@ -167,15 +167,16 @@ def placement_body(facts: Facts, viewer: str, drawn: str) -> str:
     if facts["set"]:
         flags = " ".join(f'--set "{each}"' for each in facts["set"])
         parts += [paragraph("to apply it, add to the command line:"), verbatim(flags)]
+    places = _PLACES if share else _PLACES | {"middle": "in the middle"}
     for title, key in (("Mismatch field alone", "mismatch"), ("With smoothing and tracking", "total_error")):
         if facts[key]:
             names = list(facts[key]["best"])
-            shares = [[name, *(_of_peak(facts[key][place].get(name)) for place in _PLACES)] for name in names]
-            parts.append(table(("of flight's peak", *_PLACES.values()), shares, title))
+            shares = [[name, *(_of_peak(facts[key][place].get(name)) for place in places)] for name in names]
+            parts.append(table(("of flight's peak", *places.values()), shares, title))
     if facts["verifications"]:
         checks = [
             [word, *(facts["verifications"][place][key] * scale for key, scale in _CHECKS.values())]
-            for place, word in _PLACES.items()
+            for place, word in places.items()
             if place in facts["verifications"]
         ]
         parts.append(table(("", *_CHECKS), checks, "By simulation, largest difference from flight"))
