@@ -286,6 +286,16 @@ def test_a_camera_beside_a_boom_bends_it_less_where_it_is_placed() -> None:
     assert "in the middle" in words and "root force" in words
 
 
+def test_vibration_is_of_the_mode_that_the_flight_calls_on() -> None:
+    """Along the strip's width it is five times as stiff as through its thickness, and the second mode is as quick."""
+    modes = Specimen.of(gb.assemble(STRIP, "FOAM", axial=0, y=1, z=2), NOW).modes
+    assert modes is not None
+    for axis, ratio in ((2, 1.0), (1, 5.0)):
+        along = modes.foremost(0, 9.81 * np.eye(3)[[axis]], np.zeros((1, 3, 3)))
+        assert along.frequency == pytest.approx(ratio * modes.frequency[0], rel=1e-2)
+        assert np.argmax(np.abs(along.shape[0])) == axis
+
+
 def test_bare_matrices_are_placed_by_their_points() -> None:
     first = np.zeros((2, 3, 2))
     first[0, 2, 0] = first[1, 1, 1] = 1.0

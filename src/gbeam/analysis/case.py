@@ -67,7 +67,15 @@ class _InEnvironments(Value):
         return self.motions or {GROUND: None}
 
     def one_beam(self, where: str, what: str) -> Case:
-        """Refuse an answer `what` that is of one beam, at a place of the error; return the case where it is of one."""
+        """Refuse an answer that is of one beam; return the case where it is of one.
+
+        Parameters
+        ----------
+        where : str
+            Place of the error.
+        what : str
+            The answer, for the error.
+        """
         problem, fix = self.no_beam
         raise InputError(where, f"{problem}, and {what} is of one beam", fix)
 
@@ -145,7 +153,15 @@ class Case(_InEnvironments):
         return self.model.automatic
 
     def one_beam(self, where: str, what: str) -> Case:
-        """Return the case itself."""
+        """Return the case itself.
+
+        Parameters
+        ----------
+        where : str
+            Place of the error.
+        what : str
+            The answer, for the error.
+        """
         return self
 
     @property
@@ -318,7 +334,15 @@ class SpecimenCase(_InEnvironments):
         return self.structure
 
     def one_beam(self, where: str, what: str) -> Case:
-        """Refuse an answer that is of one beam, at the specimen."""
+        """Refuse an answer that is of one beam, at the specimen.
+
+        Parameters
+        ----------
+        where : str
+            Place of the error.
+        what : str
+            The answer, for the error.
+        """
         return super().one_beam(f"{where}.{self.name}", what)
 
     @property

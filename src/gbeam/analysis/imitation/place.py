@@ -71,7 +71,7 @@ def verify(
 ) -> tuple[Verification, ...]:
     """Simulate flight and machines, prepared for the settings' span and named by their places, and compare."""
     settings = replace(settings, estimate=False)  # a verification states none
-    mode, across = answers.specimen.mode, slice(1 if answers.specimen.straight else 0, 3)
+    mode, across = answers.mode, slice(1 if answers.specimen.straight else 0, 3)
 
     def simulated(motion: Any) -> Response:
         response = simulate(structure, motion, settings)
@@ -102,7 +102,7 @@ def verify(
             carried_tip = interpolated(response.time, carried[motion].time, carried[motion].tip)
             swing = response.tip - carried_tip
             step = float(response.time[1] - response.time[0])
-            swing -= low_pass(swing, step, CUTOFF * mode.frequency / (2 * np.pi))
+            swing -= low_pass(swing, step, CUTOFF * float(mode.frequency) / (2 * np.pi))
             vibration, tip = (
                 _largest(each[:, across]) for each in (swing[compared], comparison.difference[comparison.covered])
             )
@@ -148,11 +148,11 @@ def place(
         Whose span is judged.
     weights : mapping of str to float
         Measures to add up, each as a fraction of its peak in flight, across the beam: ``root-shear`` and
-        ``root-moment`` (quasi-static), ``vibration`` (of the first mode, at the tip), ``tip`` (quasi-static
-        displacement), ``load`` (at the ends of the beam, or wherever else the specimen's is largest). Shear and moment
-        are the whole force and moment of a specimen that is no straight beam; the tip of a system is the point that
-        the flight displaces most. For each option they choose the control point by what Δa does, and then the option by
-        that together with what smoothing and tracking change of the load.
+        ``root-moment`` (quasi-static), ``vibration`` (at the tip, of the mode by which the flight displaces it most),
+        ``tip`` (quasi-static displacement), ``load`` (at the ends of the beam, or wherever else the specimen's is
+        largest). Shear and moment are the whole force and moment of a specimen that is no straight beam; the tip of a
+        system is the point that the flight displaces most. For each option they choose the control point by what Δa
+        does, and then the option by that together with what smoothing and tracking change of the load.
     current : Centrifuge
         The scenario's own, which the answer is compared with.
     names : tuple of str

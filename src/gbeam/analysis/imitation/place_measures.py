@@ -207,15 +207,22 @@ MOST = 2_000_000  # numbers in a history of the load at all ends of a specimen
 
 
 class Answers:
-    """Quasi-static answers and the first mode's, to the loads of a flight and of a centrifuge, at times when the first
-    centrifuge's target is not held: begin with the widest smoothing, which holds longest.
+    """Quasi-static answers, and those of the mode by which the flight displaces the tip most, to loads of a flight and
+    of a centrifuge at times when the first centrifuge's target is not held: begin with the widest smoothing, which
+    holds longest.
     """
 
     def __init__(self, structure: Structure | System, flight: Flight, settings: ResponseSettings) -> None:
         span = np.linspace(settings.start, settings.start + settings.duration, SAMPLES)
-        self.specimen = Specimen.of(structure, span)
-        mode = self.specimen.mode
-        longest = RIGID if mode is None else 2 * np.pi / mode.frequency / 20
+        self.specimen, flown = Specimen.of(structure, span), flight.base(span)
+        loads = flown.a_WO_B, gradients(flown.w_WB_B, flown.alpha_WB_B)
+        displacement, modes, self.tip, self.mode = self.specimen.displacement, self.specimen.modes, "", None
+        if modes is not None:
+            moved = [_largest(each.at(*loads)) for each in displacement.values()]
+            point = int(np.argmax(moved))
+            self.tip, self.mode = list(displacement)[point], modes.foremost(point, *loads)
+            self.reach = float(np.linalg.norm(self.mode.shape[point]))
+        longest = RIGID if self.mode is None else 2 * np.pi / float(self.mode.frequency) / 20
         longest = min(longest, settings.duration / 500)
         corners = np.concatenate([flight.corners(longest), self.specimen.corners(longest)])
         self.step = settings.duration / even_steps(longest, corners, settings)
@@ -223,10 +230,6 @@ class Answers:
         self.left_out: Flags | None = None
         flown = flight.base(self.time)
         self.load, self.growth = flown.a_WO_B, gradients(flown.w_WB_B, flown.alpha_WB_B)
-        displacement, self.tip = self.specimen.displacement, ""
-        if displacement:
-            moved = {name: _largest(each.at(self.load, self.growth)) for name, each in displacement.items()}
-            self.tip = max(moved, key=moved.__getitem__)
 
     def refuse_unfelt(self, weights: Mapping[str, float]) -> None:
         """Refuse a measure that has weight, and of which the flight makes none."""
@@ -271,24 +274,22 @@ class Answers:
             return histories(answer, lambda each: each[covered], _largest(answer.at(self.load, self.growth)[covered]))
 
         measures = {"root-shear": quasi_static(specimen.force), "root-moment": quasi_static(specimen.moment)}
-        if specimen.mode is not None:
+        if self.mode is not None:
             measures["tip"] = quasi_static(specimen.displacement[self.tip])
-            measures["vibration"] = histories(specimen.mode.force, self._vibration(covered), measures["tip"].scale)
+            measures["vibration"] = histories(self.mode.force, self._vibration(covered), measures["tip"].scale)
         measures["load"] = self._loads(covered, error, growing, columns)
         turning = np.abs(axes.accelerations).max(axis=0)
         largest = float(turning[0]), float(turning[1]), float(turning[2])
         return {name: each for name, each in measures.items() if each.scale > 0}, largest
 
     def _vibration(self, covered: Flags) -> Callable[[Floats], Floats]:
-        """Displacement (t, 1) by the first mode beside its trend, of a force on it (t,)."""
-        mode = self.specimen.mode
-        assert mode is not None
-        names = list(self.specimen.displacement)
-        tip = float(np.linalg.norm(mode.shape[names.index(self.tip)]))
+        """Displacement (t, 1) by the foremost mode beside its trend, of a force on it (t,)."""
+        assert self.mode is not None
+        frequency, damping = float(self.mode.frequency), float(self.mode.damping)
 
         def moved(force: Floats) -> Floats:
-            riding = displacement(force, mode.frequency, mode.damping, self.step) - force / mode.frequency**2
-            return np.asarray(tip * riding[covered, None])
+            riding = displacement(force, frequency, damping, self.step) - force / frequency**2
+            return np.asarray(self.reach * riding[covered, None])
 
         return moved
 

@@ -25,6 +25,8 @@ from gbeam.mechanics.tree.system import RigidBody, System
 from gbeam.numerics.eigen import RIGID, symmetric
 from gbeam.results.result import Floats
 
+ALIKE = 1e-3  # of what a mode moves: two that differ by less do alike
+
 
 class Answer(NamedTuple):
     """Values of unit accelerations (3, ...) of the root, and of unit growths (3, 3, ...), component by direction."""
@@ -51,27 +53,40 @@ class Answer(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Mode:
-    """The slowest mode of a specimen: circular frequency, rad/s, damping ratio, force and displacement (p, 3) of its
-    points by unit amplitude.
+class Modes:
+    """Modes of a specimen: circular frequencies (n,) rad/s, damping ratios (n,), forces on them (n,) and displacements
+    (p, 3, n) of its points by unit amplitudes.
     """
 
-    frequency: float
-    damping: float
+    frequency: Floats
+    damping: Floats
     force: Answer
     shape: Floats
+
+    def one(self, k: int) -> Modes:
+        """Return one of them."""
+        force = Answer(self.force.a[..., k], self.force.growth[..., k])
+        return Modes(self.frequency[k], self.damping[k], force, self.shape[..., k])
+
+    def foremost(self, point: int, a: Floats, growth: Floats) -> Modes:
+        """Return the mode that displaces a point most, at rest under loads over time (t, 3), (t, 3, 3); the slowest of
+        those that do so alike.
+        """
+        force = np.abs(self.force.at(a, growth)).max(axis=0)
+        moved = np.linalg.norm(self.shape[point], axis=0) * force / self.frequency**2
+        return self.one(int(np.argmax(moved >= (1 - ALIKE) * moved.max())))
 
 
 @dataclass(frozen=True)
 class Specimen:
     """Answers of a specimen: force and moment (3) on its base, displacement (3) of each of its points by name, its
-    slowest mode, None of a rigid one; and the places (p, 3) at which its load is largest, by name, m.
+    modes, None of a rigid one; and the places (p, 3) at which its load is largest, by name, m.
     """
 
     force: Answer
     moment: Answer
     displacement: Mapping[str, Answer]
-    mode: Mode | None
+    modes: Modes | None
     ends: Mapping[str, Floats]
     straight: bool = False
     corners: Callable[[float], Floats] = lambda step: np.empty(0)
@@ -110,23 +125,22 @@ def of_structure(structure: Structure) -> Specimen:
     eye = np.eye(3)
     force = Answer(-mass * eye, -np.einsum("ik,j->ijk", eye, first))
     moment = Answer(np.cross(eye, first), np.cross(eye[:, None], second[None]))
-    displacement, mode = dict[str, Answer](), None
+    displacement, modes = dict[str, Answer](), None
     if structure.size:
         forces = Answer.of(c.f_a, c.f_al, c.f_ww)
         moved = structure.station_places.first[-1]
         displacement["tip"] = forces.onto(np.linalg.solve(c.stiffness, moved.T))
-        mode = _mode(c.mass, c.damping, c.stiffness, forces, moved[None])
+        modes = _modes(c.mass, c.damping, c.stiffness, forces, moved[None])
     history = structure.history
     corners = Specimen.corners if history is None else history.corners
-    return Specimen(force, moment, displacement, mode, ends, beam is not None and beam.line is None, corners)
+    return Specimen(force, moment, displacement, modes, ends, beam is not None and beam.line is None, corners)
 
 
-def _mode(mass: Floats, damping: Floats, stiffness: Floats, forces: Answer, moved: Floats) -> Mode:
-    """The slowest mode of points that move by coordinates (p, 3, n)."""
+def _modes(mass: Floats, damping: Floats, stiffness: Floats, forces: Answer, moved: Floats) -> Modes:
+    """Modes of points that move by coordinates (p, 3, n)."""
     frequency, modes = rest_modes(mass, stiffness)
-    first = modes[:, 0]
-    ratio = float(first @ damping @ first) / (2 * float(frequency[0]))
-    return Mode(float(frequency[0]), ratio, forces.onto(first), moved @ first)
+    ratio = np.einsum("nk,nm,mk->k", modes, damping, modes) / (2 * frequency)
+    return Modes(frequency, ratio, forces.onto(modes), moved @ modes)
 
 
 def of_system(system: System, times: Floats) -> Specimen:
@@ -135,7 +149,7 @@ def of_system(system: System, times: Floats) -> Specimen:
     state = steady(system, Drive(time=float(times[0])))
     local, stiffness = state.local, state.linear.stiffness
     forces, force, moment = _answers(local)
-    displacement, mode, free = dict[str, Answer](), None, len(local.y)
+    displacement, modes, free = dict[str, Answer](), None, len(local.y)
     if free:
         square, shapes = np.linalg.eigh(symmetric(stiffness))
         if not square[0] > RIGID**2 * square[-1]:
@@ -146,7 +160,7 @@ def of_system(system: System, times: Floats) -> Specimen:
         by_load = np.linalg.solve(stiffness, moved.reshape(-1, free).T).reshape(free, -1, 3)
         displacement = {name: forces.onto(by_load[:, k]) for k, name in enumerate(system.points)}
         mass, damping, stiffness = (symmetric(each) for each in state.linear[:3])
-        mode = _mode(mass, damping, stiffness, forces, moved)
+        modes = _modes(mass, damping, stiffness, forces, moved)
     ends = dict(zip(system.points, undeformed(system), strict=True))
     for name, root in zip(
         system.order, local.tree.motion(local.y, local.yd, local.ydd, local.inputs).roots, strict=True
@@ -154,7 +168,7 @@ def of_system(system: System, times: Floats) -> Specimen:
         body = system.bodies[name]
         if isinstance(body, RigidBody):
             ends[f"the centre of mass of {name}"] = np.asarray(root.p + root.R @ np.asarray(body.centre, dtype=float))
-    return Specimen(force, moment, displacement, mode, ends, corners=system.corners)
+    return Specimen(force, moment, displacement, modes, ends, corners=system.corners)
 
 
 def _refuse_moved(system: System, times: Floats) -> None:
