@@ -98,11 +98,11 @@ class Theory(NamedTuple):
 
 
 @lru_cache(maxsize=4)  # keyed by values, as enrichment is
-def theory_of(structure: Structure) -> Theory:
-    """A structure's beam, which it must have, by two theories."""
+def theory_of(structure: Structure, hung: tuple[int, ...] = ()) -> Theory:
+    """A structure's beam, which it must have, by two theories, with other bodies hung on some of its stations."""
     more = enrichment(structure)
     families = own_families(structure, more.beam, more.rule)
-    return _Parts(structure, more.beam, more.rule).theory(families)
+    return _Parts(structure, more.beam, more.rule, hung).theory(families)
 
 
 class _Parts:
@@ -110,7 +110,7 @@ class _Parts:
     springs.
     """
 
-    def __init__(self, structure: Structure, beam: Beam, rule: Quadrature) -> None:
+    def __init__(self, structure: Structure, beam: Beam, rule: Quadrature, hung: tuple[int, ...] = ()) -> None:
         self.structure, self.beam, self.rule = structure, beam, rule
         x, section = rule.node, beam.section.at(rule.node)
         strained = [strain for strain, count in zip(STRAINS, structure.counts, strict=True) if count]
@@ -128,6 +128,7 @@ class _Parts:
         loaded = [load.at for load in beam.loads if load.at is not None]
         self.first = len(x) + len(beam.masses)
         self.first_station = self.first + len(loaded)
+        self.hung = [self.first_station + k for k in hung]
         self.points = np.concatenate([x, [body.at for body in beam.masses], loaded, structure.stations])
         self.cumulative, self.at_nodes = rule.cumulative(self.points), rule.cumulative(x)
         self.place, self.axes = beam.at_rest(self.points)
@@ -151,7 +152,9 @@ class _Parts:
         return np.concatenate([*inward, springs])
 
     def answers(self, own: Array) -> Array:
-        """Static answers (m, k) of the thick beam: to the inertia of its own shapes, to accelerations and loads."""
+        """Static answers (m, k) of the thick beam: to the inertia of its own shapes, to accelerations, loads and what
+        hangs on it.
+        """
         at, mass, offset = particles_of(self.beam, self.rule, rotary=True)
         arm = np.einsum("pab,pb->ap", self.axes[at], offset)[..., None]
         onto = at == np.arange(len(self.points))[:, None]  # (points, particles)
@@ -168,11 +171,14 @@ class _Parts:
         even = still + np.eye(3)[:, None]
         place = self.place.T[..., None]
         loads = [of(own), inertia(even, still), inertia(np.cross(even, place, axis=0), even)]
+        acting = [np.arange(len(self.points)) == k for k in self.hung]
         if self.beam.loads:
             work, points = self.work(self.field(own))
             for load in range(len(self.beam.loads)):
-                act = np.bincount(points, work.weight * (work.load == load), len(self.points))[:, None] * even
-                loads += [self.pulled(act, still), self.pulled(still, act)]
+                acting.append(np.bincount(points, work.weight * (work.load == load), len(self.points)))
+        for each in acting:
+            act = each[:, None] * even
+            loads += [self.pulled(act, still), self.pulled(still, act)]
         answers = [self.answer(np.concatenate(loads, axis=1))]
         for _ in range(LEVELS - 1):
             answers.append(self.answer(of(answers[-1])))

@@ -5,15 +5,15 @@ They are compared with those of the same model with more shapes, of the exact on
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.analysis.accuracy.beam_theory import described, mode_causes
+from gbeam.analysis.accuracy.beam_theory import WORDS, causes, described, mode_causes
 from gbeam.analysis.accuracy.estimate import LIMIT, percent, wrong_by
 from gbeam.analysis.steady.operating_point import OperatingPoint, Steady
-from gbeam.analysis.system.richer import bases_of, judged_beams, richer
+from gbeam.analysis.system.richer import bases_of, judged_beams, richer, theories_of, with_beams
 from gbeam.analysis.system.steady import SteadySystem
 from gbeam.arrays.tree import each_leaf
 from gbeam.errors import ComputationError
@@ -51,7 +51,7 @@ class ByTheory(NamedTuple):
     """Errors (k,) by the theory of slender beams, the causes of the largest, and frequencies unknown to it, Hz."""
 
     shares: Floats
-    causes: dict[str, float]
+    words: str
     unseen: tuple[float, ...]
 
 
@@ -63,15 +63,13 @@ class More(NamedTuple):
 
 
 class Richer:
-    """Models with more shapes beside a steady state, the fastest of several: of the same kinds, exact, and of one beam
-    the thick ones.
-    """
+    """Models with more shapes beside a steady state, the fastest of several: of its kinds, exact, of thick beams."""
 
     def __init__(self, state: OperatingPoint | SteadySystem) -> None:
         if isinstance(state, SteadySystem):
-            self.theory, bodies = None, [*judged_beams(state.system).values()]
+            self.theories, bodies = theories_of(state.system), [*judged_beams(state.system).values()]
         else:
-            self.theory, bodies = theory_of(state.structure), [state.structure]
+            self.theories, bodies = {"": theory_of(state.structure)}, [state.structure]
         self.exact = _with_more(state, exact=True)
         only_exact = all(body.kind == "exact" for body in bodies)
         self.same = self.exact if only_exact else _with_more(state, exact=False)
@@ -84,9 +82,8 @@ class Richer:
         same, exact = self.references(state, coordinates, gyroscopic=gyroscopic)
         by_theory = self.by_theory(state, coordinates, gyroscopic=gyroscopic)
         shapes, model, total = (np.abs(a / b - 1) for a, b in ((frequency, same), (same, exact), (frequency, exact)))
-        theory = "" if self.theory is None else described(state.structure, by_theory.causes)
         shares = by_theory.shares
-        return FrequencyErrors(shapes, model, shares, total + np.nan_to_num(shares), theory, by_theory.unseen)
+        return FrequencyErrors(shapes, model, shares, total + np.nan_to_num(shares), by_theory.words, by_theory.unseen)
 
     def references(self, state: Any, coordinates: Complex, *, gyroscopic: bool = True) -> tuple[Floats, Floats]:
         """Circular frequencies (k,) of modes by the models with more shapes and by exact ones; NaN where these do not
@@ -101,45 +98,103 @@ class Richer:
                 return np.full(len(coordinates), np.nan)
             if not rate.size:
                 return np.full(len(coordinates), np.nan)
-            lifted = np.zeros((len(coordinates), modes.shape[1]), dtype=complex)
-            lifted[:, [other.names.index(richer.renamed.get(name, name)) for name in state.names]] = coordinates
+            lifted = among([richer.renamed.get(name, name) for name in state.names], other.names, coordinates)
             mass = other.linear.mass[state.first :, state.first :]
             return np.asarray(rate[mac(lifted, modes, mass).argmax(axis=1)])
 
         exact = reference(self.exact)
         return exact if self.same is self.exact else reference(self.same), exact
 
+    def by_theories(self, of: Structure | System, state: Any = None) -> tuple[list[Any], dict[str, Floats]]:
+        """Slender beams in a structure or a system, thick ones, and these with plate action as they are bent in a
+        state, or little; and its stiffness (n, n), by beam.
+        """
+        beams, plates = [], dict[str, Floats]()
+        for name, each in self.theories.items():
+            q = np.zeros(0) if state is None else _bent(state, name)
+            plates[name] = each.plate(np.pad(q, (0, each.thick.size - len(q)))[None])
+            beams.append((each.slender, *each.variants(plates[name])))
+        if isinstance(of, System):
+            return [with_beams(of, dict(zip(self.theories, k, strict=True))) for k in zip(*beams, strict=True)], plates
+        return [*beams[0]], plates
+
     def by_theory(self, point: Any, coordinates: Complex, *, gyroscopic: bool = True) -> ByTheory:
-        """Errors of these modes' frequencies by the theory of slender beams, which are not known of a system."""
-        theory, k = self.theory, len(coordinates)
-        if theory is None:
-            return ByTheory(np.full(k, np.nan), {}, ())
-        plate = theory.plate(np.asarray(np.pad(point.q, (0, theory.thick.size - len(point.q))))[None])
+        """Errors of these modes' frequencies by the theory of slender beams."""
+        k, of_system = len(coordinates), isinstance(point, SteadySystem)
+        models, plates = self.by_theories(point.system if of_system else point.structure, point)
         try:
-            others = [point.richer(each) for each in (theory.slender, *theory.variants(plate))]
+            others = [point.richer(each) for each in models]
             (slender, shape), (thick, deep), (plated, flat) = (
                 _oscillating(each, gyroscopic=gyroscopic) for each in others
             )
         except (ComputationError, np.linalg.LinAlgError):
-            return ByTheory(np.full(k, np.nan), {}, ())
+            return ByTheory(np.full(k, np.nan), "", ())
         mass = others[1].linear.mass[point.first :, point.first :]
-        mode, shape = (np.pad(each, ((0, 0), (0, len(mass) - each.shape[1]))) for each in (coordinates, shape))
+        mode, shape = (
+            among(of.names, others[1].names, each) for of, each in ((point, coordinates), (others[0], shape))
+        )
         chosen = mac(mode, shape, mass).argmax(axis=1)
         looked = slice(None, chosen.max(initial=-1) + 1)
-        among, beside = (matched(mac(shape[looked], each, mass))[0] for each in (deep, flat))
-        pairs = (thick, among), (plated, beside)
+        like, beside = (matched(mac(shape[looked], each, mass))[0] for each in (deep, flat))
+        pairs = (thick, like), (plated, beside)
         shares = np.max([np.abs(slender[chosen] / rate[match[chosen]] - 1) for rate, match in pairs], axis=0)
-        bent = deep[:, : theory.slender.size]
-        moving = np.einsum("ki,ij,kj->k", bent.conj(), mass[: bent.shape[1], : bent.shape[1]], bent).real
-        alone = np.setdiff1d(np.arange(len(thick)), among)
+        known = [others[1].names.index(name) for name in others[0].names]
+        bending = deep[:, known]
+        moving = np.einsum("ki,ij,kj->k", bending.conj(), mass[np.ix_(known, known)], bending).real
+        alone = np.setdiff1d(np.arange(len(thick)), like)
         unseen = [j for j in alone if moving[j] > BENT and thick[j] < slender[looked].max(initial=0.0)]
-        loads = point.residual.unpack(point.u)[1]
         worst = np.zeros(0, dtype=int) if not k else np.array([np.nan_to_num(shares).argmax()])
-        return ByTheory(
-            shares,
-            mode_causes(theory, point.base, loads, coordinates[worst], slender[chosen[worst]], plate),
-            tuple(float(thick[j]) / (2 * np.pi) for j in unseen),
-        )
+        rate = slender[chosen[worst]]
+        if of_system:
+            words = self.in_words(point, others[0], others[1], mode[worst], rate, plates)
+        else:
+            loads, theory = point.residual.unpack(point.u)[1], self.theories[""]
+            by = mode_causes(theory, point.base, loads, coordinates[worst], rate, plates[""])
+            words = described(point.structure, by)
+        return ByTheory(shares, words, tuple(float(thick[j]) / (2 * np.pi) for j in unseen))
+
+    def in_words(
+        self,
+        state: SteadySystem,
+        slender: SteadySystem,
+        thick: SteadySystem,
+        mode: Complex,
+        rate: Floats,
+        plates: Mapping[str, Floats],
+    ) -> str:
+        """Causes in the energy of a mode (1, n) of thick beams, which leaves what slender ones do not have."""
+        known = np.ix_(*[[thick.names.index(name) for name in slender.names]] * 2)
+        left = np.zeros_like(mode)
+        for of, less, factor in zip(thick.linear, slender.linear, (-(rate**2), 1j * rate, np.ones(1)), strict=False):
+            beyond = np.array(of)
+            beyond[known] -= less
+            left += factor[:, None] * (mode @ beyond.T)
+        energies, every = dict[str, float](), dict[str, dict[str, float]]()
+        for name, theory in self.theories.items():
+            own = [k for k, each in enumerate(thick.names) if each.startswith(f"{name}.q")]
+            p = mode[:, own]
+            energies[name] = float(np.einsum("ti,ij,tj->", p.conj(), theory.thick.coefficients.stiffness, p).real)
+            every[name] = causes(theory, p, left[:, own], p @ plates[name])
+        total = sum(energies.values()) or 1.0
+        merged = dict.fromkeys(WORDS, 0.0)
+        for name, by in every.items():
+            for cause, share in by.items():
+                merged[cause] += share * energies[name] / total
+        return described(judged_beams(state.system)[max(energies, key=energies.__getitem__)], merged)
+
+
+def _bent(state: Any, name: str) -> Floats:
+    """Coordinates (n,) of a beam in a steady state."""
+    if isinstance(state, OperatingPoint):
+        return state.q
+    return np.asarray(state.local.y)[[k for k, each in enumerate(state.names) if each.startswith(f"{name}.q")]]
+
+
+def among(names: Sequence[str], others: Sequence[str], modes: Complex) -> Complex:
+    """Modes (k, n) in coordinates with names, as modes in more coordinates."""
+    lifted = np.zeros((len(modes), len(others)), dtype=complex)
+    lifted[:, [others.index(name) for name in names]] = modes
+    return lifted
 
 
 def pole_errors(state: Any) -> tuple[Floats, FrequencyErrors]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from typing import Any, Protocol
@@ -12,9 +12,10 @@ import numpy as np
 
 from gbeam.analysis.accuracy.beam_theory import described, mode_causes
 from gbeam.analysis.accuracy.estimate import LIMIT, apart, percent, wrong_by
-from gbeam.analysis.steady.frequency_errors import Richer, judgeable
+from gbeam.analysis.steady.frequency_errors import Richer, among, judgeable
 from gbeam.analysis.steady.operating_point import Steady
 from gbeam.analysis.system.linear import instabilities
+from gbeam.analysis.system.richer import theories_of, with_beams
 from gbeam.errors import ComputationError
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
@@ -96,25 +97,26 @@ def judged(critical: Critical, path: Path, structure: Structure | System, progre
     if critical.value == 0 or not judgeable(structure):
         return critical
     if critical.value is None:
-        doubts = () if isinstance(structure, System) else _unseen(critical, path, structure, progress)
+        doubts = _unseen(critical, path, structure, progress)
         return replace(critical, warnings=critical.warnings + doubts)
     at = critical.value
     point: Any = path(structure, (1 - CLOSE) * at)
     richer = Richer(point)
     exact = _lost(richer.exact.model, path, at, progress)
     same = exact if richer.same is richer.exact else _lost(richer.same.model, path, at, progress)
-    errors, theory = _errors(at, same, exact), richer.theory
-    if theory is None or isinstance(structure, System):
-        doubts = doubtful_loss(critical.quantity, "the system", errors)
-        return replace(critical, errors=errors, warnings=critical.warnings + doubts)
-    base, values = point.base, point.structure.load_values
-    plate = theory.plate(np.zeros((1, theory.thick.size)))
-    slender, *thick = (_lost(each, path, at, progress) for each in (theory.slender, *theory.variants(plate)))
+    errors = _errors(at, same, exact)
+    models, plates = richer.by_theories(structure)
+    slender, *thick = (_lost(each, path, at, progress) for each in models)
     beam_theory = max(apart(at if math.isinf(slender) else slender, each) for each in thick)
     errors = errors.with_theory(0.0 if math.isinf(errors.model) else beam_theory)
-    lowest = _lowest(theory.slender, values, base)[:, : theory.own]
-    causes = mode_causes(theory, base, values, lowest, np.zeros(1), plate)
-    doubts = doubtful_loss(critical.quantity, critical.model, errors, described(structure, causes))
+    if isinstance(structure, System):
+        model, words = "the system", _in_words(richer, point, models, plates)
+    else:
+        base, values, theory = point.base, point.structure.load_values, richer.theories[""]
+        lowest = _lowest(theory.slender, values, base)[:, : theory.own]
+        causes = mode_causes(theory, base, values, lowest, np.zeros(1), plates[""])
+        model, words = critical.model, described(structure, causes)
+    doubts = doubtful_loss(critical.quantity, model, errors, words)
     return replace(critical, errors=errors, warnings=critical.warnings + doubts)
 
 
@@ -131,12 +133,29 @@ def _lowest(slender: Structure, values: Any, base: Base) -> Floats:
     return symmetric_modes((stiffness + stiffness.T) / 2, slender.coefficients.mass)[1][:, :1].T
 
 
-def _unseen(critical: Critical, path: Path, structure: Structure, progress: Progress) -> tuple[str, ...]:
+def _in_words(richer: Richer, point: Any, models: Sequence[Any], plates: Mapping[str, Floats]) -> str:
+    """What the shape of a system with the least stiffness lacks by the theory of slender beams."""
+    try:
+        slender, thick = (point.richer(each) for each in models[:2])
+    except ComputationError:
+        return ""
+    stiffness, mass = symmetric(slender.linear.stiffness), symmetric(slender.linear.mass)
+    lowest = symmetric_modes(stiffness, mass)[1][:, :1].T
+    shape = among(slender.names, thick.names, lowest)
+    return richer.in_words(point, slender, thick, shape, np.zeros(1), plates)
+
+
+def _unseen(critical: Critical, path: Path, structure: Structure | System, progress: Progress) -> tuple[str, ...]:
     """Warn where a beam that twists loses what a model without torsion keeps (a strip on edge), at halves of the
     search's end.
     """
     shares = tuple(2.0**-k for k in range(HALVINGS, -1, -1))
-    lost = _lost(theory_of(structure).thick, path, critical.searched_to, progress, shares)
+    thick: Any
+    if isinstance(structure, System):
+        thick = with_beams(structure, {name: each.thick for name, each in theories_of(structure).items()})
+    else:
+        thick = theory_of(structure).thick
+    lost = _lost(thick, path, critical.searched_to, progress, shares)
     if math.isinf(lost):
         return ()
     return (

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -30,11 +29,12 @@ from gbeam.analysis.system.richer import (
     itself,
     judged_beams,
     richer,
+    theories_of,
+    with_beams,
 )
 from gbeam.errors import ComputationError
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.theory import theory_of
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.bases.base import Base
 from gbeam.results.errors import ErrorEstimate, SystemErrors
@@ -193,22 +193,15 @@ def _beyond(system: System, of: Trajectory, inputs: InputsOf, *, settled: bool) 
     beams have no answer.
     """
     judged = judged_beams(system)
-    theories = {name: theory_of(body) for name, body in judged.items()}
-
-    def of_beams(beams: Mapping[str, Structure]) -> System:
-        kept = {
-            name: replace(each, source=judged[name].source, load_values=judged[name].load_values)
-            for name, each in beams.items()
-        }
-        return replace(system, bodies={**system.bodies, **kept})
+    theories = theories_of(system)
 
     def within(more: System, less: System) -> Richer:
         names = [more.coordinates[k] for k in more.tree.free]
         return Richer(more, np.array([names.index(less.coordinates[k]) for k in less.tree.free], dtype=int), less, {})
 
-    thin = of_beams({name: each.slender for name, each in theories.items()})
+    thin = with_beams(system, {name: each.slender for name, each in theories.items()})
     slender = answered(within(thin, system), of, inputs)
-    thick = of_beams({name: each.thick for name, each in theories.items()})
+    thick = with_beams(system, {name: each.thick for name, each in theories.items()})
     full = answered(within(thick, thin), slender.of, inputs)
     names = [thick.coordinates[k].rpartition(".q")[0] for k in thick.tree.free]
     columns = {name: [k for k, each in enumerate(names) if each == name] for name in judged}

@@ -17,8 +17,9 @@ from gbeam.integrate.equations import LinearEquations, Trajectory
 from gbeam.integrate.schemes import generalized_alpha
 from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.theory import Theory, theory_of
 from gbeam.mechanics.tree.equations import Inputs
-from gbeam.mechanics.tree.system import System
+from gbeam.mechanics.tree.system import System, stations_of
 from gbeam.motion.bases.base import Base
 from gbeam.numerics.eigen import symmetric, symmetric_modes
 
@@ -69,6 +70,27 @@ def richer(system: System, bases: Mapping[str, Base], *, exact: bool) -> Richer:
     at = {name: k for k, name in enumerate(other.coordinates)}
     every = np.array([at[renamed.get(name, name)] for name in system.coordinates], dtype=int)
     return Richer(other, np.searchsorted(other.tree.free, every[system.tree.free]), system, renamed)
+
+
+def theories_of(system: System) -> dict[str, Theory]:
+    """The beams that can be judged by two theories, by name, with what hangs and acts on their stations."""
+    tree, out = system.tree, dict[str, Theory]()
+    loaded = [(each.parent, each.on) for each in tree.links] + [(each.body, each.on) for each in tree.forces]
+    for name, body in judged_beams(system).items():
+        at, stations = system.order.index(name), [*stations_of(body).values()]
+        hung = {stations[on] for of, on in loaded if of == at and on < len(stations)}
+        out[name] = theory_of(body, tuple(sorted(hung)))
+    return out
+
+
+def with_beams(system: System, beams: Mapping[str, Structure]) -> System:
+    """A system with other structures of some beams, under the same loads."""
+    judged = judged_beams(system)
+    kept = {
+        name: replace(each, source=judged[name].source, load_values=judged[name].load_values)
+        for name, each in beams.items()
+    }
+    return replace(system, bodies={**system.bodies, **kept})
 
 
 def pieces(count: int, size: int) -> list[slice]:
