@@ -171,6 +171,27 @@ def test_friction_at_rest_is_said_to_be_a_damper() -> None:
     assert not turning.warnings
 
 
+def test_what_grows_without_a_point_is_named_by_its_turning() -> None:
+    """A rod about its root, the only point of it: about its y it falls, along nothing."""
+    rod = gb.RigidBody(1.0, (0.0, 1 / 12, 1 / 12), centre=(0.5, 0, 0))
+    upright = gb.System({"rod": rod}, {"hinge": gb.Joint("revolute", "rod", axes=[(0, 1, 0)])}, gravity=(-9.81, 0, 0))
+    modes = gb.modes(upright)
+    assert modes.instabilities[0].direction == "rod ry"
+    assert "divergence of rod about its y, growing with 3.836 1/s" in repr(modes)
+
+
+@pytest.mark.parametrize("question", [gb.modes, gb.linearize])
+def test_a_model_without_positive_mass_is_a_named_outcome(question: object) -> None:
+    """A soft strip on a sprung hinge, bent by 0.7 of its length: to second order its moment of inertia is negative."""
+    soft = gb.Beam(1.0, gb.Section.rectangle(0.04, 0.001), gb.Material(2700.0, 70e9), damping_ratio=0.01)
+    hinge = gb.Joint("revolute", "strip", axes=[(0, 1, 0)], stiffness=1e3)
+    system = gb.System({"strip": gb.assemble(soft, "FOAM", axial=0, y=0, z=2)}, {"hinge": hinge}, gravity=(0, 0, -10))
+    with pytest.raises(gb.ComputationError, match="no positive mass: check with exact") as failed:
+        question(system)  # type: ignore[operator]
+    assert failed.value.outcome == "no positive mass"
+    assert any("no positive mass" in each for each in gb.static(system).warnings)
+
+
 def test_a_linear_model_about_an_unstable_place_says_so() -> None:
     (warning,) = gb.linearize(hinged(initial=-np.pi / 2)).warnings
     assert "not stable: divergence of" in warning and "growing with 3.836 1/s" in warning

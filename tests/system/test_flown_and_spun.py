@@ -12,6 +12,7 @@ import pytest
 import gbeam as gb
 from gbeam.cli import main
 from gbeam.questions import QUESTIONS
+from gbeam.report.page.result import report_of
 from gbeam.scenario import ScenarioError
 
 STRIP = gb.Beam(
@@ -118,6 +119,8 @@ def test_a_scenario_of_a_system_is_judged_as_one_of_a_beam(tmp_path: Path) -> No
     assert other.peaks["largest_load"].machine == pytest.approx(one.peaks["largest_load"].machine, rel=1e-9)
     np.testing.assert_allclose(other.difference, one.difference, atol=2e-7)  # of 2 mm, by the steps
     assert system.not_accepted == {"centrifuge": other.refusal} and "damage" in other.refusal
+    page = report_of(system)
+    assert page.count("Limits used") == 1 and "<h3>limits</h3>" not in page
 
 
 def test_a_run_of_a_system_that_is_not_accepted_fails(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

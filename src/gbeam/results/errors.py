@@ -167,10 +167,10 @@ def totals(errors: FrequencyErrors | None, count: int) -> Floats:
 
 
 def along(direction: str) -> str:
-    """Words for the direction of a mode: along z, in twist, or of a system's body along its z."""
+    """Words for the direction of a mode: along z, in twist, or of a system's body along or about its z."""
     body, _, direction = direction.rpartition(" ")
     if body:
-        return f"of {body} along its {direction}"
+        return f"of {body} {'about' if direction.startswith('r') else 'along'} its {direction[-1]}"
     return f"in {direction}" if direction == "twist" else f"along {direction}"
 
 

@@ -145,6 +145,9 @@ def campbell(
 
     coarse = [at(float(rate)) for rate in start + (grid - start) * (last - start) / (end - start)]
     kept = min(modes, len(coarse[0].frequency))
+    if not kept:
+        held = "; ".join(lost.warnings) or "ask `gbeam modes` what holds or damps it"
+        raise InputError("modes", f"have nothing to follow: nothing oscillates at {start:g} rad/s", held)
     followed = coarse[:1]
     for low, high in pairwise(coarse):
         followed += [*_fill(at, low, high, kept, DEPTH), high]
@@ -183,7 +186,7 @@ def campbell(
             replace(crossing, errors=crossing_errors(crossing, mode, slope, richer, point_at))
             for crossing, mode, slope in met
         ]
-    doubts = structure.warnings if isinstance(structure, System) else input_warnings(structure, motion, name=name)
+    doubts = lost.warnings if isinstance(structure, System) else input_warnings(structure, motion, name=name)
     warnings = doubts + (() if errors is None else doubtful(errors))
     warnings += doubtful_crossings(crossings, "" if errors is None else errors.theory)
     if lost.value is not None:

@@ -46,6 +46,12 @@ def _state(path: Path, of: Any, value: float) -> Steady | None:
         return None
 
 
+def _of_system(path: Path, of: System, value: float) -> tuple[str, ...]:
+    """Warnings of a system, and of friction that holds it just below a value."""
+    state: Any = _state(path, of, (1 - CLOSE) * value)
+    return of.warnings + (() if state is None else state.point.sticking(of))
+
+
 def first_loss_along(path: Path, of: Structure | System, upper: float, quantity: str, unit: str) -> Critical:
     """Raise a quantity from zero until the relative equilibrium is lost: first on a grid of 64 points, then by Brent's
     method.
@@ -58,7 +64,9 @@ def first_loss_along(path: Path, of: Structure | System, upper: float, quantity:
 
     def answer(value: float | None, kind: str, direction: str, reason: str) -> Critical:
         words = kind, direction, reason, of.kind
-        doubts = of.warnings if isinstance(of, System) else input_warnings(of)
+        doubts = (
+            _of_system(path, of, upper if value is None else value) if isinstance(of, System) else input_warnings(of)
+        )
         return Critical(quantity, unit, value, upper, *words, warnings=doubts)
 
     grid = [float(value) for value in np.linspace(0.0, upper, SCAN + 1)]

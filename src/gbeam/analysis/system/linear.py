@@ -17,6 +17,7 @@ from gbeam.analysis.system.assembly import assembly_of
 from gbeam.analysis.system.histories import beams_of, histories, loads_of
 from gbeam.analysis.system.point import Point, started
 from gbeam.analysis.system.steady import Drive, SteadySystem, steady
+from gbeam.errors import ComputationError
 from gbeam.guards.checks import choice
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.tree.control import signal_names
@@ -53,9 +54,8 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
     try:
         if len(growing := state.moving.growing):
             unstable = (f"unstable, no system would stay there: grows by {growing[0].real:.4g} per second",)
-    except np.linalg.LinAlgError:
-        fix = "bent so far a body's model has no positive mass: check with exact"
-        unstable = (f"whether it would stay there is not known, {fix}",)
+    except ComputationError as error:
+        unstable = (f"whether it would stay there is not known, {error}",)
 
     def again(of: System) -> tuple[Trajectory, Any]:
         return state.richer(of).point.standing(time), inputs

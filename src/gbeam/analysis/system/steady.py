@@ -10,13 +10,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.analysis.system.point import Point, rested
-from gbeam.errors import InputError
+from gbeam.errors import ComputationError, InputError
 from gbeam.mechanics.tree.equations import Inputs
 from gbeam.mechanics.tree.frames import Frame, turned_back
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.eigen import RIGID, Linear, Vibrations, stability_margin, symmetric, symmetric_modes, vibrations
+from gbeam.numerics.eigen import (
+    RIGID,
+    Linear,
+    Vibrations,
+    positive_definite,
+    stability_margin,
+    symmetric,
+    symmetric_modes,
+    vibrations,
+)
 from gbeam.numerics.series import STEP
 
 Array = Any
@@ -83,8 +92,17 @@ class SteadySystem:
 
     @cached_property
     def linear(self) -> Linear:
-        """M, C and K of small departures."""
+        """M, C and K of small departures.
+
+        Raises
+        ------
+        ComputationError
+            If a body's model has no positive mass there.
+        """
         _, k, c, m = self.local.slopes()
+        if not positive_definite(m):
+            fix = "check with exact, or load it less"
+            raise ComputationError("no positive mass", f"bent so far a body's model has no positive mass: {fix}")
         return Linear(m, c, k, np.zeros((len(m), 0)))
 
     def vibrations(self, *, gyroscopic: bool = True) -> Vibrations:
@@ -146,14 +164,18 @@ class SteadySystem:
         return np.asarray(energies / np.maximum(energies.sum(axis=1, keepdims=True), 1e-300))
 
     def directions(self, modes: Complex) -> tuple[str, ...]:
-        """The body that moves most in each mode (n, k), and the axis of its root along which a point does."""
+        """The body that moves most in each mode (n, k), and the axis of its root along which a point does, or r and
+        the axis about which it turns where none of its points moves.
+        """
         of_point = [body for body, name in enumerate(self.system.order) for _ in self.system.points_of(name)]
         roots = self.local.tree.motion(self.local.y, self.local.yd, self.local.ydd, self.local.inputs).roots
-        moved = np.einsum("pan,nk->kpa", self.slopes_of_points, modes)
+        moved, turning = (np.einsum("pan,nk->kpa", each, modes) for each in self.slopes_of_frames)
         names = []
-        for body, of_mode in zip(self.shares(modes).argmax(axis=1), moved, strict=True):
-            along = turned_back(roots[body].R, of_mode[np.equal(of_point, body)])
-            names.append(f"{self.system.order[body]} {'xyz'[np.abs(along).max(axis=0).argmax()]}")
+        for body, *of_mode in zip(self.shares(modes).argmax(axis=1), moved, turning, strict=True):
+            along, about = (turned_back(roots[body].R, each[np.equal(of_point, body)]) for each in of_mode)
+            turns = np.abs(along).max() <= STILL * np.abs(about).max()
+            axis = "xyz"[np.abs(about if turns else along).max(axis=0).argmax()]
+            names.append(f"{self.system.order[body]} {'r' if turns else ''}{axis}")
         return tuple(names)
 
     def richer(self, system: System) -> SteadySystem:

@@ -49,6 +49,7 @@ def _system_study(facts: Mapping[str, Any], viewer: str, plots: str) -> str:
     """The verdicts on centrifuges, the quantities of all responses, and what the axes do."""
     motions = {name: each for name, each in facts["motions"].items() if "limits" in each}
     alone = {key: value for key, value in facts.items() if key != "comparisons"}
+    alone["motions"] = {n: {k: v for k, v in each.items() if k != "limits"} for n, each in facts["motions"].items()}
     machines = "".join(machine.machine_section(name, each) for name, each in motions.items())
     return study.verdicts(facts) + _quantities(alone, viewer, plots) + machines
 
