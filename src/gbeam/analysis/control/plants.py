@@ -12,17 +12,25 @@ from gbeam.analysis.control.linearization import linearize
 from gbeam.analysis.response.differentiated import Differentiated, Grid
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
+from gbeam.analysis.response.stepping import scheme_of
 from gbeam.analysis.response.systems import simulate_system
+from gbeam.analysis.system.point import started
 from gbeam.analysis.system.steady import Drive, SteadySystem, steady
 from gbeam.arrays.tree import altered
 from gbeam.errors import InputError
 from gbeam.guards.checks import choice
+from gbeam.integrate.derivatives import accelerations, slopes
+from gbeam.integrate.driver import through
+from gbeam.integrate.equations import NonlinearEquations
+from gbeam.integrate.steps import Corners, fitted
+from gbeam.integrate.tangent import tangent
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.system import System, stations_of
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.profiles.profile import Profile
 from gbeam.numerics.eigen import RIGID, Linear, symmetric, symmetric_modes
+from gbeam.numerics.series import STEP
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 
@@ -226,21 +234,71 @@ class OnJoint:
 
     def run(self, profile: Profile, settings: ResponseSettings, name: str = "") -> Ran:
         """Run a command."""
-        system, (beam, station) = self.commanded(profile), self._beam
-        of = simulate_system(system, None, replace(settings, residual_from=None), name)
-        body = self.point.partition(".")[0]
-        q = of.q[:, [each.startswith(f"{body}.q") for each in system.coordinates]]
-        tip = np.asarray(beam.displacement(q)[:, station])
-        late = tip[of.time >= (settings.residual_from or 0.0)]
+        of = simulate_system(self.commanded(profile), None, settings, name)
+        return self._ran(of.time, of.q, settings, of.outcome, of.message, of.step)
+
+    def _ran(self, time: Floats, q: Floats, settings: ResponseSettings, outcome: str, message: str, step: float) -> Ran:
+        """A run by all coordinates (t, n)."""
+        (beam, station), body = self._beam, self.point.partition(".")[0]
+        own = [each.startswith(f"{body}.q") for each in self.system.coordinates]
+        tip = np.asarray(beam.displacement(q[:, own])[:, station])
+        late = tip[time >= (settings.residual_from or 0.0)]
         left = float(np.linalg.norm(np.ptp(late, axis=0))) / 2 if len(late) else np.nan
-        return Ran(of.time, tip, of.outcome, of.message, left, of.step)
+        return Ran(time, tip, outcome, message, left, step)
 
     def about(
         self, profile: Profile, settings: ResponseSettings, pairs: Sequence[Pair], width: float
     ) -> tuple[Ran, Iterator[tuple[Ran, Ran]]]:
-        """A run of given steps, and those of pairs of commands that differ by a width."""
-        both = ((self.run(less, settings), self.run(more, settings)) for less, more in pairs)
-        return self.run(profile, settings), both
+        """A run of given steps, and those of pairs of commands that differ by a width, along its exact derivatives."""
+        assert settings.step is not None
+        system, scheme = self.commanded(profile), scheme_of(settings)
+        tree, k = system.tree, system.coordinates.index(self.coordinate)
+        point = started(system, None, settings.start, settings.begin.state)
+        equations = NonlinearEquations(tree, system.inputs)
+        count = round(settings.duration / settings.step)
+        end = settings.start + settings.duration
+        corners = Corners.of(system.corners(settings.step), equations.drive, settings.start, end)
+        grid = fitted(settings.start, settings.duration / count, count, corners.felt_by(scheme))
+        # With the ends of the parts of split steps, too.
+        steps = replace(grid, kept=np.ones(len(grid), dtype=bool))
+        run = through(equations, scheme, point.y, point.yd, steps)
+
+        commanded = [[self.commanded(each) for each in pair] for pair in pairs]
+
+        def command(of: System, time: Floats) -> Floats:
+            """The effort (t, 1), or angle, rate and acceleration (t, 3)."""
+            inputs = of.inputs(time)
+            if self.free:
+                return np.asarray(inputs.efforts)[:, [k]]
+            return np.asarray(inputs.prescribed)[..., tree.fixed.index(k)]
+
+        def linear(time: Floats, q: Floats, qd: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+            inputs = system.inputs(time)
+            qdd = accelerations(tree, q, qd, inputs)
+            stiffness, damping, mass = slopes(tree, q, qd, qdd, inputs)
+            if self.free:
+                driven = -np.broadcast_to(np.equal(tree.free, k).astype(float)[:, None], (len(time), len(tree.free), 1))
+            else:
+                driven = np.empty((len(time), len(tree.free), 3))
+                for j in range(3):
+                    moved = np.array(inputs.prescribed, dtype=complex)
+                    moved[:, j, tree.fixed.index(k)] += 1j * STEP
+                    left = tree(q + 0j, qd + 0j, qdd + 0j, replace(inputs, prescribed=moved))
+                    driven[..., j] = left.imag / STEP
+            changed = np.stack([command(more, time) - command(less, time) for less, more in commanded], axis=-1) / width
+            return mass, damping, stiffness, -driven @ changed
+
+        still = np.zeros((len(tree.free), len(pairs)))
+        changes = tangent(linear, scheme, steps, run, still, still)[0]
+        kept = np.append(0, 1 + np.flatnonzero(grid.kept))
+
+        def moved(by: Floats | float) -> Ran:
+            q = np.zeros((len(kept), tree.size))
+            q[:, tree.free] = run.q[kept] + by
+            return self._ran(run.time[kept], q, settings, "done", "", settings.step or np.nan)
+
+        halves = (width / 2 * changes[kept, :, j] for j in range(len(pairs)))
+        return moved(0.0), ((moved(-half), moved(half)) for half in halves)
 
 
 Plant = OnHub | OnJoint

@@ -52,8 +52,8 @@ def shape_command(
     """Find the command of a hub, or of a joint of a system, that leaves the least vibration of its beam.
 
     The design knows the modes about rest. Without `robust` it is refined on `structure` itself, by Gauss-Newton steps
-    along the exact derivatives of its response, of a system along differences of runs. Then the command is run beside a
-    smooth step of the same duration and one with a ZVD shaper (Singer and Seering 1990) of the first mode.
+    along the exact derivatives of its response. Then the command is run beside a smooth step of the same duration and
+    one with a ZVD shaper (Singer and Seering 1990) of the first mode.
 
     Parameters
     ----------
