@@ -226,7 +226,7 @@ def test_a_scenario_of_a_mesh_is_judged_at_its_points(scenario: Path) -> None:
         gb.read_scenario(scenario)
     seated = text.replace("[bodies.bar.points]", '[bodies.bar.interfaces]\nseat = "end"\n[bodies.bar.points]')
     scenario.write_text(seated.replace('damage_at = "gauge"', 'damage_at = "seat"'), encoding="utf-8")
-    with pytest.raises(ScenarioError, match="(?s)damage_at: is 'seat'.*choose from gauge, tip"):
+    with pytest.raises(ScenarioError, match=r"(?s)damage_at: is 'seat'.*choose from gauge, tip"):
         gb.read_scenario(scenario)
 
 

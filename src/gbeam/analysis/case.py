@@ -233,13 +233,16 @@ class SystemCase(_InEnvironments):
                 self.system.point(f"motion.{name}.accept.point", limits["point"])
             for point in limits.get("control", ()):
                 self.system.point(f"motion.{name}.accept.control.{point}", point)
-            beams = [key for key, body in self.system.bodies.items() if getattr(body, "sections", None) is not None]
-            refuse_unknown(f"motion.{name}.accept", limits, {} if beams else {STRESS: "no body is a beam"})
+            bodies = {key: body for key, body in self.system.bodies.items() if isinstance(body, Structure)}
+            stressed = [key for key, body in bodies.items() if body.sections is not None or body.recovery is not None]
+            lacking = {} if stressed else {STRESS: "no body is a beam or a mesh"}
+            refuse_unknown(f"motion.{name}.accept", limits, lacking)
             if limits.get("damage_at") is not None:
                 where = f"motion.{name}.accept.damage_at"
                 body, _ = self.system.point(where, limits["damage_at"])
-                if body not in beams:
-                    raise InputError(where, f"is on {body}, which is no beam", f"choose a point of {', '.join(beams)}")
+                if body not in stressed:
+                    fix = f"choose a point of {', '.join(stressed)}"
+                    raise InputError(where, f"is on {body}, which is no beam and no mesh", fix)
 
     def assemble(self, stations: ArrayLike | None = None) -> System:
         """Return the system; it has no stations.

@@ -108,6 +108,7 @@ def _of_system(result: SystemResponse, title: str) -> dict[str, Describe]:
     if result.loop is not None:
         every["loop"] = partial(system.loop, result, title)
     every |= {f"loads {body}": partial(system.loads, result, body, title) for body in result.beams}
+    every |= {f"stress {body}": partial(system.stress, each, title) for body, each in result.solids.items()}
     if result.axes is not None:
         every |= _of_machine(result, result.axes, title)
     if result.invariants is not None:

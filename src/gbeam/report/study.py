@@ -99,7 +99,7 @@ def comparison_lines(comparison: Comparison) -> Iterator[str]:
     """Acceptance, load peaks, differences, vibration, and a bound on what the mismatch field can do."""
     main = comparison.main_axis
     if comparison.point:
-        yield f"the tip is {comparison.point}, the root the ground, the stress the largest of all beams"
+        yield f"the tip is {comparison.point}, the root the ground, the stress the largest of all beams and meshes"
     yield from judged_lines(comparison)
     yield from peak_lines(comparison.peaks)
     if comparison.covered.any() and np.isfinite(comparison.relative).any():

@@ -41,6 +41,7 @@ def of_system(response: SystemResponse) -> Iterator[str]:
     if joints:
         yield f"at the end {joints}"
     yield from (f"{body}: {largest_loads(each.peaks)}" for body, each in response.beams.items())
+    yield from (f"{body}: {line}" for body, each in response.solids.items() for line in each.lines)
     kept = response.invariants
     if kept is not None:
         first, last = (number(float(each.sum())) for each in kept.energy[[0, -1]])

@@ -17,6 +17,7 @@ from gbeam.results.machine import AxesResult, Driven
 from gbeam.results.parts import LoadPeaks, Loads, Outline
 from gbeam.results.response import BaseMotion
 from gbeam.results.result import Complex, Figured, Floats, Part
+from gbeam.results.solids import SolidStress
 
 ENERGIES = ("kinetic", "elastic", "gravity")
 _OF_POINTS = {"place": "place", "velocity": "velocity", "acceleration": "acceleration", "spin": "angular_velocity"}
@@ -191,6 +192,9 @@ class SystemResponse(Driven, Figured):
     )
     beams: Mapping[str, BeamResponse] = rows(
         "beams, by the name of the body", "body", optional=True, name="", default_factory=dict
+    )
+    solids: Mapping[str, SolidStress] = rows(
+        "stress of meshes, by the name of the body", "body", optional=True, name="", default_factory=dict
     )
     integrator: str = fact("integrator", default="gauss")
     step: float = fact("time step", "s", default=math.nan)

@@ -57,7 +57,7 @@ def cyclic_stress(response: Response, at: str | None = None) -> tuple[Floats | N
     if solid is not None and at in solid.points:
         k = solid.points.index(at)
         return solid.point_normal[:, k], float(solid.point_exponent[k]), place
-    if solid is not None or loads is None or loads.fibre is None:
+    if loads is None or loads.fibre is None:
         return None, np.nan, place
     section = 0 if at is None else 1 + response.points.index(at)
     return loads.fibre[:, section], loads.fatigue_exponent, "of the root" if at is None else place
@@ -158,7 +158,8 @@ def compare(
         environment.
     point : str, optional
         Of a system, the one whose displacement is compared, ``body.point``; by default the one that moves farthest in
-        flight. Its root loads are those of the ground, its stress is the largest of all beams.
+        flight. Its root loads are those of the ground, its stress is the largest of all beams and
+        meshes.
     tolerance : float
         Share of the flight's load by which the machine's may differ and count as following.
     tolerance_of : str

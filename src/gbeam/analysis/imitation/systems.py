@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,12 +12,13 @@ from gbeam.mechanics.tree.system import ROOT
 from gbeam.results.parts import Loads, Peaks
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
+from gbeam.results.solids import SolidStress
 from gbeam.results.system import SystemResponse
 
 
 def specimen_of(response: SystemResponse, point: str) -> Response:
     """The response of a system on a moving ground: displacement of one of its points, loads of the ground, and the
-    stress of all beams.
+    stress of all beams and meshes.
     """
     if response.base is None or response.assembly is None:
         fix = "simulate it on a flight, and on a centrifuge that tracks it, with loads"
@@ -31,7 +33,9 @@ def specimen_of(response: SystemResponse, point: str) -> Response:
         Rotation.from_quat(np.roll(response.attitude[:, k], -1, axis=-1)).apply(response.acceleration[:, k])
         for k in order
     ]
-    nothing = np.full(3, math.nan)
+    nothing, solid = np.full(3, math.nan), None
+    if response.solids:
+        solid = _together(response)
     # What the ground takes, then the largest stress at the roots; the sections of the beams follow.
     tension = [np.max([each.stress_tension[:, 0] for each in chosen], axis=0)[:, None]] if chosen else []
     compression = [np.min([each.stress_compression[:, 0] for each in chosen], axis=0)[:, None]] if chosen else []
@@ -51,7 +55,7 @@ def specimen_of(response: SystemResponse, point: str) -> Response:
         stress_compression=np.concatenate(compression, axis=1) if chosen else unknown,
         acceleration=felt[-1][:, None],
         fibre=np.stack(fibres, axis=1),
-        yield_strength=strengths.pop() if len(strengths) == 1 else None,
+        yield_strength=strengths.pop() if len(strengths) == 1 and solid is None else None,
         fatigue_exponent=exponents.pop() if len(exponents) == 1 else math.nan,
     )
     return Response(
@@ -75,9 +79,27 @@ def specimen_of(response: SystemResponse, point: str) -> Response:
         error_estimate=response.error_estimate,
         residual_from=math.nan,
         loads=loads,
+        solid=solid,
         axes=response.axes,
         envelope=response.assembly.undeformed,
         kept_every=response.kept_every,
+    )
+
+
+def _together(response: SystemResponse) -> SolidStress:
+    """Stress of all meshes as that of one: the largest of them and of the beams over time, where a mesh is stressed
+    most, its least margin where there is no beam besides, and all points.
+    """
+    every, beams = response.solids, [each.loads.stress.max(axis=1) for each in response.beams.values()]
+    worst = max(every.values(), key=lambda each: each.worst.von_mises)
+    near = [each.nearest_yield for each in every.values() if each.nearest_yield is not None and not beams]
+    return replace(
+        worst,
+        von_mises=np.max([*(each.von_mises for each in every.values()), *beams], axis=0),
+        nearest_yield=min(near, key=lambda each: each.margin or math.inf, default=None),
+        points=tuple(f"{body}.{point}" for body, each in every.items() for point in each.points),
+        point_normal=np.concatenate([each.point_normal for each in every.values()], axis=1),
+        point_exponent=np.concatenate([each.point_exponent for each in every.values()]),
     )
 
 

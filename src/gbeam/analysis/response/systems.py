@@ -31,6 +31,7 @@ from gbeam.guards.limits import HISTORY_BYTES, STEPS, refuse_more
 from gbeam.integrate.equations import NonlinearEquations, Trajectory
 from gbeam.integrate.sampled import Sampling
 from gbeam.integrate.steps import Corners
+from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.equations import Inputs
 from gbeam.mechanics.tree.steps import continuous
 from gbeam.mechanics.tree.system import System
@@ -41,6 +42,7 @@ from gbeam.progress import Progress, tell
 from gbeam.results.errors import ErrorEstimate, SystemErrors
 from gbeam.results.parts import Loads
 from gbeam.results.response import BaseMotion
+from gbeam.results.solids import SolidStress
 from gbeam.results.system import BeamResponse, Invariants, Loop, SystemResponse
 from gbeam.structure.beam import names_at
 
@@ -346,6 +348,13 @@ def _described(
         names = () if beam.source is None else names_at(beam.source.beam, beam.stations)
         beams[body] = BeamResponse(loads, peaks, outline_of(beam, None, time, q), names)
         yielded += yielding(beams[body].peaks, f" of {body}")
+    solids, kind = dict[str, SolidStress](), "ground" if motion is None else motion.kind
+    for body, solid in system.bodies.items():
+        if settings.loads and isinstance(solid, Structure) and solid.recovery is not None:
+            first = system.coordinates.index(f"{body}.q1")
+            q, about = over_time["q"][:, first : first + solid.size], {"model": solid.kind, "environment": kind}
+            parts = solid.recovery.parts(time, None, q, motion=name, **about)
+            solids |= {body: parts["solid"]} if "solid" in parts else {}
     invariants = None
     if motion is None:
         invariants = Invariants(*(over_time.pop(key) for key in ("momentum", "angular_momentum", "energy")))
@@ -363,7 +372,7 @@ def _described(
         warnings += (f"the error of the steps is {100 * step_error:.2g} %: give a smaller step or tolerance",)
     return SystemResponse(
         name=name,
-        environment="ground" if motion is None else motion.kind,
+        environment=kind,
         outcome=outcome,
         message=message,
         time=time,
@@ -372,6 +381,7 @@ def _described(
         invariants=invariants,
         loop=run.loop(time)[0],
         beams=beams,
+        solids=solids,
         base=None if motion is None else BaseMotion(base.a_WO_B, base.w_WB_B, base.alpha_WB_B),
         axes=axes_result(motion, time) if isinstance(motion, Centrifuge) else None,
         assembly=assembly_of(system) if settings.loads else None,

@@ -163,8 +163,12 @@ def _system_response(facts: Facts, v: Facts, **more: Any) -> SystemResponse:
         for body, each in facts.get("beams", {}).items()
         if f"{body}_section_force" in v
     }
+    solids = {
+        body: _read(SolidStress, each, {**v, **_under(f"{body}_", v)}) for body, each in facts.get("solids", {}).items()
+    }
     axes = _axes(facts, v) if "axis_rate" in v else None
-    return _read(SystemResponse, facts, v, invariants=invariants, beams=beams, axes=axes, base=None, **more)
+    more |= {"invariants": invariants, "beams": beams, "solids": solids, "axes": axes}
+    return _read(SystemResponse, facts, v, base=None, **more)
 
 
 def _response(name: str, facts: Facts, v: Facts) -> Response:
