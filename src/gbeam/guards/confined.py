@@ -31,11 +31,18 @@ _OUT_OF_MEMORY = 77  # exit status
 
 
 def confined(
-    reader: Callable[..., Any], path: str | os.PathLike[str], *arguments: Any, refuse: Callable[[str], InputError]
+    reader: Callable[..., Any],
+    path: str | os.PathLike[str],
+    *arguments: Any,
+    refuse: Callable[[str], InputError],
+    memory: int | None = None,
+    seconds: int | None = None,
 ) -> Any:
-    """Call ``reader(path, *arguments)`` in a process of its own, and return what it returns."""
+    """Call ``reader(path, *arguments)`` in a process of its own, with so many bytes and s of processor time, those of a
+    reader unless given, and more for large files; return what it returns.
+    """
     size = os.stat(path).st_size
-    memory, seconds = READER_BYTES + 3 * size, READER_SECONDS + size // READER_RATE
+    memory, seconds = (memory or READER_BYTES) + 3 * size, (seconds or READER_SECONDS) + size // READER_RATE
     function = [reader.__module__, reader.__qualname__]
     request = json.dumps([memory, seconds, function, [os.fspath(path), *arguments]]).encode()
     with tempfile.TemporaryFile() as reply:

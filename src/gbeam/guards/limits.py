@@ -50,6 +50,7 @@ SAMPLES = 4_000_000
 READER_BYTES = 2**30  # of address space, of which the libraries take 0.2 GB
 READER_SECONDS = 10  # of processor time
 READER_RATE = 2**24
+MESHER_BYTES, MESHER_SECONDS = 2**33, 600  # of Gmsh, which meshes what it reads
 
 
 def refuse_more(where: str, what: str, count: float, most: int, each: float, fix: str) -> None:

@@ -39,13 +39,14 @@ def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure
         for name, each in table.points.items()
     }
 
-    def read(file: str) -> SolidMesh:
+    def read(file: str, size: float | None) -> SolidMesh:
         try:
             return SolidMesh.read(
                 file,
                 materials=given,
                 clamp=table.clamp,
                 unit=table.unit,
+                element_size=size,
                 points=points,
                 point_masses=table.masses,
                 interfaces=table.interfaces,
@@ -61,20 +62,20 @@ def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure
             renamed = one.replace("materials", "material", 1) if table.material is not None else one
             raise InputError(renamed, error.problem, error.fix) from None
 
-    def reduced(file: str, coarser: SolidModel | None = None) -> SolidModel:
-        mesh = read(file)
+    def reduced(file: str, size: float | None, coarser: SolidModel | None = None) -> SolidModel:
+        mesh = read(file, size)
         options: dict[str, Any] = {"modes": table.modes, "damping_ratio": table.damping_ratio}
         source = mesh, options, None if coarser is None else coarser.frequency
         return kept(f"reducing {file}", source, lambda: mesh.reduced(**options, coarser=coarser))
 
     def model() -> Structure:
         coarser = None
-        if table.coarser is not None:
+        if table.coarser is not None or table.coarser_size is not None:
             try:
-                coarser = reduced(table.coarser)
+                coarser = reduced(table.coarser or table.mesh, table.coarser_size)
             except InputError as error:
                 raise InputError("coarser", f"{error.where} {error.problem}", error.fix) from None
-        return reduced(table.mesh, coarser).structure
+        return reduced(table.mesh, table.element_size, coarser).structure
 
     return parts.attempt(where, model)
 

@@ -146,8 +146,9 @@ def nodes_in(mesh: Any, where: str, name: str) -> Indices:
 
 def no_group(mesh: Any, where: str, name: str) -> InputError:
     """Error of a group that is not in the mesh."""
-    names = group_names(mesh)
-    known = f"choose from {shortened(', '.join(names), 200)}" if names else "the mesh has no groups: name some in it"
+    names = [f"{each}, {about}" for each, about in (mesh.info or {}).items()] or group_names(mesh)
+    listed = shortened("; ".join(names) if mesh.info else ", ".join(names), 2000 if mesh.info else 200)
+    known = f"choose from {listed}" if names else "the mesh has no groups: name some in it"
     return InputError(where, f"is {name!r}, which is no group of the mesh", known)
 
 

@@ -13,7 +13,6 @@ from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
-from gbeam.guards.units import UnitError, quantity
 from gbeam.mechanics.equations.linear import coefficients, geometric_of
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.reduction import inertial_loads, linear_fields, particles_of, reduce
@@ -21,6 +20,7 @@ from gbeam.mechanics.structure import linear_structure
 from gbeam.mechanics.tree.system import Place, RigidBody
 from gbeam.numerics.factor import refuse_cost
 from gbeam.results.result import Floats
+from gbeam.solids.cad import mesh_of
 from gbeam.solids.elements import (
     Block,
     Indices,
@@ -34,8 +34,6 @@ from gbeam.solids.foreign import (
     left_out,
     no_group,
     nodes_in,
-    read_mesh,
-    refuse_systems,
     solid_blocks,
 )
 from gbeam.solids.interfaces import attached, refuse_names
@@ -106,7 +104,8 @@ class SolidMesh(Value):
         *,
         materials: Material | Orthotropic | Mapping[str, Material | Orthotropic],
         clamp: str | Sequence[str],
-        unit: str,
+        unit: str | None = None,
+        element_size: float | None = None,
         points: Mapping[str, Any] | None = None,
         point_masses: Mapping[str, float] | None = None,
         interfaces: Mapping[str, str] | None = None,
@@ -124,14 +123,18 @@ class SolidMesh(Value):
         source : path or meshio.Mesh
             A file of Gmsh, Nastran bulk data, Abaqus or CalculiX, VTK or another format of meshio; needs the extra
             ``mesh``. Tetrahedra of 4 and 10 nodes, hexahedra of 8, 20 and 27, and wedges of 6 are read; surfaces and
-            lines only name groups. Nodes without solid elements are left out.
+            lines only name groups. Nodes without solid elements are left out. Or a file of STEP, which Gmsh
+            meshes by tetrahedra of 10 nodes; needs the extra ``gmsh``.
         materials : Material, Orthotropic or dict
             Of all elements, or by group: a physical group of Gmsh, a property's number, an element set. Poisson's
             ratio is needed.
         clamp : str or sequence of str
             Groups whose nodes follow the base.
         unit : str
-            Of the mesh's coordinates, such as ``mm``.
+            Of the mesh's coordinates, such as ``mm``; STEP files say theirs.
+        element_size : float
+            Largest edge of the elements by which STEP files are meshed, m; 12 are around a full circle. The error of
+            a group that is not there says where each solid and each surface is.
         points : dict, optional
             Places of output by name: (x, y, z) in m and base axes, for the nearest node, or a group of one node; a
             :class:`gbeam.Place` has axes too, in which stress and strain there are put out. The ``tip`` is the node
@@ -173,12 +176,7 @@ class SolidMesh(Value):
         """
         from scipy.spatial.transform import Rotation
 
-        mesh = read_mesh(source)
-        refuse_systems(source)
-        try:
-            size = quantity(f"1 {unit}", "length")
-        except UnitError as error:
-            raise InputError("unit", f"is {unit!r}: {error.problem}", error.hint or 'give one such as "mm"') from None
+        mesh, size = mesh_of(source, unit, element_size)
         places = np.asarray(mesh.points, dtype=float)
         if places.ndim != 2 or places.shape[1] != 3 or not np.isfinite(places).all():
             raise InputError("mesh", f"has points of shape {places.shape}, or not finite", "give x, y and z of each")
@@ -223,7 +221,7 @@ class SolidMesh(Value):
         solid = cls(at, blocks, clamped, used, weights, named | {TIP: tip}, **about)
         refuse_folded(solid)
         refuse_loose(solid)
-        return cls(**{**vars(solid), "warnings": (*doubts_of(solid, unit), *left_out(source))})
+        return cls(**{**vars(solid), "warnings": (*doubts_of(solid, unit or "that of the file"), *left_out(source))})
 
     def __repr__(self) -> str:
         counts: dict[str, int] = {}

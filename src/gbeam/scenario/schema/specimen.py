@@ -14,6 +14,7 @@ from gbeam.scenario.schema.fields import (
     Density,
     Exponent,
     File,
+    Length,
     Mass,
     MomentOfInertia,
     Offset,
@@ -146,9 +147,15 @@ class SolidBody(Reduced):
     kind: Literal["solid"] = Field(default="solid", description="kind of the body; may be left out beside mesh")
     mesh: File = Field(
         description="file of Gmsh, Nastran bulk data, Abaqus, CalculiX, VTK or another format of meshio, relative to "
-        'the folder of the scenario file; needs pip install "gbeam[mesh]"'
+        'the folder of the scenario file; needs pip install "gbeam[mesh]"; or of STEP, which Gmsh meshes, with '
+        'pip install "gbeam[gmsh]"'
     )
-    unit: str = Field(description='unit of the coordinates in the mesh, such as "mm"')
+    unit: str | None = Field(
+        default=None, description='unit of the coordinates in the mesh, such as "mm"; STEP files say theirs'
+    )
+    element_size: Length | None = Field(
+        default=None, description="largest edge of the elements by which STEP files are meshed"
+    )
     material: SolidMaterial | None = Field(
         default=None,
         description="of all elements: { density, youngs_modulus, poissons_ratio, yield_strength }, or orthotropic "
@@ -202,6 +209,9 @@ class SolidBody(Reduced):
     scale: tuple[Exponent, Exponent, Exponent] = Field(
         default=(1.0, 1.0, 1.0),
         description="factors of the mesh's coordinates, such as [1, 1, 1.25] for a board a quarter thicker",
+    )
+    coarser_size: Length | None = Field(
+        default=None, description="element_size of a coarser mesh, by which the mesh's error is estimated"
     )
     coarser: File | None = Field(
         default=None, description="file of a coarser mesh with the same groups, by which the mesh's error is estimated"

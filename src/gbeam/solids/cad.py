@@ -1,0 +1,107 @@
+"""Meshes in files, and of the solids in STEP files, which Gmsh meshes."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from gbeam.errors import InputError
+from gbeam.guards.checks import positive
+from gbeam.guards.confined import confined
+from gbeam.guards.limits import BINARY_BYTES, MESHER_BYTES, MESHER_SECONDS, refuse_large_file
+from gbeam.guards.units import UnitError, quantity
+from gbeam.progress import Bar
+from gbeam.solids.foreign import read_mesh, refuse_systems
+
+ENDINGS = (".step", ".stp")
+AROUND = 12  # elements around a full circle at least
+UNNAMED = "Open CASCADE"  # begins the names that nobody gave
+PATIENCE = 2.0  # s without a sign of life
+FINEST = 10  # how much shorter than the given size edges may be there
+
+
+def mesh_of(source: Any, unit: str | None, element_size: float | None) -> tuple[Any, float]:
+    """Return meshio's mesh of a source, itself or a file, and the size of its unit, m."""
+    path = Path(source) if isinstance(source, (str, os.PathLike)) else None
+    if path is not None and path.suffix.lower() in ENDINGS:
+        if unit is not None:
+            raise InputError("unit", f"is {unit!r} beside a file that says its own", "leave it out")
+        if element_size is None:
+            raise InputError("element_size", "is missing", f"give the one to mesh {path} by, such as 3 mm")
+        return meshed(path, positive("element_size", element_size, "m")), 1.0
+    if element_size is not None:
+        raise InputError("element_size", "is given beside a mesh", "leave it out: it is for STEP files")
+    mesh = read_mesh(source)
+    refuse_systems(source)
+    if unit is None:
+        raise InputError("unit", "is missing", 'give the one that the coordinates are in, such as "mm"')
+    try:
+        return mesh, quantity(f"1 {unit}", "length")
+    except UnitError as error:
+        raise InputError("unit", f"is {unit!r}: {error.problem}", error.hint or 'give one such as "mm"') from None
+
+
+def meshed(path: Path, size: float) -> Any:
+    """Return meshio's mesh, in m, of tetrahedra of 10 nodes with edges of a size (m), finer where surfaces are curved;
+    solids and surfaces are groups by their names, or numbers in the order of the file, and `info` says where they are.
+    """
+
+    def refuse(problem: str) -> InputError:
+        return InputError("mesh", f"{path} {problem}", "give a larger element_size, or a mesh")
+
+    with tempfile.TemporaryDirectory() as folder, Bar(f"meshing {path.name}", patience=PATIENCE):
+        out = os.path.join(folder, "solid.msh")
+        limits = {"memory": MESHER_BYTES, "seconds": MESHER_SECONDS}
+        about = confined(_mesh_into, path, size, out, refuse=refuse, **limits)
+        mesh = read_mesh(out)
+    mesh.info = about
+    return mesh
+
+
+def _mesh_into(path: str, size: float, out: str) -> dict[str, str]:
+    """Mesh the solids of a file; returns where each group is."""
+    try:
+        import gmsh
+    except ModuleNotFoundError:
+        raise InputError("", "Gmsh is not installed", 'install it with: pip install "gbeam[gmsh]"') from None
+    except OSError as error:  # a library of the system that its wheel does not bring
+        raise InputError("", f"Gmsh cannot be loaded: {error}", "install that library, or give a mesh") from None
+    gmsh.initialize(readConfigFiles=False, interruptible=False)
+    options = {
+        "General.Terminal": 0,
+        "General.NumThreads": 1,
+        "Mesh.MeshSizeMax": size,
+        "Mesh.MeshSizeMin": size / FINEST,
+        "Mesh.MeshSizeFromCurvature": AROUND,
+        "Mesh.ElementOrder": 2,
+        "Mesh.HighOrderOptimize": 2,
+    }
+    for name, value in options.items():
+        gmsh.option.setNumber(name, value)
+    gmsh.option.setString("Geometry.OCCTargetUnit", "M")
+    model, about = gmsh.model, dict[str, str]()
+    try:
+        refuse_large_file("mesh", path, BINARY_BYTES, "export fewer parts")
+        model.occ.importShapes(path)
+        model.occ.removeAllDuplicates()  # parts that touch share their nodes
+        model.occ.synchronize()
+        for dim, noun in ((3, "solid"), (2, "surface")):
+            for _, tag in model.getEntities(dim):
+                label = model.getEntityName(dim, tag).rpartition("/")[2]
+                name = label if label and label not in about and not label.startswith(UNNAMED) else f"{noun} {tag}"
+                model.addPhysicalGroup(dim, [tag], name=name)
+                x, y, z = (1e3 * each for each in model.occ.getCenterOfMass(dim, tag))
+                area = f", {1e6 * model.occ.getMass(dim, tag):.4g} mm²" if dim == 2 else ""
+                about[name] = f"at ({x:.4g}, {y:.4g}, {z:.4g}) mm{area}"
+        if not model.getEntities(3):
+            raise InputError("mesh", f"{path} has no solids", "export the part as a solid, not its surfaces")
+        model.mesh.generate(3)
+        gmsh.write(out)
+    except InputError:
+        raise
+    except Exception as error:  # Gmsh raises no narrower one
+        problem = f"{path} is not meshed by Gmsh: {' '.join(str(error).split())}"
+        raise InputError("mesh", problem, "give another element_size, or repair the shape") from None
+    return about

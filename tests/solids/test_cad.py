@@ -1,0 +1,128 @@
+"""Solids of STEP files, meshed by Gmsh, against closed forms and another mesh."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gbeam as gb
+
+from .bodies import STEEL, block, solid
+
+try:
+    import gmsh
+except OSError as error:
+    pytest.skip(f"Gmsh's wheel lacks a library of the system: {error}", allow_module_level=True)
+
+LENGTH, WIDTH, THICKNESS, HOLE = 100.0, 20.0, 5.0, 4.0  # mm
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """A bar, a plate with a hole and another bar beside its end, a surface, and half a file."""
+    folder = tmp_path_factory.mktemp("cad")
+    of = {name: folder / name for name in ("bar.step", "plate.stp", "face.step", "half.step")}
+    gmsh.initialize(readConfigFiles=False, interruptible=False)
+    gmsh.option.setNumber("General.Terminal", 0)
+    shapes = gmsh.model.occ
+
+    def written(*names: str) -> None:
+        shapes.synchronize()
+        for name in names:
+            gmsh.write(str(of[name]))
+        gmsh.clear()
+
+    shapes.addBox(0, 0, 0, LENGTH, WIDTH, THICKNESS)
+    written("bar.step")
+    plate = shapes.addBox(0, 0, 0, LENGTH, WIDTH, THICKNESS)
+    shapes.cut([(3, plate)], [(3, shapes.addCylinder(LENGTH / 2, WIDTH / 2, 0, 0, 0, THICKNESS, HOLE))])
+    shapes.addBox(LENGTH, 0, 0, 10, WIDTH, THICKNESS)
+    written("plate.stp")
+    shapes.addRectangle(0, 0, 0, 10, 10)
+    written("face.step")
+    gmsh.finalize()
+    whole = of["bar.step"].read_text(encoding="utf-8")
+    of["half.step"].write_text(whole[: len(whole) // 2], encoding="utf-8")
+    return of
+
+
+def read(file: Path, **options: Any) -> gb.SolidMesh:
+    return gb.SolidMesh.read(file, **{"materials": STEEL, "clamp": "surface 1", "element_size": 5e-3} | options)
+
+
+def test_a_bar_vibrates_as_one_of_another_mesh(files: dict[str, Path]) -> None:
+    """The surface at the foot is the first one; beside hexahedra of 20 nodes the file's tetrahedra are stiffer."""
+    bar = read(files["bar.step"], element_size=3e-3).reduced(modes=4, damping_ratio=0.0)
+    bricks = block("hexahedron20", (20, 4, 2), (0.1, 0.02, 0.005))
+    reference = solid(bricks).reduced(modes=4, damping_ratio=0.0)
+    np.testing.assert_allclose(bar.frequency, reference.frequency, rtol=2e-3)
+
+
+def test_parts_that_touch_are_joined_and_round_ones_weigh_what_they_are(files: dict[str, Path]) -> None:
+    plate = read(files["plate.stp"], materials={"solid 1": STEEL, "solid 2": STEEL})
+    area = (LENGTH + 10) * WIDTH - np.pi * HOLE**2
+    assert plate.mass == pytest.approx(7850 * area * THICKNESS * 1e-9, rel=1e-4)
+    assert plate.reduced(modes=1, damping_ratio=0.0).frequency[0] > 100  # it hangs together
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "words"),
+    [
+        ("bar.step", {"clamp": "foot"}, r"clamp is 'foot'.*surface 1, at \(0, 10, 2.5\) mm, 100 mm²; surface 2"),
+        ("bar.step", {"unit": "mm"}, "unit is 'mm' beside a file that says its own; leave it out"),
+        ("bar.step", {"element_size": None}, "element_size is missing; give the one to mesh"),
+        ("bar.step", {"element_size": 0.0}, "element_size is 0 m"),
+        ("face.step", {}, "has no solids; export the part as a solid"),
+        ("half.step", {}, "half.step is not meshed by Gmsh: Could not read file"),
+    ],
+)
+def test_what_cannot_be_meshed_is_refused(
+    files: dict[str, Path], name: str, options: dict[str, Any], words: str
+) -> None:
+    with pytest.raises(gb.InputError, match=words):
+        read(files[name], **options)
+
+
+def test_a_scenario_takes_a_shape_and_a_coarser_size(files: dict[str, Path]) -> None:
+    scenario = files["bar.step"].with_name("bar.toml")
+    scenario.write_text(
+        """
+        [bodies.bar]
+        mesh = "bar.step"
+        element_size = "4 mm"
+        coarser_size = "8 mm"
+        clamp = "surface 1"
+        modes = 3
+        damping_ratio = "1 %"
+        material = { density = "7850 kg/m^3", youngs_modulus = "210 GPa", poissons_ratio = 0.3 }
+
+        [motion.flight]
+        kind = "flight"
+        acceleration = { z = { profile = "trapezoid", level = "5 g", jerk = "20 g/s", start = 0.1, hold = 0.2 } }
+
+        [response]
+        duration = "1 s"
+        """,
+        encoding="utf-8",
+    )
+    structure = gb.read_scenario(scenario).structure
+    truth = solid(block("hexahedron20", (20, 4, 2), (0.1, 0.02, 0.005))).reduced(modes=3, damping_ratio=0.01)
+    np.testing.assert_allclose(gb.modes(structure).frequency[:3], truth.frequency, rtol=5e-3)
+    finer, coarser = (
+        read(files["bar.step"], element_size=size).reduced(modes=3, damping_ratio=0.01) for size in (4e-3, 8e-3)
+    )
+    stated = read(files["bar.step"], element_size=4e-3).reduced(modes=3, damping_ratio=0.01, coarser=coarser).mesh_error
+    np.testing.assert_allclose(stated, np.abs(coarser.frequency / finer.frequency - 1), rtol=0.5)
+
+
+def test_a_size_is_for_shapes_and_a_unit_for_meshes() -> None:
+    mesh = block("tetra10", (1, 1, 1), (1.0, 1.0, 1.0))
+    for options, words in (
+        ({"unit": "m", "element_size": 0.1}, "element_size is given beside a mesh"),
+        ({}, "unit is missing; give the one that the coordinates are in"),
+    ):
+        with pytest.raises(gb.InputError, match=words):
+            gb.SolidMesh.read(mesh, materials=STEEL, clamp="wall", **options)
