@@ -11,6 +11,7 @@ import numpy as np
 
 from gbeam.analysis.accuracy.estimate import response_errors
 from gbeam.analysis.accuracy.response_errors import Solution
+from gbeam.analysis.outline import outline_of
 from gbeam.analysis.response.outcome import describe, effort, inaccuracies, stiffness
 from gbeam.analysis.response.peaks import displacement_peaks, load_peaks
 from gbeam.analysis.response.problem import Problem, start_of
@@ -23,74 +24,14 @@ from gbeam.mechanics.section_forces import accelerations, section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.motion import Centrifuge
 from gbeam.motion.bases.base import Base
-from gbeam.motion.bases.flight import Flight
 from gbeam.motion.centrifuge.history import axes_result
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.samples import attitude
 from gbeam.results.errors import ErrorEstimate, Errors, StepErrors
 from gbeam.results.machine import AxesResult
-from gbeam.results.parts import Influence, Loads, Outline, Peaks
+from gbeam.results.parts import Influence, Loads, Peaks
 from gbeam.results.response import BaseMotion, HubResult, Response
 from gbeam.results.result import Floats
 from gbeam.structure.beam import names_at
-
-POINTS = 16  # along a straight beam, at most; twice as many along a line
-TIMES = 1500
-
-
-def outline_of(structure: Structure, motion: Motion | None, time: Floats, q: Floats) -> Outline | None:
-    """Return the outline of a response at times `time` (t,) s with coordinates `q` (t, n); None without a beam, and
-    without what carries it where there is no `motion`.
-    """
-    if structure.field is None or structure.sections is None or structure.source is None:
-        return None
-    beam = structure.source.beam
-    outline = structure.field.points(slice(None))
-    x, index = np.unique(np.round(structure.sections.along / beam.length, 9), return_index=True)
-    count = POINTS if beam.line is None else 2 * POINTS
-    chosen = index[np.unique(np.linspace(0, len(x) - 1, count - 1).round().astype(int))]
-    some = np.unique(np.linspace(0, len(time) - 1, TIMES).round().astype(int))
-    rest = structure.sections.along[chosen]
-    moved = np.asarray(outline[chosen].positions(q[some]) - outline[chosen].positions(np.zeros(structure.size)))
-    # The field has no point at the root: the nodes next to it lie within a hundredth of the length.
-    root = moved[:, 0] - (moved[:, 1] - moved[:, 0]) * (rest[0] / (rest[1] - rest[0]))
-    if not beam.root.springs:
-        root = np.zeros_like(root)
-    points = np.concatenate([[0.0], rest])
-    section = beam.section.at(points)
-    width, thickness = section.extents()
-    place, axes = (None, None) if beam.line is None else beam.at_rest(points)
-    return Outline(
-        points=points,
-        width=width,
-        thickness=thickness,
-        round=section.round,
-        bodies=np.array([(body.at, body.mass) for body in beam.masses], dtype=float).reshape(-1, 2),
-        time=time[some],
-        displacement=np.concatenate([root[:, None], moved], axis=1),
-        place=place,
-        across=None if axes is None else axes[:, :, 1],
-        **_carrier(motion),
-        attitude=_attitude(motion, time, some),
-    )
-
-
-def _attitude(motion: Any, time: Floats, some: Any) -> Floats | None:
-    """Attitude of a flight whose rates are given: integrated over all times, at some of them."""
-    if not isinstance(motion, Flight) or motion.rates is None:
-        return None
-    return attitude(time, np.asarray(motion.base(time).w_WB_B))[some]
-
-
-def _carrier(motion: Any) -> dict[str, Any]:
-    if motion is None:
-        return {}
-    if motion.kind == "centrifuge":
-        return {"arm": float(motion.geometry.arm)}
-    if motion.kind == "hub":
-        return {"radius": float(motion.mount.radius), "R_HB": np.asarray(motion.mount.R_HB)}
-    return {"arm": math.nan}
-
 
 Array = Any
 

@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.analysis.outline import outline_of
 from gbeam.analysis.response.outcome import yielding
 from gbeam.analysis.response.peaks import load_peaks
 from gbeam.analysis.response.problem import Problem
-from gbeam.analysis.response.record import outline_of
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.step_errors import Run, difference, of_histories, ratio, share
 from gbeam.analysis.response.stepping import LOADS_STEPS, even_steps, finer_by, integrated, scheme_of, steps_beyond

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.analysis.accuracy.estimate import LIMIT
-from gbeam.analysis.response.record import outline_of
+from gbeam.analysis.outline import outline_of
 from gbeam.analysis.system.accuracy import doubts, system_errors
 from gbeam.analysis.system.assembly import assembly_of
 from gbeam.analysis.system.histories import beams_of, histories, loads_of
