@@ -24,6 +24,7 @@ from gbeam.mechanics.section_forces import accelerations, section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.motion import Centrifuge
 from gbeam.motion.bases.base import Base
+from gbeam.motion.bases.flight import Flight
 from gbeam.motion.centrifuge.history import axes_result
 from gbeam.motion.protocol import Motion
 from gbeam.results.errors import ErrorEstimate, Errors, StepErrors
