@@ -235,11 +235,11 @@ def test_limits_of_what_a_system_does_not_have_are_refused() -> None:
     bodies: dict[str, Any] = {"rod": rod}
     joints = {"clamp": gb.Joint("fixed", "rod")}
     for more, accept, words in (
-        ({}, {"stress": 0.1}, "motion.spun.accept.stress is of a stress, and no body is a beam"),
+        ({}, {"stress": 0.1}, "motion.spun.accept.stress is of a stress, and no body is a beam or a mesh"),
         (
             {"strip": beam()},
             {"damage": 2.0, "damage_at": "rod.end"},
-            "is on rod, which is no beam; choose a point of strip",
+            "is on rod, which is no beam and no mesh; choose a point of strip",
         ),
     ):
         held = joints | {name: gb.Joint("fixed", name) for name in more}
