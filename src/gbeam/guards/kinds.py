@@ -109,7 +109,7 @@ _BY_NAME = {name: kind for kind, names in _BY_KIND.items() for name in names.spl
 _BY_OWNER = {
     "AxisLimit": {"acceleration": "angular acceleration", "jerk": "angular jerk"},
     "Case": {"tolerance": ""},
-    "Centrifuge": {"gravity": ""},
+    "Centrifuge": {"gravity": "", "turn": "angle"},
     "Clamped": {"first": "time", "last": "time"},
     "Convolved": {"width": "time"},
     "Flight": {"x": "acceleration", "y": "acceleration", "z": "acceleration"},

@@ -32,8 +32,9 @@ class Signal(Part):
 @typed
 @dataclass(frozen=True)
 class Gauge:
-    """A strain gauge: along a beam it measures the normal strain of what its section carries, on a solid that of a
-    direction.
+    """A strain gauge on a beam or a solid.
+
+    Along a beam it measures the normal strain of what its section carries, on a solid that of a direction.
 
     Parameters
     ----------

@@ -326,7 +326,13 @@ class SolidMesh(Value):
         return (*names, *self.interfaces, tip)
 
     def axes(self, point: str) -> Floats:
-        """Axes of a named point in the base axes, in columns (3, 3)."""
+        """Return the axes of a named point in the base axes, in columns (3, 3).
+
+        Parameters
+        ----------
+        point : str
+            Its name.
+        """
         from scipy.spatial.transform import Rotation
 
         return np.asarray(Rotation.from_rotvec(self.turns.get(point, (0.0, 0.0, 0.0))).as_matrix())

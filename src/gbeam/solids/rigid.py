@@ -282,7 +282,20 @@ class RigidSpecimen(Value):
         return {"specimen": self._loads(time, base, motion, environment)}
 
     def strain(self, point: str, along: Any) -> Floats:
-        """Refuse a strain, which a rigid body has none of."""
+        """Refuse a strain, which a rigid body has none of.
+
+        Parameters
+        ----------
+        point : str
+            Name of a point.
+        along : (3,)
+            Direction.
+
+        Raises
+        ------
+        InputError
+            Always.
+        """
         raise InputError("at", f"is {point!r}, on a rigid body, which has no strain", "give a mesh, or leave it out")
 
     def _shared(self, bolts: Floats, force: Floats, moment: Floats) -> dict[str, Any]:

@@ -121,11 +121,13 @@ class ScenarioTemplate:
 
     def unit(self, path: str) -> str:
         """SI unit of the quantity at a path; empty where it has none."""
-        *above, key = parse_path(path) or ("",)
         node: Any = self.scenario
-        for step in above:
-            node = node[step] if isinstance(step, int) or isinstance(node, Mapping) else getattr(node, step, None)
-        kind = kind_of(node, key) if isinstance(key, str) and hasattr(type(node), "model_fields") else ""
+        kind = ""
+        for step in parse_path(path) or ():
+            if isinstance(step, str) and hasattr(type(node), "model_fields"):
+                kind = kind_of(node, step)  # a number of a list has that of the list
+            entry = isinstance(node, (Mapping, tuple, list))
+            node = node[step] if entry else getattr(node, str(step), None)
         return KINDS[kind].unit if kind else ""
 
 
