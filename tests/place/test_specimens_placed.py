@@ -172,9 +172,9 @@ CASE = gb.RigidSpecimen(
 )  # fmt: skip
 
 
-def spun(**more: Any) -> gb.Centrifuge:
+def spun(flight: gb.Flight = ROUND, **more: Any) -> gb.Centrifuge:
     options = {"control_point": (0.1, 0.0, 0.0), "arm": 3.3, "inverse": "flat", "gravity": True, "smoothing": 0.1}
-    return gb.Centrifuge(ROUND, **{**options, "span": (0.0, 3.5), **more})
+    return gb.Centrifuge(flight, **{**options, "span": (0.0, 3.5), **more})
 
 
 def test_a_rigid_bodys_force_is_the_flights_at_its_centre_of_mass_whichever_way_round() -> None:
@@ -193,9 +193,22 @@ def test_a_rigid_bodys_force_is_the_flights_at_its_centre_of_mass_whichever_way_
         place(CASE.structure, ROUND, choice_of(machine), SPELL, {"load": 1.0}, current=machine, along="q")
 
 
+@pytest.mark.parametrize("turning", [False, True])
+def test_the_loads_difference_is_that_of_running(turning: bool) -> None:
+    """In flights in translation and in rotation, of which the load at the root alone is tracked."""
+    rates = gb.smoothed(gb.vector(x=gb.trapezoid(0.8, jerk=2.0, start=0.4, hold=0.8), y=gb.constant(0.5)), 0.4)
+    flight = gb.Flight(acceleration=ROUND.acceleration, rates=rates if turning else None)
+    machine = spun(flight)
+    found = place(CASE.structure, flight, choice_of(machine, [0.1]), SPELL, {"load": 1.0}, current=machine)
+    best = spun(flight, control_point=found.best.place, mounting=found.best.mounting)
+    for each, of in ((machine, "current"), (best, "best")):
+        apart = largest_difference(each, np.linspace(0.1, 3.4, 1651))
+        assert found.totals[of]["load"] == pytest.approx(apart, rel=5e-3)
+
+
 def largest_difference(machine: gb.Centrifuge, times: np.ndarray) -> float:
-    """Of the loads at the box's corners from those in flight, which does not turn, over its largest load, as run."""
-    loads = [CASE.loads(each, 3.5, sample=5e-3) for each in (ROUND, machine)]
+    """Of the loads at the box's corners from those in flight, over the largest of these, as run."""
+    loads = [CASE.loads(each, 3.5, sample=2e-3) for each in (machine.flight, machine)]
     felt = [
         np.stack([np.interp(times, each.time, column) for column in each.acceleration.reshape(len(each.time), -1).T])
         for each in loads
@@ -283,7 +296,7 @@ def test_a_camera_beside_a_boom_bends_it_less_where_it_is_placed() -> None:
     assert run["best"].tip_difference < 0.2 * run["current"].tip_difference
     assert run["best"].tip_difference < run["middle"].tip_difference
     words = str(describe(found))
-    assert "in the middle" in words and "root force" in words
+    assert "in the middle of the specimen" in words and "mid-way" in words and "root force" in words
 
 
 def test_vibration_is_of_the_mode_that_the_flight_calls_on() -> None:

@@ -187,7 +187,7 @@ def _measures(placement: Placement) -> list[str]:
 
 
 def _labels(placement: Placement) -> dict[str, str]:
-    return _PLACES if placement.straight else _PLACES | {"middle": "in the middle"}
+    return _PLACES if placement.straight else _PLACES | {"middle": "mid-way"}
 
 
 def _percent(share: float) -> str:
@@ -238,7 +238,7 @@ def _verified(placement: Placement) -> list[str]:
     gain = placement.vibration_gain
     if math.isnan(gain):
         return lines
-    middle = _labels(placement)["middle"]
+    middle = "at mid-span" if placement.straight else "in the middle of the specimen"
     return [*lines, f"  {gain:.3g} times less vibration than with the control point {middle}"]
 
 
