@@ -89,7 +89,7 @@ def header(plan: MachinePlan, commands: Commands) -> list[str]:
 
 
 def _mounted(plan: MachinePlan) -> str:
-    """How the specimen sits in the machine."""
+    """Place and turn of the specimen in the machine, in words."""
     place, turn = plan.axes.place, plan.axes.turn
     at = f"{plan.axes.control_point:g} m from the root along the beam"
     if place is not None:

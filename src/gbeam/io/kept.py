@@ -1,4 +1,4 @@
-"""What took long to compute, kept on disk by the hash of what it was made from."""
+"""Values that took long to compute, kept on disk by the hash of what they were made from."""
 
 from __future__ import annotations
 
@@ -45,10 +45,10 @@ def kept(what: str, source: Any, make: Callable[[], T]) -> T:
 
 
 def _folder() -> Path | None:
-    given = os.environ.get(FOLDER, "")
-    if given.strip().lower() in ("off", "0"):
+    named = os.environ.get(FOLDER, "")
+    if named.strip().lower() in ("off", "0"):
         return None
-    return Path(given) if given else user_cache_path("gbeam") / "models"
+    return Path(named) if named else user_cache_path("gbeam") / "models"
 
 
 @cache

@@ -178,7 +178,7 @@ def _load(load: PeakPair) -> str:
 def _measures(placement: Placement) -> list[str]:
     """Every measure at every place: the mismatch field alone, and with the load's own error at the control point."""
     lines = ["", "Of flight's peak".ljust(19) + "".join(each.ljust(39) for each in ("mismatch field", "with tracking"))]
-    lines.append(" " * 19 + 2 * "".join(place.ljust(13) for place in _labels(placement).values()))
+    lines.append(" " * 19 + 2 * "".join(place.ljust(13) for place in places_of(straight=placement.straight).values()))
     for name in placement.values["best"]:
         rows = (placement.values, placement.totals)
         cells = [_percent(each[place][name]) if each else "–" for each in rows for place in _PLACES]
@@ -186,8 +186,9 @@ def _measures(placement: Placement) -> list[str]:
     return [line.rstrip() for line in lines]
 
 
-def _labels(placement: Placement) -> dict[str, str]:
-    return _PLACES if placement.straight else _PLACES | {"middle": "mid-way"}
+def places_of(*, straight: bool) -> dict[str, str]:
+    """Names of the compared places, of a straight specimen or of one in space."""
+    return _PLACES if straight else _PLACES | {"middle": "mid-way"}
 
 
 def _percent(share: float) -> str:
@@ -225,7 +226,7 @@ def _verified(placement: Placement) -> list[str]:
         "By simulation, largest difference from flight",
         " " * 19 + f"tip          vibration    root {'shear' if placement.straight else 'force'}   moment",
     ]
-    for place, label in _labels(placement).items():
+    for place, label in places_of(straight=placement.straight).items():
         check = checks[place]
         values = (
             (f"{1e3 * check.tip_difference:.4g}", "mm"),

@@ -68,7 +68,7 @@ class PosedSystem:
         return NonlinearEquations(self.system.tree, drive, control, None if control is None else [])
 
     def start(self, settings: ResponseSettings) -> Point:
-        """Where it starts."""
+        """State at the start."""
         return started(self.system, self.motion, settings.start, settings.begin.state)
 
     def corners(self, step: float) -> Floats:
@@ -102,7 +102,7 @@ class Ran(Run):
     sampling: Sampling | None
 
     def loop(self, time: Floats) -> tuple[Loop | None, Floats | None]:
-        """What its controllers did, and their commands (t, m) that act at times."""
+        """Record of its controllers, and their commands (t, m) that act at times."""
         return (None, None) if self.sampling is None else loop_of(self.posed.equations.controllers, self.sampling, time)
 
     @cached_property

@@ -142,7 +142,7 @@ def _lowest(slender: Structure, values: Any, base: Base) -> Floats:
 
 
 def _in_words(richer: Richer, point: Any, models: Sequence[Any], plates: Mapping[str, Floats]) -> str:
-    """What the shape of a system with the least stiffness lacks by the theory of slender beams."""
+    """Error by the theory of slender beams in the shape of a system with the least stiffness."""
     try:
         slender, thick = (point.richer(each) for each in models[:2])
     except ComputationError:

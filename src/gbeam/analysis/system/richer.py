@@ -171,8 +171,8 @@ def follower(at: Answered, *, settled: bool) -> Callable[[Floats, Floats | float
     of, tree, time = at.of, at.rich.system.tree, at.of.time
     count = len(time)
     chosen = np.unique(np.linspace(0, count - 1, min(count, LOOKED)).astype(int))
-    found = [slopes(tree, of.q[[i]], of.qd[[i]], of.qdd[[i]], at.inputs(at.rich.system, [i])) for i in chosen]
-    k, c, m = (np.concatenate(each) for each in zip(*found, strict=True))
+    linear = [slopes(tree, of.q[[i]], of.qd[[i]], of.qdd[[i]], at.inputs(at.rich.system, [i])) for i in chosen]
+    k, c, m = (np.concatenate(each) for each in zip(*linear, strict=True))
     if count == 1:
         still = np.zeros_like(of.q)
         return lambda residual, stiffer: Correction(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Sequence
-from functools import lru_cache
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -358,7 +357,6 @@ def _turn(turn: Any) -> tuple[float, float, float]:
     return x, y, z
 
 
-@lru_cache(maxsize=64)
 def rotation_of(turn: tuple[float, float, float]) -> NDArray[np.float64]:
     """Rotation matrix of a rotation vector, rad."""
     from scipy.spatial.transform import Rotation  # 0.2 s to import, which few machines need

@@ -8,7 +8,7 @@ from typing import Any
 
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.figures.description import raised
-from gbeam.report.machine import followed, largest
+from gbeam.report.machine import followed, largest, places_of
 from gbeam.report.page.parts import Cell, Value, folded, heading, known, listed, paragraph, section, table, verbatim
 from gbeam.report.words import number
 from gbeam.results.imitation.accounting import PeakPair
@@ -147,9 +147,6 @@ def machine_section(name: str, motion: Facts) -> str:
     return heading(f"Machine: {name}") + table(head, rows, "Limits used", words=(0, 3)) + paragraph(followed(motion))
 
 
-_PLACES = {"current": "now", "best": "placed", "middle": "at mid-span"}
-
-
 def placement_body(facts: Facts, viewer: str, drawn: str) -> str:
     """Best place of the specimen, its effect, and the other options."""
     share = facts["fraction_of_length"]
@@ -167,7 +164,7 @@ def placement_body(facts: Facts, viewer: str, drawn: str) -> str:
     if facts["set"]:
         flags = " ".join(f'--set "{each}"' for each in facts["set"])
         parts += [paragraph("to apply it, add to the command line:"), verbatim(flags)]
-    places = _PLACES if share else _PLACES | {"middle": "in the middle"}
+    places = places_of(straight=bool(share))
     for title, key in (("Mismatch field alone", "mismatch"), ("With smoothing and tracking", "total_error")):
         if facts[key]:
             names = list(facts[key]["best"])
