@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 INTERVAL = "GBEAM_PROGRESS"  # environment: seconds between lines, for programs that read them, on a terminal too
 FILE = "GBEAM_PROGRESS_FILE"  # environment: the file that has the last line, in place of stderr
 EVERY = 5.0  # s between lines where there is no terminal and no notebook
+PATIENCE = 2.0  # s without a sign of life that a user of a command takes
 _REDRAW = 0.1  # s
 
 # Argument of the public functions: called with what is being done and the share of it; True shows a Bar.

@@ -22,7 +22,7 @@ from types import FrameType, TracebackType
 from typing import Self
 
 from gbeam.printable import on_one_line, shortened, storable
-from gbeam.progress import Bar
+from gbeam.progress import PATIENCE, Bar
 
 _WORDS = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated"}
 _cleanups: list[Callable[[], object]] = []
@@ -176,9 +176,6 @@ def abandon_stdout() -> None:
 
 def _nowhere() -> io.TextIOWrapper:
     return open(os.devnull, "w", encoding="utf-8")
-
-
-PATIENCE = 2.0  # s
 
 
 class Watch(Bar):

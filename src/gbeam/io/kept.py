@@ -15,13 +15,12 @@ from typing import Any, TypeVar
 
 from platformdirs import user_cache_path
 
-from gbeam.progress import Bar
+from gbeam.progress import PATIENCE, Bar
 from gbeam.results.provenance import present
 
 FOLDER = "GBEAM_CACHE"  # environment: the folder that keeps it, or "off"
 WORTH = 1.0  # s: what is computed sooner is not kept
 MOST = 2 * 2**30  # bytes of all files: those unused for longest go
-PATIENCE = 2.0  # s without a sign of life
 _ENDING = ".kept"
 
 T = TypeVar("T")

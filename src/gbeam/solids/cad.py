@@ -12,13 +12,12 @@ from gbeam.guards.checks import positive
 from gbeam.guards.confined import confined
 from gbeam.guards.limits import BINARY_BYTES, MESHER_BYTES, MESHER_SECONDS, refuse_large_file
 from gbeam.guards.units import UnitError, quantity
-from gbeam.progress import Bar
+from gbeam.progress import PATIENCE, Bar
 from gbeam.solids.foreign import read_mesh, refuse_systems
 
 ENDINGS = (".step", ".stp")
 AROUND = 12  # elements around a full circle at least
 UNNAMED = "Open CASCADE"  # begins the names that nobody gave
-PATIENCE = 2.0  # s without a sign of life
 FINEST = 10  # how much shorter than the given size edges may be there
 
 
