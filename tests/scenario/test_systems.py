@@ -220,6 +220,14 @@ def test_sweeps_and_sensitivities_read_the_same_paths() -> None:
     assert first == gb.modes(case.system).frequency[0] and swept.measures["modes[0].frequency"][1] > first
     slope = gb.sensitivity(file, ["modes[0].frequency"], ["joints.hinge_right.stiffness"], verb="modes")
     assert 0 < slope.relative[0, 0] < 0.5
+    shorter = ["response.duration=2 s", "response.residual_from=1 s", "response.estimate=false"]
+    swept = gb.sweep(file, over, ["points.right.tip.residual_amplitude.z"], verb="run", overrides=shorter)
+    hinge = ["joints.hinge_right.stiffness=100 N m/rad"]
+    ran = gb.study(gb.read_scenario(file, [*shorter, *hinge])).responses["ground"]
+    left = ran.residual_amplitude[ran.points.index("right.tip")]
+    assert swept.measures["points.right.tip.residual_amplitude.z"][0] == left[2] > 1e-4
+    with pytest.raises(ScenarioError, match=r"residual_from: is 3 s"):
+        gb.read_scenario(file, ["response.duration=2 s", "response.residual_from=3 s"])
     with pytest.raises(gb.InputError, match=r"points\.right\.tipp"):
         gb.sweep(file, over, ["points.right.tipp.displacement_maxx"], verb="run")
     with pytest.raises(gb.InputError, match="motion is missing"):

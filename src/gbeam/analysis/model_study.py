@@ -16,12 +16,13 @@ from gbeam.analysis.case import Case, SystemCase
 from gbeam.analysis.response.peaks import vector_peaks
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
+from gbeam.analysis.system.histories import deflection
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.assembly import model_of, remade
 from gbeam.mechanics.models import KINDS, Model
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.system import System, stations_of
+from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress, tell
 from gbeam.results.response import Response
@@ -183,7 +184,7 @@ def _answer(
         return Failure(error.outcome, str(error))
     if isinstance(structure, System):
         assert isinstance(response, SystemResponse)
-        tip = _tip_of(structure, response, point, settings.residual_from)
+        tip = _tip_of(structure, response, point)
         body, q = structure.bodies[tip.point.partition(".")[0]], _coordinates(structure, response, tip.point)
     else:
         assert isinstance(response, Response)
@@ -206,16 +207,15 @@ def _answer(
     return tip._replace(of=replace(response, warnings=(*response.warnings, warning)))
 
 
-def _tip_of(system: System, response: SystemResponse, point: str | None, residual_from: float | None) -> _Tip:
+def _tip_of(system: System, response: SystemResponse, point: str | None) -> _Tip:
     """Displacement of a point of a system, or of the tip that its beam moves farthest."""
     if point is None:
         tips = [f"{name}.tip" for name, body in system.bodies.items() if isinstance(body, Structure) and body.source]
         point = max(tips, key=lambda each: float(np.abs(_moved(system, response, each)).max()))
-    moved, start = _moved(system, response, point), np.inf if residual_from is None else residual_from
+    moved, left = _moved(system, response, point), response.residual_amplitude
     value, when = vector_peaks(response.time, moved)
-    late = moved[response.time >= start]
-    residual = np.ptp(late, axis=0) / 2 if len(late) > 1 else np.full(3, np.nan)
-    return _Tip(response, point, moved, value[:3], when[:3], residual, start)
+    residual = np.full(3, np.nan) if left is None else left[response.points.index(point)]
+    return _Tip(response, point, moved, value[:3], when[:3], residual, response.residual_from)
 
 
 def _coordinates(system: System, response: SystemResponse, point: str) -> Floats:
@@ -226,12 +226,8 @@ def _coordinates(system: System, response: SystemResponse, point: str) -> Floats
 
 def _moved(system: System, response: SystemResponse, point: str) -> Floats:
     """Displacement (t, 3) of a point: of a flexible body relative to its root, of another from the start."""
-    name, k = system.point("point", point)
-    body = system.bodies[name]
-    if isinstance(body, Structure) and k < len(stations_of(body)):
-        station = list(stations_of(body).values())[k]
-        return np.asarray(body.displacement(_coordinates(system, response, point))[:, station])
-    return response.at(point) - response.at(point)[0]
+    deflected = deflection(system, point, response.q)
+    return response.at(point) - response.at(point)[0] if deflected is None else np.asarray(deflected)
 
 
 def shape_tail(structure: Structure, q: Floats) -> float:

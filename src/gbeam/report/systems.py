@@ -32,8 +32,12 @@ def system_response(response: SystemResponse) -> str:
 def of_system(response: SystemResponse) -> Iterator[str]:
     """Sentences on points, joints, loads, energy and the error."""
     far, hard = (tidy(each, float(each.max())) for each in (response.largest, response.largest_acceleration))
-    rows = [[name, number(a), number(b)] for name, a, b in zip(response.points, far, hard, strict=True)]
-    yield from columns(["point", "moves by, m", "acceleration, m/s²"], rows)
+    heads, across = ["point", "moves by, m", "acceleration, m/s²"], [far, hard]
+    if response.residual_size is not None:
+        heads.append(f"residual from {response.residual_from:g} s, m")
+        across.append(tidy(response.residual_size, max(far)))
+    rows = [[name, *map(number, row)] for name, *row in zip(response.points, *across, strict=True)]
+    yield from columns(heads, rows)
     every = named(response)
     size = max((float(np.abs(each).max()) for each in every.values()), default=0.0)
     ends = tidy([float(each[-1]) for each in every.values()], max(size, max(far)))

@@ -202,7 +202,17 @@ class SystemResponse(Driven, Figured):
     errors: SystemErrors = part(
         "of places, root loads and stress, as fractions of the largest", name="error_", default_factory=SystemErrors
     )
+    residual_from: float = fact("start of the residual", "s", key=None, note="NaN where not given", default=math.nan)
+    residual_amplitude: Floats | None = quantity(
+        "m", "half peak-to-peak from residual_from on, of a flexible body's points relative to its root, else of places",
+        "point", "axis", frame="axes of the body's root, else of the ground", optional=True, default=None,
+    )  # fmt: skip
     kept_every: int = fact("how many samples of the histories make one in a file", name=None, key=None, default=1)
+
+    @declared("m", "length of the vector of half peak-to-peak from residual_from on", "point", optional=True, name=None)
+    def residual_size(self) -> Floats | None:
+        """Length of the vector of half peak-to-peak of every point, (p,) m; None where there is no residual."""
+        return None if self.residual_amplitude is None else np.linalg.norm(self.residual_amplitude, axis=-1)
 
     @declared("", "estimated error in all, as a fraction of the largest displacement", role="fact")
     def error_estimate(self) -> float:

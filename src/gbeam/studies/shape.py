@@ -205,7 +205,6 @@ def scenario_with(
     else:
         data["motion"] = {command.motion: {**data["motion"][command.motion], command.kind: table}}
     lasting = max(base.response.duration or 0.0, _AFTER * command.duration)
-    residual = {} if "joints" in data else {"residual_from": command.duration}
-    data["response"] = {**data.get("response", {}), "duration": lasting, **residual}
+    data["response"] = {**data.get("response", {}), "duration": lasting, "residual_from": command.duration}
     data.pop("sweep", None)
     return json.dumps(data, indent=1)

@@ -10,10 +10,12 @@ import numpy as np
 
 from gbeam.analysis.control.linearization import linearize
 from gbeam.analysis.response.differentiated import Differentiated, Grid
+from gbeam.analysis.response.peaks import half_ranges
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.response.stepping import scheme_of
 from gbeam.analysis.response.systems import simulate_system
+from gbeam.analysis.system.histories import deflection
 from gbeam.analysis.system.point import started
 from gbeam.analysis.system.steady import Drive, SteadySystem, steady
 from gbeam.arrays.tree import altered
@@ -239,11 +241,8 @@ class OnJoint:
 
     def _ran(self, time: Floats, q: Floats, settings: ResponseSettings, outcome: str, message: str, step: float) -> Ran:
         """A run by all coordinates (t, n)."""
-        (beam, station), body = self._beam, self.point.partition(".")[0]
-        own = [each.startswith(f"{body}.q") for each in self.system.coordinates]
-        tip = np.asarray(beam.displacement(q[:, own])[:, station])
-        late = tip[time >= (settings.residual_from or 0.0)]
-        left = float(np.linalg.norm(np.ptp(late, axis=0))) / 2 if len(late) else np.nan
+        tip = np.asarray(deflection(self.system, self.point, q))
+        left = float(np.linalg.norm(half_ranges(time, tip, settings.residual_from or 0.0)))
         return Ran(time, tip, outcome, message, left, step)
 
     def about(

@@ -77,7 +77,7 @@ def specimen_of(response: SystemResponse, point: str) -> Response:
         step=response.step,
         steps=response.steps,
         error_estimate=response.error_estimate,
-        residual_from=math.nan,
+        residual_from=response.residual_from,
         loads=loads,
         solid=solid,
         axes=response.axes,

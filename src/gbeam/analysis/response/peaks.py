@@ -112,6 +112,20 @@ def vector_peaks(time: Floats, vectors: Floats) -> tuple[Floats, Floats]:
     return maxima(time, sizes, t, _sizes(between[:, :, None]))
 
 
+def half_ranges(time: Floats, values: Any, start: float) -> Any:
+    """Half of peak to peak of every history (t, k) from a time on, (k,); NaN where there are not two samples."""
+    after = time >= start
+    if after.sum() < 2:
+        return np.full(values.shape[1], np.nan)
+    time, values = time[after], values[after]
+    if is_jax(values):
+        return (values.max(axis=0) - values.min(axis=0)) / 2
+    both = np.concatenate([values, -values], axis=1)
+    t, between = seven_point(time, values, near_maxima(time, both))
+    value, _ = maxima(time, both, t, np.concatenate([between, -between], axis=2))
+    return value.reshape(2, -1).sum(axis=0) / 2
+
+
 def peaks_of_coordinates(trajectory: Trajectory, vectors: Floats, of: Callable[[Floats], Floats]) -> Floats:
     """Largest sizes (4,) of components and length of a vector of q, also at Hermite polynomials between steps."""
     time, sizes = trajectory.time, _sizes(vectors[:, None])

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from gbeam.analysis.outline import outline_of
 from gbeam.analysis.response.outcome import yielding
-from gbeam.analysis.response.peaks import load_peaks
+from gbeam.analysis.response.peaks import half_ranges, load_peaks
 from gbeam.analysis.response.problem import Problem
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.step_errors import Run, difference, of_histories, ratio, share
@@ -22,7 +22,7 @@ from gbeam.analysis.response.stepping import LOADS_STEPS, even_steps, finer_by, 
 from gbeam.analysis.system.accuracy import doubts, system_errors
 from gbeam.analysis.system.assembly import assembly_of
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
-from gbeam.analysis.system.histories import Carried, beams_of, histories, loads_of
+from gbeam.analysis.system.histories import Carried, beams_of, deflection, histories, loads_of
 from gbeam.analysis.system.point import Point, started, started_traced
 from gbeam.analysis.system.richer import PLACE, Answered, InputsOf, Quantity, itself, judged_beams, pieces
 from gbeam.arrays.namespace import holds_jax, namespace
@@ -191,7 +191,7 @@ def simulate_system(
         loads = {} if chosen.missed else _load_errors(runs, scheme_of(settings).order, bends)
         settled, closed = begin.state == "equilibrium", again if system.controllers else None
         errors = system_errors(system, *chosen.every(stride), closed, {PLACE: error} | loads, settled=settled)
-    return _described(chosen, settings, stride, errors, name, chosen.missed)
+    return _described(chosen, settings, stride, errors, name, flight, chosen.missed)
 
 
 def _refuse_long(system: System, settings: ResponseSettings, step: float) -> None:
@@ -244,9 +244,10 @@ def _traced(posed: PosedSystem, settings: ResponseSettings, name: str) -> System
         fix = "trace the system without them: a law that is sampled is no part of a compiled program"
         raise InputError("controllers", "are in the loop of a traced run", fix)
     step = settings.duration / max(1, round(settings.duration / settings.step))
-    settings = _with_ends(posed.motion, settings, step)
+    flight, settings = settings, _with_ends(posed.motion, settings, step)
     start = started_traced(posed.system, posed.motion, settings.start, settings.begin.state)
-    return _described(posed.run(settings, *start, step), replace(settings, loads=False), 1, SystemErrors(), name)
+    ran = posed.run(settings, *start, step)
+    return _described(ran, replace(settings, loads=False), 1, SystemErrors(), name, flight)
 
 
 def _with_ends(motion: Motion | None, settings: ResponseSettings, step: float) -> ResponseSettings:
@@ -329,9 +330,15 @@ def _first_step(posed: PosedSystem, point: Point, settings: ResponseSettings) ->
 
 
 def _described(
-    run: Ran, settings: ResponseSettings, stride: int, errors: SystemErrors, name: str, warnings: tuple[str, ...] = ()
+    run: Ran,
+    settings: ResponseSettings,
+    stride: int,
+    errors: SystemErrors,
+    name: str,
+    flight: ResponseSettings,
+    warnings: tuple[str, ...] = (),
 ) -> SystemResponse:
-    """Describe a run at every `stride`-th of its steps."""
+    """Describe a run at every `stride`-th of its steps; its residual is of the flight's times."""
     every, system, motion = run.trajectory, run.posed.system, run.posed.motion
     time = every.time[::stride]
     over_time, along = run.histories(slice(None, None, stride), loads=settings.loads)
@@ -370,6 +377,13 @@ def _described(
     step_error = errors.displacement.step
     if outcome == "done" and step_error > settings.tolerance:
         warnings += (f"the error of the steps is {100 * step_error:.2g} %: give a smaller step or tolerance",)
+    residual: Any = None
+    if settings.residual_from is not None:
+        deflected = (deflection(system, each, over_time["q"]) for each in system.points)
+        moved = [over_time["place"][:, k] if each is None else each for k, each in enumerate(deflected)]
+        every_point = namespace(*moved).concatenate(moved, axis=1)
+        flown = time <= flight.start + flight.duration * (1 + 1e-9)
+        residual = half_ranges(time[flown], every_point[flown], settings.residual_from).reshape(-1, 3)
     return SystemResponse(
         name=name,
         environment=kind,
@@ -389,6 +403,8 @@ def _described(
         step=run.step,
         steps=len(every.time) - 1,
         errors=errors,
+        residual_from=math.nan if settings.residual_from is None else settings.residual_from,
+        residual_amplitude=residual,
         kept_every=settings.kept_every(len(time), run.step * stride),
         warnings=warnings + system.warnings,
         **over_time,

@@ -69,6 +69,16 @@ def histories(
     return out, {name: carried(system, state, name, acting) for name in beams_of(system)}
 
 
+def deflection(system: System, point: str, q: Array) -> Array | None:
+    """Displacement (t, 3) of a point of a flexible body relative to its root by coordinates (t, n); None of others."""
+    name, k = system.point("point", point)
+    body = system.bodies[name]
+    if not isinstance(body, Structure) or k >= len(stations_of(body)):
+        return None
+    own = np.array([each.startswith(f"{name}.q") for each in system.coordinates])
+    return body.displacement(q[:, own])[:, list(stations_of(body).values())[k]]
+
+
 def beams_of(system: System) -> dict[str, Structure]:
     """Bodies that have sections, by name."""
     every = ((name, system.bodies[name]) for name in system.order)

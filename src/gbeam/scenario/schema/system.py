@@ -297,9 +297,7 @@ class SystemScenario(Environments, Tree):
             for key in body.alone() if isinstance(body, RigidBody) else ():
                 hint = "leave it out, or give points; a rigid body alone, without joints, is a specimen"
                 yield ("bodies", name, key), wrong("is of a specimen alone on its base", hint, mark="key")
-        of_tip: list[Loc] = [
-            ("response", key) for key in ("stations", "residual_from") if getattr(self.response, key) is not None
-        ]
+        of_tip: list[Loc] = [("response", "stations")] if self.response.stations is not None else []
         initial = self.response.initial
         of_tip += [("response", "initial", key) for key in initial.given if key != "state"]
         for place in of_tip:
