@@ -15,12 +15,10 @@ from scipy.linalg import expm
 
 from gbeam import Line, Model, Structure, assemble
 from gbeam.mechanics.fields.basis import bar_shapes, bending_shapes, closed_forms, legendre_shapes, quadrature
-from gbeam.mechanics.fields.components import split
-from gbeam.mechanics.fields.projected import ProjectedField, projected_field
-from gbeam.mechanics.fields.rooted import RootedField
-from gbeam.mechanics.fields.rotation import rotation_matrix
+from gbeam.mechanics.fields.projected import ProjectedField, RootedField, projected_field
 from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import StrainField, strain_field
+from gbeam.mechanics.fields.vectors import rotation_matrix, split
 
 from ..differences import hessian, jacobian
 from ..lagrange import quickly_compiled

@@ -10,8 +10,8 @@ import pytest
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
 from gbeam.integrate import LinearEquations, NonlinearEquations, gauss, integrate, newmark
-from gbeam.integrate.chunks import CHUNK
 from gbeam.integrate.driver import _LINEAR_CHUNK as LINEAR_CHUNK
+from gbeam.integrate.newton import CHUNK
 
 from .systems import OSCILLATOR, VARYING, Bead, Pushed, driven, one, undriven
 

@@ -13,7 +13,7 @@ import pytest
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
 from gbeam.integrate import Corners, NonlinearEquations, gauss, generalized_alpha, integrate, newmark, windows
-from gbeam.integrate.derivatives import accelerations, slopes
+from gbeam.integrate.equations import accelerations, slopes
 
 PUSH = 1.3  # s: the load jumps
 

@@ -11,7 +11,7 @@ import pytest
 from scipy.io import savemat
 
 import gbeam as gb
-from gbeam.mechanics.tree.laws import in_series, lead_lag, notch, pid
+from gbeam.mechanics.tree.control import in_series, lead_lag, notch, pid
 from gbeam.scenario import ScenarioError, build, loads
 
 POINTING = (Path(__file__).parents[2] / "examples" / "pointing_satellite.toml").read_text(encoding="utf-8")

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.numerics import factor
+from gbeam.numerics import sparse
 
 from .bodies import STEEL, block, solid
 
@@ -129,8 +129,8 @@ def test_too_many_unknowns_say_what_they_would_cost() -> None:
     with pytest.raises(
         gb.InputError, match=r"mesh makes 5e\+07 unknowns, whose factors would take about .*B and .* hours"
     ):
-        factor.refuse_cost("mesh", 50_000_000)
-    factor.refuse_cost("mesh", 200_000)
+        sparse.refuse_cost("mesh", 50_000_000)
+    sparse.refuse_cost("mesh", 200_000)
 
 
 def test_more_modes_than_unknowns() -> None:

@@ -1,4 +1,8 @@
-"""Equations of motion as an integrator sees them, linear or a residual, and the coordinates over time that it gives."""
+"""Equations of motion as an integrator sees them, linear or a residual, with its derivatives, and their run.
+
+A residual is analytic, and its arrays and what drives it may have leading axes, which are broadcast; the first one is
+that of the steps. So complex steps give its derivatives at many states in one call: nothing is compiled.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.arrays.tree import record
+from gbeam.arrays.namespace import namespace
+from gbeam.arrays.tree import each_leaf, record
+from gbeam.numerics.series import STEP
 
 Array = Any
 Floats = NDArray[np.float64]
@@ -81,3 +87,52 @@ class Trajectory:
     def at(self, steps: Any) -> Trajectory:
         """The trajectory at some of its steps."""
         return replace(self, time=self.time[steps], q=self.q[steps], qd=self.qd[steps], qdd=self.qdd[steps])
+
+
+AT_ONCE = 50_000  # numbers of the states that are evaluated at once: more of them would leave a cache
+
+
+def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> tuple[Array, Array, Array]:
+    """Derivatives K, C and M (t, r, n) of a residual (t, r), or another function of the state, with respect to q, q̇ and
+    q̈ (t, n) at inputs (t, ...).
+    """
+    n, pieces = q.shape[1], []
+    steps = 1j * STEP * np.eye(3 * n).reshape(3 * n, 1, 3, n)
+    for some in _pieces(q):
+        at, given = [each[some] for each in (q, qd, qdd)], each_leaf(lambda leaf: leaf[some], inputs)  # noqa: B023
+        values = residual(*(each + steps[:, :, k] for k, each in enumerate(at)), given)
+        pieces.append(values.imag / STEP)
+    k, c, m = np.concatenate(pieces, axis=1).reshape(3, n, len(q), pieces[0].shape[-1]).transpose(0, 2, 3, 1)
+    return k, c, m
+
+
+def accelerations(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
+    """q̈ (t, n) that equations linear in q̈ demand at q, q̇ (t, n) and inputs (t, ...); NaN where M is singular."""
+    pieces = []
+    for some in _pieces(q):
+        given = each_leaf(lambda leaf: leaf[some], inputs)  # noqa: B023
+        values = residual(q[some], qd[some], _moved(0 * q[some]), given)
+        mass = (values.imag / STEP).transpose(1, 2, 0)
+        pieces.append(solved(mass, -values[0].real[..., None])[..., 0])
+    return np.concatenate(pieces)
+
+
+def _pieces(q: Array) -> list[slice]:
+    count, n = q.shape
+    size = max(1, AT_ONCE // max(n, 1) ** 2)
+    return [slice(first, first + size) for first in range(0, count, size)]
+
+
+def _moved(state: Array) -> Array:
+    """States (t, n), each of their numbers moved by a complex step, (n, t, n)."""
+    return state + 1j * STEP * np.eye(state.shape[1])[:, None]
+
+
+def solved(left: Array, right: Array) -> Array:
+    """Solutions of linear systems; NaN where one is singular, which NumPy raises an error for."""
+    try:
+        return namespace(left, right).linalg.solve(left, right)
+    except np.linalg.LinAlgError:
+        if left.ndim == 2:
+            return np.full_like(right, np.nan)
+        return np.stack([solved(*pair) for pair in zip(left, right, strict=True)])

@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.arrays.namespace import namespace
-from gbeam.integrate.derivatives import solved
-from gbeam.integrate.equations import LinearEquations
+from gbeam.integrate.equations import LinearEquations, solved
 from gbeam.integrate.schemes import Scheme
 from gbeam.integrate.steps import Steps
 

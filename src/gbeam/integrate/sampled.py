@@ -12,8 +12,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from gbeam.integrate.derivatives import accelerations, slopes, solved
-from gbeam.integrate.equations import NonlinearEquations
+from gbeam.integrate.equations import NonlinearEquations, accelerations, slopes, solved
 from gbeam.integrate.steps import Steps
 from gbeam.numerics.series import STEP
 

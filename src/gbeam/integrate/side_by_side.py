@@ -17,8 +17,8 @@ import jax
 import numpy as np
 
 from gbeam.integrate import lanes, newton
-from gbeam.integrate.chunks import chunks, stretches
 from gbeam.integrate.equations import LinearEquations, LinearTerms, NonlinearEquations, Trajectory
+from gbeam.integrate.newton import chunks, stretches
 from gbeam.integrate.schemes import Scheme, added
 from gbeam.integrate.steps import Steps
 

@@ -19,8 +19,7 @@ import numpy as np
 
 import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.arrays.tree import each_leaf
-from gbeam.integrate.derivatives import slopes
-from gbeam.integrate.equations import NonlinearEquations
+from gbeam.integrate.equations import NonlinearEquations, slopes
 from gbeam.integrate.schemes import Scheme
 from gbeam.integrate.steps import Steps
 from gbeam.integrate.windows import windows

@@ -21,8 +21,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.arrays.tree import each_leaf
-from gbeam.integrate.derivatives import accelerations, slopes, solved
-from gbeam.integrate.equations import NonlinearEquations
+from gbeam.integrate.equations import NonlinearEquations, accelerations, slopes, solved
 from gbeam.integrate.sampled import Held, sampling_of
 from gbeam.integrate.schemes import Scheme, Tableau
 from gbeam.integrate.steps import Steps

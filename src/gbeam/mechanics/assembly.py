@@ -17,8 +17,7 @@ from gbeam.mechanics.equations.linear import coefficients, damping_matrix
 from gbeam.mechanics.equations.virtual_work import LoadHistory, LoadWork
 from gbeam.mechanics.fields.adapted import adapted_shapes
 from gbeam.mechanics.fields.basis import Counts, Families, Quadrature, closed_forms, polynomials, quadrature
-from gbeam.mechanics.fields.projected import projected_field
-from gbeam.mechanics.fields.rooted import Field, RootedField
+from gbeam.mechanics.fields.projected import Field, RootedField, projected_field
 from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import ExpandedField, shaped_strains, strain_field
 from gbeam.mechanics.models import KINDS, Kind, Model

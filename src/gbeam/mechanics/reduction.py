@@ -14,8 +14,7 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.numerics.eigen import Floats
-from gbeam.numerics.factor import factorised
-from gbeam.numerics.lanczos import lowest_modes
+from gbeam.numerics.sparse import factorised, lowest_modes
 
 ZERO = 1e-10  # of the largest of the eigenvalues computed: a smaller one is that of a motion without strain
 ALIKE = 1e-9  # of its energy: what is left of a static answer beside the modes and the others adds nothing

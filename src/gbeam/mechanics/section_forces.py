@@ -18,8 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gbeam.arrays.namespace import is_jax, namespace
-from gbeam.mechanics.fields.components import cross, joined, split
-from gbeam.mechanics.fields.rotation import skew
+from gbeam.mechanics.fields.vectors import cross, joined, skew, split
 from gbeam.mechanics.structure import Sections, Structure
 from gbeam.mechanics.tree.frames import Frame
 from gbeam.mechanics.tree.system import body_of

@@ -24,7 +24,7 @@ from gbeam.mechanics.equations.linear import (
 )
 from gbeam.mechanics.equations.virtual_work import LoadHistory, LoadWork
 from gbeam.mechanics.fields.basis import FAMILIES, Counts
-from gbeam.mechanics.fields.rooted import Field
+from gbeam.mechanics.fields.projected import Field
 from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import StrainField
 from gbeam.mechanics.fields.taylor import Expanded, Places

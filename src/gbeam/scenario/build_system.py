@@ -7,12 +7,11 @@ from typing import Any
 import numpy as np
 
 from gbeam.errors import InputError
-from gbeam.io.models.state_space import read_state_space
+from gbeam.io.models.arrays import read_state_space
 from gbeam.mechanics.assembly import assemble
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.control import Feedback
+from gbeam.mechanics.tree.control import Feedback, gains, in_series, lead_lag, notch, pid
 from gbeam.mechanics.tree.joints import Joint
-from gbeam.mechanics.tree.laws import gains, in_series, lead_lag, notch, pid
 from gbeam.mechanics.tree.system import PointForce, System
 from gbeam.scenario.build_beam import beam_of, model_of
 from gbeam.scenario.build_motion import components, profile_of

@@ -18,7 +18,7 @@ from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.reduction import inertial_loads, linear_fields, particles_of, reduce
 from gbeam.mechanics.structure import linear_structure
 from gbeam.mechanics.tree.system import Place, RigidBody
-from gbeam.numerics.factor import refuse_cost
+from gbeam.numerics.sparse import refuse_cost
 from gbeam.results.result import Floats
 from gbeam.solids.cad import mesh_of
 from gbeam.solids.elements import (

@@ -27,7 +27,7 @@ from gbeam.constants import BY_STRAINS
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice
-from gbeam.integrate.derivatives import accelerations
+from gbeam.integrate.equations import accelerations
 from gbeam.mechanics.assembly import at_stations
 from gbeam.mechanics.equations.residuals import OnBase, OnHub
 from gbeam.mechanics.fields.basis import FAMILIES

@@ -21,9 +21,8 @@ from gbeam.analysis.system.steady import Drive, SteadySystem, steady
 from gbeam.arrays.tree import altered
 from gbeam.errors import InputError
 from gbeam.guards.checks import choice
-from gbeam.integrate.derivatives import accelerations, slopes
 from gbeam.integrate.driver import through
-from gbeam.integrate.equations import NonlinearEquations
+from gbeam.integrate.equations import NonlinearEquations, accelerations, slopes
 from gbeam.integrate.steps import Corners, fitted
 from gbeam.integrate.tangent import tangent
 from gbeam.mechanics.structure import Structure

@@ -15,8 +15,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.analysis.response.problem import Problem
-from gbeam.integrate.derivatives import accelerations, slopes
-from gbeam.integrate.equations import LinearEquations
+from gbeam.integrate.equations import LinearEquations, accelerations, slopes
 from gbeam.integrate.schemes import Scheme, added
 from gbeam.integrate.tangent import System
 from gbeam.mechanics.equations.linear import Coefficients

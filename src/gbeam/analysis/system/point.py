@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import each_leaf
 from gbeam.errors import ComputationError, InputError
-from gbeam.integrate.derivatives import slopes
-from gbeam.integrate.equations import Trajectory
+from gbeam.integrate.equations import Trajectory, slopes
 from gbeam.mechanics.tree.equations import SLIP, Inputs, Tree
 from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.system import System

@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 
 from gbeam.analysis.accuracy.correction import RESOLVED, Correction
 from gbeam.analysis.system.histories import Carried, carried, loads_of
-from gbeam.integrate.derivatives import slopes
 from gbeam.integrate.driver import integrate
-from gbeam.integrate.equations import LinearEquations, Trajectory
+from gbeam.integrate.equations import LinearEquations, Trajectory, slopes
 from gbeam.integrate.schemes import generalized_alpha
 from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.structure import Structure

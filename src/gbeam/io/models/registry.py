@@ -25,17 +25,17 @@ READERS = {
     ".npy": "arrays.read",
     ".mat": "arrays.read",
     ".mtx": "arrays.read",  # Matrix Market's, else Abaqus's
-    ".sti": "abaqus.read_storage",
-    ".mas": "abaqus.read_storage",
-    ".inp": "abaqus.read_nodes",
-    ".op4": "nastran.read_op4",
-    ".op2": "nastran.read_op2",
-    ".pch": "nastran.read_punch",
-    ".asm": "nastran.read_superelement",
-    ".sid": "standard_input.read",
-    ".uff": "universal.read",
-    ".unv": "universal.read",
-    **dict.fromkeys((".bdf", ".dat", ".nas", ".blk"), "nastran.read_bulk"),
+    ".sti": "finite_elements.read_storage",
+    ".mas": "finite_elements.read_storage",
+    ".inp": "finite_elements.read_nodes",
+    ".op4": "finite_elements.read_op4",
+    ".op2": "finite_elements.read_op2",
+    ".pch": "finite_elements.read_punch",
+    ".asm": "finite_elements.read_superelement",
+    ".sid": "modes.read_standard_input",
+    ".uff": "modes.read_universal",
+    ".unv": "modes.read_universal",
+    **dict.fromkeys((".bdf", ".dat", ".nas", ".blk"), "finite_elements.read_bulk"),
 }
 NAMES = {  # that programs give their matrices
     "mass": ("M", "MASS", "MGG", "MAA", "MAAX", "MXX", "M2GG"),
@@ -199,7 +199,7 @@ def _reading(path: str) -> Contents:
     reader = READERS[Path(path).suffix.lower()]
     if Path(path).suffix.lower() == ".mtx":
         with open(path, "rb") as file:
-            reader = reader if file.read(len(MARKET)) == MARKET else "abaqus.read_matrix"
+            reader = reader if file.read(len(MARKET)) == MARKET else "finite_elements.read_matrix"
     module, name = reader.split(".")
     try:
         contents: Contents = getattr(import_module(f"gbeam.io.models.{module}"), name)(path)

@@ -10,7 +10,10 @@ import numpy as np
 from gbeam.arrays.namespace import concatenated, is_jax, namespace
 from gbeam.arrays.tree import record
 from gbeam.mechanics.equations.linear import NOTHING, Geometric, geometric_of
-from gbeam.mechanics.fields.components import (
+from gbeam.mechanics.fields.series import SeriesField
+from gbeam.mechanics.fields.strains import Columns, StrainField, Tangents
+from gbeam.mechanics.fields.taylor import Places
+from gbeam.mechanics.fields.vectors import (
     NONE,
     Vector,
     absent,
@@ -26,9 +29,6 @@ from gbeam.mechanics.fields.components import (
     turned,
     turned_back,
 )
-from gbeam.mechanics.fields.series import SeriesField
-from gbeam.mechanics.fields.strains import Columns, StrainField, Tangents
-from gbeam.mechanics.fields.taylor import Places
 
 Array = Any
 

@@ -11,7 +11,7 @@ import numpy as np
 from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.arrays.tree import record
 from gbeam.mechanics.fields.basis import Quadrature
-from gbeam.mechanics.fields.components import (
+from gbeam.mechanics.fields.vectors import (
     UNTURNED,
     Rotation,
     Vector,
@@ -19,12 +19,13 @@ from gbeam.mechanics.fields.components import (
     add,
     cross,
     dot,
+    exponential_of,
     mapped,
     plane_rotation,
     scaled,
+    sine_cosine,
     turned,
 )
-from gbeam.mechanics.fields.rotation import exponential_of, sine_cosine
 from gbeam.structure.line import NEAR
 
 Array = Any

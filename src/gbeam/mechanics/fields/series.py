@@ -17,7 +17,9 @@ import numpy as np
 
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record, static
-from gbeam.mechanics.fields.components import (
+from gbeam.mechanics.fields.strains import StrainField, Tangents, added_rates, cross_rates, mapped_rates
+from gbeam.mechanics.fields.taylor import Places, Turns
+from gbeam.mechanics.fields.vectors import (
     NONE,
     UNTURNED,
     Rotation,
@@ -34,8 +36,6 @@ from gbeam.mechanics.fields.components import (
     times,
     turned,
 )
-from gbeam.mechanics.fields.strains import StrainField, Tangents, added_rates, cross_rates, mapped_rates
-from gbeam.mechanics.fields.taylor import Places, Turns
 
 Array = Any
 Rates = tuple[Vector, Vector, Vector]  # a vector with its first and second derivatives with respect to time

@@ -21,7 +21,9 @@ import numpy as np
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record, static
 from gbeam.mechanics.fields.basis import Families, Quadrature
-from gbeam.mechanics.fields.components import (
+from gbeam.mechanics.fields.frames import Frames, beyond, frames_along, root_rule
+from gbeam.mechanics.fields.taylor import EPSILON, Expanded, Places, Turns
+from gbeam.mechanics.fields.vectors import (
     NONE,
     Rotation,
     Vector,
@@ -37,8 +39,6 @@ from gbeam.mechanics.fields.components import (
     turned,
     turned_back,
 )
-from gbeam.mechanics.fields.frames import Frames, beyond, frames_along, root_rule
-from gbeam.mechanics.fields.taylor import EPSILON, Expanded, Places, Turns
 from gbeam.structure.line import Line
 
 Array = Any

@@ -9,7 +9,7 @@ import numpy as np
 
 from gbeam.arrays.namespace import concatenated, namespace
 from gbeam.arrays.tree import record
-from gbeam.mechanics.fields.components import NONE, Vector, absent, cross, joined, split
+from gbeam.mechanics.fields.vectors import NONE, Vector, absent, cross, joined, split
 
 
 @record

@@ -14,10 +14,10 @@ from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
 from gbeam.mechanics.equations.dalembert import Complete
 from gbeam.mechanics.equations.linear import Coefficients
-from gbeam.mechanics.fields.components import split
 from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import StrainField
 from gbeam.mechanics.fields.taylor import EPSILON, Polynomials
+from gbeam.mechanics.fields.vectors import split
 from gbeam.mechanics.tree.frames import Frame, Relative, Wrench, cross, turned, turned_back
 from gbeam.mechanics.tree.steps import rotation_by_vector, tangent_back
 
