@@ -11,6 +11,8 @@ import os
 import re
 import subprocess
 import tempfile
+from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -24,7 +26,9 @@ _BRICK = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 
 
 @dataclass(frozen=True)
 class Strip:
-    """Length along x, width along y, thickness along z, m; kg/m³, Pa; elements along each."""
+    """Length along x, width along y, thickness along z, m; kg/m³, Pa; elements along each. A `gripped` root moves
+    nowhere; one that is not does not move along x, nor on average across or about x: its width is free.
+    """
 
     length: float
     width: float
@@ -33,6 +37,7 @@ class Strip:
     modulus: float
     poisson: float
     elements: tuple[int, int, int] = (80, 4, 2)
+    gripped: bool = True
 
 
 @dataclass(frozen=True)
@@ -86,7 +91,10 @@ def deck(strip: Strip, spin: Spin | None, coriolis: bool, modes: int) -> str:
         lines += [", ".join(map(str, [e, *nodes[:10]])) + ",", ", ".join(map(str, nodes[10:]))]
     for name, end in (("ROOT", 0), ("TIP", 2 * nx)):
         lines += [f"*NSET, NSET={name}", *(f"{number(*at)}" for at in places if at[0] == end)]
-    lines += ["*BOUNDARY", "ROOT, 1, 3", "*MATERIAL, NAME=METAL", "*ELASTIC", f"{strip.modulus}, {strip.poisson}"]
+    lines += ["*BOUNDARY", f"ROOT, 1, {3 if strip.gripped else 1}"]
+    if not strip.gripped:
+        lines += _still_on_average(strip, lambda j, k: number(0, j, k))
+    lines += ["*MATERIAL, NAME=METAL", "*ELASTIC", f"{strip.modulus}, {strip.poisson}"]
     lines += ["*DENSITY", f"{strip.density}", "*SOLID SECTION, ELSET=STRIP, MATERIAL=METAL"]
     if spin is not None:
         line = ", ".join(f"{value:.12g}" for value in (spin.rate**2, *spin.centre, *spin.axis))
@@ -96,6 +104,30 @@ def deck(strip: Strip, spin: Spin | None, coriolis: bool, modes: int) -> str:
     if coriolis:
         lines += ["*STEP, PERTURBATION", "*COMPLEX FREQUENCY, CORIOLIS", f"{modes}", "*END STEP"]
     return "\n".join(lines) + "\n"
+
+
+def _still_on_average(strip: Strip, number: Callable[[int, int], int]) -> list[str]:
+    """Equations by which the root's mean displacements along y and z and its mean turning about x are zero."""
+    _, ny, nz = strip.elements
+    areas: Counter[tuple[int, int]] = Counter()
+    for cell in itertools.product(range(ny), range(nz)):
+        for side in itertools.product(range(3), range(3)):
+            if side != (1, 1):  # eight nodes a face: what a traction on it is on each of them
+                areas[2 * cell[0] + side[0], 2 * cell[1] + side[1]] += 1 / 3 if sum(side) % 2 else -1 / 12
+    along, across, turned = [], [], []
+    for (j, k), area in areas.items():
+        node, y, z = number(j, k), j / (2 * ny) - 0.5, (k / (2 * nz) - 0.5) * strip.thickness / strip.width
+        along.append((area, node, 2))
+        across.append((area, node, 3))
+        turned += [(area * y, node, 3), (-area * z, node, 2)]
+    lines, first = [], set()
+    for terms in (along, across, turned):  # the first degree of freedom of each is that which it takes away
+        terms = sorted((term for term in terms if term[0]), key=lambda term: (term[1:] in first, -abs(term[0])))
+        first.add(terms[0][1:])
+        lines += ["*EQUATION", f"{len(terms)}"]
+        written = [f"{node}, {axis}, {share:.12g}" for share, node, axis in terms]
+        lines += [", ".join(written[k : k + 4]) for k in range(0, len(written), 4)]
+    return lines
 
 
 def read(text: str, coriolis: bool) -> Answer:
