@@ -1,6 +1,6 @@
 import { defineConfig } from "vite";
 
-// The page of `gbeam app`, committed inside the Python package as the viewer is.
+// The page of `gbeam app`, committed inside the Python package as the viewer is, which it loads for a mesh.
 export default defineConfig({
   publicDir: "app-public",
   build: {
@@ -8,8 +8,7 @@ export default defineConfig({
     outDir: process.env.GBEAM_WEB_OUT ? `${process.env.GBEAM_WEB_OUT}-app` : "../src/gbeam/app/assets",
     emptyOutDir: true,
     minify: true,
-    rolldownOptions: { output: { minify: true, chunkFileNames: "[name].js" } },
-    chunkSizeWarningLimit: 800,
+    rolldownOptions: { external: ["gbeam"], output: { minify: true, paths: { gbeam: "./gbeam.js" } } },
     target: "es2022",
   },
 });

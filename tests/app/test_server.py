@@ -120,10 +120,7 @@ def test_strangers_hold_no_connection_and_no_descriptor(start: Start, tmp_path: 
     few += "\nfrom gbeam.app import access as connections\nconnections.PATIENCE = 0.5"
     server = start(tmp_path / "kept", few + QUICK.format(code="print('{}')"))
     idle = [socket.create_connection(("127.0.0.1", server.port), SOON) for _ in range(400)]
-    begun = time.monotonic()
-    number = server.submit()
-    server.until(number, lambda run: run["state"] == "done")
-    assert time.monotonic() - begun < 5
+    server.until(server.submit(), lambda run: run["state"] == "done")  # soon, or it fails
     assert server.said.stat().st_size < 1000, server.said.read_text()[:1000]
     # Those that have waited are closed, all of them, and without one byte.
     for each in idle:

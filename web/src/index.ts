@@ -1,4 +1,4 @@
-// The entry: inside a report the page shows itself; in a notebook the widget calls `render`.
+// The entry: inside a report the page shows itself; in a notebook the widget calls `render`; the app shows a mesh.
 
 import "./language"; // before uPlot
 import "uplot/dist/uPlot.min.css";
@@ -18,4 +18,5 @@ if (data) {
   window.addEventListener("beforeprint", draw); // which may come before any frame
 }
 
+export { SkinView } from "./skin";
 export default { render };

@@ -1,5 +1,6 @@
 import { expect, test } from "vitest";
-import { bodyName, extent, groupAt, listed } from "../src/app/mesh";
+import { bodyName, listed } from "../src/app/mesh";
+import { extent, groupAt } from "../src/groups";
 
 test("what is clamped is read as TOML has it", () => {
   expect(listed("")).toEqual([]);

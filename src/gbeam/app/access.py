@@ -19,7 +19,7 @@ from urllib.parse import parse_qs
 from fastapi import HTTPException
 
 KEY = "x-gbeam-key"  # header
-ASSETS = ("app.css", "app.js", "mesh.js", "skin.js")
+ASSETS = {"app.css": "gbeam.app", "app.js": "gbeam.app", "gbeam.js": "gbeam.report.page"}  # and whose they are
 _PAGE = ("/", *(f"/{name}" for name in ASSETS))
 _FILES = "/api/runs/"
 # Nothing inline, nothing from elsewhere; reports are shown in a frame with a policy of their own.

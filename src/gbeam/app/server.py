@@ -82,8 +82,9 @@ def create_app(folder: Path) -> FastAPI:
         problems = [{"loc": each["loc"], "msg": each["msg"], "type": each["type"]} for each in error.errors()]
         return JSONResponse({"detail": problems}, 422)
 
-    for name in ("index.html", *ASSETS):
-        app.add_api_route("/" if name == "index.html" else f"/{name}", _asset(name), include_in_schema=False)
+    app.add_api_route("/", _asset("index.html", "gbeam.app"), include_in_schema=False)
+    for name, package in ASSETS.items():
+        app.add_api_route(f"/{name}", _asset(name, package), include_in_schema=False)
 
     @app.get("/api/examples")
     def offered_examples() -> Sequence[str]:
@@ -206,9 +207,9 @@ def create_app(folder: Path) -> FastAPI:
     return app
 
 
-def _asset(name: str) -> Callable[[], Response]:
+def _asset(name: str, package: str) -> Callable[[], Response]:
     def asset() -> Response:
-        content = (resources("gbeam.app") / "assets" / name).read_bytes()
+        content = (resources(package) / "assets" / name).read_bytes()
         return Response(content, media_type=_KINDS[name[name.rindex(".") :]])
 
     return asset

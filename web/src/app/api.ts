@@ -1,5 +1,7 @@
 // The server's routes; every answer that is not one is an Error with what is wrong.
 
+import type { Skin } from "../groups";
+
 export interface Problem {
   path: string;
   /** Of the form, such as the key that is missing in a table. */
@@ -63,20 +65,6 @@ export interface Run {
   changes: string;
   progress: string;
   files: string[];
-}
-
-/** A group of a mesh: how many nodes it holds, and which vertices of the skin. */
-export interface Group {
-  name: string;
-  nodes: number;
-  vertices: number[];
-}
-
-/** Outer faces of a mesh, in the unit of its file: places of vertices, x, y and z, and corners of triangles. */
-export interface Skin {
-  vertices: number[];
-  triangles: number[];
-  groups: Group[];
 }
 
 /** A record's columns, and what their names and units say of them: keys of a scenario's record; of a mesh its skin. */

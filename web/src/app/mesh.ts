@@ -1,8 +1,9 @@
 // The mesh of a body: in which unit its coordinates are, and which of its groups the base holds.
 
 import { button, choice, element, tick } from "../controls";
-import { api, type Entry, type Group, type Head } from "./api";
-import type { SkinView } from "./skin";
+import { extent } from "../groups";
+import type { SkinView } from "../skin";
+import { api, type Entry, type Head } from "./api";
 
 /** A body of the document that is a mesh, with what is written of it. */
 export interface MeshBody {
@@ -32,21 +33,6 @@ export function listed(value: string): string[] {
 export function bodyName(file: string): string {
   const plain = file.replace(/\.[^.]*$/, "").replace(/\W+/g, "_");
   return /^[A-Za-z]/.test(plain) ? plain : `body_${plain}`;
-}
-
-/** Lengths of the edges of the box around vertices. */
-export function extent(vertices: number[]): number[] {
-  return [0, 1, 2].map((axis) => {
-    let [low, high] = [Infinity, -Infinity];
-    for (let k = axis; k < vertices.length; k += 3) [low, high] = [Math.min(low, vertices[k]!), Math.max(high, vertices[k]!)];
-    return high - low;
-  });
-}
-
-/** The smallest of the groups that hold a vertex: whoever points at a hole means its edge, not the whole body. */
-export function groupAt(groups: Group[], vertex: number): string {
-  const holding = groups.filter((each) => each.vertices.includes(vertex));
-  return holding.sort((a, b) => a.nodes - b.nodes)[0]?.name ?? "";
 }
 
 const UNITS = ["mm", "cm", "m", "in", "ft"].map((each) => [each, each] as const);
@@ -154,7 +140,7 @@ export class MeshPanel {
       this.row(act, ready),
     );
     judge();
-    void import("./skin").then(({ SkinView }) => {
+    void import("gbeam").then(({ SkinView }) => {
       if (!stage.isConnected) return;
       this.view = SkinView.mount(stage, skin, (group) => set(group, !chosen.clamp.has(group)));
       this.view?.show(chosen.clamp);

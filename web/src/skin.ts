@@ -21,11 +21,10 @@ import {
   WebGLRenderer,
   WireframeGeometry,
 } from "three";
-import { lineColour, prefersDark } from "../colours";
-import { element } from "../controls";
-import { Orbit } from "../orbit";
-import type { Skin } from "./api";
-import { extent, groupAt } from "./mesh";
+import { lineColour, prefersDark } from "./colours";
+import { element } from "./controls";
+import { extent, groupAt, type Skin } from "./groups";
+import { Orbit } from "./orbit";
 
 const STILL = 4; // pixels that the mouse may move within a click
 
