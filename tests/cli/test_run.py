@@ -111,6 +111,7 @@ def test_accepted_or_not(fast: Path, gbeam: Call) -> None:
 def test_accept_in_words(fast: Path, gbeam: Call, without_figures: None) -> None:
     answer = gbeam("run", fast, "--set", "motion.spin.accept.followed=90 %")
     assert answer.status == 0 and "accepted: followed 100 % (at least 90 %)" in answer.out
+    assert not [line for line in answer.out.splitlines() if line.endswith(" ")]
 
 
 PULLS = """{ z = { profile = "sum", terms = [

@@ -51,9 +51,11 @@ def _assert_labelled(figure: Figure) -> None:
 def files(study: Study, tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     """All figures of the study, written once; matplotlib's settings are as they were."""
     settings = dict(mpl.rcParams)
-    made = write_figures(figures_of(study), tmp_path_factory.mktemp("plots"))
+    told: list[tuple[str, float]] = []
+    written = write_figures(figures_of(study), tmp_path_factory.mktemp("plots"), "", lambda *news: told.append(news))
     assert dict(mpl.rcParams) == settings
-    return made
+    assert told[1][0] == f"drawing {written[2].stem}" and np.isclose(told[1][1], 2 / len(written))
+    return written
 
 
 def test_files(files: list[Path]) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Literal
@@ -55,7 +56,7 @@ def deliver(
 
         return signed(facts_of(*answers, title=title, files=files) | dict(facts or {}), origin)
 
-    def make(hidden: Path) -> None:
+    def make(watch: Watch, hidden: Path) -> None:
         from gbeam.figures import figures_of
 
         described = figures_of(answer, title) if figures is None else figures
@@ -71,7 +72,7 @@ def deliver(
         if described and figures_wanted():
             from gbeam.plots import write_figures
 
-            write_figures(described, hidden, f"gbeam {verb or name}")
+            write_figures(described, hidden, f"gbeam {verb or name}", watch)
         if more is not None:
             more(hidden)
 
@@ -85,8 +86,8 @@ def deliver(
             show_table(said)
     files: list[Path] = []
     if folder is not None:
-        with Watch("writing results and plots"):
-            files = sorted([*publish(folder, make), *also])
+        with Watch("writing results") as watch:
+            files = sorted([*publish(folder, partial(make, watch)), *also])
     if output.json:
         show("", known(files if listed else None), output.json)
     elif listed:
@@ -107,7 +108,9 @@ def show_table(table: RenderableType) -> None:
 
     console = Console(highlight=False, width=None if sys.stdout.isatty() else _PLAIN_WIDTH)
     drawn = [Segment(printable(text), style, control) for text, style, control in console.render(table)]
-    console.print(Segments(drawn), end="")
+    with console.capture() as captured:
+        console.print(Segments(drawn), end="")
+    print("\n".join(line.rstrip(" ") for line in captured.get().split("\n")), end="")
 
 
 def list_figures(verb: str, json: bool) -> int:

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 from gbeam.figures import Describe, figure_of
 from gbeam.plots.draw import Shown, draw, style
+from gbeam.progress import Progress, tell
 
 
 class Panels(tuple[Axes, ...]):
@@ -33,11 +34,17 @@ def plot(result: Any, what: str = "", title: str = "") -> Panels:
     return Panels(draw(figure_of(result, what, title)).axes)
 
 
-def write_figures(described: Mapping[str, Describe], folder: Path, source: str = "") -> list[Path]:
+def write_figures(
+    described: Mapping[str, Describe], folder: Path, source: str = "", progress: Progress = None
+) -> list[Path]:
     """Draw figures and write each under its name, as far as files may have it: ``axes_rate_spin`` of axes_rate spin."""
+    files: list[Path] = []
     named = {re.sub(r"[^\w.-]+", "_", re.sub(r"[\[\]]", "", name)): each for name, each in described.items()}
     with style():
-        return [file for name, each in named.items() for file in save(draw(each()), folder, name, source)]
+        for k, (name, each) in enumerate(named.items()):
+            tell(progress, f"drawing {name}", k / len(named))
+            files += save(draw(each()), folder, name, source)
+    return files
 
 
 DPI = 150
