@@ -204,7 +204,7 @@ class SystemResponse(Driven, Figured):
     )
     residual_from: float = fact("start of the residual", "s", key=None, note="NaN where not given", default=math.nan)
     residual_amplitude: Floats | None = quantity(
-        "m", "half peak-to-peak from residual_from on, of a flexible body's points relative to its root, else of places",
+        "m", "half peak-to-peak after residual_from, of a flexible body's points relative to its root, else of places",
         "point", "axis", frame="axes of the body's root, else of the ground", optional=True, default=None,
     )  # fmt: skip
     kept_every: int = fact("how many samples of the histories make one in a file", name=None, key=None, default=1)
