@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.guards.ranges import RANGES, implausible
+from gbeam.guards.checks import RANGES, implausible
 from gbeam.scenario import template
 
 from . import scenarios, specimens

@@ -10,7 +10,7 @@ import pytest
 import gbeam as gb
 from gbeam.analysis.accuracy.correction import RESOLVED, OfSamples, Sampled, Vibration, complete_residual, operator
 from gbeam.analysis.accuracy.response_errors import Parts, Quantities, lacking
-from gbeam.mechanics.equations.hub import free_hub, ground_of
+from gbeam.mechanics.equations.dalembert import free_hub, ground_of
 from gbeam.motion.bases.base import Base
 
 from ..differences import jacobian

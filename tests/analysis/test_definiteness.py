@@ -24,7 +24,7 @@ from gbeam import (
     simulate,
     vector,
 )
-from gbeam.analysis.steady.definiteness import Drive, lowest_over_time, worst_loss
+from gbeam.analysis.response.outcome import Drive, lowest_over_time, worst_loss
 from gbeam.analysis.steady.stability import critical_load
 from gbeam.motion import constant
 from gbeam.results.response import BaseMotion

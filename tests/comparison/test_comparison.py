@@ -10,7 +10,7 @@ import pytest
 from scipy.linalg import expm
 
 from gbeam import Comparison, InputError, compare, simulate
-from gbeam.numerics.filters import displacement, largest_riding_acceleration, low_pass, riding_acceleration
+from gbeam.numerics.samples import displacement, largest_riding_acceleration, low_pass, riding_acceleration
 from gbeam.report.study import comparison_lines as lines
 
 M, L, EI = 2700 * 0.02 * 0.004, 0.3, 70e9 * 0.02 * 0.004**3 / 12

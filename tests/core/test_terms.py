@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import gbeam as gb
-from gbeam.analysis.response.linearised import coefficient_matrix, terms
+from gbeam.analysis.response.differentiated import coefficient_matrix, terms
 from gbeam.motion import Base
 
 from ..specimens import ALUMINIUM, STRIP

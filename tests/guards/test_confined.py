@@ -16,8 +16,8 @@ import numpy as np
 import pytest
 
 from gbeam.errors import ComputationError, InputError
-from gbeam.guards import confined as module
-from gbeam.guards.confined import confined
+from gbeam.guards import processes as module
+from gbeam.guards.processes import confined
 from gbeam.motion.records.record import read_record
 
 from ..calling import Answer, gbeam

@@ -14,8 +14,8 @@ from matplotlib.image import imread
 
 from gbeam.figures.description import Figure as Described
 from gbeam.figures.description import Line, Panel, components, limit_levels, scale_of, stretches
+from gbeam.plots import DPI, save, signature
 from gbeam.plots.draw import BINS, COLUMNS, ENVELOPE, STYLE, draw, line
-from gbeam.plots.files import DPI, save, signature
 from gbeam.results.machine import AxesResult
 
 

@@ -14,7 +14,7 @@ import gbeam as gb
 from gbeam.figures import description, figures_of
 from gbeam.numerics.samples import thinned
 from gbeam.plots import draw
-from gbeam.report.page.curves import COLUMNS, Numbers, drawn
+from gbeam.report.page.parts import COLUMNS, Numbers, drawn
 from gbeam.report.page.result import report_of, report_of_file
 from gbeam.results.cases import Indices, Parameter, Statistics
 from gbeam.results.imitation.comparison import Comparison

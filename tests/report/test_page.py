@@ -24,7 +24,7 @@ from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.numerics.samples import thinned
 from gbeam.report.facts import facts
-from gbeam.report.page import curves
+from gbeam.report.page import parts as page_parts
 from gbeam.report.page.document import html as page_of
 from gbeam.report.page.result import report_of, report_of_file
 from gbeam.report.words import as_json
@@ -213,8 +213,8 @@ def test_shown_numbers_are_those_of_the_result(study: Study) -> None:
 def test_thinned_keeps_the_least_and_the_largest(count: int, seed: int) -> None:
     time = np.linspace(-1, 2, count)
     values = np.random.default_rng(seed).normal(size=count)
-    t, kept = thinned(time, values, curves.COLUMNS)
-    assert len(t) == len(kept) <= 4 * curves.COLUMNS
+    t, kept = thinned(time, values, page_parts.COLUMNS)
+    assert len(t) == len(kept) <= 4 * page_parts.COLUMNS
     assert (kept.min(), kept.max()) == (values.min(), values.max())
     assert (np.diff(t) > 0).all() and (t[0], t[-1]) == (time[0], time[-1])
 
@@ -230,7 +230,7 @@ def test_values_beyond_all_bounds_are_drawn_as_gaps(study: Study, tmp_path: Path
 
 
 def test_numbers_come_back_and_stand_once() -> None:
-    numbers = curves.Numbers()
+    numbers = page_parts.Numbers()
     first, second = np.arange(6.0).reshape(2, 3), np.array([7.0])
     assert numbers.add(first) == {"at": 0, "shape": [2, 3]} == numbers.add(first)
     assert numbers.add(second) == {"at": 6, "shape": [1]}

@@ -17,7 +17,7 @@ import pytest
 import gbeam as gb
 from gbeam.results.provenance import Environment
 from gbeam.scenario import provenance
-from gbeam.scenario.origin import fingerprint
+from gbeam.scenario.load import fingerprint
 from gbeam.scenario.text.overrides import override
 from gbeam.scenario.text.source import parse
 
@@ -139,7 +139,7 @@ def test_an_integrator_of_version_0_2_is_read_and_refused(result: Path, gbeam: C
 def test_a_large_record_is_found_where_it_was(
     tmp_path: Path, gbeam: Callable[..., Answer], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("gbeam.scenario.origin.EMBEDDED", 1000)
+    monkeypatch.setattr("gbeam.scenario.load.EMBEDDED", 1000)
     monkeypatch.chdir(tmp_path)
     shutil.copy(RECORD, "turn.csv")
     Path("s.toml").write_text(RECORDED, encoding="utf-8")

@@ -11,7 +11,7 @@ import pytest
 
 import gbeam as gb
 from gbeam.cli import main
-from gbeam.report.systems import system_response
+from gbeam.report.study import system_response
 
 from ..solids.test_damage_at_points import HALF, METAL, B, H, L, beam, block, runs, solid
 from ..solids.test_gauges import MACHINE, scenario

@@ -12,7 +12,7 @@ from scipy.special import ellipj, ellipk
 
 import gbeam as gb
 from gbeam.errors import ComputationError
-from gbeam.report.systems import system_response
+from gbeam.report.study import system_response
 from tests.system.trees import flexible
 
 ROD = gb.RigidBody(1.0, (0.0, 1 / 12, 1 / 12), centre=(0.5, 0, 0), points={"end": (1, 0, 0)})

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gbeam.analysis.outline import undeformed
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.system.assembly import undeformed
 from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed

@@ -24,7 +24,7 @@ from gbeam.app.documents import head, load_curves
 from gbeam.app.jobs import Jobs
 from gbeam.errors import GbeamError, InputError
 from gbeam.guards.limits import SCENARIO_BYTES
-from gbeam.guards.lock import alone
+from gbeam.guards.processes import alone
 from gbeam.io.stored import csv_of, read_stored
 from gbeam.scenario.text.source import parse
 

@@ -13,8 +13,8 @@ import h5py
 import numpy as np
 
 from gbeam.errors import InputError
-from gbeam.guards.confined import confined
 from gbeam.guards.limits import existing
+from gbeam.guards.processes import confined
 from gbeam.io.hdf5 import contents, contents_of, image, provenance_of
 from gbeam.io.netcdf import groups_of
 from gbeam.results.provenance import Provenance

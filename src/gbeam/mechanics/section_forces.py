@@ -27,7 +27,7 @@ from gbeam.motion.protocol import Motion
 from gbeam.results.parts import Loads
 from gbeam.results.response import BaseMotion
 from gbeam.structure.section import extreme_stresses, worst_fibres
-from gbeam.structure.stress import von_mises
+from gbeam.structure.shapes import von_mises
 
 Array = Any
 _BLOCK = 256  # times handled together: what stays in a cache

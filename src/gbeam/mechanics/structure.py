@@ -12,8 +12,7 @@ from gbeam.arrays.tree import Value, record, static
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
-from gbeam.mechanics.equations.dalembert import Complete, CompleteHub
-from gbeam.mechanics.equations.hub import FreeHub, free_hub, ground_of
+from gbeam.mechanics.equations.dalembert import Complete, CompleteHub, FreeHub, free_hub, ground_of
 from gbeam.mechanics.equations.inertia import Inertia
 from gbeam.mechanics.equations.linear import (
     Coefficients,

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import holds_jax
-from gbeam.guards.ranges import implausible
+from gbeam.guards.checks import implausible
 from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.flight import Flight
 from gbeam.results.result import part_words

@@ -1,9 +1,98 @@
-"""Figures drawn with Matplotlib: PNG to look at and SVG to print, or axes to work on.
+"""Figures drawn with Matplotlib, as axes to work on, or as files: PNG to look at and SVG to print.
 
 `gbeam.figures` describes them; `draw` draws what is described.
 """
 
-from gbeam.plots.draw import draw
-from gbeam.plots.files import plot, save, signature, write_figures
+from __future__ import annotations
 
-__all__ = ["draw", "plot", "save", "signature", "write_figures"]
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, cast
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from gbeam.figures import Describe, figure_of
+from gbeam.plots.draw import Shown, draw, style
+from gbeam.progress import Progress, tell
+
+
+class Panels(tuple[Axes, ...]):
+    """The axes of one figure from top to bottom, a tuple also where there is one; a notebook shows the figure."""
+
+    __slots__ = ()
+
+    @property
+    def figure(self) -> Shown:
+        """The figure that they are in."""
+        return cast(Shown, self[0].get_figure(root=True))
+
+    def _repr_png_(self) -> bytes:
+        return self.figure._repr_png_()
+
+
+def plot(result: Any, what: str = "", title: str = "") -> Panels:
+    """Draw one figure of a result, the first that it has or the one of that name, and return its axes."""
+    return Panels(draw(figure_of(result, what, title)).axes)
+
+
+def write_figures(
+    described: Mapping[str, Describe], folder: Path, source: str = "", progress: Progress = None
+) -> list[Path]:
+    """Draw figures and write each under its name, as far as files may have it: ``axes_rate_spin`` of axes_rate spin."""
+    files: list[Path] = []
+    named = {re.sub(r"[^\w.-]+", "_", re.sub(r"[\[\]]", "", name)): each for name, each in described.items()}
+    with style():
+        for k, (name, each) in enumerate(named.items()):
+            tell(progress, f"drawing {name}", k / len(named))
+            files += save(draw(each()), folder, name, source)
+    return files
+
+
+DPI = 150
+_LEVEL = 3  # of compression: more takes longer than it is worth
+_BEGINNING = 2000  # bytes of a file that hold its signature
+_ESCAPED = ("&lt;", "<"), ("&gt;", ">"), ("&amp;", "&")  # of XML; its own module imports what fetches from the net
+_TEXT = re.compile(rb"(....)(tEXtSource\0|iTXtSource\0{5})", re.DOTALL)  # of PNG: length, kind and key
+_ELEMENT = re.compile(rb"<dc:source>([^<]*)</dc:source>")  # of SVG
+
+
+def save(figure: Figure, folder: Path, name: str, source: str = "") -> list[Path]:
+    """Write a figure as PNG (150 dpi) and SVG; return the files."""
+    compression = {"pil_kwargs": {"compress_level": _LEVEL}}
+    files: dict[Path, dict[str, Any]] = {folder / f"{name}.png": compression, folder / f"{name}.svg": {}}
+    with style():  # some settings are read only when a figure is drawn
+        engine = figure.get_layout_engine()
+        if engine is not None:  # once for both files, and not by drawing each of them twice
+            engine.execute(figure)
+            figure.set_layout_engine(None)
+        for file, options in files.items():
+            signed = {"Source": f"{source}: {file.name}"} if source else None
+            figure.savefig(file, dpi=DPI, metadata=signed, **options)
+    return list(files)
+
+
+def signature(file: Path) -> str:
+    """Return the `source` that :func:`save` signed a file with; empty where there is none, or for another name."""
+    with file.open("rb") as opened:
+        beginning = opened.read(_BEGINNING)
+    source, _, name = (_in_png if file.suffix == ".png" else _in_svg)(beginning).rpartition(": ")
+    return source if name == file.name else ""
+
+
+def _in_png(beginning: bytes) -> str:
+    match = _TEXT.search(beginning)
+    if match is None:
+        return ""
+    text = beginning[match.end() : match.start(2) + 4 + int.from_bytes(match[1])]
+    # Version 0.2 ended it with a zero.
+    return text.rstrip(b"\0").decode("latin-1" if match[2].startswith(b"tEXt") else "utf-8", errors="replace")
+
+
+def _in_svg(beginning: bytes) -> str:
+    match = _ELEMENT.search(beginning)
+    text = match[1].decode(errors="replace") if match else ""
+    for escaped, letter in _ESCAPED:
+        text = text.replace(escaped, letter)
+    return text

@@ -16,8 +16,8 @@ __all__ = ["as_json", "text"]
 _MODULES = {
     "cases": ("Sweep", "Sensitivity", "Fit", "Optimum", "ShapedCommand"),
     "machine": ("Placement",),
-    "steady": ("Deflection", "Modes", "Campbell", "Critical", "CriticalMap", "StateSpace"),
-    "systems": ("SystemResponse", "SystemRest", "SystemModes"),
+    "steady": ("Deflection", "Modes", "Campbell", "Critical", "CriticalMap", "StateSpace", "SystemRest", "SystemModes"),
+    "study": ("SystemResponse",),
     "tables": ("Study", "SystemStudy", "ModelStudy", "MachinePlan"),
 }
 

@@ -67,8 +67,7 @@ def _worded(figures: dict[str, Any], answers: list[Result]) -> dict[str, Any]:
 
                 figures["lines"] = list(comparison_lines(answer))
             case Study() | SystemStudy():
-                from gbeam.report.study import comparison_lines, of_beam, of_machine
-                from gbeam.report.systems import of_system
+                from gbeam.report.study import comparison_lines, of_beam, of_machine, of_system
 
                 for name, response in answer.responses.items():
                     of = of_beam(response) if isinstance(response, Response) else of_system(response)

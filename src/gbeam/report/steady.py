@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from textwrap import wrap
 
 import numpy as np
 
-from gbeam.report.words import error_words, number, percent, resting_loads, tidy, warning_lines
+from gbeam.report.words import by_beam, columns, error_words, number, percent, resting_loads, tidy, warning_lines
 from gbeam.results.equilibrium import Critical, CriticalMap, Deflection
 from gbeam.results.errors import Errors, along
 from gbeam.results.modal import Campbell, Modes
 from gbeam.results.state_space import ACCURATE, Gauge, StateSpace, Truncation
+from gbeam.results.system import SystemModes, SystemRest
 
 
 def deflection(deflections: Iterable[Deflection]) -> str:
@@ -198,3 +199,42 @@ def _accuracy(system: StateSpace) -> list[str]:
         beyond = f"up to {percent(float(known.max()))} off" if len(known) else "not judged"
         words += f"{'; ' if good else 'frequencies '}{'higher ones ' if good else ''}{beyond}"
     return [f"  {words}, by the exact model with more shapes and the theory of thick beams"]
+
+
+def system_rest(rests: Iterable[SystemRest]) -> str:
+    """Displacements of the points at rest, and what the ground carries."""
+    return "\n".join(line for each in rests for line in _rest(each))
+
+
+def _rest(rest: SystemRest) -> Iterator[str]:
+    yield f"{rest.name} at {rest.time:.4g} s:"
+    size = float(np.abs(rest.displacement).max(initial=0.0))
+    rows = [
+        [name, *(f"{each:.6g}" for each in tidy(1e3 * moved, 1e3 * size))]
+        for name, moved in zip(rest.points, rest.displacement, strict=True)
+    ]
+    yield from (f"  {line}" for line in columns(["point", "x, mm", "y, mm", "z, mm"], rows))
+    force, moment = rest.ground_force, rest.ground_moment
+    largest = float(np.abs(np.concatenate([force, moment])).max())
+    pair = (", ".join(f"{each:.5g}" for each in tidy(vector, largest)) for vector in (force, moment))
+    yield "  on the ground: force ({}) N, moment ({}) N m".format(*pair)
+    for body, loads in rest.loads.items():
+        yield f"  {body}: {resting_loads(loads)}"
+    yield from (f"  {line}" for line in by_beam(rest.errors))
+    yield from warning_lines(rest)
+
+
+def system_modes(modes: SystemModes) -> str:
+    """Modes on a line each, with the bodies' shares of the kinetic energy."""
+    lines = [f"{modes.name} at {modes.time:.4g} s:"]
+    rows = zip(modes.frequency, modes.damping_ratio, modes.error_estimate, strict=True)
+    for k, (frequency, ratio, error) in enumerate(rows):
+        shares = ((share, body) for share, body in zip(modes.share[k], modes.bodies, strict=True) if share > 0.005)
+        listed = ", ".join(f"{body} {share:.0%}" for share, body in sorted(shares, reverse=True))
+        damping = ratio if abs(ratio) > 1e-10 else 0.0
+        known = f"  error {percent(error):>7}" if math.isfinite(error) else ""
+        lines.append(f"  {k + 1:>3}  {frequency:12.6g} Hz  damping {damping:8.4g}{known}  {listed}")
+    if modes.rigid:
+        lines.append(f"  and {modes.rigid} motions of zero frequency")
+    lines += [f"  {each}" for each in modes.instabilities]
+    return "\n".join([*lines, *warning_lines(modes)])

@@ -8,13 +8,23 @@ from collections.abc import Iterator
 import numpy as np
 
 from gbeam.report.machine import ends_line, judged_lines, not_followed_stretches, peak_lines, tracked
-from gbeam.report.words import error_words, largest_loads, number, percent
+from gbeam.report.words import (
+    by_beam,
+    columns,
+    error_words,
+    largest_loads,
+    number,
+    percent,
+    sentence,
+    tidy,
+    warning_lines,
+)
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.criteria import RULES
 from gbeam.results.imitation.verdict import metres
 from gbeam.results.imitation.verdict import percent as share_of
 from gbeam.results.response import HubResult, Response
-from gbeam.results.system import SystemResponse
+from gbeam.results.system import SystemResponse, named
 
 ROUNDING = 1e-9  # of what it belongs to: a smaller number is none
 EPISODES = 8  # of holding listed; a rough record has hundreds
@@ -137,3 +147,38 @@ def comparison_lines(comparison: Comparison) -> Iterator[str]:
             f"mismatch up to {mismatch.max_acceleration[main]:.3g} m/s² along the beam, which bends the tip "
             f"by up to {1e3 * mismatch.tip_bound[main]:.3g} mm quasi-statically{advice}"
         )
+
+
+def system_response(response: SystemResponse) -> str:
+    """The largest motions of the points, the joints at the end, what is kept, and the error."""
+    lines = [f"{response.name or response.environment}: {response.outcome}"]
+    lines += [f"  {sentence(response.message)}"] if response.message else []
+    lines += [f"  {line}" for line in of_system(response)]
+    return "\n".join([*lines, *warning_lines(response)])
+
+
+def of_system(response: SystemResponse) -> Iterator[str]:
+    """Sentences on points, joints, loads, energy and the error."""
+    far, hard = (tidy(each, float(each.max())) for each in (response.largest, response.largest_acceleration))
+    heads, across = ["point", "moves by, m", "acceleration, m/s²"], [far, hard]
+    if response.residual_size is not None:
+        heads.append(f"residual from {response.residual_from:g} s, m")
+        across.append(tidy(response.residual_size, max(far)))
+    rows = [[name, *map(number, row)] for name, *row in zip(response.points, *across, strict=True)]
+    yield from columns(heads, rows)
+    every = named(response)
+    size = max((float(np.abs(each).max()) for each in every.values()), default=0.0)
+    ends = tidy([float(each[-1]) for each in every.values()], max(size, max(far)))
+    joints = ", ".join(f"{name} {number(end)}" for name, end in zip(every, ends, strict=True))
+    if joints:
+        yield f"at the end {joints}"
+    yield from (f"{body}: {largest_loads(each.peaks)}" for body, each in response.beams.items())
+    yield from (f"{body}: {line}" for body, each in response.solids.items() for line in each.lines)
+    kept = response.invariants
+    if kept is not None:
+        first, last = (number(float(each.sum())) for each in kept.energy[[0, -1]])
+        yield f"energy {first} J at the start, {last} J at the end"
+    error = percent(response.error_estimate)
+    known = f"estimated error {error}" if math.isfinite(response.error_estimate) else "no error estimate"
+    yield f"{response.integrator}, {response.steps} steps of {1e3 * response.step:.4g} ms, {known}"
+    yield from by_beam(response.errors)

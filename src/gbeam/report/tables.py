@@ -14,8 +14,7 @@ from rich.table import Table
 from rich.text import Text
 
 from gbeam.report.machine import ends_line, judged_lines, not_followed_stretches, tracked
-from gbeam.report.study import ROUNDING, comparison_lines, of_beam, of_machine
-from gbeam.report.systems import of_system
+from gbeam.report.study import ROUNDING, comparison_lines, of_beam, of_machine, of_system
 from gbeam.report.words import number, sentence
 from gbeam.results.imitation.comparison import MachinePlan
 from gbeam.results.imitation.criteria import GOOD

@@ -6,13 +6,13 @@ import json
 import math
 import shutil
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
 from gbeam.printable import json_printable
-from gbeam.results.errors import ErrorEstimate
+from gbeam.results.errors import ErrorEstimate, SystemErrors
 from gbeam.results.parts import LoadPeaks, Loads, yield_margin
 from gbeam.results.result import Result
 
@@ -138,3 +138,18 @@ def warning_lines(result: Result) -> list[str]:
 def sentence(text: str) -> str:
     """Words with a capital letter in front."""
     return text[:1].upper() + text[1:]
+
+
+def by_beam(errors: SystemErrors) -> Iterator[str]:
+    """Lines on a system's errors, beam by beam."""
+    if len(errors.by_beam):
+        alone = zip(errors.beams, errors.by_beam, strict=True)
+        yield f"errors by shapes and model of {', '.join(f'{name} {percent(float(each))}' for name, each in alone)}"
+    if len(errors.loads_by_beam):
+        each = zip(errors.beams, errors.loads_by_beam, errors.stress_by_beam, strict=True)
+        listed = ", ".join(
+            f"{name} {percent(float(loads))} and {percent(float(stress))}" for name, loads, stress in each
+        )
+        yield f"errors of root loads and of stress of {listed}"
+    if math.isfinite(errors.displacement.beam_theory):
+        yield f"errors by the theory of slender beams {percent(errors.displacement.beam_theory)}"

@@ -17,7 +17,7 @@ from gbeam.arrays.tree import Value
 from gbeam.results.declared import document, fact
 
 if TYPE_CHECKING:
-    from gbeam.plots.files import Panels
+    from gbeam.plots import Panels
     from gbeam.results.provenance import Provenance
 
 Floats = NDArray[np.float64]
@@ -188,6 +188,6 @@ class Figured(Result):
         InputError
             If it has no such figure.
         """
-        from gbeam.plots.files import plot
+        from gbeam.plots import plot
 
         return plot(self, what, title)

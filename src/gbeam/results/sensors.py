@@ -12,7 +12,7 @@ from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive
-from gbeam.numerics.filters import displacement
+from gbeam.numerics.samples import displacement
 from gbeam.results.result import Floats
 
 RESOLVED = 4.0  # samples to a period of the sensor

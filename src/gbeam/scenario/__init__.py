@@ -6,8 +6,7 @@ explain and placing put every error at its line; template is for those who write
 
 from gbeam.guards.units import UnitError, argument, quantity
 from gbeam.scenario.build import build, build_extent, build_machines, read_scenario
-from gbeam.scenario.load import load, load_environments, loads
-from gbeam.scenario.origin import placed, provenance
+from gbeam.scenario.load import load, load_environments, loads, placed, provenance
 from gbeam.scenario.schema import Environments, Scenario
 from gbeam.scenario.template import json_schema, template
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError

@@ -12,8 +12,7 @@ from gbeam.printable import advise
 from gbeam.results.imitation.criteria import RULES
 from gbeam.scenario import schema
 from gbeam.scenario.build_beam import beam_of, model_of
-from gbeam.scenario.load import change, load
-from gbeam.scenario.origin import Collector, placed, provenance
+from gbeam.scenario.load import Collector, change, load, placed, provenance
 
 if TYPE_CHECKING:
     from gbeam.analysis.case import AnyCase
@@ -145,7 +144,7 @@ def build_extent(scenario: schema.Environments) -> dict[str, Any]:
             recovery = None if structure is None else structure.recovery
             extent = {} if recovery is None else {"envelope": recovery.envelope}
         else:
-            from gbeam.analysis.system.assembly import undeformed
+            from gbeam.analysis.outline import undeformed
 
             system = system_of(parts, scenario)  # type: ignore[arg-type]
             extent = {} if system is None else {"envelope": undeformed(system)}

@@ -10,7 +10,7 @@ from gbeam.errors import InputError
 from gbeam.guards.limits import ENTRIES
 from gbeam.guards.units import UnitError, quantity
 from gbeam.scenario import schema
-from gbeam.scenario.origin import Collector
+from gbeam.scenario.load import Collector
 
 if TYPE_CHECKING:
     from gbeam.io.tables.table import Table
@@ -110,7 +110,7 @@ def _through(file: str, unit: str | None, twist: Any, smooth: bool) -> Line:
 
 def _columns(rows: Table, unit: str | None) -> dict[str, Any]:
     """Columns of a line's file by their names, in SI."""
-    from gbeam.motion.records.units import unit_in_name, words_of
+    from gbeam.motion.records.columns import unit_in_name, words_of
 
     columns: dict[str, Any] = {}
     for column in rows.columns:

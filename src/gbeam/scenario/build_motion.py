@@ -9,8 +9,8 @@ from gbeam.motion import Profile
 from gbeam.motion.bases.flight import body_rates
 from gbeam.motion.records.record import Conditioning, FlightRecord, Rates, read_flight
 from gbeam.scenario import schema
-from gbeam.scenario.origin import Collector
-from gbeam.scenario.schema.record import Record
+from gbeam.scenario.load import Collector
+from gbeam.scenario.schema.profile import Record
 
 
 def flights_and_hubs(parts: Collector, scenario: schema.Environments) -> dict[str, motion.Motion]:

@@ -14,7 +14,7 @@ from gbeam.scenario.schema import specimen as schema
 if TYPE_CHECKING:
     from gbeam.mechanics.structure import Structure
     from gbeam.mechanics.tree.system import RigidBody
-    from gbeam.scenario.origin import Collector
+    from gbeam.scenario.load import Collector
     from gbeam.scenario.schema import system
     from gbeam.solids.model import SolidModel
     from gbeam.solids.rigid import RigidSpecimen

@@ -23,7 +23,7 @@ from gbeam.scenario.build_specimen import (
     solid_of,
     standard_input_of,
 )
-from gbeam.scenario.origin import Collector
+from gbeam.scenario.load import Collector
 from gbeam.scenario.schema import control, specimen
 from gbeam.scenario.schema import system as schema
 from gbeam.scenario.schema.fields import fields_of

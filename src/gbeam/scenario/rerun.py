@@ -21,8 +21,7 @@ from gbeam.io.netcdf import FACTS
 from gbeam.results.provenance import Provenance, present
 from gbeam.results.study import Difference, Reproduction
 from gbeam.scenario.build import build
-from gbeam.scenario.load import loads
-from gbeam.scenario.origin import fingerprint
+from gbeam.scenario.load import fingerprint, loads
 from gbeam.scenario.text.overrides import override
 from gbeam.scenario.text.source import parse
 

@@ -9,8 +9,8 @@ from typing import Any
 
 from gbeam.errors import InputError
 from gbeam.guards.checks import positive
-from gbeam.guards.confined import confined
 from gbeam.guards.limits import BINARY_BYTES, MESHER_BYTES, MESHER_SECONDS, refuse_large_file
+from gbeam.guards.processes import confined
 from gbeam.guards.units import UnitError, quantity
 from gbeam.progress import PATIENCE, Bar
 from gbeam.solids.foreign import read_mesh, refuse_systems

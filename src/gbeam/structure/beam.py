@@ -13,8 +13,7 @@ from gbeam.arrays.namespace import holds_jax, namespace
 from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import positive
-from gbeam.guards.ranges import possible
+from gbeam.guards.checks import positive, possible
 from gbeam.structure.attachments import TIP, Load, Point, PointMass, Root
 from gbeam.structure.line import Line
 from gbeam.structure.material import ASSUMED_RATIO, Material

@@ -12,8 +12,7 @@ from gbeam.arrays.namespace import is_jax
 from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import finite, positive
-from gbeam.guards.ranges import possible
+from gbeam.guards.checks import finite, positive, possible
 
 FATIGUE_EXPONENT = 5.0
 ASSUMED_RATIO = 0.3  # Poisson's, of metals

@@ -9,7 +9,7 @@ import numpy as np
 
 from gbeam.arrays.namespace import holds_jax
 from gbeam.errors import InputError
-from gbeam.guards.ranges import implausible
+from gbeam.guards.checks import implausible
 from gbeam.structure.beam import Beam
 from gbeam.structure.section import KINDS
 

@@ -13,8 +13,7 @@ from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.arrays.tree import Value, record, static
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import array, positive
-from gbeam.guards.ranges import possible
+from gbeam.guards.checks import array, positive, possible
 from gbeam.structure.matrices import between, refuse_impossible
 from gbeam.structure.matrices import listed as matrices
 from gbeam.structure.shapes import MATRICES, ROUND, SHAPES

@@ -21,7 +21,7 @@ from typing import Any
 
 import gbeam
 from gbeam.errors import ComputationError, InputError
-from gbeam.guards.lock import alone
+from gbeam.guards.processes import alone
 from gbeam.studies.cases import Cases
 from gbeam.studies.evaluate import Question, Row
 

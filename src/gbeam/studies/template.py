@@ -28,8 +28,7 @@ from gbeam.mechanics.tree.system import RigidBody, System
 from gbeam.printable import advise
 from gbeam.results.provenance import Provenance
 from gbeam.scenario.build import build, scenario_of
-from gbeam.scenario.load import change
-from gbeam.scenario.origin import provenance
+from gbeam.scenario.load import change, provenance
 from gbeam.scenario.schema import Centrifuge
 from gbeam.scenario.schema.fields import kind_of, quantities
 from gbeam.scenario.schema.scenario import Sweep as SweepTable

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from gbeam.integrate.driver import integrate
 from gbeam.integrate.equations import LinearEquations, LinearTerms
 from gbeam.integrate.schemes import gauss
-from gbeam.mechanics.equations.hub import FreeHub, free_hub, ground_of
+from gbeam.mechanics.equations.dalembert import FreeHub, free_hub, ground_of
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
 from gbeam.numerics.eigen import symmetric_modes

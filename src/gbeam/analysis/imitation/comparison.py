@@ -8,14 +8,12 @@ import numpy as np
 
 from gbeam.analysis.imitation.accounting import History, account_of, largest_load, largest_pair, points_of
 from gbeam.analysis.imitation.systems import specimen_of
-from gbeam.analysis.response.peaks import vector_peaks
+from gbeam.analysis.response.peaks import maxima, near_maxima, seven_point, turning_points, vector_peaks
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
 from gbeam.motion.bases.base import gradients
-from gbeam.numerics.filters import largest_riding_acceleration, low_pass
-from gbeam.numerics.peaks import maxima, near_maxima, seven_point, turning_points
-from gbeam.numerics.samples import interpolated
+from gbeam.numerics.samples import interpolated, largest_riding_acceleration, low_pass
 from gbeam.results.imitation.accounting import TOLERANCE, PeakPair
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.criteria import Limit, checked_limits

@@ -29,9 +29,8 @@ from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion import Base, Centrifuge, Flight
 from gbeam.motion.centrifuge.limits import exceeded
-from gbeam.numerics.filters import low_pass
 from gbeam.numerics.minimise import least, refine
-from gbeam.numerics.samples import interpolated
+from gbeam.numerics.samples import interpolated, low_pass
 from gbeam.results.imitation.criteria import BROKEN
 from gbeam.results.imitation.placement import MEASURES, Candidate, Placement, Verification, degrees
 from gbeam.results.response import Response

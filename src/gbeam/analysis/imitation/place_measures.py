@@ -23,8 +23,8 @@ from gbeam.motion.bases.base import gradients
 from gbeam.motion.centrifuge.centrifuge import MOUNTINGS, Centrifuge, rotation_of
 from gbeam.motion.centrifuge.course import INVERSES
 from gbeam.motion.protocol import SAMPLES
-from gbeam.numerics.filters import displacement
 from gbeam.numerics.minimise import coarse
+from gbeam.numerics.samples import displacement
 from gbeam.results.result import Flags, Floats
 
 Turn = tuple[float, float, float]

@@ -18,8 +18,7 @@ from gbeam.guards.arguments import typed
 from gbeam.guards.limits import SAMPLES, refuse_more
 from gbeam.motion import Centrifuge
 from gbeam.motion.bases.base import gradients
-from gbeam.motion.centrifuge.history import axes_result
-from gbeam.motion.centrifuge.kinematics import axis_angles
+from gbeam.motion.centrifuge.kinematics import axes_result, axis_angles
 from gbeam.motion.protocol import implausible_motion
 from gbeam.results.imitation.accounting import TOLERANCE, PeakPair
 from gbeam.results.imitation.comparison import MachinePlan

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gbeam.analysis.imitation.accounting import points_of
-from gbeam.analysis.system.assembly import undeformed
+from gbeam.analysis.outline import undeformed
 from gbeam.analysis.system.point import Point
 from gbeam.analysis.system.steady import Drive, steady
 from gbeam.arrays.tree import each_leaf

@@ -9,10 +9,9 @@ from typing import Any, TypeVar, Unpack
 import numpy as np
 
 from gbeam.analysis.response.peaks import displacement_peaks
-from gbeam.analysis.response.posed import Posed, pose, steps_within
 from gbeam.analysis.response.record import response_of
 from gbeam.analysis.response.settings import ResponseSettings, Settings
-from gbeam.analysis.response.simulation import settings_of, simulate
+from gbeam.analysis.response.simulation import Posed, pose, settings_of, simulate, steps_within
 from gbeam.analysis.response.step_errors import Run
 from gbeam.analysis.response.stepping import Plan, scheme_of
 from gbeam.arrays.namespace import holds_jax

@@ -25,7 +25,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.motion import Centrifuge
 from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.flight import Flight
-from gbeam.motion.centrifuge.history import axes_result
+from gbeam.motion.centrifuge.kinematics import axes_result
 from gbeam.motion.protocol import Motion
 from gbeam.results.errors import ErrorEstimate, Errors, StepErrors
 from gbeam.results.machine import AxesResult

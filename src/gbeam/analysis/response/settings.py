@@ -10,9 +10,8 @@ from gbeam.analysis.response.problem import Initial, begun
 from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import finite, positive
+from gbeam.guards.checks import finite, implausible, positive, possible
 from gbeam.guards.limits import STEPS, refuse_more
-from gbeam.guards.ranges import implausible, possible
 
 FINE = 1e-4
 KEPT = 50_000  # samples of each history that a file holds, unless the settings say how often: 36 MB of the F-16 example

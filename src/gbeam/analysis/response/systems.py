@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.analysis.outline import outline_of
+from gbeam.analysis.outline import assembly_of, outline_of
 from gbeam.analysis.response.outcome import yielding
 from gbeam.analysis.response.peaks import half_ranges, load_peaks
 from gbeam.analysis.response.problem import Problem
@@ -20,7 +20,6 @@ from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.step_errors import Run, difference, of_histories, ratio, share
 from gbeam.analysis.response.stepping import LOADS_STEPS, even_steps, finer_by, integrated, scheme_of, steps_beyond
 from gbeam.analysis.system.accuracy import doubts, system_errors
-from gbeam.analysis.system.assembly import assembly_of
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
 from gbeam.analysis.system.histories import Carried, beams_of, deflection, histories, loads_of
 from gbeam.analysis.system.point import Point, started, started_traced
@@ -36,7 +35,7 @@ from gbeam.mechanics.tree.equations import Inputs
 from gbeam.mechanics.tree.steps import continuous
 from gbeam.mechanics.tree.system import System
 from gbeam.motion import Centrifuge
-from gbeam.motion.centrifuge.history import axes_result
+from gbeam.motion.centrifuge.kinematics import axes_result
 from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress, tell
 from gbeam.results.errors import ErrorEstimate, SystemErrors

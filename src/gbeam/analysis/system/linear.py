@@ -11,9 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.analysis.accuracy.estimate import LIMIT
-from gbeam.analysis.outline import outline_of
+from gbeam.analysis.outline import assembly_of, outline_of
 from gbeam.analysis.system.accuracy import doubts, system_errors
-from gbeam.analysis.system.assembly import assembly_of
 from gbeam.analysis.system.histories import beams_of, histories, loads_of
 from gbeam.analysis.system.point import Point, started
 from gbeam.analysis.system.steady import Drive, SteadySystem, steady

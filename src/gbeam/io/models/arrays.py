@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from gbeam.errors import InputError
-from gbeam.guards.confined import confined
 from gbeam.guards.limits import BINARY_BYTES, read_json, refuse_large_file
+from gbeam.guards.processes import confined
 from gbeam.io.models.contents import Contents, sparse_parts
 from gbeam.printable import shortened
 

@@ -13,8 +13,8 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.confined import confined
 from gbeam.guards.limits import BINARY_BYTES, refuse_large_file
+from gbeam.guards.processes import confined
 from gbeam.io.models.contents import Contents
 from gbeam.printable import shortened
 

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.errors import InputError
-from gbeam.guards.confined import confined
 from gbeam.guards.limits import ELEMENTS, refuse_more
+from gbeam.guards.processes import confined
 from gbeam.io.tables.table import Column, Table, array_columns
 
 if TYPE_CHECKING:

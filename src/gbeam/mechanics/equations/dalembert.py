@@ -1,7 +1,10 @@
 """The equations of a complete model (CFOAM, fourth-order, exact): D'Alembert's sum over the particles of its field.
 
-Σ m (∂r/∂q)·a + K q + C q̇ = Q. On a free hub the moment of the same forces about the axis is the hub's row. All arrays
-may have leading axes: at one instant the sums are compiled by JAX for time steps, over many they are NumPy's.
+Σ m (∂r/∂q)·a + K q + C q̇ = Q. All arrays may have leading axes: at one instant the sums are compiled by JAX for time
+steps, over many they are NumPy's. With a beam on the rim of a free hub the hub's angle is one more coordinate,
+y = (θ, q), whose row is the moment of the same forces about the hub's axis e. For a model whose places are a polynomial
+that moment is a polynomial with constant tensors, which are contractions of the coefficients on a prescribed base with
+e and with the root's place r_O on the rim: nothing is differentiated.
 """
 
 from __future__ import annotations
@@ -9,13 +12,151 @@ from __future__ import annotations
 from typing import Any
 
 from gbeam.arrays.namespace import concatenated, namespace
-from gbeam.arrays.tree import record
-from gbeam.mechanics.equations.hub import FreeHub, Ground, free_hub
+from gbeam.arrays.tree import record, static
 from gbeam.mechanics.equations.inertia import Inertia
-from gbeam.mechanics.equations.linear import Coefficients
+from gbeam.mechanics.equations.linear import Coefficients, LoadTerms
 from gbeam.mechanics.equations.virtual_work import LoadWork
 
 Array = Any
+
+
+@record
+class Ground:
+    """Inertia of the hub about its axis, kg m², and spring N m/rad and damper N m s/rad between it and the ground."""
+
+    inertia: Array
+    stiffness: Array
+    damping: Array
+
+    def torque(self, angle: Array, rate: Array, acceleration: Array) -> Array:
+        """Torque that the hub itself takes, N m."""
+        return self.inertia * acceleration + self.damping * rate + self.stiffness * angle
+
+
+@record
+class Weight:
+    """Gravity (3,) at θ = 0 on hub and beam: the first moment of mass about the axis, S0 + S1 q + ½ q S2 q, base."""
+
+    gravity: Array
+    R_HB: Array
+    s0: Array
+    s1: Array
+    s2: Array
+
+    def forces(self, angle: Array, q: Array) -> tuple[Array, Array]:
+        """Torque (...) of gravity about the axis, N m, and its forces on the coordinates, (..., n)."""
+        xp = namespace(self.s0, angle, q)
+        x, y, z = self.gravity
+        c, s = xp.cos(angle), xp.sin(angle)
+        g = xp.stack([c * x + s * y, c * y - s * x, z + 0 * c], axis=-1) @ self.R_HB
+        slope = self.s1 + xp.einsum("aij,...j->...ai", self.s2, q)
+        moment = self.s0 + ((self.s1 + slope) / 2 * q[..., None, :]).sum(axis=-1)
+        across = xp.cross(self.R_HB[2], moment)  # e × S
+        return _dot(across, g), (g[..., :, None] * slope).sum(axis=-2)
+
+
+@record
+class FreeHub:
+    """Equations of a free hub and a beam whose places are a polynomial, 2009 (24)–(34): (J_h + J) θ̈ + 2 θ̇ (F2 − K2
+    q)·q̇ + b·q̈ + q̇·B q̇ = torque, with J = J0 + 2 F2·q − q K2 q and b = b0 + B q, and M q̈ + (C + θ̇ G) q̇ + (K + θ̇²
+    K2) q − θ̇² F2 + θ̈ b = 0; without `hub_force`, 2009 (32), the hub's row is that of SFOAM as printed, which
+    conserves nothing.
+    """
+
+    mass: Array
+    damping: Array
+    stiffness: Array
+    gyroscopic: Array
+    k2: Array
+    b1: Array
+    f2: Array
+    b0: Array
+    rigid: Array
+    ground: Ground
+    twist: Array
+    weight: Weight | None
+    loads: LoadTerms | None
+    hub_force: bool = static()
+
+    def residual(self, y: Array, yd: Array, ydd: Array, torque: Array, load_values: Array | None = None) -> Array:
+        """Residual (..., n + 1) of hub and beam, y = (θ, q), under a torque on the hub, N m, and load components (...,
+        loads, 6).
+        """
+        (angle, q), (rate, qd), (alpha, qdd) = ((each[..., 0], each[..., 1:]) for each in (y, yd, ydd))
+        # Products of constants with one vector stand together: one matrix product in a compiled step.
+        elastic, k2q, b1q = _rows(q, self.stiffness, self.k2, self.b1)
+        damped, turned, b1qd = _rows(qd, self.damping, self.gyroscopic, self.b1)
+        swept, coupling = self.f2 - k2q, self.b0 + b1q
+        turning = self.ground.torque(angle, rate, alpha) - torque
+        turning = turning + (self.rigid + _dot(self.f2 + swept, q)) * alpha + _dot(coupling, qdd)
+        if self.hub_force:
+            turning = turning + 2 * rate * _dot(swept, qd) + _dot(qd, b1qd)
+        rate, alpha = rate[..., None], alpha[..., None]
+        beam = qdd @ self.mass + damped + rate * turned + elastic - rate**2 * swept + alpha * coupling
+        if self.weight is not None:
+            about, along = self.weight.forces(angle, q)
+            turning, beam = turning - about, beam - along
+        if self.loads is not None and load_values is not None:
+            forces = self.loads.generalised(q, load_values)
+            turning, beam = turning - forces[..., :6] @ self.twist, beam - forces[..., 6:]
+        return concatenated([turning[..., None], beam])
+
+    def momentum(self, y: Array, yd: Array) -> Array:
+        """Angular momentum of hub and beam about the axis, N m s."""
+        q, qd, rate = y[1:], yd[1:], yd[0]
+        inertia = self.ground.inertia + self.rigid + (2 * self.f2 - self.k2 @ q) @ q
+        return inertia * rate + (self.b0 + self.b1 @ q) @ qd
+
+
+def _rows(vector: Array, *matrices: Array) -> Any:
+    """Products of some (n, n) matrices with vectors (..., n), (..., n) each."""
+    products, n = vector @ namespace(*matrices).concatenate(matrices).T, len(matrices[0])
+    return tuple(products[..., k * n : (k + 1) * n] for k in range(len(matrices)))
+
+
+def _dot(left: Array, right: Array) -> Array:
+    return (left * right).sum(axis=-1)
+
+
+def free_hub(c: Coefficients, mount: Any, ground: Ground, *, hub_force: bool = True) -> FreeHub:
+    """Contract the coefficients of a linear model with a hub's axis and the root's place."""
+    xp = namespace(c.mass, mount.radius, mount.R_HB)
+    radius, R_HB = mount.radius, xp.asarray(mount.R_HB)
+    root, along, e = radius * R_HB[0], radius * R_HB[1], R_HB[2]  # r_O, e × r_O, e
+    ee = e[:, None] * e[None, :]
+
+    k2 = xp.tensordot(ee, c.k_ww, 2) - xp.tensordot(root, c.k_a, 1)
+    f2 = xp.tensordot(ee, c.f_ww, 2) - root @ c.f_a
+    b1 = xp.tensordot(e, c.k_al, 1) + xp.tensordot(along, c.k_a, 1)
+    b0 = -(e @ c.f_al + along @ c.f_a)
+    m, first, (xx, yy, zz, xy, yz, zx) = c.rigid[0], c.rigid[1:4], c.rigid[4:]
+    second = xp.stack([xp.stack([xx, xy, zx]), xp.stack([xy, yy, yz]), xp.stack([zx, yz, zz])])
+    # Σ m |e × (r_O + r0)|²; r_O is square to e.
+    rigid = m * radius**2 + 2 * (root @ first) + xx + yy + zz - e @ second @ e
+    weight = None
+    if mount.gravity is not None:
+        weight = Weight(xp.asarray(mount.gravity), R_HB, m * root + first, -c.f_a, c.k_a)
+    return FreeHub(
+        mass=c.mass,
+        damping=c.damping,
+        stiffness=c.stiffness,
+        gyroscopic=xp.tensordot(e, c.gyroscopic, 1),
+        k2=k2,
+        b1=b1,
+        f2=f2,
+        b0=b0,
+        rigid=rigid,
+        ground=ground,
+        twist=xp.concatenate([along, e]),
+        weight=weight,
+        loads=c.loads,
+        hub_force=hub_force,
+    )
+
+
+def ground_of(hub: Any) -> Ground:
+    """The ground of a free hub of :mod:`gbeam.motion`."""
+    return Ground(hub.inertia, hub.stiffness, hub.damping)
 
 
 @record

@@ -12,8 +12,7 @@ from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.guards.checks import positive
 from gbeam.guards.limits import SAMPLES, refuse_more
-from gbeam.numerics.filters import low_pass
-from gbeam.numerics.samples import true_runs
+from gbeam.numerics.samples import low_pass, true_runs
 
 Floats = NDArray[np.float64]
 

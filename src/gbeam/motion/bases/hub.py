@@ -11,8 +11,7 @@ from gbeam.arrays.namespace import as_array, is_traced, namespace
 from gbeam.arrays.tree import assign, record, static
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import finite, positive
-from gbeam.guards.ranges import possible
+from gbeam.guards.checks import finite, positive, possible
 from gbeam.motion.bases.base import Base
 from gbeam.motion.profiles.combine import as_profile
 from gbeam.motion.profiles.profile import Profile

@@ -14,12 +14,11 @@ from gbeam.arrays.tree import assign, record, static
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import choice, positive, vector
-from gbeam.guards.ranges import possible
+from gbeam.guards.checks import choice, positive, possible, vector
 from gbeam.motion.bases.base import Base, mapped
 from gbeam.motion.bases.flight import Flight
 from gbeam.motion.centrifuge.course import INVERSES, Course, prepare
-from gbeam.motion.centrifuge.inverses.closed_form import Geometry, Inverse
+from gbeam.motion.centrifuge.inverses.instant import Geometry, Inverse
 from gbeam.motion.centrifuge.kinematics import Axes, control_point_load, forward, moved
 from gbeam.motion.centrifuge.limits import Ends, Limits, Machine, MachineLimits, usage
 from gbeam.motion.centrifuge.target.reachability import shortfalls

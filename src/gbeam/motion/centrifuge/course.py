@@ -12,8 +12,7 @@ import numpy as np
 from gbeam.arrays.namespace import as_array, is_jax, is_traced, namespace
 from gbeam.arrays.tree import record, static
 from gbeam.errors import InputError
-from gbeam.motion.centrifuge.inverses.closed_form import Flat, Geometry, Inverse, Pose, QuasiStatic
-from gbeam.motion.centrifuge.inverses.exact import exact, unfollowable
+from gbeam.motion.centrifuge.inverses.instant import Flat, Geometry, Inverse, Pose, QuasiStatic, exact, unfollowable
 from gbeam.motion.centrifuge.inverses.planned import planned
 from gbeam.motion.centrifuge.inverses.spin_up import Ramp, build_ramps
 from gbeam.motion.centrifuge.limits import Ends, Limits

@@ -13,9 +13,8 @@ from gbeam.arrays.namespace import as_array, is_traced, namespace
 from gbeam.arrays.tree import assign, record
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.motion.profiles.convolution import Convolved, beside
 from gbeam.motion.profiles.piecewise import PiecewiseLinear, constant
-from gbeam.motion.profiles.profile import Profile
+from gbeam.motion.profiles.profile import Convolved, Profile, beside
 from gbeam.numerics.series import Series, stack, where
 
 if TYPE_CHECKING:

@@ -12,8 +12,7 @@ from gbeam.arrays.tree import assign, record, static
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import finite, positive
-from gbeam.motion.profiles.convolution import beside, hann_orders
-from gbeam.motion.profiles.profile import TOGETHER, Profile, Rounded
+from gbeam.motion.profiles.profile import TOGETHER, Profile, Rounded, beside, hann_orders
 from gbeam.numerics.series import Series
 
 if TYPE_CHECKING:
@@ -131,7 +130,7 @@ class SmoothedPiecewiseLinear(Rounded):
     Notes
     -----
     With Δ_i the change of slope at knot t_i, f(t) = line(t) + Σ Δ_i W h((t − t_i)/W), where `line` is the
-    segment at t − W/2 prolonged, h the rounded ramp (:func:`~gbeam.motion.profiles.convolution.hann`) and the sum runs
+    segment at t − W/2 prolonged, h the rounded ramp (:func:`~gbeam.motion.profiles.profile.hann`) and the sum runs
     over the knots within W/2 of t: later ones have not acted yet, earlier ones are in `line`. So the cost does
     not grow with the table.
     """

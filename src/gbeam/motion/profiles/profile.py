@@ -1,20 +1,25 @@
-"""Protocol of profiles: a quantity prescribed over time, with its derivatives; its smoothing."""
+"""Protocol of profiles: a quantity prescribed over time, with its derivatives; its smoothing by a Hann kernel."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from functools import cache, partial
+from math import factorial, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.arrays.namespace import as_array, is_jax, namespace
+from gbeam.arrays.tree import assign, record
 from gbeam.guards.arguments import refuse_units, typed
 from gbeam.guards.checks import positive
 from gbeam.guards.limits import KNOTS, refuse_more
-from gbeam.numerics.series import Series
+from gbeam.numerics.series import Series, compose, where
 
 if TYPE_CHECKING:
     from gbeam.results.description import RecordSummary
+
 
 _FOR_EVER = 1e12  # s: knots no nearer than a profile needs them
 TOGETHER = 1_000_000  # knots or nodes of the windows around some times: what more would take comes piece by piece
@@ -78,7 +83,6 @@ class Profile(ABC):
 
         By quadrature, but for profiles that know a better way.
         """
-        from gbeam.motion.profiles.convolution import Convolved  # itself a profile
 
         return Convolved(self, width)
 
@@ -161,3 +165,146 @@ class Rounded(Profile):
     def extent(self) -> tuple[float, float] | None:
         """First and last time of the sharp profile, s."""
         return self.sharp.extent
+
+
+TURN = 2 * pi
+
+
+def hann(order: int, x: Any) -> Any:
+    """Return the `order`-th derivative of the rounded ramp of unit width at `x`.
+
+    The rounded ramp is max(x, 0) convolved with the Hann kernel k(x) = 1 + cos 2πx on abs(x) < 1/2, whose integral is
+    one: zero below −1/2, x above 1/2, three times continuously differentiable. Order 1 is the rounded step x + 1/2 +
+    sin(2πx)/2π, order 2 the kernel itself, order 3 its continuous derivative.
+    """
+    x = as_array(x)
+    return _differentiable()(order, x) if is_jax(x) else hann_orders(order, order, x)[0]
+
+
+def hann_orders(first: int, last: int, x: Any) -> list[Any]:
+    """The derivatives of orders `first` to `last` at `x`, which share their sine and cosine."""
+    if is_jax(x):
+        return [hann(order, x) for order in range(first, last + 1)]  # its compiler shares them
+    return _orders(np, first, last, x)
+
+
+def _orders(xp: Any, first: int, last: int, x: Any) -> list[Any]:
+    u = xp.clip(x, -0.5, 0.5)
+    orders = range(first, last + 1)
+    # Orders 0 and 2 need no sine, order 1 no cosine.
+    sine = xp.sin(TURN * u) if 1 in orders or last > 2 else 0.0
+    cosine = xp.cos(TURN * u) if (first, last) != (1, 1) else 0.0
+    inside = xp.abs(x) < 0.5 if last > 2 else True
+    values = []
+    for order in orders:
+        match order:
+            case 0:
+                value = (u + 0.5) ** 2 / 2 - (1 + cosine) / TURN**2 + xp.maximum(x - 0.5, 0.0)
+            case 1:
+                value = u + 0.5 + sine / TURN
+            case 2:
+                value = 1 + cosine
+            case _:
+                sign = 1.0 if order % 4 in (1, 2) else -1.0
+                value = xp.where(inside, sign * TURN ** (order - 2) * (cosine, sine)[order % 2], 0.0)
+        values.append(value)
+    return values
+
+
+@cache
+def _differentiable() -> Any:
+    """`hann` for JAX: the derivative of one order is the next."""
+    import jax
+    import jax.numpy as jnp
+
+    import gbeam.arrays.jax_setup  # noqa: F401
+
+    @partial(jax.custom_jvp, nondiff_argnums=(0,))
+    def ramp(order: int, x: Any) -> Any:
+        return _orders(jnp, order, order, x)[0]
+
+    @ramp.defjvp
+    def _(order: int, primals: Any, tangents: Any) -> Any:
+        (x,), (dx,) = primals, tangents
+        return ramp(order, x), ramp(order + 1, x) * dx
+
+    return ramp
+
+
+def soft_floor(value: Any, floor: Any, band: Any) -> Any:
+    """Return a three times differentiable max(value, floor)."""
+    x = (value - floor) / band
+    ramp = compose(hann_orders(0, x.order, x.value), x) if isinstance(x, Series) else hann(0, x)
+    return ramp * band + floor
+
+
+def soft_step(value: Series, middle: Any, band: Any) -> Series:
+    """Return a twice differentiable step from 0 to 1."""
+    x = (value - middle) / band
+    # Beyond half a unit the integral of the kernel no longer rises; its rounding there is no step.
+    return where(x.value <= -0.5, 0.0, where(x.value >= 0.5, 1.0, compose(hann_orders(1, 1 + x.order, x.value), x)))
+
+
+# On one panel the integrand is a smooth curve times one period of a cosine: 20 points leave only rounding.
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(20)
+
+
+@record
+class Convolved(Rounded):
+    """A profile convolved with the Hann kernel of width W.
+
+    The panels end at the profile's breaks, wherever these lie in the window of abs(σ − t) < W/2, so that each
+    integrand is smooth. Their other ends, and so the nodes, move with t: a node is a series of first order in time,
+    the integrand one of any order, and the derivatives are as accurate as the value.
+
+    Parameters
+    ----------
+    profile : Profile
+        Analytic between its breaks, and with few of them: the cost grows with their number.
+    width : float
+        W, s.
+    """
+
+    profile: Profile
+    width: Any
+
+    def __post_init__(self) -> None:
+        assign(self, width=as_array(self.width))
+
+    def series(self, t: Any, order: int) -> Series:
+        now, breaks, width = as_array(t), self.profile.breaks, self.width
+        xp = namespace(now, breaks, width)
+        nodes = (breaks.size + 1) * _POINTS.size
+        if xp is np and now.ndim == 1 and now.size > 1 and now.size * nodes > TOGETHER:
+            return Series.in_pieces(
+                lambda some: self.series(some, order), now, min(now.size, 1 + now.size * nodes // TOGETHER)
+            )
+        low, high = now[..., None] - width / 2, now[..., None] + width / 2
+        one, fixed = xp.ones_like(low), (breaks > low) & (breaks < high)
+        at, weight = _panels(xp, xp.concatenate([low, xp.clip(breaks, low, high), high], axis=-1))
+        speed, widening = _panels(xp, xp.concatenate([one, xp.where(fixed, 0.0, 1.0), one], axis=-1))
+        inner = self.profile.series(at, order)
+        axes = inner.value.ndim - at.ndim
+        values = Series(tuple(beside(speed**k, axes) * c for k, c in enumerate(inner.coefficients)))
+        orders = hann_orders(2, 2 + order, (now[..., None] - at) / width)
+        kernel = Series(tuple(((1 - speed) / width) ** k * h / factorial(k) for k, h in enumerate(orders)))
+        weighted = Series.of([weight / width, widening / width], order) * kernel
+        return (weighted.each(lambda c: beside(c, axes)) * values).each(lambda c: c.sum(axis=now.ndim))
+
+    @property
+    def sharp(self) -> Profile:
+        """The profile."""
+        return self.profile
+
+
+def _panels(xp: Any, ends: Any) -> tuple[Any, Any]:
+    """Gauss's points and weights of the panels between ends (..., p + 1), along one last axis; linear in the ends."""
+    middle, half = (ends[..., 1:] + ends[..., :-1]) / 2, xp.diff(ends) / 2
+    points = middle[..., None] + half[..., None] * _POINTS
+    shape = (*ends.shape[:-1], points.shape[-2] * points.shape[-1])
+    return points.reshape(shape), (half[..., None] * _WEIGHTS).reshape(shape)
+
+
+def beside(array: Any, axes: int) -> Any:
+    """Append `axes` trailing axes of length one."""
+    return array.reshape(array.shape + (1,) * axes)

@@ -12,8 +12,7 @@ from gbeam.arrays.tree import assign, record
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, finite, positive
-from gbeam.motion.profiles.convolution import TURN, hann_orders
-from gbeam.motion.profiles.profile import STEPS_PER_EVENT, Profile, sampled
+from gbeam.motion.profiles.profile import STEPS_PER_EVENT, TURN, Profile, hann_orders, sampled
 from gbeam.numerics.bspline import DEGREE, PIECE, Spline
 from gbeam.numerics.series import Series
 

@@ -17,10 +17,9 @@ from gbeam.io.tables.binary import is_binary, read_binary
 from gbeam.io.tables.table import NO_COLUMN, Clock, Table
 from gbeam.motion.bases.conditioning import FEWEST, Floats, filtered, spikes, without_spikes
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
-from gbeam.motion.records.soundness import CHECKS, Samples, load_factors, mirrored, refuse_other_kinds, refuse_unsound
-from gbeam.motion.records.summary import oddities, summary
+from gbeam.motion.records.columns import UNITS, load_factors, mirrored, refuse_other_kinds, unit_of
+from gbeam.motion.records.soundness import CHECKS, Samples, oddities, refuse_unsound, summary
 from gbeam.motion.records.text import Span, check_interval, check_sampling, part_within, read_text
-from gbeam.motion.records.units import UNITS, unit_of
 
 
 def read_table(path: str | os.PathLike[str], words: Iterable[str] = ()) -> Table:

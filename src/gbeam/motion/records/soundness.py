@@ -1,8 +1,7 @@
-"""Soundness of a record: what its columns are named, and what its samples show."""
+"""Soundness of a record: what its samples show, refused or flown all the same, and its summary in numbers."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 
@@ -11,87 +10,10 @@ from numpy.typing import NDArray
 
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
-from gbeam.io.tables.table import Table
-from gbeam.motion.bases.conditioning import dropout, spikes, without_spikes
-from gbeam.motion.records.units import UNITS, words_of
-
-_TRUST = 'if the name misleads, add skip_checks = ["columns"]'
-_LOADS = re.compile(r"(a|n|f|g|nlf|load|factor|acc\w*)[xyz]?")  # words of which a name is a load's
-_FACTOR = re.compile(r"\b(n ?[xyz]|nlf|load factor)\b")
-_AXIS = re.compile(r"(?:a|n|f|g|acc|accel|imu)?([xyz])")
-# Words, or ends of names, of what is no load.
-_OTHERS = {
-    "a rate of rotation": ("p", "q", "r", "wx", "wy", "wz", "gyro", "gyr", "omega", "rad/s", "deg/s", "dps", "rpm"),
-    "an angle": ("roll", "pitch", "yaw", "heading", "phi", "theta", "psi", "alpha", "beta", "aoa", "deg", "rad"),
-    "a speed": ("speed", "velocity", "vel", "tas", "ias", "cas", "eas", "mach", "kt", "kts", "knots", "mps", "fps"),
-    "a height": ("altitude", "alt", "height", "agl", "msl"),
-    "a time": ("time", "timestamp", "utc"),
-    "a temperature": ("temperature", "temp"),
-}
-
-
-def refuse_other_kinds(table: Table, names: dict[str, str]) -> None:
-    """Refuse a column that is no load by its name, and one that is named for two components."""
-    used: dict[str, str] = {}
-    for axis, name in names.items():
-        _, column = table.signed(name)
-        if column is None:
-            continue
-        table.column(axis, column)
-        kind = _other_kind(column)
-        if kind:
-            loads = [one.name for one in table.columns if any(map(_is_load, words_of(one.name)))]
-            fix = f"name a column of load, such as {loads[0]!r}" if loads else "name a column of load"
-            raise InputError(f"record.{axis}", f"names {column!r}, by its name {kind} and no load", f"{fix}; {_TRUST}")
-        if column in used:
-            fix = 'name each once, and "0" for a component that is zero; or add skip_checks = ["columns"]'
-            raise InputError(f"record.{axis}", f"names {column!r}, which is {used[column]} too", fix)
-        used[column] = axis
-
-
-def mirrored(table: Table, names: dict[str, str]) -> Iterator[str]:
-    """Say where the columns' axes, right-handed by their names, become left-handed ones of the beam."""
-    mapping = np.zeros((3, 3))
-    for row, name in zip(mapping, names.values(), strict=True):
-        sign, column = table.signed(name)
-        axes = [] if column is None else [match[1] for word in words_of(column) if (match := _AXIS.fullmatch(word))]
-        if len(axes) == 1:
-            row["xyz".index(axes[0])] = sign
-    if round(float(np.linalg.det(mapping))) == -1:
-        listed = ", ".join(f"{axis} = {name!r}" for axis, name in names.items())
-        yield (
-            f"{listed} mirrors the columns' axes (determinant -1): two are exchanged, or one has the wrong sign; "
-            'aircraft axes, x forward, y right, z down, want x = "X", y = "-Y", z = "-Z". If the columns themselves '
-            'are left-handed, such as with a load factor upwards, add skip_checks = ["columns"]'
-        )
-
-
-def load_factors(table: Table, names: dict[str, str], unit: str, *, specific: bool) -> Iterator[str]:
-    """Say where columns are load factors by their names, and are taken for something else."""
-    columns = [column for _, column in map(table.signed, names.values()) if column is not None]
-    factors = [column for column in columns if _FACTOR.search(" ".join(words_of(column)))]
-    if factors and unit != "g":
-        yield f"{factors[0]!r} is a load factor by its name, which is in g, and unit is {unit}"
-    if factors and not specific:
-        yield (
-            f"{factors[0]!r} is a load factor by its name, which is specific force, 1 g in level flight, and quantity "
-            "is acceleration"
-        )
-
-
-def _other_kind(name: str) -> str:
-    words = words_of(name)
-    if any(map(_is_load, words)):
-        return ""
-    ends = {*words, "/".join(words[-2:])}
-    return next((kind for kind, known in _OTHERS.items() if ends & set(known)), "")
-
-
-def _is_load(word: str) -> bool:
-    return _LOADS.fullmatch(word) is not None
-
-
-Floats = NDArray[np.float64]
+from gbeam.motion.bases.conditioning import Floats, dropout, flat_tops, spikes, without_spikes
+from gbeam.motion.records.columns import UNITS
+from gbeam.numerics.samples import true_runs
+from gbeam.results.description import Level, RecordSummary, Vector
 
 CHECKS = ("sampling", "spikes", "unit", "sign", "dropouts", "columns")
 LARGEST = 50.0  # g
@@ -274,3 +196,72 @@ def _check_dropouts(record: Samples) -> None:
 def rows(first: str, last: str) -> str:
     word, number = first.split()
     return f"{word}s {number} to {last.split()[1]}"
+
+
+_ALONG = 0.7  # of the largest load: within 45° of the beam
+_LISTED = 4  # flat tops
+
+
+def summary(
+    record: Samples, file: str, whole: tuple[float, float], clock: str, notes: tuple[str, ...]
+) -> RecordSummary:
+    """Summarise a record."""
+    time, load = record.time, record.load
+    top = int(np.linalg.norm(load, axis=1).argmax())
+    first, last = float(time[0]), float(time[-1])
+    x, y, z = record.names.values()
+    return RecordSummary(
+        file=file,
+        columns=(x, y, z),
+        quantity="specific-force" if record.specific else "acceleration",
+        samples=len(time),
+        rate=(len(time) - 1) / (last - first),
+        span=(first, last),
+        whole=whole,
+        smallest=_vector(load.min(axis=0)),
+        largest=_vector(load.max(axis=0)),
+        peak=_vector(load[top]),
+        time_of_peak=float(time[top]),
+        level=_level(record) if record.specific else None,
+        clock=clock,
+        notes=notes,
+    )
+
+
+def oddities(record: Samples) -> Iterator[str]:
+    """Say where a sensor seems to have been at the end of its range, and whether the load is along the beam."""
+    for (axis, name), values in zip(record.names.items(), record.load.T, strict=True):
+        for extreme, runs in flat_tops(values):
+            listed = ", ".join(
+                f"{record.time[run.start]:g} to {record.time[run.stop - 1]:g} s "
+                f"({rows(record.place(run.start), record.place(run.stop - 1))})"
+                for run in runs[:_LISTED]
+            )
+            more = f" and {len(runs) - _LISTED} times more" if len(runs) > _LISTED else ""
+            yield (
+                f"{axis}, column {name.lstrip('-')!r}, stands at its extreme, {record.said(extreme)}, from "
+                f"{listed}{more}: its sensor seems to be at the end of its range, and what is beyond is lost"
+            )
+    size = np.linalg.norm(record.load, axis=1)
+    top = int(size.argmax())
+    along = record.load[top, 0]
+    if abs(along) > _ALONG * size[top]:
+        yield (
+            f"the largest load, {record.said(size[top])} at {record.time[top]:g} s, lies along the beam (x is "
+            f"{record.said(along)}), which bends it little; x is {record.names['x']!r}"
+        )
+
+
+def _level(record: Samples) -> Level | None:
+    in_g = np.linalg.norm(record.load, axis=1) / STANDARD_GRAVITY
+    runs = true_runs((in_g > LEVEL[0]) & (in_g < LEVEL[1]))
+    if not runs:
+        return None
+    longest = max(runs, key=lambda run: run.stop - run.start)
+    ends = float(record.time[longest.start]), float(record.time[longest.stop - 1])
+    return Level(*ends, _vector(record.load[longest].mean(axis=0)))
+
+
+def _vector(values: Floats) -> Vector:
+    x, y, z = values.tolist()
+    return x, y, z

@@ -16,7 +16,7 @@ from gbeam.errors import InputError
 from gbeam.guards.limits import BINARY_BYTES, TEXT_BYTES, in_bytes, refuse_large_file
 from gbeam.io.tables.table import Clock, Column, Table, is_clock
 from gbeam.motion.bases.conditioning import FEWEST, UNEVEN
-from gbeam.motion.records.units import UNITS, is_unit
+from gbeam.motion.records.columns import UNITS, is_unit
 
 Span = tuple[float | str | None, float | str | None]
 

@@ -16,9 +16,21 @@ from gbeam.figures.description import raised
 from gbeam.guards.limits import parse_json
 from gbeam.printable import json_printable
 from gbeam.report.facts import facts_text
-from gbeam.report.page import machine, searches, steady, study
-from gbeam.report.page.curves import Numbers, drawn
-from gbeam.report.page.parts import Value, badge, escaped, folded, heading, listed, paragraph, section, table, verbatim
+from gbeam.report.page import answers, machine, searches
+from gbeam.report.page.parts import (
+    Numbers,
+    Value,
+    badge,
+    drawn,
+    escaped,
+    folded,
+    heading,
+    listed,
+    paragraph,
+    section,
+    table,
+    verbatim,
+)
 from gbeam.report.page.records import figures_in, modes_in
 from gbeam.report.page.scene import scene, shapes, shapes_of_system
 from gbeam.report.words import as_json
@@ -51,7 +63,7 @@ def _system_study(facts: Mapping[str, Any], viewer: str, plots: str) -> str:
     alone = {key: value for key, value in facts.items() if key != "comparisons"}
     alone["motions"] = {n: {k: v for k, v in each.items() if k != "limits"} for n, each in facts["motions"].items()}
     machines = "".join(machine.machine_section(name, each) for name, each in motions.items())
-    return study.verdicts(facts) + _quantities(alone, viewer, plots) + machines
+    return answers.verdicts(facts) + _quantities(alone, viewer, plots) + machines
 
 
 def _inside(known: Mapping[str, Any], units: Mapping[str, str], place: str) -> Iterator[str]:
@@ -65,7 +77,7 @@ def _inside(known: Mapping[str, Any], units: Mapping[str, str], place: str) -> I
         if key == "beams":
             beams = {name: {"loads": each} for name, each in value.items()}
             over_time = all("sections" in each for each in value.values())
-            yield (study.loads_table if over_time else steady.loads_table)(beams, "beam")
+            yield (answers.loads_table if over_time else answers.resting_loads_table)(beams, "beam")
             continue
         if isinstance(value, dict):
             below = f"{place}{key}.*."
@@ -96,16 +108,16 @@ def _shown(value: Any) -> Value:
 
 
 PAGES = {
-    "Study": Page("run", study.body, ("motions", "comparisons")),
+    "Study": Page("run", answers.run_body, ("motions", "comparisons")),
     "Comparison": Page("run", machine.comparison_body, ("verdict", "flight", "centrifuge")),
     "ModelStudy": Page("models", _quantities, ("reference", "rows")),
     "StateSpace": Page("linearize", _quantities, ("states", "inputs", "outputs")),
-    "Deflection": Page("static", steady.static_body, ("motions",), ("displacement", "tip", "stable")),
+    "Deflection": Page("static", answers.static_body, ("motions",), ("displacement", "tip", "stable")),
     "MachinePlan": Page("plan", machine.plan_body, ("motions",), ("limits", "tracks")),
-    "Modes": Page("modes", steady.modes_body, ("modes", "instabilities")),
-    "Campbell": Page("campbell", steady.campbell_body, ("tracks", "crossings")),
-    "Critical": Page("critical-speed", steady.critical_body, ("quantity", "searched_to", "reason")),
-    "CriticalMap": Page("critical-speed --masses", steady.critical_map_body, ("mass", "position", "critical_speed")),
+    "Modes": Page("modes", answers.modes_body, ("modes", "instabilities")),
+    "Campbell": Page("campbell", answers.campbell_body, ("tracks", "crossings")),
+    "Critical": Page("critical-speed", answers.critical_body, ("quantity", "searched_to", "reason")),
+    "CriticalMap": Page("critical-speed --masses", answers.critical_map_body, ("mass", "position", "critical_speed")),
     "Placement": Page("place", machine.placement_body, ("fraction_of_length", "options")),
     "SystemStudy": Page("run", _system_study, ("motions",), ("points", "coordinates", "steps")),
     "SystemRest": Page("static", _quantities, ("motions",), ("points", "coordinates", "ground_force")),
@@ -153,7 +165,7 @@ def html(
     header |= _viewer(kind, facts, variables or {}, numbers)
     body = _body(kind)(facts, '<div id="gbeam-viewer"></div>' if header.keys() & {"scene", "modes"} else "", plots)
     title = facts.get("title") or _title(origin) or f"gbeam {verb}"
-    warnings = study.warnings(facts) if "motions" in facts else facts.get("warnings", [])
+    warnings = answers.warnings(facts) if "motions" in facts else facts.get("warnings", [])
     if warnings:
         body = heading("Warnings") + listed(warnings, "warning") + body
     return _page(
@@ -267,6 +279,6 @@ def html_of(result: Result) -> str:
     known = json.loads(facts_text(result))
     kind = str(known["form"]["kind"])
     title, inside = known.get("title", ""), _body(kind)(known, "", "")
-    warnings = study.warnings(known) if "motions" in known else known["warnings"]
+    warnings = answers.warnings(known) if "motions" in known else known["warnings"]
     said = badge(known.get("state", known["outcome"]))
     return f"<div>{heading(title, 3) if title else ''}<p>{said}</p>{listed(warnings, 'warning')}{inside}</div>"

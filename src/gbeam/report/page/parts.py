@@ -1,16 +1,24 @@
-"""Headings, paragraphs, lists and tables of a page, with everything that comes from outside escaped."""
+"""Parts of a page, everything from outside escaped: headings, paragraphs, lists, tables, bars, and plots that zoom."""
 
 from __future__ import annotations
 
+import base64
+import hashlib
 import html
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
+import numpy as np
+
+from gbeam.figures.description import GREY, REFERENCE, Bars, Figure, Line, Map, Panel
+from gbeam.numerics.samples import thinned
 from gbeam.printable import printable
 from gbeam.report.words import number, sentence
 from gbeam.results.imitation.criteria import GOOD
+from gbeam.results.result import Floats
 
 
 def escaped(text: object) -> str:
@@ -124,3 +132,132 @@ def _cell(value: Value, numeric: bool) -> str:
 
 def _class(names: str) -> str:
     return f' class="{names}"' if names else ""
+
+
+COLUMNS = 600  # across a plot, of which a line has no more samples than show
+Ref = dict[str, Any]  # where an array begins, and its shape
+
+
+class Numbers:
+    """Arrays one after the other."""
+
+    def __init__(self) -> None:
+        self._parts: list[np.ndarray[Any, np.dtype[np.float32]]] = []
+        self._known: dict[tuple[bytes, tuple[int, ...]], Ref] = {}
+        self._size = 0
+
+    def add(self, values: Any) -> Ref:
+        """Add an array and return where it is; equal ones stand once."""
+        part = np.ascontiguousarray(values, dtype="<f4")
+        key = hashlib.sha256(part.tobytes()).digest(), part.shape
+        if key not in self._known:
+            self._known[key] = {"at": self._size, "shape": list(part.shape)}
+            self._parts.append(part.ravel())
+            self._size += part.size
+        return self._known[key]
+
+    @property
+    def array(self) -> np.ndarray[Any, np.dtype[np.float32]]:
+        """All of them."""
+        return np.concatenate(self._parts) if self._parts else np.empty(0, dtype="<f4")
+
+    def encoded(self) -> str:
+        """All of them in base64."""
+        return base64.b64encode(self.array.tobytes()).decode("ascii")
+
+
+_NUDGE = 1e-5  # of the whole width: places that are the same are drawn beside each other
+
+
+def drawn(figures: Iterable[Figure], numbers: Numbers, header: dict[str, Any]) -> str:
+    """Return the places of figures on a page; what is drawn there goes into `header`, its arrays into `numbers`."""
+    return "".join(_figure(each, numbers, header) for each in figures)
+
+
+def _figure(figure: Figure, numbers: Numbers, header: dict[str, Any]) -> str:
+    reasons = dict.fromkeys(reason for panel in figure.panels for *_, reason in panel.spans)
+    notes = [*figure.notes, *([f"grey: {', '.join(reasons)}"] if reasons else [])]
+    parts = [heading(figure.subject, 3), *(paragraph(note, "faint") for note in notes)]
+    plain = [panel for panel in figure.panels if panel.bars is None and panel.map is None]
+    parts.append(plot_places([_plot(panel, figure.subject, numbers, header["plots"]) for panel in plain]))
+    parts += [_table(panel, panel.bars) for panel in figure.panels if panel.bars is not None]
+    parts += [_map(panel, panel.map, numbers, header["maps"]) for panel in figure.panels if panel.map is not None]
+    return "".join(parts)
+
+
+def _plot(panel: Panel, subject: str, numbers: Numbers, specs: list[dict[str, Any]]) -> tuple[str, str]:
+    """Add a plot, and return its place and caption."""
+    place, quantity = f"plot-{len(specs)}", panel.y.rpartition(", ")[0] or panel.y
+    low, high = panel.limits or (-np.inf, np.inf)
+    series = [{**each, "x": numbers.add(x), "y": numbers.add(np.clip(y, low, high))} for each, x, y in _series(panel)]
+    shaded = [[start, end] for start, end, _ in panel.spans] + [[each.value, each.value] for each in panel.marks]
+    levels = [{"label": each.label, "value": each.value} for each in panel.levels]
+    title = f"{subject}: {panel.title or quantity}"
+    spec: dict[str, Any] = {"id": place, "title": title, "x": panel.x, "y": panel.y}
+    spec |= {"time": panel.x == "time, s", "series": series, "bands": shaded, "levels": levels}
+    specs.append(spec | ({"logX": True, "logY": True} if panel.logarithmic else {}))
+    return place, "; ".join([": ".join(filter(None, (quantity, panel.title))), *_said(panel)])
+
+
+def _said(panel: Panel) -> Iterator[str]:
+    """Names that a picture has at its places, in words."""
+    for each in panel.marks:
+        yield f"{each.label} at {number(each.value)}"
+    named = {line.label.removeprefix("_") for line in panel.lines}
+    yield from (words for *_, words in panel.texts if words not in named)
+    if panel.ticks:
+        yield ", ".join(f"{k}: {word}" for k, word in enumerate(panel.ticks))
+
+
+def _series(panel: Panel) -> Iterator[tuple[dict[str, Any], Floats, Floats]]:
+    """Look, places and values of every line, edges of areas among them."""
+    for area in panel.areas:
+        edges = {"lower end": area.low, "upper end": area.high} if np.any(area.low) else {"": area.high}
+        for end, values in edges.items():
+            label = ", ".join(filter(None, (area.label, end)))
+            yield {"label": label, "colour": area.colour, "dash": bool(end)}, _ascending(area.x), values
+    for line in panel.lines:
+        yield _look(line, panel.y), *thinned(_ascending(line.x), line.y, COLUMNS)
+
+
+def _look(line: Line, quantity: str) -> dict[str, Any]:
+    look: dict[str, Any] = {"label": line.label.removeprefix("_") or quantity, "colour": min(line.colour, REFERENCE)}
+    if line.broad:
+        look["broad"] = True
+    if line.dash != "solid" or line.colour == GREY:
+        look["dash"] = True
+    if line.marks in ("dots", "rings") or len(line.x) == 1:
+        look["points"] = True
+    return look
+
+
+def _ascending(x: Floats) -> Floats:
+    """Places without two that are the same."""
+    same = np.concatenate([[False], np.diff(x) <= 0])
+    return x + _NUDGE * np.ptp(x) * same if same.any() else x
+
+
+def _table(panel: Panel, bars: Bars) -> str:
+    largest = max((float(np.nanmax(np.abs(each), initial=0.0)) for each in bars.values.values()), default=0.0) or 1.0
+
+    def cell(label: str, k: int) -> Value:
+        value, words = bars.values[label][k], number(bars.values[label][k])
+        if bars.low:
+            words += f" ({number(bars.low[label][k])} to {number(bars.high[label][k])})"
+        return Cell(words, share=abs(value) / largest)
+
+    rows = [[name, *(cell(label, k) for label in bars.values)] for k, name in enumerate(bars.names)]
+    return table((panel.x, *bars.values), rows, panel.title)
+
+
+def _map(panel: Panel, cells: Map, numbers: Numbers, maps: list[dict[str, Any]]) -> str:
+    place, (title, _, unit) = f"map-{len(maps)}", cells.label.rpartition(", ")
+    x, y = (
+        {"label": label, "ticks": [f"{value:.6g}" for value in values]}
+        for label, values in ((panel.x, cells.x), (panel.y, cells.y))
+    )
+    maps.append(
+        {"id": place, "title": title or unit, "x": x, "y": y, "unit": unit if title else "",
+         "values": numbers.add(cells.values), "outcomes": list(cells.outcome)}
+    )  # fmt: skip
+    return f'<div id="{place}"></div>'

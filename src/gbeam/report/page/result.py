@@ -17,8 +17,8 @@ from gbeam.guards.limits import parse_json, read_json
 from gbeam.io.netcdf import FACTS, groups_of
 from gbeam.io.stored import read_stored
 from gbeam.report.facts import facts, origin_json, whole
-from gbeam.report.page.curves import Numbers
 from gbeam.report.page.document import html
+from gbeam.report.page.parts import Numbers
 from gbeam.report.page.scene import scene, shapes, shapes_of_system
 from gbeam.results.modal import Modes
 from gbeam.results.provenance import Provenance

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from gbeam.report.page.curves import Numbers
+from gbeam.report.page.parts import Numbers
 from gbeam.report.words import number
 from gbeam.results.modal import Modes
 from gbeam.results.result import Floats

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 Sign = Literal["any", "positive", "zero or more"]
 Loc = tuple[int | str, ...]
 
-# Kinds of which the objects say what is possible, and which unit was meant: gbeam.guards.ranges.
+# Kinds of which the objects say what is possible, and which unit was meant: gbeam.guards.checks.
 _OF_OBJECTS = ("length", "area", "second moment of area", "density", "pressure", "time")
 
 

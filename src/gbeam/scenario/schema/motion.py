@@ -24,8 +24,7 @@ from gbeam.scenario.schema.fields import (
     refuse,
     wrong,
 )
-from gbeam.scenario.schema.profile import AccelerationProfile, RateProfile, TorqueProfile
-from gbeam.scenario.schema.record import Record
+from gbeam.scenario.schema.profile import AccelerationProfile, RateProfile, Record, TorqueProfile
 
 Share = Annotated[float, Quantity("ratio", "positive")]
 Ratio = Annotated[float, Quantity("ratio", "positive")]

@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse
 from numpy.typing import NDArray
 
-from gbeam.motion.centrifuge.inverses.closed_form import Geometry
+from gbeam.motion.centrifuge.inverses.instant import Geometry
 from gbeam.motion.centrifuge.limits import QUANTITIES, Limits
 from gbeam.motion.centrifuge.target.target import Target
 from gbeam.numerics.bspline import DEGREE, PIECE, Grid

@@ -21,7 +21,7 @@ import numpy as np
 from gbeam.arrays.namespace import as_array, is_traced
 from gbeam.arrays.tree import record, static
 from gbeam.errors import InputError
-from gbeam.motion.centrifuge.inverses.closed_form import Geometry, Inverse, Pose, across_beam
+from gbeam.motion.centrifuge.inverses.instant import Geometry, Inverse, Pose, across_beam
 from gbeam.motion.centrifuge.kinematics import Axes, control_point_load
 from gbeam.motion.centrifuge.limits import Ends, Limits, usage
 from gbeam.motion.centrifuge.target.target import Target

@@ -15,7 +15,8 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
 from gbeam.guards.limits import KNOTS, refuse_more
-from gbeam.motion.centrifuge.target.load_limits import (
+from gbeam.motion.centrifuge.target.nearest_load import NearestLoad, gentle, off_axis, unwrapped
+from gbeam.motion.centrifuge.target.reachability import (
     LEAST_IDLE,
     MIN_TRANSVERSE_LOAD,
     PARTED,
@@ -24,7 +25,6 @@ from gbeam.motion.centrifuge.target.load_limits import (
     refuse_singular,
     refuse_undirected,
 )
-from gbeam.motion.centrifuge.target.nearest_load import NearestLoad, gentle, off_axis, unwrapped
 from gbeam.motion.centrifuge.target.target import (
     BELOW_IDLE,
     GIMBALS,

@@ -9,10 +9,9 @@ from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import as_array, is_traced, namespace
 from gbeam.arrays.tree import assign, record, static
-from gbeam.motion.centrifuge.target.load_limits import IDLE_BAND, REACH_BAND
+from gbeam.motion.centrifuge.target.reachability import IDLE_BAND, REACH_BAND
 from gbeam.motion.profiles.combine import merged_breaks
-from gbeam.motion.profiles.convolution import beside, soft_floor, soft_step
-from gbeam.motion.profiles.profile import Profile
+from gbeam.motion.profiles.profile import Profile, beside, soft_floor, soft_step
 from gbeam.numerics.samples import true_runs
 from gbeam.numerics.series import Series, sin_cos, sqrt, square, stack, where
 

@@ -1,4 +1,4 @@
-"""Foreign files are read in a process of their own, with limits of memory and time.
+"""Processes: foreign files are read in one of their own, with limits of memory and time; locks let one work at a time.
 
 The libraries in C that read MAT, HDF5 and netCDF trust what they read: a few bytes end the process that calls them,
 keep it busy for ever, or fill the memory. In another process that is a message.
@@ -6,15 +6,19 @@ keep it busy for ever, or fill the memory. In another process that is a message.
 
 from __future__ import annotations
 
+import errno
 import json
 import os
+import platform
 import signal
 import subprocess
 import sys
 import tempfile
 import warnings
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from importlib import import_module
+from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
@@ -23,7 +27,7 @@ from numpy.typing import NDArray
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.limits import READER_BYTES, READER_RATE, READER_SECONDS, end_with_parent, in_bytes, restrict
 
-_START = "import json, sys; sys.path[:] = json.loads(sys.argv[1]); from gbeam.guards.confined import serve; serve()"
+_START = "import json, sys; sys.path[:] = json.loads(sys.argv[1]); from gbeam.guards.processes import serve; serve()"
 _PATIENCE = 6  # times the processor time: a disk, or a machine that does other things as well
 _ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 _PLAIN = "biufcS"  # kinds of arrays that are bytes; those of objects hold text
@@ -142,3 +146,45 @@ def _unpacked(value: Any, arrays: Any) -> Any:
     if "texts" in value:
         return np.array(value["texts"], dtype=object).reshape(value["shape"])
     return {key: _unpacked(each, arrays) for key, each in value["mapping"].items()}
+
+
+_TAKEN = (errno.EAGAIN, errno.EACCES, errno.EDEADLK)
+_BEYOND = 2**30  # where Windows locks a byte: a locked one can't be read
+
+
+@contextmanager
+def alone(file: Path, where: str, fix: str) -> Iterator[None]:
+    """Hold a lock file, whose folder exists, and say in it which process does."""
+    try:
+        handle = os.open(file, os.O_RDWR | os.O_CREAT, 0o600)
+    except OSError as error:
+        raise InputError(where, f"{file} cannot be written ({error.strerror})", "name another folder") from None
+    try:
+        if not _taken(handle):
+            holder = os.read(handle, 200).decode(errors="replace").strip() or "another process"
+            raise InputError(where, f"{file.parent} is in use by {holder}", fix)
+        with suppress(OSError):  # a full disk: the lock holds
+            os.ftruncate(handle, 0)
+            os.write(handle, f"process {os.getpid()} on {platform.node() or 'this computer'}\n".encode())
+        yield
+    finally:
+        os.close(handle)
+
+
+def _taken(handle: int) -> bool:
+    """Take the lock of a file, until that is closed; True also where the file system has no locks."""
+    try:
+        if sys.platform == "win32":
+            import msvcrt
+
+            os.lseek(handle, _BEYOND, os.SEEK_SET)
+            msvcrt.locking(handle, msvcrt.LK_NBLCK, 1)
+        else:
+            import fcntl
+
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as error:
+        return error.errno not in _TAKEN
+    finally:
+        os.lseek(handle, 0, os.SEEK_SET)
+    return True
