@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gbeam.arrays.namespace import is_jax, namespace
+from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.fields.vectors import cross, joined, skew, split
 from gbeam.mechanics.structure import Sections, Structure
 from gbeam.mechanics.tree.frames import Frame
@@ -43,6 +44,19 @@ class Hung(NamedTuple):
     def during(self, part: slice) -> Hung:
         """The same at some of the times."""
         return self._replace(force=self.force[part], moment=self.moment[part])
+
+
+class Carried(NamedTuple):
+    """Forces and moments (t, s, 3) that sections carry, in base and in their own axes, accelerations (or specific
+    forces) there and places.
+    """
+
+    force: Array
+    moment: Array
+    section_force: Array
+    section_moment: Array
+    acceleration: Array
+    place: Array
 
 
 def section_forces(
@@ -73,7 +87,7 @@ def section_forces(
                 structure, structure.sections, mapped(base, itemgetter(part)), q[part], qd[part], qdd[part], values, on
             )
         )
-    force, moment, section_force, section_moment, a = (
+    force, moment, section_force, section_moment, a, _ = (
         xp.concatenate(part) if len(pieces) > 1 else part[0] for part in zip(*pieces, strict=True)
     )
     section_data = structure.sections
@@ -133,12 +147,10 @@ def sections(
     qdd: Array,
     values: Array | None,
     hung: Hung | None = None,
-) -> tuple[Array, ...]:
-    """Force and moment (t, s, 3) in base and in section axes, and acceleration (or specific force), at `outboard` over
-    times.
-    """
+) -> Carried:
+    """Loads of the sections `outboard` over times."""
     count = outboard.mass.shape[0] - 1
-    particles, stations = structure.particles.paths(q, qd, qdd), structure.output[-count:].paths(q, qd, qdd)
+    particles, stations, turned = _sent_out(structure, count, q, qd, qdd)
     xp = namespace(q, particles[0], base.a_WO_B)
     root = (xp.zeros_like(stations[0][:, :1]),) * 3
     stations = tuple(xp.concatenate(pair, axis=1) for pair in zip(root, stations, strict=True))
@@ -157,15 +169,26 @@ def sections(
         force, about_root = force - beyond @ hung.force, about_root - beyond @ hung.moment
     moment = about_root - _cross(xp, stations[0], force)
     straight = xp.broadcast_to(xp.asarray(outboard.root_axes), (len(q), 1, 3, 3))
-    turned = xp.broadcast_to(xp.eye(3), (len(q), count, 3, 3))
-    if structure.field is not None:
-        turned = structure.field.rotation(q, slice(-count, None))
     rotation = xp.concatenate([straight, turned], axis=1)
 
     def inward(vectors: Array) -> Array:
         return xp.einsum("tsji,tsj->tsi", rotation, vectors)
 
-    return force, moment, inward(force), inward(moment), a_stations
+    return Carried(force, moment, inward(force), inward(moment), a_stations, stations[0])
+
+
+def _sent_out(structure: Structure, count: int, q: Array, qd: Array, qdd: Array) -> tuple[Any, Any, Array]:
+    """Paths (t, p, 3) of the particles and of the last stations, and rotations of these (t, count, 3, 3)."""
+    particles, last = structure.particles, slice(-count, None)
+    stations: Any = structure.output[last]
+    if not isinstance(particles, Places):
+        every, turned = particles.joined(stations).poses(q, qd, qdd, last)
+        return tuple(each[:, :-count] for each in every), tuple(each[:, last] for each in every), turned
+    xp = namespace(q, structure.mass)
+    turned = xp.broadcast_to(xp.eye(3), (len(q), count, 3, 3))
+    if structure.field is not None:
+        turned = structure.field.rotation(q, last)
+    return particles.paths(q, qd, qdd), stations.paths(q, qd, qdd), turned
 
 
 def accelerations(structure: Structure, base: BaseMotion, q: Array, qd: Array, qdd: Array) -> Array:

@@ -132,12 +132,10 @@ def _rings(exact: Structure, rate: Floats, amplitude: Floats) -> Rings:
 def quantities(structure: Structure, at: Sampled) -> Quantities:
     """Tip, root loads and stress at a solution, by NumPy for complete models too."""
     assert structure.sections is not None
-    force, moment, section_force, section_moment, _ = sections(
-        structure, structure.sections, at.base, at.p, at.pd, at.pdd, at.loads
-    )
-    tip = structure.displacement(at.p)[:, -1]
-    pair = extreme_stresses(structure.sections.values, section_force, section_moment)
-    return Quantities(tip, force[:, 0], moment[:, 0], np.maximum(pair[0], -pair[1]).max(axis=1))
+    loads = sections(structure, structure.sections, at.base, at.p, at.pd, at.pdd, at.loads)
+    tip = loads.place[:, -1] - structure.station_places.r0[-1]
+    pair = extreme_stresses(structure.sections.values, loads.section_force, loads.section_moment)
+    return Quantities(tip, loads.force[:, 0], loads.moment[:, 0], np.maximum(pair[0], -pair[1]).max(axis=1))
 
 
 def driven(more: Enrichment, lifted: Callable[[Structure, IntArray], Sampled]) -> tuple[bool, bool, bool]:

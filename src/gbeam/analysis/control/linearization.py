@@ -113,7 +113,7 @@ class Outputs:
         base, (_, values) = self.residual.base(y, yd, ydd, u), self.residual.unpack(u)
         now = mapped(base, lambda x: x[None])
         loads = None if values is None else values[None]
-        _, moment, *carried, a = sections(self.structure, self.outboard, now, q[None], qd[None], qdd[None], loads)
+        _, moment, *carried, a, _ = sections(self.structure, self.outboard, now, q[None], qd[None], qdd[None], loads)
         xp = namespace(y, a)
         strain = (xp.concatenate([each[0, self.at] for each in carried], axis=-1) * self.strains).sum(axis=-1)
         hub = xp.stack([y[0], yd[0]]) if i else xp.zeros(0)

@@ -211,7 +211,7 @@ def _read(queue: list[_Case], trajectories: list[Trajectory | None]) -> Iterator
     ended = []
     for case, trajectory, moved in zip(queue, trajectories, _displaced(queue, trajectories), strict=True):
         posed, known = case.posed, None
-        if trajectory is None or steps_within(posed.structure, moved) is not None:
+        if trajectory is None or steps_within(posed.structure, trajectory.q, moved) is not None:
             run = posed.run(case.step, stop=posed.too_far)  # one that leaves what its model can mean stops there
         else:
             run, known = posed.read(trajectory, case.step), {"moved": moved}

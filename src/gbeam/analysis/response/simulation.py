@@ -99,7 +99,7 @@ class Posed:
 
     def too_far(self, y: Floats) -> int | None:
         """After how many steps a projected field moved by the beam's length, and means nothing; None if it did not."""
-        return steps_within(self.structure, self.structure.displacement(y[:, self.problem.first :]))
+        return steps_within(self.structure, y[:, self.problem.first :])
 
     @cached_property
     def _readings(self) -> Readings:
@@ -151,10 +151,13 @@ def pose(structure: Structure, motion: Motion, settings: ResponseSettings) -> tu
     return Posed(structure, motion, settings, problem, coarse, step), before, after
 
 
-def steps_within(structure: Structure, displacement: Floats) -> int | None:
-    """Steps until stations (t, s, 3) of a projected field moved by the beam's length, or particles without bound."""
+def steps_within(structure: Structure, q: Floats, displacement: Floats | None = None) -> int | None:
+    """Steps until stations of a projected field moved by the beam's length, or particles without bound, at coordinates
+    (t, n), by `displacement` (t, s, 3) where it is known.
+    """
     if structure.kind == "exact":
         return None
+    displacement = structure.displacement(q) if displacement is None else displacement
     limit = BOUNDLESS if structure.field is None else structure.length
     far = np.abs(displacement).max(axis=(1, 2)) > limit
     return int(np.argmax(far)) + 1 if far.any() else None

@@ -81,6 +81,13 @@ class SeriesField:
         """The field of some sections."""
         return self.points(at)
 
+    def joined(self, axis: SeriesField) -> SeriesField:
+        """The field of its points and, behind them, of others of the same beam on its axis."""
+        exact, arm = self.exact.joined(axis.exact), self.arm
+        if arm is not None:
+            arm = namespace(arm).pad(arm, ((0, len(axis.exact.cumulative)), (0, 0)))
+        return replace(self, exact=exact, arm=arm)
+
     # --- motion goes out
 
     def _at_rest(self) -> tuple[Rotation, Vector, Vector]:
@@ -127,6 +134,10 @@ class SeriesField:
         """Places, velocities and accelerations of the points relative to the base axes, (..., p, 3) each."""
         r, rd, rdd = (self._joined(each, q) for each in self.components(q, qd, qdd))
         return r, rd, rdd
+
+    def poses(self, q: Array, qd: Array, qdd: Array, at: slice) -> tuple[tuple[Array, Array, Array], Array]:
+        """Paths of all points, and rotations of the sections `at` some of them."""
+        return self.paths(q, qd, qdd), self.rotation(q, at)
 
     def _joined(self, vectors: Vector, q: Array) -> Array:
         shape = (*q.shape[:-1], len(self.exact.cumulative))

@@ -25,6 +25,7 @@ from gbeam.mechanics.fields.frames import Frames, beyond, frames_along, root_rul
 from gbeam.mechanics.fields.taylor import EPSILON, Expanded, Places, Turns
 from gbeam.mechanics.fields.vectors import (
     NONE,
+    UNTURNED,
     Rotation,
     Vector,
     absent,
@@ -46,7 +47,8 @@ Array = Any
 
 class Tangents(NamedTuple):
     """Rotations of the nodes' sections and t there, the points' arms from the axis, the rates of t, those of turning Rκ̇
-    and its derivative, and the sections' angular velocities and accelerations.
+    and its derivative, the sections' angular velocities and accelerations, and the rotations of the points' sections
+    where they were wanted.
     """
 
     rotation: Rotation
@@ -58,6 +60,7 @@ class Tangents(NamedTuple):
     turnd: Vector = NONE
     w: Vector = NONE
     alpha: Vector = NONE
+    at_points: Rotation = UNTURNED
 
 
 class Columns(NamedTuple):
@@ -104,6 +107,17 @@ class StrainField:
         """The field of some sections."""
         return self.points(at)
 
+    def joined(self, axis: StrainField) -> StrainField:
+        """The field of its points and, behind them, of others of the same beam on its axis."""
+        xp, offset, count = namespace(self.cumulative, self.offset), self.offset, len(axis.cumulative)
+        parts = ((each.cumulative, each.frames.points, each.frames.angles) for each in (self, axis))
+        cumulative, points, angles = (xp.concatenate(pair) for pair in zip(*parts, strict=True))
+        if offset is not None:
+            offset = xp.pad(offset, ((0, count), (0, 0)))
+        return replace(
+            self, cumulative=cumulative, frames=replace(self.frames, points=points, angles=angles), offset=offset
+        )
+
     def at_rest(self) -> Places:
         """Places about the beam at rest, to first order."""
         rest = np.zeros(self.size)
@@ -126,16 +140,16 @@ class StrainField:
         values = xp.reshape(q @ flat.T, (*q.shape[:-1], len(chosen), nodes))
         return tuple(values[..., chosen.index(k), :] if k in chosen else 0 for k in range(6))
 
-    def tangents(self, q: Array) -> Tangents:
-        """Rotations and t at the nodes at coordinates (..., n), and arms of points off the axis."""
+    def tangents(self, q: Array, *, points: bool = False) -> Tangents:
+        """Rotations and t at the nodes at coordinates (..., n), arms of points off the axis, rotations at `points`."""
         strain = self.strain(q)
-        rotation, at_points = self.frames.at(strain[3:], points=self.offset is not None)
+        rotation, at_points = self.frames.at(strain[3:], points=points or self.offset is not None)
         arm = NONE if self.offset is None else turned(at_points, split(self.offset))
-        return Tangents(rotation, turned(rotation, strain[:3]), arm)
+        return Tangents(rotation, turned(rotation, strain[:3]), arm, at_points=at_points)
 
-    def moving(self, q: Array, qd: Array, qdd: Array) -> Tangents:
-        """Rotations, t and its rates at the nodes, and arms."""
-        rotation, t, arm, *_ = self.tangents(q)
+    def moving(self, q: Array, qd: Array, qdd: Array, *, points: bool = False) -> Tangents:
+        """Rotations, t and its rates at the nodes, arms, and rotations at `points`."""
+        rotation, t, arm, *_, at_points = self.tangents(q, points=points)
         rate, change = (tuple(self.sums(x)) for x in (qd, qdd))
         stretching, turn = turned(rotation, rate[:3]), turned(rotation, rate[3:])
         w = mapped(turn, self.node_cumulative)
@@ -143,7 +157,7 @@ class StrainField:
         alpha = mapped(turnd, self.node_cumulative)
         td = add(cross(w, t), stretching)
         tdd = add(swept(w, alpha, t), scaled(2.0, cross(w, stretching)), turned(rotation, change[:3]))
-        return Tangents(rotation, t, arm, td, tdd, turn, turnd, w, alpha)
+        return Tangents(rotation, t, arm, td, tdd, turn, turnd, w, alpha, at_points)
 
     def components(self, q: Array, qd: Array, qdd: Array) -> tuple[Vector, Vector, Vector]:
         """Places, velocities and accelerations of the points relative to the base axes, by components (..., p)."""
@@ -160,9 +174,20 @@ class StrainField:
 
     def paths(self, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array, Array]:
         """Places, velocities and accelerations of the points relative to the base axes, (..., p, 3) each."""
+        return self._paths(self.moving(q, qd, qdd), q)
+
+    def _paths(self, tangents: Tangents, q: Array) -> tuple[Array, Array, Array]:
         xp, shape = namespace(self.strains, self.offset, q), (*q.shape[:-1], len(self.cumulative))
-        r, rd, rdd = (joined(xp, each, shape) for each in self.components(q, qd, qdd))
+        r, rd, rdd = (joined(xp, each, shape) for each in self.carried(tangents))
         return r, rd, rdd
+
+    def poses(self, q: Array, qd: Array, qdd: Array, at: slice) -> tuple[tuple[Array, Array, Array], Array]:
+        """Paths of all points, and rotations of the sections `at` some of them, sent out once."""
+        tangents = self.moving(q, qd, qdd, points=True)
+        some = tuple(
+            tuple(part if isinstance(part, int) else part[..., at] for part in row) for row in tangents.at_points
+        )
+        return self._paths(tangents, q), self._matrices(some, q, len(self.cumulative[at]))
 
     def positions(self, q: Array) -> Array:
         """Places of the points at coordinates (..., n), base axes, (..., p, 3) m."""
@@ -173,18 +198,21 @@ class StrainField:
     def rotation(self, q: Array, at: Any = slice(None)) -> Array:
         """Rotation matrices R_BS of the sections at all points, or `at` some, (..., p, 3, 3)."""
         field = self[at]
-        xp, shape = namespace(self.strains, self.offset, q), (*q.shape[:-1], len(field.cumulative))
         _, at_points = field.frames.at(field.strain(q)[3:], points=True)
-        return xp.stack([joined(xp, row, shape) for row in at_points], axis=-2)
+        return self._matrices(at_points, q, len(field.cumulative))
+
+    def _matrices(self, rotation: Any, q: Array, count: int) -> Array:
+        xp = namespace(self.strains, self.offset, q)
+        return xp.stack([joined(xp, row, (*q.shape[:-1], count)) for row in rotation], axis=-2)
 
     def turning(self, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array, Array]:
         """Rotations (..., p, 3, 3) of the sections at the points, and their angular velocities and accelerations (...,
         p, 3), base axes.
         """
         xp, shape = namespace(self.strains, self.offset, q), (*q.shape[:-1], len(self.cumulative))
-        tangents = self.moving(q, qd, qdd)
+        tangents = self.moving(q, qd, qdd, points=True)
         w, alpha = (joined(xp, mapped(each, self.cumulative), shape) for each in (tangents.turn, tangents.turnd))
-        return self.rotation(q), w, alpha
+        return self._matrices(tangents.at_points, q, len(self.cumulative)), w, alpha
 
     # --- forces come back
 
