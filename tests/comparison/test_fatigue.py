@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from gbeam import Flight, Response, Sine, compare, simulate
-from gbeam.analysis.imitation.comparison import fatigue, stress_cycles
+from gbeam.analysis.imitation.fatigue import fatigue, stress_cycles
 
 from ..analysis.helpers import strip
 
@@ -42,9 +42,10 @@ def test_damage_grows_with_the_power_of_the_stress() -> None:
     assert same.exponent == 5.0 and same.damage_ratio == pytest.approx(1.0)
     assert more.damage_ratio == pytest.approx(2.0**5, rel=1e-3)
     assert once.loads is not None
-    gentle = replace(once, loads=replace(once.loads, fatigue_exponent=3.0))
-    milder = fatigue(gentle, twice)
+    gentle, twice_as_much = (replace(each, loads=replace(each.loads, fatigue_exponent=3.0)) for each in (once, twice))
+    milder = fatigue(gentle, twice_as_much)
     assert milder is not None and milder.damage_ratio == pytest.approx(2.0**3, rel=1e-3)
+    assert fatigue(gentle, twice) is None  # of another material
     assert fatigue(once, replace(twice, loads=None)) is None
 
 

@@ -235,7 +235,7 @@ def test_control_points_of_a_scenario_judge_a_box(folder: Path) -> None:
         ('srs = "40 dB"', 'tip = "5 %"', "motion.machine.accept.tip", "is of a displacement, and box is rigid"),
         ('srs = "40 dB"', 'damage_at = "lit"', "motion.machine.accept.damage_at", "did you mean 'lid'"),
         ('srs = "40 dB"', "damage_at = 2", "motion.machine.accept.damage_at", "text"),
-        ('srs = "40 dB"', 'point = "lid"', "motion.machine.accept.point", "is of a system"),
+        ('srs = "40 dB"', 'point = "lit"', "motion.machine.accept.point", "did you mean 'lid'"),
     ],
 )  # fmt: skip
 def test_control_points_that_are_none_are_placed(folder: Path, before: str, after: str, place: str, words: str) -> None:

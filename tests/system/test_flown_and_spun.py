@@ -145,7 +145,7 @@ def test_the_point_that_is_judged_is_one_of_the_system(tmp_path: Path) -> None:
     with pytest.raises(ScenarioError, match="no such point") as caught:
         read(OF_SYSTEM, tmp_path, 'motion.centrifuge.accept.damage_at="strip.top"')
     assert "motion.centrifuge.accept.damage_at" in str(caught.value)
-    with pytest.raises(ScenarioError, match="is of a system"):
+    with pytest.raises(ScenarioError, match=r"is no point: 'strip\.tip'"):
         read(OF_BEAM, tmp_path, 'motion.centrifuge.accept.point="strip.tip"')
 
 

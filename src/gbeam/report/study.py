@@ -108,8 +108,10 @@ _FELT = 0.01  # of flight's peak: a mismatch that bends the tip by less is no re
 def comparison_lines(comparison: Comparison) -> Iterator[str]:
     """Acceptance, load peaks, differences, vibration, and a bound on what the mismatch field can do."""
     main = comparison.main_axis
-    if comparison.point:
+    if "." in comparison.point:
         yield f"the tip is {comparison.point}, the root the ground, the stress the largest of all beams and meshes"
+    elif comparison.point:
+        yield f"the tip is {comparison.point}"
     yield from judged_lines(comparison)
     yield from peak_lines(comparison.peaks)
     if comparison.covered.any() and np.isfinite(comparison.relative).any():
@@ -134,19 +136,18 @@ def comparison_lines(comparison: Comparison) -> Iterator[str]:
         )
     if comparison.stations is not None:
         both = comparison.stations.flight, comparison.stations.centrifuge
-        flight, centrifuge = (1e3 * sizes.residual[-1, main] for sizes in both)
+        flight, centrifuge = (1e3 * sizes.residual[comparison.stations.tip, main] for sizes in both)
         yield (
             f"elastic vibration of the tip {flight:.3g} mm in flight, {centrifuge:.3g} mm on the centrifuge "
             f"(above {comparison.stations.cutoff:.3g} Hz, zero phase)"
         )
     if comparison.mismatch is not None:
         mismatch = comparison.mismatch
-        felt = mismatch.tip_bound[main] > _FELT * comparison.peak_flight[main]
+        bound = mismatch.tip_bound[main]
+        felt = bound > _FELT * comparison.peak_flight[main]
         advice = "; `gbeam place` finds the best control point" if felt and not mismatch.placed else ""
-        yield (
-            f"mismatch up to {mismatch.max_acceleration[main]:.3g} m/s² along the beam, which bends the tip "
-            f"by up to {1e3 * mismatch.tip_bound[main]:.3g} mm quasi-statically{advice}"
-        )
+        bent = f", which bends the tip by up to {1e3 * bound:.3g} mm quasi-statically" if math.isfinite(bound) else ""
+        yield f"mismatch up to {mismatch.max_acceleration[main]:.3g} m/s² along the beam{bent}{advice}"
 
 
 def system_response(response: SystemResponse) -> str:

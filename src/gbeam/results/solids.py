@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
@@ -31,8 +30,6 @@ class StressAt(Part):
     spread: float = quantity("", "how much the elements that share the node differ, as a fraction",
                              note="an indication of the mesh's error there")  # fmt: skip
     yield_strength: float | None = quantity("Pa", "yield strength of the material", optional=True, default=None)
-    fatigue_exponent: float = quantity("", "exponent of the material's Wöhler curve", name=None, key=None,
-                                       default=math.nan)  # fmt: skip
 
     @declared("", "yield strength over von Mises stress less one", optional=True)
     def margin(self) -> float | None:
@@ -68,9 +65,12 @@ class SolidStress(Figured):
         "Pa", "principal stresses at the point, the largest first", "time", "point", "principal",
         key=None, default_factory=lambda: np.empty((0, 0, 3)),
     )  # fmt: skip
-    normal: Floats = quantity(
-        "Pa", "normal stress at the worst place, on the plane where it ranges most", "time", name="worst_normal",
-        key=None, default_factory=lambda: np.empty(0),
+    materials: tuple[str, ...] = quantity("", "name of the material", "material", name=None, key=None, default=())
+    exponents: Floats = quantity("", "exponent of its Wöhler curve", "material", name=None, key=None,
+                                 default_factory=lambda: np.empty(0))  # fmt: skip
+    material_normal: Floats = quantity(
+        "Pa", "normal stress where it is stressed most, on the plane where that ranges most", "time", "material",
+        name=None, key=None, default_factory=lambda: np.empty((0, 0)),
     )  # fmt: skip
     point_normal: Floats = quantity(
         "Pa", "normal stress at the point, on the plane where it ranges most", "time", "point", key=None,
@@ -95,6 +95,11 @@ class SolidStress(Figured):
     node_von_mises: Floats = quantity(
         "Pa", "largest von Mises stress over time at the node", "node", key=None, default_factory=lambda: np.empty(0)
     )
+
+    @declared("Pa", "normal stress at the worst place, on the plane where it ranges most", "time", name="worst_normal",
+              key=None)  # fmt: skip
+    def normal(self) -> Floats:
+        return self.material_normal[:, self.materials.index(self.worst.material)]
 
     @declared("Pa", "largest von Mises stress", "point", name=None, key="von_mises")
     def point_max(self) -> Floats:

@@ -172,7 +172,7 @@ def _acceptance(
             if key in RULES:
                 parts.attempt(f"motion.{name}.accept", RULES[key].checked, limit)
         named = {f"control.{each}": each for each in limits.get("control", ())}
-        named |= {"damage_at": limits["damage_at"]} if "damage_at" in limits else {}
+        named |= {key: limits[key] for key in ("point", "damage_at") if key in limits}
         parts.errors += [
             InputError(f"motion.{name}.accept.{key}", f"is no point: {each!r}", advise(each, points))
             for key, each in named.items()

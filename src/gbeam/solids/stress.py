@@ -238,7 +238,9 @@ def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> S
     largest, when, over = nodal.histories(q)
     strengths = np.array([mesh.strengths.get(name, np.inf) for name in materials])
     exponents = np.array([mesh.exponents.get(name, np.nan) for name in materials])
-    worst = int(largest.argmax())
+    worst, kinds = int(largest.argmax()), _materials(mesh)
+    of_kind = (np.flatnonzero(np.array(materials) == name) for name in kinds)
+    foremost = [int(pairs[largest[pairs].argmax()]) for pairs in of_kind]
 
     def at(pair: int) -> StressAt:
         t, node, strength = int(when[pair]), int(of_pair[pair]), float(strengths[pair])
@@ -251,7 +253,6 @@ def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> S
             material=materials[pair],
             spread=nodal.spread(pair, q[t]),
             yield_strength=strength if np.isfinite(strength) else None,
-            fatigue_exponent=float(exponents[pair]),
         )
 
     # At a node of two materials, that which is stressed more.
@@ -275,7 +276,9 @@ def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> S
         point_principal=principal(stress),
         point_stress=np.stack(along, axis=1),
         point_strain=np.stack(strains, axis=1),
-        normal=ranging(q @ nodal.table[worst].T),
+        materials=tuple(kinds),
+        exponents=exponents[foremost],
+        material_normal=np.stack([ranging(q @ nodal.table[pair].T) for pair in foremost], axis=1),
         point_normal=np.stack([ranging(each) for each in stress.swapaxes(0, 1)], axis=1),
         point_exponent=exponents[chosen],
         nodes=mesh.points,

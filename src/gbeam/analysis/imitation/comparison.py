@@ -7,8 +7,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from gbeam.analysis.imitation.accounting import History, account_of, largest_load, largest_pair, points_of
+from gbeam.analysis.imitation.fatigue import fatigue
 from gbeam.analysis.imitation.systems import specimen_of
-from gbeam.analysis.response.peaks import maxima, near_maxima, seven_point, turning_points, vector_peaks
+from gbeam.analysis.response.peaks import maxima, near_maxima, seven_point, vector_peaks
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
@@ -18,77 +19,39 @@ from gbeam.results.imitation.accounting import TOLERANCE, PeakPair
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.criteria import Limit, checked_limits
 from gbeam.results.imitation.measures import (
-    Fatigue,
     Mismatch,
     RootHistory,
     RootLoads,
     Shock,
     Sizes,
     Statistics,
-    StressCycles,
 )
 from gbeam.results.parts import Influence
 from gbeam.results.response import Response
 from gbeam.results.result import Flags, Floats
 from gbeam.results.system import SystemResponse
 
-_NOTHING = 1e-9  # of the largest stress: a smaller cycle is rounding
 
-
-def fatigue(flight: Response, machine: Response, at: str | None = None) -> Fatigue | None:
-    """Rainflow cycles of the stress at a named point, or where :class:`Fatigue` says, in both runs, with the exponent
-    of the flight's material; None where one has no stress.
-    """
-    (stress, exponent, place), (other, *_) = (cyclic_stress(each, at) for each in (flight, machine))
-    if stress is None or other is None or not (np.isfinite(stress).all() and np.isfinite(other).all()):
-        return None
-    return Fatigue(exponent, stress_cycles(flight.time, stress), stress_cycles(machine.time, other), place)
-
-
-def cyclic_stress(response: Response, at: str | None = None) -> tuple[Floats | None, float, str]:
-    """Normal stress (t,) on the fibre or plane where it ranges most, the exponent of the material, and the place."""
-    if at is not None and at not in response.points:
-        raise InputError("damage_at", f"is {at!r}", f"choose from {', '.join(response.points)}")
-    place, solid, loads = f"at {at}", response.solid, response.loads
-    if solid is not None and at is None:
-        return solid.normal, solid.worst.fatigue_exponent, "where it is stressed most"
-    if solid is not None and at in solid.points:
-        k = solid.points.index(at)
-        return solid.point_normal[:, k], float(solid.point_exponent[k]), place
-    if loads is None or loads.fibre is None:
-        return None, np.nan, place
-    section = 0 if at is None else 1 + response.points.index(at)
-    return loads.fibre[:, section], loads.fatigue_exponent, "of the root" if at is None else place
-
-
-def stress_cycles(time: Floats, stress: Floats) -> StressCycles:
-    """Rainflow cycles of a stress over time (t,), s, Pa, with its extremes between samples."""
-    import rainflow
-
-    rows = [row[:3] for row in rainflow.extract_cycles(turning_points(time, stress).tolist())]
-    cycles = np.array(rows, dtype=float).reshape(-1, 3)
-    cycles = cycles[cycles[:, 0] > _NOTHING * np.abs(stress).max()]
-    return StressCycles(*cycles[np.argsort(-cycles[:, 0], kind="stable")].T)
-
-
-def peak_pairs(flight: Response, centrifuge: Response, during: slice) -> dict[str, PeakPair]:
-    """Largest sizes over the flight's times in each response, by name; ``largest_load`` on the machine is over all of
-    its run, and NaN stands where a response lacks one.
+def peak_pairs(flight: Response, centrifuge: Response, during: slice, tips: tuple[int, int]) -> dict[str, PeakPair]:
+    """Largest sizes over the flight's times in each response, by name, of the tip at a station of each;
+    ``largest_load`` on the machine is over all of its run, and NaN stands where a response lacks one.
     """
     last = centrifuge.time[during][-1]
-    one = _peaks(flight, flight.time <= last + 1e-12 * abs(last))
-    two = _peaks(centrifuge, during)
+    one = _peaks(flight, flight.time <= last + 1e-12 * abs(last), tips[0])
+    two = _peaks(centrifuge, during, tips[1])
     points = points_of(float(centrifuge.stations[-1]), centrifuge.bodies, centrifuge.envelope)
     loads = (largest_load(each.time, each.base, points) for each in (flight, centrifuge))
     pairs = {name: PeakPair(one[name][0], two[name][0], one[name][1], two[name][1]) for name in one}
     return {"largest_load": largest_pair(*loads)} | pairs
 
 
-def _peaks(response: Response, part: slice | Flags) -> dict[str, tuple[float, float]]:
+def _peaks(response: Response, part: slice | Flags, tip: int) -> dict[str, tuple[float, float]]:
     """Largest sizes between steps and their times, where they lie in some of a response's time."""
     time, of = response.time[part], response.peaks
     known = {"tip": (of.max_size, of.time_of_max_size)}
-    samples = {"tip": lambda: vector_peaks(time, response.tip[part])}
+    if tip != len(response.stations) - 1 and of.displacement is not None:
+        known["tip"] = float(of.displacement.size.value[tip]), float(of.displacement.size.time[tip])
+    samples = {"tip": lambda: vector_peaks(time, response.displacement[part, tip])}
     if response.solid is not None:
         over = response.solid.von_mises[part, None]
         samples["stress"] = lambda: maxima(time, over, *seven_point(time, over, near_maxima(time, over)))
@@ -155,9 +118,9 @@ def compare(
         Sampled at any times; the flight's are interpolated where they differ. A response without a name goes by its
         environment.
     point : str, optional
-        Of a system, the one whose displacement is compared, ``body.point``; by default the one that moves farthest in
-        flight. Its root loads are those of the ground, its stress is the largest of all beams and
-        meshes.
+        Named point whose displacement is compared, and whose acceleration the shock response spectra are of; by
+        default the tip. Of a system ``body.point``, by default the one that moves farthest in flight; its root loads
+        are those of the ground, its stress is the largest of all beams and meshes.
     tolerance : float
         Share of the flight's load by which the machine's may differ and count as following.
     tolerance_of : str
@@ -169,8 +132,8 @@ def compare(
     control : mapping of str to float, optional
         Weights of named points: the shock response spectra are the weighted mean of those there, in place of the tip's.
     damage_at : str, optional
-        Named point whose fatigue damage is compared; by default the root of a beam, that of a system's beams which
-        ranges most, and of a solid where its von Mises stress is largest.
+        Named point whose fatigue damage is compared; by default the root of a beam, and of a solid where its
+        von Mises stress is largest; of several beams, solids or materials that where the stress ranges most in flight.
 
     Returns
     -------
@@ -201,10 +164,11 @@ def compare(
     >>> print(f"{comparison.relative[2]:.2%}")
     0.26%
     """
-    limits, chosen = checked_limits(accept), ""
+    limits, chosen = checked_limits(accept), point or ""
+    runs = flight, centrifuge
     if isinstance(flight, SystemResponse) and isinstance(centrifuge, SystemResponse):
-        chosen = flight.points[int(flight.largest.argmax())] if point is None else point
-        flight, centrifuge = specimen_of(flight, chosen), specimen_of(centrifuge, chosen)
+        chosen = chosen or flight.points[int(flight.largest.argmax())]
+        flight, centrifuge = specimen_of(flight), specimen_of(centrifuge)
     if isinstance(flight, SystemResponse) or isinstance(centrifuge, SystemResponse):
         raise InputError("centrifuge", "and flight are a system and a beam", "give two responses of one specimen")
     flown, reproduced = (float(flight.time[0]), float(flight.time[-1])), centrifuge.flight_span
@@ -223,9 +187,11 @@ def compare(
         return interpolated(time, flight.time, values)
 
     length, axes = float(centrifuge.stations[-1]), centrifuge.axes
+    tips = _station(flight, chosen), _station(centrifuge, chosen)
     reference, actual = in_flight(flight.displacement), centrifuge.displacement[during]
+    tip_flight, tip_actual = reference[:, tips[0]], actual[:, tips[1]]
     covered = np.ones(len(time), dtype=bool) if axes is None else ~axes.not_followed[during]
-    difference = actual[:, -1] - reference[:, -1]
+    difference = tip_actual - tip_flight
     root, shock = None, None
     if flight.loads is not None and centrifuge.loads is not None and covered.any():
         a, b = flight.loads, centrifuge.loads
@@ -237,7 +203,7 @@ def compare(
     weights = _weights(control, flight, centrifuge)
     felt = flight.accelerations, centrifuge.accelerations
     if felt[0] is not None and felt[1] is not None and covered.any():
-        shock = _shock(time, covered, in_flight(felt[0]), felt[1][during], weights, flight.points, centrifuge.points)
+        shock = _shock(time, covered, in_flight(felt[0]), felt[1][during], weights, chosen, flight, centrifuge)
     names, growth = _names(flight, centrifuge), in_flight(gradients(flight.base.w_WB_B, flight.base.alpha_WB_B))
     spun = gradients(centrifuge.base.w_WB_B[during], centrifuge.base.alpha_WB_B[during])
     of_beam, root_load = not len(centrifuge.envelope), in_flight(flight.base.a_WO_B)
@@ -251,20 +217,20 @@ def compare(
         covered=covered,
         max_difference=_largest(difference, covered),
         rms_difference=_rms(difference, covered),
-        peak_flight=_largest(reference[:, -1], covered),
-        peak_centrifuge=_largest(actual[:, -1], covered),
-        peaks=peak_pairs(flight, centrifuge, during),
+        peak_flight=_largest(tip_flight, covered),
+        peak_centrifuge=_largest(tip_actual, covered),
+        peaks=peak_pairs(flight, centrifuge, during, tips),
         accounting=account_of(
             time, History(root_load, root_load, growth, ends),
             History(machine_root if axes is None else axes.actual[during], machine_root, spun, ends),
             axes, during, tolerance=tolerance, tolerance_of=tolerance_of,
         ),
         accept=limits,
-        stations=_statistics(time, covered, reference, actual, centrifuge),
-        mismatch=_mismatch(covered, centrifuge, (spun - growth)[..., 0]) if of_beam else None,
+        stations=_statistics(time, covered, reference, actual, centrifuge, tips),
+        mismatch=_mismatch(covered, centrifuge, (spun - growth)[..., 0], tips[1]) if of_beam else None,
         root=root,
         shock=shock,
-        fatigue=fatigue(flight, centrifuge, damage_at),
+        fatigue=fatigue(*runs, damage_at),
         yield_strength=None if centrifuge.loads is None else centrifuge.loads.yield_strength,
         margins_of_materials=_of_materials(flight, centrifuge),
         whole=whole,
@@ -293,10 +259,17 @@ def _rms(values: Floats, covered: Flags) -> Floats:
     return np.sqrt(np.mean(values[covered] ** 2, axis=0)) if covered.any() else np.full(values.shape[1:], np.nan)
 
 
+def _station(response: Response, point: str) -> int:
+    """Number of the station that is the tip: the last, or a named point."""
+    if point and point not in response.points:
+        raise InputError("point", f"is {point!r}", f"choose from {', '.join(response.points)}")
+    return response.points.index(point) if point else len(response.stations) - 1
+
+
 def _statistics(
-    time: Floats, covered: Flags, reference: Floats, actual: Floats, centrifuge: Response
+    time: Floats, covered: Flags, reference: Floats, actual: Floats, centrifuge: Response, tips: tuple[int, int]
 ) -> Statistics | None:
-    """Sizes per station, and the tip's trend and vibration."""
+    """Sizes per station, and the tip's trend and vibration, the tip being a station of each."""
     if not centrifuge.frequencies.size or len(time) < _FEWEST or not covered.any():
         return None
     step, cutoff = float(time[1] - time[0]), CUTOFF * float(centrifuge.frequencies[0]) / (2 * np.pi)
@@ -316,14 +289,15 @@ def _statistics(
         flight=sizes(reference, slow),
         centrifuge=sizes(actual, slow_spun),
         difference=sizes(actual - reference, slow_spun - slow),
-        trend_flight=slow[:, -1],
-        trend_centrifuge=slow_spun[:, -1],
-        vibration_flight=(reference - slow)[:, -1],
-        vibration_centrifuge=(actual - slow_spun)[:, -1],
+        trend_flight=slow[:, tips[0]],
+        trend_centrifuge=slow_spun[:, tips[1]],
+        vibration_flight=(reference - slow)[:, tips[0]],
+        vibration_centrifuge=(actual - slow_spun)[:, tips[1]],
+        tip=tips[1],
     )
 
 
-def _mismatch(covered: Flags, centrifuge: Response, gradient: Floats) -> Mismatch | None:
+def _mismatch(covered: Flags, centrifuge: Response, gradient: Floats, tip: int) -> Mismatch | None:
     if centrifuge.axes is None or not np.isfinite(centrifuge.axes.control_point) or not covered.any():
         return None
     if centrifuge.axes.place is not None:  # beside the beam
@@ -340,7 +314,9 @@ def _mismatch(covered: Flags, centrifuge: Response, gradient: Floats) -> Mismatc
         gradient=gradient,
         max_gradient=largest,
         max_acceleration=largest * max(at, length - at),
-        tip_bound=unknown if influence is None else bound(influence.tip_linear, influence.tip_uniform),
+        tip_bound=unknown
+        if influence is None or tip != len(centrifuge.stations) - 1
+        else bound(influence.tip_linear, influence.tip_uniform),
         force_bound=unknown if influence is None else bound(influence.force_linear, influence.force_uniform),
         moment_bound=unknown if influence is None else bound(influence.moment_linear, influence.moment_uniform),
         length=length,
@@ -386,7 +362,8 @@ def _shock(
     reference: Floats,
     actual: Floats,
     weights: Mapping[str, float],
-    *points: tuple[str, ...],
+    tip: str,
+    *responses: Response,
 ) -> Shock | None:
     """Spectra of accelerations (t, s, 3) at the tip, or the mean of those at control points."""
     if len(time) < _FEWEST:
@@ -395,9 +372,9 @@ def _shock(
     lowest, highest = 1 / float(time[-1] - time[0]), _HIGHEST / step
     frequency = np.geomspace(max(lowest, highest / 1000), highest, _SPECTRUM)
     mean = np.zeros((_SPECTRUM, 6))
-    for name, share in (weights or {"": 1.0}).items():
-        places = [each.index(name) if name else -1 for each in points]
+    for name, share in (weights or {tip: 1.0}).items():
+        places = [_station(each, name) for each in responses]
         both = np.concatenate([reference[:, places[0]], actual[:, places[1]]], axis=1)
         mean += share * largest_riding_acceleration(both, 2 * np.pi * frequency, 0.5 / QUALITY, step, covered)
-    said = ", ".join(f"{name} ({100 * share:.3g} %)" for name, share in weights.items())
+    said = ", ".join(f"{name} ({100 * share:.3g} %)" for name, share in weights.items()) or tip
     return Shock(QUALITY, frequency, mean[:, :3], mean[:, 3:], **({"control": said} if said else {}))

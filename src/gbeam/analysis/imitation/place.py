@@ -74,13 +74,11 @@ def verify(
 
     def simulated(motion: Any) -> Response:
         response = simulate(structure, motion, settings)
-        return (
-            specimen_of(response, answers.tip or response.points[-1])
-            if isinstance(response, SystemResponse)
-            else response
-        )
+        return specimen_of(response) if isinstance(response, SystemResponse) else response
 
     in_flight = simulated(flight)
+    point = answers.tip or None if isinstance(structure, System) else None
+    tip = -1 if point is None else in_flight.points.index(point)
     # Machines at different control points share their axis motions, and the current one may be at the middle.
     carried: dict[int, Response] = {}
     responses: dict[tuple[int, bytes], Response] = {}
@@ -91,25 +89,25 @@ def verify(
         if (motion, at) not in responses:
             responses[motion, at] = simulated(machine)
         response = responses[motion, at]
-        comparison = compare(in_flight, response)
+        comparison = compare(in_flight, response, point=point)
         compared = np.isin(response.time, comparison.time[comparison.covered])
-        vibration, tip = np.nan, np.nan
+        vibration, moved = np.nan, np.nan
         if mode is not None:
             if motion not in carried:
                 carried[motion] = simulated(_Carried(machine))
             # Whose automatic step may differ.
-            carried_tip = interpolated(response.time, carried[motion].time, carried[motion].tip)
-            swing = response.tip - carried_tip
+            carried_tip = interpolated(response.time, carried[motion].time, carried[motion].displacement[:, tip])
+            swing = response.displacement[:, tip] - carried_tip
             step = float(response.time[1] - response.time[0])
             swing -= low_pass(swing, step, CUTOFF * float(mode.frequency) / (2 * np.pi))
-            vibration, tip = (
+            vibration, moved = (
                 _largest(each[:, across]) for each in (swing[compared], comparison.difference[comparison.covered])
             )
         force, moment = np.nan, np.nan
         if comparison.root is not None:
             root = comparison.root
             force, moment = (float(each[across].max()) for each in (root.force_difference, root.moment_difference))
-        verifications.append(Verification(name, float(place[0]), tip, vibration, moment, force))
+        verifications.append(Verification(name, float(place[0]), moved, vibration, moment, force))
     return tuple(verifications)
 
 

@@ -8,30 +8,25 @@ from dataclasses import replace
 import numpy as np
 
 from gbeam.errors import InputError
-from gbeam.mechanics.tree.system import ROOT
 from gbeam.results.parts import Loads, Peaks
 from gbeam.results.response import Response
-from gbeam.results.result import Floats
 from gbeam.results.solids import SolidStress
 from gbeam.results.system import SystemResponse
 
 
-def specimen_of(response: SystemResponse, point: str) -> Response:
-    """The response of a system on a moving ground: displacement of one of its points, loads of the ground, and the
-    stress of all beams and meshes.
+def specimen_of(response: SystemResponse) -> Response:
+    """The response of a system on a moving ground: displacement of its points, loads of the ground, and the stress of
+    all beams and meshes.
     """
     if response.base is None or response.assembly is None:
         fix = "simulate it on a flight, and on a centrifuge that tracks it, with loads"
         raise InputError("", "is a system on a ground at rest, or without loads", fix)
-    if point not in response.points:
-        raise InputError("point", f"is {point!r}", f"choose from {', '.join(response.points)}")
     from scipy.spatial.transform import Rotation  # 0.2 s to import, which no comparison of beams needs
 
     chosen = [beam.loads for beam in response.beams.values()]
-    order = sorted(range(len(response.points)), key=lambda k: response.points[k] == point)  # the tip is the last
     felt = [
         Rotation.from_quat(np.roll(response.attitude[:, k], -1, axis=-1)).apply(response.acceleration[:, k])
-        for k in order
+        for k in range(len(response.points))
     ]
     nothing, solid = np.full(3, math.nan), None
     if response.solids:
@@ -42,9 +37,7 @@ def specimen_of(response: SystemResponse, point: str) -> Response:
     tension += [each.stress_tension for each in chosen]
     compression += [each.stress_compression for each in chosen]
     unknown = np.full((len(response.time), 1), math.nan)
-    strengths, exponents = {each.yield_strength for each in chosen}, {each.fatigue_exponent for each in chosen}
-    roots = (each.fibre[:, 0] for each in chosen if each.fibre is not None)
-    fibres = [max(roots, key=np.ptp, default=unknown[:, 0]), *(_fibre(response, response.points[k]) for k in order)]
+    strengths = {each.yield_strength for each in chosen}
     loads = Loads(
         stations=np.arange(float(1 + sum(each.stress_tension.shape[1] for each in chosen))),
         force=response.ground_force[:, None],
@@ -54,9 +47,7 @@ def specimen_of(response: SystemResponse, point: str) -> Response:
         stress_tension=np.concatenate(tension, axis=1) if chosen else unknown,
         stress_compression=np.concatenate(compression, axis=1) if chosen else unknown,
         acceleration=felt[-1][:, None],
-        fibre=np.stack(fibres, axis=1),
         yield_strength=strengths.pop() if len(strengths) == 1 and solid is None else None,
-        fatigue_exponent=exponents.pop() if len(exponents) == 1 else math.nan,
     )
     return Response(
         name=response.name,
@@ -65,9 +56,9 @@ def specimen_of(response: SystemResponse, point: str) -> Response:
         outcome=response.outcome,
         message=response.message,
         time=response.time,
-        stations=np.arange(float(len(order))),
-        points=tuple(response.points[k] for k in order),
-        displacement=(response.place - response.assembly.undeformed)[:, order],
+        stations=np.arange(float(len(response.points))),
+        points=response.points,
+        displacement=response.place - response.assembly.undeformed,
         point_acceleration=np.stack(felt, axis=1),
         q=response.q,
         qd=response.qd,
@@ -88,7 +79,7 @@ def specimen_of(response: SystemResponse, point: str) -> Response:
 
 def _together(response: SystemResponse) -> SolidStress:
     """Stress of all meshes as that of one: the largest of them and of the beams over time, where a mesh is stressed
-    most, its least margin where there is no beam besides, and all points.
+    most, and its least margin where there is no beam besides.
     """
     every, beams = response.solids, [each.loads.stress.max(axis=1) for each in response.beams.values()]
     worst = max(every.values(), key=lambda each: each.worst.von_mises)
@@ -97,16 +88,4 @@ def _together(response: SystemResponse) -> SolidStress:
         worst,
         von_mises=np.max([*(each.von_mises for each in every.values()), *beams], axis=0),
         nearest_yield=min(near, key=lambda each: each.margin or math.inf, default=None),
-        points=tuple(f"{body}.{point}" for body, each in every.items() for point in each.points),
-        point_normal=np.concatenate([each.point_normal for each in every.values()], axis=1),
-        point_exponent=np.concatenate([each.point_exponent for each in every.values()]),
     )
-
-
-def _fibre(response: SystemResponse, point: str) -> Floats:
-    """Normal stress (t,) at the extreme fibre of a beam's point where it ranges most; NaN where there is no beam."""
-    body, _, name = point.partition(".")
-    beam = response.beams.get(body)
-    if beam is None or beam.loads.fibre is None or name not in (ROOT, *beam.points):
-        return np.full(len(response.time), math.nan)
-    return np.asarray(beam.loads.fibre[:, 0 if name == ROOT else 1 + beam.points.index(name)])

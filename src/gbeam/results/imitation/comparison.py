@@ -100,7 +100,7 @@ class Comparison(Judged, Figured):
     )  # fmt: skip
     kept_every: int = fact("how many samples of the histories make one in a file", name=None, key=None, default=1)
     point: str = fact(
-        "point of a system whose displacement is that of the tip", name=None, note="empty of one specimen", default=""
+        "point whose displacement is that of the tip", name=None, note="empty where it is the tip", default=""
     )
 
     @declared("", "share of the times that are compared", role="fact", name=None, key="covered")
@@ -123,7 +123,10 @@ class Comparison(Judged, Figured):
         """One sentence about the whole flight that a person can quote."""
         tip = self.accept.get("tip")
         within = tip if isinstance(tip, float) else None
-        return verdict(self.flight, self.centrifuge, self.peaks, self.accounting, within, self.margins, self.whole)
+        return verdict(
+            self.flight, self.centrifuge, self.peaks, self.accounting, within, self.margins, self.whole,
+            self.point or "tip",
+        )  # fmt: skip
 
     @declared("", "least margin on yield in flight and on the machine", role="fact", name=None, key="margin")
     def margin(self) -> dict[str, float] | None:

@@ -114,6 +114,8 @@ class Statistics(Part):
         "m", f"tip on the centrifuge above the cut-off, {_FILTER}", "time", "axis", key=None
     )
 
+    tip: int = fact("number of the station that is the tip", name=None, key=None, default=-1)
+
     @property
     def trend_difference(self) -> Floats:
         """Difference of the tip, centrifuge less flight, (t, 3) m."""

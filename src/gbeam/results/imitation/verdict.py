@@ -22,17 +22,19 @@ def verdict(
     within: float | None = None,
     margins: tuple[float, float] | None = None,
     whole: tuple[float, float] | None = None,
+    point: str = "tip",
 ) -> str:
     """Return one sentence about the whole flight between motions of these names.
 
     The part of it that was run; the flight's largest load peak, where that is not reproduced; the largest load
-    anywhere on the specimen, the tip's and the root moment's peaks, of which the tip's counts as reproduced `within` a
-    share (the load's tolerance by default), and the least `margins` on yield in flight and on the machine; how many
-    load peaks are reproduced and how well; the time followed and why the rest is not; and what is loaded beyond.
+    anywhere on the specimen, the tip's, or another `point`'s, and the root moment's peaks, of which the tip's counts as
+    reproduced `within` a share (the load's tolerance by default), and the least `margins` on yield in flight and on the
+    machine; how many load peaks are reproduced and how well; the time followed and why the rest is not; and what is
+    loaded beyond.
     """
     within = accounting.tolerance if within is None else within
     part = [] if whole is None else [part_words(accounting.span, whole)]
-    return "; ".join([*part, *_parts(flight, machine, peaks, accounting, within, margins)])
+    return "; ".join([*part, *_parts(flight, machine, peaks, accounting, within, margins, point)])
 
 
 def _parts(
@@ -42,6 +44,7 @@ def _parts(
     accounting: Accounting,
     within: float,
     margins: tuple[float, float] | None,
+    point: str,
 ) -> Iterator[str]:
     main = accounting.main
     if main is not None and main.reason:
@@ -53,7 +56,7 @@ def _parts(
     if math.isfinite(largest.machine):
         yield _largest(flight, machine, largest)
     if "tip" in peaks:
-        yield _tip(flight, machine, peaks["tip"], within)
+        yield _tip(flight, machine, peaks["tip"], within, point)
     moment = peaks.get("root_moment", PeakPair())
     if math.isfinite(moment.ratio):
         yield f"root moment {change(moment.ratio)}"
@@ -84,11 +87,11 @@ def _largest(flight: str, machine: str, load: PeakPair) -> str:
     return f"largest load anywhere on the specimen: {', '.join(ends)}{by}"
 
 
-def _tip(flight: str, machine: str, tip: PeakPair, within: float) -> str:
+def _tip(flight: str, machine: str, tip: PeakPair, within: float, point: str) -> str:
     deflection = metres(tip.machine)
     if not math.isfinite(tip.ratio):
-        return f"tip: not moved by {flight}, by up to {deflection} on {machine}"
-    begin = f"tip: {flight}'s peak {metres(tip.flight)} at {tip.time_flight:.2f} s"
+        return f"{point}: not moved by {flight}, by up to {deflection} on {machine}"
+    begin = f"{point}: {flight}'s peak {metres(tip.flight)} at {tip.time_flight:.2f} s"
     when = f" at {tip.time_machine:.2f} s" if abs(tip.time_machine - tip.time_flight) > _APART else ""
     if abs(tip.ratio - 1) <= within:
         return f"{begin} reproduced as {deflection} ({change(tip.ratio)}){when}"

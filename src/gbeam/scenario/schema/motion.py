@@ -53,8 +53,8 @@ class Accept(_Limits):  # type: ignore[misc, valid-type]
     )
     point: str | None = Field(
         default=None,
-        description='point of a system whose displacement is that of the tip: "arm.tip"; left out, the one that moves '
-        "farthest in flight",
+        description='point whose displacement is that of the tip, and whose spectra srs is of: "camera", or of a '
+        'system "arm.tip"; left out, the tip, and of a system the point that moves farthest in flight',
     )
     control: dict[str, Share] = Field(
         default_factory=dict,
@@ -65,7 +65,7 @@ class Accept(_Limits):  # type: ignore[misc, valid-type]
     damage_at: str | None = Field(
         default=None,
         description="point whose fatigue damage is that of damage; left out, the root of a beam, and of a solid where "
-        "its von Mises stress is largest",
+        "its von Mises stress is largest, of several materials that whose stress ranges most in flight",
     )
 
     @property

@@ -152,9 +152,6 @@ class Environments(Titled):
         for name, motion in self.motion.items():
             if isinstance(motion, Centrifuge):
                 yield from self._tracking(name, motion)
-                if motion.limits_of_acceptance.get("point") and "joints" not in type(self).model_fields:
-                    hint = "leave it out: the displacement of the tip is compared"
-                    yield ("motion", name, "accept", "point"), wrong("is of a system", hint, mark="key")
         recorded = any(isinstance(motion, Flight) and motion.record for motion in self.motion.values())
         if self.response.duration is None and not recorded:
             yield (
