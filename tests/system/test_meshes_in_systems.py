@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,8 @@ import pytest
 
 import gbeam as gb
 from gbeam.cli import main
+from gbeam.report.page.result import report_of, shown
+from gbeam.report.steady import deflection, system_rest
 from gbeam.report.study import system_response
 
 from ..solids.test_damage_at_points import HALF, METAL, B, H, L, beam, block, runs, solid
@@ -95,3 +98,36 @@ def test_a_scenario_of_a_mesh_on_a_plate_is_judged_by_its_stress(
     assert "bar: von Mises" in printed.out and "not accepted: stress" in printed.err
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     assert "von Mises stress" in page and "margin" in page
+
+
+def test_at_rest_a_mesh_has_the_stress_of_its_section() -> None:
+    """Half-way along a bar under its own weight M c/I, alone and clamped in a system; the same place is the worst."""
+    g, x = 78.5, L - HALF
+    alone = gb.static(strip(), acceleration=(0.0, 0.0, g))
+    held = gb.static(gb.System({"strip": strip()}, {"clamp": gb.Joint("fixed", "strip")}, gravity=(0.0, 0.0, -g)))
+    bent = METAL.density * B * H * g * x**2 / 2 * (H / 2) / (B * H**3 / 12)
+    assert alone.solid is not None
+    for stress in (alone.solid, held.solids["strip"]):
+        assert stress.point_stress[0, 0, 0] == pytest.approx(bent, rel=5e-3)
+        assert stress.worst.node == alone.solid.worst.node
+        assert stress.worst.von_mises == pytest.approx(alone.solid.worst.von_mises, rel=1e-6)
+    assert "von Mises" in deflection([replace(alone, motion="push")]) and "strip: von Mises" in system_rest([held])
+    for result in (alone, held):
+        page = report_of(result)
+        assert "Largest stress, and where it is" in page and f"{1e-6 * alone.solid.worst.von_mises:.3g}"[:3] in page
+
+
+def test_a_mesh_in_a_system_is_drawn_where_it_is() -> None:
+    """Its surface moves about its root as that of the specimen alone does, in the machine that carries both."""
+    alone, _ = shown(gb.Study("", {"machine": specimen()[1]}, ()))
+    among, numbers = shown(both()[1])
+    (one,), (two,) = alone["scene"]["motions"], among["scene"]["motions"]
+    ours = next(part for part in two["parts"] if "surface" in part)
+
+    for part, motion in ((one["parts"][0], one), (ours, two)):
+        assert part["surface"]["largest"] == pytest.approx(specimen()[1].solid.worst.von_mises, rel=2e-3)
+        assert motion["arm"] == 3.3 and motion["controlPlace"] == [0.22, 0.0, 0.0]
+        assert motion["extent"][1][0] == pytest.approx(L) and motion["axes"]["shape"][1] == 3
+    frame = numbers.array[ours["frame"]["at"] :][:10]
+    np.testing.assert_allclose(frame, [0, 0, 0, 1, 0, 0, 0, 0, 0, 0], atol=1e-12)
+    assert one["largest"] == pytest.approx(two["largest"], rel=2e-3)

@@ -2,6 +2,7 @@
 
 import {
   ArrowHelper,
+  Box3,
   BoxGeometry,
   CylinderGeometry,
   Group,
@@ -52,9 +53,12 @@ function upright(radius: number, height: number, colour: number): Mesh {
   return mesh;
 }
 
-/** The centrifuge: the beam is drawn larger than it is, where it would not be seen beside the arm. */
-export function centrifuge(arm: number, length: number, controlPoint: number): Carrier {
-  const factor = Math.max(1, (0.42 * arm) / length);
+/** The centrifuge: the specimen is drawn larger than it is, where it would not be seen beside the arm. It reaches over an
+ * extent of its axes, and is turned in those of the module by a rotation vector, its control point at the end of the arm.
+ */
+export function centrifuge(arm: number, extent: number[][], place: number[], turn: number[] = [0, 0, 0]): Carrier {
+  const [low, high, at, axis] = [...extent, place, turn].map((each) => new Vector3(...each)) as [Vector3, Vector3, Vector3, Vector3];
+  const factor = Math.max(1, (0.42 * arm) / high.distanceTo(low));
   const [world, turning, yaw, roll, base] = [new Group(), new Group(), new Group(), new Group(), new Group()];
   const post = upright(0.11 * arm, 0.5 * arm, 0x8a8f98);
   post.position.z = -0.3 * arm;
@@ -62,7 +66,9 @@ export function centrifuge(arm: number, length: number, controlPoint: number): C
   foot.position.z = -0.55 * arm;
   world.add(post, foot, turning);
   // The arm ends at the yaw frame, and has a counterweight on the other side.
-  const reach = factor * Math.max(controlPoint, length - controlPoint);
+  const turned = new Matrix4().makeRotationAxis(axis.clone().normalize(), axis.length());
+  const around = new Box3(low.sub(at), high.sub(at)).applyMatrix4(turned);
+  const reach = factor * around.min.clone().negate().max(around.max).length();
   const ring = Math.min(1.08 * reach, 0.62 * arm);
   const beam = part(new BoxGeometry(1.3 * arm - ring, 0.1 * arm, 0.08 * arm), 0xa9afb9);
   beam.position.x = (arm - ring - 0.3 * arm) / 2;
@@ -80,11 +86,13 @@ export function centrifuge(arm: number, length: number, controlPoint: number): C
   outer.rotation.x = Math.PI / 2; // in the plane of axis 3 and the vertical
   const module = new Group();
   const half = 0.34 * ring;
-  const box = new BoxGeometry(1.86 * reach, 2 * half, 2 * half);
-  box.translate(factor * (length / 2 - controlPoint), 0, 0);
+  const sides = around.getSize(new Vector3()).multiplyScalar(1.1 * factor);
+  const box = new BoxGeometry(1.86 * reach, Math.max(2 * half, sides.y), Math.max(2 * half, sides.z));
+  box.translate(...around.getCenter(new Vector3()).multiplyScalar(factor).toArray());
   module.add(new LineSegments(new EdgesGeometry(box), new LineBasicMaterial({ color: 0xe69f00 })));
   base.scale.setScalar(factor);
-  base.position.x = -factor * controlPoint;
+  base.quaternion.setFromRotationMatrix(turned);
+  base.position.copy(at.applyMatrix4(turned).multiplyScalar(-factor));
   roll.add(module, base);
   yaw.add(outer, roll);
   yaw.position.x = arm;

@@ -72,7 +72,11 @@ export interface Motion {
   relative?: boolean;
   /** s, after which it begins again. */
   period?: number;
-  controlPoint?: number;
+  /** Of a specimen on a machine: the point at the end of the arm, the least and the largest coordinates of the specimen,
+   * and the rotation vector of its axes in those of the module. */
+  controlPlace?: number[];
+  extent?: number[][];
+  turn?: number[];
   load?: Ref;
   reference?: Ref;
   largestLoad?: number;

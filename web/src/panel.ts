@@ -40,17 +40,17 @@ export class Panel {
     this.bodies = motion.parts.map((part) => new Body(part, numbers, this.carrier.size));
     for (const each of this.bodies) this.carrier.base.add(each.group);
     if (motion.load) {
-      const at = new Vector3(motion.controlPoint ?? 0, 0, 0);
+      const at = new Vector3(...(motion.controlPlace ?? []));
       const made = arrow(at, this.length);
       // A thick shaft, so that the thin arrow of the target is seen inside where the two agree.
       const shaft = new CylinderGeometry(0.006 * this.length, 0.006 * this.length, 0.9, 12).translate(0, 0.45, 0);
-      made.line.add(new Mesh(shaft, made.cone.material));
+      const thick = new Mesh(shaft, made.cone.material);
+      made.line.add(thick);
       const wanted = motion.reference ? arrow(at, this.length) : null;
-      if (wanted) {
-        for (const part of [wanted.line, wanted.cone]) {
-          (part.material as Material).depthTest = false;
-          part.renderOrder = 1;
-        }
+      // Seen through a solid that is in front.
+      for (const part of [made.line, made.cone, thick, ...(wanted ? [wanted.line, wanted.cone] : [])]) {
+        (part.material as Material).depthTest = false;
+        part.renderOrder = part === wanted?.line || part === wanted?.cone ? 2 : 1;
       }
       this.arrows = { made, wanted };
       this.carrier.base.add(made);
@@ -93,7 +93,7 @@ export class Panel {
     this.deflection = settings.factor * motion.largest;
     const place = locate(view(numbers, motion.time), motion.period ? t % motion.period : t);
     for (const each of this.bodies) each.update(place, settings, dark);
-    if (motion.middle && motion.middle.shape[0]! > 1) {
+    if (motion.middle && !this.whole && motion.middle.shape[0]! > 1) {
       this.middle = [...interpolate(view(numbers, motion.middle), 3, place, new Float32Array(3))] as typeof this.middle;
     }
     const angles = motion.axes ?? motion.angle ?? motion.attitude;
@@ -129,7 +129,9 @@ export class Panel {
 
   private carrying(): Carrier {
     const { motion, length } = this;
-    if (this.whole && motion.axes && motion.arm) return centrifuge(motion.arm, length, motion.controlPoint ?? 0);
+    if (this.whole && motion.axes && motion.arm) {
+      return centrifuge(motion.arm, motion.extent!, motion.controlPlace!, motion.turn);
+    }
     if (this.whole && motion.angle && motion.radius !== undefined) {
       return hub(motion.radius, length, motion.mounting ?? [1, 0, 0, 0, 1, 0, 0, 0, 1]);
     }

@@ -10,7 +10,7 @@ describe("a centrifuge's pose", () => {
   // The axes of gbeam.motion.centrifuge.machine.kinematics.forward.
   const [arm, length, control] = [3.3, 2.4, 1.8]; // long enough to be drawn as large as it is
   const [t1, t2, t3] = [0.7, -1.1, 0.4];
-  const machine = centrifuge(arm, length, control);
+  const machine = centrifuge(arm, [[0, 0, 0], [length, 0, 0]], [control, 0, 0]);
   machine.turn([t1, t2, t3]);
   machine.world.updateMatrixWorld(true);
   const at = (x: number, y: number, z: number): Vector3 => machine.base.localToWorld(new Vector3(x, y, z));
@@ -31,6 +31,16 @@ describe("a centrifuge's pose", () => {
     const expected = b2.clone().multiplyScalar(Math.cos(t3)).add(new Vector3(0, 0, Math.sin(t3)));
     expect(e2!.distanceTo(expected)).toBeLessThan(1e-9);
     expect(e3!.distanceTo(b2.multiplyScalar(-Math.sin(t3)).add(new Vector3(0, 0, Math.cos(t3))))).toBeLessThan(1e-9);
+  });
+
+  it("holds a solid by its own point, turned", () => {
+    const held = centrifuge(arm, [[-0.7, -1.2, 0], [0.5, 1.2, 0.8]], [0.2, 0.9, 0.3], [0, 0, Math.PI / 2]);
+    held.turn([t1, t2, t3]);
+    held.world.updateMatrixWorld(true);
+    const [point, along] = [new Vector3(0.2, 0.9, 0.3), new Vector3(0.2, 0.9 - 0.5, 0.3)].map((each) => held.base.localToWorld(each));
+    expect(point!.distanceTo(new Vector3(arm * Math.cos(t1), arm * Math.sin(t1), 0))).toBeLessThan(1e-9);
+    // Its −y lies along the machine's x, and is as long as it is: the solid is large enough.
+    expect(along!.sub(point!).distanceTo(at(0.5, 0, 0).sub(at(0, 0, 0)))).toBeLessThan(1e-9);
   });
 });
 

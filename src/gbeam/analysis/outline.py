@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -114,10 +113,6 @@ def _attitude(motion: Any, time: Floats, some: Any) -> Floats | None:
 
 
 def _carrier(motion: Any) -> dict[str, Any]:
-    if motion is None:
+    if motion is None or motion.kind != "hub":
         return {}
-    if motion.kind == "centrifuge":
-        return {"arm": float(motion.geometry.arm)}
-    if motion.kind == "hub":
-        return {"radius": float(motion.mount.radius), "R_HB": np.asarray(motion.mount.R_HB)}
-    return {"arm": math.nan}
+    return {"radius": float(motion.mount.radius), "R_HB": np.asarray(motion.mount.R_HB)}

@@ -27,7 +27,8 @@ def _deflection(deflection: Deflection) -> str:
     tip = f"tip x {x:.6g} mm, y {y:.6g} mm, z {z:.6g} mm"
     first = f"{deflection.motion} at {deflection.time:.4g} s: {tip} ({deflection.model}){warning}"
     loads = [] if deflection.loads is None else [f"  {resting_loads(deflection.loads)}"]
-    return "\n".join([first, *loads, f"  {_deflection_errors(deflection.errors)}", *warning_lines(deflection)])
+    more = [] if deflection.solid is None else [f"  {line}" for line in deflection.solid.lines]
+    return "\n".join([first, *loads, *more, f"  {_deflection_errors(deflection.errors)}", *warning_lines(deflection)])
 
 
 def _deflection_errors(errors: Errors) -> str:
@@ -220,6 +221,7 @@ def _rest(rest: SystemRest) -> Iterator[str]:
     yield "  on the ground: force ({}) N, moment ({}) N m".format(*pair)
     for body, loads in rest.loads.items():
         yield f"  {body}: {resting_loads(loads)}"
+    yield from (f"  {body}: {line}" for body, each in rest.solids.items() for line in each.lines)
     yield from (f"  {line}" for line in by_beam(rest.errors))
     yield from warning_lines(rest)
 

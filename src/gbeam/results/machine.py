@@ -139,6 +139,9 @@ class AxesResult(Part):
         key="control_place",
         default=None,
     )
+    arm: float = entry(
+        "m", "from axis 1 of the centrifuge to the control point", key=None, optional=True, default=math.nan
+    )
     turn: Floats | None = entry(
         "rad", "rotation vector of the specimen in the machine, where it is turned", "axis", name="turn", default=None
     )

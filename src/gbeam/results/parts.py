@@ -48,7 +48,6 @@ class Outline(Part):
     across: Floats | None = quantity(
         "", "direction of the section's width at rest", "point", "axis", name="outline_across", default=None
     )
-    arm: float = quantity("m", "from axis 1 of the centrifuge to the control point", optional=True, default=math.nan)
     radius: float = quantity("m", "from the hub's axis to the root", name="hub_radius", optional=True, default=math.nan)
     R_HB: Floats = quantity(
         "", "rotation from base axes to hub axes", "hub_axis", "axis", name=None, default_factory=lambda: np.eye(3)

@@ -142,7 +142,10 @@ class SolidStress(Figured):
         assert margin is not None
         words = "margin on yield" if margin >= 0 else "ABOVE YIELD: margin"
         material = self.nearest_yield.material or "the material"
-        return said(self.worst), f"{words} {margin:.3g} in {material}: {said(self.nearest_yield)}"
+        same = (self.worst.node, self.worst.material) == (self.nearest_yield.node, self.nearest_yield.material)
+        return said(
+            self.worst
+        ), f"{words} {margin:.3g} in {material}{', there' if same else f': {said(self.nearest_yield)}'}"
 
     def __repr__(self) -> str:
         of, (worst, margin) = f" {self.motion!r}" if self.motion else "", self.lines
@@ -152,9 +155,10 @@ class SolidStress(Figured):
 def said(stress: StressAt) -> str:
     """A stress with its place and time, and how sure the mesh is of it."""
     x, y, z = (1e3 * float(each) for each in stress.place)
+    apart = f"; elements there differ by {100 * stress.spread:.2g} %" if stress.spread else ", of one element"
     return (
         f"von Mises {1e-6 * stress.von_mises:.4g} MPa at ({x:.4g}, {y:.4g}, {z:.4g}) mm, node {stress.node}, at "
-        f"{stress.time:.4g} s; elements there differ by {100 * stress.spread:.2g} %"
+        f"{stress.time:.4g} s{apart}"
     )
 
 

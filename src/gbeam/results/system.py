@@ -17,7 +17,7 @@ from gbeam.results.machine import AxesResult, Driven
 from gbeam.results.parts import LoadPeaks, Loads, Outline
 from gbeam.results.response import BaseMotion
 from gbeam.results.result import Complex, Figured, Floats, Part
-from gbeam.results.solids import SolidStress
+from gbeam.results.solids import SolidStress, Surface
 
 ENERGIES = ("kinetic", "elastic", "gravity")
 _OF_POINTS = {"place": "place", "velocity": "velocity", "acceleration": "acceleration", "spin": "angular_velocity"}
@@ -196,6 +196,10 @@ class SystemResponse(Driven, Figured):
     solids: Mapping[str, SolidStress] = rows(
         "stress of meshes, by the name of the body", "body", optional=True, name="", default_factory=dict
     )
+    surfaces: Mapping[str, Surface] = rows(
+        "surfaces of meshes for pictures, by the name of the body", "body", optional=True, name="surface_", key=None,
+        default_factory=dict,
+    )  # fmt: skip
     integrator: str = fact("integrator", default="gauss")
     step: float = fact("time step", "s", default=math.nan)
     steps: int = fact("number of steps", default=0)
@@ -342,6 +346,14 @@ class SystemRest(Figured):
     loads: Mapping[str, Loads] = rows(
         "forces, moments and stresses of the beams' sections, of one time", "body", name=None, key=None,
         note="by the name of the body", default_factory=dict,
+    )  # fmt: skip
+
+    solids: Mapping[str, SolidStress] = rows(
+        "stress of meshes, of one time, by the name of the body", "body", optional=True, name=None, default_factory=dict
+    )
+    surfaces: Mapping[str, Surface] = rows(
+        "surfaces of meshes for pictures, by the name of the body", "body", optional=True, name="surface_", key=None,
+        default_factory=dict,
     )  # fmt: skip
 
     @declared("", "forces, moments and stresses of the beams' sections", role="rows", name=None, key="beams",

@@ -21,7 +21,7 @@ from gbeam.analysis.response.step_errors import Run, difference, of_histories, r
 from gbeam.analysis.response.stepping import LOADS_STEPS, even_steps, finer_by, integrated, scheme_of, steps_beyond
 from gbeam.analysis.system.accuracy import doubts, system_errors
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
-from gbeam.analysis.system.histories import Carried, beams_of, deflection, histories, loads_of
+from gbeam.analysis.system.histories import Carried, beams_of, deflection, histories, loads_of, meshes_of
 from gbeam.analysis.system.point import Point, started, started_traced
 from gbeam.analysis.system.richer import PLACE, Answered, InputsOf, Quantity, itself, judged_beams, pieces
 from gbeam.arrays.namespace import holds_jax, namespace
@@ -30,7 +30,6 @@ from gbeam.guards.limits import HISTORY_BYTES, STEPS, refuse_more
 from gbeam.integrate.equations import NonlinearEquations, Trajectory
 from gbeam.integrate.sampled import Sampling
 from gbeam.integrate.steps import Corners
-from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.equations import Inputs
 from gbeam.mechanics.tree.steps import continuous
 from gbeam.mechanics.tree.system import System
@@ -41,7 +40,6 @@ from gbeam.progress import Progress, tell
 from gbeam.results.errors import ErrorEstimate, SystemErrors
 from gbeam.results.parts import Loads
 from gbeam.results.response import BaseMotion
-from gbeam.results.solids import SolidStress
 from gbeam.results.system import BeamResponse, Invariants, Loop, SystemResponse
 from gbeam.structure.beam import names_at
 
@@ -354,13 +352,8 @@ def _described(
         names = () if beam.source is None else names_at(beam.source.beam, beam.stations)
         beams[body] = BeamResponse(loads, peaks, outline_of(beam, None, time, q), names)
         yielded += yielding(beams[body].peaks, f" of {body}")
-    solids, kind = dict[str, SolidStress](), "ground" if motion is None else motion.kind
-    for body, solid in system.bodies.items():
-        if settings.loads and isinstance(solid, Structure) and solid.recovery is not None:
-            first = system.coordinates.index(f"{body}.q1")
-            q, about = over_time["q"][:, first : first + solid.size], {"model": solid.kind, "environment": kind}
-            parts = solid.recovery.parts(time, None, q, motion=name, **about)
-            solids |= {body: parts["solid"]} if "solid" in parts else {}
+    kind = "ground" if motion is None else motion.kind
+    solids, surfaces = meshes_of(system, time, over_time["q"], name, kind) if settings.loads else ({}, {})
     invariants = None
     if motion is None:
         invariants = Invariants(*(over_time.pop(key) for key in ("momentum", "angular_momentum", "energy")))
@@ -395,6 +388,7 @@ def _described(
         loop=run.loop(time)[0],
         beams=beams,
         solids=solids,
+        surfaces=surfaces,
         base=None if motion is None else BaseMotion(base.a_WO_B, base.w_WB_B, base.alpha_WB_B),
         axes=axes_result(motion, time) if isinstance(motion, Centrifuge) else None,
         assembly=assembly_of(system) if settings.loads else None,

@@ -212,6 +212,9 @@ def deflection_at(
     loads = section_forces(structure, over_time, q[None], still, still, np.array([time]), motion=motion)
     errors, doubts = static_errors(point, displacement, loads)
     warnings = input_warnings(structure, motion, name=name, span=(time, time), base=base) + doubts
+    names = {"motion": name, "model": structure.kind, "environment": "" if motion is None else motion.kind}
+    recovery, times = structure.recovery, np.array([time])
+    parts = {} if recovery is None else recovery.parts(times, over_time, q[None], **names)
     return Deflection(
         motion=name,
         model=structure.kind,
@@ -225,4 +228,5 @@ def deflection_at(
         warnings=warnings,
         loads=loads,
         errors=errors,
+        solid=parts.get("solid"),
     )

@@ -17,6 +17,7 @@ from gbeam.mechanics.tree.steps import parameters_of_all
 from gbeam.mechanics.tree.system import System, stations_of
 from gbeam.results.parts import Loads
 from gbeam.results.response import BaseMotion
+from gbeam.results.solids import SolidStress, Surface
 
 Array = Any
 Floats = NDArray[np.float64]
@@ -107,3 +108,17 @@ def loads_of(beam: Structure, pieces: list[Carried], time: Floats) -> Loads:
     station, force, moment = zip(*hung, strict=True)
     every = Hung(station[0], np.concatenate(force), np.concatenate(moment))
     return section_forces(beam, BaseMotion(a, w, alpha), q, qd, qdd, time, hung=every)
+
+
+def meshes_of(
+    system: System, time: Floats, q: Floats, motion: str, environment: str
+) -> tuple[dict[str, SolidStress], dict[str, Surface]]:
+    """Stress and surfaces of the meshes among the bodies, by name, at coordinates (t, n) at times (t,)."""
+    stresses, surfaces = dict[str, SolidStress](), dict[str, Surface]()
+    for body, solid in system.bodies.items():
+        if isinstance(solid, Structure) and solid.recovery is not None:
+            first = system.coordinates.index(f"{body}.q1")
+            names = {"motion": motion, "model": solid.kind, "environment": environment}
+            parts = solid.recovery.parts(time, None, q[:, first : first + solid.size], **names)
+            stresses[body], surfaces[body] = parts["solid"], parts["surface"]
+    return stresses, surfaces

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from gbeam.analysis.accuracy.estimate import LIMIT
 from gbeam.analysis.outline import assembly_of, outline_of
 from gbeam.analysis.system.accuracy import doubts, system_errors
-from gbeam.analysis.system.histories import beams_of, histories, loads_of
+from gbeam.analysis.system.histories import beams_of, histories, loads_of, meshes_of
 from gbeam.analysis.system.point import Point, started
 from gbeam.analysis.system.steady import Drive, SteadySystem, steady
 from gbeam.errors import ComputationError
@@ -60,6 +60,7 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
         return state.richer(of).point.standing(time), inputs
 
     start = begun["place"][0]
+    solids, surfaces = meshes_of(system, np.array([time]), resting["q"], name, "rest")
     errors = system_errors(system, point.standing(time), inputs, again, {}, settled=True, start=start)
     return SystemRest(
         name=name,
@@ -77,6 +78,8 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
             if (outline := outline_of(beams_of(system)[body], None, np.array([time]), each.q)) is not None
         },
         loads={body: loads_of(beams_of(system)[body], [each], np.array([time])) for body, each in beams.items()},
+        solids=solids,
+        surfaces=surfaces,
         **{key: at[key] for key in ("place", "attitude", "q", "effort", "ground_force", "ground_moment")},
     )
 

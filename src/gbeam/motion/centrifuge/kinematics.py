@@ -129,6 +129,7 @@ def axes_result(motion: Centrifuge, time: Floats) -> AxesResult:
         episodes=tuple((e.start, e.end, e.reason) for e in motion.episodes()),
         limits=limits,
         shortfalls=motion.shortfalls(),
+        arm=float(motion.geometry.arm),
         control_point=float(motion.place[0]),
         place=np.asarray(motion.place) if np.any(motion.place[1:]) else None,
         turn=np.array(motion.turn) if any(motion.turn) else None,

@@ -196,6 +196,7 @@ def static_body(facts: Facts, viewer: str, drawn: str) -> str:
         if not each["stable"]
     ]
     parts += [heading("Deflection"), _tips(motions), resting_loads_table(motions)]
+    parts += [stress_table({name: each["solid"] for name, each in motions.items() if "solid" in each})]
     return "".join([*parts, section("Along the beam", drawn)])
 
 
@@ -219,6 +220,19 @@ def resting_loads_table(motions: Facts, of: str = "motion") -> str:
     head = (of, *(f"{what} {axis}" for what in ("force, N:", "moment, N m:") for axis in "xyz"), "stress, MPa")
     rows = (row(name, each["loads"]) for name, each in motions.items() if "loads" in each)
     return table(head, rows, "Of the base on the root, base axes; largest stress anywhere")
+
+
+def stress_table(solids: Facts, of: str = "motion") -> str:
+    """Largest von Mises stress of a mesh in every motion, or `of` every body, with its place and the least margin."""
+
+    def row(name: str, solid: Facts) -> list[Value]:
+        worst, near = solid["worst"], solid.get("nearest_yield")
+        place = [1e3 * worst["place"][axis] for axis in "xyz"]
+        margin = np.nan if near is None else near["margin"]
+        return [name, 1e-6 * worst["von_mises"], *place, Cell(worst["material"] or "–"), margin]
+
+    head = (of, "von Mises, MPa", "x, mm", "y, mm", "z, mm", "material", "least margin on yield")
+    return table(head, (row(*each) for each in solids.items()), "Largest stress, and where it is", words=(0, 5))
 
 
 def critical_body(facts: Facts, viewer: str, drawn: str) -> str:

@@ -79,6 +79,9 @@ def _inside(known: Mapping[str, Any], units: Mapping[str, str], place: str) -> I
             over_time = all("sections" in each for each in value.values())
             yield (answers.loads_table if over_time else answers.resting_loads_table)(beams, "beam")
             continue
+        if key == "solids":
+            yield answers.stress_table(value, "body")
+            continue
         if isinstance(value, dict):
             below = f"{place}{key}.*."
             if key == "motions":

@@ -17,6 +17,8 @@ Variables = Mapping[str, Any]
 SHOWN = 33  # points of a mode shape
 TIMES = 1500  # of bodies that have no outline of their own
 SIGNS = np.array(np.meshgrid(*[(-1, 1)] * 3)).reshape(3, -1).T  # of a box's corners
+CORNERS = (SIGNS + 1) / 2
+SURFACE = ("vertices", "triangles", "shapes", "stress", "sizes")
 LINE = (("rest", "place"), ("across", "across"))  # of a beam that is not straight, and where an outline has it
 FAR = 4  # times their own size: bodies that go farther are followed
 AMPLITUDE, TURN = 0.15, 0.6  # of a mode: of the length, of the largest displacement; rad, the largest rotation
@@ -61,15 +63,8 @@ def motion(name: str, environment: str, variables: Variables, numbers: Numbers) 
         header["length"] = _largest(rest)
         middle, header["radiusShown"] = _view(rest[None])
         header["middle"] = numbers.add(middle)
-    actual = of("load_actual")
-    load = of("root_acceleration") if actual is None else actual
-    header["load"], header["largestLoad"] = numbers.add(load[index]), _largest(load)
-    if actual is not None:
-        header["reference"] = numbers.add(of("load_reference")[index])
-        header["controlPoint"] = float(of("control_point"))
-        if of("turn") is None and of("control_place") is None:  # the machine is drawn about a beam on its axis
-            header["axes"], header["arm"] = numbers.add(of("axis_angle")[index]), float(of("arm"))
-        header["span"] = [max(float(of("flight_from")), float(time[0])), min(float(of("flight_to")), float(time[-1]))]
+    reach = np.array([[float(of("point")[-1]), 0.0, 0.0]]) if rest is None else rest
+    header |= _carried(variables, index, np.concatenate([np.zeros((1, 3)), reach]), numbers)
     if of("attitude") is not None:
         header["attitude"] = numbers.add(of("attitude"))
     if of("hub_radius") is not None:
@@ -81,27 +76,59 @@ def motion(name: str, environment: str, variables: Variables, numbers: Numbers) 
 def _solid(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple[dict[str, Any], Floats, Floats]:
     """One motion of a solid: its surface in a few shapes; times and displacements (t, v, 3), the largest last."""
     some, at = v["surface_time"], v["surface_vertices"]
+    surface, tip = _surface({key: v[f"surface_{key}"] for key in SURFACE}, v["solid_von_mises"], numbers)
     index = np.searchsorted(v["time"], some - 1e-12).clip(max=len(v["time"]) - 1)
     low, high = at.min(axis=0), at.max(axis=0)
     radius = float(np.linalg.norm(high - low)) / 2
-    few = v["surface_sizes"][:: max(1, len(some) // 100)]
-    moved = np.einsum("ts,sva->tva", few, v["surface_shapes"])
-    tip = np.einsum("ts,sa->ta", v["surface_sizes"], v["surface_shapes"][:, np.abs(moved).max(axis=(0, 2)).argmax()])
-    surface = {key: numbers.add(v[f"surface_{key}"]) for key in ("vertices", "triangles", "shapes", "stress", "sizes")}
-    load = v.get("load_actual", v["root_acceleration"])
     header = {
         "name": name,
         "environment": environment,
-        "parts": [{"surface": {**surface, "largest": float(v["solid_von_mises"].max())}}],
+        "parts": [{"surface": surface}],
         "length": 2 * radius,
         "time": numbers.add(some),
-        "largest": _largest(moved),
+        "largest": _largest(tip),
         "middle": numbers.add((low + high)[None] / 2),
         "radiusShown": 1.05 * radius,
-        "load": numbers.add(load[index]),
-        "largestLoad": _largest(load),
     }
-    return header, some, tip[:, None]
+    return header | _carried(v, index, at, numbers), some, tip
+
+
+def _surface(of: Variables, stress: Floats | None, numbers: Numbers) -> tuple[dict[str, Any], Floats]:
+    """A surface in a few shapes, with the largest stress, by itself where none is known over time, and the displacement
+    (t, 1, 3) of the vertex that moves farthest.
+    """
+    few = of["sizes"][:: max(1, len(of["sizes"]) // 100)]
+    moved = np.einsum("ts,sva->tva", few, of["shapes"])
+    if stress is None:
+        xx, yy, zz, yz, xz, xy = np.moveaxis(np.einsum("ts,sva->tva", few, of["stress"]), -1, 0)
+        stress = np.sqrt(((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * (yz**2 + xz**2 + xy**2))
+    vertex = (moved**2).sum(axis=-1).max(axis=0).argmax()
+    header = {key: numbers.add(of[key]) for key in SURFACE} | {"largest": float(np.max(stress))}
+    return header, np.einsum("ts,sa->ta", of["sizes"], of["shapes"][:, vertex])[:, None]
+
+
+def _carried(v: Variables, index: Any, places: Floats, numbers: Numbers) -> dict[str, Any]:
+    """The load of the base, and the machine about a specimen that reaches over places (p, 3) at rest, where there is
+    one.
+    """
+    actual = v.get("load_actual")
+    load = v.get("root_acceleration") if actual is None else actual
+    header = {} if load is None else {"load": numbers.add(load[index]), "largestLoad": _largest(load)}
+    if actual is None:
+        return header
+    time, place, turn = v["time"], v.get("control_place"), v.get("turn")
+    return (
+        header
+        | {
+            "reference": numbers.add(v["load_reference"][index]),
+            "controlPlace": [float(v["control_point"]), 0.0, 0.0] if place is None else np.ravel(place).tolist(),
+            "extent": [places.min(axis=0).tolist(), places.max(axis=0).tolist()],
+            "axes": numbers.add(v["axis_angle"][index]),
+            "arm": float(v["arm"]),
+            "span": [max(float(v["flight_from"]), float(time[0])), min(float(v["flight_to"]), float(time[-1]))],
+        }
+        | ({} if turn is None else {"turn": np.ravel(turn).tolist()})
+    )
 
 
 def _beam(variables: Variables, index: Any, numbers: Numbers) -> dict[str, Any]:
@@ -148,6 +175,13 @@ def _system(name: str, environment: str, v: Variables, numbers: Numbers) -> tupl
             part["beam"] = _beam(of, index, numbers)
             tip = of["outline"][:, -1:]
             deflected = tip if _largest(tip) > _largest(deflected) else deflected
+        elif f"surface_{body}_vertices" in v:
+            of = {key: v[f"surface_{body}_{key}"] for key in SURFACE}
+            of["sizes"] = np.stack([np.interp(some, v[f"{body}_surface_time"], each) for each in of["sizes"].T], axis=1)
+            part["surface"], moved = _surface(of, v.get(f"{body}_von_mises"), numbers)
+            deflected = moved if _largest(moved) > _largest(deflected) else deflected
+            size = np.ptp(of["vertices"], axis=0)
+            corners += [at[:, None] + turn.apply(each)[:, None] for each in of["vertices"].min(axis=0) + CORNERS * size]
         else:
             others = [i for i, each in enumerate(points) if each.startswith(f"{body}.") and i != root]
             part["points"] = [turn[0].inv().apply(place[0, i] - at[0]).tolist() for i in others]
@@ -161,18 +195,18 @@ def _system(name: str, environment: str, v: Variables, numbers: Numbers) -> tupl
                 corners += [at[:, None] + turn.apply(centre + rotation @ (sign * size / 2))[:, None] for sign in SIGNS]
         parts.append(part | ({"joint": True} if v["joint_kind"][k] not in ("fixed", "free") else {}))
     middle, radius = _view(np.concatenate([place, *corners], axis=1))
-    outlines = [v[f"{body}_outline"] for body in beams]
     header = {
         "name": name,
         "environment": environment,
         "parts": parts,
         "length": max((float(v[f"{body}_point"][-1]) for body in beams), default=radius),
         "time": numbers.add(some),
-        "largest": max(map(_largest, outlines), default=0.0),
+        "largest": max([_largest(deflected), *(_largest(v[f"{body}_outline"]) for body in beams)]),
         "middle": numbers.add(middle),
         "radiusShown": radius,
     }
-    return header, some, deflected
+    still = np.concatenate([np.zeros((1, 3)), v["undeformed"], *(each[0] for each in corners)])
+    return header | _carried(v, index, still, numbers), some, deflected
 
 
 def _view(place: Floats) -> tuple[Floats, float]:
