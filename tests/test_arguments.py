@@ -299,16 +299,16 @@ class Given:
             "shape_hub_command": (
                 (self.slew,),
                 {
-                    "angle": 1.0, "rate": None, "duration": 2.0, "limit": 1e6, "robust": 0.0, "check": "",
-                    "motion": "slew", "joint": None, "point": None,
+                    "angle": 1.0, "rate": None, "distance": None, "duration": 2.0, "limit": 1e6, "robust": 0.0,
+                    "check": "", "motion": "slew", "joint": None, "point": None,
                     "overrides": (), "progress": None,
                 },
             ),
             "shape_command": (
                 (gb.assemble(self.beam, "FOAM", y=1), self.free_hub),
                 {
-                    "angle": 1.0, "rate": None, "duration": 0.5, "limit": 1e6, "robust": 0.0, "pieces": 12,
-                    "check": None, "point": None,
+                    "angle": 1.0, "rate": None, "distance": None, "duration": 0.5, "limit": 1e6, "robust": 0.0,
+                    "pieces": 12, "check": None, "point": None,
                     "progress": None,
                 },
             ),

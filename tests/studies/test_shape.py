@@ -127,13 +127,19 @@ def test_what_it_refuses_of_systems(slewing: Path, gbeam: Call) -> None:
     slewing.write_text(PANEL, encoding="utf-8")
     for option, said in (
         (("--joint", "axis.angel"), "choose one of axis.angle"),
-        (("--point", "wheel.rim"), "does not deflect"),
-        (("--set", "system.gravity=[0, 0, -9.81]"), "system.gravity bends the beam"),
+        (("--point", "wheel.rim", "--rate", "1 rad/s"), "both given or both missing"),
+        (("--distance", "1 m"), "what is driven turns"),
+        (("--set", "system.gravity=[0, -9.81, 0]"), "system.gravity bends the beam"),
     ):
         answer = gbeam("shape", slewing, "--angle", "1 rad", *option)
         assert answer.status == 2 and said in answer.err, answer.err
-    flown = '[motion.flight]\nkind = "flight"\nacceleration = { z = { profile = "constant", level = "1 g" } }\n'
+    flown = '[motion.flight]\nkind = "flight"\nacceleration = { y = { profile = "constant", level = "1 g" } }\n'
     slewing.write_text(PANEL + flown, encoding="utf-8")
-    assert "shaped on the ground" in gbeam("shape", slewing, "--angle", "1 rad").err
+    assert "motion.flight bends the beam" in gbeam("shape", slewing, "--angle", "1 rad").err
+    shaken = flown.replace(
+        'profile = "constant", level = "1 g"', 'profile = "sine", amplitude = "1 g", duration = "1 s"'
+    )
+    slewing.write_text(PANEL + shaken, encoding="utf-8")
+    assert "motion.flight shakes or turns the system" in gbeam("shape", slewing, "--angle", "1 rad").err
     slewing.write_text(SLEWING, encoding="utf-8")
     assert "of one beam" in gbeam("shape", slewing, "--joint", "axis.angle").err

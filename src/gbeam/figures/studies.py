@@ -271,5 +271,4 @@ def robustness(command: ShapedCommand, title: str = "") -> Figure:
 
 
 def _subject(c: ShapedCommand) -> str:
-    aim = f"to {c.goal:.4g} rad/s" if c.to_rate else f"by {c.goal:.4g} rad"
-    return f"{c.kind} {aim} in {c.duration:.4g} s, designed on {c.design}, run on {c.check}"
+    return f"{c.kind} {c.task} in {c.duration:.4g} s, designed on {c.design}, run on {c.check}"

@@ -203,13 +203,18 @@ class Optimum(Figured):
         return self._with_warnings(f"{what}, was {self.figure_before:.4g}{end}", *rows)
 
 
+GOALS = {"angle": "by {:.4g} rad", "distance": "by {:.4g} m", "rate": "to {:.4g} rad/s", "speed": "to {:.4g} m/s"}
+# Units of a command of every kind, and of the largest torque or force, or the acceleration, under it.
+COMMANDS = {"torque": ("N m", "N m"), "force": ("N", "N"), "rate": ("rad/s", "rad/s^2"), "speed": ("m/s", "m/s^2")}
+
+
 @dataclass(frozen=True, repr=False, eq=False)
 class CommandRun(Part):
     """One command, and the vibration that it leaves."""
 
     name: str = labels("shaped, ZVD or smooth-step")
-    command: Floats = quantity("", "torque, N m, or rate, rad/s, of the hub", "time", name=None, key=None)
-    largest: float = quantity("", "largest torque, N m, or angular acceleration, rad/s^2")
+    command: Floats = quantity("", "torque, N m, force, N, rate, rad/s, or speed, m/s", "time", name=None, key=None)
+    largest: float = quantity("", "largest torque, N m, force, N, or acceleration, rad/s^2 or m/s^2")
     by_ratio: Floats = quantity(
         "m",
         "amplitude left by the design's modes",
@@ -225,7 +230,7 @@ class CommandRun(Part):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class ShapedCommand(Figured):
-    """A torque or rate of a hub that leaves the least vibration of its beam.
+    """A torque, force, rate or speed of a hub or a joint that leaves the least vibration.
 
     Examples
     --------
@@ -238,14 +243,16 @@ class ShapedCommand(Figured):
     ('done', 'rad/s')
     """
 
-    kind: str = fact("torque or rate")
-    goal: float = fact("angle turned, rad, or rate reached, rad/s", key=None)
+    kind: str = fact("torque, rate, force or speed")
+    goal: float = fact("angle, rad, or distance, m, or the rate, rad/s, or speed, m/s, that is reached", key=None)
     to_rate: bool = fact("whether the goal is a rate", name=None, key=None)
     duration: float = fact("duration of the command", "s")
     coefficients: Floats = quantity(BESIDE, "coefficients of the command, a gbeam.SplineProfile", "spline")
     time: Floats = quantity("s", "time", "time", role="coordinate", key=None, note="of the commands")
     limit: float = fact(
-        "limit of the torque, N m, or the angular acceleration, rad/s^2", name=None, note="infinite where there is none"
+        "limit of the torque, N m, the force, N, or the acceleration, rad/s^2 or m/s^2",
+        name=None,
+        note="infinite where there is none",
     )
     robust: float = fact("share by which all frequencies may be wrong")
     frequency: Floats = quantity("Hz", "frequencies that the design knows", "mode", key="frequencies")
@@ -257,13 +264,21 @@ class ShapedCommand(Figured):
 
     @declared("", "unit of the command", role="fact", name=None)
     def unit(self) -> str:
-        return "N m" if self.kind == "torque" else "rad/s"
+        return COMMANDS[self.kind][0]
 
-    @declared("", "angle turned, rad, or rate reached, rad/s", role="fact", name=None, key="goal")
+    @declared("", "angle, rad, or distance, m, or the rate, rad/s, or speed, m/s, reached", role="fact", name=None,
+              key="goal")  # fmt: skip
     def aim(self) -> dict[str, float]:
-        return {"rate" if self.to_rate else "angle": self.goal}
+        names = ("distance", "speed") if self.kind in ("force", "speed") else ("angle", "rate")
+        return {names[self.to_rate]: self.goal}
 
-    @declared(BESIDE, "torque or rate of the hub", "run", "time", name="command", key=None)
+    @property
+    def task(self) -> str:
+        """What the command does, in words, such as "by 1 rad"."""
+        ((name, goal),) = self.aim.items()
+        return GOALS[name].format(goal)
+
+    @declared(BESIDE, "torque, force, rate or speed", "run", "time", name="command", key=None)
     def command(self) -> Floats:
         return np.stack([run.command for run in self.runs])
 
@@ -288,6 +303,6 @@ class ShapedCommand(Figured):
         return self.runs[0].residual
 
     def __repr__(self) -> str:
-        aim = f"to {self.goal:.4g} rad/s" if self.to_rate else f"by {self.goal:.4g} rad"
         left = ", ".join(f"{run.name} {1e3 * run.residual:.3g} mm" for run in self.runs)
-        return self._with_warnings(f"Shaped {self.kind} {aim} in {self.duration:.4g} s; left by {self.check}: {left}")
+        words = f"Shaped {self.kind} {self.task} in {self.duration:.4g} s"
+        return self._with_warnings(f"{words}; left by {self.check}: {left}")

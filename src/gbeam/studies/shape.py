@@ -1,4 +1,4 @@
-"""Command shaping of a scenario: what its slew does, by the rate or torque that leaves the least vibration."""
+"""Command shaping of a scenario: what its slew does, by the rate or effort that leaves the least vibration."""
 
 from __future__ import annotations
 
@@ -11,13 +11,15 @@ from typing import Any
 import numpy as np
 
 from gbeam.analysis.case import Case, SystemCase
-from gbeam.analysis.control.plants import driven
+from gbeam.analysis.control.plants import driven, movable
 from gbeam.analysis.control.shaping import profile_of, shape_command
 from gbeam.analysis.model_study import counterpart, of_kind
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice
 from gbeam.mechanics.models import KINDS
+from gbeam.mechanics.tree.joints import SLIDES
+from gbeam.mechanics.tree.system import System
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.profiles.piecewise import constant
 from gbeam.printable import advise
@@ -38,6 +40,7 @@ def shape_hub_command(
     *,
     angle: float | None = None,
     rate: float | None = None,
+    distance: float | None = None,
     duration: float | None = None,
     limit: float = np.inf,
     robust: float = 0.0,
@@ -56,21 +59,22 @@ def shape_hub_command(
     ----------
     scenario : path, Case or SystemCase
         The scenario's file, or a case, of :func:`gbeam.read_scenario` or made in Python.
-    angle, rate : float, optional
-        To turn by, rad, or to reach, rad/s; by default what the scenario's own rate does. A free hub needs one of them.
+    angle, rate, distance : float, optional
+        To turn by, rad, to reach, rad/s, or of what slides m/s, or to move by, m; by default what the scenario's own
+        rate does. A free hub, or what an effort drives, needs one of them.
     duration : float, optional
         Of the command, s; by default that of the scenario's own.
     limit : float
-        On the torque, N m, or the angular acceleration, rad/s².
+        On the torque, N m, or the angular acceleration, rad/s²; of what slides the force, N, or acceleration, m/s².
     robust : float
         Share by which all frequencies may be wrong.
     check : str
         Kind of model that the commands are run on, such as exact; by default the scenario's.
     motion : str, optional
-        Which hub, where there are several.
+        Which hub, or which flight of constant acceleration carries a system, where there are several.
     joint, point : str, optional
-        Of a system the angle that turns, ``joint.angle``, where more than one has a rate or a drive, and the point that
-        is to rest, as of :func:`gbeam.shape_command`.
+        Of a system what moves, ``joint.angle`` or ``joint.displacement``, where more than one has a rate or a drive,
+        and the point that is to rest, as of :func:`gbeam.shape_command`.
     overrides : sequence of str
         Changes of the scenario, such as ``beam.length=250 mm``.
     progress : callable or bool, optional
@@ -97,7 +101,7 @@ def shape_hub_command(
     case = template_of(scenario, overrides).built()
     if isinstance(case, SystemCase):
         name, hub = driven_joint(case, joint)
-        structure: Any = case.system
+        structure: Any = _grounded(case, motion)
         turned: Any = name
     else:
         case = case.one_beam("bodies", "gbeam shape")
@@ -110,8 +114,10 @@ def shape_hub_command(
         raise InputError("model.modes", "is left out, and a command knows the modes of given shapes", "give it")
     if check and check not in KINDS:
         raise InputError("--check", f"is {check!r}", advise(check, KINDS))
-    if angle is None and rate is None:
+    if angle is None and rate is None and distance is None:
         angle, rate = _goal(hub, where)
+        if isinstance(case, SystemCase) and slides(name):
+            angle, distance = None, angle
     if duration is None:
         duration = _end(hub, where)
     if isinstance(case, Case):
@@ -121,12 +127,15 @@ def shape_hub_command(
         tested = of_kind(structure, check) if check else None
     try:
         shaped = shape_command(
-            structure, turned, angle=angle, rate=rate, duration=duration, limit=limit, robust=robust,
-            check=tested, point=point, progress=progress,
+            structure, turned, angle=angle, rate=rate, distance=distance, duration=duration, limit=limit,
+            robust=robust, check=tested, point=point, progress=progress,
         )  # fmt: skip
     except InputError as error:
-        place = "system" if isinstance(case, SystemCase) else where
-        raise error.within(place) if error.where == "gravity" else error from None
+        if error.where != "gravity":
+            raise
+        if isinstance(case, SystemCase) and case.motions:
+            raise InputError(f"motion.{motion_of(case.motions, motion)}", error.problem, error.fix) from None
+        raise error.within("system" if isinstance(case, SystemCase) else where) from None
     return replace(shaped, motion=name, provenance=case.provenance)
 
 
@@ -142,11 +151,9 @@ def hub_of(case: Case, name: str | None) -> tuple[str, Hub]:
 
 
 def driven_joint(case: SystemCase, name: str | None) -> tuple[str, Hub]:
-    """The angle of a system that a command turns, the only one with a rate or a drive where none is named; and a hub
-    with its rate, or that is free.
+    """The coordinate of a system that a command moves, the only one with a rate or a drive where none is named; and a
+    hub with its rate, or that is free.
     """
-    if case.motions:
-        raise InputError("motion", "carries the system, and commands are shaped on the ground", "leave it out")
     given = {
         f"{owner}.{each}": joint.rates.get(each)
         for owner, joint in case.system.joints.items()
@@ -155,11 +162,31 @@ def driven_joint(case: SystemCase, name: str | None) -> tuple[str, Hub]:
     if name is None:
         if len(given) != 1:
             fix = f"choose from {', '.join(given)}" if given else 'give a joint a rate or an effort, such as "0 N m"'
-            raise InputError("--joint", "is missing: it says which angle turns", fix)
+            raise InputError("--joint", "is missing: it says what moves", fix)
         name = next(iter(given))
-    choice("--joint", name, [each for each in case.system.coordinates if each.rpartition(".")[2].startswith("angle")])
+    choice("--joint", name, movable(case.system))
     rate = given.get(name)
     return name, Hub(radius=0.0, inertia=1.0) if rate is None else Hub(radius=0.0, rate=rate)
+
+
+def slides(coordinate: str) -> bool:
+    """Whether a coordinate is a displacement."""
+    return coordinate.rpartition(".")[2] in SLIDES
+
+
+def _grounded(case: SystemCase, name: str | None) -> System:
+    """The system on the ground; one that a motion carries is under the gravity that its constant load is."""
+    if not case.motions:
+        return case.system
+    chosen = motion_of(case.motions, name)
+    times = np.linspace(case.response.start, case.response.start + case.response.duration, _POINTS)
+    base = case.motions[chosen].base(times)
+    load = np.asarray(base.a_WO_B)
+    turning = max(float(np.abs(each).max()) for each in (base.w_WB_B, base.alpha_WB_B))
+    if turning > 0 or np.ptp(load, axis=0).max() > _REST * max(float(np.abs(load).max()), 1e-300):
+        fix = "give a flight of constant acceleration, or leave it out"
+        raise InputError(f"motion.{chosen}", "shakes or turns the system, which no command undoes", fix)
+    return replace(case.system, gravity=tuple((-load[0]).tolist()))
 
 
 def _at_rest(hub: Hub) -> Hub:
@@ -198,7 +225,7 @@ def scenario_with(
     table = {"profile": "table", "times": times.tolist(), "values": np.asarray(profile_of(command)(times)).tolist()}
     if "joints" in data:
         name, _, coordinate = command.motion.rpartition(".")
-        key = "effort" if command.kind == "torque" else "rate"
+        key = "effort" if command.kind in ("torque", "force") else "rate"
         before = data["joints"][name].get(key)
         several = isinstance(before, dict) and "profile" not in before
         data["joints"][name][key] = {**before, coordinate: table} if several else table

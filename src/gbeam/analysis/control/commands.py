@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gbeam.analysis.control.plants import Plant
+from gbeam.analysis.control.plants import Goal, Plant
 from gbeam.errors import InputError
 from gbeam.motion.profiles.pulse import SplineProfile, through
 from gbeam.numerics.bspline import DEGREE, Spline
@@ -14,15 +14,6 @@ from gbeam.results.result import Complex, Floats
 
 _FINE = 200  # pieces of a spline that stands for another form
 _TIMES = 2001  # over a command: the splines are smooth, and vanish at the ends with four derivatives
-
-
-@dataclass(frozen=True)
-class Goal:
-    """The angle to turn, rad, or the rate to reach, rad/s, and in which time, s."""
-
-    value: float
-    to_rate: bool
-    duration: float
 
 
 class Commands:
@@ -94,9 +85,10 @@ class Vibration:
         values, right = np.linalg.eig(small.a)
         excited = np.linalg.solve(right, small.column)
         size = np.linalg.norm(small.tip @ right, axis=0) * np.abs(excited)
-        some = (values.imag > 1e-6 * np.abs(values).max()) & (size > 1e-9 * size.max())
+        some = values.imag > 1e-6 * np.abs(values).max()  # not the motions that nothing holds
+        some &= size > 1e-9 * size[some].max(initial=0.0)
         if not some.any():
-            fix = "give the model shapes in the plane of rotation: y = 1 or more"
+            fix = "give the model shapes in the plane in which it moves, such as y = 1 or more"
             raise InputError("structure", "has no vibration that the drive excites", fix)
         order = np.argsort(values[some].imag)
         return Vibration(values[some][order], 2 * size[some][order])
@@ -142,16 +134,20 @@ def _kernel(rows: Floats) -> Floats:
     return np.asarray(directions[int((sizes > 0).sum()) :].T)
 
 
-def check_goal(angle: float | None, rate: float | None, duration: float) -> Goal:
-    """Return the goal; InputError unless there is one angle or rate."""
-    if (angle is None) == (rate is None):
-        raise InputError(
-            "angle", "and rate are both given or both missing", "give the angle to turn, or the rate to reach"
-        )
-    value = angle if rate is None else rate
-    assert value is not None
+def check_goal(plant: Plant, aims: dict[str, float | None], duration: float) -> Goal:
+    """Return the goal; InputError unless there is one of those that what is driven can have."""
+    possible = ("distance", "rate") if plant.slides else ("angle", "rate")
+    aims = {name: aim for name, aim in aims.items() if name in possible or aim is not None}
+    wrong = next((name for name in aims if name not in possible), None)
+    if wrong is not None:
+        problem = f"is given, and what is driven {'slides' if plant.slides else 'turns'}"
+        raise InputError(wrong, problem, f"give {possible[0]}, or a rate")
+    if sum(aim is not None for aim in aims.values()) != 1:
+        fix = f"give the {possible[0]} to {'move' if plant.slides else 'turn'}, or the rate to reach"
+        raise InputError(possible[0], "and rate are both given or both missing", fix)
+    name, value = next((name, aim) for name, aim in aims.items() if aim is not None)
     if not np.isfinite(value) or value == 0:
-        raise InputError("angle" if rate is None else "rate", f"is {value:g}", "give a finite value that is not zero")
+        raise InputError(name, f"is {value:g}", "give a finite value that is not zero")
     if not (np.isfinite(duration) and duration > 0):
         raise InputError("duration", f"is {duration:g} s", "give a positive time")
-    return Goal(float(value), rate is not None, float(duration))
+    return Goal(float(value), name == "rate", float(duration))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -36,11 +37,35 @@ from gbeam.results.response import Response
 from gbeam.results.result import Floats
 
 Pair = tuple[Profile, Profile]
+_SAG, _LEAST = 1e-6, 1e-6  # of the largest deflection, and m: a smaller change as it moves is none
+_ASIDE = 1e-4  # m or rad from where a joint rests: it hardly swings
+_PLACES = (0.0, 0.19, 0.37, 0.61, 0.83, 1.0)  # shares of the way, at which that is looked for
+_BENT = "bends the beam otherwise as it moves, which no command undoes", "leave it out, or let it be along the axis"
 HELD = 1e-9  # of the forces that stiffness or damping has: a rigid motion without is free
 
 
+@dataclass(frozen=True)
+class Goal:
+    """The angle to turn, rad, or the rate to reach, rad/s, of what slides m and m/s, and in which time, s."""
+
+    value: float
+    to_rate: bool
+    duration: float
+
+
+# Kind of a command, and of what is limited, by whether an effort drives and whether what is driven slides.
+DRIVES = {
+    (True, False): ("torque", "torque"),
+    (True, True): ("force", "force"),
+    (False, False): ("rate", "angular acceleration"),
+    (False, True): ("speed", "acceleration"),
+}
+
+
 class Ran(NamedTuple):
-    """Displacement of the tip (t, 3) m under a command, what is left of it, and the step."""
+    """Displacement of the point (t, 3) m under a command, what is left of it, the step, and where known how far and how
+    fast (t,) what is driven has moved.
+    """
 
     time: Floats
     tip: Floats
@@ -48,6 +73,7 @@ class Ran(NamedTuple):
     message: str
     residual: float
     step: float
+    driven: tuple[Floats, Floats] | None = None
 
 
 class SmallMotions(NamedTuple):
@@ -80,6 +106,7 @@ class OnHub:
 
     structure: Structure
     hub: Hub
+    slides = False
 
     @property
     def kind(self) -> str:
@@ -96,10 +123,10 @@ class OnHub:
         """Moment of inertia of all that turns, kg m²."""
         return turning_inertia(self.structure, self.hub)
 
-    def refuse_moving(self) -> None:
-        """Raise InputError unless it is at rest without a command."""
-        if self.hub.mount.gravity is not None:
-            raise InputError("gravity", "bends the beam as it turns, which no command undoes", "leave it out")
+    def refuse_moving(self, goal: Goal) -> None:
+        """Raise InputError unless it is at rest without a command, and gravity bends it alike at all angles."""
+        if self.hub.mount.gravity is not None and np.any(np.asarray(self.hub.mount.gravity)[:2]):
+            raise InputError("gravity", *_BENT)
         if not self.hub.free and float(np.abs(self.hub.base(np.zeros(1)).w_WB_B).max()) > 0:
             raise InputError("rate", "is not zero: the hub turns already", "leave it out")
 
@@ -131,7 +158,14 @@ class OnHub:
 
 def _ran(of: Response) -> Ran:
     left = float(np.linalg.norm(of.peaks.residual_amplitude))
-    return Ran(of.time, np.asarray(of.tip), of.outcome, of.message, left, of.step)
+    driven = None if of.hub is None else (of.hub.angle - of.hub.angle[0], of.hub.rate)
+    return Ran(of.time, np.asarray(of.tip), of.outcome, of.message, left, of.step, driven)
+
+
+def movable(system: System) -> list[str]:
+    """Names of the coordinates of joints that a command may drive: all but Euler parameters."""
+    every = (f"{name}.{each}" for name, joint in system.joints.items() for each in joint.coordinates)
+    return [each for each in every if not each.rpartition(".")[2].startswith("e")]
 
 
 @dataclass(frozen=True)
@@ -140,28 +174,30 @@ class OnJoint:
 
     system: System
     coordinate: str
-    point: str  # of the beam whose vibration is made least
+    point: str  # whose vibration is made least
 
     @staticmethod
     def of(system: System, coordinate: str, point: str | None) -> OnJoint:
-        """The joint of a system, and the tip of the only beam where no point is named."""
-        angles = [f"{name}.{each}" for name, joint in system.joints.items() for each in joint.coordinates]
-        choice("joint", coordinate, [each for each in angles if not each.rpartition(".")[2].startswith("e")])
+        """The joint of a system, and the tip of the only flexible body where no point is named."""
+        choice("joint", coordinate, movable(system))
         tips = [f"{name}.tip" for name, body in system.bodies.items() if isinstance(body, Structure)]
         if point is None and len(tips) != 1:
-            fix = f"choose from {', '.join(tips)}" if tips else "give the system a beam"
+            fix = f"choose from {', '.join(tips or system.points)}"
             raise InputError("point", "is missing: it says whose vibration is made least", fix)
         chosen = tips[0] if point is None else point
-        name, at = system.point("point", chosen)
-        body = system.bodies[name]
-        if not isinstance(body, Structure) or at >= len(stations_of(body)):
-            raise InputError("point", f"is {chosen!r}, which does not deflect", "choose a point of a beam")
+        system.point("point", chosen)
         return OnJoint(system, coordinate, chosen)
 
     @property
     def kind(self) -> str:
-        """Kind of the model of the beam."""
-        return self._beam[0].kind
+        """Kind of the model of the beam; of a rigid body, system."""
+        body = self.system.bodies[self.point.partition(".")[0]]
+        return body.kind if isinstance(body, Structure) else "system"
+
+    @property
+    def slides(self) -> bool:
+        """Whether what is driven is a displacement."""
+        return self.coordinate.rpartition(".")[2] in SLIDES
 
     @property
     def free(self) -> bool:
@@ -172,23 +208,42 @@ class OnJoint:
     def _rates(self) -> set[str]:
         return {f"{name}.{each}" for name, joint in self.system.joints.items() for each in joint.rates}
 
-    @property
-    def _beam(self) -> tuple[Structure, int]:
-        name, at = self.system.point("point", self.point)
-        body = self.system.bodies[name]
-        assert isinstance(body, Structure)
-        return body, list(stations_of(body).values())[at]
-
-    def refuse_moving(self) -> None:
-        """Raise InputError unless it is at rest without a command."""
-        if self.system.gravity is not None and np.any(np.asarray(self.system.gravity)):
-            raise InputError("gravity", "bends the beam as it turns, which no command undoes", "leave it out")
+    def refuse_moving(self, goal: Goal) -> None:
+        """Raise InputError unless it is at rest without a command, with the same sag all the way."""
         if np.abs(self.system.start[1]).max(initial=0.0) > 0:
             raise InputError("initial_rate", "is not zero: the system moves already", "leave it out")
-        if self.coordinate.rpartition(".")[2] in SLIDES:
-            raise InputError("joint", f"is {self.coordinate!r}, which is no angle", "name one that turns")
+        if goal.to_rate and self._deflection(self.system.start[0][None]) is None:
+            fix = "name a point of a flexible body, or give no rate"
+            raise InputError("point", f"is {self.point!r}, which goes on at the rate that is reached", fix)
+        rest = self._held(0.0)
+        start = dict(zip(rest.system.coordinates, rest.system.start[0], strict=True))
+        for name, at in zip(rest.names, rest.local.y, strict=True):
+            joint, _, of = name.rpartition(".")
+            if joint in self.system.joints and abs(at - start.get(name, at)) > _ASIDE:
+                problem = f"is {start[name]:.4g}, and it rests at {at:.6g}"
+                raise InputError(f"joints.{joint}.initial.{of}", problem, "let it begin there")
+        if self.system.gravity is not None and np.any(np.asarray(self.system.gravity)):
+            far = goal.value * goal.duration / 2 if goal.to_rate else goal.value
+            sags = [self._held(share * far).local.y for share in _PLACES]
+            if np.ptp(sags, axis=0).max(initial=0.0) > _SAG * max(np.abs(sags).max(initial=0.0), _LEAST):
+                raise InputError("gravity", *_BENT)
 
-    @property
+    def _held(self, moved: float) -> SteadySystem:
+        """The system at rest where what is driven is held after it has moved so far."""
+        name, _, coordinate = self.coordinate.rpartition(".")
+        joint = self.system.joints[name]
+        initial = dict(zip(joint.coordinates, joint.start, strict=True))
+        initial = {key: initial[key] + moved * (key == coordinate) for key in initial if key[0] != "e"}
+        efforts = {key: each for key, each in joint.efforts.items() if key != coordinate}
+        held = replace(joint, initial=initial, rate={**joint.rates, coordinate: 0.0}, effort=efforts)
+        return steady(replace(self.system, joints={**self.system.joints, name: held}), Drive())
+
+    def _deflection(self, q: Floats) -> Floats | None:
+        """Displacement (t, 3) of the point from its body's root, by all coordinates (t, n); None where it has none."""
+        moved = deflection(self.system, self.point, q)
+        return None if moved is None else np.asarray(moved)
+
+    @cached_property
     def _rest(self) -> tuple[SteadySystem, Linear]:
         """The system at rest, and its small motions under the drive."""
         state = steady(self.commanded(None), Drive())
@@ -209,7 +264,7 @@ class OnJoint:
         rigid = modes[:, square <= RIGID**2 * square[-1]]
         moved = force[:, 0] @ rigid
         if not np.abs(moved).max(initial=0.0) > 0:
-            raise InputError("joint", f"is {self.coordinate!r}, which a spring holds", "leave the spring out")
+            raise InputError("joint", f"is {self.coordinate!r}, which a spring or gravity holds", "give it a rate")
         if np.abs(rigid.T @ c @ rigid).max() > HELD * np.abs(c).max(initial=1e-300):
             fix = "leave out damping and friction of what is driven"
             raise InputError("joint", f"is {self.coordinate!r}, whose motion a damper brakes", fix)
@@ -218,9 +273,15 @@ class OnJoint:
     @property
     def small(self) -> SmallMotions:
         """Small motions about rest."""
-        (state, linear), (beam, station) = self._rest, self._beam
-        tip, first = np.zeros((3, len(linear.mass))), state.names.index(f"{self.point.partition('.')[0]}.q1")
-        tip[:, first : first + beam.size] = np.asarray(beam.station_places.first[station])
+        state, linear = self._rest
+        name, at = self.system.point("point", self.point)
+        body, tip = self.system.bodies[name], np.zeros((3, len(linear.mass)))
+        if self._deflection(self.system.start[0][None]) is None:
+            tip = state.slopes_of_points[self.system.points.index(self.point)]
+        else:
+            assert isinstance(body, Structure)
+            first, station = state.names.index(f"{name}.q1"), list(stations_of(body).values())[at]
+            tip[:, first : first + body.size] = np.asarray(body.station_places.first[station])
         a, b, c, _ = linear.state_space(tip, 0 * tip, 0 * tip, np.zeros((3, 1)))
         return SmallMotions(a, b[:, 0], c)
 
@@ -235,14 +296,18 @@ class OnJoint:
 
     def run(self, profile: Profile, settings: ResponseSettings, name: str = "") -> Ran:
         """Run a command."""
-        of = simulate_system(self.commanded(profile), None, settings, name)
-        return self._ran(of.time, of.q, settings, of.outcome, of.message, of.step)
+        system = self.commanded(profile)
+        of, k = simulate_system(system, None, settings, name), system.coordinates.index(self.coordinate)
+        tip, left = self._tip(system, of.time, of.q, settings)
+        return Ran(of.time, tip, of.outcome, of.message, left, of.step, (of.q[:, k] - of.q[0, k], of.qd[:, k]))
 
-    def _ran(self, time: Floats, q: Floats, settings: ResponseSettings, outcome: str, message: str, step: float) -> Ran:
-        """A run by all coordinates (t, n)."""
-        tip = np.asarray(deflection(self.system, self.point, q))
-        left = float(np.linalg.norm(half_ranges(time, tip, settings.residual_from or 0.0)))
-        return Ran(time, tip, outcome, message, left, step)
+    def _tip(self, system: System, time: Floats, q: Floats, settings: ResponseSettings) -> tuple[Floats, float]:
+        """Displacement of the point in a system by all coordinates (t, n), or its place, and what is left of it."""
+        tip = self._deflection(q)
+        if tip is None:
+            y, k = q[:, system.tree.free], system.points.index(self.point)
+            tip = np.asarray(system.tree.motion(y, 0 * y, 0 * y, system.inputs(time)).every_point[k].p)
+        return tip, float(np.linalg.norm(half_ranges(time, tip, settings.residual_from or 0.0)))
 
     def about(
         self, profile: Profile, settings: ResponseSettings, pairs: Sequence[Pair], width: float
@@ -293,7 +358,8 @@ class OnJoint:
         def moved(by: Floats | float) -> Ran:
             q = np.zeros((len(kept), tree.size))
             q[:, tree.free] = run.q[kept] + by
-            return self._ran(run.time[kept], q, settings, "done", "", settings.step or np.nan)
+            tip, left = self._tip(system, run.time[kept], q, settings)
+            return Ran(run.time[kept], tip, "done", "", left, settings.step or np.nan)
 
         halves = (width / 2 * changes[kept, :, j] for j in range(len(pairs)))
         return moved(0.0), ((moved(-half), moved(half)) for half in halves)

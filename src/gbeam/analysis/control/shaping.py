@@ -1,4 +1,4 @@
-"""Command shaping: the torque or rate of a hub that leaves the least vibration of its beam.
+"""Command shaping: the drive of a hub or a joint that leaves the least vibration.
 
 A command is a quintic B-spline. What it leaves in the modes of the linear model is linear in its coefficients, so that
 the least is one least-squares problem, within a limit a quadratic program. What the given model leaves, which stiffens
@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from gbeam.analysis.control.commands import Commands, Vibration, check_goal, usual
-from gbeam.analysis.control.plants import OnHub, OnJoint, Plant, Ran
+from gbeam.analysis.control.plants import DRIVES, Goal, OnHub, OnJoint, Plant, Ran
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
@@ -31,6 +31,7 @@ _SMOOTH, _SMOOTH_ROBUST = 1e-3, 1e-4
 _ROBUST = 9  # ratios over the span
 _PERIODS = 3  # of the lowest frequency, over which the residual is measured
 _ROUNDS, _MOVED = 4, 1e-3  # Gauss-Newton steps, and the difference of the drive over the largest for a derivative
+_MISSED = 0.01  # of the goal, as a run's vibration moves what is driven
 _BETTER = 0.9  # a step that leaves more than this share is the last
 
 
@@ -41,6 +42,7 @@ def shape_command(
     *,
     angle: float | None = None,
     rate: float | None = None,
+    distance: float | None = None,
     duration: float,
     limit: float = np.inf,
     robust: float = 0.0,
@@ -49,7 +51,7 @@ def shape_command(
     point: str | None = None,
     progress: Progress = None,
 ) -> ShapedCommand:
-    """Find the command of a hub, or of a joint of a system, that leaves the least vibration of its beam.
+    """Find the command of a hub, or of a joint of a system, that leaves the least vibration.
 
     The design knows the modes about rest. Without `robust` it is refined on `structure` itself, by Gauss-Newton steps
     along the exact derivatives of its response. Then the command is run beside a smooth step of the same duration and
@@ -58,18 +60,21 @@ def shape_command(
     Parameters
     ----------
     structure : Structure or System
-        To design on; a system is on the ground.
+        To design on; a system is on the ground, and gravity may act on it where its sag stays the same as it moves.
     hub : Hub or str
         With an inertia and no rate it is free, and the command is its torque; else the command is its rate. Of a system
-        an angle, ``joint.angle``: where it has a rate that is the command, else the torque of its drive.
+        a coordinate, ``joint.angle`` or ``joint.displacement``, of any joint: where it has a rate that is the command,
+        else the torque or force of its drive.
     angle : float, optional
         To turn, from rest to rest, rad.
     rate : float, optional
-        To reach from rest, rad/s, in its place.
+        To reach from rest, rad/s, of what slides m/s, in its place.
+    distance : float, optional
+        To move, from rest to rest, of what slides, m, in place of the angle.
     duration : float
         s.
     limit : float
-        On the torque, N m, or the angular acceleration, rad/s².
+        On the torque, N m, or the angular acceleration, rad/s²; of what slides the force, N, or acceleration, m/s².
     robust : float
         Share by which all frequencies may be wrong, such as 0.2: the mean square of what is left over that span is made
         least.
@@ -78,8 +83,8 @@ def shape_command(
     check : Structure or System, optional
         That the commands are run on, such as one of the exact model; by default `structure`.
     point : str, optional
-        Of a system, whose displacement from the root of its beam is to rest, ``body.point``; by default the tip of its
-        only beam.
+        Of a system, which is to rest, ``body.point``: of a flexible body the displacement from its root, of others the
+        place; by default the tip of the only flexible body.
     progress : callable or bool, optional
         Called with what is being done and the fraction of it done; True shows a bar.
 
@@ -90,8 +95,8 @@ def shape_command(
     Raises
     ------
     InputError
-        If the hub turns already or gravity acts, there is not one of angle and rate, a number is impossible, or a
-        joint is held by a spring or braked.
+        If it moves already or gravity bends it otherwise as it moves, there is not one goal, a number is impossible, or
+        a joint that an effort drives is held by a spring or braked.
     ComputationError
         If no command within the limit does it in that time, or a run diverges.
 
@@ -105,9 +110,9 @@ def shape_command(
     >>> command.residual < 1e-9
     True
     """
-    goal = check_goal(angle, rate, duration)
     plant = _plant(structure, hub, point)
-    plant.refuse_moving()
+    goal = check_goal(plant, {"angle": angle, "distance": distance, "rate": rate}, duration)
+    plant.refuse_moving(goal)
     if not pieces >= 12:
         raise InputError("pieces", f"is {pieces}", "give 12 or more")
     if not 0 <= robust < 1:
@@ -125,10 +130,11 @@ def shape_command(
     drives = {"shaped": commands.fixed + commands.drive @ inner, **others}
     tested = plant if check is None else _plant(check, hub, point)
     settings = _settings(vibration, goal.duration)
-    runs = []
+    runs, warnings = [], list[str]()
     for k, (name, profile) in enumerate(profiles.items()):
         tell(progress, f"{tested.kind}: {name}", k / len(profiles))
         response = tested.run(profile, replace(settings, step=None), name)
+        warnings += _missed(response, goal, name) if plant.free else []
         runs.append(
             CommandRun(
                 name, np.asarray(profile(commands.time)), float(np.abs(drives[name]).max()),
@@ -137,7 +143,7 @@ def shape_command(
             )
         )  # fmt: skip
     return ShapedCommand(
-        kind="torque" if plant.free else "rate",
+        kind=DRIVES[plant.free, plant.slides][0],
         goal=goal.value,
         to_rate=goal.to_rate,
         duration=goal.duration,
@@ -150,7 +156,19 @@ def shape_command(
         runs=tuple(runs),
         design=plant.kind,
         check=tested.kind,
+        warnings=tuple(warnings),
     )
+
+
+def _missed(ran: Ran, goal: Goal, name: str) -> tuple[str, ...]:
+    """Warning of a command of torque or force that does something else on the model of the runs."""
+    if ran.driven is None or ran.outcome != "done":
+        return ()
+    done = float(ran.driven[goal.to_rate][ran.time >= goal.duration].mean())
+    if abs(done - goal.value) <= _MISSED * abs(goal.value):
+        return ()
+    of = "reaches" if goal.to_rate else "moves by"
+    return (f"{name} {of} {done:.4g}, not {goal.value:.4g}: what is moved has another inertia on its way; give a rate",)
 
 
 class _Design:
@@ -193,7 +211,7 @@ class _Design:
             csc_array(a.T @ a / size**2), a.T @ b / size**2, csc_array(limited), -1.0 - middle, 1.0 - middle
         )
         if change is None:
-            word = "torque" if commands.plant.free else "angular acceleration"
+            word = DRIVES[commands.plant.free, commands.plant.slides][1]
             problem = f"no command of {word} {self.limit:.4g} or less does it in {commands.goal.duration:g} s"
             raise ComputationError("limits exceeded", problem)
         return np.asarray(about + commands.free @ change)
@@ -208,7 +226,7 @@ def _plant(structure: Structure | System, hub: Hub | str, point: str | None) -> 
     """The hub with its beam, or the joint of a system, that the command drives."""
     if isinstance(structure, System):
         if not isinstance(hub, str):
-            raise InputError("hub", "is a hub, and carries a system", 'name the angle that turns, "joint.angle"')
+            raise InputError("hub", "is a hub, and carries a system", 'name what moves, such as "joint.angle"')
         return OnJoint.of(structure, hub, point)
     if not isinstance(hub, Hub):
         raise InputError("hub", f"is {hub!r}, and the structure is one beam", "give a Hub")
@@ -218,7 +236,7 @@ def _plant(structure: Structure | System, hub: Hub | str, point: str | None) -> 
 
 
 def _refined(plant: Plant, design: _Design, inner: Floats, progress: Progress) -> Floats:
-    """Gauss-Newton steps on what the plant's own run leaves of the tip's vibration."""
+    """Gauss-Newton steps on what the plant's own run leaves of the point's vibration."""
     commands = design.commands
     settings = _settings(Vibration.of(plant), commands.goal.duration)
     done = plant.run(commands.of(inner), settings)
@@ -251,7 +269,7 @@ def _refined(plant: Plant, design: _Design, inner: Floats, progress: Progress) -
 
 
 def _left(run: Ran, duration: float) -> Floats:
-    """The tip's departures from its mean after the command, each sample by its share, (m,)."""
+    """The point's departures from its mean after the command, each sample by its share, (m,)."""
     tip = run.tip[run.time >= duration]
     return ((tip - tip.mean(axis=0)) * np.sqrt(2 / len(tip))).ravel()
 

@@ -151,10 +151,14 @@ def shape(
     /,
     *,
     angle: Annotated[str | None, Parameter(help='To turn by, from rest to rest, "1 rad"; or --rate.')] = None,
-    rate: Annotated[str | None, Parameter(help='To reach from rest, "3 rad/s"; or --angle.')] = None,
+    rate: Annotated[
+        str | None, Parameter(help='To reach from rest, "3 rad/s", of what slides "0.2 m/s"; or --angle or --distance.')
+    ] = None,
+    distance: Annotated[str | None, Parameter(help='Of what slides, to move by, "300 mm"; or --rate.')] = None,
     duration: Annotated[str | None, Parameter(help='Of the command, "6 s"; by default the scenario\'s own.')] = None,
     limit: Annotated[
-        str | None, Parameter(help='On the torque, "45 N m", or the angular acceleration of a hub without one.')
+        str | None,
+        Parameter(help='On the torque, "45 N m", or force, or on the acceleration of what has a rate.'),
     ] = None,
     robust: Annotated[str, Parameter(help='Share by which all frequencies may be wrong, "20 %".')] = "0",
     check: Annotated[
@@ -164,25 +168,26 @@ def shape(
     motion: MotionName = None,
     joint: Annotated[
         str | None,
-        Parameter(help='Of a system, the angle that turns, "axis.angle", where several have a rate or drive.'),
+        Parameter(help='Of a system, what moves, "axis.angle", where several have a rate or drive.'),
     ] = None,
     point: Annotated[
         str | None, Parameter(help='Of a system, the point that is to rest, "panel.tip", where it has several beams.')
     ] = None,
     output: Output = Output(),
 ) -> int:
-    """Find the rate or torque of a hub, or of a joint, that leaves the least vibration, beside ZVD and a smooth step.
+    """Find the rate or effort of a hub, or of a joint, that leaves the least vibration, beside ZVD and a smooth step.
 
-    It does what the scenario's own rate does, in the same time, unless --angle, --rate or --duration say otherwise;
-    a free hub, or a joint with a drive, is driven by a torque and needs --angle or --rate. With --out also writes
-    shaping.nc, command.json, a scenario in which the command drives it, and plots of the commands and of what they
-    leave where frequencies are wrong, with --report shaping.html. Exit status: 0 done, 1 no command does it or a run is
-    not done, 2 the input is wrong.
+    It does what the scenario's own rate does, in the same time, unless --angle, --rate, --distance or --duration say
+    otherwise; a free hub, or a joint with a drive, is driven by a torque or force and needs one of the first three.
+    With --out also writes shaping.nc, command.json, a scenario in which the command drives it, and plots of the
+    commands and of what they leave where frequencies are wrong, with --report shaping.html. Exit status: 0 done, 1 no
+    command does it or a run is not done, 2 the input is wrong.
     """
     folder = output.folder(scenario)
 
     from gbeam.analysis.case import SystemCase
-    from gbeam.studies.shape import driven_joint, hub_of, scenario_with
+    from gbeam.analysis.control.plants import DRIVES
+    from gbeam.studies.shape import driven_joint, hub_of, scenario_with, slides
     from gbeam.studies.shape import shape_hub_command as compute
 
     def given(option: str, text: str | None, kind: str) -> float | None:
@@ -192,16 +197,18 @@ def shape(
 
     case = read_scenario(scenario, output.overrides)
     if isinstance(case, SystemCase):
-        free = driven_joint(case, joint)[1].free
+        name, hub = driven_joint(case, joint)
     else:
         case = case.one_beam("bodies", "gbeam shape")
-        free = hub_of(case, motion)[1].free
-    bound = given("--limit", limit, "torque" if free else "angular acceleration")
+        name, hub = hub_of(case, motion)
+    straight = isinstance(case, SystemCase) and slides(name)
+    bound = given("--limit", limit, DRIVES[hub.free, straight][1])
     with Watch() as watch:
         answer = compute(
             case,
             angle=given("--angle", angle, "angle"),
-            rate=given("--rate", rate, "angular rate"),
+            rate=given("--rate", rate, "speed" if straight else "angular rate"),
+            distance=given("--distance", distance, "length"),
             duration=given("--duration", duration, "time"),
             limit=float("inf") if bound is None else bound,
             robust=number("--robust", robust, "ratio"),

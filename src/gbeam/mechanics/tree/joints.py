@@ -143,9 +143,13 @@ class Joint(Value):
     def __post_init__(self) -> None:
         choice("kind", self.kind, KINDS)
         wanted = KINDS[self.kind].axes
-        axes = np.zeros((0, 3)) if self.axes is None else np.asarray(array("axes", self.axes), dtype=float)
+        axes = (
+            np.zeros((0, 3))
+            if self.axes is None or not len(self.axes)
+            else np.asarray(array("axes", self.axes), dtype=float)
+        )
         if axes.shape != (wanted, 3):
-            given = "is missing" if self.axes is None else f"has the shape {axes.shape}"
+            given = "is missing" if not axes.size else f"has the shape {axes.shape}"
             fix = f"give {wanted} of 3 components each: a {self.kind} joint has as many" if wanted else "leave it out"
             raise InputError("axes", given, fix)
         length = np.linalg.norm(axes, axis=1)

@@ -333,7 +333,7 @@ def _shaped(facts: Facts, v: Facts) -> ShapedCommand:
         )
         for k, (name, each) in enumerate(facts["commands"].items())
     ]
-    return _read(ShapedCommand, facts, v, goal=size, to_rate=goal == "rate", runs=tuple(runs))
+    return _read(ShapedCommand, facts, v, goal=size, to_rate=goal in ("rate", "speed"), runs=tuple(runs))
 
 
 # By verb: a variable without which there are no histories, and what reads the record.

@@ -11,6 +11,7 @@ from gbeam.figures.description import raised
 from gbeam.report.page.parts import Cell, Value, heading, known, listed, paragraph, section, table
 from gbeam.report.words import number, percent
 from gbeam.results.cases import BOUNDS
+from gbeam.results.searches import COMMANDS, GOALS
 
 Facts = Mapping[str, Any]
 
@@ -110,16 +111,15 @@ def sensitivity_body(facts: Facts, viewer: str, drawn: str) -> str:
 def shaping_body(facts: Facts, viewer: str, drawn: str) -> str:
     """Vibration that each command leaves, also where the frequencies are others, the commands, and the tip."""
     ((goal, size),) = facts["goal"].items()
-    aim = f"to {number(size)} rad/s" if goal == "rate" else f"by {number(size)} rad"
     span = f", for frequencies wrong by up to {percent(facts['robust'])}" if facts["robust"] else ""
-    unit = "N m" if facts["kind"] == "torque" else "rad/s²"
+    unit = raised(COMMANDS[facts["kind"]][1])
     rows = [
         [name, 1e3 * known(each["residual_amplitude"]), each["largest"], Cell(each["outcome"])]
         for name, each in facts["commands"].items()
     ]
-    words = f"{facts['kind']} {aim} in {number(facts['duration'])} s, designed on {facts['design']}, run on "
+    words = f"{facts['kind']} {GOALS[goal].format(size)} in {number(facts['duration'])} s"
     parts = [
-        paragraph(f"{words}{facts['check']}{span}"),
+        paragraph(f"{words}, designed on {facts['design']}, run on {facts['check']}{span}"),
         heading("Commands"),
         table(("command", "leaves, mm", f"largest, {unit}", "run"), rows, words=(0, 3)),
     ]
