@@ -17,6 +17,8 @@ MODULES: tuple[str, ...] = (
     "codes.calculix_specimens",
     "codes.calculix_flights",
     "codes.calculix_fillet",
+    "codes.calculix_links",
+    "codes.scipy_place",
     "codes.exudyn_plane",
     "codes.exudyn_space",
     "codes.exudyn_trees",

@@ -176,8 +176,13 @@ def frequencies(rate: float, specimen: Specimen = BRACKET, radius: float = RADIU
         spin = f"EALL, CENTRIF, {rate**2}, {-radius}, 0., 0., 0., 0., 1."
         steps = f"*STEP, NLGEOM\n*STATIC\n1., 1.\n*DLOAD\n{spin}\n*END STEP\n"
     steps += f"*STEP{', PERTURBATION' if rate else ''}\n*FREQUENCY\n{COUNT}\n*END STEP\n"
+    return printed_frequencies(run(steps, "dat", specimen))
+
+
+def printed_frequencies(text: str) -> np.ndarray:
+    """Natural frequencies of a .dat file, Hz."""
     value = r"([-+]?\d\.\d+E[-+]\d+)"
-    table = re.split(r"E I G E N V A L U E   O U T P U T", run(steps, "dat", specimen))[1]
+    table = re.split(r"E I G E N V A L U E   O U T P U T", text)[1]
     found = re.findall(rf"^ +\d+ +{value} +{value} +{value} +{value}$", table, re.MULTILINE)
     return np.array([row[2] for row in found], dtype=float)
 
