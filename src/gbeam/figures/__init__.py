@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any
 
 from gbeam.errors import InputError
-from gbeam.figures import imitation, response, steady, studies, system
+from gbeam.figures import imitation, response, steady, studies, systems
 from gbeam.figures.description import Figure
 from gbeam.results.cases import PROBABILITY, Sensitivity, Sweep
 from gbeam.results.equilibrium import CriticalMap, Deflection
@@ -83,14 +83,14 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
         case SystemResponse():
             return _of_system(result, title)
         case SystemRest():
-            beams = {f"loads {body}": partial(system.loads_at_rest, result, body, title) for body in result.loads}
-            return {"rest": partial(system.rest, result, title), **beams}
+            beams = {f"loads {body}": partial(systems.loads_at_rest, result, body, title) for body in result.loads}
+            return {"rest": partial(systems.rest, result, title), **beams}
         case SystemModes():
-            return {"modes": partial(system.modes, result, title)} if len(result.frequency) else {}
+            return {"modes": partial(systems.modes, result, title)} if len(result.frequency) else {}
         case SolidStress():
-            return {"stress": partial(system.stress, result, title)}
+            return {"stress": partial(systems.stress, result, title)}
         case SpecimenLoads():
-            return {"specimen": partial(system.specimen, result, title)}
+            return {"specimen": partial(systems.specimen, result, title)}
         case Sensitivity():
             return {name: partial(studies.sensitivity, result, name, title) for name in result.measures}
     return {}
@@ -102,17 +102,17 @@ def _by_motion(named: Mapping[str, dict[str, Describe]]) -> dict[str, Describe]:
 
 
 def _of_system(result: SystemResponse, title: str) -> dict[str, Describe]:
-    every: dict[str, Describe] = {"points": partial(system.points, result, title)}
+    every: dict[str, Describe] = {"points": partial(systems.points, result, title)}
     if named(result):
-        every["coordinates"] = partial(system.coordinates, result, title)
+        every["coordinates"] = partial(systems.coordinates, result, title)
     if result.loop is not None:
-        every["loop"] = partial(system.loop, result, title)
-    every |= {f"loads {body}": partial(system.loads, result, body, title) for body in result.beams}
-    every |= {f"stress {body}": partial(system.stress, each, title) for body, each in result.solids.items()}
+        every["loop"] = partial(systems.loop, result, title)
+    every |= {f"loads {body}": partial(systems.loads, result, body, title) for body in result.beams}
+    every |= {f"stress {body}": partial(systems.stress, each, title) for body, each in result.solids.items()}
     if result.axes is not None:
         every |= _of_machine(result, result.axes, title)
     if result.invariants is not None:
-        every["energy"] = partial(system.energy, result, title)
+        every["energy"] = partial(systems.energy, result, title)
     return every
 
 
@@ -152,7 +152,7 @@ def _of_machine(
 def _of_response(result: Response, title: str, flight: Response | None = None) -> dict[str, Describe]:
     every: dict[str, Describe] = {}
     if result.specimen is not None:
-        every["specimen"] = partial(system.specimen, result.specimen, title)
+        every["specimen"] = partial(systems.specimen, result.specimen, title)
     every["base"] = partial(response.base, result, title)
     if result.loads is not None and result.specimen is None:
         every["loads"] = partial(response.loads, result, result.loads, title)
@@ -161,7 +161,7 @@ def _of_response(result: Response, title: str, flight: Response | None = None) -
     if result.hub is not None:
         every["hub"] = partial(response.hub, result, result.hub, title)
     if result.solid is not None:
-        every["stress"] = partial(system.stress, result.solid, title)
+        every["stress"] = partial(systems.stress, result.solid, title)
     return every
 
 

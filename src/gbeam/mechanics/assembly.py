@@ -21,12 +21,12 @@ from gbeam.mechanics.fields.projected import Field, RootedField, projected_field
 from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import ExpandedField, shaped_strains, strain_field
 from gbeam.mechanics.models import KINDS, Kind, Model
+from gbeam.mechanics.plausibility import implausible_beam, refuse_disparate, refuse_unknown
 from gbeam.mechanics.structure import Sections, Source, Structure
 from gbeam.motion.profiles.piecewise import constant
 from gbeam.structure.attachments import TIP
 from gbeam.structure.beam import Beam
 from gbeam.structure.matrices import TETRAHEDRON, body_of, condensed, radii
-from gbeam.structure.plausibility import implausible_beam, refuse_disparate, refuse_unknown
 
 Array = Any
 

@@ -1,4 +1,4 @@
-"""Doubts about an answer before it is computed: implausible values, and directions that the model leaves out."""
+"""Doubts about beams and answers before anything is computed: implausible and impossible values, missing directions."""
 
 from __future__ import annotations
 
@@ -8,12 +8,183 @@ from typing import Any
 import numpy as np
 
 from gbeam.arrays.namespace import holds_jax, is_traced
+from gbeam.errors import InputError
+from gbeam.guards.checks import implausible
 from gbeam.mechanics.models import TORSION
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion, implausible_values, times
+from gbeam.structure.beam import Beam
+from gbeam.structure.section import KINDS
+
+STOCKIEST, SLENDEREST = 5.0, 2e5  # length over radius of gyration; a rectangle's is 0.29 of its thickness
+LEANEST, FATTEST = 1e-3, 30.0  # radius of gyration over the root of the area
+HEAVIEST = 1e3  # mass of a body over the beam's
+SLOW_SOUND, FAST_SOUND = 500.0, 3e4  # speed of sound in a solid denser than polymers, and in any, m/s
+DENSE = 2300.0  # kg/m^3
+WEAKEST, STRONGEST = 1e-5, 0.1  # yield strength over Young's modulus of a solid stiffer than rubber
+STIFF = 1e9  # Pa
+LIMPEST, STIFFEST = 3e-3, 3.0  # shear modulus over Young's, of composites too
+
+_UNITS = "are their units right?"
+DISPARATE = 1e9  # of two sizes: of the smaller one's sixteen digits so many are lost in a sum
+
+
+def implausible_beam(beam: Beam, bends: tuple[bool, bool]) -> tuple[str, ...]:
+    """Warn, in the scenario's names, of what is implausible in a beam that `bends` along y and z; never where JAX
+    traces it.
+    """
+    if _traced(beam) or beam.material is None:
+        return ()
+    alone = (*_material(beam), *_dimensions(beam))
+    # A wrong unit makes ratios wrong as well: they are looked at where each value is plausible.
+    return (*alone, *_bodies(beam)) if alone else (*_matching(beam), *_proportions(beam, bends), *_bodies(beam))
+
+
+def refuse_disparate(beam: Beam) -> None:
+    """Raise InputError where a body or a spring is so large or small that numbers do not hold it beside the beam."""
+    if _traced(beam) or holds_jax(list(beam.root.springs.values())):
+        return
+    for where, value, unit, what, share in _shares(beam):
+        if share > DISPARATE or (what == "stiffness" and share < 1 / DISPARATE):
+            problem = f"is {value:g} {unit}: a {what} {share:.3g} times the beam's"
+            raise InputError(where, problem, f"numbers hold both up to {DISPARATE:g} times; is its unit right?")
+
+
+def refuse_unknown(beam: Beam, *, twist: bool, shear_y: bool, shear_z: bool) -> None:
+    """Raise InputError where a beam lacks a stiffness, or the inertia, of strains that a model has."""
+    if beam.material is None or not (twist or shear_y or shear_z):
+        return
+    material, section = beam.material, beam.section
+    if material.shear_modulus is None and material.poissons_ratio is None:
+        fix = "give it, or poissons_ratio of an isotropic material"
+        raise InputError("material.shear_modulus", "is missing, and the model has twist or shear", fix)
+    if twist and "torsion_constant" not in section.dimensions and section.shape == "general":
+        fix = "give J of the torque G J α', or modes.twist = 0"
+        raise InputError("section.torsion_constant", "is missing, and the model has twist", fix)
+    for axis, needed in (("y", shear_y), ("z", shear_z)):
+        name = f"shear_coefficient_{axis}"
+        if needed and name not in section.dimensions and section.shape == "general":
+            fix = f"give k of the shear force k G A γ, or modes.shear_{axis} = 0"
+            raise InputError(f"section.{name}", "is missing, and the model has shear", fix)
+    if twist and not beam.rotary_inertia:
+        fix = "set it to true: a beam that twists has no other inertia"
+        raise InputError("rotary_inertia", "is false, and the model has twist", fix)
+
+
+def _shares(beam: Beam) -> Iterator[tuple[str, float, str, str, float]]:
+    """Bodies and springs: place, value, unit, what it brings, and how often the beam has as much."""
+    mass, length, inertia = _mass(beam), beam.length, "moment of inertia"
+    for i, body in enumerate(beam.masses):
+        turned, arm, largest = mass * length**2, max(map(abs, body.offset)), max(body.inertia)
+        yield f"masses[{i}].mass", body.mass, "kg", "mass", body.mass / mass
+        yield f"masses[{i}].inertia", largest, "kg m^2", inertia, largest / turned
+        yield f"masses[{i}].offset", arm, "m", inertia, body.mass * arm**2 / turned
+    along, about_y, about_z = (np.mean(each) for each in beam.rigidities(np.asarray(beam.section.stations or (0.0,))))
+    turning = np.sqrt(about_y * about_z) / length
+    for name, value in beam.root.springs.items():
+        unit, stiffness = ("N m/rad", turning) if name.startswith("rotation") else ("N/m", turning / length**2)
+        stiffness = along / length if name == "translation_x" else stiffness
+        yield f"root.{name}", value, unit, "stiffness", float(value / stiffness)
+
+
+def _traced(beam: Beam) -> bool:
+    bodies = [(body.mass, body.inertia, body.offset) for body in beam.masses]
+    material = [] if beam.material is None else [*vars(beam.material).values()]
+    values = beam.length, material, [*beam.section.dimensions.values()], beam.damping_ratio
+    return holds_jax(*values, bodies)
+
+
+def _material(beam: Beam) -> Iterator[str]:
+    material = beam.metal
+    yield from implausible("beam.material.density", "density", material.density)
+    yield from implausible("beam.material.youngs_modulus", "modulus", material.youngs_modulus)
+    if material.yield_strength is not None:
+        yield from implausible("beam.material.yield_strength", "strength", material.yield_strength)
+    if beam.damping_ratio is not None:
+        yield from implausible("beam.damping_ratio", "damping", float(np.max(beam.damping_ratio)))
+
+
+def _dimensions(beam: Beam) -> Iterator[str]:
+    yield from implausible("beam.length", "length", beam.length)
+    for name, values in beam.section.dimensions.items():
+        largest, kind = max(values), KINDS.get(name, "section")
+        odd = implausible(f"beam.section.{name}", kind, largest)
+        odd = odd or implausible(f"beam.section.{name}", kind, min(values))
+        yield from odd
+        if not odd and kind == "section" and largest > beam.length:
+            yield (
+                f"beam.section.{name} is {largest:g} m, more than the beam's length, {beam.length:g} m; "
+                + (f"did you mean {largest:g} mm?" if 3e-3 * largest < beam.length else "are their units right?")
+            )
+
+
+def _matching(beam: Beam) -> Iterator[str]:
+    """Properties of the material that no material has together, each plausible alone."""
+    material = beam.metal
+    modulus, density = float(material.youngs_modulus), float(material.density)
+    speed = float(np.sqrt(modulus / density))
+    soft = density > DENSE and speed < SLOW_SOUND
+    if soft or speed > FAST_SOUND:
+        slip = f"did you mean {modulus / 1e6:g} GPa?" if soft and SLOW_SOUND < speed * 1e3**0.5 < FAST_SOUND else _UNITS
+        yield (
+            f"beam.material.youngs_modulus is {modulus / 1e6:g} MPa, of {density:g} kg/m^3, so that sound travels at "
+            f"{speed:.3g} m/s: nothing as {'dense is as soft' if soft else 'light is as stiff'}; {slip}"
+        )
+    limits = (
+        ("yield_strength", material.yield_strength, WEAKEST, STRONGEST, modulus > STIFF),
+        ("shear_modulus", material.shear_modulus, LIMPEST, STIFFEST, True),
+    )
+    for name, value, least, most, judged in limits:
+        if value is not None and judged and not soft and not least < value / modulus < most:
+            times = f"{value / modulus:.3g} times youngs_modulus, {modulus / 1e6:g} MPa"
+            yield f"beam.material.{name} is {value / 1e6:g} MPa, {times}; {_UNITS}"
+
+
+def _proportions(beam: Beam, bends: tuple[bool, bool]) -> Iterator[str]:
+    at = np.asarray(beam.section.stations or (0.0,))
+    section = beam.section.at(at)
+    for axis, bent, inertia, name in (("y", bends[0], section.inertia_z, "z"), ("z", bends[1], section.inertia_y, "y")):
+        gyration = np.sqrt(inertia / section.area)
+        shape = gyration / np.sqrt(section.area)
+        if not (shape.min() > LEANEST and shape.max() < FATTEST):
+            yield (
+                f"beam.section.inertia_{name} and area make a radius of gyration of {gyration.max():g} m in an area of "
+                f"{section.area.max():g} m^2; are their units right?"
+            )
+        elif bent and not STOCKIEST < beam.length / gyration.max() < SLENDEREST:
+            ratio = beam.length / gyration.max()
+            why = "no beam is as stout" if ratio < STOCKIEST else "nothing as slender carries its own weight"
+            yield (
+                f"beam.length, {beam.length:g} m, is {ratio:.3g} times the section's radius of gyration along {axis}, "
+                f"{gyration.max():.3g} m: {why}; are the units of length and section right?"
+            )
+
+
+def _bodies(beam: Beam) -> Iterator[str]:
+    mass = _mass(beam)
+    for i, body in enumerate(beam.masses):
+        where = f"beam.masses[{i}]"
+        if body.mass > HEAVIEST * mass:
+            times = f"{body.mass / mass:.3g} times the beam's"
+            yield f"{where}.mass is {body.mass:g} kg, {times}; did you mean {body.mass:g} g?"
+        arm = max(map(abs, body.offset))
+        if arm > beam.length:
+            yield f"{where}.offset is {arm:g} m, more than the beam's length, {beam.length:g} m; is its unit right?"
+        if body.mass > 0 and max(body.inertia) > body.mass * beam.length**2:
+            yield (
+                f"{where}.inertia is up to {max(body.inertia):g} kg m^2, of {body.mass:g} kg as wide as "
+                f"{np.sqrt(max(body.inertia) / body.mass):.3g} m; did you mean {max(body.inertia):g} kg mm^2?"
+            )
+
+
+def _mass(beam: Beam) -> float:
+    at = np.linspace(0, beam.length, 41)
+    area: Any = beam.section.at(at).area
+    return float(beam.density * np.mean(area) * beam.length)
+
 
 NOTICED = 0.01  # of the largest: a smaller share along a direction without shapes is none
-STIFF = 10.0  # times the other direction: from there on the driven one should be meant
+STIFFER = 10.0  # times the other direction: from there on the driven one should be meant
 SLOWEST, FASTEST = 1e-3, 1e6  # Hz, of a beam's lowest natural frequency
 
 
@@ -111,7 +282,7 @@ def _on_edge(structure: Structure, motion: Any, base: Any, where: str) -> Iterat
         return
     beam = structure.source.beam
     _, along_z, along_y = (np.mean(each) for each in beam.rigidities(np.linspace(0, beam.length, 41)))
-    if along_y > STIFF * along_z:
+    if along_y > STIFFER * along_z:
         yield (
             f"{where} bends the beam along y, in its plane of rotation, where it is {along_y / along_z:.3g} times as "
             f'stiff as along z; give {where}.setting_angle = "90 deg" to turn it, or "0 deg" if this is meant'
