@@ -19,7 +19,7 @@ from gbeam.numerics.sparse import factorised, lowest_modes
 ZERO = 1e-10  # of the largest of the eigenvalues computed: a smaller one is that of a motion without strain
 ALIKE = 1e-9  # of its energy: what is left of a static answer beside the modes and the others adds nothing
 HOLD = "hold the structure so that nothing moves without strain"
-WITHIN, OTHER = 12, 4  # static answers and random vectors with which the search for modes begins
+WIDTH = 8  # random vectors with which the search for modes begins: as many equal frequencies are told apart
 FAINT = 1e-14  # of the largest: a product of shapes that is rounding
 
 
@@ -62,9 +62,8 @@ def reduce(stiffness: Any, mass: Any, loads: Floats, free: Any, modes: int) -> R
             have = _moving(inverse)
             inverse, vector = inverse[:modes], vector[:, :modes]
         else:
-            # The answers hold most of the lowest modes; what no load moves must begin somewhere too.
-            other = np.random.default_rng(0).standard_normal((count, OTHER))
-            inverse, vector = lowest_modes(solve, m_free, np.hstack([static[:, :WITHIN], other]), modes)
+            start = np.random.default_rng(0).standard_normal((count, WIDTH))
+            inverse, vector = lowest_modes(solve, m_free, start, modes)
             have = len(inverse)
     if have < modes:
         raise InputError("modes", f"is {modes}, and only {have} motions move mass", f"give at most {have}")

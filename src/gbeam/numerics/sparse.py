@@ -87,6 +87,7 @@ def factorised(matrix: Any, where: str = "stiffness") -> Iterator[Callable[[Floa
 
 CLOSE = 1e-8  # of an inverse eigenvalue: residual of a mode that has converged; its value errs by the square
 NONE = 1e-12  # of its length: what is left of a vector that is in the space already
+OUTSIDE = 0.5  # of the square of its length: what is left of a vector that was nearly outside of the space
 SAME = 1e-13  # of the largest eigenvalue of the products of unit vectors: two that are one
 
 
@@ -100,36 +101,46 @@ def lowest_modes(solve: Callable[[Floats], Floats], mass: Any, start: Floats, mo
     basis: list[Floats] = []
     flexibility, value = np.zeros((0, 0)), np.zeros(0)
     vector, residual = flexibility, value
-    new = _beside(start, basis, mass)
+    new, weighed = _orthonormal(start, mass @ start, basis, mass)
     while new.shape[1] and not (len(value) == modes and (residual < CLOSE * np.abs(value)).all()):
         basis.append(new)
-        step = solve(mass @ new)
-        across = _products(basis, mass @ step)
+        step = solve(weighed)
+        heavy = mass @ step
+        across = _products(basis, heavy)
         flexibility = np.block([[flexibility, across[: len(flexibility)]], [across.T]])
-        new = _beside(step, basis, mass)
+        new, weighed = _orthonormal(step, heavy, basis, mass, across)
         value, vector = np.linalg.eigh(flexibility)
         lowest = np.argsort(-np.abs(value), kind="stable")[:modes]
         value, vector = value[lowest], vector[:, lowest]
-        residual = np.linalg.norm(new.T @ (mass @ step) @ vector[-step.shape[1] :], axis=0)
+        residual = np.linalg.norm(new.T @ heavy @ vector[-step.shape[1] :], axis=0)
     # Once more by the stiffness: without what has no mass, of which products with the mass do not know.
     return value, solve(mass @ _combined(basis, vector)) / value if basis else vector
 
 
-def _beside(vectors: Floats, basis: list[Floats], mass: Any) -> Floats:
-    """Span of what vectors (n, b) have beside a basis, orthonormal in the mass, (n, l)."""
-    whole = np.sqrt(np.maximum(np.einsum("ij,ij->j", vectors, mass @ vectors), 0.0))
+def _orthonormal(
+    vectors: Floats, weighed: Floats, basis: list[Floats], mass: Any, across: Floats | None = None
+) -> tuple[Floats, Floats]:
+    """Span of what vectors (n, b) have beside a basis, orthonormal in the mass, (n, l), and its products with the mass;
+    `weighed` and `across` are the products of the vectors with the mass and with the basis.
+    """
+    whole = np.sqrt(np.maximum(np.einsum("ij,ij->j", vectors, weighed), 0.0))
     for _ in range(3):  # twice is enough, and once more for what was small
         if basis:
-            vectors = vectors - _combined(basis, _products(basis, mass @ vectors))
-        products = vectors.T @ (mass @ vectors)
+            across = _products(basis, weighed) if across is None else across
+            vectors = vectors - _combined(basis, across)
+            weighed, across = mass @ vectors, None
+        products = vectors.T @ weighed
         size = np.sqrt(np.maximum(np.diagonal(products), 0.0))
-        some = size > NONE * whole
-        size, products = size[some], products[np.ix_(some, some)]
+        some = (size > NONE * whole) & (whole > 0)
+        size, products, left = size[some], products[np.ix_(some, some)], size[some] / whole[some]
         value, vector = np.linalg.eigh(products / np.outer(size, size))
         kept = value > SAME * value.max(initial=0.0)
-        vectors = vectors[:, some] / size @ (vector[:, kept] / np.sqrt(value[kept]))
-        whole = np.zeros(vectors.shape[1])
-    return vectors
+        change = vector[:, kept] / np.sqrt(value[kept]) / size[:, None]
+        vectors, weighed = vectors[:, some] @ change, weighed[:, some] @ change
+        whole = np.ones(vectors.shape[1])
+        if value[kept].min(initial=1.0) * left.min(initial=1.0) ** 2 > OUTSIDE:
+            break
+    return vectors, weighed
 
 
 def _products(basis: list[Floats], weighed: Floats) -> Floats:
