@@ -40,6 +40,7 @@ LEAST = 4  # steps behind those that have converged, which go on with what they 
 TOLERANCE, ROUNDING = 1e-9, 1e-6  # of the largest acceleration: error left by the last correction, and where it stalls
 TINY = float(np.finfo(float).tiny)
 CANCELLED = 100 * float(np.finfo(float).eps)  # of the forces at a coordinate, each a sum of many: their rounding
+GROWN = 10.0  # times the rounding where a window begins, which is known there, unlike that of iterates that diverge
 EARLIER = 0.01  # of the largest acceleration before a step, whose own may all vanish: to be told from none
 
 
@@ -62,14 +63,15 @@ def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, 
     # A scheme whose last stage is the end of a step begins anew after a jump: no window goes beyond one.
     ends = np.append(np.flatnonzero(steps.anew[:-1]) + 1 if scheme.ends else [], len(steps)).astype(int)
     z, x = scheme.tableau(steps.length[0]).first @ np.stack([q, qd, qdd]), qdd
-    done, size, apart, slope = 0, FIRST, APART, None
+    done, size, apart, slope, noise = 0, FIRST, APART, None, np.inf
     start: Any = z, x, slope
     while done < len(steps):
         part = steps[done : min(done + size, ends[np.searchsorted(ends, done, side="right")])]
         with np.errstate(all="ignore"):
             held = None if sampling is None else Held(sampling, done, len(part))
-            window = _Window(residual, drive, scheme, part, z, x, slope, apart, held)
+            window = _Window(residual, drive, scheme, part, z, x, slope, apart, held, noise)
             count, near, times = window.solve()
+            noise = window.most
             apart = window.apart if count == len(part) else max(window.apart // 2, NEAR)
             if not count and len(part) == 1:
                 failed = np.full((1, z.shape[-1]), np.nan)
@@ -84,7 +86,9 @@ def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, 
             else:
                 size = max(count, len(part) // 2)
             if count:
-                start = window.z[count], window.x[count - 1, -1], window.slope_at(count - 1)
+                # Between derivatives of iterates that diverged lies nothing to begin with.
+                slope = window.slope_at(count - 1) if count == len(part) else None
+                start = window.z[count], window.x[count - 1, -1], slope
             z, x, slope = window.behind(count, near) if going else start
             if not count:
                 continue
@@ -115,6 +119,7 @@ class _Window:
         slope: Any,
         apart: int,
         held: Held | None,
+        noise: float,
     ) -> None:
         self.residual, self.drive, self.scheme, self.steps, self.apart = residual, drive, scheme, steps, apart
         equal = bool((steps.length == steps.length[0]).all())
@@ -128,6 +133,7 @@ class _Window:
             self.inputs = held.driven(self.free, len(scheme.offsets))
         if slope is None or not all(np.isfinite(each).all() for each in slope):
             self._differentiate(alone=True)
+        self.most = noise if len(self.slope[0]) > 1 else np.inf
 
     def solve(self) -> tuple[int, int, int]:
         """Correct the window; returns how many of its steps have converged, from the first on, how many are near, and
@@ -223,7 +229,10 @@ class _Window:
         # Of forces that cancel something is left, which no correction of the accelerations takes away.
         sizes = (np.abs(each).reshape(-1, stages, n, 1) for each in self._stages())
         forces = sum(np.abs(by) @ each for by, each in zip(self.slope, sizes, strict=True))
-        self.noise = _largest(CANCELLED * _products(np.abs(inverse), forces.reshape(-1, stages * n)))
+        noise = _largest(CANCELLED * _products(np.abs(inverse), forces.reshape(-1, stages * n)))
+        if self.most == np.inf:
+            self.most = GROWN * float(noise.max())
+        self.noise = np.minimum(noise, self.most)
         step = (t.g[:, :, None, :, None] * np.eye(n)[:, None, :]).reshape(-1, states * n, states * n)
         if self.held is not None:
             self.held.push(inverse, t, self._between(self.held.sampling.onto))
