@@ -206,7 +206,7 @@ class Given:
                 (self.structure, self.hub),
                 {"turning": None, "time": 0.0, "speeds": [0.0, 1.0],
                 "start": 0.0, "end": None, "count": 3, "modes": 2, "orders": (1, 2),
-                "name": "hub"},
+                "name": "hub", "progress": None},
             ),
             "choice_of": ((self.centrifuge, (0.05,)), {"limited": False, "turns": "own"}),
             "axis_commands": ((self.centrifuge.over(0.0, 0.1), 0.01), {}),

@@ -41,12 +41,12 @@ class Bar:
         Time without a sign of life that needs no explanation, s.
     """
 
-    def __init__(self, first: str = "compiling", *, patience: float = 0.0) -> None:
+    def __init__(self, first: str = "computing", *, patience: float = 0.0) -> None:
         self._now = (first, 0.0)
         self._patience = patience
         self._since = monotonic()  # when that was begun
         self._over = Event()
-        # A thread, not a look at the clock in __call__: the long silence is compilation, before the first call.
+        # A thread, not a look at the clock in __call__: before the first call it may be silent for long.
         self._thread = Thread(target=self._show, daemon=True)
         self._bar: _Drawn | None = None
 

@@ -319,6 +319,7 @@ def campbell(
     end: float | None = None,
     modes: int = 8,
     orders: int = 4,
+    progress: Callable[[str, float], None] | None = None,
 ) -> Campbell:
     """Frequencies from one rate of a hub or a joint to another, rad/s, and crossings with multiples of the rate."""
     from gbeam.analysis.steady import campbell
@@ -326,7 +327,7 @@ def campbell(
     name = motion_of(case.environments, motion, HUB)
     return campbell.campbell(
         case.assemble(), prepared(case, name), turning=turning, start=start, end=end, modes=modes,
-        orders=range(1, orders + 1), time=_time(case, at), name=name,
+        orders=range(1, orders + 1), time=_time(case, at), name=name, progress=progress,
     )  # fmt: skip
 
 

@@ -36,7 +36,7 @@ def test_plain_lines_where_there_is_no_terminal(monkeypatch: pytest.MonkeyPatch)
         watch("flight: run\x1b[31m\n", 0.25)
         time.sleep(0.06)
     lines = sys.stderr.getvalue().splitlines()  # type: ignore[attr-defined]
-    assert lines[0] == "gbeam: compiling" and lines[-1] == "gbeam: flight: run\\x1b[31m\\n: 25%"
+    assert lines[0] == "gbeam: computing" and lines[-1] == "gbeam: flight: run\\x1b[31m\\n: 25%"
     assert len(lines) >= 3
 
 
@@ -99,7 +99,7 @@ def test_progress_true_shows_a_bar_from_the_first_second(monkeypatch: pytest.Mon
     monkeypatch.setattr(progress.Bar, "_draw", lambda self: shown.append(self.line()) or self._over.wait(60))
     turn = gb.Flight(z=gb.trapezoid(5.0, jerk=20.0, hold=0.1))
     run = gb.simulate(specimen, turn, duration=0.6, step=0.01, estimate=False, progress=True)
-    assert shown == ["compiling"]
+    assert shown == ["computing"]
     assert run == gb.simulate(specimen, turn, duration=0.6, step=0.01, estimate=False, progress=False)
 
 
@@ -112,4 +112,4 @@ def test_a_bar_counts_the_cases_of_a_sweep() -> None:
 def test_plain_lines_need_no_rich() -> None:
     code = "import sys, time; from gbeam.progress import Bar\nwith Bar(): time.sleep(0.2)\nprint('rich' in sys.modules)"
     ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert (ran.stdout, ran.stderr) == ("False\n", "gbeam: compiling\n")
+    assert (ran.stdout, ran.stderr) == ("False\n", "gbeam: computing\n")

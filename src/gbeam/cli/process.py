@@ -181,7 +181,7 @@ def _nowhere() -> io.TextIOWrapper:
 class Watch(Bar):
     """Progress of a command that takes long; a signal that ends the process takes the bar away."""
 
-    def __init__(self, first: str = "compiling") -> None:
+    def __init__(self, first: str = "computing") -> None:
         super().__init__(first, patience=PATIENCE)
         self._cleaned_up = cleaned_up(self._stop)
 

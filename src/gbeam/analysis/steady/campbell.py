@@ -21,6 +21,7 @@ from gbeam.mechanics.tree.system import System
 from gbeam.motion.profiles.profile import Profile
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.eigen import mac, matched
+from gbeam.progress import Progress, tell
 from gbeam.results.errors import PARTS, ErrorEstimate, FrequencyErrors
 from gbeam.results.modal import Campbell, Crossing
 from gbeam.results.result import Complex, Floats
@@ -69,6 +70,7 @@ def campbell(
     orders: Sequence[int] = (1, 2, 3, 4),
     time: float = 0.0,
     name: str = "",
+    progress: Progress = None,
 ) -> Campbell:
     """Frequencies about the relative equilibrium against the speed of a hub, or of a system's joint that turns.
 
@@ -95,6 +97,8 @@ def campbell(
         Of a system: when its loads and other joints are frozen, s.
     name : str
         For the result.
+    progress : callable or bool, optional
+        Called with what is done and the share of it; True shows a bar.
 
     Returns
     -------
@@ -128,7 +132,7 @@ def campbell(
         raise InputError("to", f"is {end:g} rad/s, from {start:g} rad/s", "give a range of speeds that ascends from 0")
     if modes < 1:
         raise InputError("modes", f"is {modes}", "give 1 or more")
-    lost = critical_speed(structure, motion, turning=turning, upper=end, time=time, name=name)
+    lost = critical_speed(structure, motion, turning=turning, upper=end, time=time, name=name, progress=progress)
     # The last speed is short of the critical one, where a frequency is zero.
     last = end if lost.value is None or lost.value <= start else start + (lost.value - start) * (1 - 1e-6)
 
@@ -136,6 +140,7 @@ def campbell(
         return path(structure, rate)
 
     def at(rate: float) -> _Speed:
+        tell(progress, f"frequencies at {rate:.4g} rad/s", (rate - start) / (end - start))
         state = point_at(rate)
         moving, first = state.moving, state.first
         damping = -moving.value.real / moving.frequency

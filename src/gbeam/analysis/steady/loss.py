@@ -52,13 +52,16 @@ def _of_system(path: Path, of: System, value: float) -> tuple[str, ...]:
     return of.warnings + (() if state is None else state.point.sticking(of))
 
 
-def first_loss_along(path: Path, of: Structure | System, upper: float, quantity: str, unit: str) -> Critical:
+def first_loss_along(
+    path: Path, of: Structure | System, upper: float, quantity: str, unit: str, progress: Progress = None
+) -> Critical:
     """Raise a quantity from zero until the relative equilibrium is lost: first on a grid of 64 points, then by Brent's
     method.
     """
 
     @cache
     def margin(value: float) -> float:
+        tell(progress, f"equilibrium at a {quantity} of {value:.4g} {unit}", value / upper)
         state = _state(path, of, value)
         return -1.0 if state is None else state.margin
 

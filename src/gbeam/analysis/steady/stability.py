@@ -119,7 +119,7 @@ def critical_speed(
     if isinstance(path, Turning) and isinstance(structure, System):
         path.refuse_changing(structure, limit / SEARCH_FACTOR)
     words = "hub rate" if isinstance(structure, Structure) else "rate"
-    return judged(first_loss_along(path, structure, limit, words, "rad/s"), path, structure, progress)
+    return judged(first_loss_along(path, structure, limit, words, "rad/s", progress), path, structure, progress)
 
 
 def turned(
@@ -255,7 +255,7 @@ def buckling_acceleration(structure: Structure, *, upper: float | None = None, p
         base = Base(np.array([acceleration, 0.0, 0.0]), np.zeros(3), np.zeros(3))
         return on_base(replace(of, load_values=values), base)
 
-    lost = first_loss_along(pushed, structure, limit, "acceleration along x", "m/s²")
+    lost = first_loss_along(pushed, structure, limit, "acceleration along x", "m/s²", progress)
     return judged(lost, pushed, structure, progress)
 
 
@@ -324,7 +324,7 @@ def critical_load(
         fix = "add one, or give a time at which one acts; `gbeam critical-speed` can raise a hub's rate instead"
         raise InputError("forces" if isinstance(structure, System) else "beam.loads", "has none that acts", fix)
     limit = SEARCH_FACTOR / share if upper is None else positive("to", upper, "times the loads")
-    lost = first_loss_along(path, structure, limit, "load factor", "times the loads")
+    lost = first_loss_along(path, structure, limit, "load factor", "times the loads", progress)
     return judged(lost, path, structure, progress)
 
 

@@ -145,7 +145,7 @@ def rested(system: System, tree: Tree, inputs: Inputs, start: Floats | None = No
         # Steps of a radian at most: a beam far from its equilibrium turns by as much.
         y = y + change / max(1.0, size)
         if size <= CLOSE * (1.0 + np.abs(y).max(initial=0.0)):
-            left = Point(tree, y, still, still, inputs).slopes()[0]
+            left = tree(y, still, still, inputs)
             refuse_massless(system, m, tree.free)
             acceleration = np.linalg.solve(m, -left)
             break

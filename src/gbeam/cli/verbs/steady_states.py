@@ -68,9 +68,9 @@ def campbell(
         fix = 'give the largest speed, such as "5 rad/s"'
         raise InputError("--to", "is missing: the hub is driven by a torque", fix)
 
-    with Watch(), loaded.placing(to="--to", modes="--modes", turning="--turning", speeds="--to"):
+    with Watch() as watch, loaded.placing(to="--to", modes="--modes", turning="--turning", speeds="--to"):
         diagram = questions.campbell(
-            loaded.case, name, turning=turning, start=low, end=high, modes=modes, orders=orders
+            loaded.case, name, turning=turning, start=low, end=high, modes=modes, orders=orders, progress=watch
         )
 
     from gbeam.figures import steady
