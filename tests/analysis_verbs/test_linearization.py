@@ -11,7 +11,8 @@ from gbeam.analysis.control.linearization import linearize, nonlinear_system
 from gbeam.analysis.control.reduction import balanced_truncation, modal_truncation
 from gbeam.analysis.steady.modal import modes
 from gbeam.analysis.steady.operating_point import evaluated_at, linear_matrices, on_base, on_hub, operating_point
-from gbeam.motion import Base, Hub, constant
+from gbeam.analysis.steady.static import static
+from gbeam.motion import Base, Centrifuge, Flight, Hub, constant
 from gbeam.report import text
 from gbeam.results.facts import json_of
 from gbeam.results.state_space import Signal, StateSpace
@@ -94,6 +95,15 @@ def test_state_space_of_a_turning_base_has_its_rate():
     # The root's own acceleration −rΩ² changes as well: an input.
     slope += (system.c[:1, :n] @ np.linalg.solve(-system.a[:n, :n], system.b[:n]) + system.d[:1])[0, 0] * -2 * 0.5 * 2.0
     assert stretch == pytest.approx(slope, rel=1e-3)
+
+
+@pytest.mark.parametrize(("gravity", "word"), [(True, "specific_force"), (False, "acceleration")])
+def test_a_machine_is_frozen_and_names_what_moves_its_base(gravity, word):
+    machine = Centrifuge(Flight(z=constant(20.0)), arm=3.3, control_point=0.1, gravity=gravity).over(0.0, 1.0)
+    system = linearize(SOFT, machine, 0.5)
+    assert [each.name for each in system.inputs[:3]] == [f"base_{word}_{i}" for i in "xyz"]
+    assert system.input[:3] == pytest.approx(machine.base(0.5).a_WO_B)
+    assert system.output[:3] == pytest.approx(static(SOFT, machine, 0.5).tip, abs=1e-15)
 
 
 def test_reductions():

@@ -160,7 +160,7 @@ def coordinate_signals(structure: Structure, first: int) -> tuple[Signal, ...]:
 
 def _acceleration(motion: Any) -> str:
     """Name of accelerations where a motion goes: with gravity they are what accelerometers measure."""
-    weighs = motion.kind == "centrifuge" and float(motion.gravity) > 0
+    weighs = motion.kind == "centrifuge" and float(motion.geometry.gravity) > 0
     weighs = weighs or (motion.kind == "hub" and motion.mount.gravity is not None)
     return "specific_force" if weighs else "acceleration"
 
