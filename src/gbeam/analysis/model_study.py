@@ -111,8 +111,8 @@ def compare_models(
 
             run = partial(_answer, structure, motion, case.response, name, point, report)
             answers[kind, name] = _timed(run)
-            given = answers[kind, name][0]
-            point = point or (given.point if isinstance(given, _Tip) and isinstance(structure, System) else point)
+            answer = answers[kind, name][0]
+            point = point or (answer.point if isinstance(answer, _Tip) and isinstance(structure, System) else point)
     rows, direction = [], {}
     for name in case.environments:
         reference = answers[REFERENCE, name][0]

@@ -1,4 +1,4 @@
-"""The one place where an error becomes words and an exit status."""
+"""Errors as words and an exit status."""
 
 from __future__ import annotations
 

@@ -99,8 +99,8 @@ def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> tuple
     n, pieces = q.shape[1], []
     steps = 1j * STEP * np.eye(3 * n).reshape(3 * n, 1, 3, n)
     for some in _pieces(q):
-        at, given = [each[some] for each in (q, qd, qdd)], each_leaf(lambda leaf: leaf[some], inputs)  # noqa: B023
-        values = residual(*(each + steps[:, :, k] for k, each in enumerate(at)), given)
+        at, part = [each[some] for each in (q, qd, qdd)], each_leaf(lambda leaf: leaf[some], inputs)  # noqa: B023
+        values = residual(*(each + steps[:, :, k] for k, each in enumerate(at)), part)
         pieces.append(values.imag / STEP)
     k, c, m = np.concatenate(pieces, axis=1).reshape(3, n, len(q), pieces[0].shape[-1]).transpose(0, 2, 3, 1)
     return k, c, m
@@ -110,8 +110,8 @@ def accelerations(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
     """q̈ (t, n) that equations linear in q̈ demand at q, q̇ (t, n) and inputs (t, ...); NaN where M is singular."""
     pieces = []
     for some in _pieces(q):
-        given = each_leaf(lambda leaf: leaf[some], inputs)  # noqa: B023
-        values = residual(q[some], qd[some], _moved(0 * q[some]), given)
+        part = each_leaf(lambda leaf: leaf[some], inputs)  # noqa: B023
+        values = residual(q[some], qd[some], _moved(0 * q[some]), part)
         mass = (values.imag / STEP).transpose(1, 2, 0)
         pieces.append(solved(mass, -values[0].real[..., None])[..., 0])
     return np.concatenate(pieces)

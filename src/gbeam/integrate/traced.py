@@ -80,18 +80,18 @@ def _changes(scheme: Scheme, steps: Steps, run: Any, of: Any, changed: Any, dq: 
         jnp.concatenate([*part, *([] if scheme.ends else [each[1:]])]) for part, each in zip(parts, run, strict=True)
     )
 
-    def host(*given: Any) -> Any:
-        (q, qd, qdd), (residual, driven) = jax.tree.map(np.asarray, given)
+    def host(*arguments: Any) -> Any:
+        (q, qd, qdd), (residual, driven) = jax.tree.map(np.asarray, arguments)
         with np.errstate(all="ignore"):
             return slopes(residual, q, qd, qdd, driven)
 
     square = (jax.ShapeDtypeStruct((len(states[0]), n, n), float),) * 3
     slope = jax.pure_callback(host, square, states, of, vmap_method="sequential")
-    _, own = jax.jvp(lambda residual, driven: residual(*states, driven), of, changed)
+    _, direct = jax.jvp(lambda residual, driven: residual(*states, driven), of, changed)
 
     def accelerated(some: slice, dq: Array, dqd: Array) -> Array:
         k, c, m = (each[some] for each in slope)
-        left = own[some] + (k @ dq[..., None] + c @ dqd[..., None])[..., 0]
+        left = direct[some] + (k @ dq[..., None] + c @ dqd[..., None])[..., 0]
         return -jnp.linalg.solve(m, left[..., None])[..., 0]
 
     def by_stage(values: Array) -> Array:
@@ -101,12 +101,12 @@ def _changes(scheme: Scheme, steps: Steps, run: Any, of: Any, changed: Any, dq: 
     inverse = jnp.linalg.inv(jacobian)
 
     def step(dz: Array, at: Any) -> Any:
-        inverse, onto, own, g, d = at
-        dx = -(inverse @ (own.ravel() + onto @ dz.ravel())).reshape(stages, n)
+        inverse, onto, direct, g, d = at
+        dx = -(inverse @ (direct.ravel() + onto @ dz.ravel())).reshape(stages, n)
         return g @ dz + d @ dx, (dz, dx)
 
     dqdd = accelerated(slice(0, 1), dq[None], dqd[None])
-    _, (dz, dx) = jax.lax.scan(step, first @ jnp.stack([dq, dqd, dqdd[0]]), (inverse, onto, by_stage(own), t.g, t.d))
+    _, (dz, dx) = jax.lax.scan(step, first @ jnp.stack([dq, dqd, dqdd[0]]), (inverse, onto, by_stage(direct), t.g, t.d))
     ends = t.end_z @ dz + t.end_x @ dx
     changes = ends[:, 0], ends[:, 1]
     at_ends = dx[:, -1] if scheme.ends else accelerated(slice(-count, None), *changes)

@@ -151,7 +151,7 @@ class _Parts:
         inward = [np.einsum("gba,bgk->agk", axes, each).reshape(-1, force.shape[-1]) for each in (slope, angle)]
         return np.concatenate([*inward, springs])
 
-    def answers(self, own: Array) -> Array:
+    def answers(self, coordinates: Array) -> Array:
         """Static answers (m, k) of the thick beam: to the inertia of its own shapes, to accelerations, loads and what
         hangs on it.
         """
@@ -170,10 +170,10 @@ class _Parts:
         still = np.zeros((3, len(self.points), 3))
         even = still + np.eye(3)[:, None]
         place = self.place.T[..., None]
-        loads = [of(own), inertia(even, still), inertia(np.cross(even, place, axis=0), even)]
+        loads = [of(coordinates), inertia(even, still), inertia(np.cross(even, place, axis=0), even)]
         acting = [np.arange(len(self.points)) == k for k in self.hung]
         if self.beam.loads:
-            work, points = self.work(self.field(own))
+            work, points = self.work(self.field(coordinates))
             for load in range(len(self.beam.loads)):
                 acting.append(np.bincount(points, work.weight * (work.load == load), len(self.points)))
         for each in acting:
@@ -248,10 +248,12 @@ class _Parts:
         out[len(strains) :, strains.shape[1] :] = np.eye(springs)
         return out
 
-    def others(self, answers: Array, families: tuple[int, ...], own: Array | None = None) -> Array:
+    def others(self, answers: Array, families: tuple[int, ...], coordinates: Array | None = None) -> Array:
         """The part of some answers in families of strains, without that of own shapes, orthonormal in energy."""
         chosen = (np.isin(self.families, families) & self.known)[:, None]
-        known = np.zeros((len(chosen), 0)) if own is None else np.linalg.qr(self.scaled(chosen * own))[0]
+        known = (
+            np.zeros((len(chosen), 0)) if coordinates is None else np.linalg.qr(self.scaled(chosen * coordinates))[0]
+        )
         whole = np.linalg.norm(self.scaled(self.known[:, None] * answers), axis=0)
         first = known.shape[1]
         for vector, length in zip(self.scaled(chosen * answers).T, whole, strict=True):

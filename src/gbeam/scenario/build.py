@@ -100,15 +100,15 @@ def build(scenario: AnyScenario, *, ahead: bool = False) -> AnyCase:
 
 
 def scenario_of(
-    given: str | os.PathLike[str] | AnyCase, overrides: Iterable[str] = (), *, distributions: bool = False
+    case: str | os.PathLike[str] | AnyCase, overrides: Iterable[str] = (), *, distributions: bool = False
 ) -> AnyScenario:
     """The scenario of a file, or that which a case was read from, validated with changes."""
-    if isinstance(given, (str, os.PathLike)):
-        return load(given, overrides, distributions=distributions)
-    if given.scenario is None or given.scenario.source is None:
+    if isinstance(case, (str, os.PathLike)):
+        return load(case, overrides, distributions=distributions)
+    if case.scenario is None or case.scenario.source is None:
         fix = "give the file, or what read_scenario makes of it; changes as overrides"
         raise InputError("scenario", "is a case that was not read from a file, or was changed since", fix)
-    return change(given.scenario.source, overrides)
+    return change(case.scenario.source, overrides)
 
 
 def build_machines(scenario: schema.Environments) -> dict[str, Centrifuge]:
@@ -214,7 +214,7 @@ def _response(
     end = start + duration
     for name, flight in records.items():
         assert flight.record is not None
-        parts.errors += _not_all_of(name, flight.record, start, end, given=table.duration is not None)
+        parts.errors += _not_all_of(name, flight.record, start, end, has_duration=table.duration is not None)
     if table.residual_from is not None and not start <= table.residual_from < end:
         fix = f"give a time from {start:g} s to {end:g} s"
         parts.errors.append(InputError("response.residual_from", f"is {table.residual_from:g} s", fix))
@@ -237,7 +237,9 @@ def _response(
     )
 
 
-def _not_all_of(name: str, record: RecordSummary, start: float, end: float, *, given: bool) -> Iterator[InputError]:
+def _not_all_of(
+    name: str, record: RecordSummary, start: float, end: float, *, has_duration: bool
+) -> Iterator[InputError]:
     """Refuse a run, s, that goes beyond a record, or leaves out what is not left out on the record itself."""
     first, last = record.span
     interval = (1 + 1e-6) / record.rate  # 1600 samples at 100 Hz are 16 s of flight
@@ -251,10 +253,12 @@ def _not_all_of(name: str, record: RecordSummary, start: float, end: float, *, g
     asked += [f'to = "{end:g} s"'] if end < last - interval else []
     if asked:
         part = f"ask for a part on the record itself: {', '.join(asked)} in [motion.{name}.record]"
-        where = "response.duration" if given else f"motion.{name}.record"
+        where = "response.duration" if has_duration else f"motion.{name}.record"
         problem = (
             f"is {end - start:g} s, and {whole}"
-            if given
+            if has_duration
             else f"is longer than the flights that are run together: {whole}"
         )
-        yield InputError(where, f"{problem}: the rest would be left out", f"leave it out, or {part}" if given else part)
+        yield InputError(
+            where, f"{problem}: the rest would be left out", f"leave it out, or {part}" if has_duration else part
+        )

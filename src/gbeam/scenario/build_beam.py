@@ -29,8 +29,8 @@ def beam_of(parts: Collector, where: str, table: schema.Beam) -> Beam | None:
 
     dimensions = table.section.model_dump(exclude={"shape", "stations"}, exclude_none=True)
     section = parts.attempt(f"{where}.section", Section.of, table.section.shape, table.section.stations, **dimensions)
-    given = None if table.material is None else table.material.model_dump(exclude_none=True)
-    material = None if given is None else parts.attempt(f"{where}.material", Material, **given)
+    values = None if table.material is None else table.material.model_dump(exclude_none=True)
+    material = None if values is None else parts.attempt(f"{where}.material", Material, **values)
     masses = []
     for i, body in enumerate(table.masses):
         moments = (body.inertia.x, body.inertia.y, body.inertia.z) if body.inertia else (0.0, 0.0, 0.0)
@@ -41,7 +41,7 @@ def beam_of(parts: Collector, where: str, table: schema.Beam) -> Beam | None:
     loads = [_load(parts, f"{where}.loads[{i}]", entry) for i, entry in enumerate(table.loads)]
     points = [parts.attempt(f"{where}.points[{i}]", Point, each.name, each.at) for i, each in enumerate(table.points)]
     line = None if table.line is None else _line(parts, f"{where}.line", table.line)
-    if section is None or (material is None) != (given is None) or root is None or None in [*masses, *loads, *points]:
+    if section is None or (material is None) != (values is None) or root is None or None in [*masses, *loads, *points]:
         return None
     if line is None and table.line is not None:
         return None
@@ -120,16 +120,20 @@ def _columns(rows: Table, unit: str | None) -> dict[str, Any]:
         if kind is None or others not in ([], words_of(stated)) or name in columns:
             problem = f"has a column {column.name!r}" + (" a second time" if name in columns else "")
             raise InputError("", problem, _NAMED)
-        given = unit if kind == "length" else None
-        if not (stated or given):
+        length_unit = unit if kind == "length" else None
+        if not (stated or length_unit):
             also = ', or add length_unit = "mm"' if kind == "length" else ""
             raise InputError("", f"does not say the unit of {name}", f"{_NAMED}{also}")
         try:
-            size = quantity(f"1 {stated or given}", kind)
-            if given and size != quantity(f"1 {given}", kind):
-                raise InputError("", f"has {name} in {stated}, and length_unit is {given}", "leave length_unit out")
+            size = quantity(f"1 {stated or length_unit}", kind)
+            if length_unit and size != quantity(f"1 {length_unit}", kind):
+                raise InputError(
+                    "", f"has {name} in {stated}, and length_unit is {length_unit}", "leave length_unit out"
+                )
         except UnitError as error:
-            raise InputError("", f"has {name} in {stated or given}: {error.problem}", error.hint or _NAMED) from None
+            raise InputError(
+                "", f"has {name} in {stated or length_unit}: {error.problem}", error.hint or _NAMED
+            ) from None
         columns[name] = size * rows.numbers(name, column.name)
     if "x" not in columns:
         raise InputError("", "has no column x", _NAMED)

@@ -80,11 +80,11 @@ def centrifuge_of(
 def _limits(table: schema.Limits, example: motion.MachineLimits) -> motion.MachineLimits:
     """The limits that are given, and the example machine's where none is."""
 
-    def axis(given: schema.AxisLimit, otherwise: motion.AxisLimit) -> motion.AxisLimit:
+    def axis(table: schema.AxisLimit, otherwise: motion.AxisLimit) -> motion.AxisLimit:
         return motion.AxisLimit(*(mine if mine is not None else theirs for mine, theirs in (
-            (given.rate, otherwise.rate),
-            (given.acceleration, otherwise.acceleration),
-            (given.jerk, otherwise.jerk),
+            (table.rate, otherwise.rate),
+            (table.acceleration, otherwise.acceleration),
+            (table.jerk, otherwise.jerk),
         )))  # fmt: skip
 
     return motion.MachineLimits(

@@ -61,13 +61,13 @@ _ALONE = _BODIES | {schema.RigidBody: rigid_of}  # as a specimen on the base
 def specimen_of(parts: Collector, scenario: schema.SpecimenScenario) -> Structure | None:
     """The specimen of a scenario; None, with what is wrong collected, where it cannot be made."""
     name, table = scenario.specimen
-    made: Structure | None = _ALONE[type(table)](parts, f"bodies.{name}", table)
-    return made
+    structure: Structure | None = _ALONE[type(table)](parts, f"bodies.{name}", table)
+    return structure
 
 
 def _joint(parts: Collector, where: str, table: Any) -> Joint | None:
-    given = {key: _value(parts, f"{where}.{key}", value) for key, value in table if value is not None}
-    return parts.attempt(where, Joint, **given)
+    values = {key: _value(parts, f"{where}.{key}", value) for key, value in table if value is not None}
+    return parts.attempt(where, Joint, **values)
 
 
 def _value(parts: Collector, where: str, value: Any) -> Any:

@@ -159,9 +159,9 @@ def _source(
         return source
     drawn: dict[str, Distribution] = {}
     problems: list[Diagnostic] = []
-    for path, family, given in distributed:
+    for path, family, parameters in distributed:
         try:
-            drawn[path_text(path)] = each = from_table(family, given)
+            drawn[path_text(path)] = each = from_table(family, parameters)
         except InputError as error:
             problems.append(source.diagnostic(path, error.problem, error.fix))
             continue

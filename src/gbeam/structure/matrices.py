@@ -91,13 +91,13 @@ def radii(matrix: Any) -> Any:
 
 def between(stations: tuple[float, ...], matrices: tuple[Matrix, ...], x: Any) -> Array:
     """Matrices (..., 6, 6) at positions, linear between the stations."""
-    given, at = np.asarray(matrices), np.asarray(x, dtype=float)
+    values, at = np.asarray(matrices), np.asarray(x, dtype=float)
     if not stations:
-        return np.broadcast_to(given[0], (*at.shape, 6, 6))
+        return np.broadcast_to(values[0], (*at.shape, 6, 6))
     i = np.clip(np.searchsorted(stations, at) - 1, 0, len(stations) - 2)
     low, high = np.asarray(stations)[i], np.asarray(stations)[i + 1]
     share = np.clip((at - low) / (high - low), 0, 1)[..., None, None]
-    return np.asarray((1 - share) * given[i] + share * given[i + 1])
+    return np.asarray((1 - share) * values[i] + share * values[i + 1])
 
 
 def condensed(stiffness: Array, kept: list[int]) -> Array:

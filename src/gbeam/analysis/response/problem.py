@@ -106,12 +106,12 @@ def _components(values: Mapping[str, float], size: float, unit: str) -> str:
     return ", ".join(f"{axis} {size * value:.4g} {unit}" for axis, value in values.items())
 
 
-def begun(given: Initial | str) -> Initial:
+def begun(initial: Initial | str) -> Initial:
     """An initial state, or that of a name; InputError if it is neither."""
-    if isinstance(given, Initial):
-        return given
-    choice("initial", given, STATES)
-    return Initial(given)
+    if isinstance(initial, Initial):
+        return initial
+    choice("initial", initial, STATES)
+    return Initial(initial)
 
 
 def initial_state(structure: Structure, base: Base | None, time: float, initial: Initial) -> tuple[Array, Array, bool]:

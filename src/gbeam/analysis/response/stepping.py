@@ -84,14 +84,14 @@ def answered(plan: Plan, run: Callable[[float, str], Run]) -> tuple[Run, StepErr
         return chosen, errors
 
 
-def planned(settings: ResponseSettings, coarse: float, given: float | None) -> Plan:
+def planned(settings: ResponseSettings, coarse: float, step: float | None) -> Plan:
     """The runs of some settings: those of an automatic step, or of the given one and what its estimate needs."""
     order = scheme_of(settings).order
-    if given is None:
+    if step is None:
         return (yield from refine(coarse, order, settings))
     if settings.estimate:
-        return (yield from check(given, order))
-    return (yield from once(given, StepErrors()))
+        return (yield from check(step, order))
+    return (yield from once(step, StepErrors()))
 
 
 def once(step: float, errors: StepErrors) -> Plan:

@@ -171,10 +171,10 @@ class Richer:
             left += factor[:, None] * (mode @ beyond.T)
         energies, every = dict[str, float](), dict[str, dict[str, float]]()
         for name, theory in self.theories.items():
-            own = [k for k, each in enumerate(thick.names) if each.startswith(f"{name}.q")]
-            p = mode[:, own]
+            columns = [k for k, each in enumerate(thick.names) if each.startswith(f"{name}.q")]
+            p = mode[:, columns]
             energies[name] = float(np.einsum("ti,ij,tj->", p.conj(), theory.thick.coefficients.stiffness, p).real)
-            every[name] = causes(theory, p, left[:, own], p @ plates[name])
+            every[name] = causes(theory, p, left[:, columns], p @ plates[name])
         total = sum(energies.values()) or 1.0
         merged = dict.fromkeys(WORDS, 0.0)
         for name, by in every.items():
@@ -219,7 +219,7 @@ def _with_more(state: OperatingPoint | SteadySystem, *, exact: bool) -> More:
     structure, (_, along_y, along_z, *_) = state.structure, state.structure.counts
     kind, directions = "exact" if exact else structure.kind, (True, along_y > 0, along_z > 0)
     model, index = enrichment(structure, state.base).model(kind, directions=directions)
-    return More(model, {own: f"q{at + 1}" for own, at in zip(state.names, index, strict=True)})
+    return More(model, {name: f"q{at + 1}" for name, at in zip(state.names, index, strict=True)})
 
 
 def _oscillating(state: Steady, *, gyroscopic: bool) -> tuple[Floats, Complex]:

@@ -73,7 +73,7 @@ class OperatingPoint:
 
     @cached_property
     def moving(self) -> Vibrations:
-        """These with gyroscopic coupling."""
+        """Vibrations with gyroscopic coupling."""
         return self.vibrations()
 
     @property
@@ -129,7 +129,7 @@ class Steady(Protocol):
 
     @property
     def moving(self) -> Vibrations:
-        """These with gyroscopic coupling."""
+        """Vibrations with gyroscopic coupling."""
         ...
 
     @property

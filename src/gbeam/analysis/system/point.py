@@ -37,10 +37,10 @@ class Point:
     @property
     def local(self) -> Point:
         """The point with as many coordinates as degrees of freedom."""
-        tree, given = self.tree, self.inputs.prescribed
+        tree, prescribed = self.tree, self.inputs.prescribed
         states = [self.y, self.yd, self.ydd]
-        if given is not None:
-            states = [tree.whole(each, given[k]) for k, each in enumerate(states)]
+        if prescribed is not None:
+            states = [tree.whole(each, prescribed[k]) for k, each in enumerate(states)]
         reduced, y, yd, ydd = tree.local(states[0], states[1], states[2])
         free, inputs = reduced.free, self.inputs
         if inputs.efforts is not None:
@@ -62,8 +62,8 @@ class Point:
 
     def sticking(self, system: System) -> tuple[str, ...]:
         """Warnings of coordinates that friction holds, which small departures see as dampers."""
-        given = self.inputs.prescribed
-        rates = self.yd if given is None else self.tree.whole(self.yd, given[1])
+        prescribed = self.inputs.prescribed
+        rates = self.yd if prescribed is None else self.tree.whole(self.yd, prescribed[1])
         said = []
         for name, joint in system.joints.items():
             for each, friction in zip(joint.coordinates, np.asarray(joint.holder.friction), strict=True):

@@ -59,13 +59,15 @@ def judged_beams(system: System) -> dict[str, Structure]:
 
 def richer(system: System, bases: Mapping[str, Base], *, exact: bool) -> Richer:
     """More shapes in the beams that are named, whose roots move as bases do, of exact models or of their own."""
-    beams, own = dict[str, Structure](), dict[str, IntArray]()
+    beams, original = dict[str, Structure](), dict[str, IntArray]()
     for name, base in bases.items():
         body = judged_beams(system)[name]
-        rich, own[name] = enrichment(body, base).model("exact" if exact else body.kind)
+        rich, original[name] = enrichment(body, base).model("exact" if exact else body.kind)
         beams[name] = replace(rich, load_values=body.load_values)
     other = replace(system, bodies={**system.bodies, **beams})
-    renamed = {f"{name}.q{k + 1}": f"{name}.q{at + 1}" for name, index in own.items() for k, at in enumerate(index)}
+    renamed = {
+        f"{name}.q{k + 1}": f"{name}.q{at + 1}" for name, index in original.items() for k, at in enumerate(index)
+    }
     at = {name: k for k, name in enumerate(other.coordinates)}
     every = np.array([at[renamed.get(name, name)] for name in system.coordinates], dtype=int)
     return Richer(other, np.searchsorted(other.tree.free, every[system.tree.free]), system, renamed)
@@ -107,13 +109,15 @@ class Answered(NamedTuple):
 
     def residual(self) -> Floats:
         """Residual (t, n) of the richer system's equations, less that of the one that lacks the shapes."""
-        rich, own = self.rich.system, self.rich.own
+        rich, original = self.rich.system, self.rich.own
         out = []
         for s in pieces(len(self.of.time), rich.tree.size):
             y, yd, ydd = self.of.q[s], self.of.qd[s], self.of.qdd[s]
             left = rich.tree(y, yd, ydd, self.inputs(rich, s))
             # At a jump of what drives it a solution leaves something of its own.
-            left[:, own] -= self.rich.of.tree(y[:, own], yd[:, own], ydd[:, own], self.inputs(self.rich.of, s))
+            left[:, original] -= self.rich.of.tree(
+                y[:, original], yd[:, original], ydd[:, original], self.inputs(self.rich.of, s)
+            )
             out.append(left)
         return np.concatenate(out)
 

@@ -62,18 +62,18 @@ class Drive:
             loads = tuple(None if each is None else self.factor * each for each in inputs.loads)
             wrenches = None if inputs.wrenches is None else self.factor * inputs.wrenches
             inputs = replace(inputs, loads=loads, wrenches=wrenches)
-        given = np.zeros((3, 0)) if inputs.prescribed is None else np.array(inputs.prescribed)
+        prescribed = np.zeros((3, 0)) if inputs.prescribed is None else np.array(inputs.prescribed)
         if self.coordinate and self.rate is not None:
             k = system.coordinates.index(self.coordinate)
             if k not in system.tree.fixed:
-                given = np.append(given, [[system.start[0][k]], [0.0], [0.0]], axis=1)
+                prescribed = np.append(prescribed, [[system.start[0][k]], [0.0], [0.0]], axis=1)
             which = system.tree.fixed.index(k) if k in system.tree.fixed else -1
-            given[1:, which] = self.rate, 0.0
+            prescribed[1:, which] = self.rate, 0.0
         if self.turn:
             # All that turns goes on for as long as this takes.
-            fastest = np.abs(np.append(given[1], self.rate or 0.0)).max()
-            given[0] += given[1] * self.turn / fastest
-        return replace(inputs, prescribed=given if given.size else None)
+            fastest = np.abs(np.append(prescribed[1], self.rate or 0.0)).max()
+            prescribed[0] += prescribed[1] * self.turn / fastest
+        return replace(inputs, prescribed=prescribed if prescribed.size else None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +111,7 @@ class SteadySystem:
 
     @cached_property
     def moving(self) -> Vibrations:
-        """These with gyroscopic coupling."""
+        """Vibrations with gyroscopic coupling."""
         return self.vibrations()
 
     @property
@@ -154,8 +154,10 @@ class SteadySystem:
         """Shares (k, bodies) of the bodies in the kinetic energy of modes (n, k), beside that of the steady state."""
         tree, inputs = self.local.tree, self.local.inputs
         still = Frame(*(np.eye(3) if k == 0 else np.zeros(3) for k in range(6)))
-        given = inputs.prescribed
-        alone = replace(inputs, ground=still, prescribed=None if given is None else given * [[1.0], [0.0], [0.0]])
+        prescribed = inputs.prescribed
+        alone = replace(
+            inputs, ground=still, prescribed=None if prescribed is None else prescribed * [[1.0], [0.0], [0.0]]
+        )
         energies = np.zeros((modes.shape[1], len(tree.links)))
         for rates in (modes.real.T, modes.imag.T):
             state = tree.motion(np.broadcast_to(self.local.y, rates.shape), rates, 0 * rates, alone)
@@ -185,8 +187,8 @@ class SteadySystem:
     @property
     def changing(self) -> bool:
         """Whether the equations change as what turns goes on turning."""
-        given = self.local.inputs.prescribed
-        if not self.drive.rate and (given is None or not given[1].any()):
+        prescribed = self.local.inputs.prescribed
+        if not self.drive.rate and (prescribed is None or not prescribed[1].any()):
             return False
         square, modes = symmetric_modes(*(symmetric(each) for each in (self.linear.stiffness, self.linear.mass)))
         rate = np.sqrt(np.abs(square))
@@ -205,14 +207,16 @@ class SteadySystem:
     def _slopes_after(self, turn: float) -> tuple[Floats, ...]:
         """Residual, K, C and M at the same coordinates after a turn."""
         tree, inputs = self.point.tree, replace(self.drive, turn=turn).inputs(self.system)
-        y, given = np.array(self.point.y), inputs.prescribed
+        y, prescribed = np.array(self.point.y), inputs.prescribed
         if self.drive.coordinate:
             k = self.system.coordinates.index(self.drive.coordinate)
             if k not in tree.fixed:
                 y[np.searchsorted(tree.free, k)] += turn
-                given = given[:, :-1] if given is not None else None
+                prescribed = prescribed[:, :-1] if prescribed is not None else None
         inputs = replace(
-            inputs, efforts=self.point.inputs.efforts, prescribed=None if given is None or not given.size else given
+            inputs,
+            efforts=self.point.inputs.efforts,
+            prescribed=None if prescribed is None or not prescribed.size else prescribed,
         )
         return replace(self.point, y=y, inputs=inputs).local.slopes()
 
@@ -230,8 +234,8 @@ def steady(system: System, drive: Drive, *, held: bool = False, start: Floats | 
         return SteadySystem(system, drive, fixed)
     assert inputs.prescribed is not None
     whole = [
-        fixed.tree.whole(each, given)
-        for each, given in zip((fixed.y, fixed.yd, fixed.ydd), inputs.prescribed, strict=True)
+        fixed.tree.whole(each, prescribed)
+        for each, prescribed in zip((fixed.y, fixed.yd, fixed.ydd), inputs.prescribed, strict=True)
     ]
     efforts = np.zeros(tree.size) if inputs.efforts is None else np.array(inputs.efforts)
     efforts[k] += fixed.tree.rows(fixed.y, fixed.yd, fixed.ydd, inputs)[0][k]
@@ -262,11 +266,11 @@ def turning_of(system: System, motion: Motion | None, turning: str | None) -> st
         return turning
     if isinstance(motion, Hub):
         return ""
-    given = [each for each in angles if system.coordinates.index(each) in system.tree.fixed]
-    if len(given) != 1:
-        listed = ", ".join(given or angles) or "a revolute joint's, which it has not"
+    driven = [each for each in angles if system.coordinates.index(each) in system.tree.fixed]
+    if len(driven) != 1:
+        listed = ", ".join(driven or angles) or "a revolute joint's, which it has not"
         raise InputError("turning", "is missing", f"say which angle turns: {listed}")
-    return given[0]
+    return driven[0]
 
 
 @dataclass(frozen=True)

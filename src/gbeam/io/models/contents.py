@@ -1,4 +1,4 @@
-"""What readers return of a file: matrices by their names, what their rows are, and nodes."""
+"""Contents of a file, as readers return them: matrices by their names, what their rows are, and nodes."""
 
 from __future__ import annotations
 

@@ -83,12 +83,12 @@ def read_standard_input(path: str) -> Contents:
             name = names[line[4:].strip().lower()]
             (body["nodes"][-1] if name in OF_NODES else body)[name] = block
             block = None
-        elif found := _ENTRY.match(line):
+        elif match := _ENTRY.match(line):
             assert block is not None
-            at = tuple(int(each) - 1 for each in found[2].split(","))
-            block[f"m{found[1]}"][at] = _number(found[3])
-        elif found := _SIZE.match(line):
-            (body if block is None else block)[found[1].lower()] = _number(found[2])
+            at = tuple(int(each) - 1 for each in match[2].split(","))
+            block[f"m{match[1]}"][at] = _number(match[3])
+        elif match := _SIZE.match(line):
+            (body if block is None else block)[match[1].lower()] = _number(match[2])
     if missing := [name for name in OF_BODY if name not in body and name not in ("ksigma", "Gr", "De")]:
         raise InputError("path", f"{path} lacks {', '.join(missing)}", "export the whole body, after Wallrapp")
     every = [(name, each) for name, each in body.items() if name in OF_BODY]

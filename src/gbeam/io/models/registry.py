@@ -104,8 +104,8 @@ class Model:
             fix = f"choose from {', '.join(self.matrices)}" if self.matrices else "give a file with matrices"
             raise InputError(role, f"is {name!r}, which is no matrix of the files", fix)
         if not name and len(usual) != 1:
-            there = ", ".join(usual or self.matrices) or "the files have no matrix"
-            raise InputError(role, "is missing" if not usual else "is not clear", f"name the matrix: {there}")
+            names = ", ".join(usual or self.matrices) or "the files have no matrix"
+            raise InputError(role, "is missing" if not usual else "is not clear", f"name the matrix: {names}")
         chosen = name or usual[0]
         return _sparse(self.matrices[chosen]), self.unknowns.get(chosen, self.unknowns.get(""))
 
@@ -122,12 +122,12 @@ class Model:
         every = np.unique(np.concatenate([of_m, of_k]), axis=0)
         return *(_spread(each, rows, every) for each, rows in ((m, of_m), (k, of_k))), every
 
-    def nodes_of(self, given: Any, unknowns: Any) -> tuple[Any, Any, Any, Any]:
+    def nodes_of(self, nodes: Any, unknowns: Any) -> tuple[Any, Any, Any, Any]:
         """Places (k, 3), numbers (k,), unknowns (u, 2) by the places of nodes in these, and axes (k, 3, 3) or None."""
-        if given is not None:
+        if nodes is not None:
             if self.places is not None:
                 raise InputError("nodes", "are given, and the files have some", "leave them out")
-            numbers, places, axes = None, np.asarray(given, dtype=float), None
+            numbers, places, axes = None, np.asarray(nodes, dtype=float), None
         elif self.places is None:
             fix = "give nodes, or a file that has them: .inp, .bdf, .asm"
             raise InputError("nodes", "are in none of the files", fix)

@@ -175,11 +175,11 @@ class Feedback(Value):
             efforts, state = self.law(t, measured, state)
         else:
             efforts = self.law(t, measured)
-        given = np.asarray(efforts).reshape(-1)
-        real = given.dtype.kind in "bifu" and given.shape == (len(self.drive),)
+        command = np.asarray(efforts).reshape(-1)
+        real = command.dtype.kind in "bifu" and command.shape == (len(self.drive),)
         if not real:
             raise InputError("law", f"gives {efforts!r} at {t:.6g} s", f"give {len(self.drive)} finite efforts")
-        return self._finite(t, given.astype(float)), state
+        return self._finite(t, command.astype(float)), state
 
     def _finite(self, t: float, efforts: Floats) -> Floats:
         """Efforts, unless the law has left all bounds."""

@@ -57,7 +57,7 @@ class Holder:
         return (pull * moved + self.stop * self._beyond(q) ** 2).sum(axis=-1) / 2
 
     def chosen(self, which: Array) -> Holder:
-        """What holds some of the coordinates."""
+        """Holder of some of the coordinates."""
         parts = {each.name: getattr(self, each.name) for each in fields(self)}
         coupling = parts.pop("coupling")
         alone = None if coupling is None else coupling[which][:, which]

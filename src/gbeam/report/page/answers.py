@@ -45,7 +45,7 @@ def warnings(facts: Facts) -> list[str]:
 
 
 def verdicts(facts: Facts) -> str:
-    """What went wrong, and how well each centrifuge imitates its flight."""
+    """Runs that went wrong, and how well each centrifuge imitates its flight."""
     parts = []
     for name, each in facts["motions"].items():
         if each["outcome"] != "done":

@@ -109,7 +109,7 @@ def _page_of(file: Path) -> str:
 
 
 def file_in(folder: Path) -> Path:
-    """The one result of a folder."""
+    """File of the only result in a folder."""
     candidates = [folder / "result.nc"] if (folder / "result.nc").is_file() else sorted(folder.glob("*.json"))
     if len(candidates) != 1:
         named = ", ".join(each.name for each in candidates[:4])

@@ -73,11 +73,11 @@ class Matrices(Table):
 
     @model_validator(mode="after")
     def _one_way(self) -> Matrices:
-        given = [name for name in "abcd" if getattr(self, name) is not None]
-        if self.file is not None and given:
-            refuse([((given[0],), wrong("is given beside file", "give the matrices or their file", mark="key"))])
-        if self.file is None and len(given) < 4:
-            lacking = next(name for name in "abcd" if name not in given)
+        matrices = [name for name in "abcd" if getattr(self, name) is not None]
+        if self.file is not None and matrices:
+            refuse([((matrices[0],), wrong("is given beside file", "give the matrices or their file", mark="key"))])
+        if self.file is None and len(matrices) < 4:
+            lacking = next(name for name in "abcd" if name not in matrices)
             refuse([((), wrong(f"{lacking} is missing", 'give a, b, c and d, or file = "controller.mat"'))])
         return self
 

@@ -242,7 +242,7 @@ class PointForce(Table):
 
 
 class Surroundings(Table):
-    """What acts on all bodies."""
+    """[system]: loads that act on all bodies."""
 
     gravity: tuple[Acceleration, Acceleration, Acceleration] | None = Field(
         default=None, description='acceleration of free fall, axes of the ground: [0, 0, "-1 g"]; none on a motion'
