@@ -15,16 +15,15 @@ from gbeam.analysis.response.peaks import half_ranges
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.response.stepping import scheme_of
-from gbeam.analysis.response.systems import simulate_system
+from gbeam.analysis.response.systems import PosedSystem, simulate_system
 from gbeam.analysis.system.histories import deflection
-from gbeam.analysis.system.point import started
 from gbeam.analysis.system.steady import Drive, SteadySystem, steady
 from gbeam.arrays.tree import altered
 from gbeam.errors import InputError
 from gbeam.guards.checks import choice
 from gbeam.integrate.driver import through
-from gbeam.integrate.equations import NonlinearEquations, accelerations, slopes
-from gbeam.integrate.steps import Corners, fitted
+from gbeam.integrate.equations import accelerations, slopes
+from gbeam.integrate.steps import fitted
 from gbeam.integrate.tangent import tangent
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.joints import SLIDES
@@ -316,15 +315,13 @@ class OnJoint:
         assert settings.step is not None
         system, scheme = self.commanded(profile), scheme_of(settings)
         tree, k = system.tree, system.coordinates.index(self.coordinate)
-        point = started(system, None, settings.start, settings.begin.state)
-        equations = NonlinearEquations(tree, system.inputs)
-        count = round(settings.duration / settings.step)
-        end = settings.start + settings.duration
-        corners = Corners.of(system.corners(settings.step), equations.drive, settings.start, end)
-        grid = fitted(settings.start, settings.duration / count, count, corners.felt_by(scheme))
+        posed = PosedSystem(replace(system, controllers={}), None)  # as the derivatives are
+        point, count = posed.start(settings), round(settings.duration / settings.step)
+        corners = posed.jumps(settings, settings.step).felt_by(scheme)
+        grid = fitted(settings.start, settings.duration / count, count, corners)
         # With the ends of the parts of split steps, too.
         steps = replace(grid, kept=np.ones(len(grid), dtype=bool))
-        run = through(equations, scheme, point.y, point.yd, steps)
+        run = through(posed.equations, scheme, point.y, point.yd, steps)
 
         commanded = [[self.commanded(each) for each in pair] for pair in pairs]
 
