@@ -17,6 +17,7 @@ MODULES: tuple[str, ...] = (
     "codes.calculix_specimens",
     "codes.calculix_flights",
     "codes.calculix_fillet",
+    "codes.calculix_bent",
     "codes.calculix_links",
     "codes.scipy_place",
     "codes.exudyn_plane",

@@ -12,8 +12,8 @@ import re
 import subprocess
 import tempfile
 from collections import Counter
-from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -59,23 +59,53 @@ class Answer:
 
 
 def solve(strip: Strip, spin: Spin | None, *, coriolis: bool = False, modes: int = 10) -> Answer:
-    """Run ccx in a folder of its own."""
+    """At rest, or about the stress of a spin."""
+    lines = []
+    if spin is not None:
+        line = ", ".join(f"{value:.12g}" for value in (spin.rate**2, *spin.centre, *spin.axis))
+        lines += ["*STEP, NLGEOM", "*STATIC", "1., 1.", "*DLOAD", f"STRIP, CENTRIF, {line}"]
+        lines += ["*NODE PRINT, NSET=TIP", "U", "*END STEP"]
+    lines += ["*STEP" if spin is None else "*STEP, PERTURBATION", "*FREQUENCY, STORAGE=YES", f"{modes}", "*END STEP"]
+    if coriolis:
+        lines += ["*STEP, PERTURBATION", "*COMPLEX FREQUENCY, CORIOLIS", f"{modes}", "*END STEP"]
+    return read(_run(strip, lines), coriolis)
+
+
+def bent(strip: Strip, force: tuple[float, float]) -> np.ndarray:
+    """Displacement (3,) m of the middle of the tip under a dead force along y and z, N, spread over the tip's face."""
+    nx, ny, nz = strip.elements
+    areas = _areas(strip)
+    lines = ["*STEP, NLGEOM, INC=200", "*CONTROLS, PARAMETERS=FIELD", "1e-6, 1e-6, , , 1e-6, , ,", "*STATIC", "0.2, 1."]
+    lines.append("*CLOAD")
+    for (j, k), area in areas.items():
+        node = _number(strip, 2 * nx, j, k)
+        lines += [f"{node}, {axis}, {each * area / (ny * nz):.12g}" for axis, each in zip((2, 3), force, strict=True)]
+    lines += ["*NSET, NSET=MIDDLE", f"{_number(strip, 2 * nx, ny, nz)}", "*NODE PRINT, NSET=MIDDLE", "U", "*END STEP"]
+    printed = re.findall(r"^ +\d+ +(\S+) +(\S+) +(\S+)$", _run(strip, lines), re.MULTILINE)
+    return np.array(printed[-1], dtype=float)
+
+
+def _run(strip: Strip, steps: list[str]) -> str:
+    """Run ccx in a folder of its own, and return its .dat file."""
     with tempfile.TemporaryDirectory() as folder:
-        (Path(folder) / "strip.inp").write_text(deck(strip, spin, coriolis, modes), encoding="ascii")
+        (Path(folder) / "strip.inp").write_text("\n".join([*_mesh(strip), *steps, ""]), encoding="ascii")
         subprocess.run(
             ["ccx", "strip"], cwd=folder, check=True, capture_output=True, env=os.environ | {"OMP_NUM_THREADS": "1"}
         )
-        return read((Path(folder) / "strip.dat").read_text(encoding="ascii"), coriolis)
+        return (Path(folder) / "strip.dat").read_text(encoding="ascii")
 
 
-def deck(strip: Strip, spin: Spin | None, coriolis: bool, modes: int) -> str:
-    """The input file."""
+def _number(strip: Strip, i: int, j: int, k: int) -> int:
+    """Of a node, by half elements along x, y and z."""
+    nx, ny, _ = strip.elements
+    return 1 + i + (2 * nx + 1) * (j + (2 * ny + 1) * k)
+
+
+def _mesh(strip: Strip) -> list[str]:
+    """Nodes, elements, the held root and the material."""
     nx, ny, nz = strip.elements
     sides = 2 * nx + 1, 2 * ny + 1, 2 * nz + 1
-
-    def number(i: int, j: int, k: int) -> int:
-        return 1 + i + sides[0] * (j + sides[1] * k)
-
+    number = partial(_number, strip)
     places = [at for at in itertools.product(*map(range, sides)) if sum(index % 2 for index in at) <= 1]
     lines = ["*NODE, NSET=ALL"]
     for i, j, k in places:
@@ -93,30 +123,29 @@ def deck(strip: Strip, spin: Spin | None, coriolis: bool, modes: int) -> str:
         lines += [f"*NSET, NSET={name}", *(f"{number(*at)}" for at in places if at[0] == end)]
     lines += ["*BOUNDARY", f"ROOT, 1, {3 if strip.gripped else 1}"]
     if not strip.gripped:
-        lines += _still_on_average(strip, lambda j, k: number(0, j, k))
+        lines += _still_on_average(strip)
     lines += ["*MATERIAL, NAME=METAL", "*ELASTIC", f"{strip.modulus}, {strip.poisson}"]
     lines += ["*DENSITY", f"{strip.density}", "*SOLID SECTION, ELSET=STRIP, MATERIAL=METAL"]
-    if spin is not None:
-        line = ", ".join(f"{value:.12g}" for value in (spin.rate**2, *spin.centre, *spin.axis))
-        lines += ["*STEP, NLGEOM", "*STATIC", "1., 1.", "*DLOAD", f"STRIP, CENTRIF, {line}"]
-        lines += ["*NODE PRINT, NSET=TIP", "U", "*END STEP"]
-    lines += ["*STEP" if spin is None else "*STEP, PERTURBATION", "*FREQUENCY, STORAGE=YES", f"{modes}", "*END STEP"]
-    if coriolis:
-        lines += ["*STEP, PERTURBATION", "*COMPLEX FREQUENCY, CORIOLIS", f"{modes}", "*END STEP"]
-    return "\n".join(lines) + "\n"
+    return lines
 
 
-def _still_on_average(strip: Strip, number: Callable[[int, int], int]) -> list[str]:
-    """Equations by which the root's mean displacements along y and z and its mean turning about x are zero."""
+def _areas(strip: Strip) -> dict[tuple[int, int], float]:
+    """What an even traction on an end does on its nodes (j, k), eight to a face, in faces."""
     _, ny, nz = strip.elements
     areas: Counter[tuple[int, int]] = Counter()
     for cell in itertools.product(range(ny), range(nz)):
         for side in itertools.product(range(3), range(3)):
-            if side != (1, 1):  # eight nodes a face: what a traction on it is on each of them
+            if side != (1, 1):
                 areas[2 * cell[0] + side[0], 2 * cell[1] + side[1]] += 1 / 3 if sum(side) % 2 else -1 / 12
+    return areas
+
+
+def _still_on_average(strip: Strip) -> list[str]:
+    """Equations by which the root's mean displacements along y and z and its mean turning about x are zero."""
+    _, ny, nz = strip.elements
     along, across, turned = [], [], []
-    for (j, k), area in areas.items():
-        node, y, z = number(j, k), j / (2 * ny) - 0.5, (k / (2 * nz) - 0.5) * strip.thickness / strip.width
+    for (j, k), area in _areas(strip).items():
+        node, y, z = _number(strip, 0, j, k), j / (2 * ny) - 0.5, (k / (2 * nz) - 0.5) * strip.thickness / strip.width
         along.append((area, node, 2))
         across.append((area, node, 3))
         turned += [(area * y, node, 3), (-area * z, node, 2)]
