@@ -56,6 +56,7 @@ def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure
                 origin=table.origin,
                 turn=table.turn,
                 scale=table.scale,
+                mass_unit=table.mass_unit,
             )
         except InputError as error:  # the scenario's own names of what Python calls otherwise
             one = error.where.replace("point_masses", "masses")

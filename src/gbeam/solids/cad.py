@@ -11,9 +11,8 @@ from gbeam.errors import InputError
 from gbeam.guards.checks import positive
 from gbeam.guards.limits import BINARY_BYTES, MESHER_BYTES, MESHER_SECONDS, refuse_large_file
 from gbeam.guards.processes import confined
-from gbeam.guards.units import UnitError, quantity
 from gbeam.progress import PATIENCE, Bar
-from gbeam.solids.foreign import read_mesh, refuse_systems
+from gbeam.solids.foreign import read_mesh, refuse_systems, unit_size
 
 ENDINGS = (".step", ".stp")
 AROUND = 12  # elements around a full circle at least
@@ -36,10 +35,7 @@ def mesh_of(source: Any, unit: str | None, element_size: float | None) -> tuple[
     refuse_systems(source)
     if unit is None:
         raise InputError("unit", "is missing", 'give the one that the coordinates are in, such as "mm"')
-    try:
-        return mesh, quantity(f"1 {unit}", "length")
-    except UnitError as error:
-        raise InputError("unit", f"is {unit!r}: {error.problem}", error.hint or 'give one such as "mm"') from None
+    return mesh, unit_size("unit", unit, "length")
 
 
 def meshed(path: Path, size: float) -> Any:

@@ -7,6 +7,8 @@ import io
 import os
 import re
 from collections import Counter
+from collections.abc import Collection, Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +16,7 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import BINARY_BYTES, refuse_large_file
+from gbeam.guards.units import UnitError, quantity
 from gbeam.printable import shortened
 from gbeam.solids.elements import KINDS, Indices
 
@@ -31,6 +34,11 @@ _ABAQUS = re.compile(
     r"|SOLID SECTION[^\n]*COMPOSITE|TRANSFORM) *(?:,|$)",
     re.MULTILINE | re.IGNORECASE,
 )
+_POINTWISE = re.compile(
+    r"^\*ELEMENT *,(?=[^\n]*TYPE *= *(?:MASS|ROTARYI|SPRING[12A])\b)[^\n]*\n(?:(?!\*)[^\n]*(?:\n|$))*", re.M | re.I
+)
+_SCALAR = re.compile(r"^CELAS[1-4]\b[^\n]*\n(?:\*[^\n]*\n)*", re.MULTILINE)
+_UNREAD = {".bdf": _SCALAR, ".fem": _SCALAR, ".nas": _SCALAR, ".inp": _POINTWISE}  # elements that stop meshio
 _WORDS = {".bdf": _NASTRAN, ".fem": _NASTRAN, ".nas": _NASTRAN, ".inp": _ABAQUS}
 
 
@@ -47,18 +55,31 @@ def read_mesh(source: str | os.PathLike[str] | Any) -> Any:
     try:
         # It prints what fails and exits.
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-            return meshio.read(source)
+            unread = _UNREAD.get(ending_of(source))
+            if unread is None or not unread.search(text := _text(source)):
+                return meshio.read(source)
+            reader = meshio.abaqus if ending_of(source) == ".inp" else meshio.nastran
+            return reader.read(io.StringIO(unread.sub("", text)))
     except (Exception, SystemExit) as error:
         words = shortened(" ".join((said.getvalue() or str(error)).split()), 200)
         fix = "give a file of Gmsh, Nastran, Abaqus, CalculiX or VTK, with its ending"
         raise InputError("mesh", f"{os.fspath(source)} cannot be read: {words}", fix) from None
 
 
+def unit_size(where: str, unit: str, kind: str) -> float:
+    """Return the size of a unit, m or kg."""
+    try:
+        return quantity(f"1 {unit}", kind)
+    except UnitError as error:
+        fix = error.hint or f'give one such as "{"mm" if kind == "length" else "Mg"}"'
+        raise InputError(where, f"is {unit!r}: {error.problem}", fix) from None
+
+
 def refuse_systems(source: Any) -> None:
     """Refuse a file of Nastran whose nodes have their places in coordinate systems, which meshio takes for the basic
     one.
     """
-    if _WORDS.get(_ending(source)) is not _NASTRAN:
+    if _WORDS.get(ending_of(source)) is not _NASTRAN:
         return
     for line in _text(source).splitlines():
         if not line.startswith("GRID"):
@@ -69,19 +90,37 @@ def refuse_systems(source: Any) -> None:
             raise InputError("mesh", problem, "export them in the basic system")
 
 
-def left_out(source: Any) -> list[str]:
-    """Warnings of what a file of Nastran, Abaqus or CalculiX says of masses, stiffness and constraints besides."""
-    words = _WORDS.get(_ending(source))
+def left_out(source: Any, read: Collection[str] = ()) -> list[str]:
+    """Warnings of what a file of Nastran, Abaqus or CalculiX says of masses, stiffness and constraints besides what is
+    read.
+    """
+    words = _WORDS.get(ending_of(source))
     if words is None:
         return []
     counts = Counter(" ".join(each[1].upper().split()) for each in words.finditer(_text(source)))
+    counts = Counter({name: count for name, count in counts.items() if name not in read})
     if not counts:
         return []
     listed = ", ".join(f"{name} ({count})" for name, count in counts.items())
     return [f"the mesh: {listed} in {Path(source).name} are not read: their masses, stiffness and constraints lack"]
 
 
-def _ending(source: Any) -> str:
+def abaqus_keywords(text: str) -> Iterator[tuple[str, dict[str, str], list[list[str]]]]:
+    """Keywords of a file of Abaqus or CalculiX, with their options and the fields of their lines."""
+    lines = [line for line in text.splitlines() if line.strip() and not line.startswith("**")]
+    starts = [i for i, line in enumerate(lines) if line.startswith("*")]
+    for first, end in pairwise([*starts, len(lines)]):
+        while lines[first].rstrip().endswith(",") and first + 1 < end:
+            lines[first + 1] = lines[first].rstrip() + lines[first + 1]
+            first += 1
+        word, *options = lines[first][1:].split(",")
+        pairs = (each.partition("=") for each in options if each.strip())
+        rows = [[each.strip() for each in line.split(",")] for line in lines[first + 1 : end]]
+        yield " ".join(word.upper().split()), {key.strip().upper(): value.strip() for key, _, value in pairs}, rows
+
+
+def ending_of(source: Any) -> str:
+    """The ending of a file's name, in small letters; empty of what is no file."""
     return Path(source).suffix.lower() if isinstance(source, (str, os.PathLike)) else ""
 
 

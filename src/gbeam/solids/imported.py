@@ -14,13 +14,13 @@ from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, choice
-from gbeam.guards.units import UnitError, quantity
 from gbeam.io.models.registry import model_of
 from gbeam.mechanics.equations.linear import PAIRS, Coefficients, Geometric, coefficients, inertial_forces
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.reduction import particles_of, reduce, standing_in
 from gbeam.mechanics.structure import Structure, linear_structure
 from gbeam.numerics.eigen import Floats
+from gbeam.solids.foreign import unit_size
 from gbeam.solids.matrices import (
     EXACT,
     MOST,
@@ -164,7 +164,7 @@ class ImportedModel(Value):
         model = model_of(paths)
         m, k, unknowns = model.pair(mass, stiffness)
         at, numbers, unknowns, axes = model.nodes_of(nodes, unknowns)
-        size, weight = _unit("length_unit", length_unit, "length"), _unit("mass_unit", mass_unit, "mass")
+        size, weight = unit_size("length_unit", length_unit, "length"), unit_size("mass_unit", mass_unit, "mass")
         if unknowns is None:
             unknowns = every_unknown(len(at), m.shape[0])
         if axes is not None:
@@ -329,13 +329,6 @@ class ImportedModel(Value):
             "centrifugal force from the root to the rest of the body, are left out"
         )
         return terms, (mass, places), [said]
-
-
-def _unit(where: str, unit: str, dimension: str) -> float:
-    try:
-        return quantity(f"1 {unit}", dimension)
-    except UnitError as error:
-        raise InputError(where, f"is {unit!r}: {error.problem}", error.hint or "give a unit") from None
 
 
 def _in_base_axes(matrix: Any, unknowns: Indices, axes: Floats) -> Any:

@@ -28,12 +28,14 @@ for _a, _b, _c in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
 @dataclass(frozen=True, eq=False)
 class Links(Value):
     """Links of a mesh: nodes (g,) that move as one rigid body, bodies whose roots are in the middle of a link's nodes,
-    and springs, N/m and N m/rad along and about x, y, z, from the middle of a link to another one or to the base.
+    and springs, N/m and N m/rad along and about x, y, z, from a link to another one or to the base, where the middle of
+    the first is or at a place; and places (3,) m of links, in place of the middles of their nodes.
     """
 
     nodes: dict[str, Indices] = field(default_factory=dict)
     bodies: dict[str, RigidBody] = field(default_factory=dict)
-    springs: dict[str, tuple[tuple[str, ...], Floats]] = field(default_factory=dict)
+    springs: dict[str, tuple[tuple[str, ...], Floats, Floats | None]] = field(default_factory=dict)
+    places: dict[str, Floats] = field(default_factory=dict)
 
     @classmethod
     def of(
@@ -67,7 +69,7 @@ class Links(Value):
 
         for name in carried:
             known(f"carried.{name}", name)
-        held = {}
+        held: dict[str, tuple[tuple[str, ...], Floats, Floats | None]] = {}
         for name, each in springs.items():
             between = tuple(known(f"springs.{name}.between[{i}]", one) for i, one in enumerate(each["between"]))
             if len(between) not in (1, 2) or len(set(between)) < len(between):
@@ -80,19 +82,31 @@ class Links(Value):
                 positive(f"springs.{name}.stiffness.{way}", each["stiffness"].get(way, 0.0), "", zero=True)
                 for way in WAYS
             ]
-            held[name] = between, np.array(stiffness)
+            held[name] = between, np.array(stiffness), None
         return cls(nodes, dict(carried), held)
 
     @property
     def joined(self) -> list[Indices]:
         """Nodes that move together, of every link and of the two of every spring."""
-        pairs = [[self.nodes[name][0] for name in between] for between, _ in self.springs.values()]
-        return [*self.nodes.values(), *(np.array(each) for each in pairs if len(each) > 1)]
+        pairs = [
+            [self.nodes[name][0] for name in between if len(self.nodes[name])] for between, *_ in self.springs.values()
+        ]
+        return [each for each in (*self.nodes.values(), *map(np.array, pairs)) if len(each) > 1]
+
+    def moving(self, name: str) -> Any:
+        """Ways (6,) in which a link moves: of a single node it turns only where a spring or a body resists it."""
+        if len(self.nodes[name]) > 1:
+            return np.ones(6, dtype=bool)
+        held = [stiffness[3:] > 0 for between, stiffness, _ in self.springs.values() if name in between]
+        turns = np.any([np.zeros(3, dtype=bool), *held], axis=0)
+        if name in self.bodies:
+            turns |= np.diag(self.bodies[name].tensor) > 0
+        return np.concatenate([np.ones(3, dtype=bool), turns])
 
     @property
     def on_base(self) -> list[Indices]:
         """Nodes that springs hold to the base."""
-        return [self.nodes[between[0]] for between, _ in self.springs.values() if len(between) == 1]
+        return [self.nodes[between[0]] for between, *_ in self.springs.values() if len(between) == 1]
 
 
 class Linked:
@@ -106,7 +120,10 @@ class Linked:
         links, k = mesh.links, len(mesh.points)
         self._links = links
         members = {name: list(nodes) for name, nodes in links.nodes.items()}
-        self._middles = {name: mesh.points[nodes].mean(axis=0) for name, nodes in links.nodes.items()}
+        self._middles = {
+            name: links.places[name] if name in links.places else mesh.points[nodes].mean(axis=0)
+            for name, nodes in links.nodes.items()
+        }
         points, masses, self._ends = [*mesh.points], [*mesh.point_masses], list[tuple[int, ...]]()
 
         def add(name: str, place: Floats, mass: float) -> int:
@@ -118,15 +135,17 @@ class Linked:
         for name, body in links.bodies.items():
             for place, mass in zip(*_particles(body), strict=True):
                 add(name, self._middles[name] + place, mass)
-        for between, _ in links.springs.values():
-            self._ends.append(tuple(add(name, self._middles[between[0]], 0.0) for name in between))
+        for between, _, at in links.springs.values():
+            place = self._middles[between[0]] if at is None else at
+            self._ends.append(tuple(add(name, place, 0.0) for name in between))
         self.points, self.masses = np.array(points), np.array(masses)
         self.members = {name: np.array(each) for name, each in members.items()}
         tied = np.zeros(len(points), dtype=bool)
         for each in self.members.values():
             tied[each] = True
         alone = np.flatnonzero(~tied)
-        self.free = np.concatenate([np.repeat(~mesh.clamped[alone], 3), np.ones(6 * len(members), dtype=bool)])
+        moving = [links.moving(name) for name in members]
+        self.free = np.concatenate([np.repeat(~mesh.clamped[alone], 3), *moving])
         rows, columns, values = (
             [(3 * alone[:, None] + np.arange(3)).ravel()],
             [np.arange(3 * len(alone))],
@@ -166,7 +185,7 @@ class Linked:
 
         total = self.widened(matrix, 3)
         size = 3 * len(self.points)
-        for ends, (_, stiffness) in zip(self._ends, self._links.springs.values(), strict=True):
+        for ends, (_, stiffness, _) in zip(self._ends, self._links.springs.values(), strict=True):
             signs = np.array([1.0, -1.0])[: len(ends)]
             rows = 3 * np.array(ends)[:, None] + np.arange(3)
             values = np.einsum("i,j,a->ija", signs, signs, stiffness[:3])
@@ -190,7 +209,7 @@ class Linked:
         from scipy.sparse import coo_array
 
         total = self.condensed(matrix)
-        for between, stiffness in self._links.springs.values():
+        for between, stiffness, _ in self._links.springs.values():
             turns = [self._first[name] + 3 + np.arange(3) for name in between]
             for i, row in enumerate(turns):
                 for j, column in enumerate(turns):

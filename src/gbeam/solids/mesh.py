@@ -21,6 +21,7 @@ from gbeam.mechanics.tree.system import Place, RigidBody
 from gbeam.numerics.sparse import refuse_cost
 from gbeam.results.result import Floats
 from gbeam.solids.cad import mesh_of
+from gbeam.solids.cards import Placed, cards_of, with_cards
 from gbeam.solids.elements import (
     Block,
     Indices,
@@ -35,6 +36,7 @@ from gbeam.solids.foreign import (
     no_group,
     nodes_in,
     solid_blocks,
+    unit_size,
 )
 from gbeam.solids.interfaces import attached, refuse_names
 from gbeam.solids.links import Linked, Links
@@ -115,6 +117,7 @@ class SolidMesh(Value):
         origin: Sequence[float] = (0.0, 0.0, 0.0),
         turn: Sequence[float] = (0.0, 0.0, 0.0),
         scale: Sequence[float] = (1.0, 1.0, 1.0),
+        mass_unit: str | None = None,
     ) -> SolidMesh:
         """Read a mesh of solid elements.
 
@@ -159,6 +162,9 @@ class SolidMesh(Value):
             Rotation vector of the mesh's axes, and of those of its materials, in the base axes, rad.
         scale : (3,)
             Factors of the mesh's coordinates, before everything else.
+        mass_unit : str, optional
+            Unit of mass of a file of Nastran, Abaqus or CalculiX, such as ``Mg`` beside mm, N and s: with it the
+            file's masses, rigid links and springs are read, which are left out otherwise, with a warning.
 
         Raises
         ------
@@ -190,7 +196,8 @@ class SolidMesh(Value):
         for i, factor in enumerate(scale):
             positive(f"scale[{i}]", factor, "")
         rotation = Rotation.from_rotvec(turn).as_matrix()
-        at = (size * places[used] * np.asarray(scale, dtype=float) - np.asarray(origin, dtype=float)) @ rotation.T
+        everywhere = (size * places * np.asarray(scale, dtype=float) - np.asarray(origin, dtype=float)) @ rotation.T
+        at = everywhere[used]
 
         def group(where: str, name: str) -> Indices:
             nodes = new[nodes_in(mesh, where, name)]
@@ -216,12 +223,19 @@ class SolidMesh(Value):
         hung = {name: group(f"interfaces.{name}", of) for name, of in (interfaces or {}).items()}
         exponents = {name: float(each.fatigue_exponent) for name, each in kinds.items()}
         about: dict[str, Any] = {"strengths": strengths, "exponents": exponents, "interfaces": hung}
-        about["links"] = Links.of(group, links or {}, carried or {}, springs or {}, at, clamped)
+        tied, read = Links.of(group, links or {}, carried or {}, springs or {}, at, clamped), tuple[str, ...]()
+        if mass_unit is not None:
+            cards, weight = cards_of(source), unit_size("mass_unit", mass_unit, "mass")
+            tied, more = with_cards(cards, tied, Placed(everywhere, rotation, new, clamped), size, weight)
+            weights, read = weights + more, cards.words
+        about["links"] = tied
         about["turns"] = {name: tuple(place.turn) for name, place in given.items() if isinstance(place, Place)}
         solid = cls(at, blocks, clamped, used, weights, named | {TIP: tip}, **about)
         refuse_folded(solid)
         refuse_loose(solid)
-        return cls(**{**vars(solid), "warnings": (*doubts_of(solid, unit or "that of the file"), *left_out(source))})
+        return cls(
+            **{**vars(solid), "warnings": (*doubts_of(solid, unit or "that of the file"), *left_out(source, read))}
+        )
 
     def __repr__(self) -> str:
         counts: dict[str, int] = {}

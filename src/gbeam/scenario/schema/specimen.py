@@ -153,6 +153,11 @@ class SolidBody(Reduced):
     unit: str | None = Field(
         default=None, description='unit of the coordinates in the mesh, such as "mm"; STEP files say theirs'
     )
+    mass_unit: str | None = Field(
+        default=None,
+        description='unit of mass in a file of Nastran, Abaqus or CalculiX, such as "Mg" beside mm, N and s: with it '
+        "the file's masses, rigid links and springs are read",
+    )
     element_size: Length | None = Field(
         default=None, description="largest edge of the elements by which STEP files are meshed"
     )

@@ -1,0 +1,164 @@
+"""Masses, rigid links and springs in files of Nastran and Abaqus: the same as written for gbeam, and closed forms."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import meshio
+import numpy as np
+import pytest
+
+import gbeam as gb
+
+from .bodies import STEEL, block
+
+# In mm, t, N and s. Node 901 is at 900, beside the middle of the end, and 902 in the air.
+PLACES = {900: (205.0, 4.0, 0.0), 901: (205.0, 4.0, 0.0), 902: (0.0, 0.0, 300.0)}
+MASS, OFFSET, INERTIA = 1e-3, (3.0, 0.0, 5.0), np.array([[0.4, -0.05, 0.02], [-0.05, 0.5, 0.01], [0.02, 0.01, 0.6]])
+SPRING, LUMP = 900.0, 2e-4  # N/mm and t
+
+
+def written(folder: Path, ending: str) -> tuple[Path, list[int]]:
+    """A block in a file, held at its wall, and the numbers of the corners of its end."""
+    mesh = block("hexahedron20", (2, 1, 1), (200.0, 50.0, 30.0))
+    used, cells = np.unique(mesh.cells[0].data, return_inverse=True)
+    points, cells = mesh.points[used], cells.reshape(-1, 20)
+    end, wall = cells[-1, [1, 2, 6, 5]], cells[0, [0, 3, 7, 4]]
+    file = folder / f"part{ending}"
+    if ending == ".inp":
+        meshio.write(file, meshio.Mesh(points, {"hexahedron20": cells}, point_sets={"wall": wall, "end": end}))
+    else:
+        parts = [("hexahedron20", cells), ("quad", wall[None]), ("quad", end[None])]
+        refs = {"nastran:ref": [np.array([1, 2]), np.array([7]), np.array([8])]}
+        meshio.write(file, meshio.Mesh(points, parts, cell_data=refs))
+    return file, [int(each) + 1 for each in end]
+
+
+def nastran(folder: Path, *cards: str) -> Path:
+    file, end = written(folder, ".bdf")
+    grids = [f"GRID,{n},,{x},{y},{z}" for n, (x, y, z) in PLACES.items()]
+    rigid = f"RBE2,91,900,123456,{','.join(map(str, end))}"
+    text = "\n".join([*grids, rigid, *cards, "ENDDATA"])
+    file.write_text(file.read_text().replace("ENDDATA", text))
+    return file
+
+
+def conm2(node: int, mass: float = MASS) -> str:
+    i = INERTIA
+    fields = [mass, *OFFSET, "", i[0, 0], -i[1, 0], i[1, 1], -i[2, 0], -i[2, 1], i[2, 2]]
+    return f"CONM2,92,{node},,{','.join(map(str, fields[:5]))}\n+,{','.join(map(str, fields[5:]))}"
+
+
+def read(file: Path, **more: Any) -> gb.SolidMesh:
+    clamp = "7" if file.suffix == ".bdf" else "wall"
+    return gb.SolidMesh.read(file, materials=STEEL, clamp=clamp, unit="mm", **more)
+
+
+def frequencies(mesh: gb.SolidMesh, count: int = 6) -> np.ndarray:
+    return mesh.reduced(modes=count, damping_ratio=0.01).frequency
+
+
+def test_a_mass_with_offset_and_inertia_on_a_rigid_element(tmp_path: Path) -> None:
+    """The body that the same link carries, its place from the middle of the link's nodes, in kg and m."""
+    plain, _ = written(tmp_path, ".bdf")
+    centre = 1e-3 * (np.array(PLACES[900]) + OFFSET - (200.0, 0.0, 0.0))
+    body = gb.RigidBody(1e3 * MASS, 1e-3 * INERTIA, centre=tuple(centre))
+    wanted = read(plain, links={"end": "8"}, carried={"end": body})
+    mesh = read(nastran(tmp_path, conm2(900)), mass_unit="Mg")
+    assert mesh.warnings == () and mesh.mass == pytest.approx(wanted.mass, rel=1e-12)
+    np.testing.assert_allclose(frequencies(mesh), frequencies(wanted), rtol=1e-8)
+    two = read(nastran(tmp_path, conm2(900, 0.4 * MASS).replace("92", "93"), conm2(900, 0.6 * MASS)), mass_unit="Mg")
+    assert two.links.bodies["RBE2 91"].mass == pytest.approx(1.0)
+    np.testing.assert_allclose(two.links.bodies["RBE2 91"].tensor, 2 * body.tensor, rtol=1e-9)
+
+
+@pytest.mark.parametrize("way", [1, 3, 5])
+def test_springs_of_a_rigid_element(tmp_path: Path, way: int) -> None:
+    """Scalar and bush elements to the base, the bush at a node of its own in the same place."""
+    plain, _ = written(tmp_path, ".bdf")
+    names, value = ("x", "y", "z", "rx", "ry", "rz"), SPRING * (1e4 if way > 3 else 100.0)
+    stiffness = {names[way - 1]: value * (1e-3 if way > 3 else 1e3)}
+    mesh = read(nastran(tmp_path, f"CELAS2,5,{value},900,{way}"), mass_unit="Mg")
+    if way > 3:  # wherever it is
+        wanted = read(plain, links={"end": "8"}, springs={"s": {"between": ["end"], "stiffness": stiffness}})
+        np.testing.assert_allclose(frequencies(mesh), frequencies(wanted), rtol=1e-8)
+    k = [value if i == way else 0.0 for i in range(1, 7)]
+    for cards in (
+        (f"CBUSH,5,6,900,,,,,0\nPBUSH,6,K,{','.join(map(str, k))}",),
+        (f"CELAS1,5,6,900,{way}\nPELAS,6,{value}",),
+    ):
+        np.testing.assert_allclose(
+            frequencies(read(nastran(tmp_path, *cards), mass_unit="Mg")), frequencies(mesh), rtol=1e-10
+        )
+
+
+def test_a_mass_on_springs_has_its_frequencies(tmp_path: Path) -> None:
+    """On no node of the solid: √(k/m) along three axes, beside the modes of the block."""
+    k = [SPRING, 2 * SPRING, 3 * SPRING, 0.0, 0.0, 0.0]
+    cards = f"CBUSH,5,6,902,,,,,0\nPBUSH,6,K,{','.join(map(str, k))}", f"CONM2,7,902,,{LUMP}"
+    found = frequencies(read(nastran(tmp_path, *cards), mass_unit="Mg"), 9)
+    for each in np.sqrt(np.array(k[:3]) * 1e3 / (1e3 * LUMP)) / (2 * np.pi):
+        assert np.abs(found / each - 1).min() < 1e-6
+    with pytest.raises(gb.InputError, match=r"node 902, which is on no node of the solid, and its springs leave it"):
+        read(nastran(tmp_path, f"CONM2,7,902,,{LUMP}"), mass_unit="Mg")
+
+
+def test_abaqus_says_the_same(tmp_path: Path) -> None:
+    """Masses on the nodes of a set, springs from nodes to the base and between a rigid body's node and another."""
+    file, end = written(tmp_path, ".inp")
+    plain = file.read_text()
+    masses = "".join(f"{500 + i}, {node}\n" for i, node in enumerate(end))
+    file.write_text(
+        f"{plain}*Element, type=MASS, elset=lumps\n{masses}*MASS, ELSET=lumps\n{LUMP}\n"
+        f"*ELEMENT, TYPE=SPRING1, ELSET=props\n600, {end[0]}\n601, {end[1]}\n*Spring, elset=props\n3\n{SPRING}\n"
+    )
+    (words,) = read(file).warnings
+    assert words.startswith("the mesh: MASS (1), SPRING (1) in part.inp are not read")
+    mesh = read(file, mass_unit="Mg")
+    assert mesh.warnings == () and mesh.mass == pytest.approx(read_plain(tmp_path, plain).mass + 4e3 * LUMP)
+    other = nastran(tmp_path, *(f"CONM2,{80 + i},{n},,{LUMP}" for i, n in enumerate(end)),
+                    *(f"CELAS2,{70 + i},{SPRING},{n},3" for i, n in enumerate(end[:2])))  # fmt: skip
+    other.write_text("\n".join(line for line in other.read_text().splitlines() if "RBE2" not in line))
+    np.testing.assert_allclose(frequencies(mesh), frequencies(read(other, mass_unit="Mg")), rtol=1e-9)
+    assert frequencies(mesh)[0] != pytest.approx(frequencies(read_plain(tmp_path, plain))[0], rel=1e-3)
+    rigid = "*NSET, NSET=face\n" + ", ".join(map(str, end)) + f"\n*RIGID BODY, NSET=face, REF NODE={end[0]}\n"
+    file.write_text(plain + rigid)
+    wanted = read_plain(tmp_path, plain, links={"end": "end"})
+    np.testing.assert_allclose(frequencies(read(file, mass_unit="Mg")), frequencies(wanted), rtol=1e-9)
+
+
+def read_plain(folder: Path, text: str, **more: Any) -> gb.SolidMesh:
+    file = folder / "plain.inp"
+    file.write_text(text)
+    return read(file, **more)
+
+
+@pytest.mark.parametrize(
+    ("card", "words"),
+    [
+        ("CONM2,92,900,3,0.1", "has CONM2 92, which is in coordinate system 3; export it in the basic system"),
+        ("CONM2,92,2,,0.1,5.", "has CONM2 92, which has an offset or inertia on node 2, which does not turn"),
+        ("RBE2,95,902,3,1,2", "has RBE2 95, which holds the components 3 alone"),
+        ("RBE2,95,902,123456,900,901", "has RBE2 95, which shares nodes with RBE2 91; make them one"),
+        ("CELAS2,5,1.0,900,1,902,1", r"has CELAS2 5, which joins nodes 0.363 m apart"),
+        ("CELAS2,5,1.0,900,1,901,2", "has CELAS2 5, which joins unlike components"),
+        ("CELAS1,5,6,900,1", "has CELAS1 5, which names PELAS 6, which is not there"),
+        ("CBUSH,5,6,900,,1.0,0.,0.", "has CBUSH 5, which has axes of its own"),
+        ("CELAS2,5,1.0,2,4", "has CELAS2 5, which turns node 2 of the solid, which does not"),
+        ("CELAS2,5,1.0,77777,1", "names node 77777, which is not there"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_said_is_refused_by_name(tmp_path: Path, card: str, words: str) -> None:
+    with pytest.raises(gb.InputError, match=words):
+        read(nastran(tmp_path, card), mass_unit="Mg")
+
+
+def test_a_unit_that_is_none_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(gb.InputError, match=r"mass_unit is 'mm'.*"):
+        read(nastran(tmp_path, conm2(900)), mass_unit="mm")
+
+
+def test_a_damaged_card_is_placed(tmp_path: Path) -> None:
+    with pytest.raises(gb.InputError, match=r"part.bdf has masses, links or springs that cannot be read: .*mend"):
+        read(nastran(tmp_path, "CONM2,92,x,,0.1"), mass_unit="Mg")
