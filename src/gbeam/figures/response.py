@@ -39,9 +39,11 @@ from gbeam.results.response import BaseMotion, HubResult, PlotHeading, Response
 from gbeam.results.result import Floats
 from gbeam.results.study import ModelStudy, Study
 
+Names = tuple[tuple[str, ...], tuple[str, ...]]
 AXES = ("axis 1, the arm", "axis 2, yaw", "axis 3, roll")
 FORCES = ("axial N", "shear V_y", "shear V_z")
 MOMENTS = ("torque", "bending M_y", "bending M_z")
+SECTION, BASE = (FORCES, MOMENTS), (tuple("xyz"),) * 2  # names of components
 
 
 def looks(study: Study) -> dict[str, dict[str, Any]]:
@@ -154,21 +156,27 @@ def carried_along(loads: Loads) -> tuple[Panel, ...]:
 
 
 def loads(response: Response, carried: Loads, title: str = "") -> Figure:
-    """Describe over time what the root's section carries, the extreme stresses along the beam, a hub's torque."""
-    panels = [*carried_at_root(response.time, carried)]
+    """Describe over time what the root's section carries, of a solid and a rigid specimen what acts on the base; the
+    extreme stresses along the beam, a hub's torque.
+    """
+    beam = response.solid is None and response.specimen is None
+    panels = [*carried_at_root(response.time, carried, SECTION if beam else BASE)]
     if carried.beam_torque is not None:
         scale, unit = scale_of("N m", carried.beam_torque)
         panels.append(Panel(f"torque for the beam, {unit}", (Line(response.time, scale * carried.beam_torque),)))
     spans = stretches(response.axes, response.time)
-    about = of_motion(response.name, "loads in the root's section, and stress anywhere along the beam")
+    words = (
+        "loads in the root's section, and stress anywhere along the beam" if beam else "loads on the base, base axes"
+    )
+    about = of_motion(response.name, words)
     shaded = tuple(replace(each, spans=spans) for each in panels)
     return Figure(title, about, shaded, _judged(response.errors, carried), (response.outcome,))
 
 
-def carried_at_root(time: Floats, carried: Loads) -> Iterator[Panel]:
+def carried_at_root(time: Floats, carried: Loads, names: Names = SECTION) -> Iterator[Panel]:
     """Loads of the root's section over time, and the extreme stresses along the beam."""
     stress = (carried.stress_tension.max(axis=1), carried.stress_compression.min(axis=1))
-    return _carried(time, carried.section_force[:, 0], carried.section_moment[:, 0], stress, carried)
+    return _carried(time, carried.section_force[:, 0], carried.section_moment[:, 0], stress, carried, names)
 
 
 def _judged(errors: Any, carried: Loads) -> tuple[str, ...]:
@@ -177,12 +185,17 @@ def _judged(errors: Any, carried: Loads) -> tuple[str, ...]:
 
 
 def _carried(
-    where: Floats, force: Floats, moment: Floats, stress: tuple[Floats, Floats], carried: Loads
+    where: Floats,
+    force: Floats,
+    moment: Floats,
+    stress: tuple[Floats, Floats],
+    carried: Loads,
+    names: Names = SECTION,
 ) -> Iterator[Panel]:
     """Forces and moments (k, 3) and, where they are known, the largest and the smallest stress (k,)."""
-    for kind, si, values, names in (("force", "N", force, FORCES), ("moment", "N m", moment, MOMENTS)):
+    for kind, si, values, each in (("force", "N", force, names[0]), ("moment", "N m", moment, names[1])):
         scale, unit = scale_of(si, values)
-        yield components(where, scale * values, names, Panel(f"{kind}, {unit}", zero=True))
+        yield components(where, scale * values, each, Panel(f"{kind}, {unit}", zero=True))
     if np.isfinite(carried.stress).all():
         scale, unit = scale_of("Pa", *stress)
         lines = [Line(where, scale * stress[k], name, colour=k) for k, name in enumerate(("largest", "smallest"))]
