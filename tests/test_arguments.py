@@ -585,9 +585,9 @@ def test_how_a_unit_is_refused(call: Callable[[], Any], words: str) -> None:
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda g: gb.simulate(g.beam, g.still, duration=1.0), "structure is of type Beam; give a Structure, which gb"),
+        (lambda g: gb.simulate(g.beam, g.still, duration=1.0), "structure is of type Beam; give a Structure (from g"),
         (lambda g: gb.simulate(g.structure, gb.Flight, duration=1.0), "motion is the class Flight itself; give a flig"),
-        (lambda g: gb.modes("scenario.toml"), "structure is 'scenario.toml'; give a Structure, which gbeam.assemble m"),
+        (lambda g: gb.modes("scenario.toml"), "structure is 'scenario.toml'; give a Structure (from gbeam.assemble)"),
         (lambda g: gb.Beam(0.3, "rectangle", g.beam.material), "section is 'rectangle'; give a Section"),
         (lambda g: replace(g.beam, masses=[gb.PointMass(0.1, 1), 0.2]), "masses[1] is 0.2; give a PointMass"),
         (lambda g: replace(g.beam, masses=gb.PointMass(0.1, 1)), "masses is of type PointMass; give a list of PointMa"),
@@ -595,7 +595,7 @@ def test_how_a_unit_is_refused(call: Callable[[], Any], words: str) -> None:
         (lambda g: gb.static(g.structure, g.still, time="noon"), "time is 'noon'; give a number"),
         (lambda g: gb.campbell(g.structure, g.hub, count=2.5), "count is 2.5; give a whole number"),
         (lambda g: gb.read_scenario(3), "path is 3; give a text or a path"),
-        (lambda g: gb.compare(g.structure, g.structure), "flight is of type Structure; give a Response, which gbeam.s"),
+        (lambda g: gb.compare(g.structure, g.structure), "flight is of type Structure; give a Response (from gbeam"),
         (lambda g: gb.axis_commands(g.centrifuge, sample=(1, 2)), "sample is (1, 2); give a number"),
         (lambda g: gb.sweep(g.fast, {"beam.length": 0.2}, ["tip.z"]), "--over beam.length is 0.2; give a list of numb"),
         (lambda g: gb.sweep(g.fast, ["beam.length=1,2"], {"tip": 3}), "measure is {'tip': 3}; give a list of texts or"),

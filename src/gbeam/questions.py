@@ -92,13 +92,21 @@ class Question:
         """Raise InputError if the case is a system, and only one structure has an answer; or of a specimen without
         coordinates one that needs them.
         """
-        from gbeam.analysis.case import SpecimenCase, SystemCase
+        from gbeam.analysis.case import SystemCase
 
         if isinstance(case, SystemCase) and not self.of_systems:
             case.one_beam("bodies", f"{before}{self.name}")
-        if isinstance(case, SpecimenCase) and self.deforms and not case.structure.size:
-            fix = "ask for run, which has the load at its corners, or plan; or give it as a solid"
-            raise InputError(f"bodies.{case.name}", f"is rigid, and {self.name} is of what deforms", fix)
+        if self.deforms:
+            refuse_rigid(case, self.name)
+
+
+def refuse_rigid(case: AnyCase, verb: str) -> None:
+    """Raise InputError if a specimen has no coordinates, of which a verb needs some."""
+    from gbeam.analysis.case import SpecimenCase
+
+    if isinstance(case, SpecimenCase) and not case.structure.size:
+        fix = "ask for run, which has the load at its corners, or plan; or give it as a solid"
+        raise InputError(f"bodies.{case.name}", f"is rigid, and {verb} is of what deforms", fix)
 
 
 QUESTIONS: dict[str, Question] = {}

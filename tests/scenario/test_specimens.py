@@ -184,11 +184,13 @@ def test_a_box_that_cannot_be_is_named_with_its_place(folder: Path, text: str, p
 
 
 def test_a_rigid_box_has_no_modes(folder: Path) -> None:
-    from gbeam.questions import QUESTIONS
+    from gbeam.questions import QUESTIONS, refuse_rigid
 
     case = case_of(folder, BOX + SPIN)
     with pytest.raises(InputError, match="is rigid"):
         QUESTIONS["modes"].refuse(case)
+    with pytest.raises(InputError, match="is rigid, and linearize is of what deforms"):
+        refuse_rigid(case, "linearize")
     QUESTIONS["run"].refuse(case)
 
 

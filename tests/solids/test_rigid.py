@@ -124,6 +124,20 @@ def test_a_free_hub_is_refused() -> None:
         box.loads(gb.Hub(radius=2.0, inertia=10.0, torque=constant(1.0)), 1.0, sample=0.5)
 
 
+def test_what_deforms_is_not_asked_of_a_box() -> None:
+    box, hub = gb.RigidSpecimen.box(2.0, (0.4, 0.2, 0.1), (0.0, 0.0, 0.0)).structure, gb.Hub(radius=2.0)
+    for ask in (
+        lambda: gb.modes(box),
+        lambda: gb.static(box, acceleration=(0.0, 0.0, G)),
+        lambda: gb.linearize(box, hub),
+        lambda: gb.campbell(box, hub, end=1.0),
+        lambda: gb.critical_speed(box, hub),
+        lambda: gb.buckling_acceleration(box),
+    ):
+        with pytest.raises(gb.InputError, match="structure is rigid, and this is of what deforms; ask simulate"):
+            ask()
+
+
 def test_a_box_on_the_f16_flight_is_newtons() -> None:
     """At every time of the record: force m a, moment c × m a, the bolts' sums; nothing is spread, without rates."""
     case = gb.read_scenario("examples/f16_8g_turn.toml")

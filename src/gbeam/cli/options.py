@@ -13,7 +13,7 @@ from cyclopts import Parameter
 from gbeam.cli.process import Watch, command
 from gbeam.cli.publication import refuse_unwritable
 from gbeam.errors import InputError
-from gbeam.questions import QUESTIONS, differentiable, motion_of, prepared
+from gbeam.questions import QUESTIONS, differentiable, motion_of, prepared, refuse_rigid
 
 if TYPE_CHECKING:
     from gbeam.analysis.case import AnyCase, Case
@@ -254,7 +254,7 @@ def signed(facts: dict[str, Any], provenance: Provenance | None) -> dict[str, An
 
 
 _MOVING = ("run", "place")  # verbs that need all motions
-_ANY = ("check", "linearize", "models")  # verbs of beams and systems, beside the questions of both
+_ANY = ("check", "models")  # verbs of beams and systems, beside the questions of both
 
 
 def read(verb: str, file: Path, overrides: Sequence[str]) -> Input:
@@ -268,6 +268,8 @@ def read(verb: str, file: Path, overrides: Sequence[str]) -> Input:
     with loaded.placing():
         if verb in QUESTIONS:
             QUESTIONS[verb].refuse(case, "gbeam ")
+        elif verb == "linearize":
+            refuse_rigid(case, verb)
         elif verb not in _ANY:
             case.one_beam("bodies", f"gbeam {verb}")
     return loaded

@@ -267,5 +267,5 @@ def _word(kind: Any) -> str:
     if getattr(origin, "_is_protocol", False):  # such as Motion, whose first line says which classes are
         line = str(origin.__doc__ or name).splitlines()[0].rstrip(".")
         return line[0].lower() + line[1:]
-    how = f", which {_MAKERS[name]} makes" if name in _MAKERS else ""
+    how = f" (from {_MAKERS[name]})" if name in _MAKERS else ""
     return f"{'an' if name[0] in 'AEIOU' else 'a'} {name}{how}"

@@ -256,6 +256,12 @@ class Structure:
                 "give a ratio of critical damping, such as 0.01, or 0 for none",
             )
 
+    def require_coordinates(self) -> None:
+        """Raise InputError where nothing deforms, and an answer is about what does."""
+        if not self.size:
+            fix = "ask simulate, which has the load at its corners, or give it as a solid"
+            raise InputError("structure", "is rigid, and this is of what deforms", fix)
+
     @property
     def traced(self) -> bool:
         """Whether JAX traces its values, which then have no numbers to decide anything by."""

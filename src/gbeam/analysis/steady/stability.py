@@ -53,6 +53,7 @@ def hub_of(motion: Motion, what: str, instead: str, name: str = "") -> Hub:
 
 def lowest_frequency(structure: Structure) -> float:
     """Lowest natural frequency of the beam on a base at rest, rad/s."""
+    structure.require_coordinates()
     return float(structure.rest[0][0])
 
 
