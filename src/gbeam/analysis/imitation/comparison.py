@@ -8,7 +8,7 @@ import numpy as np
 
 from gbeam.analysis.imitation.accounting import History, account_of, largest_load, largest_pair, points_of
 from gbeam.analysis.imitation.fatigue import fatigue
-from gbeam.analysis.imitation.systems import specimen_of
+from gbeam.analysis.imitation.specimen import specimen_of
 from gbeam.analysis.response.peaks import maxima, near_maxima, seven_point, vector_peaks
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed

@@ -17,7 +17,7 @@ import numpy as np
 from gbeam.analysis.imitation.accounting import largest_load, largest_pair, times_between
 from gbeam.analysis.imitation.comparison import CUTOFF, compare
 from gbeam.analysis.imitation.place_measures import Answers, Choice, Histories, Turn, bringing
-from gbeam.analysis.imitation.systems import specimen_of
+from gbeam.analysis.imitation.specimen import specimen_of
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.arrays.namespace import namespace
