@@ -17,6 +17,7 @@ from tests.system.trees import flexible
 
 ROD = gb.RigidBody(1.0, (0.0, 1 / 12, 1 / 12), centre=(0.5, 0, 0), points={"end": (1, 0, 0)})
 HINGE = gb.Joint("revolute", "rod", axes=[(0, 1, 0)])
+HINGED = gb.Joint("revolute", "hub", axes=[(0, 0, 1)], stiffness=5.0, damping=0.1)
 TWO = {"rod": ROD, "bar": ROD}
 
 
@@ -205,6 +206,33 @@ def test_linear_model_follows_the_response() -> None:
     size = np.abs(y).max(axis=1)
     np.testing.assert_allclose(y[0], response.coordinate("hinge.angle"), atol=2e-5 * size[0])
     np.testing.assert_allclose(y[2], response.acceleration[:, 0, 2], atol=2e-3 * size[2])
+
+
+def test_a_linear_model_is_driven_by_its_base_and_by_prescribed_joints() -> None:
+    """As the beam alone is on its base; a joint's acceleration is one of the base and one of its angle."""
+    structure, flight = flexible("FOAM"), gb.Flight(x=1.0, z=3.0)
+    clamped = gb.System({"beam": structure}, {"clamp": gb.Joint("fixed", "beam")})
+    alone = gb.linearize(structure, flight)
+    carried = gb.linearize(clamped, flight, outputs=[f"beam.tip.{each}" for each in ("place_y", "place_z", "spin_y")])
+    assert [each.name for each in carried.inputs] == [each.name for each in alone.inputs]
+
+    def gains(plant: gb.StateSpace, outputs: list[str]) -> np.ndarray:
+        rows = [[each.name for each in plant.outputs].index(name) for name in outputs]
+        return (plant.c @ np.linalg.solve(7.3j * np.eye(len(plant.a)) - plant.a, plant.b) + plant.d)[rows]
+
+    ours = gains(carried, ["beam.tip.place_y", "beam.tip.place_z"])
+    np.testing.assert_allclose(ours, gains(alone, ["tip_y", "tip_z"]), rtol=1e-10, atol=1e-12)
+    felt = gb.linearize(clamped, flight, inputs=["base_acceleration_z"], outputs=["beam.root.acceleration_z"])
+    assert gains(felt, ["beam.root.acceleration_z"]) == pytest.approx(1.0)
+    hub = gb.RigidBody(1.0, (4.0, 4.0, 5.0), points={"rim": (0.4, 0, 0)})
+    joints = {"axis": gb.Joint("revolute", "hub", axes=[(0, 0, 1)], rate=0.0)}
+    joints["clamp"] = gb.Joint("fixed", "beam", "hub.rim")
+    turned = gb.linearize(gb.System({"hub": hub, "beam": structure}, joints), outputs=["beam.tip.place_y"])
+    assert [(each.name, each.unit) for each in turned.inputs] == [("axis.angle_acceleration", "rad/s^2")]
+    still = gains(gb.linearize(structure, gb.Flight(z=0.0)), ["tip_y"])[0]
+    assert gains(turned, ["beam.tip.place_y"])[0, 0] == pytest.approx(0.4 * still[1] + still[5], rel=1e-10)
+    with pytest.raises(gb.InputError, match="inputs reach and outputs see 0 of the states"):
+        gb.balanced_truncation(gb.linearize(gb.System({"hub": hub, "beam": structure}, {**joints, "axis": HINGED})), 2)
 
 
 def test_a_free_body_has_six_motions_of_no_frequency() -> None:

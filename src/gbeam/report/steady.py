@@ -131,7 +131,7 @@ def state_space(system: StateSpace, gauges: Iterable[Gauge] = ()) -> str:
     lines = [f"{system.motion}: {system.model}, {len(system.a)} states"]
     for what in ("states", "inputs", "outputs"):
         # No line ends between a name and its unit.
-        words = (f"{signal.name} [{signal.unit}]" for signal in getattr(system, what))
+        words = (f"{each.name} [{each.unit}]" if each.unit else each.name for each in getattr(system, what))
         signals = ", ".join(each.replace(" ", "\N{NO-BREAK SPACE}") for each in words)
         lines += wrap(
             signals, _WIDTH, initial_indent=f"  {what:<8} ", subsequent_indent=11 * " ", break_on_hyphens=False
@@ -237,6 +237,6 @@ def system_modes(modes: SystemModes) -> str:
         known = f"  error {percent(error):>7}" if math.isfinite(error) else ""
         lines.append(f"  {k + 1:>3}  {frequency:12.6g} Hz  damping {damping:8.4g}{known}  {listed}")
     if modes.rigid:
-        lines.append(f"  and {modes.rigid} motions of zero frequency")
+        lines.append(f"  and {modes.rigid} motion{'' if modes.rigid == 1 else 's'} of zero frequency")
     lines += [f"  {each}" for each in modes.instabilities]
     return "\n".join([*lines, *warning_lines(modes)])

@@ -72,7 +72,7 @@ LOST = {"critical_speed": "rad/s", "critical_acceleration": "m/s^2", "critical_l
 class Critical(Result):
     """Where the stiffness about the relative equilibrium stops being positive definite, or something grows."""
 
-    quantity: str = fact("quantity that is raised", note="hub rate, acceleration along x, or load factor")
+    quantity: str = fact("quantity that is raised", note="hub rate or rate, acceleration along x, or load factor")
     unit: str = fact("unit of the quantity", note="rad/s, m/s^2, or none of a factor of the loads", name=None)
     value: float | None = entry(lambda self: self.unit, "critical value; missing where it is not reached", key=None)
     searched_to: float = entry(lambda self: self.unit, "end of the search")
@@ -90,8 +90,7 @@ class Critical(Result):
 
     @declared(LOST, "critical value by what is raised", role="fact", name=None, key=INSIDE)
     def by_name(self) -> dict[str, float | None]:
-        names = dict(zip(("hub rate", "acceleration along x", "load factor"), LOST, strict=True))
-        return {names[self.quantity]: self.value}
+        return {next(name for name, unit in LOST.items() if unit == self.unit): self.value}
 
     @declared("", "estimated error from too few shapes", name=None)
     def error_estimate(self) -> float:

@@ -46,7 +46,7 @@ class OverTime:
         if isinstance(case, SystemCase):
             histories = tuple(read_system_history(each, case) for each in self.names)
         else:
-            points = list(case.one_beam("--history", "a history").beam.named_points)
+            points = list(case.one_beam("bodies", "a history").beam.named_points)
             histories = tuple(read_history(each, case.motions, points) for each in self.names)
         return replace(question, histories=histories, times=times)
 

@@ -20,7 +20,7 @@ from gbeam.analysis.steady.operating_point import (
     steady_base,
 )
 from gbeam.analysis.steady.stability import hub_of
-from gbeam.analysis.system.linear import frozen, instabilities, linearize_system
+from gbeam.analysis.system.linear import frozen, instabilities, linearize_system, named_acceleration
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import each_leaf, record
 from gbeam.constants import BY_STRAINS
@@ -158,19 +158,12 @@ def coordinate_signals(structure: Structure, first: int) -> tuple[Signal, ...]:
     return tuple([Signal(*pair) for pair in names] + rates)
 
 
-def _acceleration(motion: Any) -> str:
-    """Name of accelerations where a motion goes: with gravity they are what accelerometers measure."""
-    weighs = motion.kind == "centrifuge" and float(motion.geometry.gravity) > 0
-    weighs = weighs or (motion.kind == "hub" and motion.mount.gravity is not None)
-    return "specific_force" if weighs else "acceleration"
-
-
 def input_signals(structure: Structure, motion: Motion) -> tuple[Signal, ...]:
     """Names and units of the inputs: torque or base, then the components of each load on the beam."""
     if motion.free:
         signals = [Signal("torque", "N m")]
     else:
-        signals = [Signal(f"base_{_acceleration(motion)}_{i}", "m/s^2") for i in "xyz"]
+        signals = [Signal(f"base_{named_acceleration(motion)}_{i}", "m/s^2") for i in "xyz"]
         signals += [Signal(f"base_angular_acceleration_{i}", "rad/s^2") for i in "xyz"]
     if structure.work is not None:
         counts = np.bincount(np.asarray(structure.work.load))
@@ -184,7 +177,7 @@ def output_signals(structure: Structure, gauges: Sequence[Gauge], motion: Motion
     """Names and units of the outputs."""
 
     def moving(point: str) -> list[Signal]:
-        kinds = ((point, "m"), (f"{point}_{_acceleration(motion)}", "m/s^2"))
+        kinds = ((point, "m"), (f"{point}_{named_acceleration(motion)}", "m/s^2"))
         return [Signal(f"{name}_{i}", unit) for name, unit in kinds for i in "xyz"]
 
     signals = moving(TIP) + [Signal(f"root_moment_{i}", "N m") for i in "xyz"]
@@ -287,7 +280,8 @@ def linearize(
     inputs, outputs : sequence of str, optional
         Those that are kept, by name. Of a system: efforts on coordinates (``hinge.angle``) and components of its forces
         (``thrust.force_x``); what is measured, ``joint.angle``, ``joint.angle_rate``, ``body.point.place_x``,
-        ``velocity_x``, ``acceleration_x``, ``spin_x``. By default the driven coordinates and all forces; coordinates,
+        ``velocity_x``, ``acceleration_x``, ``spin_x``. By default the driven coordinates, all forces, and accelerations
+        of the base and of prescribed coordinates (``base_acceleration_x``, ``axis.angle_acceleration``); coordinates,
         rates and places.
     at : str
         Of a system: ``rest``, where it rests, or ``start``, the motion at its start.

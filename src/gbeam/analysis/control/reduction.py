@@ -16,6 +16,7 @@ from gbeam.results.state_space import Signal, StateSpace, Truncation
 Parts = tuple[StateSpace, StateSpace]
 RIGID = 1e-7  # of the largest eigenvalue: what is slower has none, as a free hub's angle
 POINTS = 200  # frequencies at which gains are compared
+REACHED = 1e-14  # of the largest Hankel singular value: a smaller one is rounding
 DECAYS = 1e-9  # of the largest eigenvalue: what decays more slowly counts as undamped
 
 
@@ -128,6 +129,10 @@ def balanced_truncation(system: StateSpace, order: int) -> tuple[StateSpace, Flo
         return vector * np.sqrt(np.maximum(value, 0))
 
     left, hankel, right = np.linalg.svd(root(see).T @ root(reach))
+    some = int((hankel > REACHED * hankel.max(initial=0.0)).sum())
+    if order > some:
+        fix = f"give 1 to {some}" if some else "give it an input that moves them, such as a force or an effort"
+        raise InputError("order", f"is {order}, and inputs reach and outputs see {some} of the states that decay", fix)
     scale = 1 / np.sqrt(hankel[:order])
     into = scale[:, None] * (root(see) @ left[:, :order]).T
     out = root(reach) @ right[:order].T * scale

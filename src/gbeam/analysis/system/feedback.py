@@ -35,7 +35,7 @@ class SystemControllers:
             np.zeros((ends[-1], len(system.forces), 6)),
         )
         for k, each in enumerate(driven):
-            if each.force is None:
+            if each.way == "effort":
                 self.efforts[k, each.at] = 1.0
             else:
                 self.wrenches[k, each.force, each.at] = 1.0

@@ -16,11 +16,12 @@ from gbeam.analysis.system.accuracy import doubts, system_errors
 from gbeam.analysis.system.histories import beams_of, histories, loads_of, meshes_of
 from gbeam.analysis.system.point import Point, started
 from gbeam.analysis.system.steady import Drive, SteadySystem, steady
-from gbeam.errors import ComputationError
+from gbeam.errors import ComputationError, InputError
 from gbeam.guards.checks import choice
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.tree.control import signal_names
-from gbeam.mechanics.tree.signals import drives_of, measurements, signals_of
+from gbeam.mechanics.tree.equations import Inputs
+from gbeam.mechanics.tree.signals import Driven, drives_of, measurements, signals_of
 from gbeam.mechanics.tree.steps import parameters_of_all
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
@@ -154,28 +155,35 @@ def linearize_system(
 ) -> StateSpace:
     """State-space model of small departures of a system, with its controllers in the `loop` unless it is open.
 
-    The inputs are efforts on joints' coordinates and the components of forces at points; the outputs are the joints'
-    coordinates and rates and the places of points, as they are named.
+    The inputs are efforts on joints' coordinates, the components of forces at points, and accelerations of the base and
+    of prescribed coordinates; the outputs are the joints' coordinates and rates and the places of points, as named.
     """
     system = state.system
     drives = signal_names(system.controllers, "drive")
-    choice("loop", loop, ("open", *(("closed", *drives) if drives else ())))
+    if loop != "open" and not drives:
+        raise InputError("loop", f"is {loop!r}, and the system has no controllers", "leave it out, or give it some")
+    choice("loop", loop, ("open", "closed", *drives))
     if loop != "open":
         from gbeam.analysis.system.closed_loop import closed_loop  # takes SciPy's optimisation, 0.2 s to import
 
-        driven = [each for one in system.controllers.values() for each in one.drive]
+        commanded = [each for one in system.controllers.values() for each in one.drive]
         measured = [each for one in system.controllers.values() for each in one.measure]
-        free = _default_inputs(system) if inputs is None else list(inputs)
+        free = _default_inputs(system, state.drive.motion) if inputs is None else list(inputs)
         wanted = _default_outputs(system) if outputs is None else list(outputs)
-        plant = linearize_system(state, inputs=driven + free, outputs=measured + wanted, loop="open", name=name)
+        plant = linearize_system(state, inputs=commanded + free, outputs=measured + wanted, loop="open", name=name)
         chosen = range(len(measured), len(measured) + len(wanted))
         return closed_loop(plant, dict(system.controllers), chosen, None if loop == "closed" else loop)
     local = state.local
-    b, driving = _inputs(system, local, state.names, inputs)
+    every = drives_of(system) | _moves_of(system, state.drive.motion)
+    driven = _default_inputs(system, state.drive.motion) if inputs is None else inputs
+    for each in driven:
+        choice("inputs", each, every)
     signals, values, out = _outputs(system, local, outputs)
-    a, b, c, d = state.linear._replace(inputs=b).state_space(*out, np.zeros((len(values), b.shape[1])))
-    names = state.names
-    states = [Signal(each, "") for each in names] + [Signal(f"{each}_rate", "") for each in names]
+    b, direct = _inputs(system, local, state.names, [every[each] for each in driven], [each.name for each in signals])
+    driving = tuple(Signal(each, every[each].unit) for each in driven)
+    a, b, c, d = state.linear._replace(inputs=b).state_space(*out, direct)
+    names, units = state.names, signals_of(system)
+    states = [Signal(f"{name}{end}", units.get(f"{name}{end}", "")) for end in ("", "_rate") for name in names]
     return StateSpace(
         a=a,
         b=b,
@@ -194,10 +202,32 @@ def linearize_system(
     )
 
 
-def _default_inputs(system: System) -> list[str]:
-    """Driven coordinates, and the components of all forces."""
+def named_acceleration(motion: Any) -> str:
+    """Name of accelerations where a motion goes: with gravity they are what accelerometers measure."""
+    weighs = motion.kind == "centrifuge" and float(motion.geometry.gravity) > 0
+    weighs = weighs or (motion.kind == "hub" and motion.mount.gravity is not None)
+    return "specific_force" if weighs else "acceleration"
+
+
+def _moves_of(system: System, motion: Motion | None) -> dict[str, Driven]:
+    """Accelerations of the base, where one moves, and of prescribed coordinates, by name."""
+    moves: dict[str, Driven] = {}
+    if motion is not None:
+        ways = ("a", named_acceleration(motion), "m/s^2"), ("alpha", "angular_acceleration", "rad/s^2")
+        for way, kind, unit in ways:
+            moves |= {f"base_{kind}_{axis}": Driven(way, k, unit) for k, axis in enumerate("xyz")}
+    units = signals_of(system)
+    for k, at in enumerate(system.tree.fixed):
+        name = system.coordinates[at]
+        moves[f"{name}_acceleration"] = Driven("prescribed", k, f"{units[name]}/s^2")
+    return moves
+
+
+def _default_inputs(system: System, motion: Motion | None) -> list[str]:
+    """Driven coordinates, the components of all forces, and accelerations of the base and of prescribed coordinates."""
     driven = {f"{name}.{each}" for name, joint in system.joints.items() for each in joint.efforts}
-    return [each for each in drives_of(system) if each in driven or each.partition(".")[0] in system.forces]
+    drives = [each for each in drives_of(system) if each in driven or each.partition(".")[0] in system.forces]
+    return [*drives, *_moves_of(system, motion)]
 
 
 def _default_outputs(system: System) -> list[str]:
@@ -207,23 +237,30 @@ def _default_outputs(system: System) -> list[str]:
 
 
 def _inputs(
-    system: System, local: Point, names: Sequence[str], wanted: Sequence[str] | None
-) -> tuple[Floats, tuple[Signal, ...]]:
-    """Forces (n, m) of unit inputs on the coordinates, and their signals."""
-    drives = drives_of(system)
-    wanted = _default_inputs(system) if wanted is None else wanted
-    for each in wanted:
-        choice("inputs", each, drives)
-    columns = np.zeros((len(names), len(wanted)))
-    for k, each in enumerate(wanted):
-        if drives[each].force is None:
-            columns[names.index(each), k] = 1.0
-        else:
-            moved = np.array(local.inputs.wrenches, dtype=complex)
-            moved[drives[each].force, drives[each].at] += 1j * STEP
-            left = local.tree(local.y + 0j, local.yd + 0j, local.ydd + 0j, replace(local.inputs, wrenches=moved))
-            columns[:, k] = -left.imag / STEP
-    return columns, tuple(Signal(each, drives[each].unit) for each in wanted)
+    system: System, local: Point, names: Sequence[str], chosen: Sequence[Driven], outputs: Sequence[str]
+) -> tuple[Floats, Floats]:
+    """Forces (n, m) of unit inputs on the coordinates, and what they add to the outputs (k, m) at once."""
+    at = local.y + 0j, local.yd + 0j, local.ydd + 0j
+    columns, direct = np.zeros((len(names), len(chosen))), np.zeros((len(outputs), len(chosen)))
+    for k, each in enumerate(chosen):
+        if each.way == "effort":
+            columns[names.index(system.coordinates[each.at]), k] = 1.0
+            continue
+        moved = _moved(local.inputs, each)
+        columns[:, k] = -local.tree(*at, moved).imag / STEP
+        direct[:, k] = measurements(system, local.tree, *at, moved, outputs).imag / STEP
+    return columns, direct
+
+
+def _moved(inputs: Inputs, by: Driven) -> Inputs:
+    """Inputs of which one is a complex step away."""
+    if by.way in ("a", "alpha"):
+        faster = getattr(inputs.ground, by.way) + 1j * STEP * np.eye(3)[by.at]
+        return replace(inputs, ground=replace(inputs.ground, **{by.way: faster}))
+    which = by.force if by.way == "wrenches" else 2
+    values: Any = np.array(getattr(inputs, by.way), dtype=complex)
+    values[which, by.at] += 1j * STEP
+    return replace(inputs, **{by.way: values})
 
 
 def _outputs(

@@ -108,8 +108,14 @@ def started(system: System, motion: Motion | None, time: float, initial: str) ->
             1e-3 + np.abs(y[elastic]).max(initial=0.0)
         ):
             return Point(tree, y, yd, ydd, inputs)
+    body = _farthest(system, tree, np.where(searched, change, 0)).rpartition(".")[0]
     fix = 'begin with initial = "undeformed"'
-    raise ComputationError("no equilibrium", f"the bodies have no place to rest at the start; {fix}")
+    raise ComputationError("no equilibrium", f"{body} has no place to rest at the start; {fix}")
+
+
+def _farthest(system: System, tree: Tree, values: Any) -> str:
+    """Name of the coordinate of a tree whose value (n,) is the largest."""
+    return system.coordinates[tree.free[int(np.abs(np.nan_to_num(values, nan=np.inf)).argmax())]]
 
 
 def started_traced(system: System, motion: Motion | None, time: float, initial: str) -> tuple[Array, Array]:
@@ -150,8 +156,12 @@ def rested(system: System, tree: Tree, inputs: Inputs, start: Floats | None = No
             acceleration = np.linalg.solve(m, -left)
             break
     else:
-        raise ComputationError("no equilibrium", "no place was found in which the system rests; hold what is free")
+        name = _farthest(system, tree, change)
+        problem = f"no place was found in which the system rests: {name} goes on and on; hold what is free"
+        raise ComputationError("no equilibrium", problem)
     scale = np.abs(np.linalg.solve(m, np.abs(k) @ np.ones(len(y)))).max(initial=1.0)
     if np.abs(acceleration).max(initial=0.0) > 1e-6 * scale:
-        raise ComputationError("no equilibrium", "what nothing holds is accelerated, and does not rest")
+        name = _farthest(system, tree, acceleration)
+        problem = f"{name} is accelerated, which nothing holds: what nothing holds does not rest"
+        raise ComputationError("no equilibrium", problem)
     return Point(tree, y, still, still, inputs)

@@ -10,7 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.analysis.system.point import Point, rested
+from gbeam.constants import BY_STRAINS
 from gbeam.errors import ComputationError, InputError
+from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.equations import Inputs
 from gbeam.mechanics.tree.frames import Frame, turned_back
 from gbeam.mechanics.tree.system import System
@@ -101,9 +103,22 @@ class SteadySystem:
         """
         _, k, c, m = self.local.slopes()
         if not positive_definite(m):
-            fix = "check with exact, or load it less"
-            raise ComputationError("no positive mass", f"bent so far a body's model has no positive mass: {fix}")
+            fix = "give it the exact model, or load it less"
+            raise ComputationError(
+                "no positive mass", f"bent so far, the model of {self._bent_most} has no positive mass: {fix}"
+            )
         return Linear(m, c, k, np.zeros((len(m), 0)))
+
+    @property
+    def _bent_most(self) -> str:
+        """Name of the flexible body that is bent most, over its size, by a polynomial model."""
+        bent = {}
+        for name, body in self.system.bodies.items():
+            if isinstance(body, Structure) and body.kind not in BY_STRAINS:
+                q = self.local.y[[k for k, each in enumerate(self.names) if each.startswith(f"{name}.q")]]
+                moved, size = body.displacement(q[None]), np.abs(body.station_places.r0).max()
+                bent[name] = float(np.abs(moved).max()) / max(float(size), 1e-300)
+        return max(bent, key=lambda name: bent[name], default="a body")
 
     def vibrations(self, *, gyroscopic: bool = True) -> Vibrations:
         """Vibrations, growing and decaying motions about it."""

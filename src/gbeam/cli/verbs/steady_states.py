@@ -116,7 +116,8 @@ def critical_speed(
     if masses is None and positions is not None:
         raise InputError("--positions", "stands without --masses", 'add --masses "0.1 kg, 0.5 kg"')
     if masses is not None:
-        loaded.case.one_beam("--masses", "a map")
+        with loaded.placing():
+            loaded.case.one_beam("bodies", "a map of --masses")
         if vary != "rate":
             raise InputError("--masses", f"stands beside --vary {vary}", "a map is of hub rates")
         return critical_map(loaded, motion, masses, positions, upper, folder, output)
@@ -201,7 +202,8 @@ def linearize(
         ("--rate", rate is not None),
     ):
         if wanted:
-            case.one_beam(option, option)
+            with loaded.placing():
+                case.one_beam("bodies", option)
     for option, beside, both in (
         ("--loop", "--balanced or --modes", loop != "open" and (modes is not None or balanced is not None)),
         ("--balanced", "--modes", modes is not None and balanced is not None),

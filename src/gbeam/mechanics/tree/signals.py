@@ -16,11 +16,14 @@ Array = Any
 
 
 class Driven(NamedTuple):
-    """One number that drives a tree: the effort on coordinate `at`, or component `at` of force `force`."""
+    """One number that drives a tree: the effort on coordinate `at`, component `at` of force `force` (wrenches), of the
+    base's acceleration (a, alpha), or the acceleration of prescribed coordinate `at`.
+    """
 
-    force: int | None
+    way: str
     at: int
     unit: str
+    force: int = 0
 
 
 def drives_of(system: System) -> dict[str, Driven]:
@@ -29,10 +32,10 @@ def drives_of(system: System) -> dict[str, Driven]:
     for k, each in enumerate(system.coordinates):
         owner, _, name = each.rpartition(".")
         if owner in system.joints and name[0] != "e":
-            drives[each] = Driven(None, k, "N" if name in SLIDES else "N m")
+            drives[each] = Driven("effort", k, "N" if name in SLIDES else "N m")
     for k, owner in enumerate(system.forces):
         for i, (kind, unit) in enumerate((("force", "N"), ("moment", "N m"))):
-            drives |= {f"{owner}.{kind}_{axis}": Driven(k, 3 * i + j, unit) for j, axis in enumerate("xyz")}
+            drives |= {f"{owner}.{kind}_{axis}": Driven("wrenches", 3 * i + j, unit, k) for j, axis in enumerate("xyz")}
     return drives
 
 
