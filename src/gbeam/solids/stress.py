@@ -13,7 +13,7 @@ from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.results.result import Floats
 from gbeam.results.solids import SolidStress, StressAt, Surface
-from gbeam.solids.elements import TENSOR, Indices, chunks, extrapolation, stress_at
+from gbeam.solids.elements import TENSOR, Indices, chunks, extrapolation, slopes_at, stress_of
 
 BLOCK = 2**22  # numbers handled together
 VERTICES, TIMES = 1500, 1000  # of pictures, about
@@ -44,14 +44,18 @@ class NodalStress(Value):
     @classmethod
     def of(cls, mesh: Any, shapes: Floats) -> Self:
         """Stresses of a mesh."""
+        from scipy.sparse import csr_array
+
         count, names = len(mesh.points), _materials(mesh)
         pairs = [names.index(block.material) * count + np.unique(block.nodes) for block in mesh.blocks]
         known = np.unique(np.concatenate(pairs))
         empty = cls(mesh, shapes, hull(mesh.points), known, np.empty((0, 6, shapes.shape[-1])))
         total, shared = np.zeros((len(known), 6, shapes.shape[-1])), np.zeros(len(known))
         for pair, stress in empty._elements():
-            np.add.at(total, pair, stress)
-            np.add.at(shared, pair, 1)
+            some, place = np.unique(pair, return_inverse=True)
+            sums = csr_array((np.ones(len(pair)), (place, np.arange(len(pair)))), shape=(len(some), len(pair)))
+            total[some] += (sums @ stress.reshape(len(pair), -1)).reshape(len(some), *stress.shape[1:])
+            shared[some] += np.bincount(place)
         return replace(empty, table=total / shared[:, None, None])
 
     @property
@@ -114,7 +118,7 @@ class NodalStress(Value):
             nodes = block.nodes[part]
             pair = np.searchsorted(self.known, names.index(block.material) * count + nodes)
             chosen = slice(None) if wanted is None else (pair == wanted).any(axis=1)
-            stress = stress_at(block, nodes[chosen], gradients[chosen], self.shapes)
+            stress = stress_of(block, slopes_at(nodes[chosen], gradients[chosen], self.shapes))
             at_nodes = np.einsum("kq,eqvn->ekvn", extrapolation(block.kind), stress, optimize=True)
             yield pair[chosen].ravel(), at_nodes.reshape(-1, *at_nodes.shape[2:])
 
