@@ -46,37 +46,31 @@ def inertial_loads(weights: Floats) -> Floats:
     return -np.einsum("kf,ac->kcaf", weights, np.eye(3)).reshape(3 * len(weights), 12)
 
 
-def reduce(stiffness: Any, mass: Any, loads: Floats, free: Any, modes: int) -> Reduced:
-    """Reduce matrices of all unknowns, (u, u), held but for the `free` ones, under `loads` (u, m)."""
-    from scipy.sparse import csc_matrix
-
-    k_free, m_free, f = csc_matrix(stiffness)[free][:, free], csc_matrix(mass)[free][:, free], loads[free]
-    del stiffness, mass  # which may be a tenth of the factors
-    count = len(f)
+def reduce(stiffness: Any, mass: Any, loads: Floats, modes: int) -> Reduced:
+    """Reduce matrices (u, u) of the unknowns that are free, under `loads` (u, m)."""
+    count = len(loads)
     if not 1 <= modes <= count:
         raise InputError("modes", f"is {modes}, of {count} unknowns", f"give 1 to {count}")
-    with factorised(k_free) as solve:
-        static = solve(f)
+    with factorised(stiffness) as solve:
+        static = solve(loads)
         if modes > count // 2:  # the space of Lanczos' iteration would be all
-            inverse, vector = _dense(k_free.toarray(), m_free.toarray())
+            inverse, vector = _dense(stiffness.toarray(), mass.toarray())
             have = _moving(inverse)
             inverse, vector = inverse[:modes], vector[:, :modes]
         else:
             start = np.random.default_rng(0).standard_normal((count, WIDTH))
-            inverse, vector = lowest_modes(solve, m_free, start, modes)
+            inverse, vector = lowest_modes(solve, mass, start, modes)
             have = len(inverse)
     if have < modes:
         raise InputError("modes", f"is {modes}, and only {have} motions move mass", f"give at most {have}")
     if not inverse.min() > ZERO * inverse.max():
         raise InputError("stiffness", "is not positive definite", HOLD)
-    basis = np.concatenate([vector, _complement(k_free, m_free, vector, static)], axis=1)
-    inverse, within = _dense(basis.T @ (k_free @ basis), basis.T @ (m_free @ basis))
+    basis = np.concatenate([vector, _complement(stiffness, mass, vector, static)], axis=1)
+    inverse, within = _dense(basis.T @ (stiffness @ basis), basis.T @ (mass @ basis))
     if _moving(inverse) < len(inverse):
         fix = "give the nodes of interfaces mass in every direction, and inertia where they turn"
         raise InputError("mass", "leaves a static answer to forces or moments without mass", fix)
-    shapes, still = np.zeros((loads.shape[0], basis.shape[1])), np.zeros_like(loads)
-    shapes[free], still[free] = basis @ within, static
-    return Reduced(shapes, 1 / inverse, still)
+    return Reduced(basis @ within, 1 / inverse, static)
 
 
 def _dense(stiffness: Floats, mass: Floats) -> tuple[Floats, Floats]:

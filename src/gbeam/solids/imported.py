@@ -250,11 +250,13 @@ class ImportedModel(Value):
         free = (unknowns[:, 1] == OWN) | ~np.isin(unknowns[:, 0], held)
         attached = self._attached(interfaces, named)
         loads = np.concatenate([-(self.mass @ fields), attached], axis=1)
-        reduction = reduce(self.stiffness, self.mass, loads, free, modes)
-        products = (fields.T @ (self.mass @ reduction.shapes)).reshape(3, 4, -1)
-        stress, doubts = _geometric(geometric, reduction.shapes)
-        terms, particles, more = self._terms(reduction.shapes, reduction.squares, products, body, stress)
-        first, turns = self._outputs(list(named.values()), reduction.shapes)
+        reduction = reduce(self.stiffness[free][:, free], self.mass[free][:, free], loads[free], modes)
+        shapes = np.zeros((len(free), len(reduction.squares)))
+        shapes[free] = reduction.shapes
+        products = (fields.T @ (self.mass @ shapes)).reshape(3, 4, -1)
+        stress, doubts = _geometric(geometric, shapes)
+        terms, particles, more = self._terms(shapes, reduction.squares, products, body, stress)
+        first, turns = self._outputs(list(named.values()), shapes)
         return linear_structure(
             terms,
             *particles,

@@ -115,7 +115,7 @@ class Linked:
     """
 
     def __init__(self, mesh: SolidMesh) -> None:
-        from scipy.sparse import coo_array
+        from scipy.sparse import coo_array, eye_array
 
         links, k = mesh.links, len(mesh.points)
         self._links = links
@@ -145,15 +145,17 @@ class Linked:
             tied[each] = True
         alone = np.flatnonzero(~tied)
         moving = [links.moving(name) for name in members]
-        self.free = np.concatenate([np.repeat(~mesh.clamped[alone], 3), *moving])
+        free = np.concatenate([np.repeat(~mesh.clamped[alone], 3), *moving])
         rows, columns, values = (
             [(3 * alone[:, None] + np.arange(3)).ravel()],
             [np.arange(3 * len(alone))],
             [np.ones(3 * len(alone))],
         )
-        self._first = {}
+        every = eye_array(len(free), format="csr")[:, free]
+        self._turns = {}
         for i, (name, each) in enumerate(self.members.items()):
-            self._first[name] = first = 3 * len(alone) + 6 * i
+            first = 3 * len(alone) + 6 * i
+            self._turns[name] = every[first + 3 : first + 6]
             arms = self.points[each] - self._middles[name]
             move = np.concatenate(
                 [np.broadcast_to(np.eye(3), (len(each), 3, 3)), np.einsum("pb,abc->pca", arms, CROSS)], axis=2
@@ -165,8 +167,9 @@ class Linked:
         self.count = k
         self._map = coo_array(
             (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))),
-            shape=(3 * len(points), len(self.free)),
-        ).tocsr()
+            shape=(3 * len(points), len(free)),
+        ).tocsr()[:, free]
+        self._kept = np.flatnonzero(free)
 
     def widened(self, matrix: Any, unknowns: int) -> Any:
         """A matrix of the nodes with rows and columns of the other points; `unknowns` of each."""
@@ -200,38 +203,41 @@ class Linked:
         from scipy.sparse import issparse
 
         if not self.members:
-            return matrix
+            return matrix[self._kept][:, self._kept] if issparse(matrix) else matrix[self._kept]
         left = self._map.T @ matrix
         return left @ self._map if issparse(matrix) else left
 
     def condensed_stiffness(self, matrix: Any) -> Any:
         """A stiffness of all points, with the springs about x, y and z between links."""
-        from scipy.sparse import coo_array
+        from scipy.sparse import diags_array
 
         total = self.condensed(matrix)
         for between, stiffness, _ in self._links.springs.values():
-            turns = [self._first[name] + 3 + np.arange(3) for name in between]
-            for i, row in enumerate(turns):
-                for j, column in enumerate(turns):
-                    values = stiffness[3:] * (1.0 if i == j else -1.0)
-                    total = total + coo_array((values, (row, column)), shape=total.shape).tocsr()
+            turn = self._turns[between[0]]
+            if len(between) > 1:
+                turn = turn - self._turns[between[1]]
+            total = total + turn.T @ diags_array(stiffness[3:]) @ turn
         return total
 
     def displacements(self, unknowns: Floats) -> Floats:
         """Displacements (points, 3, n) by unknowns (u, n)."""
         return np.asarray(self._map @ unknowns).reshape(len(self.points), 3, -1)
 
-    def geometric_stiffness(self, stiffness: Any, still: Floats, loads: Floats, shapes: Floats) -> Floats:
+    def held(self, stiffness: Any) -> list[Any]:
+        """Rows of a stiffness of all points, those of each link."""
+        return [stiffness[(3 * each[:, None] + np.arange(3)).ravel()] for each in self.members.values()]
+
+    def geometric_stiffness(self, held: list[Any], still: Floats, loads: Floats, shapes: Floats) -> Floats:
         """Stiffness (m, n, n) of the forces that hold the points on their links, as these turn by coordinates with
-        shapes (u, n): their work in θ × (θ × r)/2, under loads (points · 3, m) with answers `still` (points, 3, m).
+        shapes (u, n): their work in θ × (θ × r)/2, under loads (points · 3, m) with answers `still` (points, 3, m);
+        `held` are the links' rows of the stiffness.
         """
         total = np.zeros((loads.shape[-1], shapes.shape[-1], shapes.shape[-1]))
-        if not self.members:
-            return total
-        constraint = (stiffness @ still.reshape(loads.shape) - loads).reshape(still.shape)
-        for name, each in self.members.items():
-            turn = shapes[self._first[name] + 3 :][:3]
-            moments = np.einsum("pb,pcm->bcm", self.points[each] - self._middles[name], constraint[each])
+        for (name, each), rows in zip(self.members.items(), held, strict=True):
+            loaded = loads.reshape(still.shape)[each]
+            constraint = (rows @ still.reshape(loads.shape)).reshape(loaded.shape) - loaded
+            turn = self._turns[name] @ shapes
+            moments = np.einsum("pb,pcm->bcm", self.points[each] - self._middles[name], constraint)
             # f · (θ × (ϑ × r)) = (f · ϑ)(θ · r) − (f · r)(θ · ϑ)
             total += np.einsum("bcm,bi,cj->mij", moments, turn, turn) - np.einsum("bbm,ci,cj->mij", moments, turn, turn)
         return (total + total.swapaxes(1, 2)) / 2

@@ -297,21 +297,21 @@ class SolidMesh(Value):
         forces[np.repeat(self.clamped, 3)] = 0.0  # what the clamp takes
         loads = np.concatenate([loads, linked.widened_loads(forces)], axis=1)
         stiffness = linked.elastic(stiffness_matrix(self.points, self.blocks))
+        held, stiffness = linked.held(stiffness), linked.condensed_stiffness(stiffness)
         reduced = reduce(
-            linked.condensed_stiffness(stiffness),
+            stiffness,
             linked.condensed(kron(mass, eye_array(3), format="csr")),
             linked.condensed(loads),
-            linked.free,
             modes,
         )
+        del stiffness
         everywhere, still = (linked.displacements(each) for each in (reduced.shapes, reduced.static))
         shapes = everywhere[:count]
         # Of moments on interfaces the stress is left out.
         pushed = [12 + 6 * i + axis for i in range(len(centres)) for axis in range(3)]
         stressed = [*range(12), *pushed]
         fields = geometric_stiffness(self.points, self.blocks, still[:count, :, stressed], shapes, reduced.squares)
-        fields += linked.geometric_stiffness(stiffness, still[..., stressed], loads[:, stressed], reduced.shapes)
-        del stiffness
+        fields += linked.geometric_stiffness(held, still[..., stressed], loads[:, stressed], reduced.shapes)
         inertial = fields[:12].reshape(3, 4, *fields.shape[1:])
         frequency = np.sqrt(reduced.squares[:modes]) / (2 * np.pi)
         error, doubts = mesh_errors(frequency, coarser)
