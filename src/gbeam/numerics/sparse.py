@@ -6,8 +6,11 @@ equal frequencies as it has columns.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from functools import cache
+from importlib.metadata import PackageNotFoundError, files
 from typing import Any
 
 import numpy as np
@@ -22,8 +25,14 @@ SECONDS = {"Pardiso": 2e-9, "SuperLU": 1e-8}
 MOST = 64e9  # bytes
 
 
+@cache
 def solver() -> str:
     """Name of the solver that is installed."""
+    # Else pypardiso looks for MKL in all that is installed, for a second at its import and for each solver.
+    with suppress(PackageNotFoundError):
+        for file in files("mkl") or ():
+            if "mkl_rt" in file.name:
+                os.environ.setdefault("PYPARDISO_MKL_RT", str(file.locate()))
     try:
         import pypardiso  # noqa: F401
     except (ImportError, OSError):
