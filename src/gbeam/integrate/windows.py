@@ -35,6 +35,7 @@ HALVINGS = 8  # of a correction of a single step
 MOVED = 0.3  # size of a correction after which derivatives are found anew
 FEW = 3  # times, after which a window that is still so far away ends, and up to which the next one may be longer
 SLOW, FAST = 0.3, 0.01  # of the last correction: where one is larger, derivatives are closer, where smaller farther
+CLOSE = 0.03  # of the last correction of accelerations at ends: where one is larger, the mass is found there
 QUICKEST, STALLED = 0.01, 0.9  # factors of corrections: none is thought to be smaller, and where they do not shrink
 LEAST = 4  # steps behind those that have converged, which go on with what they have: at least
 TOLERANCE, ROUNDING = 1e-9, 1e-6  # of the largest acceleration: error left by the last correction, and where it stalls
@@ -179,6 +180,8 @@ class _Window:
             before, size = size, _largest(change)
             if _converged(size, before, qdd, 0.0, stalls=True).all():
                 return q, qd, qdd
+            if not (size < CLOSE * before).all():
+                break
         return q, qd, accelerations(self.residual, q, qd, inputs)
 
     def _at_ends(self, count: int) -> Any:

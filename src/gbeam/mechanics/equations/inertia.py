@@ -90,71 +90,73 @@ class Bodies:
         self, q: Array, qd: Array, qdd: Array, a: Vector, w: Vector, alpha: Vector
     ) -> tuple[Array, Vector, Vector]:
         """Forces, resultant and moment, as of particles."""
-        tangents = self.field.moving(q, qd, qdd)
-        demanded = self._demanded(tangents, a, w, alpha)
+        tangents = self.field.moving(q, qd, qdd, base=(w, alpha))
+        demanded = self._demanded(tangents, a)
         return self.field.pulled(tangents, demanded.force, demanded.moment), demanded.total, demanded.about
 
-    def _demanded(self, tangents: Tangents, a: Vector, w: Vector, alpha: Vector) -> Demanded:
+    def _demanded(self, tangents: Tangents, a: Vector) -> Demanded:
         """Forces and moments at the nodes, and their sums."""
-        relative = _relative(tangents.t, tangents.td, tangents.tdd, w, alpha)
-        force, moment = add(mapped(relative, self.pairs), scaled(self.first, a)), NONE
-        total = add(_summed(scaled(self.first, relative)), scaled(self.mass, _alone(a)))
+        force, moment = add(mapped(tangents.tdd, self.pairs), scaled(self.first, a)), NONE
+        total = add(_weighted(tangents.tdd, self.first), scaled(self.mass, _alone(a)))
         about = _summed(cross(tangents.t, force))
         turn, push = NONE, NONE
         if self.turning is not None:
-            turn = self._turning(tangents, w, alpha)
+            turn = self._turning(tangents)
             on_sections = turn
             if self.aside is not None:
-                aside, lever = self._aside(tangents, relative, a, w, alpha)
+                aside, lever = self._aside(tangents, a)
                 force, on_sections = add(force, mapped(aside, self.field.node_cumulative.T)), add(turn, lever)
                 place = mapped(tangents.t, self.field.node_cumulative)
                 total, about = add(total, _summed(aside)), add(about, _summed(cross(place, aside)))
             moment, about = mapped(on_sections, self.field.node_cumulative.T), add(about, _summed(on_sections))
         if len(self.beside):
-            r, rd, rdd = self.field.carried(tangents)
-            push = scaled(self.beside, add(_relative(r, rd, rdd, w, alpha), a))
+            r, _, rdd = self.field.carried(tangents)
+            push = scaled(self.beside, add(rdd, a))
             along, bent = self.field.at_nodes(tangents, push)
             force, moment = add(force, along), add(moment, bent)
             total, about = add(total, _summed(push)), add(about, _summed(cross(r, push)))
         return Demanded(force, moment, total, about, turn, push)
 
     def slopes(
-        self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array, axes: list[int]
+        self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array, axes: list[int], *, still: bool
     ) -> tuple[Array, Array]:
         """Forces, resultant and moment (..., n + 6), and their derivatives by all arguments, (..., 3 n + 9, n + 6), of
-        ω and α only about some axes.
+        ω and α only about some axes, and not by q and q̇ where these are `still`.
         """
         shape, n = np.broadcast_shapes(*(each.shape[:-1] for each in (q, qd, qdd, a, w, alpha))), self.field.size
         # The last axis are nodes or points, the one before it the columns by q, q̇, q̈, ω and α.
         base, w, alpha = (_components(each[..., None, :]) for each in (a, w, alpha))
-        tangents = self.field.moving(*(each[..., None, :] for each in (q, qd, qdd)))
-        at, columns = self._demanded(tangents, base, w, alpha), self.field.columns(tangents)
-        side, back = _Side.of(shape, n, axes), self.field.node_cumulative.T
+        q, qd, qdd = (each[..., None, :] for each in (q, qd, qdd))
+        tangents = self.field.moving(q, qd, qdd, base=(w, alpha))
+        at, back = self._demanded(tangents, base), self.field.node_cumulative.T
+        fixed = Tangents(tangents.rotation, tangents.t, tangents.arm) if still else tangents
+        columns, side = self.field.columns(fixed), _Side.of(shape, n, axes, still)
         # The root's turn moves t, and turns sections, as a coordinate does.
         moved = side.rows(columns.place[0], cross(UNITS, tangents.t))
-        change = side.changes(columns, tangents.t, tangents.td, w, alpha)
-        by, resultant = _work(mapped(change, self.pairs), moved), _summed(scaled(self.first, change))
-        by_a, mass, swung = _summed(scaled(self.first, moved)), self.mass, cross(columns.place[0], at.force)
+        change = side.changes(columns, tangents.t, tangents.td, w)
+        by, resultant = _work(mapped(change, self.pairs), moved), _weighted(change, self.first)
+        by_a, mass, swung = _weighted(moved, self.first), self.mass, cross(columns.place[0], at.force)
         lever, about = mapped(swung, back), _summed(swung)
         if self.turning is not None:
-            turn = self._turning_changes(tangents, columns, at.turn, side, w, alpha)
+            turn = self._turning_changes(tangents, columns, at.turn, side)
             by = by + _work(turn, side.rows(columns.angle[0], UNITS))
         if len(self.beside):
-            (r, rd, _), points = self.field.carried(tangents), self.field.columns_of_points(tangents, columns)
+            (r, rd, _), points = self.field.carried(tangents), self.field.columns_of_points(fixed, columns)
             moved = side.rows(points.place[0], cross(UNITS, r))
-            change = scaled(self.beside, side.changes(points, r, rd, w, alpha))
+            change = scaled(self.beside, side.changes(points, r, rd, w))
             by, resultant = by + _work(change, moved), add(resultant, _summed(change))
-            by_a, mass = add(by_a, _summed(scaled(self.beside, moved))), mass + self.beside.sum()
+            by_a, mass = add(by_a, _weighted(moved, self.beside)), mass + self.beside.sum()
             arm = cross(cross(points.angle[0], tangents.arm), at.push)
             lever = add(lever, mapped(arm, self.field.cumulative.T))
             about = add(about, _summed(arm))
-        held = add(at.moment, mapped(cross(tangents.t, at.force), back))
-        # What is given to the nodes does other work where these have turned.
-        force, moment = cross(at.force, columns.angle[0]), add(cross(held, columns.angle[0]), lever)
-        by[..., :n, :n] += self.field.inward(tangents, force, moment)
-        by[..., :n, n:] += joined(np, about, (*shape, n))
+        if not still:
+            held = add(at.moment, mapped(cross(tangents.t, at.force), back))
+            # What is given to the nodes does other work where these have turned.
+            force, moment = cross(at.force, columns.angle[0]), add(cross(held, columns.angle[0]), lever)
+            by[..., :n, :n] += self.field.inward(tangents, force, moment)
+            by[..., :n, n:] += joined(np, about, (*shape, n))
         out, turns = np.zeros((*shape, 3 * n + 9, n + 6)), 3 * n + 3 + np.array(axes, dtype=int)
-        motion, rows = np.r_[: 3 * n, turns, turns + 3], np.r_[:n, n + 3 : n + 6]
+        motion, rows = np.r_[2 * n * still : 3 * n, turns, turns + 3], np.r_[:n, n + 3 : n + 6]
         out[..., motion[:, None], rows] = by
         out[..., motion, n : n + 3] = joined(np, resultant, (*shape, len(motion)))
         out[..., 3 * n : 3 * n + 3, rows] = np.moveaxis(joined(np, by_a, (*shape, n + 3)), -1, -2)
@@ -163,19 +165,18 @@ class Bodies:
         value = [along, *(joined(np, each, (*shape, 1)) for each in (at.total, at.about))]
         return concatenated(value)[..., 0, :], out
 
-    def _turning_changes(
-        self, tangents: Tangents, columns: Columns, turn: Vector, side: _Side, w: Vector, alpha: Vector
-    ) -> Vector:
+    def _turning_changes(self, tangents: Tangents, columns: Columns, turn: Vector, side: _Side) -> Vector:
         """Derivatives of the moments of the sections at the nodes, side by side."""
-        (angle, rate, change), inward = columns.angle, tangents.rotation
-        spin, spun = add(tangents.w, w), add(tangents.alpha, alpha, cross(w, tangents.w))
-        by_place = add(rate, cross(angle, tangents.w))
-        faster = add(change, cross(rate, tangents.w), cross(angle, tangents.alpha), cross(w, by_place))
-        by_rate = add(rate, by_place, cross(w, angle))
+        (angle, rate, change), inward, spin = columns.angle, tangents.rotation, tangents.w
+        relative = add(spin, scaled(-1.0, tangents.base[0]))
         # In axes that turn with the sections.
-        spins = side.joined(add(by_place, cross(spin, angle)), angle, NONE, side.units, NONE)
+        spins = side.joined(rate, angle, NONE, side.units, NONE)
         changes = side.joined(
-            add(faster, cross(spun, angle)), by_rate, angle, cross(side.units, tangents.w), side.units
+            add(change, cross(rate, spin)),
+            add(scaled(2.0, rate), cross(angle, spin)),
+            angle,
+            cross(side.units, relative),
+            side.units,
         )
         spin, spins, changes = (turned_back(inward, each) for each in (spin, spins, changes))
         torque = add(
@@ -183,11 +184,10 @@ class Bodies:
         )
         return add(turned(inward, torque), side.joined(cross(angle, turn), NONE, NONE, NONE, NONE))
 
-    def _turning(self, tangents: Tangents, w: Vector, alpha: Vector) -> Vector:
+    def _turning(self, tangents: Tangents) -> Vector:
         """Moments J α + ω × J ω of the sections at the nodes."""
         inward = tangents.rotation
-        rate = turned_back(inward, add(tangents.w, w))
-        change = turned_back(inward, add(tangents.alpha, alpha, cross(w, tangents.w)))
+        rate, change = turned_back(inward, tangents.w), turned_back(inward, tangents.alpha)
         momentum, torque = self._about_axes(rate), self._about_axes(change)
         return turned(inward, add(torque, cross(rate, momentum)))
 
@@ -199,18 +199,15 @@ class Bodies:
         rows = (x, xy, zx), (xy, y, yz), (zx, yz, z)
         return turned(rows, vector)
 
-    def _aside(
-        self, tangents: Tangents, relative: Vector, base: Vector, w: Vector, alpha: Vector
-    ) -> tuple[Vector, Vector]:
+    def _aside(self, tangents: Tangents, base: Vector) -> tuple[Vector, Vector]:
         """Forces of the sections' mass beside the axis, and moments about it of the whole, that the nodes' motion asks
         for.
         """
         assert self.aside is not None
         x, y, z = self.aside
         arm = turned(tangents.rotation, (x, y, z))
-        change = add(tangents.alpha, alpha, cross(w, tangents.w))
-        axis = add(mapped(relative, self.field.node_cumulative), base)
-        return swept(add(tangents.w, w), change, arm), cross(arm, axis)
+        axis = add(mapped(tangents.tdd, self.field.node_cumulative), base)
+        return swept(tangents.w, tangents.alpha, arm), cross(arm, axis)
 
 
 @record
@@ -244,7 +241,8 @@ class Inertia:
             return None
         q, qd, qdd, a, w, alpha = at
         turns = [k for k in range(3) if any(np.imag(each[..., k]).any() for each in motion[4:])]
-        out, slope = self.same.slopes(q, qd, qdd, a, w, alpha, turns)
+        still = not any(map(np.iscomplexobj, motion[:2]))
+        out, slope = self.same.slopes(q, qd, qdd, a, w, alpha, turns, still=still)
         first = 0
         for each in motion:
             size = each.shape[-1]
@@ -279,16 +277,18 @@ class _Side(NamedTuple):
     n: int
     axes: int
     units: Vector
+    still: bool
 
     @classmethod
-    def of(cls, shape: tuple[int, ...], n: int, axes: list[int]) -> _Side:
+    def of(cls, shape: tuple[int, ...], n: int, axes: list[int], still: bool) -> _Side:
         """Columns about axes of the root."""
         x, y, z = (row[axes, None] if k in axes else 0 for k, row in enumerate(np.eye(3)))
-        return cls(shape, n, len(axes), (x, y, z))
+        return cls(shape, n, len(axes), (x, y, z), still)
 
     def joined(self, *parts: Vector) -> Vector:
-        """Columns (..., 3 n + 2 axes, points) by q, q̇, q̈, ω and α."""
-        return self._joined(parts, (self.n,) * 3 + (self.axes,) * 2)
+        """Columns (..., 3 n + 2 axes, points) by q, q̇, q̈, ω and α, without those by q and q̇ where it is `still`."""
+        counts, first = (self.n,) * 3 + (self.axes,) * 2, 2 * self.still
+        return self._joined(parts[first:], counts[first:])
 
     def rows(self, by_coordinate: Vector, by_turn: Vector) -> Vector:
         """Columns (..., n + 3, points) by coordinates and turns of the root about all axes."""
@@ -307,14 +307,13 @@ class _Side(NamedTuple):
         x, y, z = columns
         return x, y, z
 
-    def changes(self, columns: Columns, r: Vector, rd: Vector, w: Vector, alpha: Vector) -> Vector:
-        """Derivatives of α × r + ω × (ω × r) + 2 ω × ṙ + r̈, (..., 3 n + 6, points)."""
+    def changes(self, columns: Columns, r: Vector, rd: Vector, w: Vector) -> Vector:
+        """Derivatives of the acceleration of places r with rates ṙ, on a base with an angular velocity, (..., 3 n + 6,
+        points): ∂r̈/∂q̇ is twice the rate of ∂r/∂q.
+        """
         slope, rate, change = columns.place
-        by_place = add(swept(w, alpha, slope), scaled(2.0, cross(w, rate)), change)
-        by_rate = scaled(2.0, add(cross(w, slope), rate))
-        turn = cross(self.units, r)
-        by_w = add(cross(self.units, cross(w, r)), cross(w, turn), scaled(2.0, cross(self.units, rd)))
-        return self.joined(by_place, by_rate, slope, by_w, turn)
+        by_w = add(scaled(2.0, cross(self.units, rd)), cross(cross(w, self.units), r))
+        return self.joined(change, scaled(2.0, rate), slope, by_w, cross(self.units, r))
 
 
 def _work(forces: Vector, slopes: Vector) -> Array:
@@ -349,6 +348,12 @@ def _common(part: Array, axes: int) -> Array:
 
 def _summed(vectors: Vector) -> Vector:
     x, y, z = (0 if absent(part) else part @ np.ones(part.shape[-1]) for part in vectors)
+    return x, y, z
+
+
+def _weighted(vectors: Vector, weight: Array) -> Vector:
+    """Sums over points with weights (points,)."""
+    x, y, z = (0 if absent(part) else part @ weight for part in vectors)
     return x, y, z
 
 

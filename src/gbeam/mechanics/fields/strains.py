@@ -36,7 +36,6 @@ from gbeam.mechanics.fields.vectors import (
     plus,
     scaled,
     split,
-    swept,
     turned,
     turned_back,
 )
@@ -47,8 +46,8 @@ Array = Any
 
 class Tangents(NamedTuple):
     """Rotations of the nodes' sections and t there, the points' arms from the axis, the rates of t, those of turning Rκ̇
-    and its derivative, the sections' angular velocities and accelerations, and the rotations of the points' sections
-    where they were wanted.
+    and its derivative, the sections' angular velocities and accelerations, the rotations of the points' sections where
+    they were wanted, and the angular velocity and acceleration of the base, which all rates contain.
     """
 
     rotation: Rotation
@@ -61,6 +60,7 @@ class Tangents(NamedTuple):
     w: Vector = NONE
     alpha: Vector = NONE
     at_points: Rotation = UNTURNED
+    base: tuple[Vector, Vector] = (NONE, NONE)
 
 
 class Columns(NamedTuple):
@@ -147,17 +147,22 @@ class StrainField:
         arm = NONE if self.offset is None else turned(at_points, split(self.offset))
         return Tangents(rotation, turned(rotation, strain[:3]), arm, at_points=at_points)
 
-    def moving(self, q: Array, qd: Array, qdd: Array, *, points: bool = False) -> Tangents:
-        """Rotations, t and its rates at the nodes, arms, and rotations at `points`."""
-        rotation, t, arm, *_, at_points = self.tangents(q, points=points)
+    def moving(
+        self, q: Array, qd: Array, qdd: Array, base: tuple[Vector, Vector] = (NONE, NONE), *, points: bool = False
+    ) -> Tangents:
+        """Rotations, t and its rates at the nodes, arms, and rotations at `points`, on a base with an angular velocity
+        and acceleration.
+        """
+        still = self.tangents(q, points=points)
+        rotation, t = still.rotation, still.t
         rate, change = (tuple(self.sums(x)) for x in (qd, qdd))
         stretching, turn = turned(rotation, rate[:3]), turned(rotation, rate[3:])
-        w = mapped(turn, self.node_cumulative)
+        w = add(base[0], mapped(turn, self.node_cumulative))
         turnd = add(turned(rotation, change[3:]), cross(w, turn))
-        alpha = mapped(turnd, self.node_cumulative)
+        alpha = add(base[1], mapped(turnd, self.node_cumulative))
         td = add(cross(w, t), stretching)
-        tdd = add(swept(w, alpha, t), scaled(2.0, cross(w, stretching)), turned(rotation, change[:3]))
-        return Tangents(rotation, t, arm, td, tdd, turn, turnd, w, alpha, at_points)
+        tdd = add(cross(alpha, t), cross(w, add(td, stretching)), turned(rotation, change[:3]))
+        return Tangents(rotation, t, still.arm, td, tdd, turn, turnd, w, alpha, still.at_points, base)
 
     def components(self, q: Array, qd: Array, qdd: Array) -> tuple[Vector, Vector, Vector]:
         """Places, velocities and accelerations of the points relative to the base axes, by components (..., p)."""
@@ -168,9 +173,14 @@ class StrainField:
         r, rd, rdd = (mapped(each, self.cumulative) for each in (tangents.t, tangents.td, tangents.tdd))
         if self.offset is None:
             return r, rd, rdd
-        arm, w = tangents.arm, mapped(tangents.turn, self.cumulative)
-        alpha = mapped(tangents.turnd, self.cumulative)
-        return add(r, arm), add(rd, cross(w, arm)), add(rdd, swept(w, alpha, arm))
+        arm, swung, more = self._arms(tangents)
+        return add(r, arm), add(rd, swung), add(rdd, more)
+
+    def _arms(self, tangents: Tangents) -> tuple[Vector, Vector, Vector]:
+        """Arms of points off the axis with their rates."""
+        turns = zip(tangents.base, (tangents.turn, tangents.turnd), strict=True)
+        w, alpha = (add(base, mapped(turn, self.cumulative)) for base, turn in turns)
+        return _carried(tangents.arm, w, alpha)
 
     def paths(self, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array, Array]:
         """Places, velocities and accelerations of the points relative to the base axes, (..., p, 3) each."""
@@ -259,7 +269,8 @@ class StrainField:
         nodes.
         """
         shapes: Any = tuple(part.T if shaped else 0 for part, shaped in zip(self.strains, self.shaped, strict=True))
-        strain, turn = (_carried(turned(tangents.rotation, part), tangents) for part in (shapes[:3], shapes[3:]))
+        fixed = (turned(tangents.rotation, part) for part in (shapes[:3], shapes[3:]))
+        strain, turn = (_carried(each, tangents.w, tangents.alpha) for each in fixed)
         angle = mapped_rates(turn, self.node_cumulative)
         swung = cross_rates(angle, (tangents.t, tangents.td, tangents.tdd))
         return Columns(added_rates(swung, strain), angle, turn)
@@ -269,9 +280,8 @@ class StrainField:
         place, angle = (mapped_rates(each, self.cumulative) for each in (columns.place, columns.turn))
         if self.offset is None:
             return Columns(place, angle, columns.turn)
-        w, alpha = (mapped(each, self.cumulative) for each in (tangents.turn, tangents.turnd))
-        arm = tangents.arm, cross(w, tangents.arm), swept(w, alpha, tangents.arm)
-        return Columns(added_rates(place, cross_rates(angle, arm)), angle, columns.turn)
+        swung = cross_rates(angle, self._arms(tangents))
+        return Columns(added_rates(place, swung), angle, columns.turn)
 
     def slopes(self, q: Array) -> Array:
         """∂r/∂q of the points at coordinates (..., n), (..., p, 3, n)."""
@@ -341,9 +351,10 @@ class StrainField:
         return Places(self.positions(q), slopes, second), rotation, Turns(turn, xp.stack(columns, axis=2))
 
 
-def _carried(vector: Vector, tangents: Tangents) -> tuple[Vector, Vector, Vector]:
-    """Vectors fixed to the nodes' sections, with their rates."""
-    return vector, cross(tangents.w, vector), swept(tangents.w, tangents.alpha, vector)
+def _carried(vector: Vector, w: Vector, alpha: Vector) -> tuple[Vector, Vector, Vector]:
+    """Vectors that turn with an angular velocity and acceleration, with their rates."""
+    rate = cross(w, vector)
+    return vector, rate, add(cross(alpha, vector), cross(w, rate))
 
 
 def cross_rates(angle: Any, arm: Any) -> tuple[Vector, Vector, Vector]:
