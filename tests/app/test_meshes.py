@@ -83,21 +83,25 @@ SQUARE = [[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
 @pytest.mark.parametrize(
     ("name", "content", "said"),
     [
-        ("flat.msh", None, "has no solid elements: 2 of kind triangle"),
         ("empty.inp", b"", "has no solid elements"),
         ("bad.vtk", b"nothing of the kind\n", "cannot be read"),
         ("part.step", b"ISO-10303-21;\n", "cannot be read"),
     ],
 )
 def test_what_is_no_mesh_of_a_solid_is_refused(
-    site: Site, tmp_path: Path, name: str, content: bytes | None, said: str
+    site: Site, tmp_path: Path, name: str, content: bytes, said: str
 ) -> None:
-    if content is None:
-        file = tmp_path / name
-        meshio.write(file, meshio.Mesh(SQUARE, {"triangle": [[0, 1, 2], [0, 2, 3]]}), file_format="gmsh")
-        content = file.read_bytes()
     answer = _dropped(site, name, content)
     assert answer.status_code == 422 and said in answer.json()["errors"][0]["message"]
+
+
+def test_a_mesh_of_shells_is_a_thin_sheet(site: Site, tmp_path: Path) -> None:
+    mesh = meshio.Mesh(SQUARE, {"triangle": [[0, 1, 2], [0, 2, 3]]}, point_sets={"edge": np.array([0, 1])})
+    meshio.write(tmp_path / "flat.inp", mesh)
+    skin = _dropped(site, "flat.inp", (tmp_path / "flat.inp").read_bytes()).json()["skin"]
+    assert len(skin["vertices"]) == 3 * 8 and len(skin["triangles"]) == 3 * 12
+    (edge,) = (each for each in skin["groups"] if each["name"] == "edge")
+    assert edge["nodes"] == 2 and len(edge["vertices"]) == 4
 
 
 def test_a_group_that_only_a_number_names_and_a_set_of_nodes(site: Site, tmp_path: Path) -> None:

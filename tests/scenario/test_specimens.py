@@ -13,6 +13,7 @@ import gbeam as gb
 from gbeam.errors import InputError
 from gbeam.scenario import ScenarioError
 from tests.solids.bodies import block
+from tests.solids.test_shells import sheet
 
 BODY = """
 [bodies.arm]
@@ -157,6 +158,9 @@ def test_matrices_of_files_are_a_specimen(folder: Path) -> None:
         ("modes = 4", "modes = 4\nscale = [1, 1, 0]", "bodies.arm.scale[2]", "zero"),
         (", poissons_ratio = 0.3", "", "bodies.arm.material.poissons_ratio", "missing"),
         ("material = {", "materials.a = {", "bodies.arm.materials.a", "no group"),
+        ("modes = 4", 'modes = 4\nthickness = "2 mm"', "bodies.arm.thickness", "solid elements too"),
+        ("modes = 4", 'modes = 4\nthicknesses.lid = "2 mm"', "bodies.arm.thicknesses.lid", "no group"),
+        ("modes = 4", "modes = 4\nthickness = 1\nthicknesses.a = 1", "bodies.arm.thicknesses", "beside"),
         ('mesh = "arm.inp"', 'kind = "shell"\nmesh = "arm.inp"', "bodies.arm.kind", "unknown choice"),
     ],
 )  # fmt: skip
@@ -220,3 +224,24 @@ def test_thickness_and_material_are_swept(folder: Path) -> None:
     values = next(iter(sweep.measures.values()))
     assert values[1, 0] / values[0, 0] == pytest.approx(1.1, rel=1e-2)
     assert values[0, 1] / values[0, 0] == pytest.approx(np.sqrt(1.1), rel=1e-6)
+
+
+def test_a_board_of_shells_is_swept_over_its_thickness(folder: Path) -> None:
+    """Half the thickness at half the frequency; with a second mesh the error of the first one is known."""
+    for name, cells in (("arm.msh", (12, 2)), ("coarse.msh", (6, 1))):
+        mesh = sheet("quad", cells, (0.2, 0.02))
+        wall = np.isin(mesh.cells[0].data, mesh.point_sets.pop("wall")).any(axis=1)
+        mesh.cell_data["gmsh:physical"] = [np.where(wall, 2, 1)]
+        mesh.cell_data["gmsh:geometrical"] = [np.ones(len(wall), dtype=int)]
+        mesh.field_data = {"free": np.array([1, 2]), "wall": np.array([2, 2])}
+        meshio.write(folder / name, mesh, file_format="gmsh22", binary=False)
+    text = BODY.replace("arm.inp", "arm.msh") + 'coarser = "coarse.msh"\nthickness = "2 mm"\n' + FLIGHT
+    case = case_of(folder, text)
+    assert isinstance(case, gb.SpecimenCase)
+    study = gb.study(case)
+    assert study.responses["turn"].solid is not None and study.responses["turn"].surface is not None
+    sweep = gb.sweep(
+        folder / "scenario.toml", {"bodies.arm.thickness": ["1 mm", "2 mm"]}, ["modes[0].frequency"], verb="modes"
+    )
+    (values,) = sweep.measures.values()
+    assert values[1] / values[0] == pytest.approx(2.0, rel=5e-3)

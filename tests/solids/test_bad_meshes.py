@@ -57,7 +57,7 @@ def endless() -> meshio.Mesh:
 
 
 BAD: list[tuple[Callable[[], Any], dict[str, Any], str]] = [
-    (triangles, {}, r"mesh has no solid elements: 1 of kind triangle; mesh the volume"),
+    (triangles, {}, r"mesh has no solid elements: 1 of kind triangle; give thickness, for shells, or mesh the volume"),
     (pyramids, {}, r"mesh has 1 elements of kind pyramid; use tetra, tetra10"),
     (inverted, {}, r"mesh has 1 elements turned inside out or folded: 2; mesh it again"),
     (folded, {}, r"mesh has 1 elements turned inside out or folded: 2;"),

@@ -13,7 +13,7 @@ import gbeam as gb
 from gbeam.solids.elements import stiffness_matrix
 from gbeam.solids.links import WAYS, Linked
 
-from .bodies import STIFF, block
+from .bodies import STIFF, block, solid
 
 L, H = 0.2, 0.01
 GROUPS = {"end": lambda x: np.isclose(x[:, 0], L), "inner": lambda x: np.isclose(x[:, 0], L / 2)}
@@ -197,3 +197,19 @@ def test_what_springs_do_not_hold_is_refused() -> None:
     springs = {"s": {"between": ["face"], "stiffness": {"x": 1e3}}}
     with pytest.raises(gb.InputError, match=r"stiffness is (singular|not positive definite); hold the structure"):
         strip(clamp=[], links={"face": "end"}, springs=springs).reduced(modes=2, damping_ratio=0)
+
+
+def test_a_weight_beside_the_axis_of_a_spinning_bar_is_that_of_a_tree() -> None:
+    """The load bends the bar, and the forces of vibration on the arm of the weight turn with it: to first order."""
+    bar = gb.Section.rectangle(0.02, 0.01)
+    mesh = block("hexahedron27", (8, 4, 2), (0.3, 0.02, 0.01), groups={"end": lambda x: x[:, 0] > 0.3 - 1e-9})
+    weight = gb.RigidBody(2.0, (2e-3, 2e-3, 2e-3), centre=(0, 0, 0.04))
+    model = solid(mesh, STIFF, links={"end": "end"}, carried={"end": weight}).reduced(modes=6, damping_ratio=0)
+    beam = gb.assemble(gb.Beam(0.3, bar, STIFF, damping_ratio=0.0), "exact", axial=1, z=5, y=4, twist=3)
+    joints = {"wall": gb.Joint("fixed", "bar"), "end": gb.Joint("fixed", "weight", on="bar.tip")}
+    system = gb.System({"bar": beam, "weight": weight}, joints)
+    shift = []
+    for each in (model.structure, system):
+        still, spun = (gb.modes(each, gb.Hub(radius=0.2, rate=rate)).frequency[:2] ** 2 for rate in (0.0, 5.0))
+        shift.append(spun - still)
+    np.testing.assert_allclose(shift[0], shift[1], rtol=0.01)

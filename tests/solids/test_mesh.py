@@ -14,13 +14,15 @@ from scipy.spatial.transform import Rotation
 
 import gbeam as gb
 from gbeam.motion import constant
-from gbeam.solids.elements import KINDS, STRAIN, chunks, mass_matrix, stiffness_matrix
+from gbeam.solids.elements import STRAIN, chunks, mass_matrix, stiffness_matrix
+from gbeam.solids.shape_functions import KINDS
 
 from .bodies import PAIRS, STEEL, STIFF, block, solid
 
 L, B, H = 1.0, 0.02, 0.01
 STRIP = STIFF.density * B * H, STIFF.youngs_modulus * B * H**3 / 12  # kg/m, N m²
-QUADRATIC = [kind for kind, each in KINDS.items() if not each.linear]
+SOLIDS = [kind for kind, each in KINDS.items() if not each.shell]
+QUADRATIC = [kind for kind in SOLIDS if not KINDS[kind].linear]
 
 
 @cache
@@ -69,7 +71,7 @@ def test_a_bar_has_the_frequencies_of_closed_form() -> None:
     assert np.abs(2 * np.pi * bar.frequency / torsion - 1).min() < 5e-3  # the wall keeps its section plane
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", SOLIDS)
 def test_any_block_weighs_what_it_is(kind: str) -> None:
     """Mass, centre and moments of a box whose inside is meshed at random, also of its particles."""
     rng = np.random.default_rng(len(kind))
@@ -241,11 +243,11 @@ def test_a_mesh_comes_back_from_files(tmp_path: Path, name: str) -> None:
 def energy(mesh: gb.SolidMesh, moved: np.ndarray) -> float:
     """Strain energy of displacements (k, 3) with Green's strain."""
     total = 0.0
-    for part, which, volume, gradients, _ in chunks(mesh.points, mesh.blocks, "stiffness"):
-        slopes = np.einsum("eqkd,ekc->eqcd", gradients, moved[part.nodes[which]])
+    for part in chunks(mesh.points, mesh.blocks, "stiffness"):
+        slopes = np.einsum("eqkd,ekc->eqcd", part.gradients, moved[part.nodes])
         green = slopes + np.einsum("eqca,eqcd->eqad", slopes, slopes) / 2
         strain = np.einsum("vcd,eqcd->eqv", STRAIN, green)
-        total += 0.5 * np.einsum("eq,eqv,vw,eqw->", volume, strain, part.elasticity, strain)
+        total += 0.5 * np.einsum("eq,eqv,vw,eqw->", part.volume, strain, part.elasticity, strain)
     return total
 
 

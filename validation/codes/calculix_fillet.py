@@ -21,7 +21,8 @@ import numpy as np
 
 import gbeam as gb
 from gbeam.constants import STANDARD_GRAVITY as G
-from gbeam.solids.elements import KINDS, chunks, reference, shape_functions, stress_at
+from gbeam.solids.elements import chunks
+from gbeam.solids.shape_functions import KINDS, reference, shape_functions
 from gbeam.solids.stress import NodalStress, von_mises
 from validation.codes.calculix_solid import SMALL, Specimen, run
 from validation.codes.calculix_specimens import STEEL, grid, held
@@ -71,10 +72,9 @@ def fitted(model: gb.SolidModel, q: np.ndarray) -> np.ndarray:
     powers = np.array([each for each in product(range(3), repeat=3) if each.count(2) <= 1])  # of serendipity
     places = [shape_functions("hexahedron20", KINDS["hexahedron20"].stiffness)[0], reference("hexahedron20")]
     points, nodes = (np.prod(each[:, None] ** powers, axis=-1) for each in places)
-    for block, part, _, gradients, _ in chunks(mesh.points, mesh.blocks, "stiffness"):
-        stress = stress_at(block, block.nodes[part], gradients, moved)[..., 0]
-        np.add.at(total, block.nodes[part], nodes @ np.linalg.pinv(points) @ stress)
-        np.add.at(shared, block.nodes[part], 1)
+    for part in chunks(mesh.points, mesh.blocks, "stiffness"):
+        np.add.at(total, part.nodes, nodes @ np.linalg.pinv(points) @ part.stress(moved)[..., 0])
+        np.add.at(shared, part.nodes, 1)
     return total / shared[:, None]
 
 

@@ -17,7 +17,7 @@ import numpy as np
 
 import gbeam as gb
 from gbeam.motion.bases.base import gradients
-from gbeam.solids.elements import chunks, mass_matrix, stress_at
+from gbeam.solids.elements import chunks, mass_matrix
 from gbeam.solids.stress import von_mises
 from validation.codes.calculix_solid import DAMPING, SMALL, moved, solid
 from validation.table import Row
@@ -103,11 +103,10 @@ def compared(
 def points_of(model: gb.SolidModel, q: np.ndarray, chosen: int | None = None) -> np.ndarray:
     """Von Mises stress (e, points, t) Pa in all elements, or in one, at coordinates (t, n)."""
     parts, first = [], 0
-    for block, part, _, gradients_, _ in chunks(model.mesh.points, model.mesh.blocks, "stiffness"):
-        here = np.arange(len(block.nodes[part]))
-        here = here if chosen is None else here[here + first == chosen]
-        first += len(block.nodes[part])
-        if len(here):
-            stress = stress_at(block, block.nodes[part][here], gradients_[here], model.shapes)
-            parts.append(von_mises(np.moveaxis(stress @ q.T, 2, -1)))
+    for part in chunks(model.mesh.points, model.mesh.blocks, "stiffness"):
+        which = np.arange(len(part.nodes))
+        which = which if chosen is None else which[which + first == chosen]
+        first += len(part.nodes)
+        if len(which):
+            parts.append(von_mises(np.moveaxis(part.of(which).stress(model.shapes) @ q.T, 2, -1)))
     return np.concatenate(parts)

@@ -46,6 +46,7 @@ def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure
                 materials=given,
                 clamp=table.clamp,
                 unit=table.unit,
+                thickness=table.thicknesses or table.thickness,
                 element_size=size,
                 points=points,
                 point_masses=table.masses,
@@ -61,6 +62,7 @@ def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure
         except InputError as error:  # the scenario's own names of what Python calls otherwise
             one = error.where.replace("point_masses", "masses")
             renamed = one.replace("materials", "material", 1) if table.material is not None else one
+            renamed = renamed.replace("thickness", "thicknesses", 1) if table.thicknesses else renamed
             raise InputError(renamed, error.problem, error.fix) from None
 
     def reduced(file: str, size: float | None, coarser: SolidModel | None = None) -> SolidModel:

@@ -13,10 +13,10 @@ import numpy as np
 from gbeam.errors import InputError
 from gbeam.mechanics.tree.system import RigidBody
 from gbeam.numerics.eigen import Floats
-from gbeam.solids.elements import Indices
 from gbeam.solids.foreign import abaqus_keywords, ending_of
 from gbeam.solids.interfaces import coupling
 from gbeam.solids.links import Links
+from gbeam.solids.shape_functions import Indices
 
 NASTRAN, ABAQUS = (".bdf", ".fem", ".nas"), (".inp",)
 APART = 1e-6  # of the size of a mesh: nodes that are farther apart are not one place

@@ -7,18 +7,20 @@ import io
 import os
 import re
 from collections import Counter
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from gbeam.errors import InputError
+from gbeam.guards.checks import positive
 from gbeam.guards.limits import BINARY_BYTES, refuse_large_file
 from gbeam.guards.units import UnitError, quantity
 from gbeam.printable import shortened
-from gbeam.solids.elements import KINDS, Indices
+from gbeam.results.result import Floats
+from gbeam.solids.shape_functions import KINDS, Indices
 
 _INTERNAL = "gmsh:"  # begins the names of sets that nobody gave
 _ENTITIES = "gmsh:geometrical"
@@ -38,6 +40,7 @@ _POINTWISE = re.compile(
     r"^\*ELEMENT *,(?=[^\n]*TYPE *= *(?:MASS|ROTARYI|SPRING[12A])\b)[^\n]*\n(?:(?!\*)[^\n]*(?:\n|$))*", re.M | re.I
 )
 _SCALAR = re.compile(r"^CELAS[1-4]\b[^\n]*\n(?:\*[^\n]*\n)*", re.MULTILINE)
+THICKNESS = ("PSHELL", "SHELL SECTION")
 _UNREAD = {".bdf": _SCALAR, ".fem": _SCALAR, ".nas": _SCALAR, ".inp": _POINTWISE}  # elements that stop meshio
 _WORDS = {".bdf": _NASTRAN, ".fem": _NASTRAN, ".nas": _NASTRAN, ".inp": _ABAQUS}
 
@@ -128,20 +131,76 @@ def _text(source: Any) -> str:
     return Path(source).read_text(encoding="utf-8", errors="replace")
 
 
-def solid_blocks(mesh: Any) -> list[int]:
-    """Numbers of the blocks of solid elements; an InputError where there are none, or some of another kind."""
+class Elements(NamedTuple):
+    """Elements of one block of a mesh: the number of the block, which of it, their kind, their nodes (e, k), and, of
+    shells, their thicknesses (e,), m.
+    """
+
+    block: int
+    which: Indices
+    kind: str
+    nodes: Indices
+    thickness: Floats | None
+
+
+def elements_of(mesh: Any, thickness: float | Mapping[str, float] | None) -> list[Elements]:
+    """Elements that are computed, solids and those of surfaces with a thickness; an InputError where there are none, or
+    some of another kind.
+    """
     counts: Counter[str] = Counter()
     for block in mesh.cells:
         counts[block.type] += len(block.data)
-    solids = [i for i, block in enumerate(mesh.cells) if block.dim == 3 and len(block.data)]
-    if not solids:
-        listed = ", ".join(f"{n} of kind {kind}" for kind, n in counts.items() if n) or "none at all"
-        raise InputError("mesh", f"has no solid elements: {listed}", "mesh the volume, not its surface")
-    for i in solids:
-        kind = mesh.cells[i].type
+    listed = ", ".join(f"{n} of kind {kind}" for kind, n in counts.items() if n) or "none at all"
+    dims = [block.dim if len(block.data) else 0 for block in mesh.cells]
+    if 3 not in dims and (thickness is None or 2 not in dims):
+        fix = "give thickness, for shells, or mesh the volume" if 2 in dims else "mesh the volume, not its surface"
+        raise InputError("mesh", f"has no solid elements: {listed}", fix)
+    if 3 in dims and thickness is not None and not isinstance(thickness, Mapping):
+        fix = 'give it by group, such as { board = "1.6 mm" }: other surfaces only name groups'
+        raise InputError("thickness", "is one, in a mesh that has solid elements too", fix)
+    flat = [i for i, dim in enumerate(dims) if dim == 2]
+    chosen: list[tuple[int, Indices, Floats | None]] = []
+    for i, owner in assigned(mesh, "thickness", thickness, flat).items() if thickness is not None else ():
+        named = thickness if isinstance(thickness, Mapping) else {"": thickness}
+        values = [positive(f"thickness.{name}".rstrip("."), each, "m") for name, each in named.items()]
+        which = np.flatnonzero(owner >= 0)
+        if len(which) < len(owner) and 3 not in dims:
+            fix = "name the groups of all elements"
+            raise InputError("thickness", f"gives {len(owner) - len(which)} elements none", fix)
+        if len(which):
+            chosen.append((i, which, np.array(values, dtype=float)[owner[which]]))
+    chosen += [(i, np.arange(len(mesh.cells[i].data)), None) for i, dim in enumerate(dims) if dim == 3]
+    elements = []
+    for i, which, thick in chosen:
+        kind, nodes = mesh.cells[i].type, np.asarray(mesh.cells[i].data)[which]
+        if kind == "quad9":  # whose middle is left out
+            kind, nodes = "quad8", nodes[:, :8]
         if kind not in KINDS:
-            raise InputError("mesh", f"has {counts[kind]} elements of kind {kind}", f"use {', '.join(KINDS)}")
-    return solids
+            known = ", ".join(each for each in KINDS if (KINDS[each].shell > 0) == (thick is not None))
+            raise InputError("mesh", f"has {counts[kind]} elements of kind {kind}", f"use {known}")
+        elements.append(Elements(i, which, kind, nodes, thick))
+    return elements
+
+
+def assigned(mesh: Any, where: str, values: Any, blocks: Iterable[int]) -> dict[int, Indices]:
+    """Number of the one of some values by group, or of a single one, that each element of blocks has, -1 where it has
+    none.
+    """
+    owner = {i: np.full(len(mesh.cells[i].data), -1 if isinstance(values, Mapping) else 0) for i in blocks}
+    if not isinstance(values, Mapping):
+        return owner
+    for number, name in enumerate(values):
+        chosen = elements_in(mesh, name)
+        if chosen is None:
+            raise no_group(mesh, f"{where}.{name}", name)
+        for i, each in owner.items():
+            taken = each[chosen[i]]
+            if (taken >= 0).any():
+                both = f"{list(values)[taken.max()]!r} and {name!r}"
+                verb = "gives" if where == "thickness" else "give"
+                raise InputError(where, f"{verb} {(taken >= 0).sum()} elements two: {both}", "give each one")
+            each[chosen[i]] = number
+    return owner
 
 
 def group_names(mesh: Any) -> list[str]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.numerics.eigen import Floats
-from gbeam.solids.elements import Indices
+from gbeam.solids.shape_functions import Indices
 from gbeam.structure.attachments import checked_name
 
 FLAT = 1e-9  # of the largest second moment: nodes on a line

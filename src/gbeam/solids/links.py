@@ -12,13 +12,16 @@ from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.checks import positive
 from gbeam.results.result import Floats
-from gbeam.solids.elements import Indices
+from gbeam.solids.elements import near
 from gbeam.solids.interfaces import coupling
+from gbeam.solids.shape_functions import Indices
 
 if TYPE_CHECKING:
+    from gbeam.mechanics.reduction import Reduced
     from gbeam.mechanics.tree.system import RigidBody
     from gbeam.solids.mesh import SolidMesh
 
+ON_A_LINE = 1e-8  # of the largest second moment: a link that turns about its line moves nothing
 WAYS = ("x", "y", "z", "rx", "ry", "rz")
 CROSS = np.zeros((3, 3, 3))  # θ × r = θ_a r_b CROSS[a, b]
 for _a, _b, _c in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
@@ -111,19 +114,22 @@ class Links(Value):
 
 class Linked:
     """Points of a mesh, of its bodies and of the ends of springs, by the independent unknowns: the displacements of
-    free nodes, and one displacement and rotation of each link.
+    free nodes, and one displacement and rotation of each link; a node of a shell is a link of its points, which does
+    not turn about the line on which they are.
     """
 
     def __init__(self, mesh: SolidMesh) -> None:
         from scipy.sparse import coo_array, eye_array
 
-        links, k = mesh.links, len(mesh.points)
-        self._links = links
+        links, self.count = mesh.links, len(mesh.points)
+        self._links, self._number = links, {name: i for i, name in enumerate(links.nodes)}
         members = {name: list(nodes) for name, nodes in links.nodes.items()}
-        self._middles = {
-            name: links.places[name] if name in links.places else mesh.points[nodes].mean(axis=0)
-            for name, nodes in links.nodes.items()
-        }
+        named = np.array(
+            [
+                links.places[name] if name in links.places else mesh.points[nodes].mean(axis=0)
+                for name, nodes in links.nodes.items()
+            ]
+        ).reshape(-1, 3)
         points, masses, self._ends = [*mesh.points], [*mesh.point_masses], list[tuple[int, ...]]()
 
         def add(name: str, place: Floats, mass: float) -> int:
@@ -134,42 +140,55 @@ class Linked:
 
         for name, body in links.bodies.items():
             for place, mass in zip(*_particles(body), strict=True):
-                add(name, self._middles[name] + place, mass)
+                add(name, named[self._number[name]] + place, mass)
         for between, _, at in links.springs.values():
-            place = self._middles[between[0]] if at is None else at
+            place = named[self._number[between[0]]] if at is None else at
             self._ends.append(tuple(add(name, place, 0.0) for name in between))
         self.points, self.masses = np.array(points), np.array(masses)
-        self.members = {name: np.array(each) for name, each in members.items()}
-        tied = np.zeros(len(points), dtype=bool)
-        for each in self.members.values():
-            tied[each] = True
-        alone = np.flatnonzero(~tied)
-        moving = [links.moving(name) for name in members]
-        free = np.concatenate([np.repeat(~mesh.clamped[alone], 3), *moving])
-        rows, columns, values = (
-            [(3 * alone[:, None] + np.arange(3)).ravel()],
-            [np.arange(3 * len(alone))],
-            [np.ones(3 * len(alone))],
-        )
-        every = eye_array(len(free), format="csr")[:, free]
-        self._turns = {}
-        for i, (name, each) in enumerate(self.members.items()):
-            first = 3 * len(alone) + 6 * i
-            self._turns[name] = every[first + 3 : first + 6]
-            arms = self.points[each] - self._middles[name]
-            move = np.concatenate(
-                [np.broadcast_to(np.eye(3), (len(each), 3, 3)), np.einsum("pb,abc->pca", arms, CROSS)], axis=2
-            )
-            row = np.broadcast_to((3 * each[:, None] + np.arange(3))[..., None], move.shape)
-            rows.append(row.ravel())
-            columns.append(np.broadcast_to(first + np.arange(6), move.shape).ravel())
-            values.append(move.ravel())
-        self.count = k
+        of_link = np.full(len(points), -1)
+        for name, each in members.items():
+            of_link[each] = self._number[name]
+        _, node, shared = np.unique(mesh.numbers, return_inverse=True, return_counts=True)
+        of_shell = (shared[node] > 1) & ~mesh.clamped & (of_link[: self.count] < 0)
+        within = np.unique(node[of_shell], return_inverse=True)[1]
+        of_link[np.flatnonzero(of_shell)] = len(named) + within
+        self._tied = np.flatnonzero(of_link >= 0)
+        self._of = of = of_link[self._tied]
+        count = np.bincount(of, minlength=len(named))
+        sums = [np.bincount(of, at, minlength=len(named)) for at in self.points[self._tied].T]
+        middles = np.stack(sums, axis=1) / np.maximum(count, 1)[:, None]
+        middles[: len(named)] = named
+        self._arms = self.points[self._tied] - middles[of]
+        self._axes, turning = np.tile(np.eye(3), (len(middles), 1, 1)), np.ones((len(middles), 3), dtype=bool)
+        second = np.zeros((len(middles), 3, 3))
+        np.add.at(second, of, self._arms[:, :, None] * self._arms[:, None])
+        size, axes = np.linalg.eigh(second[len(named) :])
+        self._axes[len(named) :], turning[len(named) :, 2] = axes, size[:, 1] > ON_A_LINE * size[:, 2]
+        alone, moving = np.flatnonzero(of_link < 0), [links.moving(name) for name in members]
+        of_shells = np.ones(int((3 + turning[len(named) :].sum(axis=1)).sum()), dtype=bool)
+        free = np.concatenate([np.repeat(~mesh.clamped[alone], 3), *moving, of_shells])
+        unknown = np.concatenate([np.ones_like(turning), turning], axis=1)
+        numbers = np.where(unknown, 3 * len(alone) + np.cumsum(unknown).reshape(unknown.shape) - 1, -1)
+        move = np.concatenate([np.tile(np.eye(3), (len(of), 1, 1)), self._about(self._arms)], axis=2)
+        used = np.broadcast_to((numbers[of] >= 0)[:, None], move.shape)
+        row = np.broadcast_to((3 * self._tied[:, None] + np.arange(3))[..., None], move.shape)[used]
+        column = np.broadcast_to(numbers[of][:, None], move.shape)[used]
+        alike = (3 * alone[:, None] + np.arange(3)).ravel()
         self._map = coo_array(
-            (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))),
+            (
+                np.concatenate([np.ones(len(alike)), move[used]]),
+                (np.concatenate([alike, row]), np.concatenate([np.arange(len(alike)), column])),
+            ),
             shape=(3 * len(points), len(free)),
         ).tocsr()[:, free]
         self._kept = np.flatnonzero(free)
+        self._unknown = np.where((numbers >= 0) & free[numbers], np.cumsum(free)[numbers] - 1, -1)
+        every = eye_array(len(free), format="csr")[:, free]
+        self._turns = {name: every[numbers[i, 3:]] for name, i in self._number.items()}
+
+    def _about(self, arms: Floats) -> Floats:
+        """Displacements (p, 3, 3) of tied points by turns about the axes of their links, in columns."""
+        return np.einsum("pai,pb,abc->pci", self._axes[self._of], arms, CROSS, optimize=True)
 
     def widened(self, matrix: Any, unknowns: int) -> Any:
         """A matrix of the nodes with rows and columns of the other points; `unknowns` of each."""
@@ -202,7 +221,7 @@ class Linked:
         """A matrix or loads of all points by the independent unknowns."""
         from scipy.sparse import issparse
 
-        if not self.members:
+        if not len(self._tied):
             return matrix[self._kept][:, self._kept] if issparse(matrix) else matrix[self._kept]
         left = self._map.T @ matrix
         return left @ self._map if issparse(matrix) else left
@@ -223,24 +242,53 @@ class Linked:
         """Displacements (points, 3, n) by unknowns (u, n)."""
         return np.asarray(self._map @ unknowns).reshape(len(self.points), 3, -1)
 
-    def held(self, stiffness: Any) -> list[Any]:
-        """Rows of a stiffness of all points, those of each link."""
-        return [stiffness[(3 * each[:, None] + np.arange(3)).ravel()] for each in self.members.values()]
+    @property
+    def _rows(self) -> Indices:
+        """Rows of the tied points in matrices of all."""
+        return np.asarray((3 * self._tied[:, None] + np.arange(3)).ravel())
 
-    def geometric_stiffness(self, held: list[Any], still: Floats, loads: Floats, shapes: Floats) -> Floats:
-        """Stiffness (m, n, n) of the forces that hold the points on their links, as these turn by coordinates with
-        shapes (u, n): their work in θ × (θ × r)/2, under loads (points · 3, m) with answers `still` (points, 3, m);
-        `held` are the links' rows of the stiffness.
+    def held(self, stiffness: Any) -> Any:
+        """Rows of a stiffness of all points, those of the tied ones."""
+        return stiffness[self._rows]
+
+    def geometric_stiffness(self, held: Any, mass: Any, loads: Floats, static: Floats, reduced: Reduced) -> Floats:
+        """Stiffness (m, n, n) of the forces that hold the points on their links, as these turn: their work in
+        θ × (θ × r)/2, under loads (points · 3, m) with answers `static` (u, m), by the coordinates of a reduction;
+        `held` are the tied points' rows of the stiffness.
+
+        Both the forces of the loads do, as coordinates turn the links, and those of a coordinate, as the load and
+        another one do: the latter as in :func:`gbeam.solids.elements.geometric_stiffness`.
         """
+        shapes = reduced.shapes
         total = np.zeros((loads.shape[-1], shapes.shape[-1], shapes.shape[-1]))
-        for (name, each), rows in zip(self.members.items(), held, strict=True):
-            loaded = loads.reshape(still.shape)[each]
-            constraint = (rows @ still.reshape(loads.shape)).reshape(loaded.shape) - loaded
-            turn = self._turns[name] @ shapes
-            moments = np.einsum("pb,pcm->bcm", self.points[each] - self._middles[name], constraint)
-            # f · (θ × (ϑ × r)) = (f · ϑ)(θ · r) − (f · r)(θ · ϑ)
-            total += np.einsum("bcm,bi,cj->mij", moments, turn, turn) - np.einsum("bbm,ci,cj->mij", moments, turn, turn)
-        return (total + total.swapaxes(1, 2)) / 2
+        if not len(self._tied):
+            return total
+        still, moved = self._map @ static, self._map @ shapes
+        inertia = (mass @ moved.reshape(len(self.points), -1)).reshape(moved.shape) * reduced.squares
+        pulling = self._moments(held @ still - loads[self._rows])
+        holding = self._moments(held @ moved - inertia[self._rows])
+        holding += np.swapaxes(holding, 1, 2)
+        turn, turned = self._rotations(shapes), self._rotations(static)
+        for load in range(len(total)):
+            flat = turn.reshape(-1, turn.shape[-1])
+            total[load] = flat.T @ np.matmul(pulling[..., load], turn).reshape(flat.shape) / 2
+            pulled = np.einsum("lb,lbcn->lcn", turned[..., load], holding)
+            total[load] += pulled.reshape(flat.shape).T @ flat / 2 * near(reduced.squares)
+        return total + total.swapaxes(1, 2)
+
+    def _moments(self, forces: Floats) -> Floats:
+        """Matrices (l, 3, 3, m) with f · (θ × (ϑ × r)) = (f · ϑ)(θ · r) − (f · r)(θ · ϑ), summed over links, of forces
+        (p · 3, m) on the tied points at r from their middles.
+        """
+        moments = np.zeros((len(self._axes), 3, 3, forces.shape[-1]))
+        tied = forces.reshape(len(self._tied), 1, 3, -1)
+        np.add.at(moments, self._of, self._arms[:, :, None, None] * tied)
+        return moments - np.einsum("lbbm,ac->lacm", moments, np.eye(3))
+
+    def _rotations(self, unknowns: Floats) -> Floats:
+        """Rotations (l, 3, n) of the links by unknowns (u, n)."""
+        each = self._unknown[:, 3:]
+        return np.einsum("lai,lin->lan", self._axes, np.where(each[..., None] >= 0, unknowns[each], 0.0))
 
 
 def _particles(body: RigidBody) -> tuple[Floats, Floats]:

@@ -24,27 +24,31 @@ from gbeam.solids.cad import mesh_of
 from gbeam.solids.cards import Placed, cards_of, with_cards
 from gbeam.solids.elements import (
     Block,
-    Indices,
     chunks,
     geometric_stiffness,
     mass_matrix,
     stiffness_matrix,
 )
 from gbeam.solids.foreign import (
-    elements_in,
+    THICKNESS,
+    Elements,
+    assigned,
+    elements_of,
     left_out,
-    no_group,
     nodes_in,
-    solid_blocks,
     unit_size,
 )
 from gbeam.solids.interfaces import attached, refuse_names
 from gbeam.solids.links import Linked, Links
 from gbeam.solids.model import SolidModel, mesh_errors
 from gbeam.solids.plausibility import doubts_of, refuse_folded, refuse_loose
+from gbeam.solids.shape_functions import Indices
+from gbeam.solids.shells import points_of, refuse_oblique
 from gbeam.solids.stress import NodalStress
 from gbeam.structure.attachments import TIP, checked_name
 from gbeam.structure.material import Material, Orthotropic
+
+MIDDLE = 1e-6  # of half of the thickness of a shell: a place that is nearer to the middle is on neither side
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +58,7 @@ class SolidMesh(Value):
     Parameters
     ----------
     points : (k, 3) places of the nodes from the root, base axes, m
+        Of shells those on their two faces, which have the number of their node.
     blocks : tuple of Block
         Elements of one kind and material each.
     clamped : (k,) bool
@@ -107,6 +112,7 @@ class SolidMesh(Value):
         materials: Material | Orthotropic | Mapping[str, Material | Orthotropic],
         clamp: str | Sequence[str],
         unit: str | None = None,
+        thickness: float | Mapping[str, float] | None = None,
         element_size: float | None = None,
         points: Mapping[str, Any] | None = None,
         point_masses: Mapping[str, float] | None = None,
@@ -119,15 +125,16 @@ class SolidMesh(Value):
         scale: Sequence[float] = (1.0, 1.0, 1.0),
         mass_unit: str | None = None,
     ) -> SolidMesh:
-        """Read a mesh of solid elements.
+        """Read a mesh of solid elements, of shells, or of both.
 
         Parameters
         ----------
         source : path or meshio.Mesh
             A file of Gmsh, Nastran bulk data, Abaqus or CalculiX, VTK or another format of meshio; needs the extra
-            ``mesh``. Tetrahedra of 4 and 10 nodes, hexahedra of 8, 20 and 27, and wedges of 6 are read; surfaces and
-            lines only name groups. Nodes without solid elements are left out. Or a file of STEP, which Gmsh
-            meshes by tetrahedra of 10 nodes; needs the extra ``gmsh``.
+            ``mesh``. Tetrahedra of 4 and 10 nodes, hexahedra of 8, 20 and 27, and wedges of 6 are read, and as shells
+            triangles of 3 and 6 nodes and quadrilaterals of 4, 8 and 9, whose middle is left out; other surfaces and
+            lines only name groups. Nodes without such elements are left out. Or a file of STEP, which Gmsh meshes by
+            tetrahedra of 10 nodes; needs the extra ``gmsh``.
         materials : Material, Orthotropic or dict
             Of all elements, or by group: a physical group of Gmsh, a property's number, an element set. Poisson's
             ratio is needed.
@@ -135,11 +142,15 @@ class SolidMesh(Value):
             Groups whose nodes follow the base.
         unit : str
             Of the mesh's coordinates, such as ``mm``; STEP files say theirs.
+        thickness : float or dict of float, optional
+            Of shells, m: of all triangles and quadrilaterals, or by group. The mesh is their middle surface. Shells
+            carry transverse shear (Mindlin and Reissner), meet at any angle, and share nodes with solids.
         element_size : float
             Largest edge of the elements by which STEP files are meshed, m; 12 are around a full circle. The error of
             a group that is not there says where each solid and each surface is.
         points : dict, optional
-            Places of output by name: (x, y, z) in m and base axes, for the nearest node, or a group of one node; a
+            Places of output by name: (x, y, z) in m and base axes, for the nearest node, or a group of one node, of
+            shells on the face on whose side the place is, or on that to which the normal of the first element points; a
             :class:`gbeam.Place` has axes too, in which stress and strain there are put out. The ``tip`` is the node
             farthest from the root where it is not given.
         point_masses : dict, optional
@@ -169,8 +180,8 @@ class SolidMesh(Value):
         Raises
         ------
         InputError
-            If the file cannot be read, has no solid elements or one that is folded, a group is not there, elements
-            have no material or two, a part of the mesh is not held by the clamp, or the factors would not fit into
+            If the file cannot be read, has no elements or one that is folded, a group is not there, elements have no
+            material or thickness or two, a part of the mesh is not held by the clamp, or the factors would not fit into
             memory.
 
         Examples
@@ -186,37 +197,39 @@ class SolidMesh(Value):
         places = np.asarray(mesh.points, dtype=float)
         if places.ndim != 2 or places.shape[1] != 3 or not np.isfinite(places).all():
             raise InputError("mesh", f"has points of shape {places.shape}, or not finite", "give x, y and z of each")
-        solids = solid_blocks(mesh)
-        used = np.unique(np.concatenate([mesh.cells[i].data.ravel() for i in solids]))
-        refuse_cost("mesh", 3 * len(used))
+        elements = elements_of(mesh, thickness)
+        used = np.unique(np.concatenate([each.nodes.ravel() for each in elements]))
+        refuse_cost("mesh", 3 * len(used) * (1 if thickness is None else 2))
         if used[0] < 0 or used[-1] >= len(places):
             raise InputError("mesh", f"has elements on node {used[-1] + 1} of {len(places)}", "write it again")
-        new = np.full(len(places), -1)
-        new[used] = np.arange(len(used))
         for i, factor in enumerate(scale):
             positive(f"scale[{i}]", factor, "")
         rotation = Rotation.from_rotvec(turn).as_matrix()
-        everywhere = (size * places * np.asarray(scale, dtype=float) - np.asarray(origin, dtype=float)) @ rotation.T
-        at = everywhere[used]
+        middles = (size * places * np.asarray(scale, dtype=float) - np.asarray(origin, dtype=float)) @ rotation.T
+        at, numbers, nodes_of = points_of(middles, elements)
 
         def group(where: str, name: str) -> Indices:
-            nodes = new[nodes_in(mesh, where, name)]
-            if not (nodes >= 0).any():
-                raise InputError(where, f"is {name!r}, which has no node of a solid element", "merge their nodes")
-            return nodes[nodes >= 0]
+            nodes = np.flatnonzero(np.isin(numbers, nodes_in(mesh, where, name)))
+            if not len(nodes):
+                raise InputError(
+                    where, f"is {name!r}, which has no node of a solid element or shell", "merge their nodes"
+                )
+            return nodes
 
-        clamped = np.zeros(len(used), dtype=bool)
+        clamped = np.zeros(len(at), dtype=bool)
         for name in [clamp] if isinstance(clamp, str) else clamp:
             clamped[group("clamp", name)] = True
         given = {} if points is None else points
-        named = {name: _node(at, name, getattr(place, "at", place), group) for name, place in given.items()}
-        tip = named.pop(TIP, int(np.argmax(np.linalg.norm(at, axis=1))))
-        weights = np.zeros(len(used))
+        named = {
+            name: _node(at, middles[numbers], name, getattr(place, "at", place), group) for name, place in given.items()
+        }
+        tip = named.pop(TIP, int(np.argmax(np.linalg.norm(middles[numbers], axis=1))))
+        weights = np.zeros(len(at))
         for name, mass in (point_masses or {}).items():
             where = f"point_masses.{name}"
             nodes = np.array([tip if name == TIP else named[name]]) if name in {*named, TIP} else group(where, name)
             weights[nodes] += positive(where, mass, "kg") / len(nodes)
-        blocks = _blocks(mesh, solids, new, materials, rotation)
+        blocks = _blocks(mesh, at, elements, nodes_of, materials, rotation)
         kinds = materials if isinstance(materials, Mapping) else {"": materials}
         strengths = {name: each.yield_strength for name, each in kinds.items() if each.yield_strength is not None}
         refuse_names(interfaces or {}, named | {TIP: tip})
@@ -224,30 +237,36 @@ class SolidMesh(Value):
         exponents = {name: float(each.fatigue_exponent) for name, each in kinds.items()}
         about: dict[str, Any] = {"strengths": strengths, "exponents": exponents, "interfaces": hung}
         tied, read = Links.of(group, links or {}, carried or {}, springs or {}, at, clamped), tuple[str, ...]()
-        if mass_unit is not None:
+        if thickness is not None:
+            read = THICKNESS
+            if mass_unit is not None:
+                problem = "is given beside thickness, and masses, links and springs of a file are read for solids only"
+                raise InputError("mass_unit", problem, "give those as point_masses, links, carried and springs")
+        elif mass_unit is not None:
+            new = np.full(len(places), -1)
+            new[numbers] = np.arange(len(numbers))
             cards, weight = cards_of(source), unit_size("mass_unit", mass_unit, "mass")
-            tied, more = with_cards(cards, tied, Placed(everywhere, rotation, new, clamped), size, weight)
+            tied, more = with_cards(cards, tied, Placed(middles, rotation, new, clamped), size, weight)
             weights, read = weights + more, cards.words
         about["links"] = tied
         about["turns"] = {name: tuple(place.turn) for name, place in given.items() if isinstance(place, Place)}
-        solid = cls(at, blocks, clamped, used, weights, named | {TIP: tip}, **about)
+        solid = cls(at, blocks, clamped, numbers, weights, named | {TIP: tip}, **about)
         refuse_folded(solid)
         refuse_loose(solid)
-        return cls(
-            **{**vars(solid), "warnings": (*doubts_of(solid, unit or "that of the file"), *left_out(source, read))}
-        )
+        doubts = (*doubts_of(solid, unit or "that of the file"), *left_out(source, read))
+        return replace(solid, warnings=doubts)
 
     def __repr__(self) -> str:
         counts: dict[str, int] = {}
         for block in self.blocks:
             counts[block.kind] = counts.get(block.kind, 0) + len(block.nodes)
         elements = ", ".join(f"{count} {kind}" for kind, count in counts.items())
-        return f"SolidMesh({len(self.points)} nodes, {elements}, {self.mass:.4g} kg)"
+        return f"SolidMesh({len(np.unique(self.numbers))} nodes, {elements}, {self.mass:.4g} kg)"
 
     @property
     def mass(self) -> float:
         """Mass with that on the nodes and of the bodies that it carries, kg."""
-        parts = (block.density * volume.sum() for block, _, volume, _, _ in chunks(self.points, self.blocks, "mass"))
+        parts = (part.block.density * part.volume.sum() for part in chunks(self.points, self.blocks, "mass"))
         return float(sum(parts) + self.point_masses.sum() + sum(each.mass for each in self.links.bodies.values()))
 
     @typed
@@ -311,7 +330,7 @@ class SolidMesh(Value):
         pushed = [12 + 6 * i + axis for i in range(len(centres)) for axis in range(3)]
         stressed = [*range(12), *pushed]
         fields = geometric_stiffness(self.points, self.blocks, still[:count, :, stressed], shapes, reduced.squares)
-        fields += linked.geometric_stiffness(held, still[..., stressed], loads[:, stressed], reduced.shapes)
+        fields += linked.geometric_stiffness(held, mass, loads[:, stressed], reduced.static[:, stressed], reduced)
         inertial = fields[:12].reshape(3, 4, *fields.shape[1:])
         frequency = np.sqrt(reduced.squares[:modes]) / (2 * np.pi)
         error, doubts = mesh_errors(frequency, coarser)
@@ -367,8 +386,8 @@ class SolidMesh(Value):
         return Places(r0, first, second), turns
 
 
-def _node(at: Floats, name: str, place: Any, group: Any) -> int:
-    """The node of a named point."""
+def _node(at: Floats, middles: Floats, name: str, place: Any, group: Any) -> int:
+    """The node of a named point: of a shell that on the face to whose side it is, or on the upper one."""
     where = f"points.{name}"
     if name != TIP:
         try:
@@ -377,51 +396,45 @@ def _node(at: Floats, name: str, place: Any, group: Any) -> int:
             raise error.within("points") from None
     if isinstance(place, str):
         nodes = group(where, place)
-        if len(nodes) != 1:
-            raise InputError(where, f"is the group {place!r} of {len(nodes)} nodes", "give one node, or a place")
+        if len(count := np.unique(middles[nodes], axis=0)) != 1:
+            raise InputError(where, f"is the group {place!r} of {len(count)} nodes", "give one node, or a place")
         return int(nodes[0])
     place = np.asarray(place, dtype=float)
     if place.shape != (3,) or not np.isfinite(place).all():
         raise InputError(where, f"is {place!r}", "give x, y and z in m, or a group")
-    away = np.linalg.norm(at - place, axis=1)
+    away = np.linalg.norm(middles - place, axis=1)
     size = float(np.linalg.norm(np.ptp(at, axis=0)))
     if away.min() > 0.1 * size:
         raise InputError(where, f"is {away.min():.3g} m from the nearest node", "give a place on the solid, in m")
-    return int(away.argmin())
+    nodes = np.flatnonzero(away == away.min())
+    arms = at[nodes] - middles[nodes]
+    return int(nodes[(arms @ (place - middles[nodes[0]]) > MIDDLE * (arms**2).sum(axis=1)).argmax()])
 
 
-def _blocks(mesh: Any, solids: list[int], new: Indices, materials: Any, rotation: Floats) -> tuple[Block, ...]:
+def _blocks(
+    mesh: Any, points: Floats, elements: list[Elements], nodes_of: list[Indices], materials: Any, rotation: Floats
+) -> tuple[Block, ...]:
     """Elements of each kind and material, whose axes are turned with the mesh."""
     given = materials if isinstance(materials, Mapping) else {"": materials}
-    owner = {i: np.full(len(mesh.cells[i].data), -1) for i in solids}
-    for m, name in enumerate(given):
-        chosen = elements_in(mesh, name) if isinstance(materials, Mapping) else None
-        if chosen is None and isinstance(materials, Mapping):
-            raise no_group(mesh, f"materials.{name}", name)
-        for i in solids:
-            which = np.arange(len(owner[i])) if chosen is None else chosen[i]
-            taken = owner[i][which]
-            if (taken >= 0).any():
-                both = f"{list(given)[taken.max()]!r} and {name!r}"
-                raise InputError("materials", f"give {(taken >= 0).sum()} elements two: {both}", "give each one")
-            owner[i][which] = m
-    without = sum(int((each < 0).sum()) for each in owner.values())
+    owner = assigned(mesh, "materials", materials, (each.block for each in elements))
+    without = sum(int((owner[each.block][each.which] < 0).sum()) for each in elements)
     if without:
         raise InputError("materials", f"give {without} elements none", "name the groups of all elements")
     first = np.cumsum([0, *(len(block.data) for block in mesh.cells)])
     blocks = []
     for m, (name, material) in enumerate(given.items()):
+        where = f"materials.{name}" if name else "materials"
         try:
             turned = isinstance(material, Orthotropic)
             along = replace(material, axes=np.asarray(material.axes) @ rotation.T) if turned else material
             elasticity = along.elasticity
         except InputError as error:
-            raise error.within(f"materials.{name}" if name else "materials") from None
-        for i in solids:
-            which = np.flatnonzero(owner[i] == m)
-            if len(which):
-                nodes, kind = new[mesh.cells[i].data[which]], mesh.cells[i].type
-                blocks.append(Block(kind, nodes, first[i] + which + 1, name, float(material.density), elasticity))
-    if not blocks:
-        raise InputError("materials", "give no solid element any", "name the groups of all elements")
+            raise error.within(where) from None
+        for (i, which, kind, _, thickness), nodes in zip(elements, nodes_of, strict=True):
+            chosen = owner[i][which] == m
+            if thickness is not None and turned:
+                refuse_oblique(where, points, nodes[chosen], kind, along.axes)
+            if chosen.any():
+                numbers = first[i] + which[chosen] + 1
+                blocks.append(Block(kind, nodes[chosen], numbers, name, float(material.density), elasticity))
     return tuple(blocks)

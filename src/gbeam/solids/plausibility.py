@@ -8,7 +8,8 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.results.result import Floats
-from gbeam.solids.elements import KINDS, determinants, shape_functions
+from gbeam.solids.elements import determinants
+from gbeam.solids.shape_functions import KINDS, shape_functions
 from gbeam.solids.stress import corners_of, outer_triangles
 
 if TYPE_CHECKING:
@@ -40,6 +41,8 @@ def refuse_loose(mesh: SolidMesh) -> None:
     from scipy.sparse.csgraph import connected_components
 
     pairs = [(np.repeat(b.nodes[:, 0], b.nodes.shape[1]), b.nodes.ravel()) for b in mesh.blocks]
+    _, first, node = np.unique(mesh.numbers, return_index=True, return_inverse=True)
+    pairs += [(first[node], np.arange(len(node)))]  # of shells the points that stand for a node
     pairs += [(np.full(len(nodes), nodes[0]), nodes) for nodes in mesh.links.joined]
     rows, columns = (np.concatenate(each) for each in zip(*pairs, strict=True))
     graph = coo_array((np.ones(len(rows), dtype=bool), (rows, columns)), shape=(len(mesh.points),) * 2)
@@ -78,6 +81,12 @@ def doubts_of(mesh: SolidMesh, unit: str) -> list[str]:
             doubt += f"; {len(thin)} fill a thickness alone, whose frequencies of bending are about {times:.2g} times"
             doubt += " those of the solid"
         doubts.append(doubt)
+    flat = sum(len(block.nodes) for block in mesh.blocks if block.kind == "triangle")
+    if flat and np.unique(mesh.numbers, return_counts=True)[1].max() > 2:
+        doubts.append(
+            f"{flat} triangles of three nodes are too stiff in their own plane, where folded shells bend: use "
+            "quadrilaterals, or triangles of six nodes"
+        )
     locking = [
         each[np.isfinite(each) & (each > KINDS[block.kind].long)]
         for block, each in zip(mesh.blocks, alone, strict=True)

@@ -13,7 +13,8 @@ from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.results.result import Floats
 from gbeam.results.solids import SolidStress, StressAt, Surface
-from gbeam.solids.elements import TENSOR, Indices, chunks, extrapolation, slopes_at, stress_of
+from gbeam.solids.elements import TENSOR, chunks
+from gbeam.solids.shape_functions import KINDS, Indices, extrapolation
 
 BLOCK = 2**22  # numbers handled together
 VERTICES, TIMES = 1500, 1000  # of pictures, about
@@ -114,12 +115,11 @@ class NodalStress(Value):
     def _elements(self, wanted: int | None = None) -> Iterator[tuple[Indices, Floats]]:
         """Pairs (m,) and stresses (m, 6, n) at the nodes of elements: of all, or of those at one pair."""
         names, count = _materials(self.mesh), len(self.mesh.points)
-        for block, part, _, gradients, _ in chunks(self.mesh.points, self.mesh.blocks, "stress"):
-            nodes = block.nodes[part]
-            pair = np.searchsorted(self.known, names.index(block.material) * count + nodes)
+        for part in chunks(self.mesh.points, self.mesh.blocks, "stress"):
+            pair = np.searchsorted(self.known, names.index(part.block.material) * count + part.nodes)
             chosen = slice(None) if wanted is None else (pair == wanted).any(axis=1)
-            stress = stress_of(block, slopes_at(nodes[chosen], gradients[chosen], self.shapes))
-            at_nodes = np.einsum("kq,eqvn->ekvn", extrapolation(block.kind), stress, optimize=True)
+            stress = part.of(chosen).stress(self.shapes)
+            at_nodes = np.einsum("kq,eqvn->ekvn", extrapolation(part.block.kind), stress, optimize=True)
             yield pair[chosen].ravel(), at_nodes.reshape(-1, *at_nodes.shape[2:])
 
     def spread(self, pair: int, q: Floats) -> float:
@@ -160,7 +160,7 @@ def hull(points: Floats) -> Floats:
 
 def corners_of(kind: str) -> int:
     """Number of corners of an element."""
-    return {"tetra": 4, "tetra10": 4, "wedge": 6}.get(kind, 8)
+    return 2 * KINDS[kind].shell or {"tetra": 4, "tetra10": 4, "wedge": 6}.get(kind, 8)
 
 
 def outer_triangles(mesh: Any) -> Indices:

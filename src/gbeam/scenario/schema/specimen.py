@@ -158,6 +158,16 @@ class SolidBody(Reduced):
         description='unit of mass in a file of Nastran, Abaqus or CalculiX, such as "Mg" beside mm, N and s: with it '
         "the file's masses, rigid links and springs are read",
     )
+    thickness: Length | None = Field(
+        default=None,
+        description="of all triangles and quadrilaterals of a mesh without solids, which are shells by it",
+    )
+    thicknesses: dict[str, Length] = Field(
+        default_factory=dict,
+        max_length=ENTRIES,
+        description="of the shells of each group, by its name or number, instead of thickness; in a mesh with solids "
+        "other surfaces only name groups",
+    )
     element_size: Length | None = Field(
         default=None, description="largest edge of the elements by which STEP files are meshed"
     )
@@ -236,6 +246,8 @@ class SolidBody(Reduced):
             problem = "is given beside material" if given else "material is missing"
             hint = "keep one of them" if given else "add material = { density, youngs_modulus, poissons_ratio }"
             refuse([(("materials",) if given else (), wrong(problem, hint, mark="key"))])
+        if self.thickness is not None and self.thicknesses:
+            refuse([(("thicknesses",), wrong("is given beside thickness", "keep one of them", mark="key"))])
         return self
 
 

@@ -1,0 +1,156 @@
+"""Kinds of elements, with the shape functions and the quadrature of scikit-fem, in meshio's order of the nodes.
+
+An element of a shell has that of its middle surface on two faces: its nodes are the corners of the lower face, those of
+the upper one, and then the middles of their edges alike; between the faces it is linear.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.errors import InputError
+from gbeam.results.result import Floats
+
+Indices = NDArray[np.intp]
+ACROSS = 3  # degree of the quadrature through the thickness of a shell
+
+_CORNERS = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]
+_EDGES = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
+_FACES = [[0, 0.5, 0.5], [1, 0.5, 0.5], [0.5, 0, 0.5], [0.5, 1, 0.5], [0.5, 0.5, 0], [0.5, 0.5, 1], [0.5, 0.5, 0.5]]
+_HEXAHEDRON = np.array([*_CORNERS, *((np.add(_CORNERS[i], _CORNERS[j]) / 2) for i, j in _EDGES), *_FACES])
+
+
+@dataclass(frozen=True)
+class Kind:
+    """Kind of element by meshio's name: scikit-fem's, and the degrees of the quadrature of stiffness, mass and stress;
+    the monomials in which stress is extrapolated, by their exponents; the ratio of length to thickness above which a
+    layer of one locks in bending: of eight across a clamped plate by 3 % and more (`tests/solids/test_thin.py`); the
+    number of its corners in a shell's surface.
+    """
+
+    element: str
+    stiffness: int
+    mass: int
+    stress: int
+    monomials: tuple[tuple[int, int, int], ...]
+    linear: bool = False
+    long: float = np.inf
+    shell: int = 0
+
+
+_LINEAR = ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1))
+_TRILINEAR = tuple((i, j, k) for i in (0, 1) for j in (0, 1) for k in (0, 1))
+_WEDGE = tuple((i, j, k) for i, j in ((0, 0), (1, 0), (0, 1)) for k in (0, 1))
+KINDS = {
+    "tetra": Kind("ElementTetP1", 1, 2, 1, _LINEAR[:1], linear=True),
+    "tetra10": Kind("ElementTetP2", 2, 5, 2, _LINEAR, long=6.0),
+    "hexahedron": Kind("ElementHex1", 3, 5, 3, _TRILINEAR, linear=True),
+    "hexahedron20": Kind("ElementHexS2", 5, 7, 3, _TRILINEAR, long=12.0),
+    "hexahedron27": Kind("ElementHex2", 5, 7, 3, _TRILINEAR),
+    "wedge": Kind("ElementWedge1", 3, 5, 3, _WEDGE, linear=True),
+    "triangle": Kind("ElementTriP1", 2, 4, 2, _WEDGE[:2], shell=3),
+    "triangle6": Kind("ElementTriP2", 2, 5, 2, _WEDGE, shell=3),
+    "quad": Kind("ElementQuad1", 3, 5, 3, _TRILINEAR, shell=4),
+    "quad8": Kind("ElementQuadS2", 3, 7, 3, _TRILINEAR, shell=4),
+}
+
+
+def import_skfem() -> Any:
+    """Import scikit-fem; an InputError says how to install it where it is not."""
+    try:
+        import skfem
+    except ModuleNotFoundError:
+        raise InputError("", "scikit-fem is not installed", 'install it with: pip install "gbeam[mesh]"') from None
+    return skfem
+
+
+@cache
+def shape_functions(kind: str, degree: int) -> tuple[Floats, Floats, Floats, Floats]:
+    """Points (q, 3), weights (q,), shape functions (q, k) and their derivatives (q, k, 3) at a rule of some degree."""
+    from skfem.quadrature import get_quadrature
+    from skfem.refdom import RefLine, RefTri
+
+    domain = getattr(import_skfem(), KINDS[kind].element)().refdom
+    if kind == "wedge" or KINDS[kind].shell:
+        # scikit-fem 12's rule of wedges has the triangle across another axis, and half the weights.
+        rules = get_quadrature(RefTri if kind == "wedge" else domain, degree)
+        (flat, over), (line, along) = rules, get_quadrature(RefLine, degree if kind == "wedge" else ACROSS)
+        points = np.concatenate([np.repeat(flat, len(along), axis=1), np.tile(line, len(over))])
+        weights = np.outer(over, along).ravel()
+    else:
+        points, weights = get_quadrature(domain, degree)
+    return points.T, weights, *shapes_at(kind, points.T)
+
+
+def shapes_at(kind: str, points: Floats) -> tuple[Floats, Floats]:
+    """Shape functions (q, k) and their derivatives (q, k, 3) at points (q, 3) of the reference element."""
+    if not KINDS[kind].shell:
+        return _basis(kind, points)
+    (values, flat), height = _basis(kind, points[:, :2]), points[:, 2, None]
+    below = np.concatenate([flat * (1 - height)[..., None], -values[..., None]], axis=2)
+    above = np.concatenate([flat * height[..., None], values[..., None]], axis=2)
+    return both_faces(kind, values * (1 - height), values * height), both_faces(kind, below, above)
+
+
+def _basis(kind: str, points: Floats) -> tuple[Floats, Floats]:
+    """Shape functions (q, k) and their derivatives (q, k, d) at points (q, d) of scikit-fem's element."""
+    element, at = getattr(import_skfem(), KINDS[kind].element)(), np.ascontiguousarray(points.T)
+    pairs = [element.lbasis(at, i) for i in _order(kind)]
+    values = np.stack([np.broadcast_to(value, len(points)) for value, _ in pairs], axis=1)
+    slopes = [np.stack([np.broadcast_to(each, len(points)) for each in slope], axis=1) for _, slope in pairs]
+    return values, np.stack(slopes, axis=1)
+
+
+def tangents(kind: str, points: Floats, nodes: Indices, at: Floats) -> Floats:
+    """Tangents (e, q, 2, 3) of the middle surfaces of shells at points (q, 2) of the reference element."""
+    return np.einsum("ekc,qkd->eqdc", points[nodes], _basis(kind, at)[1], optimize=True)
+
+
+def both_faces(kind: str, below: Any, above: Any) -> Any:
+    """Values (e, k, ...) of the nodes of the middle surface on the two faces in the order of a shell's nodes."""
+    corners = KINDS[kind].shell
+    return np.concatenate([below[:, :corners], above[:, :corners], below[:, corners:], above[:, corners:]], axis=1)
+
+
+@cache
+def extrapolation(kind: str) -> Floats:
+    """Values at the nodes of a polynomial by those at the points of stress, (k, q)."""
+    points = shape_functions(kind, KINDS[kind].stress)[0]
+    powers = np.array(KINDS[kind].monomials)
+
+    def monomials(at: Floats) -> Floats:
+        return np.prod(at[:, None, :] ** powers, axis=-1)
+
+    return monomials(reference(kind)) @ np.linalg.pinv(monomials(points))
+
+
+def middle_nodes(kind: str) -> Floats:
+    """Places of the nodes in scikit-fem's reference element, of shells that of the middle surface."""
+    return np.array(getattr(import_skfem(), KINDS[kind].element).doflocs)
+
+
+def reference(kind: str) -> Floats:
+    """Places of the nodes in the reference element, (k, 3)."""
+    places = middle_nodes(kind)
+    if KINDS[kind].shell:
+        low, high = (np.insert(places, 2, height, axis=1)[None] for height in (0.0, 1.0))
+        return np.asarray(both_faces(kind, low, high)[0])
+    return _HEXAHEDRON[: len(places)] if kind.startswith("hexahedron") else places
+
+
+@cache
+def _order(kind: str) -> tuple[int, ...]:
+    """Numbers in scikit-fem of an element's nodes."""
+    theirs = middle_nodes(kind)
+    apart = np.abs((theirs if KINDS[kind].shell else reference(kind))[:, None] - theirs).max(axis=-1)
+    return tuple(int(i) for i in apart.argmin(axis=1))
+
+
+def jacobians(points: Floats, nodes: Indices, slopes: Floats) -> Floats:
+    """Derivatives (e, q, 3, 3) of places by those in the reference, of shape functions' derivatives (q, k, 3)."""
+    return np.einsum("ekd,qkc->eqdc", points[nodes], slopes, optimize=True)

@@ -1,0 +1,198 @@
+"""Shells: the points on their two faces that stand for a node of the mesh, and the strains assumed in their elements.
+
+A shell is a layer of solid elements whose points on one normal are a rigid link, with plane stress between the faces.
+Transverse shear is interpolated from where elements of a thin plate have none (MITC3 and MITC4: Lee and Bathe 2004,
+Dvorkin and Bathe 1984) or taken at the points of a reduced rule (eight and six nodes); but for quadrilaterals of four
+nodes, thin elements lock by it, and it is softer by their size (Lyly, Stenberg and Vihinen 1993). Quadrilaterals of
+four nodes have the four strains of Simo and Rifai (1990) besides, by which they bend in their own plane.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from gbeam.errors import InputError
+from gbeam.results.result import Floats
+from gbeam.solids.shape_functions import (
+    KINDS,
+    Indices,
+    both_faces,
+    jacobians,
+    middle_nodes,
+    shape_functions,
+    shapes_at,
+    tangents,
+)
+
+SMOOTH = np.cos(np.radians(20.0))  # between normals of elements that share one at a node
+UPRIGHT = np.cos(np.radians(3.0))  # between a laminate's third axis and the normal
+# Of the ratio of an element's longest side to its thickness, squared.
+SOFTER = {"triangle": 0.1, "triangle6": 0.025, "quad8": 0.005}
+FACTOR = 5 / 6  # of transverse shear in a plate, Reissner's
+# Components of the strain of the surface, of its shear across, and of that across its thickness.
+PAIRS = ((0, 0), (1, 1), (0, 1), (0, 2), (1, 2))
+# Strains that quadrilaterals have besides: component, and the coordinate in which it is linear.
+BESIDES = ((0, 0), (1, 1), (2, 0), (2, 1))
+TYING = {
+    "triangle": np.array([[0.5, 0.0], [0.0, 0.5], [0.5, 0.5]]),
+    "quad": np.array([[0.5, 0.0], [0.5, 1.0], [0.0, 0.5], [1.0, 0.5]]),
+}
+
+
+def _tied(kind: str, at: Floats) -> tuple[Floats, Floats]:
+    """Points (p, 2) of the middle surface whose shears across, and by how much of each (q, 2, p, 2), make those at
+    points (q, 2).
+    """
+    x, y = at.T
+    if kind not in TYING:
+        return at, np.einsum("qp,ab->qapb", np.eye(len(at)), np.eye(2))
+    share = np.zeros((len(at), 2, len(TYING[kind]), 2))
+    if kind == "quad":
+        share[:, 0, 0, 0], share[:, 0, 1, 0], share[:, 1, 2, 1], share[:, 1, 3, 1] = 1 - y, y, 1 - x, x
+    else:
+        share[:, 0, 0, 0], share[:, 0, 1, 1], share[:, 0, 2] = 1 - y, y, np.stack([y, -y], axis=1)
+        share[:, 1, 1, 1], share[:, 1, 0, 0], share[:, 1, 2] = 1 - x, x, np.stack([-x, x], axis=1)
+    return TYING[kind], share
+
+
+def _covariant(base: Floats, slopes: Floats, pair: tuple[int, int]) -> Floats:
+    """Component (e, q, k, 3) of strain by displacements, along base vectors (e, q, 3, 3) of slopes (q, k, 3)."""
+    a, b = pair
+    one, other = slopes[None, ..., a, None], slopes[None, ..., b, None]
+    return (base[:, :, None, a] * other + base[:, :, None, b] * one) / 2
+
+
+def _cartesian(dual: Floats, pair: tuple[int, int]) -> Floats:
+    """Strains (..., 6) xx, yy, zz, yz, xz, xy of a unit component, by the dual base vectors (..., 3, 3), in columns."""
+    a, b = dual[..., pair[0]], dual[..., pair[1]]
+    times = 1.0 if pair[0] == pair[1] else 2.0
+    straight = times * a * b
+    crossed = [times * (a[..., i] * b[..., j] + a[..., j] * b[..., i]) for i, j in ((1, 2), (0, 2), (0, 1))]
+    return np.concatenate([straight, np.stack(crossed, axis=-1)], axis=-1)
+
+
+def plane_stress(elasticity: Floats, normal: Floats) -> Floats:
+    """Elasticity (..., 6, 6) without stress along unit normals (..., 3)."""
+    across = _cartesian(normal[..., None], (0, 0))
+    stress = across @ elasticity
+    return elasticity - stress[..., :, None] * stress[..., None, :] / (across * stress).sum(axis=-1)[..., None, None]
+
+
+def shell_strains(
+    points: Floats, nodes: Indices, kind: str, elasticity: Floats, degree: int, shear: Any
+) -> tuple[Floats, Floats]:
+    """Strains (e, q, 6, k, 3) by displacements, with a factor on those of shear across, and elasticity (e, q, 6, 6)."""
+    at, weights, _, slopes = shape_functions(kind, degree)
+    base = jacobians(points, nodes, slopes).swapaxes(2, 3)
+    dual = np.asarray(np.linalg.inv(base), dtype=float)
+    normal = dual[..., 2] / np.linalg.norm(dual[..., 2], axis=-1, keepdims=True)
+    law = plane_stress(elasticity, normal)
+    parts = [_covariant(base, slopes, pair) for pair in PAIRS[:3]]
+    tying, share = _tied(kind, at[:, :2])
+    middle = shapes_at(kind, np.insert(tying, 2, 0.5, axis=1))[1]
+    there = jacobians(points, nodes, middle).swapaxes(2, 3)
+    tied = np.stack([_covariant(there, middle, pair) for pair in PAIRS[3:]], axis=2)
+    if kind in SOFTER:
+        first, second = base[..., 0, :], base[..., 1, :]
+        sides = (first, second, first - second) if KINDS[kind].shell == 3 else (first, second)
+        thin = (dual[..., 2] ** 2).sum(axis=-1) * np.max([(each**2).sum(axis=-1) for each in sides], axis=0)
+        shear = shear / np.sqrt(1 + SOFTER[kind] * thin)[..., None, None]
+    across = shear * np.einsum("qapb,epbkc->aeqkc", share, tied, optimize=True)
+    along = np.stack([_cartesian(dual, pair) for pair in PAIRS], axis=-1)
+    strain = np.einsum("eqvp,peqkc->eqvkc", along, np.stack([*parts, *across]), optimize=True)
+    if kind == "quad":
+        volume = np.linalg.det(base)
+        more = _besides(points, nodes, kind, at, volume)
+        pulled = np.einsum("eqvw,eqwa,eq->eqva", law, more, volume * weights, optimize=True)
+        stiffness = np.einsum("eqva,eqvb->eab", pulled, more, optimize=True)
+        forces = np.einsum("eqva,eqvkc->eakc", pulled, strain, optimize=True)
+        sizes = np.linalg.solve(stiffness, forces.reshape(*forces.shape[:2], -1)).reshape(forces.shape)
+        strain = strain - np.einsum("eqva,eakc->eqvkc", more, sizes, optimize=True)
+    return strain, law
+
+
+def _besides(points: Floats, nodes: Indices, kind: str, at: Floats, volume: Floats) -> Floats:
+    """Strains (e, q, 6, 4) that quadrilaterals have besides, at points (q, 3) of volumes (e, q)."""
+    middle = jacobians(points, nodes, shapes_at(kind, np.full((1, 3), 0.5))[1]).swapaxes(2, 3)
+    dual = np.asarray(np.linalg.inv(middle), dtype=float)
+    ratio = np.linalg.det(middle) / volume
+    return np.stack(
+        [_cartesian(dual, PAIRS[pair]) * (ratio * (2 * at[:, i] - 1))[..., None] for pair, i in BESIDES], axis=-1
+    )
+
+
+def _normals(places: Floats, kind: str, nodes: Indices) -> Floats:
+    """Unit normals (e, k, 3) of elements at their nodes, all on the side of that in the middle."""
+
+    def across(at: Floats) -> Floats:
+        one, other = np.moveaxis(tangents(kind, places, nodes, at), 2, 0)
+        return np.cross(one, other)
+
+    corners = middle_nodes(kind)
+    every, middle = across(corners), across(corners[: KINDS[kind].shell].mean(axis=0, keepdims=True))
+    size = np.linalg.norm(every, axis=-1, keepdims=True)
+    return every / np.where(size > 0, size, 1.0) * np.where((every * middle).sum(axis=-1, keepdims=True) < 0, -1.0, 1.0)
+
+
+def layered(places: Floats, elements: Sequence[tuple[str, Indices, Floats]]) -> tuple[Floats, Indices, list[Indices]]:
+    """Points (p, 3) on the faces of shells, the upper one of two on a normal first, the nodes (p,) for which they
+    stand, and the points (e, 2 k) of elements; by places (k, 3) of nodes and the kinds, nodes (e, k) and thicknesses
+    (e,) of elements.
+
+    Elements that meet at a node share a normal, the mean of theirs, where theirs are nearly one.
+    """
+    normal = np.concatenate([_normals(places, kind, nodes).reshape(-1, 3) for kind, nodes, _ in elements])
+    node = np.concatenate([nodes.ravel() for _, nodes, _ in elements])
+    thickness = np.concatenate([np.repeat(each, nodes.shape[1]) for _, nodes, each in elements])
+    along, family = np.zeros(len(node)), np.zeros(len(node), dtype=int)
+    rounds = 0
+    while (left := np.flatnonzero(along == 0)).size:
+        first = np.full(len(places), -1)
+        first[node[left[::-1]]] = left[::-1]
+        leader = first[node[left]]
+        together = (normal[left] * normal[leader]).sum(axis=1)
+        same = (np.abs(together) >= SMOOTH) & (thickness[left] == thickness[leader]) | (left == leader)
+        along[left[same]] = np.where(together[same] < 0, -1.0, 1.0)
+        family[left[same]] = rounds * len(places) + node[left[same]]
+        rounds += 1
+    _, index, family = np.unique(family, return_index=True, return_inverse=True)
+    total = np.zeros((len(index), 3))
+    np.add.at(total, family, along[:, None] * normal)
+    # As far from the middle as the elements are thick, whose normals this one is not.
+    half = total / np.maximum((total**2).sum(axis=1) / np.bincount(family), 1e-300)[:, None]
+    half *= thickness[index, None] / 2
+    points = np.stack([places[node[index]] + half, places[node[index]] - half], axis=1).reshape(-1, 3)
+    upper = 2 * family + (along < 0)
+    ends = np.cumsum([0, *(nodes.size for _, nodes, _ in elements)])
+    of_elements = []
+    for (kind, nodes, _), start in zip(elements, ends, strict=False):
+        above = upper[start : start + nodes.size].reshape(nodes.shape)
+        of_elements.append(np.asarray(both_faces(kind, above ^ 1, above)))
+    return points, np.repeat(node[index], 2), of_elements
+
+
+def points_of(places: Floats, elements: Sequence[Any]) -> tuple[Floats, Indices, list[Indices]]:
+    """Points (k, 3), the places of their nodes in the file, and the points of the elements."""
+    solids = [each for each in elements if each.thickness is None]
+    used = np.unique(np.concatenate([np.empty(0, dtype=int), *(each.nodes.ravel() for each in solids)]))
+    new = np.full(len(places), -1)
+    new[used] = np.arange(len(used))
+    shells = [(each.kind, each.nodes, each.thickness) for each in elements if each.thickness is not None]
+    points, numbers, nodes = layered(places, shells) if shells else (np.empty((0, 3)), np.empty(0, dtype=int), [])
+    rest = iter(nodes)
+    of_elements = [new[each.nodes] if each.thickness is None else len(used) + next(rest) for each in elements]
+    return np.concatenate([places[used], points]), np.concatenate([used, numbers]), of_elements
+
+
+def refuse_oblique(where: str, points: Floats, nodes: Indices, kind: str, axes: Any) -> None:
+    """Refuse shells (e, 2 k) whose normal is not the third axis of their material, of which the first two are given."""
+    corners = KINDS[kind].shell
+    normal = (points[nodes[:, corners : 2 * corners]] - points[nodes[:, :corners]]).mean(axis=1)
+    third = np.cross(*np.asarray(axes, dtype=float))
+    along = np.abs(normal @ third) / np.linalg.norm(normal, axis=1) / np.linalg.norm(third)
+    if oblique := int((along < UPRIGHT).sum()):
+        fix = "give the elements of each plane a group, and a material with axes 1 and 2 in it"
+        raise InputError(f"{where}.axes", f"do not lie in {oblique} elements of shells", fix)
