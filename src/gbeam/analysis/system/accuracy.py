@@ -47,6 +47,18 @@ NOT_ALL = "shapes and model are not judged of {}, which is made of no beam"
 FAR = "shapes and models are not judged: a system with more shapes does not follow"
 
 
+BENT_FAR = (
+    "errors by the theory of slender beams are not known: the beams turn or bend too far for thick beams that are "
+    "linear about the straight one"
+)
+LOST = 10.0  # times the motion, or the extent of the system: a larger answer of linear equations is none
+
+
+def _extent(place: Floats) -> float:
+    """Largest distance between points (t, p, 3) of a system, m."""
+    return float(np.ptp(place, axis=(0, 1)).max(initial=0.0))
+
+
 class Lacking(NamedTuple):
     """Largest differences of quantities to the theory of thick beams, and their causes in words, by beam."""
 
@@ -101,6 +113,8 @@ def system_errors(
         if not np.isfinite(truth[PLACE]).all():
             return SystemErrors(ErrorEstimate(step), note=FAR)
         beyond = _beyond(system, of, inputs, settled=settled)
+    if not beyond.sizes.get(PLACE, math.nan) <= LOST * max(sizes[PLACE], _extent(place)):
+        beyond, note = Lacking({}, {}), "; ".join(filter(None, (note, BENT_FAR)))
 
     def apart(key: Quantity, a: Reading, b: Reading) -> float:
         size = 0.0 if key in nothing else sizes[key] or float(np.linalg.norm(truth[key], axis=-1).max())
