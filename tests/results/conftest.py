@@ -69,8 +69,11 @@ def every() -> dict[str, Any]:
 def _of_a_system(structure: gb.Structure) -> tuple[Any, ...]:
     arm = gb.RigidBody(1.0, (0.1, 0.1, 0.1), points={"end": (0.3, 0.0, 0.0)})
     hinge = gb.Joint("revolute", "arm", axes=[(0, 0, 1)], stiffness=5.0, effort=gb.Sine(1.0, 0.05))
-    system = gb.System({"arm": arm, "beam": structure}, {"hinge": hinge, "clamp": gb.Joint("fixed", "beam", "arm.end")})
-    return gb.static(system), gb.modes(system), gb.simulate(system, duration=0.05, step=5e-3, estimate=False)
+    joints = {"hinge": hinge, "clamp": gb.Joint("fixed", "beam", "arm.end")}
+    system = gb.System({"arm": arm, "beam": structure}, joints)
+    law = gb.Feedback(lambda t, y: -2.0 * y, ["hinge.angle_rate"], ["hinge.angle"], sample=0.01)
+    driven = dataclasses.replace(system, controllers={"damper": law})
+    return gb.static(system), gb.modes(system), gb.simulate(driven, duration=0.05, step=5e-3, estimate=False)
 
 
 @pytest.fixture(scope="package")

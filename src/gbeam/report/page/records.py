@@ -22,7 +22,7 @@ from gbeam.results.result import Floats
 from gbeam.results.searches import CommandRun, Fit, FittedColumn, Optimum, ShapedCommand
 from gbeam.results.solids import SolidStress, SpecimenLoads
 from gbeam.results.study import Study, SystemStudy
-from gbeam.results.system import BeamResponse, Invariants, SystemModes, SystemResponse, SystemRest
+from gbeam.results.system import BeamResponse, Invariants, Loop, SystemModes, SystemResponse, SystemRest
 
 Facts = Mapping[str, Any]
 _NONE = np.empty(0)
@@ -71,7 +71,7 @@ def _value(kind: type, name: str, each: Declaration, facts: Facts) -> Any:
     along = next((dim for dim in each.dims if dim in lists), None)
     rows: Any = [] if along is None else facts.get(lists[along], [])
     if each.role == "labels" and along is not None:
-        return tuple(rows)
+        return tuple(rows) if isinstance(rows, dict) else _words(rows, key)
     if each.key is None or (key == INSIDE and "None" in written):
         return None
     inside = record_in(kind, name) if each.role in ("part", "rows") else None
@@ -167,7 +167,8 @@ def _system_response(facts: Facts, v: Facts, **more: Any) -> SystemResponse:
         body: _read(SolidStress, each, {**v, **_under(f"{body}_", v)}) for body, each in facts.get("solids", {}).items()
     }
     axes = _axes(facts, v) if "axis_rate" in v else None
-    more |= {"invariants": invariants, "beams": beams, "solids": solids, "axes": axes}
+    loop = _read(Loop, facts["loop"], v) if "measured" in v else None
+    more |= {"invariants": invariants, "beams": beams, "solids": solids, "axes": axes, "loop": loop}
     return _read(SystemResponse, facts, v, base=None, **more)
 
 
