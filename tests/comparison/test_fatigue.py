@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -41,6 +42,8 @@ def test_damage_grows_with_the_power_of_the_stress() -> None:
     assert same is not None and more is not None
     assert same.exponent == 5.0 and same.damage_ratio == pytest.approx(1.0)
     assert more.damage_ratio == pytest.approx(2.0**5, rel=1e-3)
+    beside_rounding = fatigue(flown(1e-70), once)
+    assert beside_rounding is not None and beside_rounding.damage_ratio == math.inf
     assert once.loads is not None
     gentle, twice_as_much = (replace(each, loads=replace(each.loads, fatigue_exponent=3.0)) for each in (once, twice))
     milder = fatigue(gentle, twice_as_much)

@@ -83,7 +83,12 @@ def test_a_beam_comes_back_with_all_coefficients(tmp_path: Path, how: dict[str, 
 
 
 def test_the_example_is_the_strip() -> None:
-    assert Path("examples/data/strip.sid").read_text(encoding="ascii") == written(beam(0, 1, 1))
+    """To the digits in which processors differ."""
+    number = re.compile(r"[-+]?\d\.\d+E[-+]\d+")
+    kept, new = Path("examples/data/strip.sid").read_text(encoding="ascii"), written(beam(0, 1, 1))
+    assert number.sub("0", kept) == number.sub("0", new)
+    digits = ([float(each) for each in number.findall(text)] for text in (kept, new))
+    np.testing.assert_allclose(*digits, rtol=1e-9, atol=1e-12)
 
 
 def test_data_that_contradict_one_another_are_refused(tmp_path: Path) -> None:

@@ -19,7 +19,7 @@ from gbeam.analysis.response.problem import Problem
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.step_errors import Run, difference, of_histories, ratio, share
 from gbeam.analysis.response.stepping import LOADS_STEPS, even_steps, finer_by, integrated, scheme_of, steps_beyond
-from gbeam.analysis.system.accuracy import doubts, system_errors
+from gbeam.analysis.system.accuracy import doubts, system_errors, unmoved
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
 from gbeam.analysis.system.histories import Carried, beams_of, deflection, histories, loads_of, meshes_of
 from gbeam.analysis.system.point import Point, started, started_traced
@@ -111,7 +111,8 @@ class Ran(Run):
     def moved(self) -> Floats:
         """Displacements of all points, side by side, (t, 3 p) m."""
         places = Answered(itself(self.posed.system), *self.every(1)).places()
-        return np.asarray((places - places[0]).reshape(len(places), -1))
+        moved = np.asarray((places - places[0]).reshape(len(places), -1))
+        return np.zeros_like(moved) if unmoved(np.abs(moved).max(initial=0.0), places) else moved
 
     @cached_property
     def missed(self) -> tuple[str, ...]:

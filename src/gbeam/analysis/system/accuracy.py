@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.analysis.accuracy.beam_theory import causes, described
-from gbeam.analysis.accuracy.estimate import cause_and_cure, negligible, percent
+from gbeam.analysis.accuracy.estimate import UNMOVED, cause_and_cure, negligible, percent
 from gbeam.analysis.system.richer import (
     PLACE,
     Answered,
@@ -59,6 +59,11 @@ def _extent(place: Floats) -> float:
     return float(np.ptp(place, axis=(0, 1)).max(initial=0.0))
 
 
+def unmoved(size: float, place: Floats) -> bool:
+    """Whether a displacement is rounding of places (t, p, 3), as where a system rests."""
+    return size <= UNMOVED * np.abs(place).max(initial=0.0)
+
+
 class Lacking(NamedTuple):
     """Largest differences of quantities to the theory of thick beams, and their causes in words, by beam."""
 
@@ -96,6 +101,8 @@ def system_errors(
         for name, beam in judged.items()
         for each in negligible({key: sizes[name, key] for key in ("force", "moment", "stress", "sheared")}, beam.length)
     }
+    if unmoved(sizes[PLACE], place):
+        nothing.add(PLACE)
     bases, every_exact = bases_of(system, of, inputs), all(body.kind == "exact" for body in judged.values())
     with np.errstate(all="ignore"):
         try:

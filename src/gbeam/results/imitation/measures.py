@@ -60,10 +60,11 @@ class Fatigue(Part):
     def damage_ratio(self) -> float:
         """Damage on the machine over that in flight by Palmgren and Miner, Σ n Δσᵐ; means count for nothing.
 
-        NaN without cycles in flight.
+        NaN without cycles in flight, inf beside cycles that are next to none.
         """
         flight = self.equivalent_flight
-        return (self.equivalent_machine / flight) ** self.exponent if flight > 0 else math.nan
+        with np.errstate(over="ignore"):
+            return float((np.float64(self.equivalent_machine) / flight) ** self.exponent) if flight > 0 else math.nan
 
 
 _FELT = 0.1  # of the flight's largest spectrum: an axis with less is no part of the shock
