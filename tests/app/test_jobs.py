@@ -21,6 +21,7 @@ from gbeam.app import jobs as module
 from gbeam.app.documents import changes
 from gbeam.app.jobs import Jobs
 from gbeam.errors import InputError
+from gbeam.guards.processes import LIMITED
 
 from ..scenarios import FAST
 
@@ -358,10 +359,9 @@ def test_a_run_ends_after_its_time(tmp_path: Path, sleeping: None, monkeypatch: 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems do not limit a process's address space")
 def test_a_run_has_so_much_memory_only(tmp_path: Path) -> None:
-    hungry = tmp_path / "gbeam.py"  # found first, in place of the package
+    hungry = tmp_path / "gbeam.py"  # the first that -m meets, and -P does not see
     hungry.write_text("import os\nprint(len(b'0' * (2 << 30)))\n")
-    limited = Path(module.__file__).with_name("limited.py")
-    command = [sys.executable, str(limited), str(1 << 30), "60"]
+    command = [sys.executable, "-P", "-c", LIMITED, str(1 << 30), "60"]
     ended = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert ended.returncode != 0 and "MemoryError" in ended.stderr
 

@@ -12,7 +12,7 @@ from scipy.linalg import eigh
 
 import gbeam as gb
 from gbeam.solids.elements import mass_matrix, stiffness_matrix
-from gbeam.solids.interfaces import attached
+from gbeam.solids.links import attached
 
 from .bodies import STIFF, block, solid
 from .test_matrices import frame

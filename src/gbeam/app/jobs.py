@@ -25,6 +25,7 @@ from typing import Any
 from gbeam.app.files import SHORT, made, names, private, regular, write
 from gbeam.app.verbs import verbs
 from gbeam.errors import InputError
+from gbeam.guards.processes import LIMITED
 from gbeam.results.imitation.criteria import GOOD
 
 ID = re.compile(r"\d{8}-\d{6}-[0-9a-f]{8}")
@@ -314,7 +315,7 @@ def _last_line(log: Path) -> str:
 def _command(state: Mapping[str, Any]) -> list[str]:
     """A verb with its result as a report and as JSON."""
     arguments = [state["verb"], _SCENARIO, *state["arguments"], "--out", "out", "--report", "--json"]
-    return [sys.executable, "-m", "gbeam.app.limited", str(MEMORY), str(SECONDS), *arguments]
+    return [sys.executable, "-c", LIMITED, str(MEMORY), str(SECONDS), *arguments]
 
 
 def _state(place: Path, otherwise: str) -> str:

@@ -28,6 +28,7 @@ from gbeam.errors import ComputationError, InputError
 from gbeam.guards.limits import READER_BYTES, READER_RATE, READER_SECONDS, end_with_parent, in_bytes, restrict
 
 _START = "import json, sys; sys.path[:] = json.loads(sys.argv[1]); from gbeam.guards.processes import serve; serve()"
+LIMITED = "from gbeam.guards.processes import limited; limited()"
 _PATIENCE = 6  # times the processor time: a disk, or a machine that does other things as well
 _ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 _PLAIN = "biufcS"  # kinds of arrays that are bytes; those of objects hold text
@@ -188,3 +189,13 @@ def _taken(handle: int) -> bool:
     finally:
         os.lseek(handle, 0, os.SEEK_SET)
     return True
+
+
+def limited() -> None:
+    """Become ``python -m gbeam ARGUMENTS`` with limits, which stay, by the arguments BYTES, SECONDS, ARGUMENTS."""
+    memory, seconds, *arguments = sys.argv[1:]
+    command = [sys.executable, "-m", "gbeam", *arguments]
+    if sys.platform == "win32":  # has no such limits, and starts another process where others become one
+        sys.exit(subprocess.call(command))
+    restrict(int(memory), int(seconds))
+    os.execv(sys.executable, command)

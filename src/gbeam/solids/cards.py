@@ -14,8 +14,7 @@ from gbeam.errors import InputError
 from gbeam.mechanics.tree.system import RigidBody
 from gbeam.numerics.eigen import Floats
 from gbeam.solids.foreign import abaqus_keywords, ending_of
-from gbeam.solids.interfaces import coupling
-from gbeam.solids.links import Links
+from gbeam.solids.links import Links, coupling
 from gbeam.solids.shape_functions import Indices
 
 NASTRAN, ABAQUS = (".bdf", ".fem", ".nas"), (".inp",)

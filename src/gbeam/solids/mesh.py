@@ -38,8 +38,7 @@ from gbeam.solids.foreign import (
     nodes_in,
     unit_size,
 )
-from gbeam.solids.interfaces import attached, refuse_names
-from gbeam.solids.links import Linked, Links
+from gbeam.solids.links import Linked, Links, attached, refuse_names
 from gbeam.solids.model import SolidModel, mesh_errors
 from gbeam.solids.plausibility import doubts_of, refuse_folded, refuse_loose
 from gbeam.solids.shape_functions import Indices

@@ -1,4 +1,6 @@
-"""Arrays in files: matrices by NumPy, SciPy, Matrix Market and MATLAB, Simscape's fields, and laws of controllers."""
+"""Contents of files of matrices as readers return them, and arrays in files: by NumPy, SciPy, Matrix Market and MATLAB,
+Simscape's fields, and laws of controllers.
+"""
 
 from __future__ import annotations
 
@@ -6,17 +8,50 @@ import math
 import os
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import BINARY_BYTES, read_json, refuse_large_file
 from gbeam.guards.processes import confined
-from gbeam.io.models.contents import Contents, sparse_parts
 from gbeam.printable import shortened
 
+Matrices = dict[str, Any]
 ORIGINS = "P"  # of interface frames, beside K and M, in Simscape
+
+
+class Contents(TypedDict, total=False):
+    """Parts of a model: matrices, sparse ones as :func:`sparse_parts`; unknowns (u, 2), number of the node and
+    direction, 1 to 6, or 0 of a coordinate of its own, by the name of the matrix, or all under no name; numbers (k,),
+    places (k, 3) and axes in columns (k, 3, 3) of nodes; modes by their parts; a body of standard input data.
+    """
+
+    matrices: Matrices
+    unknowns: dict[str, Any]
+    numbers: Any
+    places: Any
+    axes: Any
+    modes: dict[str, Any]
+    body: dict[str, Any]
+
+
+def sparse_parts(matrix: Any) -> dict[str, Any]:
+    """A sparse matrix in parts."""
+    entries = matrix.tocoo()
+    rows, columns = entries.coords
+    return {"values": entries.data, "rows": rows, "columns": columns, "shape": list(matrix.shape)}
+
+
+def mirrored(values: Any, rows: Any, columns: Any, size: int) -> dict[str, Any]:
+    """A symmetric sparse matrix in parts, of which each entry is given once, or also the one across."""
+    from scipy.sparse import coo_array, diags_array
+
+    matrix = coo_array((np.asarray(values, dtype=float), (rows, columns)), shape=(size, size)).tocsr()
+    diagonal = diags_array(matrix.diagonal()).tocsr()
+    across = (matrix - diagonal).T
+    once = not abs((matrix - diagonal).multiply(across)).max()
+    return sparse_parts((matrix + across).tocsr() if once else matrix)
 
 
 def read(path: str) -> Contents:

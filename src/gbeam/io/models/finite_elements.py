@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.errors import InputError
-from gbeam.io.models.contents import Contents, mirrored, sparse_parts
+from gbeam.io.models.arrays import Contents, mirrored, sparse_parts
 
 INSTALL = 'install it with: pip install "gbeam[nastran]"'
 

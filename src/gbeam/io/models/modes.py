@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.errors import InputError
-from gbeam.io.models.contents import Contents
+from gbeam.io.models.arrays import Contents
 
 NODES, MODES = (15, 2411), 55
 NORMAL, COMPLEX = 2, (3, 7)  # analysis types

@@ -15,7 +15,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import BINARY_BYTES, refuse_large_file
 from gbeam.guards.processes import confined
-from gbeam.io.models.contents import Contents
+from gbeam.io.models.arrays import Contents
 from gbeam.printable import shortened
 
 MARKET = b"%%MatrixMarket"
