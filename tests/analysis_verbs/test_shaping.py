@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -181,6 +183,9 @@ def test_joints_that_no_command_leaves_at_rest_are_refused() -> None:
     with pytest.raises(gb.InputError, match="bends the beam otherwise as it moves"):
         gb.shape_command(tilted, "axis.angle", angle=0.5, duration=6.0)
     options = {"angle": 0.5, "duration": 6.0}
+    law = gb.Feedback(lambda t, y: -y, ["axis.angle_rate"], ["axis.angle"], sample=0.01)
+    with pytest.raises(gb.InputError, match="controllers act besides the command"):
+        gb.shape_command(replace(on_axis(effort=0.0), controllers={"damper": law}), "axis.angle", **options)  # type: ignore[arg-type]
     for more, said in (
         ({"stiffness": 5.0}, "a spring or gravity holds"),
         ({"damping": 5.0}, "a damper brakes"),

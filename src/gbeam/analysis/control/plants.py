@@ -211,6 +211,9 @@ class OnJoint:
         """Raise InputError unless it is at rest without a command, with the same sag all the way."""
         if np.abs(self.system.start[1]).max(initial=0.0) > 0:
             raise InputError("initial_rate", "is not zero: the system moves already", "leave it out")
+        if self.system.controllers:
+            problem = "act besides the command, whose small motions know nothing of them"
+            raise InputError("controllers", problem, "shape the command of the system without them")
         if goal.to_rate and self._deflection(self.system.start[0][None]) is None:
             fix = "name a point of a flexible body, or give no rate"
             raise InputError("point", f"is {self.point!r}, which goes on at the rate that is reached", fix)
@@ -315,7 +318,7 @@ class OnJoint:
         assert settings.step is not None
         system, scheme = self.commanded(profile), scheme_of(settings)
         tree, k = system.tree, system.coordinates.index(self.coordinate)
-        posed = PosedSystem(replace(system, controllers={}), None)  # as the derivatives are
+        posed = PosedSystem(system, None)
         point, count = posed.start(settings), round(settings.duration / settings.step)
         corners = posed.jumps(settings, settings.step).felt_by(scheme)
         grid = fitted(settings.start, settings.duration / count, count, corners)
