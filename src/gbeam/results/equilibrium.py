@@ -90,7 +90,8 @@ class Critical(Result):
 
     @declared(LOST, "critical value by what is raised", role="fact", name=None, key=INSIDE)
     def by_name(self) -> dict[str, float | None]:
-        return {next(name for name, unit in LOST.items() if unit == self.unit): self.value}
+        names = dict(zip(("rate", "acceleration along x", "load factor"), LOST, strict=True))
+        return {names[self.quantity.removeprefix("hub ")]: self.value}
 
     @declared("", "estimated error from too few shapes", name=None)
     def error_estimate(self) -> float:

@@ -94,6 +94,22 @@ class Modes(Oscillating, Figured):
         default=None,
     )
 
+    place: Floats | None = quantity(
+        "m",
+        "place of the station at rest, base axes",
+        "station",
+        "axis",
+        name="section_place",
+        key="section.place",
+        optional=True,
+        note="for pictures; None of a straight beam",
+        default=None,
+    )
+    across: Floats | None = quantity(
+        "", "direction of the section's width at rest", "station", "axis", name="section_across", key="section.across",
+        optional=True, default=None,
+    )  # fmt: skip
+
     @property
     def edge(self) -> Complex:
         """Displacement of the section's outermost fibre by twist, in the size of the shape, (k, s)."""

@@ -152,9 +152,14 @@ def drawn(structure: Structure) -> dict[str, Any]:
     """The beam as a picture of the shapes needs it."""
     if structure.source is None or structure.traced:
         return {}
-    section = structure.source.beam.section.at(structure.stations)
+    beam = structure.source.beam
+    section = beam.section.at(structure.stations)
     width, thickness = section.extents()
-    return {"width": width, "thickness": thickness, "round": section.round}
+    known = {"width": width, "thickness": thickness, "round": section.round}
+    if beam.line is None:
+        return known
+    place, axes = beam.at_rest(structure.stations)
+    return known | {"place": place, "across": axes[:, :, 1]}
 
 
 def frozen(base: Base) -> BaseMotion:

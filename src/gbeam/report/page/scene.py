@@ -60,9 +60,7 @@ def motion(name: str, environment: str, variables: Variables, numbers: Numbers) 
         "largest": _largest(outline),
     }
     if (rest := of("outline_place")) is not None:
-        header["length"] = _largest(rest)
-        middle, header["radiusShown"] = _view(rest[None])
-        header["middle"] = numbers.add(middle)
+        header |= _extent(rest, numbers)
     reach = np.array([[float(of("point")[-1]), 0.0, 0.0]]) if rest is None else rest
     header |= _carried(variables, index, np.concatenate([np.zeros((1, 3)), reach]), numbers)
     if of("attitude") is not None:
@@ -220,6 +218,12 @@ def _view(place: Floats) -> tuple[Floats, float]:
     return (low + high)[None] / 2, 1.05 * whole or 1.0
 
 
+def _extent(rest: Floats, numbers: Numbers) -> dict[str, Any]:
+    """Length and view of a beam whose points (p, 3) at rest are on no straight line."""
+    middle, radius = _view(rest[None])
+    return {"length": _largest(rest), "middle": numbers.add(middle), "radiusShown": radius}
+
+
 def shape(points: Floats, width: Floats, thickness: Floats, is_round: Any) -> dict[str, Any]:
     """The beam along its axis."""
     return {
@@ -245,16 +249,22 @@ def shapes(modes: Modes, numbers: Numbers) -> dict[str, Any]:
     ]
     ways = zip(modes.frequency, modes.direction, strict=True)
     labels, motions = [f"{i}: {number(frequency)} Hz, {way}" for i, (frequency, way) in enumerate(ways, 1)], []
+    line: dict[str, Any] = {}
+    view: dict[str, Any] = {"length": float(x[-1])}
+    if modes.place is not None and modes.across is not None:
+        line = {"rest": modes.place[some].tolist(), "across": modes.across[some].tolist()}
+        view = _extent(modes.place, numbers)
     for k, label in enumerate(labels):
         twist = np.zeros(1) if modes.twist is None else modes.twist[k, some]
         amplitude = _amplitude(x[-1], 1.0, float(np.abs(twist).max()))
         beam = {
             **shape(x[some], sizes[0], sizes[1], modes.round),
+            **line,
             "displacement": numbers.add(amplitude * _swung(modes.shape[k, some])),
         }
         if modes.twist is not None:
             beam["twist"] = numbers.add(amplitude * _swung(twist))
-        motion = {"parts": [{"beam": beam}], "length": float(x[-1]), "time": numbers.add(PHASES), "largest": amplitude}
+        motion = {"parts": [{"beam": beam}], **view, "time": numbers.add(PHASES), "largest": amplitude}
         motions.append(_mode(label, motion))
     return {"labels": labels, "motions": motions}
 
