@@ -30,7 +30,7 @@ def test_the_table_in_the_documents() -> None:
     page = Path(__file__).parents[2] / "docs" / "verdict.md"
     (block,) = re.findall(r"```toml\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
     case = build(loads(FAST + block.replace("motion.centrifuge", "motion.spin")))
-    assert list(case.accept["spin"]) == [*RULES, *(each for each in SETTINGS if each != "point")]  # point: of a system
+    assert list(case.accept["spin"]) == [*RULES, *SETTINGS]
 
 
 def test_the_schema_has_every_criterion_and_nothing_else() -> None:

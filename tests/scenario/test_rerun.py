@@ -7,6 +7,7 @@ import json
 import math
 import shutil
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -139,7 +140,7 @@ def test_an_integrator_of_version_0_2_is_read_and_refused(result: Path, gbeam: C
 def test_a_large_record_is_found_where_it_was(
     tmp_path: Path, gbeam: Callable[..., Answer], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("gbeam.scenario.load.EMBEDDED", 1000)
+    monkeypatch.setattr(import_module("gbeam.scenario.load"), "EMBEDDED", 1000)
     monkeypatch.chdir(tmp_path)
     shutil.copy(RECORD, "turn.csv")
     Path("s.toml").write_text(RECORDED, encoding="utf-8")

@@ -232,7 +232,9 @@ def system_modes(modes: SystemModes) -> str:
     rows = zip(modes.frequency, modes.damping_ratio, modes.error_estimate, strict=True)
     for k, (frequency, ratio, error) in enumerate(rows):
         shares = ((share, body) for share, body in zip(modes.share[k], modes.bodies, strict=True) if share > 0.005)
-        listed = ", ".join(f"{body} {share:.0%}" for share, body in sorted(shares, reverse=True))
+        # Bodies of equal shares in their own order, whatever the last digits say.
+        ranked = sorted(shares, key=lambda each: -round(each[0], 2))
+        listed = ", ".join(f"{body} {share:.0%}" for share, body in ranked)
         damping = ratio if abs(ratio) > 1e-10 else 0.0
         known = f"  error {percent(error):>7}" if math.isfinite(error) else ""
         lines.append(f"  {k + 1:>3}  {frequency:12.6g} Hz  damping {damping:8.4g}{known}  {listed}")
