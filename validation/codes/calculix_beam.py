@@ -130,7 +130,7 @@ def _mesh(strip: Strip) -> list[str]:
 
 
 def _areas(strip: Strip) -> dict[tuple[int, int], float]:
-    """What an even traction on an end does on its nodes (j, k), eight to a face, in faces."""
+    """Forces of an even traction on an end on its nodes (j, k), eight to a face, in faces."""
     _, ny, nz = strip.elements
     areas: Counter[tuple[int, int]] = Counter()
     for cell in itertools.product(range(ny), range(nz)):

@@ -274,7 +274,7 @@ class ShapedCommand(Figured):
 
     @property
     def task(self) -> str:
-        """What the command does, in words, such as "by 1 rad"."""
+        """Words for what the command does, such as "by 1 rad"."""
         ((name, goal),) = self.aim.items()
         return GOALS[name].format(goal)
 

@@ -26,12 +26,12 @@ def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure
     from gbeam.mechanics.tree.system import Place
     from gbeam.solids.mesh import SolidMesh
 
-    given: Any = (
+    laws: Any = (
         {name: _material(parts, f"{where}.materials.{name}", each) for name, each in table.materials.items()}
         if table.material is None
         else _material(parts, f"{where}.material", table.material)
     )
-    if given is None or (isinstance(given, dict) and None in given.values()):
+    if laws is None or (isinstance(laws, dict) and None in laws.values()):
         return None
 
     points: Any = {
@@ -43,7 +43,7 @@ def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure
         try:
             return SolidMesh.read(
                 file,
-                materials=given,
+                materials=laws,
                 clamp=table.clamp,
                 unit=table.unit,
                 thickness=table.thicknesses or table.thickness,
@@ -160,8 +160,8 @@ def modal_test_of(parts: Collector, where: str, table: schema.ModalTestBody) -> 
 
     def test() -> ModalTest:
         if table.modal_test is None:
-            given: dict[str, Any] = {key: getattr(table, key) for key in schema.MEASURED}
-            return ModalTest(**given | {"shapes": _same_nodes(table.shapes, len(given["nodes"]))})
+            measured: dict[str, Any] = {key: getattr(table, key) for key in schema.MEASURED}
+            return ModalTest(**measured | {"shapes": _same_nodes(table.shapes, len(measured["nodes"]))})
         read = ModalTest.read(table.modal_test, modal_mass=table.modal_mass)
         return read if table.damping_ratio is None else replace(read, damping_ratio=table.damping_ratio)
 
@@ -220,8 +220,8 @@ def rigid_of(parts: Collector, where: str, table: system.RigidBody) -> Structure
             table.mass, table.centre, moments, corners, bolts, table.bolt_axis, table.spread_limit, points
         )
 
-    made = parts.attempt(where, specimen)
-    return None if made is None else made.structure
+    built = parts.attempt(where, specimen)
+    return None if built is None else built.structure
 
 
 def _middle(table: system.RigidBody) -> Any:
@@ -246,6 +246,6 @@ def _moments(table: system.RigidBody) -> Any:
     return tuple(table.mass / 12 * (squares.sum() - squares))
 
 
-def _inertia(given: Any) -> Any:
+def _inertia(moments: Any) -> Any:
     """Principal moments, or three rows, as rows."""
-    return np.diag(given) if np.ndim(given) == 1 else np.asarray(given, dtype=float)
+    return np.diag(moments) if np.ndim(moments) == 1 else np.asarray(moments, dtype=float)

@@ -41,8 +41,8 @@ class Spring(NamedTuple):
 
 @dataclass(frozen=True)
 class Cards:
-    """What a file says besides its mesh: places of nodes in it by their numbers, nodes that a rigid link holds together
-    by its name, masses, and springs; and the words of it that are read.
+    """Statements of a file besides its mesh: places of nodes in it by their numbers, nodes that a rigid link holds, by
+    its name, masses, and springs; and the words of it that are read.
     """
 
     index: Mapping[int, int] = field(default_factory=dict)

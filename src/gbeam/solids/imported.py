@@ -108,13 +108,13 @@ class ImportedModel(Value):
         numbers = np.arange(len(at)) if self.numbers is None else np.asarray(self.numbers, dtype=int)
         if numbers.shape != (len(at),) or len(np.unique(numbers)) < len(at):
             raise InputError("numbers", f"are {numbers.shape}, or repeat", f"give {len(at)} different ones")
-        given = {"mass": m, "stiffness": k, "nodes": at, "unknowns": unknowns, "numbers": numbers}
-        for name, value in given.items():
+        checked = {"mass": m, "stiffness": k, "nodes": at, "unknowns": unknowns, "numbers": numbers}
+        for name, value in checked.items():
             object.__setattr__(self, name, value)
 
     def __repr__(self) -> str:
-        own = int((np.asarray(self.unknowns)[:, 1] == OWN).sum())
-        more = f", {own} of them modes" if own else ""
+        modes = int((np.asarray(self.unknowns)[:, 1] == OWN).sum())
+        more = f", {modes} of them modes" if modes else ""
         return f"ImportedModel({len(np.asarray(self.nodes))} nodes, {self.mass.shape[0]} unknowns{more})"
 
     @classmethod

@@ -29,25 +29,25 @@ def sparse_matrix(where: str, matrix: Any, size: int | None = None) -> Any:
     from scipy.sparse import csr_array
 
     try:
-        found = csr_array(matrix, dtype=float)
+        square = csr_array(matrix, dtype=float)
     except (TypeError, ValueError):
         raise InputError(where, "is no matrix of numbers", "give an array, or a sparse one of SciPy") from None
-    if found.ndim != 2 or found.shape[0] != found.shape[1]:
-        raise InputError(where, f"has the shape {found.shape}", "give a square matrix")
-    if size is not None and found.shape[0] != size:
-        raise InputError(where, f"has {found.shape[0]} rows", f"give {size}, as the other matrix has")
-    if not np.isfinite(found.data).all():
+    if square.ndim != 2 or square.shape[0] != square.shape[1]:
+        raise InputError(where, f"has the shape {square.shape}", "give a square matrix")
+    if size is not None and square.shape[0] != size:
+        raise InputError(where, f"has {square.shape[0]} rows", f"give {size}, as the other matrix has")
+    if not np.isfinite(square.data).all():
         raise InputError(where, "has values that are not finite", "give finite ones")
-    apart, largest = abs(found - found.T), abs(found).max()
+    apart, largest = abs(square - square.T), abs(square).max()
     if apart.max() > SYMMETRIC * largest:
         i, j = (int(each[apart.tocoo().data.argmax()]) for each in apart.tocoo().coords)
-        problem = f"is not symmetric: {found[i, j]:.4g} in row {i}, column {j}, and {found[j, i]:.4g} across"
+        problem = f"is not symmetric: {square[i, j]:.4g} in row {i}, column {j}, and {square[j, i]:.4g} across"
         raise InputError(where, problem, "write it with both triangles, and without damping or rotation in it")
-    negative = np.flatnonzero(found.diagonal() < 0)
+    negative = np.flatnonzero(square.diagonal() < 0)
     if negative.size:
-        problem = f"is not positive: {found.diagonal()[negative[0]]:.4g} on the diagonal in row {negative[0]}"
+        problem = f"is not positive: {square.diagonal()[negative[0]]:.4g} on the diagonal in row {negative[0]}"
         raise InputError(where, problem, "is it the right matrix?")
-    return (found + found.T) / 2
+    return (square + square.T) / 2
 
 
 def every_unknown(nodes: int, unknowns: int) -> Indices:

@@ -414,14 +414,14 @@ def _blocks(
     mesh: Any, points: Floats, elements: list[Elements], nodes_of: list[Indices], materials: Any, rotation: Floats
 ) -> tuple[Block, ...]:
     """Elements of each kind and material, whose axes are turned with the mesh."""
-    given = materials if isinstance(materials, Mapping) else {"": materials}
+    by_group = materials if isinstance(materials, Mapping) else {"": materials}
     owner = assigned(mesh, "materials", materials, (each.block for each in elements))
     without = sum(int((owner[each.block][each.which] < 0).sum()) for each in elements)
     if without:
         raise InputError("materials", f"give {without} elements none", "name the groups of all elements")
     first = np.cumsum([0, *(len(block.data) for block in mesh.cells)])
     blocks = []
-    for m, (name, material) in enumerate(given.items()):
+    for m, (name, material) in enumerate(by_group.items()):
         where = f"materials.{name}" if name else "materials"
         try:
             turned = isinstance(material, Orthotropic)

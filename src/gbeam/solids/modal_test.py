@@ -73,8 +73,8 @@ class ModalTest(Value):
         if mass.shape not in ((), (m,)):
             raise InputError("modal_mass", f"has the shape {mass.shape}", f"give {m}, or one for all")
         shapes, mass = _in_phase(shapes, np.broadcast_to(mass, (m,)))
-        given = {"frequency": frequency, "damping_ratio": np.broadcast_to(ratio, (m,)), "modal_mass": mass}
-        for name, value in given.items():
+        measured = {"frequency": frequency, "damping_ratio": np.broadcast_to(ratio, (m,)), "modal_mass": mass}
+        for name, value in measured.items():
             low = value < 0 if name == "damping_ratio" else ~(value > 0)
             if not np.isfinite(value).all() or low.any():
                 i = int(np.argmax(low | ~np.isfinite(value)))
@@ -83,7 +83,7 @@ class ModalTest(Value):
         if not np.isfinite(shapes).all() or numbers.shape != (len(at),):
             raise InputError("shapes", "or numbers are not finite, or not one for each node", "give them so")
         order = np.argsort(frequency, kind="stable")
-        for name, value in given.items():
+        for name, value in measured.items():
             object.__setattr__(self, name, value[order])
         for name, value in (("shapes", shapes[..., order]), ("nodes", at), ("numbers", numbers)):
             object.__setattr__(self, name, value)

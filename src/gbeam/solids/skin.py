@@ -16,24 +16,9 @@ from gbeam.solids.stress import surface_of
 
 # Ends of the names of files that hold meshes, also of surfaces and of geometry, of which the reader says what lacks.
 MESHES = {
-    *(
-        ".avs",
-        ".bdf",
-        ".cgns",
-        ".e",
-        ".ex2",
-        ".exo",
-        ".fem",
-        ".inp",
-        ".mdpa",
-        ".med",
-        ".mesh",
-        ".meshb",
-        ".msh",
-        ".nas",
-    ),
-    *(".su2", ".ugrid", ".vtk", ".vtu", ".iges", ".igs", ".obj", ".ply", ".step", ".stl", ".stp"),
-}
+    ".avs", ".bdf", ".cgns", ".e", ".ex2", ".exo", ".fem", ".inp", ".mdpa", ".med", ".mesh", ".meshb", ".msh", ".nas",
+    ".su2", ".ugrid", ".vtk", ".vtu", ".iges", ".igs", ".obj", ".ply", ".step", ".stl", ".stp",
+}  # fmt: skip
 VERTICES = 20_000  # about: at which groups are still told apart
 GROUPS = 200
 SHEET = 1e-3  # thickness of a shell that is shown, of the size of the mesh

@@ -154,18 +154,22 @@ def driven_joint(case: SystemCase, name: str | None) -> tuple[str, Hub]:
     """The coordinate of a system that a command moves, the only one with a rate or a drive where none is named; and a
     hub with its rate, or that is free.
     """
-    given = {
+    commands = {
         f"{owner}.{each}": joint.rates.get(each)
         for owner, joint in case.system.joints.items()
         for each in (*joint.rates, *joint.efforts)
     }
     if name is None:
-        if len(given) != 1:
-            fix = f"choose from {', '.join(given)}" if given else 'give a joint a rate or an effort, such as "0 N m"'
+        if len(commands) != 1:
+            fix = (
+                f"choose from {', '.join(commands)}"
+                if commands
+                else 'give a joint a rate or an effort, such as "0 N m"'
+            )
             raise InputError("--joint", "is missing: it says what moves", fix)
-        name = next(iter(given))
+        name = next(iter(commands))
     choice("--joint", name, movable(case.system))
-    rate = given.get(name)
+    rate = commands.get(name)
     return name, Hub(radius=0.0, inertia=1.0) if rate is None else Hub(radius=0.0, rate=rate)
 
 

@@ -138,8 +138,8 @@ class Outputs:
         n = self.structure.size + i
         y, yd, rate = x[:n], x[n : 2 * n], x[2 * n :]
         full = u if i else np.concatenate([u[:3], rate, u[3:]])
-        given = each_leaf(lambda leaf: leaf[None], self.residual.unpack(full))
-        ydd = accelerations(self.residual, y[None], yd[None], given)[0]
+        inputs = each_leaf(lambda leaf: leaf[None], self.residual.unpack(full))
+        ydd = accelerations(self.residual, y[None], yd[None], inputs)[0]
         return np.concatenate([yd, ydd, u[3:6] if not i else []]), self(y, yd, ydd, full)
 
 
@@ -344,18 +344,18 @@ def linearize(
     value, d = measured.matrices(np.concatenate([point.y, point.yd, point.ydd, point.u]))
     a, drive, out, through = linear.state_space(*np.split(d, [n, 2 * n, 3 * n], axis=1))
     states = coordinate_signals(structure, point.first)
-    begun, given = np.concatenate([point.y, point.yd]), np.asarray(point.u)
+    begun, held = np.concatenate([point.y, point.yd]), np.asarray(point.u)
     if not point.first:
         # u = (a, ω, α, loads): ω becomes a state where it acts, fed by α.
         acts = [i for i in range(3, 6) if np.abs(drive[:, i]).max() > 1e-12 or np.abs(through[:, i]).max() > 1e-12]
-        kept = [i for i in range(len(given)) if not 3 <= i < 6]
+        kept = [i for i in range(len(held)) if not 3 <= i < 6]
         fed = np.array([[float(j == i + 3) for j in kept] for i in acts]).reshape(-1, len(kept))
         m = len(acts)
         a = np.block([[a, drive[:, acts]], [np.zeros((m, 2 * n + m))]])
         out = np.concatenate([out, through[:, acts]], axis=1)
         drive, through = np.concatenate([drive[:, kept], fed]), through[:, kept]
         states += tuple(BASE_RATES[i - 3] for i in acts)
-        begun, given = np.concatenate([begun, given[acts]]), given[kept]
+        begun, held = np.concatenate([begun, held[acts]]), held[kept]
     warnings = input_warnings(structure, motion, name=name, span=(time, time), base=point.base)
     frequency, errors = np.zeros(0), None
     if q is None and qd is None:
@@ -370,7 +370,7 @@ def linearize(
         inputs=input_signals(structure, motion),
         outputs=output_signals(structure, gauges, motion),
         state=begun,
-        input=given,
+        input=held,
         output=value,
         model=structure.kind,
         motion=name,

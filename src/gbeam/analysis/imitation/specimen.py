@@ -258,9 +258,9 @@ def _refuse_moved(system: System, times: Floats) -> None:
     if system.controllers:
         fix = "give the joints springs in their place, and compare runs with them by `gbeam sweep`"
         raise InputError("controllers", "hold joints, and a place is judged by what rests", fix)
-    given = system.inputs(times).prescribed
-    if given is not None and np.any(given[:, 1]):
-        name = system.coordinates[system.tree.fixed[int(np.abs(given[:, 1]).max(axis=0).argmax())]]
+    prescribed = system.inputs(times).prescribed
+    if prescribed is not None and np.any(prescribed[:, 1]):
+        name = system.coordinates[system.tree.fixed[int(np.abs(prescribed[:, 1]).max(axis=0).argmax())]]
         fix = "give it the rate 0, at each position that is of interest"
         raise InputError("joints", f"move {name}, and a place is judged by what rests", fix)
 

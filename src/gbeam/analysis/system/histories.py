@@ -76,8 +76,8 @@ def deflection(system: System, point: str, q: Array) -> Array | None:
     body = system.bodies[name]
     if not isinstance(body, Structure) or k >= len(stations_of(body)):
         return None
-    own = np.array([each.startswith(f"{name}.q") for each in system.coordinates])
-    return body.displacement(q[:, own])[:, list(stations_of(body).values())[k]]
+    deforming = np.array([each.startswith(f"{name}.q") for each in system.coordinates])
+    return body.displacement(q[:, deforming])[:, list(stations_of(body).values())[k]]
 
 
 def beams_of(system: System) -> dict[str, Structure]:

@@ -131,11 +131,13 @@ def _shapes(state: SteadySystem, modes: Array) -> dict[str, BeamShape]:
     """Shapes of the beams at rest, and in modes (n, k)."""
     beams = dict[str, BeamShape]()
     for name, beam in beams_of(state.system).items() if modes.size else ():
-        own = [k for k, each in enumerate(state.names) if each.startswith(f"{name}.q")]
-        q, time = state.local.y[own], np.arange(modes.shape[1])
+        deforming = [k for k, each in enumerate(state.names) if each.startswith(f"{name}.q")]
+        q, time = state.local.y[deforming], np.arange(modes.shape[1])
         outline = outline_of(beam, None, np.zeros(1), q[None])
         if outline is not None:
-            moved = [outline_of(beam, None, time, q + 1j * STEP * each[own].T) for each in (modes.real, modes.imag)]
+            moved = [
+                outline_of(beam, None, time, q + 1j * STEP * each[deforming].T) for each in (modes.real, modes.imag)
+            ]
             real, imaginary = (each.displacement.imag / STEP for each in moved if each is not None)
             beams[name] = BeamShape(outline, real + 1j * imaginary)
     return beams

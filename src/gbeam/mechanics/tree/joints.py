@@ -149,9 +149,9 @@ class Joint(Value):
             else np.asarray(array("axes", self.axes), dtype=float)
         )
         if axes.shape != (wanted, 3):
-            given = "is missing" if not axes.size else f"has the shape {axes.shape}"
+            problem = "is missing" if not axes.size else f"has the shape {axes.shape}"
             fix = f"give {wanted} of 3 components each: a {self.kind} joint has as many" if wanted else "leave it out"
-            raise InputError("axes", given, fix)
+            raise InputError("axes", problem, fix)
         length = np.linalg.norm(axes, axis=1)
         if not (np.isfinite(length).all() and (length > 0).all()):
             raise InputError("axes", f"is {self.axes!r}", "give directions of finite length above zero")

@@ -242,10 +242,10 @@ class SolidBody(Reduced):
     @model_validator(mode="after")
     def _one_way(self) -> SolidBody:
         if (self.material is None) == (not self.materials):
-            given = self.material is not None
-            problem = "is given beside material" if given else "material is missing"
-            hint = "keep one of them" if given else "add material = { density, youngs_modulus, poissons_ratio }"
-            refuse([(("materials",) if given else (), wrong(problem, hint, mark="key"))])
+            single = self.material is not None
+            problem = "is given beside material" if single else "material is missing"
+            hint = "keep one of them" if single else "add material = { density, youngs_modulus, poissons_ratio }"
+            refuse([(("materials",) if single else (), wrong(problem, hint, mark="key"))])
         if self.thickness is not None and self.thicknesses:
             refuse([(("thicknesses",), wrong("is given beside thickness", "keep one of them", mark="key"))])
         return self
@@ -373,11 +373,11 @@ class ModalTestBody(Table):
 
     @model_validator(mode="after")
     def _one_way(self) -> ModalTestBody:
-        given = [key for key in MEASURED if getattr(self, key) is not None]
-        beside = [key for key in given if key in ("frequency", "shapes", "nodes")]
+        written = [key for key in MEASURED if getattr(self, key) is not None]
+        beside = [key for key in written if key in ("frequency", "shapes", "nodes")]
         if self.modal_test is not None and beside:
             refuse([((beside[0],), wrong("is given beside modal_test", "keep one of them", mark="key"))])
-        missing = [key for key in MEASURED if key not in given]
+        missing = [key for key in MEASURED if key not in written]
         if self.modal_test is None and missing:
             hint = "give modal_test = FILE, or frequency, damping_ratio, shapes, nodes and modal_mass"
             refuse([((), wrong(f"{missing[0]} is missing", hint, mark="key"))])
