@@ -22,9 +22,8 @@ from gbeam.motion import (
     read_record,
     trapezoid,
 )
-from gbeam.motion.centrifuge.inverses.axis_splines import AxisSplines, KeptLimits
+from gbeam.motion.centrifuge.inverses.axis_splines import AxisSplines, KeptLimits, Tracking
 from gbeam.motion.centrifuge.inverses.instant import Geometry
-from gbeam.motion.centrifuge.inverses.planned import Tracking
 from gbeam.motion.centrifuge.target.build import build_target
 from gbeam.motion.profiles.profile import Profile
 from gbeam.numerics.bspline import Grid

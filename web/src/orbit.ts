@@ -46,6 +46,16 @@ export class Orbit {
     this.changed();
   }
 
+  /** Acts of keys by their names. */
+  readonly keys: Readonly<Record<string, () => void>> = {
+    ArrowLeft: () => this.turn(-0.1, 0),
+    ArrowRight: () => this.turn(0.1, 0),
+    ArrowUp: () => this.turn(0, 0.1),
+    ArrowDown: () => this.turn(0, -0.1),
+    "+": () => this.nearer(1.15),
+    "-": () => this.nearer(1 / 1.15),
+  };
+
   /** Direction from what is looked at to the camera. */
   get direction(): [number, number, number] {
     const c = Math.cos(this.elevation);

@@ -134,18 +134,10 @@ export class SkinView {
     });
     this.canvas.addEventListener("pointerleave", () => (this.label.textContent = ""));
     this.canvas.addEventListener("keydown", (e) => {
-      const acts: Record<string, () => void> = {
-        ArrowLeft: () => this.orbit.turn(-0.1, 0),
-        ArrowRight: () => this.orbit.turn(0.1, 0),
-        ArrowUp: () => this.orbit.turn(0, 0.1),
-        ArrowDown: () => this.orbit.turn(0, -0.1),
-        "+": () => this.orbit.nearer(1.15),
-        "-": () => this.orbit.nearer(1 / 1.15),
-        Home: () => this.orbit.reset(),
-      };
-      if (!acts[e.key]) return;
+      const act = e.key === "Home" ? () => this.orbit.reset() : this.orbit.keys[e.key];
+      if (!act) return;
       e.preventDefault();
-      acts[e.key]!();
+      act();
     });
   }
 

@@ -250,12 +250,7 @@ export class Viewer {
     const step = (this.clock.end - this.clock.start) / 100;
     const actions: Record<string, () => void> = {
       " ": () => this.clock.toggle(),
-      ArrowLeft: () => this.orbit.turn(-0.1, 0),
-      ArrowRight: () => this.orbit.turn(0.1, 0),
-      ArrowUp: () => this.orbit.turn(0, 0.1),
-      ArrowDown: () => this.orbit.turn(0, -0.1),
-      "+": () => this.orbit.nearer(1.15),
-      "-": () => this.orbit.nearer(1 / 1.15),
+      ...this.orbit.keys,
       PageUp: () => this.clock.seek(this.clock.time - step),
       PageDown: () => this.clock.seek(this.clock.time + step),
       Home: () => this.clock.seek(this.clock.start),

@@ -1,14 +1,19 @@
-"""Splines of the axes, and the machine's limits kept by them."""
+"""Splines of the axes, the distance of the load that they make from the flight's, which is the cost of a plan, and the
+machine's limits kept by them.
+"""
 
 from __future__ import annotations
 
+import copy
 from typing import Any
 
 import numpy as np
 import scipy.sparse
 from numpy.typing import NDArray
 
+from gbeam.constants import STANDARD_GRAVITY
 from gbeam.motion.centrifuge.inverses.instant import Geometry
+from gbeam.motion.centrifuge.inverses.spin_up import Ramp
 from gbeam.motion.centrifuge.limits import QUANTITIES, Limits
 from gbeam.motion.centrifuge.target.target import Target
 from gbeam.numerics.bspline import DEGREE, PIECE, Grid
@@ -16,6 +21,10 @@ from gbeam.numerics.bspline import DEGREE, PIECE, Grid
 AXES = 3
 NEAR = AXES * PIECE  # coefficients that act on one piece
 RATE, YAW, ROLL = range(AXES)  # of these quantities the splines are: ω1 rad/s, θ2 rad, θ3 rad
+ON_WAY = 0.01  # weight of the squared error before the flight and after it
+BELOW_IDLE = 0.1  # weight of the squared error while the flight's load is below idle, where it is 1 otherwise
+EASE = 1e-4, 1e-6  # g0: what 1 rad/s² and 1 rad/s³ of any axis cost as a tracking error
+_PAIRS = np.tril_indices(4)  # of states
 
 Floats = NDArray[np.float64]
 
@@ -99,6 +108,124 @@ def idle_rate(target: Target, geometry: Geometry) -> float:
     """Rate of axis 1 at which the arm alone makes the idle load, rad/s; zero where there is no idle."""
     horizontal2 = max(float(target.idle) ** 2 - float(geometry.gravity) ** 2, 0.0)
     return float((horizontal2 / float(geometry.arm) ** 2) ** 0.25)
+
+
+class Tracking:
+    """Half the integral over time of
+
+        w |a_C − flight's own load|²/g0² + sum over the axes of (EASE · acceleration)² + (EASE · jerk)²,
+
+    where before the flight's first time and after its last the load is that of spin-up and spin-down by themselves.
+
+    The load depends on four states: ω1, dω1/dt, θ2 and θ3; each is a row of the unknowns at every time of the grid.
+    """
+
+    def __init__(
+        self, splines: AxisSplines, geometry: Geometry, target: Target, ramps: tuple[Ramp, Ramp] | None = None
+    ) -> None:
+        grid = splines.grid
+        self.splines, self.arm, self.gravity = splines, float(geometry.arm), float(geometry.gravity)
+        first, last = (float(end) for end in target.span)
+        self.flight = np.asarray(target.flight(np.clip(grid.time, first, last)))
+        before, after = grid.time < first, grid.time > last
+        for ramp, outside in zip(ramps or (), (before, after), strict=False):
+            self.flight[outside] = ramp.load(grid.time[outside], self.arm)
+        spacing = grid.step / grid.points.size
+        short = np.maximum(float(target.idle) - np.linalg.norm(self.flight, axis=1), 0.0)
+        short[before | after] = 0.0
+        weight = np.where(before | after, ON_WAY, np.where(short > 0, BELOW_IDLE, 1.0))
+        self.weight = np.sqrt(spacing * weight) / STANDARD_GRAVITY
+        self.bound = float(np.sum((self.weight * short) ** 2)) / 2  # what idle costs, whatever the axes do
+        states = (RATE, 0), (RATE, 1), (YAW, 0), (ROLL, 0)
+        self.states = scipy.sparse.vstack([splines.derivative(*state) for state in states], format="csr")
+        # Weights of a piece's coefficients in its states, (points, 4, 18).
+        near = np.stack([_on_axis(grid.rows(order), axis) for axis, order in states], axis=1)
+        # The lower triangles of what the states' second derivatives are by the coefficients, (171, points · 10).
+        by_pair = np.einsum("qsi,qtj->ijqst", near, near)[np.tril_indices(NEAR)]
+        by_pair = by_pair + by_pair.swapaxes(2, 3)
+        by_pair[:, :, range(4), range(4)] /= 2
+        self.by_pair = by_pair[:, :, *_PAIRS].reshape(len(by_pair), -1)
+        # The spline of axis 1 is that of its rate, those of axes 2 and 3 are those of their angles.
+        eased = np.concatenate(
+            [
+                np.sqrt(spacing) * EASE[k] * _on_axis(grid.rows(k + 1 + (axis != RATE)), axis)
+                for k in range(len(EASE))
+                for axis in range(AXES)
+            ]
+        )
+        self.eased = (eased.T @ eased)[np.tril_indices(NEAR)][:, None]
+        self.ease = splines.assembled(np.broadcast_to(self.eased, (self.eased.size, grid.pieces)))
+
+    def gentler(self, factor: float) -> Tracking:
+        """Cost with a larger EASE."""
+        other = copy.copy(self)
+        other.ease, other.eased = factor**2 * self.ease, factor**2 * self.eased
+        return other
+
+    def cost(self, x: Floats) -> float:
+        """The cost of the unknowns."""
+        error, _ = self.error((self.states @ x).reshape(4, -1), 0)
+        return (float(np.sum(error**2)) + float(x @ (self.ease @ x))) / 2
+
+    def model(self, x: Floats) -> tuple[Any, Floats]:
+        """A positive semidefinite matrix near the cost's second derivatives, and its slope.
+
+        At every time the second derivatives by the states are replaced by their absolute value, that of their
+        eigenvalues: where the flight's load is small, what turns the machine's is a saddle, which the products of
+        the first derivatives alone (Gauss and Newton's) take for a valley.
+        """
+        error, slope, second = self.error((self.states @ x).reshape(4, -1), 2)
+        size, vectors = np.linalg.eigh(second)
+        second = (vectors * np.abs(size)[:, None]) @ vectors.swapaxes(1, 2)
+        by_states = np.einsum("kjt,kt->jt", slope, error).ravel()
+        pieces = second[:, *_PAIRS].reshape(self.splines.grid.pieces, -1)
+        hessian = self.splines.assembled(self.by_pair @ pieces.T + self.eased)
+        return hessian, self.states.T @ by_states + self.ease @ x
+
+    def error(self, state: Floats, order: int) -> tuple[Floats, ...]:
+        """Weighted tracking error in g0 and what follows from it, of states (4, times)."""
+        arm, gravity, (rate, acceleration, yaw, roll) = self.arm, self.gravity, state
+        radial, tangential = -arm * rate**2, arm * acceleration
+        sin2, cos2, sin3, cos3 = np.sin(yaw), np.cos(yaw), np.sin(roll), np.cos(roll)
+        # `control_point_load`: what is along the beam and across it; the roll turns what is across it.
+        along, across = radial * cos2 + tangential * sin2, tangential * cos2 - radial * sin2
+        load = np.stack([along, across * cos3 + gravity * sin3, gravity * cos3 - across * sin3])
+        error = self.weight * (load - self.flight.T)
+        if order == 0:
+            return error, load
+        none, by_rate = 0.0 * along, -2 * arm * rate
+        d_along = np.stack([by_rate * cos2, arm * sin2, across, none])
+        d_across = np.stack([-by_rate * sin2, arm * cos2, -along, none])
+        slope = np.stack([d_along, d_across * cos3, -d_across * sin3])
+        slope[1, 3], slope[2, 3] = load[2], -load[1]
+        slope *= self.weight
+        second = np.einsum("kit,kjt->tij", slope, slope)
+        # Σ error ∂²error/∂state², by the parts along the beam, across it, and across it turned by a right angle.
+        by_along, by_across, by_turned = self.weight * np.stack(
+            [error[0], error[1] * cos3 - error[2] * sin3, -error[1] * sin3 - error[2] * cos3]
+        )
+        bent = {
+            (0, 0): 2 * arm * (sin2 * by_across - cos2 * by_along),
+            (0, 2): -by_rate * (sin2 * by_along + cos2 * by_across),
+            (1, 2): arm * (cos2 * by_along - sin2 * by_across),
+            (2, 2): -along * by_along - across * by_across,
+            (0, 3): d_across[0] * by_turned,
+            (1, 3): d_across[1] * by_turned,
+            (2, 3): d_across[2] * by_turned,
+            (3, 3): -self.weight * (error[1] * load[1] + error[2] * load[2]),
+        }
+        for (i, j), value in bent.items():
+            second[:, i, j] += value
+            if i != j:
+                second[:, j, i] += value
+        return error, slope, second
+
+
+def _on_axis(rows: Floats, axis: int) -> Floats:
+    """Weights (m, 6) of one axis's coefficients on a piece as weights (m, 18) of all axes'."""
+    weights = np.zeros((len(rows), NEAR))
+    weights[:, axis::AXES] = rows
+    return weights
 
 
 class KeptLimits:
