@@ -10,9 +10,10 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import spsolve
 
 import gbeam as gb
+from gbeam.results.solids import von_mises
 from gbeam.solids.elements import chunks, stiffness_matrix
 from gbeam.solids.shape_functions import KINDS
-from gbeam.solids.stress import VERTICES, NodalStress, principal, surface_of, von_mises
+from gbeam.solids.stress import VERTICES, NodalStress, principal, surface_of
 
 from .bodies import STIFF, block, solid
 

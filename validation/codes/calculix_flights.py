@@ -17,8 +17,8 @@ import numpy as np
 
 import gbeam as gb
 from gbeam.motion.bases.base import gradients
+from gbeam.results.solids import von_mises
 from gbeam.solids.elements import chunks, mass_matrix
-from gbeam.solids.stress import von_mises
 from validation.codes.calculix_solid import DAMPING, SMALL, moved, solid
 from validation.table import Row
 

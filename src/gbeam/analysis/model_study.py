@@ -22,6 +22,7 @@ from gbeam.guards.arguments import typed
 from gbeam.mechanics.assembly import model_of, remade
 from gbeam.mechanics.models import KINDS, Model
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.signals import deforming
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress, tell
@@ -221,7 +222,7 @@ def _tip_of(system: System, response: SystemResponse, point: str | None) -> _Tip
 def _coordinates(system: System, response: SystemResponse, point: str) -> Floats:
     """Coordinates (t, n) of the flexible body that a point is on."""
     body = point.partition(".")[0]
-    return response.q[:, [each.startswith(f"{body}.q") for each in system.coordinates]]
+    return response.q[:, deforming(system.coordinates, body)]
 
 
 def _moved(system: System, response: SystemResponse, point: str) -> Floats:

@@ -152,6 +152,13 @@ class SolidStress(Figured):
         return self._with_warnings(f"SolidStress{of} ({self.model}): {worst}", margin)
 
 
+def von_mises(stress: Floats) -> Floats:
+    """Von Mises stress of stresses xx, yy, zz, yz, xz, xy, (..., 6)."""
+    xx, yy, zz, yz, xz, xy = np.moveaxis(stress, -1, 0)
+    squares: Floats = ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * (yz**2 + xz**2 + xy**2)
+    return np.sqrt(squares)
+
+
 def said(stress: StressAt) -> str:
     """A stress with its place and time, and how sure the mesh is of it."""
     x, y, z = (1e3 * float(each) for each in stress.place)

@@ -12,7 +12,7 @@ import numpy as np
 from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.results.result import Floats
-from gbeam.results.solids import SolidStress, StressAt, Surface
+from gbeam.results.solids import SolidStress, StressAt, Surface, von_mises
 from gbeam.solids.elements import TENSOR, chunks
 from gbeam.solids.shape_functions import KINDS, Indices, extrapolation
 
@@ -201,13 +201,6 @@ def _area(corners: Floats) -> float:
     """Area of triangles (f, 3, 3)."""
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     return float(np.linalg.norm(normals, axis=1).sum() / 2)
-
-
-def von_mises(stress: Floats) -> Floats:
-    """Von Mises stress of stresses xx, yy, zz, yz, xz, xy, (..., 6)."""
-    xx, yy, zz, yz, xz, xy = np.moveaxis(stress, -1, 0)
-    squares: Floats = ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * (yz**2 + xz**2 + xy**2)
-    return np.sqrt(squares)
 
 
 def principal(stress: Floats) -> Floats:

@@ -21,6 +21,7 @@ from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.models import TORSION
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import theory_of
+from gbeam.mechanics.tree.signals import deforming
 from gbeam.mechanics.tree.system import System
 from gbeam.numerics.eigen import mac, matched
 from gbeam.results.errors import PARTS, ErrorEstimate, FrequencyErrors
@@ -171,7 +172,7 @@ class Richer:
             left += factor[:, None] * (mode @ beyond.T)
         energies, every = dict[str, float](), dict[str, dict[str, float]]()
         for name, theory in self.theories.items():
-            columns = [k for k, each in enumerate(thick.names) if each.startswith(f"{name}.q")]
+            columns = deforming(thick.names, name)
             p = mode[:, columns]
             energies[name] = float(np.einsum("ti,ij,tj->", p.conj(), theory.thick.coefficients.stiffness, p).real)
             every[name] = causes(theory, p, left[:, columns], p @ plates[name])
@@ -187,7 +188,7 @@ def _bent(state: Any, name: str) -> Floats:
     """Coordinates (n,) of a beam in a steady state."""
     if isinstance(state, OperatingPoint):
         return state.q
-    return np.asarray(state.local.y)[[k for k, each in enumerate(state.names) if each.startswith(f"{name}.q")]]
+    return np.asarray(state.local.y)[deforming(state.names, name)]
 
 
 def among(names: Sequence[str], others: Sequence[str], modes: Complex) -> Complex:

@@ -35,6 +35,7 @@ from gbeam.analysis.system.richer import (
 from gbeam.errors import ComputationError
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.signals import deforming
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.bases.base import Base
 from gbeam.results.errors import ErrorEstimate, SystemErrors
@@ -201,8 +202,8 @@ def _departing(
         # A system in which it alone is exact leaves what it lacks; the others feel it only through the joints.
         one = richer(exact.of, {name: bases[name]}, exact=True)
         names = [one.system.coordinates[k] for k in one.system.tree.free]
-        its = [each.startswith(f"{name}.q") for each in theirs]
-        kept = [k for k, each in enumerate(names) if its[theirs.index(each)] or each.partition(".")[0] not in bases]
+        its = deforming(names, name)
+        kept = [k for k, each in enumerate(names) if k in its or each.partition(".")[0] not in bases]
         alone = np.zeros_like(residual)
         alone[:, [theirs.index(names[k]) for k in kept]] = answered(one, of, inputs).residual()[:, kept]
         yield at.moved(respond(alone, 0.0)).read(())

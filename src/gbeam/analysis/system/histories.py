@@ -13,6 +13,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.bodies import Acting
 from gbeam.mechanics.tree.equations import Inputs, State
 from gbeam.mechanics.tree.frames import turned
+from gbeam.mechanics.tree.signals import deforming
 from gbeam.mechanics.tree.steps import parameters_of_all
 from gbeam.mechanics.tree.system import System, stations_of
 from gbeam.results.parts import Loads
@@ -76,8 +77,7 @@ def deflection(system: System, point: str, q: Array) -> Array | None:
     body = system.bodies[name]
     if not isinstance(body, Structure) or k >= len(stations_of(body)):
         return None
-    deforming = np.array([each.startswith(f"{name}.q") for each in system.coordinates])
-    return body.displacement(q[:, deforming])[:, list(stations_of(body).values())[k]]
+    return body.displacement(q[:, deforming(system.coordinates, name)])[:, list(stations_of(body).values())[k]]
 
 
 def beams_of(system: System) -> dict[str, Structure]:

@@ -21,7 +21,7 @@ from gbeam.guards.checks import choice
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.tree.control import signal_names
 from gbeam.mechanics.tree.equations import Inputs
-from gbeam.mechanics.tree.signals import Driven, drives_of, measurements, signals_of
+from gbeam.mechanics.tree.signals import Driven, deforming, drives_of, measurements, signals_of
 from gbeam.mechanics.tree.steps import parameters_of_all
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
@@ -131,13 +131,11 @@ def _shapes(state: SteadySystem, modes: Array) -> dict[str, BeamShape]:
     """Shapes of the beams at rest, and in modes (n, k)."""
     beams = dict[str, BeamShape]()
     for name, beam in beams_of(state.system).items() if modes.size else ():
-        deforming = [k for k, each in enumerate(state.names) if each.startswith(f"{name}.q")]
-        q, time = state.local.y[deforming], np.arange(modes.shape[1])
+        columns = deforming(state.names, name)
+        q, time = state.local.y[columns], np.arange(modes.shape[1])
         outline = outline_of(beam, None, np.zeros(1), q[None])
         if outline is not None:
-            moved = [
-                outline_of(beam, None, time, q + 1j * STEP * each[deforming].T) for each in (modes.real, modes.imag)
-            ]
+            moved = [outline_of(beam, None, time, q + 1j * STEP * each[columns].T) for each in (modes.real, modes.imag)]
             real, imaginary = (each.displacement.imag / STEP for each in moved if each is not None)
             beams[name] = BeamShape(outline, real + 1j * imaginary)
     return beams

@@ -15,6 +15,7 @@ from gbeam.errors import ComputationError, InputError
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.equations import Inputs
 from gbeam.mechanics.tree.frames import Frame, turned_back
+from gbeam.mechanics.tree.signals import deforming
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.protocol import Motion
@@ -115,7 +116,7 @@ class SteadySystem:
         bent = {}
         for name, body in self.system.bodies.items():
             if isinstance(body, Structure) and body.kind not in BY_STRAINS:
-                q = self.local.y[[k for k, each in enumerate(self.names) if each.startswith(f"{name}.q")]]
+                q = self.local.y[deforming(self.names, name)]
                 moved, size = body.displacement(q[None]), np.abs(body.station_places.r0).max()
                 bent[name] = float(np.abs(moved).max()) / max(float(size), 1e-300)
         return max(bent, key=lambda name: bent[name], default="a body")

@@ -26,6 +26,11 @@ class Driven(NamedTuple):
     force: int = 0
 
 
+def deforming(names: Sequence[str], body: str) -> list[int]:
+    """Numbers of those among coordinates that deform a body, by their names."""
+    return [k for k, each in enumerate(names) if each.startswith(f"{body}.q")]
+
+
 def drives_of(system: System) -> dict[str, Driven]:
     """Efforts on the coordinates of joints, ``joint.angle``, and components of forces, ``thrust.force_x``, by name."""
     drives = {}

@@ -12,6 +12,7 @@ from gbeam.report.page.parts import Numbers
 from gbeam.report.words import number
 from gbeam.results.modal import Modes
 from gbeam.results.result import Floats
+from gbeam.results.solids import von_mises
 
 Variables = Mapping[str, Any]
 SHOWN = 33  # points of a mode shape
@@ -98,8 +99,7 @@ def _surface(of: Variables, stress: Floats | None, numbers: Numbers) -> tuple[di
     few = of["sizes"][:: max(1, len(of["sizes"]) // 100)]
     moved = np.einsum("ts,sva->tva", few, of["shapes"])
     if stress is None:
-        xx, yy, zz, yz, xz, xy = np.moveaxis(np.einsum("ts,sva->tva", few, of["stress"]), -1, 0)
-        stress = np.sqrt(((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * (yz**2 + xz**2 + xy**2))
+        stress = von_mises(np.einsum("ts,sva->tva", few, of["stress"]))
     vertex = (moved**2).sum(axis=-1).max(axis=0).argmax()
     header = {key: numbers.add(of[key]) for key in SURFACE} | {"largest": float(np.max(stress))}
     return header, np.einsum("ts,sa->ta", of["sizes"], of["shapes"][:, vertex])[:, None]
