@@ -93,8 +93,8 @@ def shell_strains(
     parts = [_covariant(base, slopes, pair) for pair in PAIRS[:3]]
     tying, share = _tied(kind, at[:, :2])
     middle = shapes_at(kind, np.insert(tying, 2, 0.5, axis=1))[1]
-    there = jacobians(points, nodes, middle).swapaxes(2, 3)
-    tied = np.stack([_covariant(there, middle, pair) for pair in PAIRS[3:]], axis=2)
+    at_ties = jacobians(points, nodes, middle).swapaxes(2, 3)
+    tied = np.stack([_covariant(at_ties, middle, pair) for pair in PAIRS[3:]], axis=2)
     if kind in SOFTER:
         first, second = base[..., 0, :], base[..., 1, :]
         sides = (first, second, first - second) if KINDS[kind].shell == 3 else (first, second)
