@@ -28,11 +28,7 @@ class Statistics(Part):
         "mean, standard deviation, quantiles (5 %, median, 95 %); or probability, of what is true or not", "statistic"
     )
     values: Floats = quantity(
-        "",
-        "estimate, and the ends of its interval of 95 % confidence; NaN of too few draws",
-        "...",
-        "statistic",
-        "bound",
+        "", "estimate, and the ends of its interval of 95 % confidence; NaN of too few draws", "... statistic bound"
     )
     count: NDArray[np.int_] = quantity("", "draws with a figure", "...")
 
@@ -47,7 +43,7 @@ class Indices(Part):
 
     parameters: tuple[str, ...] = labels("paths", "parameter")
     values: Floats = quantity(
-        "", "share by itself (first) and with all that it acts with (total)", "...", "parameter", "order", "bound"
+        "", "share by itself (first) and with all that it acts with (total)", "... parameter order bound"
     )
     count: NDArray[np.int_] = quantity("", "base samples of which all cases have a figure", "...")
 
@@ -64,9 +60,7 @@ class Parameter(Part):
     path: str = quantity("", "its key, such as motion.centrifuge.arm")
     values: NDArray[Any] = quantity("", "numbers in the unit, or words", "value")
     unit: str = quantity(
-        "",
-        "unit as written, such as g/s; the SI unit where none was; empty for words and plain numbers",
-        default="",
+        "", "unit as written, such as g/s; the SI unit where none was; empty for words and plain numbers", default=""
     )
     drawn: str = quantity("", "distribution that the values are drawn from; empty for a grid", key=None, default="")
 
@@ -134,7 +128,7 @@ class Sweep(Figured):
     histories: Mapping[str, Floats] = fact(
         "histories by name", key=None, note="at `time`, NaN where the case has no value", default_factory=dict
     )
-    time: Floats = quantity("s", "times of the histories", "time", default_factory=lambda: np.empty(0))
+    time: Floats = quantity("s", "times of the histories", "time", empty=True)
     statistics: Mapping[str, Statistics] = fact(
         "statistics of measures and histories, where something is drawn: at every point of the grid",
         key=None,
@@ -253,18 +247,12 @@ class Sensitivity(Figured):
     )
     values: Floats = quantity("", "value of the parameter, in its unit", "parameter", name="value", key=None)
     derivatives: Floats = quantity(
-        "",
-        "derivative, in the measure's unit over the parameter's",
-        "measure",
-        "parameter",
-        name="derivative",
-        key=None,
+        "", "derivative, in the measure's unit over the parameter's", "measure parameter", name="derivative", key=None
     )
     errors: Floats = quantity(
         "",
         "how far differences of two orders are apart; none of an exact derivative",
-        "measure",
-        "parameter",
+        "measure parameter",
         name="error",
         key=None,
     )
@@ -272,8 +260,7 @@ class Sensitivity(Figured):
     kinks: Flags = quantity(
         "",
         "whether the slopes on either side differ",
-        "measure",
-        "parameter",
+        "measure parameter",
         name="kink",
         key=None,
         flags=("smooth", "kink"),
@@ -302,7 +289,7 @@ class Sensitivity(Figured):
         slope, relative, error = (float(each[k, j]) for each in (self.derivatives, self.relative, self.errors))
         return Effect(path, float(value), unit, slope, relative, error, method, bool(self.kinks[k, j]))
 
-    @declared("", "relative change of the measure over that of the parameter", "measure", "parameter", key=None)
+    @declared("", "relative change of the measure over that of the parameter", "measure parameter", key=None)
     def relative(self) -> Floats:
         """Relative change of each figure over that of each parameter, p/f ∂f/∂p, (m, p); NaN where a figure is zero."""
         size = np.where(self.figures == 0, np.nan, self.figures)

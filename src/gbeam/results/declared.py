@@ -20,10 +20,13 @@ from dataclasses import dataclass
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar
 
+import numpy as np
+
 Role = Literal["variable", "coordinate", "labels", "fact", "part", "rows"]
 INSIDE = "."  # name or key of a part whose fields stand among those of the record that has it
 # Names of the places along dimensions that are the same everywhere.
 NAMES = {"axis": ("x", "y", "z"), "ends": ("start", "end"), "end": ("root", "tip")}
+_SIZES = {"axis": 3, "principal": 3, "euler": 4, "stress_component": 6}  # of an array that is empty
 BESIDE = attrgetter("unit")  # unit of a field of a record whose field `unit` says it
 _METADATA = "declared"
 _T = TypeVar("_T")
@@ -90,10 +93,16 @@ def quantity(
     frame: str = "",
     flags: tuple[str, ...] = (),
     optional: bool = False,
+    empty: bool = False,
     **default: Any,
 ) -> Any:
-    """Declare a field of a result; see :class:`Declaration`, where an empty name or key is the field's own."""
-    declaration = Declaration(words, unit, dims, role, name, key, note, frame, flags, optional)
+    """Declare a field of a result; see :class:`Declaration`, where an empty name or key is the field's own.
+
+    Dimensions are one text, "time point axis"; an `empty` array of them is the default of what may be left out.
+    """
+    declaration = Declaration(words, unit, tuple(" ".join(dims).split()), role, name, key, note, frame, flags, optional)
+    if empty:
+        default["default_factory"] = lambda: np.empty([_SIZES.get(dim, 0) for dim in declaration.dims])
     return dataclasses.field(metadata={_METADATA: declaration}, **default)
 
 
@@ -142,7 +151,8 @@ def declared(
     optional: bool = False,
 ) -> Callable[[Callable[[Any], _T]], Declared[_T]]:
     """Make a declared property of a getter."""
-    return lambda getter: Declared(getter, Declaration(words, unit, dims, role, name, key, optional=optional))
+    named = tuple(" ".join(dims).split())
+    return lambda getter: Declared(getter, Declaration(words, unit, named, role, name, key, optional=optional))
 
 
 def declarations(kind: type) -> Iterator[tuple[str, Declaration]]:

@@ -28,7 +28,7 @@ class Deflection(Figured):
     stations: Floats = quantity(
         "m", "position along the beam from the root", "station", role="coordinate", note="the last is the tip"
     )
-    displacement: Floats = quantity("m", "displacement relative to the base axes", "station", "axis")
+    displacement: Floats = quantity("m", "displacement relative to the base axes", "station axis")
     q: Floats = quantity(
         lambda self: "" if self.model in BY_STRAINS else "m",
         "generalised coordinates of the beam",
@@ -41,8 +41,9 @@ class Deflection(Figured):
         "whether the stiffness about the equilibrium is positive definite",
         note="under loads that follow the beam, whether no vibration about it grows",
     )
-    loads: Loads | None = part("forces, moments and stresses of the sections, of one time",
-                               name=None, key=None, default=None)  # fmt: skip
+    loads: Loads | None = part(
+        "forces, moments and stresses of the sections, of one time", name=None, key=None, default=None
+    )
     errors: Errors = part("of displacement, root loads and stress", name=None, default_factory=Errors)
     solid: SolidStress | None = part("stress of a solid, of one time", name=None, optional=True, default=None)
 
@@ -125,13 +126,12 @@ class CriticalMap(Figured):
     mass: Floats = entry("kg", "mass on the beam", "mass", role="coordinate")
     position: Floats = entry("m", "its position from the root", "position", role="coordinate")
     speed: Floats = entry(
-        "rad/s", "critical hub rate; missing where it is not reached", "mass", "position", key="critical_speed"
+        "rad/s", "critical hub rate; missing where it is not reached", "mass position", key="critical_speed"
     )
     searched_to: float = fact("end of the search", "rad/s")
     errors: MapErrors | None = part(
         "errors of the speeds",
-        "mass",
-        "position",
+        "mass position",
         name="speed_error_",
         note="None where there is no estimate",
         default=None,

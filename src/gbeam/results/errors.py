@@ -88,17 +88,15 @@ class SystemErrors(Part):
         "estimated error that the beam's shapes and model bring",
         "judged",
         note="alone; together they may be more or less",
-        default_factory=lambda: np.empty(0),
+        empty=True,
     )
     loads_by_beam: Floats = quantity(
         "",
         "estimated error of the force and moment at the beam's root, the larger of both, of the largest there",
         "judged",
-        default_factory=lambda: np.empty(0),
+        empty=True,
     )
-    stress_by_beam: Floats = quantity(
-        "", "estimated error of the beam's stress, of its largest", "judged", default_factory=lambda: np.empty(0)
-    )
+    stress_by_beam: Floats = quantity("", "estimated error of the beam's stress, of its largest", "judged", empty=True)
     theory: tuple[str, ...] = quantity(
         "",
         "causes of the error of the beam theory, and what it assumes",

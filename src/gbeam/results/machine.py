@@ -76,16 +76,16 @@ class Held(Part):
 class AxesResult(Part):
     """A three-axis centrifuge over time."""
 
-    angle: Floats = entry("rad", "angle of the centrifuge's axes", "time", "machine_axis", name="axis_angle", key=None)
-    rate: Floats = entry("rad/s", "rate of the centrifuge's axes", "time", "machine_axis", name="axis_rate", key=None)
+    angle: Floats = entry("rad", "angle of the centrifuge's axes", "time machine_axis", name="axis_angle", key=None)
+    rate: Floats = entry("rad/s", "rate of the centrifuge's axes", "time machine_axis", name="axis_rate", key=None)
     acceleration: Floats = entry(
-        "rad/s^2", "acceleration of the centrifuge's axes", "time", "machine_axis", name="axis_acceleration", key=None
+        "rad/s^2", "acceleration of the centrifuge's axes", "time machine_axis", name="axis_acceleration", key=None
     )
     reference: Floats = entry(
-        "m/s^2", "load of the target at the control point", "time", "axis", name="load_reference", key=None
+        "m/s^2", "load of the target at the control point", "time axis", name="load_reference", key=None
     )
     actual: Floats = entry(
-        "m/s^2", "load that the axes make at the control point", "time", "axis", name="load_actual", key=None
+        "m/s^2", "load that the axes make at the control point", "time axis", name="load_actual", key=None
     )
     not_followed: Flags = entry(
         "",
@@ -110,7 +110,7 @@ class AxesResult(Part):
         "m/s^2", "least load that the target is held up to; 0 where there is none", key=None, default=0.0
     )
     jerk: Floats | None = entry(
-        "rad/s^3", "jerk of the centrifuge's axes", "time", "machine_axis", name="axis_jerk", key=None, default=None
+        "rad/s^3", "jerk of the centrifuge's axes", "time machine_axis", name="axis_jerk", key=None, default=None
     )
     span: tuple[float, float] = entry(
         "s",
@@ -124,8 +124,7 @@ class AxesResult(Part):
     flight: Floats | None = entry(
         "m/s^2",
         "load of the flight itself",
-        "time",
-        "axis",
+        "time axis",
         name="load_flight",
         key=None,
         note="which the target rounds off; before and after the flight that of its first and last time",
@@ -267,6 +266,6 @@ class Commands(Part):
 
     sample: float = fact("sample time", "s")
     time: Floats = entry("s", "time", "time")
-    angle: Floats = entry("rad", "angles of axes 1, 2, 3", "time", "machine_axis")
-    rate: Floats = entry("rad/s", "their rates", "time", "machine_axis")
-    acceleration: Floats = entry("rad/s^2", "their accelerations", "time", "machine_axis")
+    angle: Floats = entry("rad", "angles of axes 1, 2, 3", "time machine_axis")
+    rate: Floats = entry("rad/s", "their rates", "time machine_axis")
+    acceleration: Floats = entry("rad/s^2", "their accelerations", "time machine_axis")

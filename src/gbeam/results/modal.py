@@ -40,11 +40,11 @@ class Modes(Oscillating, Figured):
     )
     direction: tuple[str, ...] = quantity("", "direction in which the beam moves most", "mode", note="x, y, z or twist")
     coordinates: Complex = quantity(
-        "", "generalised coordinates, of unit mass-weighted length", "mode", "coordinate", name=None, key=None
+        "", "generalised coordinates, of unit mass-weighted length", "mode coordinate", name=None, key=None
     )
     stations: Floats = quantity("m", "position along the beam from the root", "station", role="coordinate")
-    shape: Complex = quantity("", "displacement, largest component 1", "mode", "station", "axis")
-    equilibrium: Floats = quantity("m", "displacement about which the beam vibrates", "station", "axis", key=None)
+    shape: Complex = quantity("", "displacement, largest component 1", "mode station axis")
+    equilibrium: Floats = quantity("m", "displacement about which the beam vibrates", "station axis", key=None)
     instabilities: tuple[Instability, ...] = rows("eigenvalues that grow", "instability", name=None)
     rigid: int = fact("number of modes of zero frequency, left out", note="the turning of a free hub")
     overdamped: Floats = quantity(
@@ -71,7 +71,7 @@ class Modes(Oscillating, Figured):
         name="section_width",
         key="section.width",
         note="for pictures; empty without a beam",
-        default_factory=lambda: np.empty(0),
+        empty=True,
     )
     thickness: Floats = quantity(
         "m",
@@ -80,14 +80,13 @@ class Modes(Oscillating, Figured):
         name="section_thickness",
         key="section.thickness",
         note="empty without a beam",
-        default_factory=lambda: np.empty(0),
+        empty=True,
     )
     round: bool = quantity("", "whether the section is round", name="section_round", key="section.round", default=False)
     twist: Complex | None = quantity(
         "rad/m",
         "angle of the section about the beam's axis, for shapes in m",
-        "mode",
-        "station",
+        "mode station",
         optional=True,
         note="of a mode in the direction twist the section's edge has the largest displacement, 1; None of a model "
         "without twist",
@@ -97,8 +96,7 @@ class Modes(Oscillating, Figured):
     place: Floats | None = quantity(
         "m",
         "place of the station at rest, base axes",
-        "station",
-        "axis",
+        "station axis",
         name="section_place",
         key="section.place",
         optional=True,
@@ -106,7 +104,7 @@ class Modes(Oscillating, Figured):
         default=None,
     )
     across: Floats | None = quantity(
-        "", "direction of the section's width at rest", "station", "axis", name="section_across", key="section.across",
+        "", "direction of the section's width at rest", "station axis", name="section_across", key="section.across",
         optional=True, default=None,
     )  # fmt: skip
 
@@ -165,9 +163,9 @@ class Campbell(Figured):
     motion: str = fact("name of the motion")
     model: str = fact("kind of the model")
     speed: Floats = quantity("rad/s", "hub rate", "speed", role="coordinate")
-    frequency: Floats = quantity("Hz", "natural frequency; missing where it does not oscillate", "speed", "mode")
-    damping_ratio: Floats = quantity("", "ratio of critical damping", "speed", "mode")
-    mac: Floats = quantity("", "modal assurance criterion to the speed before", "speed", "mode", note="1 at the first")
+    frequency: Floats = quantity("Hz", "natural frequency; missing where it does not oscillate", "speed mode")
+    damping_ratio: Floats = quantity("", "ratio of critical damping", "speed mode")
+    mac: Floats = quantity("", "modal assurance criterion to the speed before", "speed mode", note="1 at the first")
     direction: tuple[str, ...] = quantity("", "direction in which the beam moves most, at the first speed", "mode")
     orders: tuple[int, ...] = fact("multiples of the speed")
     crossings: tuple[Crossing, ...] = rows("modes met by multiples of the speed", "crossing", name="crossing_")

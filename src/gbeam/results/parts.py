@@ -31,32 +31,28 @@ class Outline(Part):
     width: Floats = quantity("m", "extent of the section along y", "point", name="outline_width")
     thickness: Floats = quantity("m", "extent of the section along z", "point", name="outline_thickness")
     round: bool = quantity("", "whether the section is round", name="outline_round")
-    bodies: Floats = quantity("", "position, m, and mass, kg, of each body", "body", "of", name=None)
+    bodies: Floats = quantity("", "position, m, and mass, kg, of each body", "body of", name=None)
     time: Floats = quantity("s", "some of the times", "outline_time", role="coordinate")
-    displacement: Floats = quantity(
-        "m", "displacement of the beam's axis", "outline_time", "point", "axis", name="outline"
-    )
+    displacement: Floats = quantity("m", "displacement of the beam's axis", "outline_time point axis", name="outline")
     place: Floats | None = quantity(
         "m",
         "place of the point at rest, base axes",
-        "point",
-        "axis",
+        "point axis",
         name="outline_place",
         note="None of a straight beam",
         default=None,
     )
     across: Floats | None = quantity(
-        "", "direction of the section's width at rest", "point", "axis", name="outline_across", default=None
+        "", "direction of the section's width at rest", "point axis", name="outline_across", default=None
     )
     radius: float = quantity("m", "from the hub's axis to the root", name="hub_radius", optional=True, default=math.nan)
     R_HB: Floats = quantity(
-        "", "rotation from base axes to hub axes", "hub_axis", "axis", name=None, default_factory=lambda: np.eye(3)
+        "", "rotation from base axes to hub axes", "hub_axis axis", name=None, default_factory=lambda: np.eye(3)
     )
     attitude: Floats | None = quantity(
         "",
         "rotation (w, x, y, z) of the base axes since the first time, by the angular velocity given",
-        "outline_time",
-        "quaternion",
+        "outline_time quaternion",
         note="None without rates",
         default=None,
     )
@@ -69,7 +65,7 @@ class Outline(Part):
     def body_mass(self) -> Floats:
         return self.bodies[:, 1]
 
-    @declared("", "rotation from base axes (columns) to hub axes (rows)", "hub_axis", "axis")
+    @declared("", "rotation from base axes (columns) to hub axes (rows)", "hub_axis axis")
     def hub_mounting(self) -> Floats | None:
         """Rotation from base to hub axes, (3, 3); None without a hub."""
         return self.R_HB if np.isfinite(self.radius) else None
@@ -154,9 +150,8 @@ class LoadPeaks(Part):
         "largest size of the torque that the beam takes from a hub", unit="N m", name=None, optional=True, default=None
     )
     stations: Floats = quantity(
-        "m", "position of the section along the beam from the root", "section", name=None, key="at",
-        default_factory=lambda: np.empty(0),
-    )  # fmt: skip
+        "m", "position of the section along the beam from the root", "section", name=None, key="at", empty=True
+    )
     yield_strength: float | None = fact("yield strength of the material", "Pa", name=None, optional=True, default=None)
 
     @declared("N", "largest force that the base gives the root", role="part", name=None)
@@ -293,23 +288,17 @@ class Loads(Part):
     sections by properties or matrices, whose shear stress is not known. The margin on yield is by it where it is known.
     """
 
-    stations: Floats = quantity("m", "position of the section along the beam from the root", "section",
-                                role="coordinate", key="stations")  # fmt: skip
-    force: Floats = quantity("N", "force, base axes", "time", "section", "axis", name=None, key=None)
-    moment: Floats = quantity("N m", "moment, base axes", "time", "section", "axis", name=None, key=None)
-    section_force: Floats = quantity("N", "axial force and shear", "time", "section", "axis", frame=_SECTION_AXES)
-    section_moment: Floats = quantity(
-        "N m", "torque and bending moments", "time", "section", "axis", frame=_SECTION_AXES
+    stations: Floats = quantity(
+        "m", "position of the section along the beam from the root", "section", role="coordinate", key="stations"
     )
-    stress_tension: Floats = quantity("Pa", "largest normal stress over the section", "time", "section")
-    stress_compression: Floats = quantity("Pa", "smallest normal stress over the section", "time", "section")
+    force: Floats = quantity("N", "force, base axes", "time section axis", name=None, key=None)
+    moment: Floats = quantity("N m", "moment, base axes", "time section axis", name=None, key=None)
+    section_force: Floats = quantity("N", "axial force and shear", "time section axis", frame=_SECTION_AXES)
+    section_moment: Floats = quantity("N m", "torque and bending moments", "time section axis", frame=_SECTION_AXES)
+    stress_tension: Floats = quantity("Pa", "largest normal stress over the section", "time section")
+    stress_compression: Floats = quantity("Pa", "smallest normal stress over the section", "time section")
     acceleration: Floats = quantity(
-        "m/s^2",
-        "acceleration in the world, base axes; specific force with gravity",
-        "time",
-        "section",
-        "axis",
-        key=None,
+        "m/s^2", "acceleration in the world, base axes; specific force with gravity", "time section axis", key=None
     )
     beam_torque: Floats | None = quantity(
         "N m", "torque about the hub's axis that the beam takes", "time", optional=True, default=None
@@ -325,15 +314,14 @@ class Loads(Part):
     fibre: Floats | None = quantity(
         "Pa",
         "normal stress at the extreme fibre of the section where it ranges most",
-        "time",
-        "section",
+        "time section",
         name="fibre_stress",
         key=None,
         note="None where a run is traced",
         default=None,
     )
     von_mises: Floats | None = quantity(
-        "Pa", "largest von Mises stress over the section", "time", "section", optional=True, default=None,
+        "Pa", "largest von Mises stress over the section", "time section", optional=True, default=None,
         note="NaN of sections by properties or matrices",
     )  # fmt: skip
     yield_strength: float | None = fact("yield strength of the material", "Pa", name=None, optional=True, default=None)
@@ -346,14 +334,14 @@ class Loads(Part):
         ]
         return replace(self, **{name: getattr(self, name)[part] for name in over_time})
 
-    @declared("Pa", "largest size of the normal stress over the section", "time", "section")
+    @declared("Pa", "largest size of the normal stress over the section", "time section")
     def stress(self) -> Floats:
         """Largest size of the normal stress over the section, in tension or compression, (t, s) Pa."""
         # They are N/A ± the bending stress: the larger size without a choice, and with NumPy's or JAX's arrays.
         middle = (self.stress_tension + self.stress_compression) / 2
         return abs(middle) + (self.stress_tension - self.stress_compression) / 2
 
-    @declared("", "yield strength over stress less one", "time", "section", name="yield_margin", optional=True)
+    @declared("", "yield strength over stress less one", "time section", name="yield_margin", optional=True)
     def margin(self) -> Floats | None:
         """Margin on yield, yield strength over stress less one, (t, s); None where the strength is not given."""
         if self.yield_strength is None:
@@ -361,11 +349,11 @@ class Loads(Part):
         known = self.von_mises is not None and np.isfinite(self.von_mises).all()
         return yield_margin(self.yield_strength, np.asarray(self.von_mises) if known else self.stress)
 
-    @declared("N", "force of the base on the beam", "time", "axis", name=None)
+    @declared("N", "force of the base on the beam", "time axis", name=None)
     def root_force(self) -> Floats:
         return -self.force[..., 0, :]
 
-    @declared("N m", "moment of the base on the beam about the root", "time", "axis", name=None)
+    @declared("N m", "moment of the base on the beam about the root", "time axis", name=None)
     def root_moment(self) -> Floats:
         return -self.moment[..., 0, :]
 

@@ -113,12 +113,11 @@ class Response(Driven, Figured):
     stations: Floats = quantity(
         "m", "position along the beam from the root", "station", role="coordinate", key="at", note="the last is the tip"
     )
-    displacement: Floats = quantity("m", "displacement relative to the base axes", "time", "station", "axis", key=None)
+    displacement: Floats = quantity("m", "displacement relative to the base axes", "time station axis", key=None)
     q: Floats = quantity(
         lambda self: "" if self.model in BY_STRAINS else "m",
         "generalised coordinates of the beam",
-        "time",
-        "coordinate",
+        "time coordinate",
         name="coordinates",
         key=None,
         note="of the exact model and that of fourth order angles and strains",
@@ -126,8 +125,7 @@ class Response(Driven, Figured):
     qd: Floats = quantity(
         lambda self: "1/s" if self.model in BY_STRAINS else "m/s",
         "rates of the generalised coordinates",
-        "time",
-        "coordinate",
+        "time coordinate",
         name="coordinate_rates",
         key=None,
     )
@@ -141,23 +139,9 @@ class Response(Driven, Figured):
         note="that of `errors`; NaN where there is no estimate",
     )
     residual_from: float = fact("start of the residual", "s", key=None, note="NaN where not given")
-    qdd: Floats = quantity(
-        "",
-        "accelerations of the coordinates",
-        "time",
-        "coordinate",
-        name=None,
-        key=None,
-        default_factory=lambda: np.empty((0, 0)),
-    )
+    qdd: Floats = quantity("", "accelerations of the coordinates", "time coordinate", name=None, key=None, empty=True)
     frequencies: Floats = quantity(
-        "rad/s",
-        "natural frequencies at rest",
-        "mode",
-        name=None,
-        key=None,
-        note="ascending",
-        default_factory=lambda: np.empty(0),
+        "rad/s", "natural frequencies at rest", "mode", name=None, key=None, note="ascending", empty=True
     )
     loads: Loads | None = part("internal loads at the root and the stations", key=None, default=None)
     hub: HubResult | None = part("motion of a hub", optional=True, default=None)
@@ -181,11 +165,10 @@ class Response(Driven, Figured):
     bodies: Floats = quantity(
         "m",
         "centres of mass of the bodies on the undeformed beam, from the root",
-        "body",
-        "axis",
+        "body axis",
         name=None,
         key=None,
-        default_factory=lambda: np.empty((0, 3)),
+        empty=True,
     )
     whole: tuple[float, float] | None = quantity(
         "s",
@@ -208,9 +191,7 @@ class Response(Driven, Figured):
     point_acceleration: Floats | None = quantity(
         "m/s^2",
         "absolute acceleration of the stations",
-        "time",
-        "station",
-        "axis",
+        "time station axis",
         key=None,
         note="specific force where gravity acts; None of a beam, whose loads have it",
         default=None,
@@ -219,11 +200,10 @@ class Response(Driven, Figured):
     envelope: Floats = quantity(
         "m",
         "corners of the convex hull of a solid, rigid or curved specimen, undeformed, from the root",
-        "corner",
-        "axis",
+        "corner axis",
         name=None,
         key=None,
-        default_factory=lambda: np.empty((0, 3)),
+        empty=True,
     )
     solid: SolidStress | None = part("stress of a solid", name="solid_", key="solid", optional=True, default=None)
     surface: Surface | None = part("surface of a solid, for pictures", name="surface_", key=None, default=None)
@@ -240,8 +220,9 @@ class Response(Driven, Figured):
     def histories(self) -> dict[str, int]:
         return {"samples": len(self.time), "written": len(self.time[:: self.kept_every])}
 
-    @declared("m", "largest displacement of every named point", "point", role="rows", name=None, key="points",
-              optional=True)  # fmt: skip
+    @declared(
+        "m", "largest displacement of every named point", "point", role="rows", name=None, key="points", optional=True
+    )
     def point_peaks(self) -> Mapping[str, VectorPeaks]:
         """Largest displacement of every point beside the tip that has a name, by it."""
         peaks = self.peaks.displacement

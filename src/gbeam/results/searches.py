@@ -77,15 +77,14 @@ class Fit(Figured):
     intervals: Floats = quantity(
         "",
         "interval that holds it with a probability of 95 %",
-        "parameter",
-        "side",
+        "parameter side",
         name="interval",
         key="interval",
         note="by Student's t",
     )
-    covariance: Floats = quantity("", "covariance of the values", "parameter", "other", key="/covariance")
-    correlation: Floats = quantity("", "correlation of their errors", "parameter", "other", key="/correlation")
-    bounds: Floats = quantity("", "bounds of the search", "parameter", "side")
+    covariance: Floats = quantity("", "covariance of the values", "parameter other", key="/covariance")
+    correlation: Floats = quantity("", "correlation of their errors", "parameter other", key="/correlation")
+    bounds: Floats = quantity("", "bounds of the search", "parameter side")
     at_bound: Flags = quantity(
         "", "whether the value lies on its bound", "parameter", flags=ON_BOUND, note="then it has no error"
     )
@@ -172,7 +171,7 @@ class Optimum(Figured):
     units: tuple[str, ...] = quantity("", "SI unit of the value", "parameter", name="value_unit", key="unit")
     before: Floats = quantity("", "value of the scenario, in its unit", "parameter")
     values: Floats = quantity("", "best value, in its unit", "parameter", name="value", key="value")
-    bounds: Floats = quantity("", "bounds of the search", "parameter", "side")
+    bounds: Floats = quantity("", "bounds of the search", "parameter side")
     at_bound: Flags = quantity("", "whether the value lies on its bound", "parameter", flags=ON_BOUND)
     figure_before: float = fact("the figure of the scenario, by a run with steps of its own", key="minimise.before")
     figure: float = fact("the figure at the best values, by a run with steps of its own", key="minimise.value")
@@ -183,7 +182,7 @@ class Optimum(Figured):
         note="NaN where there is no run",
     )
     requirements: tuple[Requirement, ...] = rows("bounds on other figures", "requirement", key="subject_to")
-    path: Floats = quantity("", "values tried that were better than those before", "better", "parameter", key=None)
+    path: Floats = quantity("", "values tried that were better than those before", "better parameter", key=None)
     history: Floats = quantity(BESIDE, "the figure there", "better", key=None)
     evaluations: int = fact("evaluations of the scenario", name=None)
     outcome: str = fact(
@@ -223,7 +222,7 @@ class CommandRun(Part):
         note="where all their frequencies are so many times as high",
     )
     time: Floats = quantity("s", "times of the check's run", "run_time", name=None, key=None)
-    tip: Floats = quantity("m", "displacement of the tip", "run_time", "axis", name=None, key=None)
+    tip: Floats = quantity("m", "displacement of the tip", "run_time axis", name=None, key=None)
     residual: float = quantity("m", "amplitude of the tip after the command", key="residual_amplitude")
     outcome: str = quantity("", "how the run ended")
 
@@ -266,8 +265,9 @@ class ShapedCommand(Figured):
     def unit(self) -> str:
         return COMMANDS[self.kind][0]
 
-    @declared("", "angle, rad, or distance, m, or the rate, rad/s, or speed, m/s, reached", role="fact", name=None,
-              key="goal")  # fmt: skip
+    @declared(
+        "", "angle, rad, or distance, m, or the rate, rad/s, or speed, m/s, reached", role="fact", name=None, key="goal"
+    )
     def aim(self) -> dict[str, float]:
         names = ("distance", "speed") if self.kind in ("force", "speed") else ("angle", "rate")
         return {names[self.to_rate]: self.goal}
@@ -278,7 +278,7 @@ class ShapedCommand(Figured):
         ((name, goal),) = self.aim.items()
         return GOALS[name].format(goal)
 
-    @declared(BESIDE, "torque, force, rate or speed", "run", "time", name="command", key=None)
+    @declared(BESIDE, "torque, force, rate or speed", "run time", name="command", key=None)
     def command(self) -> Floats:
         return np.stack([run.command for run in self.runs])
 
@@ -286,7 +286,7 @@ class ShapedCommand(Figured):
     def run_time(self) -> Floats:
         return self.runs[0].time
 
-    @declared("m", "displacement of the tip", "run", "run_time", "axis", name="tip", key=None)
+    @declared("m", "displacement of the tip", "run run_time axis", name="tip", key=None)
     def tip(self) -> Floats:
         return np.stack(
             [np.stack([np.interp(self.run_time, r.time, r.tip[:, i]) for i in range(3)], axis=1) for r in self.runs]

@@ -58,42 +58,35 @@ class SolidStress(Figured):
         "where the margin on yield is least", name="nearest_yield_", optional=True, default=None
     )
     points: tuple[str, ...] = labels("name of the point", "point", default=())
-    point_von_mises: Floats = quantity(
-        "Pa", "von Mises stress at the point", "time", "point", key=None, default_factory=lambda: np.empty((0, 0))
-    )
+    point_von_mises: Floats = quantity("Pa", "von Mises stress at the point", "time point", key=None, empty=True)
     point_principal: Floats = quantity(
-        "Pa", "principal stresses at the point, the largest first", "time", "point", "principal",
-        key=None, default_factory=lambda: np.empty((0, 0, 3)),
-    )  # fmt: skip
+        "Pa", "principal stresses at the point, the largest first", "time point principal", key=None, empty=True
+    )
     materials: tuple[str, ...] = quantity("", "name of the material", "material", name=None, key=None, default=())
-    exponents: Floats = quantity("", "exponent of its Wöhler curve", "material", name=None, key=None,
-                                 default_factory=lambda: np.empty(0))  # fmt: skip
+    exponents: Floats = quantity("", "exponent of its Wöhler curve", "material", name=None, key=None, empty=True)
     material_normal: Floats = quantity(
-        "Pa", "normal stress where it is stressed most, on the plane where that ranges most", "time", "material",
-        name=None, key=None, default_factory=lambda: np.empty((0, 0)),
+        "Pa", "normal stress where it is stressed most, on the plane where that ranges most", "time material",
+        name=None, key=None, empty=True,
     )  # fmt: skip
     point_normal: Floats = quantity(
-        "Pa", "normal stress at the point, on the plane where it ranges most", "time", "point", key=None,
-        default_factory=lambda: np.empty((0, 0)),
-    )  # fmt: skip
+        "Pa", "normal stress at the point, on the plane where it ranges most", "time point", key=None, empty=True
+    )
     point_exponent: Floats = quantity(
-        "", "exponent of the Wöhler curve of the material there", "point", name=None, key=None,
-        default_factory=lambda: np.empty(0),
-    )  # fmt: skip
+        "", "exponent of the Wöhler curve of the material there", "point", name=None, key=None, empty=True
+    )
     point_stress: Floats = quantity(
-        "Pa", "stress xx, yy, zz, yz, xz, xy at the point", "time", "point", "stress_component", key=None,
-        frame="axes of the point", default_factory=lambda: np.empty((0, 0, 6)),
+        "Pa", "stress xx, yy, zz, yz, xz, xy at the point", "time point stress_component", key=None,
+        frame="axes of the point", empty=True,
     )  # fmt: skip
     point_strain: Floats = quantity(
-        "", "strain xx, yy, zz, yz, xz, xy at the point, with twice the tensor's shear", "time", "point",
-        "stress_component", key=None, frame="axes of the point", default_factory=lambda: np.empty((0, 0, 6)),
+        "", "strain xx, yy, zz, yz, xz, xy at the point, with twice the tensor's shear", "time point stress_component",
+        key=None, frame="axes of the point", empty=True,
     )  # fmt: skip
     nodes: Floats = quantity(
-        "m", "places of the nodes from the root, undeformed", "node", "axis", name="node_place", key=None,
-        default_factory=lambda: np.empty((0, 3)),
-    )  # fmt: skip
+        "m", "places of the nodes from the root, undeformed", "node axis", name="node_place", key=None, empty=True
+    )
     node_von_mises: Floats = quantity(
-        "Pa", "largest von Mises stress over time at the node", "node", key=None, default_factory=lambda: np.empty(0)
+        "Pa", "largest von Mises stress over time at the node", "node", key=None, empty=True
     )
 
     @declared("Pa", "normal stress at the worst place, on the plane where it ranges most", "time", name="worst_normal",
@@ -173,14 +166,14 @@ def said(stress: StressAt) -> str:
 class Surface(Part):
     """Surface of a solid for pictures, coarser than its mesh, in a few shapes that move and stress it over time."""
 
-    vertices: Floats = quantity("m", "place of the vertex from the root, undeformed", "vertex", "axis")
-    triangles: NDArray[np.int_] = quantity("", "vertices of the triangle, from 0", "triangle", "corner_of_triangle")
-    shapes: Floats = quantity("m", "displacement of the vertex", "surface_shape", "vertex", "axis")
+    vertices: Floats = quantity("m", "place of the vertex from the root, undeformed", "vertex axis")
+    triangles: NDArray[np.int_] = quantity("", "vertices of the triangle, from 0", "triangle corner_of_triangle")
+    shapes: Floats = quantity("m", "displacement of the vertex", "surface_shape vertex axis")
     stress: Floats = quantity(
-        "Pa", "stress xx, yy, zz, yz, xz, xy at the vertex", "surface_shape", "vertex", "stress_component"
+        "Pa", "stress xx, yy, zz, yz, xz, xy at the vertex", "surface_shape vertex stress_component"
     )
     time: Floats = quantity("s", "some of the times", "surface_time", role="coordinate")
-    sizes: Floats = quantity("", "size of the shape over time", "surface_time", "surface_shape")
+    sizes: Floats = quantity("", "size of the shape over time", "surface_time surface_shape")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -206,25 +199,24 @@ class SpecimenLoads(Figured):
     environment: str = fact("flight, centrifuge or hub")
     mass: float = fact("mass of the specimen", "kg")
     time: Floats = quantity("s", "time", "time", role="coordinate", key=None)
-    corners: Floats = quantity("m", "place of the corner from the root", "corner", "axis", name="corner_place",
-                               key="place")  # fmt: skip
-    acceleration: Floats = quantity(
-        "m/s^2", "acceleration of the corner; specific force where gravity acts", "time", "corner", "axis", key=None
+    corners: Floats = quantity(
+        "m", "place of the corner from the root", "corner axis", name="corner_place", key="place"
     )
-    centre: Floats = quantity("m/s^2", "acceleration of the centre of mass, likewise", "time", "axis",
-                              name="centre_acceleration", key=None)  # fmt: skip
-    force: Floats = quantity("N", "force of the fixture on the specimen", "time", "axis", key=None)
-    moment: Floats = quantity("N m", "moment of the fixture on the specimen about the root", "time", "axis", key=None)
+    acceleration: Floats = quantity(
+        "m/s^2", "acceleration of the corner; specific force where gravity acts", "time corner axis", key=None
+    )
+    centre: Floats = quantity(
+        "m/s^2", "acceleration of the centre of mass, likewise", "time axis", name="centre_acceleration", key=None
+    )
+    force: Floats = quantity("N", "force of the fixture on the specimen", "time axis", key=None)
+    moment: Floats = quantity("N m", "moment of the fixture on the specimen about the root", "time axis", key=None)
     bolts: Floats = quantity(
-        "m", "place of the bolt from the root", "bolt", "axis", name="bolt_place", key="place",
-        default_factory=lambda: np.empty((0, 3)),
-    )  # fmt: skip
-    bolt_force: Floats = quantity(
-        "N", "force of the bolt on the specimen", "time", "bolt", "axis", key=None,
-        default_factory=lambda: np.empty((0, 0, 3)),
-    )  # fmt: skip
-    bolt_axis: Floats = quantity("", "direction of the bolts", "axis", key=None, optional=True,
-                                 default_factory=lambda: np.empty(0))  # fmt: skip
+        "m", "place of the bolt from the root", "bolt axis", name="bolt_place", key="place", empty=True
+    )
+    bolt_force: Floats = quantity("N", "force of the bolt on the specimen", "time bolt axis", key=None, empty=True)
+    bolt_axis: Floats = quantity(
+        "", "direction of the bolts", "axis", key=None, optional=True, default_factory=lambda: np.empty(0)
+    )
     spread_limit: float | None = fact("largest spread that is accepted", optional=True, default=None)
 
     @declared("", "whether the spread is within its limit", role="fact", name=None, optional=True)
@@ -271,12 +263,12 @@ class SpecimenLoads(Figured):
     def moment_max(self) -> float:
         return float(np.linalg.norm(self.moment, axis=-1).max())
 
-    @declared("N", "tension of the bolt; negative where the specimen is pressed on", "time", "bolt", key=None)
+    @declared("N", "tension of the bolt; negative where the specimen is pressed on", "time bolt", key=None)
     def tension(self) -> Floats:
         # The bolt pulls the specimen against its axis, which points away from the fixture.
         return -(self.bolt_force @ self.bolt_axis) if len(self.bolts) else np.empty((len(self.time), 0))
 
-    @declared("N", "shear of the bolt", "time", "bolt", key=None)
+    @declared("N", "shear of the bolt", "time bolt", key=None)
     def shear(self) -> Floats:
         if not len(self.bolts):
             return np.empty((len(self.time), 0))

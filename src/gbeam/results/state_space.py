@@ -82,12 +82,11 @@ class Truncation(Part):
     )
     start: float = fact("lowest frequency at which gains are compared", "Hz", name=None, key="from")
     end: float = fact("highest frequency at which gains are compared", "Hz", name="to", key="to")
-    error: Floats = quantity("mixed", "largest gain of what is left out", "output", "input", note="up to `end`")
+    error: Floats = quantity("mixed", "largest gain of what is left out", "output input", note="up to `end`")
     gain: Floats = quantity(
         "mixed",
         "largest gain of the larger model",
-        "output",
-        "input",
+        "output input",
         note="from `start` to `end`, among the inputs and outputs of the same units",
     )
 
@@ -97,7 +96,7 @@ class Truncation(Part):
         exceeds at any frequency (Glover 1984); NaN of a modal truncation."""
         return float(2 * self.hankel[len(self.hankel) - self.states :].sum()) if self.method == "balanced" else math.nan
 
-    @declared("", "the error over the gain", "output", "input", name=None)
+    @declared("", "the error over the gain", "output input", name=None)
     def share(self) -> Floats:
         """The error over the gain, (p, m); zero where there is no gain at all."""
         return np.divide(self.error, self.gain, out=np.zeros_like(self.error), where=self.gain > 0)
@@ -136,10 +135,10 @@ class StateSpace(Result):
 
     json_rows: ClassVar[dict[str, str]] = {kind: f"{kind}s" for kind in ("state", "input", "output", "pole")}
 
-    a: Floats = quantity("mixed", "rates of the states from the states", "state", "state_of", name="A", key="/A")
-    b: Floats = quantity("mixed", "rates of the states from the inputs", "state", "input", name="B", key="/B")
-    c: Floats = quantity("mixed", "outputs from the states", "output", "state", name="C", key="/C")
-    d: Floats = quantity("mixed", "outputs from the inputs", "output", "input", name="D", key="/D")
+    a: Floats = quantity("mixed", "rates of the states from the states", "state state_of", name="A", key="/A")
+    b: Floats = quantity("mixed", "rates of the states from the inputs", "state input", name="B", key="/B")
+    c: Floats = quantity("mixed", "outputs from the states", "output state", name="C", key="/C")
+    d: Floats = quantity("mixed", "outputs from the inputs", "output input", name="D", key="/D")
     states: tuple[Signal, ...] = rows("states", "state", name="state_")
     inputs: tuple[Signal, ...] = rows("inputs", "input", name="input_")
     outputs: tuple[Signal, ...] = rows("outputs", "output", name="output_")

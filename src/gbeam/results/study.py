@@ -8,8 +8,6 @@ from math import isnan
 from math import nan as NAN
 from typing import Any
 
-import numpy as np
-
 from gbeam.results.declared import declared, fact, quantity, rows
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.criteria import NOT_ACCEPTED, state_of
@@ -157,9 +155,7 @@ class ModelRow(Part):
     error_estimate: float = quantity("", "total estimated error over the largest displacement", default=NAN)
     steps: int = quantity("", "number of steps", default=0)
     seconds: float = quantity("s", "time to compute it", note="once compiled", default=NAN)
-    time: Floats = quantity(
-        "s", "times of the history", "time", name=None, key=None, default_factory=lambda: np.empty(0)
-    )
+    time: Floats = quantity("s", "times of the history", "time", name=None, key=None, empty=True)
     history: Floats = quantity(
         "m",
         "displacement of the tip in the direction compared",
@@ -167,7 +163,7 @@ class ModelRow(Part):
         name=None,
         key=None,
         note="empty where there is no answer",
-        default_factory=lambda: np.empty(0),
+        empty=True,
     )
 
     @declared("", "warnings", name="warnings", key=None)

@@ -27,11 +27,11 @@ _OF_POINTS = {"place": "place", "velocity": "velocity", "acceleration": "acceler
 class Invariants(Part):
     """Momentum and energy over time: where nothing acts from outside they stay what they were."""
 
-    momentum: Floats = quantity("N s", "momentum", "time", "axis", key=None, frame="ground")
+    momentum: Floats = quantity("N s", "momentum", "time axis", key=None, frame="ground")
     angular_momentum: Floats = quantity(
-        "N m s", "angular momentum about the ground's origin", "time", "axis", key=None, frame="ground"
+        "N m s", "angular momentum about the ground's origin", "time axis", key=None, frame="ground"
     )
-    energy: Floats = quantity("J", "energy: kinetic, elastic and of gravity", "time", "form", key=None)
+    energy: Floats = quantity("J", "energy: kinetic, elastic and of gravity", "time form", key=None)
 
     def _drift(self, history: Floats) -> float:
         size = np.abs(history).max(initial=0.0)
@@ -65,9 +65,9 @@ class Loop(Part):
         "", "SI unit of the measurement", "measurement", name="measurement_unit", key=None
     )
     drives: tuple[str, ...] = labels("name of the drive", "drive", key="name")
-    measured: Floats = quantity("", "measurement, held from its sample", "time", "measurement", key=None, note="SI")
-    asked: Floats = quantity("", "effort that the law asks for, held from its sample", "time", "drive", key=None)
-    applied: Floats = quantity("", "effort that acts, limited and delayed", "time", "drive", key=None)
+    measured: Floats = quantity("", "measurement, held from its sample", "time measurement", key=None, note="SI")
+    asked: Floats = quantity("", "effort that the law asks for, held from its sample", "time drive", key=None)
+    applied: Floats = quantity("", "effort that acts, limited and delayed", "time drive", key=None)
     saturated: Floats = quantity("", "share of the samples that were limited", "drive")
 
 
@@ -78,10 +78,7 @@ class BeamResponse(Part):
     loads: Loads = part("internal loads at the root and the stations", key=None, name=INSIDE)
     peaks: LoadPeaks = part("largest values between all steps", key=INSIDE, name=INSIDE)
     outline: Outline | None = part(
-        "its shape at some of the times, axes of its root",
-        key=None,
-        name=INSIDE,
-        default=None,
+        "its shape at some of the times, axes of its root", key=None, name=INSIDE, default=None
     )
     points: tuple[str, ...] = quantity(
         "", "name of the station, or its position", "station", name=None, key=None, note="the sections after the root",
@@ -95,7 +92,7 @@ class BeamShape(Part):
 
     outline: Outline = part("its shape at rest, axes of its root", key=None, name=INSIDE)
     shape: Complex = quantity(
-        "", "displacement of the beam's axis, in the size of the mode's shape", "mode", "point", "axis",
+        "", "displacement of the beam's axis, in the size of the mode's shape", "mode point axis",
         name="outline_shape", key=None,
     )  # fmt: skip
 
@@ -108,17 +105,17 @@ class Assembly(Part):
     hangs_on: tuple[str, ...] = quantity("", "point that the body hangs on", "body", note="ground, or body.point")
     joint: tuple[str, ...] = quantity("", "kind of the joint that holds it", "body", name="joint_kind")
     place_at_rest: Floats = quantity(
-        "m", "place of that point, its body undeformed", "body", "axis", frame="axes of its body's root"
+        "m", "place of that point, its body undeformed", "body axis", frame="axes of its body's root"
     )
     undeformed: Floats = quantity(
-        "m", "place of the point, joints at the start and bodies undeformed", "point", "axis", frame="ground"
+        "m", "place of the point, joints at the start and bodies undeformed", "point axis", frame="ground"
     )
     box: Floats = quantity(
-        "m", "extents of an even box of the same mass and inertia", "body", "axis", note="NaN of flexible bodies",
+        "m", "extents of an even box of the same mass and inertia", "body axis", note="NaN of flexible bodies",
         frame="principal axes",
     )  # fmt: skip
-    box_centre: Floats = quantity("m", "centre of that box from the root", "body", "axis", frame="axes of the root")
-    box_rotation: Floats = quantity("", "rotation from principal axes to axes of the root", "body", "row", "axis")
+    box_centre: Floats = quantity("m", "centre of that box from the root", "body axis", frame="axes of the root")
+    box_rotation: Floats = quantity("", "rotation from principal axes to axes of the root", "body row axis")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -146,38 +143,35 @@ class SystemResponse(Driven, Figured):
     time: Floats = quantity("s", "time", "time", role="coordinate", key=None)
     points: tuple[str, ...] = labels("name of the point", "point")
     coordinates: tuple[str, ...] = labels("name of the coordinate", "coordinate")
-    place: Floats = quantity("m", "place of the point", "time", "point", "axis", key=None, frame="ground")
-    velocity: Floats = quantity("m/s", "velocity of the point", "time", "point", "axis", key=None, frame="ground")
+    place: Floats = quantity("m", "place of the point", "time point axis", key=None, frame="ground")
+    velocity: Floats = quantity("m/s", "velocity of the point", "time point axis", key=None, frame="ground")
     acceleration: Floats = quantity(
         "m/s^2",
         "acceleration of the point; specific force where gravity acts",
-        "time",
-        "point",
-        "axis",
+        "time point axis",
         key=None,
         frame="axes of the point",
     )
     attitude: Floats = quantity(
-        "", "Euler parameters of the point's axes in those of the ground", "time", "point", "euler", key=None
+        "", "Euler parameters of the point's axes in those of the ground", "time point euler", key=None
     )
     angular_velocity: Floats = quantity(
-        "rad/s", "angular velocity of the point", "time", "point", "axis", key=None, frame="axes of the point"
+        "rad/s", "angular velocity of the point", "time point axis", key=None, frame="axes of the point"
     )
     q: Floats = quantity(
-        "", "coordinates: m and rad of joints, their own of flexible bodies", "time", "coordinate", key=None
+        "", "coordinates: m and rad of joints, their own of flexible bodies", "time coordinate", key=None
     )
-    qd: Floats = quantity("", "rates of the coordinates", "time", "coordinate", name="rates", key=None)
+    qd: Floats = quantity("", "rates of the coordinates", "time coordinate", name="rates", key=None)
     effort: Floats = quantity(
         "",
         "force N or torque N m of the drive on each coordinate",
-        "time",
-        "coordinate",
+        "time coordinate",
         key=None,
         note="of prescribed coordinates what the motion needs",
     )
-    ground_force: Floats = quantity("N", "force on the ground", "time", "axis", key=None, frame="ground")
+    ground_force: Floats = quantity("N", "force on the ground", "time axis", key=None, frame="ground")
     ground_moment: Floats = quantity(
-        "N m", "moment on the ground about its origin", "time", "axis", key=None, frame="ground"
+        "N m", "moment on the ground about its origin", "time axis", key=None, frame="ground"
     )
     invariants: Invariants | None = part(
         "momentum and energy", key="invariants", name=INSIDE, note="None on a base that moves", default=None
@@ -209,7 +203,7 @@ class SystemResponse(Driven, Figured):
     residual_from: float = fact("start of the residual", "s", key=None, note="NaN where not given", default=math.nan)
     residual_amplitude: Floats | None = quantity(
         "m", "half peak-to-peak after residual_from, of a flexible body's points relative to its root, else of places",
-        "point", "axis", frame="axes of the body's root, else of the ground", optional=True, default=None,
+        "point axis", frame="axes of the body's root, else of the ground", optional=True, default=None,
     )  # fmt: skip
     kept_every: int = fact("how many samples of the histories make one in a file", name=None, key=None, default=1)
 
@@ -335,9 +329,9 @@ class SystemRest(Figured):
     time: float = fact("time at which drives and motion are frozen", "s")
     points: tuple[str, ...] = labels("name of the point", "point")
     coordinates: tuple[str, ...] = labels("name of the coordinate", "coordinate")
-    place: Floats = quantity("m", "place of the point", "point", "axis", frame="ground")
-    displacement: Floats = quantity("m", "displacement from the start", "point", "axis", frame="ground")
-    attitude: Floats = quantity("", "Euler parameters of the point's axes in those of the ground", "point", "euler")
+    place: Floats = quantity("m", "place of the point", "point axis", frame="ground")
+    displacement: Floats = quantity("m", "displacement from the start", "point axis", frame="ground")
+    attitude: Floats = quantity("", "Euler parameters of the point's axes in those of the ground", "point euler")
     q: Floats = quantity("", "coordinates: m and rad of joints, their own of flexible bodies", "coordinate")
     effort: Floats = quantity("", "force N or torque N m of the drive on each coordinate", "coordinate")
     stable: bool = fact("whether it comes back after any small disturbance, or stays near")
@@ -356,8 +350,9 @@ class SystemRest(Figured):
         default_factory=dict,
     )  # fmt: skip
 
-    @declared("", "forces, moments and stresses of the beams' sections", role="rows", name=None, key="beams",
-              optional=True)  # fmt: skip
+    @declared(
+        "", "forces, moments and stresses of the beams' sections", role="rows", name=None, key="beams", optional=True
+    )
     def carried(self) -> Mapping[str, Loads]:
         return {name: replace(at_place(each, 0), stations=each.stations) for name, each in self.loads.items()}
 
@@ -439,11 +434,9 @@ class SystemModes(Oscillating, Figured):
     )
     points: tuple[str, ...] = labels("name of the point", "point", key="point_names")
     bodies: tuple[str, ...] = labels("name of the body", "body", key="body_names")
-    shape: Complex = quantity(
-        "", "displacement of the point, largest component 1", "mode", "point", "axis", frame="ground"
-    )
-    share: Floats = quantity("", "share of the body in the kinetic energy", "mode", "body")
-    place: Floats = quantity("m", "place of the point at rest", "point", "axis", key=None, frame="ground")
+    shape: Complex = quantity("", "displacement of the point, largest component 1", "mode point axis", frame="ground")
+    share: Floats = quantity("", "share of the body in the kinetic energy", "mode body")
+    place: Floats = quantity("m", "place of the point at rest", "point axis", key=None, frame="ground")
     rigid: int = fact("number of motions of zero frequency, left out")
     errors: FrequencyErrors | None = part(
         "errors of the frequencies",
@@ -454,12 +447,11 @@ class SystemModes(Oscillating, Figured):
     )
     instabilities: tuple[Instability, ...] = rows("eigenvalues that grow", "instability", name=None, default=())
     attitude: Floats = quantity(
-        "", "Euler parameters of the point's axes at rest in those of the ground", "point", "euler", key=None,
-        default_factory=lambda: np.empty((0, 4)),
-    )  # fmt: skip
+        "", "Euler parameters of the point's axes at rest in those of the ground", "point euler", key=None, empty=True
+    )
     turn: Complex = quantity(
-        "rad/m", "rotation of the point's axes, for shapes in m", "mode", "point", "axis", key=None, frame="ground",
-        default_factory=lambda: np.empty((0, 0, 3)),
+        "rad/m", "rotation of the point's axes, for shapes in m", "mode point axis", key=None, frame="ground",
+        empty=True,
     )  # fmt: skip
     assembly: Assembly | None = part(
         "how the bodies hang together", key=None, name=INSIDE, note="None where nothing is to be drawn", default=None

@@ -23,9 +23,7 @@ class LoadPeak(Part):
     time: float = quantity("s", "peak of the flight's load above idle")
     load: float = quantity("m/s^2", "its size", name="flight")
     time_machine: float = quantity(
-        "s",
-        "time of the machine's largest load",
-        note="while the flight's is above nine tenths of its peak",
+        "s", "time of the machine's largest load", note="while the flight's is above nine tenths of its peak"
     )
     reproduced: float = quantity("m/s^2", "load of the machine then", name="machine", note="at the control point")
     error: float = quantity(
@@ -87,9 +85,7 @@ class Accounting(Part):
     """Every part of a flight accounted for."""
 
     tolerance: float = quantity(
-        "",
-        "share of the flight's load by which the machine's may differ and count as following",
-        name=None,
+        "", "share of the flight's load by which the machine's may differ and count as following", name=None
     )
     allowed: float = quantity(
         "m/s^2", "error of the load that counts as following", name="tolerance_load", key="tolerance_load",

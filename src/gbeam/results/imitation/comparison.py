@@ -47,7 +47,7 @@ class Comparison(Judged, Figured):
     flight: str = fact("name of the flight")
     centrifuge: str = fact("name of the centrifuge")
     time: Floats = quantity("s", "time", "time", role="coordinate", key=None)
-    difference: Floats = quantity("m", "tip displacement on the centrifuge less in flight", "time", "axis", key=None)
+    difference: Floats = quantity("m", "tip displacement on the centrifuge less in flight", "time axis", key=None)
     covered: Flags = quantity(
         "",
         "whether the time is compared",
@@ -95,8 +95,8 @@ class Comparison(Judged, Figured):
         name=None, key=None, default=None,
     )  # fmt: skip
     whole: tuple[float, float] | None = fact(
-        "first and last time of the whole flight, where only a part of it was run, and is judged",
-        "s", name=None, key=None, default=None,
+        "first and last time of the whole flight, where only a part of it was run, and is judged", "s", name=None,
+        key=None, default=None,
     )  # fmt: skip
     kept_every: int = fact("how many samples of the histories make one in a file", name=None, key=None, default=1)
     point: str = fact(

@@ -106,13 +106,13 @@ class Statistics(Part):
     flight: Sizes = part("in flight", "station", name="station_*_flight")
     centrifuge: Sizes = part("on the centrifuge", "station", name="station_*_centrifuge")
     difference: Sizes = part("of the difference", "station", name="station_*_difference")
-    trend_flight: Floats = quantity("m", f"tip in flight below the cut-off, {_FILTER}", "time", "axis", key=None)
+    trend_flight: Floats = quantity("m", f"tip in flight below the cut-off, {_FILTER}", "time axis", key=None)
     trend_centrifuge: Floats = quantity(
-        "m", f"tip on the centrifuge below the cut-off, {_FILTER}", "time", "axis", key=None
+        "m", f"tip on the centrifuge below the cut-off, {_FILTER}", "time axis", key=None
     )
-    vibration_flight: Floats = quantity("m", f"tip in flight above the cut-off, {_FILTER}", "time", "axis", key=None)
+    vibration_flight: Floats = quantity("m", f"tip in flight above the cut-off, {_FILTER}", "time axis", key=None)
     vibration_centrifuge: Floats = quantity(
-        "m", f"tip on the centrifuge above the cut-off, {_FILTER}", "time", "axis", key=None
+        "m", f"tip on the centrifuge above the cut-off, {_FILTER}", "time axis", key=None
     )
 
     tip: int = fact("number of the station that is the tip", name=None, key=None, default=-1)
@@ -131,8 +131,7 @@ class Mismatch(Part):
     gradient: Floats = quantity(
         "1/s^2",
         "mismatch acceleration per distance from the control point",
-        "time",
-        "axis",
+        "time axis",
         key=None,
         note="centrifuge less flight of [−(ω_y² + ω_z²), ω_x ω_y + α_z, ω_x ω_z − α_y]",
     )
@@ -193,14 +192,14 @@ class RootHistory(Part):
     """Loads of the root at the comparison's times, axes of its section."""
 
     force_flight: Floats = quantity(
-        "N", "N, V_y, V_z at the root in flight", "time", "axis", name="force_history_flight", **_HISTORY
+        "N", "N, V_y, V_z at the root in flight", "time axis", name="force_history_flight", **_HISTORY
     )
-    force_centrifuge: Floats = quantity("N", "N, V_y, V_z at the root on the centrifuge", "time", "axis", **_HISTORY)
+    force_centrifuge: Floats = quantity("N", "N, V_y, V_z at the root on the centrifuge", "time axis", **_HISTORY)
     moment_flight: Floats = quantity(
-        "N m", "torque, M_y, M_z at the root in flight", "time", "axis", name="moment_history_flight", **_HISTORY
+        "N m", "torque, M_y, M_z at the root in flight", "time axis", name="moment_history_flight", **_HISTORY
     )
     moment_centrifuge: Floats = quantity(
-        "N m", "torque, M_y, M_z at the root on the centrifuge", "time", "axis", **_HISTORY
+        "N m", "torque, M_y, M_z at the root on the centrifuge", "time axis", **_HISTORY
     )
 
 
@@ -272,21 +271,20 @@ class Shock(Part):
     quality: float = fact("Q of the oscillators", name=None)
     frequency: Floats = quantity("Hz", "frequency of the oscillators", "frequency", role="coordinate")
     flight: Floats = quantity(
-        "m/s^2", "shock response spectrum in flight", "frequency", "axis", name="shock_flight", key=None,
+        "m/s^2", "shock response spectrum in flight", "frequency axis", name="shock_flight", key=None,
         note="specific force where gravity acts",
     )  # fmt: skip
     centrifuge: Floats = quantity(
-        "m/s^2", "the same on the centrifuge", "frequency", "axis", name="shock_centrifuge", key=None
+        "m/s^2", "the same on the centrifuge", "frequency axis", name="shock_centrifuge", key=None
     )
 
     control: str = fact("points whose spectra they are, with their weights", name=None, default="the tip")
 
-    @declared("m/s^2", "spectrum in flight, by frequency", "frequency", "direction", name=None, key="flight")
+    @declared("m/s^2", "spectrum in flight, by frequency", "frequency direction", name=None, key="flight")
     def rows_flight(self) -> Floats:
         return self.flight
 
-    @declared("m/s^2", "spectrum on the centrifuge, by frequency", "frequency", "direction", name=None,
-              key="centrifuge")  # fmt: skip
+    @declared("m/s^2", "spectrum on the centrifuge, by frequency", "frequency direction", name=None, key="centrifuge")
     def rows_centrifuge(self) -> Floats:
         return self.centrifuge
 
