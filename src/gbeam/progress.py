@@ -30,15 +30,9 @@ Progress: TypeAlias = Callable[[str, float], None] | bool | None
 class Bar:
     """Progress of a computation: a bar on a terminal or in a notebook, else a plain line every few seconds.
 
-    Use it as a context, and call it with what is being done and the fraction done; or, of a sweep, with the numbers of
-    cases that are done, of those that failed among them, and of all.
-
-    Parameters
-    ----------
-    first : str
-        What is being done until it is called.
-    patience : float
-        Time without a sign of life that needs no explanation, s.
+    Use it as a context, and call it with what is being done (`first` until then) and the fraction done; or, of a sweep,
+    with the numbers of cases that are done, of those that failed among them, and of all. So many seconds of `patience`
+    without a sign of life need no explanation.
     """
 
     def __init__(self, first: str = "computing", *, patience: float = 0.0) -> None:

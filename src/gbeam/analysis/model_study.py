@@ -232,9 +232,7 @@ def _moved(system: System, response: SystemResponse, point: str) -> Floats:
 
 
 def shape_tail(structure: Structure, q: Floats) -> float:
-    """Share of the tip's largest displacement over coordinates (t, n) by which the last shape of each family moves it:
-    what a next may add.
-    """
+    """Share of the tip's largest displacement by the last shape of each family, over coordinates (t, n)."""
     ends = np.cumsum(structure.counts) - 1
     last = [int(end) for end, count in zip(ends, structure.counts, strict=True) if count > 1]
     tip = structure.displacement(q)[:, -1]

@@ -88,11 +88,7 @@ def removed(text: str, path: str) -> str:
 
 
 def with_record(text: str, motion: str, record: dict[str, str]) -> str:
-    """Return the text with a flight's record in place of its acceleration, or of its record before.
-
-    What else is written of a record of the same file stays. The duration of the response goes: it was that of another
-    flight, and a record is flown to its end.
-    """
+    """Return the text with a record in place of a flight's acceleration or record; a record is flown to its end."""
     place: Place = ("motion", motion)
     data = parse(NAME, text)
     if written_at(data, place) is None:
@@ -245,9 +241,7 @@ _LONGEST = 3  # words of a unit in a name, m_s_2
 
 
 def suggested(columns: Iterable[tuple[str, str]]) -> dict[str, str]:
-    """Return the keys of a scenario's record that names and units of columns suggest, where there is one answer; no
-    signs.
-    """
+    """Return the keys of a record, but for signs, that names and units of its columns suggest without doubt."""
     candidates: dict[str, list[tuple[str, str]]] = defaultdict(list)  # columns and their units, by what they may hold
     for name, unit in columns:
         for key, stated in _meanings(name, unit):

@@ -42,9 +42,7 @@ class Value:
 
 @dataclass_transform(frozen_default=True, field_specifiers=(static, dataclasses.field))
 def record(cls: type[_T]) -> type[_T]:
-    """Make a class a frozen dataclass that is a pytree, compared by its fields; an ``__init__`` of its own uses
-    :func:`assign`.
-    """
+    """Make a class a frozen dataclass, a pytree, equal by its fields; an own ``__init__`` uses :func:`assign`."""
     record_type = dataclasses.dataclass(frozen=True, eq=False, init="__init__" not in cls.__dict__)(cls)
     for method in (Value.__eq__, __hash__):
         setattr(record_type, method.__name__, method)
@@ -87,9 +85,7 @@ def assign(instance: Any, **fields: Any) -> None:
 
 
 def arguments_of(value: Any) -> dict[str, Any] | None:
-    """Return the arguments by which an object is made again: what it says of them, its fields, or its attributes of
-    their names; None of one that does not know them.
-    """
+    """Return the arguments by which an object is made again, or its fields or attributes; None where it is unknown."""
     if hasattr(value, "arguments"):
         return dict(value.arguments)
     if not dataclasses.is_dataclass(value) or isinstance(value, type):

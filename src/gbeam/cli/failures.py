@@ -45,10 +45,7 @@ def report_syntax(message: str, as_json: bool) -> int:
 
 
 def lacks_memory(error: BaseException | None) -> bool:
-    """Whether memory did not suffice, be it for a library, which the system then does not load, or for a thread.
-
-    Where a process has a limit of memory, the interpreter's own lack of words for an error is one of it.
-    """
+    """Whether memory did not suffice, for a library that is then not loaded, a thread, or the error's own words."""
     while error is not None:
         if isinstance(error, MemoryError) or (
             isinstance(error, (ImportError, RuntimeError)) and _NO_ROOM.search(str(error))

@@ -156,9 +156,7 @@ def carried_along(loads: Loads) -> tuple[Panel, ...]:
 
 
 def loads(response: Response, carried: Loads, title: str = "") -> Figure:
-    """Describe over time what the root's section carries, of a solid and a rigid specimen what acts on the base; the
-    extreme stresses along the beam, a hub's torque.
-    """
+    """Describe over time what the root, or the base of a solid, carries, the extreme stresses, and a hub's torque."""
     beam = response.solid is None and response.specimen is None
     panels = [*carried_at_root(response.time, carried, SECTION if beam else BASE)]
     if carried.beam_torque is not None:

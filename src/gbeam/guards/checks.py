@@ -85,26 +85,14 @@ def choice(where: str, name: str, choices: Iterable[str]) -> None:
 
 @dataclass(frozen=True)
 class Range:
-    """Plausible values of a quantity.
+    """Plausible values of a quantity."""
 
-    Parameters
-    ----------
-    low, high : float
-        What is plausible, in `unit`.
-    least, most : float
-        What is possible.
-    unit : str
-        SI.
-    slips : tuple of (unit, size)
-        Units in which a number may have been meant that was given without one, or with a wrong one.
-    """
-
-    low: float
-    high: float
-    least: float
-    most: float
-    unit: str
-    slips: tuple[tuple[str, float], ...] = ()
+    low: float  # plausible, in `unit`
+    high: float  # likewise
+    least: float  # possible
+    most: float  # likewise
+    unit: str  # SI
+    slips: tuple[tuple[str, float], ...] = ()  # (unit, size) in which a number may have been meant
 
 
 _LENGTHS = (("mm", 1e-3), ("cm", 1e-2), ("um", 1e-6), ("m", 1.0))

@@ -9,21 +9,11 @@ from gbeam.constants import STANDARD_GRAVITY
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of quantity: its name in a sentence, its SI unit and an example.
+    """A kind of quantity: its name in a sentence, its SI unit and an example."""
 
-    Parameters
-    ----------
-    phrase : str
-        Name with its article, ``a length``.
-    unit : str
-        SI unit that bare numbers are in.
-    example : str
-        A quantity as one would write it.
-    """
-
-    phrase: str
-    unit: str
-    example: str
+    phrase: str  # with its article, "a length"
+    unit: str  # SI, of bare numbers
+    example: str  # a quantity as one would write it
 
 
 KINDS: dict[str, Kind] = {

@@ -93,9 +93,7 @@ AT_ONCE = 50_000  # numbers of the states that are evaluated at once: more of th
 
 
 def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> tuple[Array, Array, Array]:
-    """Derivatives K, C and M (t, r, n) of a residual (t, r), or another function of the state, with respect to q, q̇ and
-    q̈ (t, n) at inputs (t, ...).
-    """
+    """Derivatives K, C, M (t, r, n) of a function (t, r) of the state by q, q̇, q̈ (t, n) at inputs (t, ...)."""
     n, pieces = q.shape[1], []
     steps = 1j * STEP * np.eye(3 * n).reshape(3 * n, 1, 3, n)
     for some in _pieces(q):

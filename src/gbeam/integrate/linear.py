@@ -40,9 +40,7 @@ def chunk(
     steps: Steps,
     added: tuple[Array | float, Array | float] = (0.0, 0.0),
 ) -> tuple[Array, tuple[Array, Array, Array]]:
-    """Take steps from z (m, n) with terms `added` to M and C; returns the next z, and q, q̇, q̈ (k, n) at the ends that
-    are kept.
-    """
+    """Take steps from z (m, n) with terms `added` to M and C; returns the next z, and kept q, q̇, q̈ (k, n)."""
     t = scheme.tableau(steps.length[:1] if steps.equal else steps.length)
     count, stages, (m, n) = len(steps), len(scheme.offsets), z.shape
     at = [equations.matrices(equations.drive(steps.times(offset))) for offset in scheme.offsets]

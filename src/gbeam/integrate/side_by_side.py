@@ -28,9 +28,7 @@ Histories = tuple[Array, Array, Array]  # q, q̇, q̈ of b runs at the start and
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """A run from q, qd (n,); `common` is what the nonlinear residuals of all runs share, multiplied for all of them at
-    once.
-    """
+    """A run from q, qd (n,); `common` is what all runs' nonlinear residuals share, multiplied for all at once."""
 
     equations: LinearEquations | NonlinearEquations
     q: Array

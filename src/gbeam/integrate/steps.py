@@ -61,9 +61,7 @@ class Corners:
 
 @dataclass(frozen=True, eq=False)
 class Steps:
-    """Steps in order, (t,) each: `first` and `last` lie just inside a step at a jump; `resume`, `following` are the
-    next one's.
-    """
+    """Steps in order, (t,) each: `first`, `last` just inside a step at a jump; `resume`, `following` the next one's."""
 
     begin: Floats
     length: Floats

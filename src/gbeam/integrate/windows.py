@@ -46,9 +46,7 @@ EARLIER = 0.01  # of the largest acceleration before a step, whose own may all v
 
 
 def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, steps: Steps) -> Iterator[Piece]:
-    """Integrate; yields the initial state, then window by window q, q̇, q̈ (k, n) at the steps that are kept and whether
-    each was solved.
-    """
+    """Integrate; yields the initial state, then by windows the kept q, q̇, q̈ (k, n) and whether each was solved."""
     if not q.size:  # all motion is prescribed
         still = np.zeros((1 + np.count_nonzero(steps.kept), 0))
         yield from ((each, each, each, np.ones(len(each), dtype=bool)) for each in (still[:1], still[1:]))
@@ -277,9 +275,7 @@ class _Window:
         return moved
 
     def _shorten(self, inverse: Array) -> None:
-        """Halve the correction of a single step until the next one is smaller by a part: the law of a friction or a
-        stop bends within a step.
-        """
+        """Halve a single step's correction until the next is smaller: a friction or a stop bends within a step."""
         (state, change), share = self.moved, 1.0
         whole = np.linalg.norm(change)
         for _ in range(HALVINGS):

@@ -26,9 +26,7 @@ TENSION = 1.0  # N L²/EI: from there on the axial force bends the shapes
 
 
 def axial_force(beam: Beam, rule: Quadrature, along: Array, spin: Array) -> Array:
-    """Axial force (g,) N at the nodes when largest, under root accelerations (t,) m/s² along and squared rates (t,)
-    across the beam.
-    """
+    """Largest axial force (g,) N at the nodes, under root accelerations (t,) m/s² and squared rates (t,) across."""
     line = beam.density * beam.section.at(rule.node).area
     until = rule.cumulative(rule.node)
     mass, moment = (rule.weight @ f - until @ f for f in (line, line * rule.node))
@@ -42,9 +40,7 @@ def axial_force(beam: Beam, rule: Quadrature, along: Array, spin: Array) -> Arra
 def enriched_shapes(
     beam: Beam, spaces: Sequence[Space], families: Families, force: Array | None = None
 ) -> tuple[Families, Counts]:
-    """The given shapes and then those that they lack, also under an axial force (g,) N, and how many are new in each
-    family.
-    """
+    """The given shapes and those that they lack, also under an axial force (g,) N, and how many are new by family."""
     least = APART**2 * max(_period(beam, of, along) for along, of in enumerate(spaces))
     both, counts = list(families), [0] * 6
     for along, of in enumerate(spaces):
@@ -220,9 +216,7 @@ NODES, PER_PANEL = 14, 8  # of the quadrature: over the beam with one shape, and
 
 
 def enrichment(structure: Structure, base: Base | None = None) -> Enrichment:
-    """Find a structure's own shapes and those that it lacks under what the base, at one time or many, pulls along the
-    beam.
-    """
+    """Find a structure's own shapes and those that it lacks under what the base at some times pulls along the beam."""
     alone = _without_force(structure)
     force = None if base is None else alone.bent_by(base)
     return alone if force is None else Enrichment(structure, force)
@@ -234,9 +228,7 @@ def _without_force(structure: Structure) -> Enrichment:
 
 
 class Enrichment:
-    """A structure's own shapes and those that it lacks under an axial force (g,) N, from which models with all are
-    made.
-    """
+    """A structure's own shapes and those that it lacks under an axial force (g,) N, for models with all of them."""
 
     def __init__(self, structure: Structure, force: Array | None = None) -> None:
         assert structure.source is not None

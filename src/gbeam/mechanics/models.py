@@ -12,9 +12,7 @@ from gbeam.mechanics.fields.basis import FAMILIES, Counts
 
 @dataclass(frozen=True)
 class Kind:
-    """A row of the table of models: order where the places end, or None; coordinates that are strains; truncation;
-    Q_θ on a free hub; axial coordinates.
-    """
+    """A model: order of the places, or None; whether coordinates are strains, truncation, Q_θ on a hub, axial ones."""
 
     order: int | None = 2
     strains: bool = False

@@ -30,9 +30,7 @@ DISPARATE = 1e9  # of two sizes: of the smaller one's sixteen digits so many are
 
 
 def implausible_beam(beam: Beam, bends: tuple[bool, bool]) -> tuple[str, ...]:
-    """Warn, in the scenario's names, of what is implausible in a beam that `bends` along y and z; never where JAX
-    traces it.
-    """
+    """Warn, in the scenario's names, of what is implausible in a beam that `bends` along y and z; not under JAX."""
     if _traced(beam) or beam.material is None:
         return ()
     alone = (*_material(beam), *_dimensions(beam))
@@ -196,9 +194,7 @@ def input_warnings(
     span: tuple[float, float] = (0.0, 0.0),
     base: Any = None,
 ) -> tuple[str, ...]:
-    """Warn of what is implausible in any analysis's input, also in the `base` at times that matter; never where JAX
-    traces it.
-    """
+    """Warn of what is implausible in an analysis's input, the `base` at some times too; not where JAX traces it."""
     if structure.traced or holds_jax(motion):
         return ()
     where = f"motion.{name}" if name else "motion"

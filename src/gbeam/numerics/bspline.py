@@ -45,18 +45,11 @@ _ROUNDING = 1e-9  # of a piece
 
 @record
 class Spline:
-    """k quintic splines with uniform knots from `start`, `step` s apart; its last piece goes on beyond the end.
-
-    Parameters
-    ----------
-    start, step : float
-        s.
-    coefficients : array, shape (pieces + 5, k)
-    """
+    """k quintic splines, uniform knots from `start`, `step` s apart; the last piece goes on beyond the end."""
 
     start: Any
     step: Any
-    coefficients: Any
+    coefficients: Any  # (pieces + 5, k)
 
     def __call__(self, t: Any) -> Any:
         """Values at times `t` (s, any shape), (..., k)."""
@@ -80,17 +73,7 @@ class Spline:
 
 
 class Grid:
-    """Knots over a span, and the weights that give a spline and its rates at points within its pieces.
-
-    Parameters
-    ----------
-    first, last : float
-        s.
-    step : float
-        Largest distance of the knots, s.
-    points : array
-        Places within every piece, 0 to 1.
-    """
+    """Knots over a span, s, and the weights that give a spline and its rates at points, 0 to 1, within its pieces."""
 
     def __init__(self, first: float, last: float, step: float, points: Floats) -> None:
         self.pieces = max(int(np.ceil((last - first) / step - _ROUNDING)), 1)
@@ -150,10 +133,7 @@ class Grid:
         return Grid(self.start, self.end, self.step / 2, self.points)
 
     def refined(self, coefficients: Floats) -> Floats:
-        """Coefficients (halved().size, k) of the same splines (size, k) on the halved grid.
-
-        Each is a mean of the old ones: it lies between the bounds that hold for those.
-        """
+        """Coefficients (halved().size, k) of the same splines (size, k) on the halved grid: means of the old ones."""
         spread = np.zeros((2 * self.size + 1, coefficients.shape[1]))
         spread[1::2] = coefficients
         windows = np.lib.stride_tricks.sliding_window_view(spread, PIECE + 1, axis=0)
@@ -161,13 +141,7 @@ class Grid:
 
 
 class Normal:
-    """Normal equations of a linear least-squares problem whose rows each act on six neighbouring coefficients.
-
-    Parameters
-    ----------
-    pieces : int
-        Of the spline.
-    """
+    """Normal equations of a linear least-squares problem whose rows each act on six neighbouring coefficients."""
 
     def __init__(self, pieces: int) -> None:
         self.pieces = pieces

@@ -53,10 +53,7 @@ def growth_limit(value: Complex, largest: float) -> Floats:
 def eigenvalues(
     mass: Floats, velocity: Floats, stiffness: Floats, *, gyroscopic: bool = True
 ) -> tuple[Complex, Complex]:
-    """Eigenvalues λ and modes of M ÿ + C ẏ + K y = 0.
-
-    `mass`, `velocity`, `stiffness` (n, n).
-    """
+    """Eigenvalues λ and modes of M ÿ + C ẏ + K y = 0, matrices (n, n)."""
     damping = velocity if gyroscopic else (velocity + velocity.T) / 2
     # In modes of the symmetric part, each scaled by its own frequency, all blocks are of the size of the frequencies:
     # the raw companion matrix loses half the digits of the low ones.

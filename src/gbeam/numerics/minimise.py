@@ -100,10 +100,7 @@ _SCALE = 1e4  # of the cost: the solver adds up to 1e-10 to H, which must be sma
 
 
 def solve_quadratic(hessian: Any, slope: Floats, rows: Any, lower: Floats, upper: Floats) -> Floats | None:
-    """Find the x that minimises ½ xᵀHx + gᵀx within lower <= A x <= upper.
-
-    `hessian` (n, n), `slope` (n,), `rows` (m, n), `lower`, `upper` (m,); returns (n,).
-    """
+    """Find the x that minimises ½ xᵀHx + gᵀx within lower <= A x <= upper; H (n, n), A (m, n)."""
     import piqp
 
     solver = piqp.SparseSolver()

@@ -14,19 +14,13 @@ Floats = NDArray[np.float64]
 
 
 def true_runs(flags: NDArray[np.bool_]) -> list[slice]:
-    """Runs of true flags, ascending, each as a slice.
-
-    `flags` (n,).
-    """
+    """Runs of true flags (n,), ascending, each as a slice."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
     return [slice(int(start), int(stop)) for start, stop in edges.reshape(-1, 2)]
 
 
 def joined(runs: list[slice], time: NDArray[np.float64], gap: float) -> list[slice]:
-    """Runs of samples with those nearer than `gap` to one another made one.
-
-    `time` (n,) s.
-    """
+    """Runs of samples at times (n,) s with those nearer than `gap` to one another made one."""
     merged: list[slice] = []
     for run in runs:
         if merged and time[run.start] - time[merged[-1].stop - 1] < gap:
@@ -55,10 +49,7 @@ def interpolated(time: Floats, known: Floats, values: Floats) -> Floats:
 
 
 def cumulative(time: Floats, value: Floats, slope: Floats) -> Floats:
-    """Integral from the first time to each, by the trapezium rule with its end correction: of fourth order.
-
-    `time`, `value`, `slope` (n,).
-    """
+    """Integral from the first time to each, (n,), by the trapezium rule with its end correction: of fourth order."""
     step = np.diff(time)
     pieces = step * (value[1:] + value[:-1]) / 2 - step**2 * np.diff(slope) / 12
     return np.append(0.0, np.cumsum(pieces))
@@ -78,10 +69,7 @@ def attitude(time: Floats, w_WB_B: Floats) -> Floats:
 
 
 def separate_peaks(values: NDArray[np.float64], floor: float, dip: float) -> list[tuple[int, slice]]:
-    """Local maxima above a floor, those that no dip separates being one.
-
-    `values` (n,); returns (int, slice).
-    """
+    """Local maxima (int, slice) of values (n,) above a floor, those that no dip separates being one."""
     peaks: list[tuple[int, slice]] = []
     for run in true_runs(values > floor):
         part = values[run]
@@ -129,10 +117,7 @@ def low_pass(values: Floats, step: float, cutoff: float) -> Floats:
 
 
 def displacement(load: Floats, frequency: ArrayLike, damping: float, step: float) -> Floats:
-    """η of η̈ + 2ζω η̇ + ω² η = load, starting at rest under the first load.
-
-    `load` (t, ...), `frequency` (f,) rad/s, or one; returns (f, t, ...).
-    """
+    """η (f, t, ...) of η̈ + 2ζω η̇ + ω² η = load (t, ...), from rest under the first load; (f,) rad/s, or one."""
     every = [_response(load, omega, damping, step, 1.0, 0.0, 1 / omega**2) for omega in np.ravel(frequency)]
     return np.reshape(every, (*np.shape(frequency), *np.shape(load)))
 
@@ -146,10 +131,7 @@ def riding_acceleration(base: Floats, frequency: ArrayLike, damping: float, step
 def largest_riding_acceleration(
     base: Floats, frequency: Floats, damping: float, step: float, covered: NDArray[np.bool_]
 ) -> Floats:
-    """Largest size of :func:`riding_acceleration` at the samples `covered` (t,): a shock response spectrum, (f, k).
-
-    `base` (t, k), `frequency` (f,) rad/s.
-    """
+    """Largest :func:`riding_acceleration` at samples `covered` (t,): a shock response spectrum, (f, k)."""
     one_by_one = (riding_acceleration(base, omega, damping, step)[covered] for omega in frequency)  # all need memory
     return np.stack([np.abs(each).max(axis=0, initial=0.0) for each in one_by_one])
 

@@ -32,10 +32,7 @@ ENVELOPE = "fast vibration: envelope"  # in legends
 
 
 def line(panel: Axes, x: Floats, y: Floats, **options: Any) -> None:
-    """Draw a line: an envelope where it oscillates about once in the width of a line or faster, else what shows of it.
-
-    `x`, `y` (n,).
-    """
+    """Draw a line (n,): an envelope where it oscillates too fast for the width of a line, else what shows of it."""
     bins = _Bins(x, y) if len(x) >= 4 * BINS else None
     runs = [] if bins is None else true_runs(bins.fast)
     if bins is None or not runs:

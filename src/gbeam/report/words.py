@@ -85,10 +85,7 @@ def tidy(values: Iterable[float], size: float) -> list[float]:
 
 
 def stress_words(stations: Any, tension: Any, compression: Any, yield_strength: float | None) -> str:
-    """The extreme normal stresses along the beam, where the larger is, and the margin on yield where that is known.
-
-    `stations` (s,) m, `tension`, `compression` (s,) Pa.
-    """
+    """The extreme normal stresses (s,) Pa at stations (s,) m, where the larger is, and the margin on yield if known."""
     sizes = [max(high, -low) for high, low in zip(tension, compression, strict=True)]
     stress = float(max(sizes))
     worst = sizes.index(stress)

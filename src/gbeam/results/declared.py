@@ -34,47 +34,22 @@ _T = TypeVar("_T")
 
 @dataclass(frozen=True)
 class Declaration:
-    """Declaration of a field of a result, or of a property.
+    """Declaration of a field of a result, or of a property."""
 
-    Parameters
-    ----------
-    words : str
-        The quantity, as files describe it.
-    unit : str, callable or dict
-        SI, such as m/s^2; empty of what has none; of the record where the unit depends on it. Of another record the
-        unit of those of its fields whose unit is :data:`BESIDE`, ``1`` where they have none; of a mapping of records
-        that by their names.
-    dims : tuple of str
-        Dimensions of the array; of a part those that come before its own.
-    role : str
-        variable or coordinate of a file; labels, a coordinate of words; fact, one of its attributes; part, another
-        record; rows, a tuple of records or a mapping of them by name.
-    name : str or None
-        In files, of a part the pattern of its names, such as ``root_*`` or ``root_``, which a slash in
-        front of a name leaves out; None where files do not hold it.
-    key : str or None
-        In JSON, with dots where it stands deeper and a slash in front where it is in no row; None where JSON does not
-        have it.
-    note : str
-        More for the docstring.
-    frame : str
-        Of vectors that are not in base axes.
-    flags : tuple of str
-        Meanings of false and true in files.
-    optional : bool
-        Whether JSON and files leave it out where nothing is known.
-    """
-
-    words: str
+    words: str  # the quantity, as files describe it
+    # SI, or of the record; of a part that of its fields of BESIDE, "1" for none, of a mapping of records by name
     unit: str | Callable[[Any], str] | dict[str, str]
-    dims: tuple[str, ...]
+    dims: tuple[str, ...]  # of the array; of a part those before its own
+    # labels: a coordinate of words; fact: an attribute of files; rows: a tuple of records, or a mapping of them by name
     role: Role
+    # in files; of a part a pattern, ``root_*`` or ``root_``, left out by a slash in front; None: not there
     name: str | None
+    # in JSON, with dots where it stands deeper, a slash in front where it is in no row; None: not there
     key: str | None
-    note: str = ""
-    frame: str = ""
-    flags: tuple[str, ...] = ()
-    optional: bool = False
+    note: str = ""  # more for the docstring
+    frame: str = ""  # of vectors that are not in base axes
+    flags: tuple[str, ...] = ()  # meanings of false and true in files
+    optional: bool = False  # whether JSON and files leave it out where nothing is known
 
     @property
     def sentence(self) -> str:

@@ -19,10 +19,7 @@ SLENDER = "against one with shear, rotary inertia and twist, and by plate action
 
 @dataclass(frozen=True, repr=False, eq=False)
 class ErrorEstimate(Part):
-    """Estimated errors of one quantity, as fractions of its largest size; NaN where there is no estimate.
-
-    A vector's error is its length.
-    """
+    """Estimated errors of one quantity, or a vector's length, as fractions of its largest; NaN where there is none."""
 
     step: float = quantity("", "estimated error of the time steps", name=None, default=math.nan)
     shapes: float = quantity("", SHAPES, note="against the same model with more", default=math.nan)

@@ -103,20 +103,7 @@ class SolidStress(Figured):
         return self.time[self.point_von_mises.argmax(axis=0)]
 
     def strain_at(self, point: str, along: Sequence[float] = (1.0, 0.0, 0.0)) -> Floats:
-        """Return what a strain gauge at a named point reads, (t,).
-
-        Parameters
-        ----------
-        point : str
-            A node with a name.
-        along : (3,)
-            Direction of its grid, in axes of the point.
-
-        Raises
-        ------
-        InputError
-            If there is no such point, or the direction is none.
-        """
+        """Return what a strain gauge at a named point reads, (t,), as :meth:`gbeam.Response.strain_at` does."""
         if point not in self.points:
             raise InputError("point", f"is {point!r}", f"choose from {', '.join(self.points)}")
         way = np.asarray(vector("along", along), dtype=float)

@@ -184,9 +184,7 @@ def _acceptance(
 def _response(
     parts: Collector, table: schema.Response, motions: Mapping[str, Motion], usual: str = "newmark"
 ) -> ResponseSettings | None:
-    """Settings, with the usual integrator where none is written; without a duration the time that the records among the
-    motions cover.
-    """
+    """Settings, with the usual integrator and, where no duration is written, the time that the records cover."""
     from gbeam import integrate
     from gbeam.analysis.response.problem import Initial
     from gbeam.analysis.response.settings import ResponseSettings

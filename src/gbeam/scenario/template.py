@@ -213,9 +213,7 @@ def _distribution_schema() -> dict[str, Any]:
 
 
 def json_schema(*, distributions: bool = True) -> str:
-    """Return the JSON schema of a scenario, of one beam, another specimen or a system: every field with description,
-    quantity and SI unit.
-    """
+    """Return the JSON schema of a scenario: every field with its description, quantity and SI unit."""
     from pydantic.json_schema import models_json_schema
 
     from gbeam.scenario.schema.system import SpecimenScenario, SystemScenario

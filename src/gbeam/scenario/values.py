@@ -28,10 +28,7 @@ class Span:
 
 @dataclass(frozen=True)
 class Place:
-    """Place of an entry: its key (an element of a list has its value's place) and its value.
-
-    A table written under a ``[header]`` has the header's name for both.
-    """
+    """Place of an entry: its key (else its value, as of an element of a list) and its value (of a header its name)."""
 
     key: Span
     value: Span
@@ -75,24 +72,12 @@ def written_at(data: Any, path: Path) -> Any:
 
 @dataclass(frozen=True)
 class Family:
-    """A named family of distributions.
+    """A named family of distributions."""
 
-    Parameters
-    ----------
-    arguments : tuple of str
-        What its numbers mean, for messages.
-    fault : callable
-        Of the numbers: what they should be, or nothing where they are sound.
-    centre : callable
-        Of the numbers: the value to build the scenario with where nothing is drawn.
-    law : callable
-        Of the numbers: name and arguments of SciPy's distribution.
-    """
-
-    arguments: tuple[str, ...]
-    fault: Callable[..., str]
-    centre: Callable[..., float]
-    law: Callable[..., tuple[Any, ...]]
+    arguments: tuple[str, ...]  # meanings of its numbers, for messages
+    fault: Callable[..., str]  # of the numbers: what they should be, if they are not sound
+    centre: Callable[..., float]  # of the numbers: the value where nothing is drawn
+    law: Callable[..., tuple[Any, ...]]  # of the numbers: name and arguments of SciPy's distribution
 
 
 FAMILIES = {

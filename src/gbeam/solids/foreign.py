@@ -79,9 +79,7 @@ def unit_size(where: str, unit: str, kind: str) -> float:
 
 
 def refuse_systems(source: Any) -> None:
-    """Refuse a file of Nastran whose nodes have their places in coordinate systems, which meshio takes for the basic
-    one.
-    """
+    """Refuse a file of Nastran with places in coordinate systems, which meshio takes for the basic one."""
     if _WORDS.get(ending_of(source)) is not _NASTRAN:
         return
     for line in _text(source).splitlines():
@@ -94,9 +92,7 @@ def refuse_systems(source: Any) -> None:
 
 
 def left_out(source: Any, read: Collection[str] = ()) -> list[str]:
-    """Warnings of what a file of Nastran, Abaqus or CalculiX says of masses, stiffness and constraints besides what is
-    read.
-    """
+    """Warnings of what a file says of masses, stiffness and constraints and that is not read."""
     words = _WORDS.get(ending_of(source))
     if words is None:
         return []
@@ -144,9 +140,7 @@ class Elements(NamedTuple):
 
 
 def elements_of(mesh: Any, thickness: float | Mapping[str, float] | None) -> list[Elements]:
-    """Elements that are computed, solids and those of surfaces with a thickness; an InputError where there are none, or
-    some of another kind.
-    """
+    """Elements that are computed, solids and surfaces with a thickness; InputError where there are none or others."""
     counts: Counter[str] = Counter()
     for block in mesh.cells:
         counts[block.type] += len(block.data)
@@ -183,9 +177,7 @@ def elements_of(mesh: Any, thickness: float | Mapping[str, float] | None) -> lis
 
 
 def assigned(mesh: Any, where: str, values: Any, blocks: Iterable[int]) -> dict[int, Indices]:
-    """Number of the one of some values by group, or of a single one, that each element of blocks has, -1 where it has
-    none.
-    """
+    """Number of the one of some values by group, or of a single one, that each element has, -1 where none."""
     owner = {i: np.full(len(mesh.cells[i].data), -1 if isinstance(values, Mapping) else 0) for i in blocks}
     if not isinstance(values, Mapping):
         return owner

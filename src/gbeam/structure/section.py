@@ -326,9 +326,7 @@ class Section(Value):
 
 @record
 class SectionValues:
-    """Section properties at positions: area m², I_y and I_z m⁴, and extreme fibres m: corners (±y, ±z), or where
-    `round` a circle.
-    """
+    """Section properties at positions: m², m⁴ and extreme fibres m, corners (±y, ±z), or where `round` a circle."""
 
     area: Array
     inertia_y: Array

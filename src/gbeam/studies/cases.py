@@ -140,10 +140,7 @@ MAX_VALUES = 10_000_000  # of one parameter: 80 MB
 
 @dataclass(frozen=True)
 class Variation:
-    """One ``PATH=VALUES``: `texts` that replace the scenario's value, and `values` (n,), words or numbers in `unit`.
-
-    Without values where they are yet to be drawn from a distribution.
-    """
+    """One ``PATH=VALUES``: `texts` in place of the scenario's, and `values` (n,) in `unit`, if not yet to be drawn."""
 
     path: str
     texts: tuple[str, ...] = ()

@@ -74,9 +74,7 @@ def tree_of_figures(kind: type) -> dict[str, Any]:
 
 
 def choices(verb: str) -> dict[str, Entry]:
-    """Every figure of a question's answers, of beams and of systems, by its path: ``*`` is a name, ``[i]`` a place in a
-    list.
-    """
+    """Every figure of a question's answers by its path: ``*`` is a name, ``[i]`` a place in a list."""
     from gbeam.results.facts import paths_of
 
     return {path: each for kind in QUESTIONS[verb].records for path, each in paths_of(tree_of_figures(kind))}

@@ -151,9 +151,7 @@ def hub_of(case: Case, name: str | None) -> tuple[str, Hub]:
 
 
 def driven_joint(case: SystemCase, name: str | None) -> tuple[str, Hub]:
-    """The coordinate of a system that a command moves, the only one with a rate or a drive where none is named; and a
-    hub with its rate, or that is free.
-    """
+    """The coordinate of a system that a command moves, named or the only one driven, and a hub of its rate, or free."""
     commands = {
         f"{owner}.{each}": joint.rates.get(each)
         for owner, joint in case.system.joints.items()

@@ -56,9 +56,7 @@ NO_HISTORIES = OverTime()
 
 @dataclass(frozen=True)
 class Start:
-    """The first cases' rows, their figures' units and kinds, an example that is possible, and seconds that a case
-    takes.
-    """
+    """The first cases' rows, their figures' units and kinds, a possible example, and seconds that a case takes."""
 
     question: Question
     units: tuple[str, ...]

@@ -85,9 +85,7 @@ def response_theory(structure: Structure, motion: Motion, solution: Solution, be
 
 
 def static_theory(structure: Structure, resting: Callable[[Structure], Sampled]) -> Lacking:
-    """Find what an equilibrium lacks, given a function that finds it for another structure; NaN where the thick beam
-    has none.
-    """
+    """Find what an equilibrium lacks, given a function that finds it for another structure; NaN where there is none."""
     theory = theory_of(structure)
     full, thin = resting(theory.thick), resting(theory.slender)
     plate, still = theory.plate(full.p), np.zeros_like(full.p)

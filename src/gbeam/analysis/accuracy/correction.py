@@ -24,9 +24,7 @@ from gbeam.results.result import Floats
 
 @dataclass(frozen=True, eq=False)
 class Sampled:
-    """A solution at times (t,) in the coordinates (t, n) of a structure with more shapes; `hub` (t, 3) has angle, rate
-    and acceleration.
-    """
+    """A solution (t, n) at times (t,) in more shapes' coordinates; `hub` (t, 3) has angle, rate and acceleration."""
 
     time: Floats
     base: Base
@@ -177,9 +175,7 @@ def _hub_operator(hub: FreeHub, at: Sampled, velocity: Floats, stiffness: Floats
 
 
 class Vibration(NamedTuple):
-    """Modes (n, n) about a solution's mean stiffness, in columns of unit length in M, and which of them its samples
-    resolve.
-    """
+    """Modes (n, n), columns of unit length in M, about a solution's mean stiffness, and which its samples resolve."""
 
     square: Floats
     modes: Floats

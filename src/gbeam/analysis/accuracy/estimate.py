@@ -49,9 +49,7 @@ def apart(value: float, reference: float) -> float:
 
 
 def of_bodies(structure: Structure, lacking: Lacking, tip: float, limit: float) -> Iterator[str]:
-    """Warn of bodies, off the axis that the tip lies on, that are elsewhere by more than a share of its displacement,
-    m.
-    """
+    """Warn of bodies, off the tip's axis, that are elsewhere by more than a share of its displacement, m."""
     assert structure.source is not None
     for i, (body, moved) in enumerate(zip(structure.source.beam.masses, lacking.bodies, strict=False)):
         arm = float((body.offset[1] ** 2 + body.offset[2] ** 2) ** 0.5)
@@ -73,9 +71,7 @@ UNKNOWN = "shapes and model are not judged: the structure was not made of a beam
 
 
 def negligible(sizes: Mapping[str, float], length: float) -> set[str]:
-    """Quantities whose largest sizes are rounding: a torque alone moves no tip and brings no normal stress, which is
-    beside that of shear.
-    """
+    """Quantities whose largest sizes are rounding, such as the normal stress under a torque alone."""
     least = {
         "tip": UNMOVED / NOTHING * length,
         "force": sizes["moment"] / length,
@@ -144,9 +140,7 @@ def response_errors(
 
 
 def _missed(rings: Rings, sizes: dict[str, float], errors: Errors, fastest: float) -> float:
-    """Circular frequency of the fastest mode, up to the `fastest` resolved, that may ring by more than the error,
-    rad/s, or zero.
-    """
+    """Circular frequency, rad/s, of the fastest mode up to the `fastest` resolved that may ring too much, or zero."""
     limits = zip(("tip", "force", "moment"), (errors.displacement, errors.loads, errors.loads), strict=True)
     visible = np.zeros(len(rings.rate), dtype=bool)
     for name, stated in limits:

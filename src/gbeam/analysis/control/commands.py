@@ -17,9 +17,7 @@ _TIMES = 2001  # over a command: the splines are smooth, and vanish at the ends 
 
 
 class Commands:
-    """Splines of so many pieces that drive a hub from rest, by the torque if it is free, else by its angular
-    acceleration.
-    """
+    """Splines of so many pieces that drive a hub from rest, a free one by torque, else by angular acceleration."""
 
     def __init__(self, plant: Plant, goal: Goal, pieces: int) -> None:
         self.plant, self.goal = plant, goal

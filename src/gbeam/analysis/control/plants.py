@@ -62,9 +62,7 @@ DRIVES = {
 
 
 class Ran(NamedTuple):
-    """Displacement of the point (t, 3) m under a command, what is left of it, the step, and where known how far and how
-    fast (t,) what is driven has moved.
-    """
+    """Displacement (t, 3) m of the point under a command, what is left, the step, and how what is driven moved (t,)."""
 
     time: Floats
     tip: Floats

@@ -26,9 +26,7 @@ def _named(system: StateSpace, a: Floats, b: Floats, c: Floats, d: Floats, stem:
 
 
 def _split(system: StateSpace, chosen: Callable[[complex], bool]) -> Parts:
-    """Split a system into chosen eigenvalues and the rest (without D), by Schur and Sylvester, which take a double
-    integrator.
-    """
+    """Split a system, without D, into chosen eigenvalues and the rest by Schur and Sylvester: double poles too."""
     schur, basis, count = scipy.linalg.schur(system.a, output="real", sort=lambda re, im=0.0: chosen(complex(re, im)))
     first, second = schur[:count, :count], schur[count:, count:]
     coupling = scipy.linalg.solve_sylvester(first, -second, -schur[:count, count:])

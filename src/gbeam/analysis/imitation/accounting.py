@@ -44,9 +44,7 @@ class History:
         return np.asarray(np.linalg.norm(self.load, axis=1))
 
     def spread(self, i: int) -> tuple[float, float]:
-        """Size of the load at the root, and at that end where it differs most, over that at the control point, less
-        one, at a sample.
-        """
+        """Size of the load at the end where it differs most over that at the control point, less one, at a sample."""
         middle, root = (float(np.linalg.norm(each[i])) for each in (self.load, self.root))
         if not middle > 0:
             return np.nan, np.nan
@@ -233,9 +231,7 @@ def times_between(first: float, last: float) -> Floats:
 
 
 def points_of(length: float, bodies: Floats, envelope: Floats | None = None) -> dict[str, Floats]:
-    """Ends of the beam, m from the root, and bodies (b, 3), or corners (c, 3) of another specimen, by name: the load's
-    size, convex in the place, is largest at one.
-    """
+    """Ends of the beam, m from the root, and bodies (b, 3), or corners (c, 3), by name: the load is largest at one."""
     if envelope is not None and len(envelope):
         return {"({:.4g}, {:.4g}, {:.4g}) mm".format(*(1e3 * corner)): corner for corner in envelope}
     ends = {"the root": np.zeros(3), "the tip": np.array([length, 0.0, 0.0])}

@@ -325,9 +325,7 @@ def _mismatch(covered: Flags, centrifuge: Response, gradient: Floats, tip: int) 
 
 
 def _best_control_points(influence: Influence) -> tuple[float, float]:
-    """Control points at which a field g (x − x_c) across the beam leaves the root without moment, or the tip at rest;
-    both ends.
-    """
+    """Control points at which a field g (x − x_c) across the beam leaves the root no moment, or the tip at rest."""
     uniform = np.concatenate([influence.moment_uniform[1:], influence.tip_uniform[1:]])
     linear = np.concatenate([influence.moment_linear[1:], influence.tip_linear[1:]])
     felt = uniform != 0  # a model may have no shapes along y

@@ -47,9 +47,7 @@ def fatigue(
 
 
 def places_of(response: Response | SystemResponse) -> dict[str, Cyclic]:
-    """Stresses where a specimen is judged without a point: at roots of beams, and where each material of a mesh is
-    stressed most; by the place in words.
-    """
+    """Stresses at the roots of beams, and where each material of a mesh is stressed most, by the place in words."""
     if isinstance(response, SystemResponse):
         roots = ((f"of the root of {body}", _of_section(each.loads, 0)) for body, each in response.beams.items())
         meshes = (_worst(each, f"{body}'s ") for body, each in response.solids.items())

@@ -31,9 +31,7 @@ from gbeam.results.system import SystemResponse
 
 
 def specimen_of(response: SystemResponse) -> Response:
-    """The response of a system on a moving ground: displacement of its points, loads of the ground, and the stress of
-    all beams and meshes.
-    """
+    """The response of a system on a moving ground: its points, loads of the ground, and stress of beams and meshes."""
     if response.base is None or response.assembly is None:
         fix = "simulate it on a flight, and on a centrifuge that tracks it, with loads"
         raise InputError("", "is a system on a ground at rest, or without loads", fix)
@@ -94,9 +92,7 @@ def specimen_of(response: SystemResponse) -> Response:
 
 
 def _together(response: SystemResponse) -> SolidStress:
-    """Stress of all meshes as that of one: the largest of them and of the beams over time, where a mesh is stressed
-    most, and its least margin where there is no beam besides.
-    """
+    """Stress of all meshes as that of one, the largest of beams too over time; a margin only without beams."""
     every, beams = response.solids, [each.loads.stress.max(axis=1) for each in response.beams.values()]
     worst = max(every.values(), key=lambda each: each.worst.von_mises)
     near = [each.nearest_yield for each in every.values() if each.nearest_yield is not None and not beams]
@@ -151,9 +147,7 @@ class Modes:
         return Modes(self.frequency[k], self.damping[k], force, self.shape[..., k])
 
     def foremost(self, point: int, a: Floats, growth: Floats) -> Modes:
-        """Return the mode that displaces a point most, at rest under loads over time (t, 3), (t, 3, 3); the slowest of
-        those that do so alike.
-        """
+        """Return the slowest mode that displaces a point most, at rest under loads over time (t, 3), (t, 3, 3)."""
         force = np.abs(self.force.at(a, growth)).max(axis=0)
         moved = np.linalg.norm(self.shape[point], axis=0) * force / self.frequency**2
         return self.one(int(np.argmax(moved >= (1 - ALIKE) * moved.max())))
@@ -175,13 +169,7 @@ class Specimen:
 
     @classmethod
     def of(cls, structure: Structure | System, times: Floats) -> Specimen:
-        """Answers of a structure, or of a system at rest at all of some times (t,), s.
-
-        Raises
-        ------
-        InputError
-            If a coordinate of a system is moved, or held by nothing.
-        """
+        """Answers of a structure, or of a system at rest at all of some times (t,), s, whose coordinates are held."""
         return of_system(structure, times) if isinstance(structure, System) else of_structure(structure)
 
     @property

@@ -174,9 +174,7 @@ def _responses(
 def _going_on(
     index: int, posed: Posed, common: Any, plan: Plan, run: Run | None = None, known: dict[str, Any] | None = None
 ) -> _Case | _Ended:
-    """A case with the run that its plan wants next, or one that has ended; `known` is reused if the run before is what
-    counts.
-    """
+    """A case with the run that its plan wants next, `known` reused if it counts, or one that has ended."""
     from gbeam.integrate import side_by_side
 
     scheme = scheme_of(posed.settings)

@@ -177,9 +177,7 @@ class Grid:
 
 
 class Differentiated:
-    """A run by given steps, about which responses with other values of parameters are made, with `loads` and `axes` if
-    wanted.
-    """
+    """A run by given steps about which others of other parameters are made, with `loads` and `axes` if wanted."""
 
     def __init__(
         self,

@@ -42,10 +42,7 @@ _QUINTIC = np.stack(
 
 
 def near_maxima(time: Floats, values: Floats) -> Indices:
-    """Samples next to which a largest value may lie: local maxima whose parabola's vertex comes near the highest.
-
-    `time` (t,), `values` (t, k); returns (u,).
-    """
+    """Samples (u,) beside which the largest of values (t, k) may lie: maxima whose parabola comes near the highest."""
     count = len(time)
     if count < 3:
         return np.empty(0, dtype=np.intp)
@@ -73,10 +70,7 @@ def near_maxima(time: Floats, values: Floats) -> Indices:
 def maxima(
     time: Floats, values: Floats, t: Floats, between: Floats, at: Indices | None = None
 ) -> tuple[Floats, Floats]:
-    """Largest value of each history, and its time, between samples where it lies there.
-
-    `time` (t,), `values` (t, k), `t`, `between` (u, p), `at` (u,); returns `value`, `time` (k,).
-    """
+    """Largest value of each history (t, k), and its time, `between` samples (u, p) about `at` (u,) if it is there."""
     first, columns = values.argmax(axis=-2), np.arange(values.shape[-1])
     largest, when = np.take_along_axis(values, first[..., None, :], axis=-2)[..., 0, :], time[first]
     if not len(between):
@@ -109,10 +103,7 @@ def turning_points(time: Floats, values: Floats) -> Floats:
 
 
 def quintic_hermite(time: Floats, q: Floats, qd: Floats, qdd: Floats, at: Indices) -> tuple[Floats, Floats]:
-    """Histories in the two steps about samples, from their values and first and second derivatives.
-
-    `time` (t,), `q`, `qd`, `qdd` (t, n), `at` (u,); returns `time` (u, p), `q` (u, p, n).
-    """
+    """Times (u, p) and q (u, p, n) in the steps about samples (u,), from values and derivatives (t, n) there."""
     count, within = int(np.prod(q.shape[:-1])), at % len(time)
     history = np.stack([q, qd, qdd], axis=-2).reshape(count, 3, q.shape[-1])
 
@@ -126,10 +117,7 @@ def quintic_hermite(time: Floats, q: Floats, qd: Floats, qdd: Floats, at: Indice
 
 
 def seven_point(time: Floats, values: Floats, at: Indices) -> tuple[Floats, Floats]:
-    """Histories in the two steps about samples, from their values alone.
-
-    `time` (t,), `values` (t, c), `at` (u,); returns `time` (u, p).
-    """
+    """Times (u, p) and histories in the two steps about samples (u,), from their values (t, c) alone."""
     if len(time) < FEWEST:
         at = at[:0]
     t, n = _subdivided(time, at), max(len(time), FEWEST)
@@ -227,9 +215,7 @@ def _samples(time: Floats, tip: Any, start: int | None) -> Peaks:
 
 
 def load_peaks(loads: Loads, loads_at: Callable[[Indices], Loads | None], time: Floats, stride: int) -> LoadPeaks:
-    """Peaks of the loads, known at every `stride`-th step: near one, the polynomial of sixth degree through seven
-    steps.
-    """
+    """Peaks of the loads, known at every `stride`-th step: polynomials of sixth degree through seven of them."""
     s = loads.section_force.shape[1]
     table, steps = _table(loads), np.arange(0, len(time), stride)
 
@@ -267,9 +253,7 @@ def load_peaks(loads: Loads, loads_at: Callable[[Indices], Loads | None], time: 
 
 
 def vector_peaks(time: Floats, vectors: Floats) -> tuple[Floats, Floats]:
-    """Largest sizes of components and length of a vector (t, 3), (4,), and their times, by polynomials through seven
-    samples.
-    """
+    """Largest sizes of components and length of a vector (t, 3), (4,), and their times, between samples."""
     sizes = _sizes(vectors[:, None])
     t, between = seven_point(time, vectors, near_maxima(time, sizes))
     return maxima(time, sizes, t, _sizes(between[:, :, None]))
@@ -298,9 +282,7 @@ def peaks_of_coordinates(trajectory: Trajectory, vectors: Floats, of: Callable[[
 
 
 def _table(loads: Loads) -> Floats:
-    """Loads with peaks, (t, c): forces, moments, tension, compression (zero if unknown), von Mises' stress if known,
-    and the torque for the beam on a hub.
-    """
+    """Loads with peaks, (t, c): forces, moments, tension, compression, von Mises' stress, and the torque on a hub."""
     torque = [] if loads.beam_torque is None else [loads.beam_torque[:, None]]
     vectors = (x.reshape(len(x), -1) for x in (loads.section_force, loads.section_moment))
     stresses = (np.nan_to_num(x) for x in (loads.stress_tension, -loads.stress_compression))

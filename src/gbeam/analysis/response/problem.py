@@ -115,9 +115,7 @@ def begun(initial: Initial | str) -> Initial:
 
 
 def initial_state(structure: Structure, base: Base | None, time: float, initial: Initial) -> tuple[Array, Array, bool]:
-    """Coordinates and rates (n,) at the start, and whether they are those of no equilibrium that is lost; without a
-    base, that of a straight beam on a hub at rest.
-    """
+    """Coordinates and rates (n,) at the start, and whether they are those of no equilibrium that is lost."""
     q, stable = np.zeros(structure.size), True
     if initial.acceleration is not None:
         q, stable = solve_equilibrium(structure, Base(np.asarray(initial.acceleration), *np.zeros((2, 3))), time)

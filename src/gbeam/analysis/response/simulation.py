@@ -51,9 +51,7 @@ NOTHING = 1e-7  # of the other load, over a length of the beam: a force or momen
 
 @dataclass(frozen=True, eq=False)
 class Posed:
-    """A run at the flight's times from a problem's state, ready to be integrated with any step; `coarse` and `given` in
-    s.
-    """
+    """A run at the flight's times from a problem's state, ready for any step; `coarse` and `given` in s."""
 
     structure: Structure
     motion: Motion

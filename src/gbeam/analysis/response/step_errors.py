@@ -151,9 +151,7 @@ def of_everything(runs: Sequence[Run], order: int) -> StepErrors:
 def of_histories(
     runs: Sequence[Run], read: Callable[[int, int], Sequence[Floats]], left: Callable[[Sequence[float]], float]
 ) -> list[float]:
-    """Errors of the last run's histories (t, c), read by its index every so many steps: what is `left` of
-    differences.
-    """
+    """Errors of the last run's histories (t, c), read every so many steps: what is `left` of differences."""
     differences = []
     for k, (coarse, fine) in enumerate(pairwise(runs)):
         stride = max(1, (len(coarse.trajectory.time) - 1) // _SAMPLES)

@@ -288,9 +288,7 @@ def _load_errors(runs: list[Ran], order: int, bends: bool) -> dict[Quantity, flo
 
 
 def _missed_stop(system: System, run: Trajectory) -> tuple[str, ...]:
-    """Warn of a stop that a coordinate meets and leaves between two of a run's times, of which the steps may know
-    nothing.
-    """
+    """Warn of a stop that a coordinate meets and leaves between two times of a run, which steps may not know."""
     from scipy.interpolate import CubicHermiteSpline  # which takes a while to import
 
     holders = [(link.holder, np.full(link.body.size, np.inf)) for link in system.tree.links]

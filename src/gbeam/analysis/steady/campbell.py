@@ -233,9 +233,7 @@ def _crossings(
     track: int,
     order: int,
 ) -> list[tuple[Crossing, Complex, float]]:
-    """Speeds at which a followed mode meets an engine order, with the mode and the slope of its circular frequency
-    there.
-    """
+    """Speeds at which a followed mode meets an engine order, with the mode and its frequency's slope there."""
     from scipy.optimize import brentq
 
     gap = frequency - order * rates / (2 * np.pi)
@@ -264,9 +262,7 @@ def _crossings(
 def crossing_errors(
     crossing: Crossing, mode: Complex, slope: float, richer: Richer, point_at: Callable[[float], Any]
 ) -> ErrorEstimate:
-    """Errors of a crossing's speed, from where the mode (n,) of richer models meets the same multiple; infinite if
-    nowhere near.
-    """
+    """Errors of a crossing's speed, by the mode (n,) of richer models at the same multiple; infinite if not near."""
     speed, order = crossing.speed, crossing.order
 
     def gaps(rate: float) -> tuple[float, float]:

@@ -105,9 +105,7 @@ def expanded(structure: Structure, q: Array) -> tuple[Coefficients, Array]:
 
 
 def _along_a_path(structure: Structure, base: Base, values: Array | None) -> tuple[Equilibrium, Coefficients]:
-    """Newton's method from the straight beam, or where one stride fails or may have left the path, in shorter strides
-    of load.
-    """
+    """Newton's method from the straight beam, or in shorter strides of load where one fails or leaves the path."""
     straight = np.zeros(structure.size)
     about = structure.coefficients
     slope = _solved(about.stiffness, about.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, values)[2])

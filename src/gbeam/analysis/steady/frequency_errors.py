@@ -87,9 +87,7 @@ class Richer:
         return FrequencyErrors(shapes, model, shares, total + np.nan_to_num(shares), by_theory.words, by_theory.unseen)
 
     def references(self, state: Any, coordinates: Complex, *, gyroscopic: bool = True) -> tuple[Floats, Floats]:
-        """Circular frequencies (k,) of modes by the models with more shapes and by exact ones; NaN where these do not
-        rest.
-        """
+        """Circular frequencies (k,) by models with more shapes and by exact ones; NaN where these do not rest."""
 
         def reference(richer: More) -> Floats:
             try:

@@ -55,9 +55,7 @@ def _of_system(path: Path, of: System, value: float) -> tuple[str, ...]:
 def first_loss_along(
     path: Path, of: Structure | System, upper: float, quantity: str, unit: str, progress: Progress = None
 ) -> Critical:
-    """Raise a quantity from zero until the relative equilibrium is lost: first on a grid of 64 points, then by Brent's
-    method.
-    """
+    """Raise a quantity until the relative equilibrium is lost: by a grid of 64 points, then by Brent's method."""
 
     @cache
     def margin(value: float) -> float:
@@ -157,9 +155,7 @@ def _in_words(richer: Richer, point: Any, models: Sequence[Any], plates: Mapping
 
 
 def _unseen(critical: Critical, path: Path, structure: Structure | System, progress: Progress) -> tuple[str, ...]:
-    """Warn where a beam that twists loses what a model without torsion keeps (a strip on edge), at halves of the
-    search's end.
-    """
+    """Warn where a beam that twists loses what a model without torsion keeps, at halves of the search's end."""
     shares = tuple(2.0**-k for k in range(HALVINGS, -1, -1))
     thick: Any
     if isinstance(structure, System):

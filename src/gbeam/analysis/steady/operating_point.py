@@ -95,9 +95,7 @@ class OperatingPoint:
         return on_hub(structure, self.hub, rate, acceleration, angle=angle)
 
     def directions(self, modes: Complex | Floats) -> tuple[str, ...]:
-        """Axis along which each mode (n, k) moves the structure most, or twist where that moves the sections' edges
-        more than their centres.
-        """
+        """Axis along which each mode (n, k) moves the structure most, or twist where the sections' edges move more."""
         structure, coordinates = self.structure, modes[self.first :]
         particles, stations = structure.particles.slopes(self.q), structure.station_slopes(self.q)
         moved = np.abs(np.concatenate([particles, stations]) @ coordinates).max(axis=0)
@@ -248,9 +246,7 @@ def beam_acceleration(
 
 
 def on_base(structure: Structure, base: Base, q: Array | None = None, qd: Array | None = None) -> OperatingPoint:
-    """Operating point on a base with a frozen motion, in relative equilibrium or with q, qd (n,) and the accelerations
-    that follow.
-    """
+    """Operating point on a base with a frozen motion, in relative equilibrium or with q, qd (n,) given."""
     at, moving, coefficients, rests = placed(structure, base, q, qd)
     residual = OnBase(structure.equations)
     u, still = residual.pack(base, structure.load_values), np.zeros_like(at)

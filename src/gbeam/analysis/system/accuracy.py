@@ -187,9 +187,7 @@ def _run(rich: Richer, again: Again, count: int) -> Answered:
 def _departing(
     exact: Richer, of: Trajectory, inputs: InputsOf, bases: Mapping[str, Base], *, settled: bool
 ) -> Iterator[Reading]:
-    """Readings with all that is lacking, with more shapes of the same models, and, of places alone, with what each beam
-    lacks where there are several.
-    """
+    """Readings with all that is lacking, with more shapes only, and, of places, with each of several beams' lack."""
     at = answered(exact, of, inputs)
     respond, residual = follower(at, settled=settled), at.residual()
     yield at.moved(respond(residual, 0.0)).read(bases)

@@ -39,9 +39,7 @@ class Carried(NamedTuple):
 def histories(
     system: System, y: Array, yd: Array, ydd: Array, inputs: Inputs, *, inertial: bool
 ) -> tuple[dict[str, Floats], dict[str, Carried]]:
-    """Motions of points, coordinates, drives and load on the ground at unknown coordinates (t, n) and their rates, and
-    what moves and loads every beam, by name.
-    """
+    """Motions of points, coordinates, drives, the ground at unknowns (t, n) and rates, and of beams by name."""
     tree = system.tree
     state = tree.motion(y, yd, ydd, inputs)
     frames = state.every_point

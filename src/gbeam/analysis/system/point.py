@@ -90,9 +90,7 @@ def refuse_massless(system: System, mass: Floats, free: NDArray[np.int64]) -> No
 
 
 def started(system: System, motion: Motion | None, time: float, initial: str) -> Point:
-    """The system at its joints' coordinates and rates at the start, with its flexible bodies undeformed, or where they
-    rest relative to their roots: in equilibrium they do not move and do not begin to.
-    """
+    """The system at its joints' start, with flexible bodies undeformed, or in equilibrium where they rest and stay."""
     tree, inputs = system.tree, system.inputs(np.asarray(time), motion)
     free = tree.free
     y, yd = (each[free] for each in system.start)

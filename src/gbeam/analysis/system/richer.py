@@ -219,9 +219,7 @@ def follower(at: Answered, *, settled: bool) -> Callable[[Floats, Floats | float
 
 
 def _resting(at: Answered, k: Floats, m: Floats, *, settled: bool) -> tuple[Floats, NDArray[np.bool_]]:
-    """Modes of the bodies (n, n) at the first time, joints held, and which begin at rest: those that are too fast for
-    the steps, or all.
-    """
+    """Modes of the bodies (n, n) at the first time, joints held, and which begin at rest: too fast ones, or all."""
     system, time = at.rich.system, at.of.time
     elastic = np.array([".q" in system.coordinates[each] for each in system.tree.free], dtype=bool)
     shapes, inside = np.eye(len(elastic)), np.ix_(elastic, elastic)

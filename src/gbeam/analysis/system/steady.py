@@ -95,13 +95,7 @@ class SteadySystem:
 
     @cached_property
     def linear(self) -> Linear:
-        """M, C and K of small departures.
-
-        Raises
-        ------
-        ComputationError
-            If a body's model has no positive mass there.
-        """
+        """M, C and K of small departures; a ComputationError where a body's model has no positive mass."""
         _, k, c, m = self.local.slopes()
         if not positive_definite(m):
             fix = "give it the exact model, or load it less"
@@ -238,9 +232,7 @@ class SteadySystem:
 
 
 def steady(system: System, drive: Drive, *, held: bool = False, start: Floats | None = None) -> SteadySystem:
-    """A system in equilibrium relative to what turns; a coordinate that is not prescribed turns freely, under the
-    effort that this needs, unless it is held.
-    """
+    """A system in equilibrium relative to what turns: freely, under the effort that this needs, unless it is held."""
     tree, inputs = system.tree, drive.inputs(system)
     k = system.coordinates.index(drive.coordinate) if drive.coordinate else -1
     if k < 0 or k in tree.fixed:
@@ -262,13 +254,7 @@ def steady(system: System, drive: Drive, *, held: bool = False, start: Floats | 
 
 
 def turning_of(system: System, motion: Motion | None, turning: str | None) -> str:
-    """Name of the coordinate that turns, empty where the hub below does: the one given, or the only prescribed one.
-
-    Raises
-    ------
-    InputError
-        If there is no such coordinate, it is no angle, or several could be meant.
-    """
+    """Name of the coordinate that turns, given or the only prescribed one, empty where the hub below does."""
     angles = [
         f"{name}.{each}"
         for name, joint in system.joints.items()

@@ -159,21 +159,9 @@ class Table:
         return values
 
     def vector(self, names: dict[str, str], count: int, part: slice = slice(None)) -> Floats:
-        """Stack components, each a column with its sign.
+        """Stack components by axis, columns with their signs, (count, 3), whose `part` must be finite.
 
-        Parameters
-        ----------
-        names : dict of str to str
-            Column by axis; a leading ``-`` changes the sign, ``0`` is a component that is zero. A column whose own
-            name begins with a dash is taken at its name.
-        count : int
-            Number of samples, t.
-        part : slice
-            Of the samples, which must be finite.
-
-        Returns
-        -------
-        (t, 3) array
+        A leading ``-`` changes the sign, unless the column's own name begins with one; ``0`` is a component of zeros.
         """
         parts = []
         for axis, name in names.items():

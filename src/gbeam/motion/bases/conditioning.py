@@ -109,10 +109,7 @@ def without_spikes(time: Floats, load: Floats, at: NDArray[np.bool_]) -> Floats:
 
 
 def filtered(time: Floats, values: Floats, cutoff: float | None, resample: float | None) -> tuple[Floats, Floats]:
-    """Times and values after the low-pass and at the new rate.
-
-    `time` (t,), `values` (t, ...).
-    """
+    """Times (t,) and values (t, ...) after the low-pass and at the new rate."""
     step = float(time[-1] - time[0]) / (len(time) - 1)
     if cutoff is not None:
         if np.abs(np.diff(time) - step).max() > UNEVEN * step:

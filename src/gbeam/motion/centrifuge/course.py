@@ -23,27 +23,15 @@ from gbeam.numerics.series import where
 
 
 class Method(NamedTuple):
-    """Method by which an inverse is built.
+    """Method by which an inverse is built."""
 
-    Parameters
-    ----------
-    build : callable
-        Of target, geometry, limits and ends; an inverse that plans its own ends says so by its `extent`.
-    follows_corners : bool
-        Whether it can follow corners of a load that does not turn.
-    solved : bool
-        Whether it is solved for numerically, and so needs numbers.
-    leaves_out : callable, optional
-        Of target and geometry: stretches, s, that it cannot follow and that the target is to leave out.
-    plans : bool
-        Whether it plans for any load within the limits, which takes a second: it is done where the motion is needed.
-    """
-
+    # an inverse that plans its own ends says so by its extent
     build: Callable[[Target, Geometry, Limits, Ends], Inverse]
-    follows_corners: bool
-    solved: bool
+    follows_corners: bool  # of a load that does not turn
+    solved: bool  # numerically, and so it needs numbers
+    # stretches, s, that it cannot follow
     leaves_out: Callable[[Target, Geometry], list[tuple[float, float]]] | None = None
-    plans: bool = False
+    plans: bool = False  # for any load within the limits, which takes a second: it is done where the motion is needed
 
 
 INVERSES: dict[str, Method] = {
@@ -148,10 +136,7 @@ def prepare(
     clip: bool,
     span: tuple[float, float],
 ) -> Course:
-    """Build the target of a load over a span, s, and, unless they are planned, the axis motions.
-
-    Parameters are those of :class:`gbeam.motion.Centrifuge`.
-    """
+    """Build the target of a load over a span, s, and, unless they are planned, the axis motions."""
     build = partial(
         build_target, load, span=span, idle=idle, smoothing=smoothing, gravity=geometry.gravity > 0, arm=geometry.arm,
         clip=clip,

@@ -80,10 +80,7 @@ def forward(axes: Axes, arm: Any, gravity: Any) -> Base:
 
 
 def control_point_load(axes: Axes, arm: Any, gravity: Any) -> Any:
-    """Acceleration of C, or the specific force there, (..., 3) m/s², base axes; see :func:`forward`.
-
-    It depends on four states only: ω1, dω1/dt, θ2 and θ3.
-    """
+    """Acceleration of C, or specific force, (..., 3) m/s², base axes, by ω1, dω1/dt, θ2 and θ3; see :func:`forward`."""
     xp = namespace(axes.rate1, axes.angle2, axes.angle3, arm)
     sin2, cos2, sin3, cos3 = xp.sin(axes.angle2), xp.cos(axes.angle2), xp.sin(axes.angle3), xp.cos(axes.angle3)
     radial, tangential = -arm * axes.rate1**2, arm * axes.acceleration1
@@ -93,10 +90,7 @@ def control_point_load(axes: Axes, arm: Any, gravity: Any) -> Any:
 
 
 def moved(base: Base, offset: Any) -> Base:
-    """Return the motion at another point of the same rigid base: a + α × r + ω × (ω × r).
-
-    `offset` (3,) m.
-    """
+    """Return the motion at another point (3,) m of the same rigid base: a + α × r + ω × (ω × r)."""
     xp = namespace(base.a_WO_B, base.w_WB_B, offset)
     r = xp.broadcast_to(xp.asarray(offset, dtype=float), base.w_WB_B.shape)
     turning = xp.cross(base.alpha_WB_B, r) + xp.cross(base.w_WB_B, xp.cross(base.w_WB_B, r))

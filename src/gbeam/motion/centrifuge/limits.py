@@ -123,10 +123,7 @@ def usage(
     jerk: NDArray[np.float64],
     limits: Limits,
 ) -> tuple[LimitUse, ...]:
-    """Return the use that a motion makes of each limit.
-
-    `time` (n,) s, `rate`, `acceleration`, `jerk` (n, 3) rad/s³.
-    """
+    """Return the use of each limit by a motion at times (n,) s: rate, acceleration, jerk (n, 3), rad and s."""
     allowed = np.asarray(limits.axes)
     uses = [
         _use(f"axis {axis + 1}", name, unit, time, values[:, axis], float(allowed[row, axis]))
@@ -177,10 +174,7 @@ class Machine:
 
 
 def _example(arm: float, load_g0: float, onset_g0_per_s: float, gimbal: AxisLimit, source: str) -> Machine:
-    """Arm limits from a load and its onset: R ω² = a, dω/dt = j / (2 sqrt(R a)) where it is largest, at 1.5 g0.
-
-    The jerk lets the arm reach that acceleration in 0.1 s.
-    """
+    """Limits from a load and its onset: R ω² = a, dω/dt = j / (2 sqrt(R a)) at 1.5 g0, and jerk to it in 0.1 s."""
     rate = np.sqrt(load_g0 * STANDARD_GRAVITY / arm)
     acceleration = onset_g0_per_s * STANDARD_GRAVITY / (2 * np.sqrt(arm * 1.5 * STANDARD_GRAVITY))
     first = AxisLimit(float(rate), float(acceleration), float(10 * acceleration))

@@ -196,10 +196,7 @@ _PER_WIDTH = 40  # knots per width of a kernel: straight lines between them are 
 
 
 def clamped(profile: Profile, first: float, last: float) -> Profile:
-    """Return a profile that is itself from `first` to `last` (s), and keeps its values there before and after.
-
-    Straight lines stay straight lines, so that their smoothing keeps its closed form.
-    """
+    """Return a profile that keeps its values before `first` and after `last` (s); lines keep their closed smoothing."""
     match profile:
         case PiecewiseLinear() if not is_traced(profile.times, profile.values):
             return _cut(profile, first, last)

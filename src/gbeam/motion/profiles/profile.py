@@ -256,17 +256,10 @@ class Convolved(Rounded):
     The panels end at the profile's breaks, wherever these lie in the window of abs(σ − t) < W/2, so that each
     integrand is smooth. Their other ends, and so the nodes, move with t: a node is a series of first order in time,
     the integrand one of any order, and the derivatives are as accurate as the value.
-
-    Parameters
-    ----------
-    profile : Profile
-        Analytic between its breaks, and with few of them: the cost grows with their number.
-    width : float
-        W, s.
     """
 
-    profile: Profile
-    width: Any
+    profile: Profile  # analytic between its breaks, with whose number the cost grows
+    width: Any  # W, s
 
     def __post_init__(self) -> None:
         assign(self, width=as_array(self.width))

@@ -80,18 +80,10 @@ class Conditioning:
 
 @dataclass(frozen=True)
 class FlightRecord:
-    """A record ready to be flown.
+    """A record ready to be flown."""
 
-    Parameters
-    ----------
-    acceleration : PiecewiseLinear
-        m/s², base axes; its `record` says what it is.
-    rates : PiecewiseLinear or None
-        Angular velocity, rad/s, base axes.
-    """
-
-    acceleration: PiecewiseLinear
-    rates: PiecewiseLinear | None = None
+    acceleration: PiecewiseLinear  # m/s², base axes; its record says what it is
+    rates: PiecewiseLinear | None = None  # angular velocity, rad/s, base axes
 
     @property
     def notes(self) -> tuple[str, ...]:

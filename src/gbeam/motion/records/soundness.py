@@ -31,28 +31,14 @@ _ACCELERATION = 'if it is acceleration without gravity, add quantity = "accelera
 
 @dataclass(frozen=True)
 class Samples:
-    """Subject of the checks.
+    """Subject of the checks."""
 
-    Parameters
-    ----------
-    time : (t,) s
-    load : (t, 3) m/s², base axes
-    names : dict of str to str
-        Columns of x, y and z, with their signs.
-    unit : str
-        That the load was read in, a key of ``UNITS["acceleration"]``.
-    specific : bool
-        Specific force, 1 g upwards in level flight; else acceleration.
-    place : callable
-        Where a sample is in its file, in words.
-    """
-
-    time: Floats
-    load: Floats
-    names: dict[str, str]
-    unit: str
-    specific: bool
-    place: Callable[[int], str]
+    time: Floats  # (t,) s
+    load: Floats  # (t, 3) m/s², base axes
+    names: dict[str, str]  # columns of x, y and z, with their signs
+    unit: str  # that the load was read in
+    specific: bool  # whether it is specific force, 1 g upwards in level flight
+    place: Callable[[int], str]  # where a sample is in its file, in words
 
     def said(self, value: float) -> str:
         """A load, m/s², in the record's unit."""

@@ -27,10 +27,7 @@ _GAP = 1.9  # of the median interval: a sample is missing, and no clock that jit
 
 
 def check_sampling(time: NDArray[np.float64], place: Callable[[int], str], *, jitter: bool) -> float:
-    """Refuse times that stand still, go back, jump or wander; return how far they are off even ones, s.
-
-    `time` (t,) s.
-    """
+    """Refuse times (t,) s that stand still, go back, jump or wander; return how far off even ones they are, s."""
     steps = np.diff(time)
 
     def at(i: int) -> str:
@@ -66,10 +63,7 @@ def check_sampling(time: NDArray[np.float64], place: Callable[[int], str], *, ji
 
 
 def check_interval(time: NDArray[np.float64], unit: str) -> None:
-    """Refuse an interval that no record of a flight has, and say which unit of time would make it one.
-
-    `time` (t,) s.
-    """
+    """Refuse an interval of times (t,) s that no record of a flight has, and say which unit would make it one."""
     step, length = float(np.median(np.diff(time))), float(time[-1] - time[0])
     trust = 'if it is right as it is, add skip_checks = ["sampling"]'
     sizes = UNITS["time"]
@@ -93,10 +87,7 @@ def check_interval(time: NDArray[np.float64], unit: str) -> None:
 
 
 def part_within(clock: NDArray[np.float64], of_day: Clock | None, span: Span, counted: Callable[[int], str]) -> slice:
-    """Return the samples within a span of a record's times.
-
-    `clock` (t,) s.
-    """
+    """Return the samples within a span of a record's times (t,) s."""
     if span == (None, None):
         return slice(0, len(clock))
     first, last = float(clock[0]), float(clock[-1])

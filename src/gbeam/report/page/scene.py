@@ -93,9 +93,7 @@ def _solid(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple
 
 
 def _surface(of: Variables, stress: Floats | None, numbers: Numbers) -> tuple[dict[str, Any], Floats]:
-    """A surface in a few shapes, with the largest stress, by itself where none is known over time, and the displacement
-    (t, 1, 3) of the vertex that moves farthest.
-    """
+    """A surface in a few shapes, its stress if not over time, and the farthest vertex's displacement (t, 1, 3)."""
     few = of["sizes"][:: max(1, len(of["sizes"]) // 100)]
     moved = np.einsum("ts,sva->tva", few, of["shapes"])
     if stress is None:
@@ -106,9 +104,7 @@ def _surface(of: Variables, stress: Floats | None, numbers: Numbers) -> tuple[di
 
 
 def _carried(v: Variables, index: Any, places: Floats, numbers: Numbers) -> dict[str, Any]:
-    """The load of the base, and the machine about a specimen that reaches over places (p, 3) at rest, where there is
-    one.
-    """
+    """The load of the base, and the machine about a specimen that reaches over places (p, 3), if there is one."""
     actual = v.get("load_actual")
     load = v.get("root_acceleration") if actual is None else actual
     header = {} if load is None else {"load": numbers.add(load[index]), "largestLoad": _largest(load)}
@@ -146,9 +142,7 @@ def _beam(variables: Variables, index: Any, numbers: Numbers) -> dict[str, Any]:
 
 
 def _system(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple[dict[str, Any], Floats, Floats]:
-    """One motion of a system: its beams, boxes of its rigid bodies, and where their roots are; times and the deflection
-    (t, 1, 3) of the beam that is deflected most.
-    """
+    """One motion of a system: beams, boxes, roots; times and deflection (t, 1, 3) of the most deflected beam."""
     time, beams = v["time"], [body for body in v["body"] if f"{body}_outline" in v]
     some = v[f"{beams[0]}_outline_time"] if beams else time[:: -(-len(time) // TIMES)]
     index = np.searchsorted(time, some - 1e-12).clip(max=len(time) - 1)

@@ -83,24 +83,12 @@ def refuse(problems: Iterable[tuple[Loc, PydanticCustomError]]) -> None:
 
 @dataclass(frozen=True)
 class Quantity:
-    """Annotation of a float that is read from a number in SI or from text with a unit.
+    """Annotation of a float that is read from a number in SI or from text with a unit."""
 
-    Parameters
-    ----------
-    kind : str
-        A key of ``gbeam.guards.kinds.KINDS``.
-    sign : str
-        ``any``, ``positive`` or ``zero or more``.
-    words : tuple of str
-        Words accepted instead of a quantity, kept as they are.
-    clock : bool
-        Whether a time of day is accepted too, and kept as it is.
-    """
-
-    kind: str
+    kind: str  # a key of KINDS
     sign: Sign = "any"
-    words: tuple[str, ...] = ()
-    clock: bool = False
+    words: tuple[str, ...] = ()  # accepted instead of a quantity, and kept as they are
+    clock: bool = False  # whether a time of day is, too
 
     def read(self, value: object) -> float | str:
         """Return the value in SI, or raise pydantic's error with the advice in it."""

@@ -14,36 +14,17 @@ _WIDTH = 180  # characters of the line of the file
 
 @dataclass(frozen=True)
 class Diagnostic:
-    """One thing that is wrong.
+    """One thing that is wrong."""
 
-    Parameters
-    ----------
-    file : str
-        The scenario file, as it was named.
-    path : str
-        Path of the quantity, ``beam.masses[0].at``; empty for the file as a whole.
-    message : str
-        What is wrong.
-    hint : str
-        What would be right; may be empty.
-    line, column, end : int or None
-        Where, from 1; `end` is the column after the last. None if it came from `override`, or the file cannot
-        be read.
-    source_line : str or None
-        The line of the file.
-    override : str or None
-        The ``key=value`` of ``--set`` that it came from.
-    """
-
-    file: str
-    path: str
-    message: str
-    hint: str = ""
-    line: int | None = None
+    file: str  # the scenario's, as it was named
+    path: str  # ``beam.masses[0].at``; empty for the file as a whole
+    message: str  # what is wrong
+    hint: str = ""  # what would be right; may be empty
+    line: int | None = None  # from 1, as the columns; None if the file cannot be read, or of an override
     column: int | None = None
-    end: int | None = None
+    end: int | None = None  # the column after the last
     source_line: str | None = None
-    override: str | None = None
+    override: str | None = None  # the ``key=value`` of ``--set`` that it came from
 
     def __str__(self) -> str:
         place = self.file if self.line is None else f"{self.file}:{self.line}:{self.column}"
@@ -75,12 +56,7 @@ class Diagnostic:
 
 
 class ScenarioError(GbeamError):
-    """The scenario is wrong (exit status 2): everything that is wrong with it, at once.
-
-    Parameters
-    ----------
-    diagnostics : iterable of Diagnostic
-    """
+    """The scenario is wrong (exit status 2): everything that is wrong with it, at once."""
 
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
         self.diagnostics = tuple(sorted(diagnostics, key=lambda d: (d.line or 0, d.column or 0)))

@@ -146,28 +146,14 @@ Mark = Literal["value", "key"]
 
 @dataclass(frozen=True)
 class Source:
-    """A scenario as it was written.
+    """A scenario as it was written."""
 
-    Parameters
-    ----------
-    name : str
-        Of the file, as it was named.
-    text : str
-    folder : Path
-        That relative file names in the scenario start from.
-    data : dict
-        The parsed text, with the overrides in it.
-    overrides : tuple of Override
-    distributions : mapping of str to Distribution
-        Of the values that have one, by path; `data` has their centres.
-    """
-
-    name: str
+    name: str  # of the file, as it was named
     text: str
-    folder: File
-    data: dict[str, Any]
+    folder: File  # that relative file names in it start from
+    data: dict[str, Any]  # the parsed text, with the overrides in it, and centres of distributions
     overrides: tuple[Override, ...] = ()
-    distributions: Mapping[str, Distribution] = field(default_factory=dict)
+    distributions: Mapping[str, Distribution] = field(default_factory=dict)  # by the paths of their values
 
     @cached_property
     def places(self) -> dict[Path, Place]:

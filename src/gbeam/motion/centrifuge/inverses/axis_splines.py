@@ -30,17 +30,11 @@ Floats = NDArray[np.float64]
 
 
 class AxisSplines:
-    """ω1, θ2 and θ3 as splines on one grid.
+    """ω1, θ2 and θ3 as splines on one grid; the arm's rate at both ends is an unknown unless that is a `standstill`.
 
     The first five coefficients of each are one number, and so are the last five: values are what they are, and their
     first four derivatives are zero. The unknowns x are those numbers and all the others between, axis after axis at
     each place, so that everything that depends on a few neighbours is banded.
-
-    Parameters
-    ----------
-    grid : Grid
-    standstill : bool
-        Whether the arm begins and ends at rest; else it turns at a rate that is an unknown.
     """
 
     def __init__(self, grid: Grid, standstill: bool) -> None:
@@ -86,10 +80,7 @@ class AxisSplines:
         return x[:-1]
 
     def assembled(self, pieces: Floats) -> Any:
-        """A symmetric matrix on x, sparse (size, size), as a sum of matrices that act on a piece's coefficients each.
-
-        `pieces` (171, pieces).
-        """
+        """The symmetric matrix on x, sparse (size, size), of matrices (171, pieces) on a piece's coefficients each."""
         band = np.zeros((NEAR, AXES * self.grid.size))  # row d couples every coefficient with the d-th after it
         for i, j, values in zip(*np.tril_indices(NEAR), pieces, strict=True):
             band[i - j, j : j + AXES * self.grid.pieces : AXES] += values

@@ -35,21 +35,11 @@ Pose = tuple[Series, Series, Series]  # ω1, θ2, θ3
 
 @record
 class Geometry:
-    """The machine as an inverse knows it.
+    """The machine as an inverse knows it."""
 
-    Parameters
-    ----------
-    arm : float
-        R, m.
-    gravity : float
-        γ, m/s²: 9.80665 if the target is specific force, else 0.
-    sign : float
-        +1 or −1: which of the two mountings of the specimen in the gimbals.
-    """
-
-    arm: Any
-    gravity: float = static()
-    sign: Any = 1.0
+    arm: Any  # R, m
+    gravity: float = static()  # γ, m/s²: 9.80665 if the target is specific force, else 0
+    sign: Any = 1.0  # +1 or −1: which of the two mountings of the specimen in the gimbals
 
 
 class Inverse(ABC):
@@ -78,22 +68,14 @@ def speed(load: Series, geometry: Geometry) -> Series:
 
 
 def across_beam(load: Series, geometry: Geometry) -> Series:
-    """B2 = ±sqrt(f_y² + f_z² − γ²), the horizontal load across the beam, m/s²; zero, with no rates, where it is none.
-
-    `load` (..., 3) m/s².
-    """
+    """B2 = ±sqrt(f_y² + f_z² − γ²), the horizontal part of a load (..., 3) m/s² across the beam; zero where none is."""
     horizontal2 = square(load[..., 1:]) - geometry.gravity**2
     bent = horizontal2.value > 0
     return where(bent, geometry.sign * sqrt(where(bent, horizontal2, 1.0)), 0.0)
 
 
 def gimbals(load: Series, lag: Series | float, geometry: Geometry) -> tuple[Series, Series]:
-    """Angles of axes 2 and 3 that put the load where the specimen wants it.
-
-    `load` (..., 3) m/s².
-
-    A load along the beam leaves θ3 open: it is then zero.
-    """
+    """Angles of axes 2 and 3 that put a load (..., 3) m/s² where the specimen wants it; θ3 of one along it is zero."""
     fx, fy, fz = load[..., 0], load[..., 1], load[..., 2]
     across = across_beam(load, geometry)
     bent = across.value != 0
@@ -188,10 +170,7 @@ def exact(target: Target, geometry: Geometry) -> Exact:
 
 
 def unfollowable(target: Target, geometry: Geometry) -> list[tuple[float, float]]:
-    """Stretches, s, that no smooth motion follows and that a target with an idle level can leave out.
-
-    The return above idle with the largest load is not among them: without it nothing would be left of the flight.
-    """
+    """Stretches, s, that no smooth motion follows and that a target with an idle level can leave out."""
     if not target.idle > 0:
         return []
     lag: Spline | None = None

@@ -41,31 +41,17 @@ _ARM, _GIMBAL = {"acceleration": 1, "power": 1, "jerk": 2}, {"rate": 1, "acceler
 
 @record
 class Ramp:
-    """From standstill to a steady state of the machine, or from there to standstill.
+    """From standstill to a steady state of the machine, or from there to standstill."""
 
-    Parameters
-    ----------
-    still, steady : float
-        Times of standstill and of the steady state, s.
-    rate, yaw, roll, across : float
-        Steady state: ω1 rad/s, θ2 and θ3 rad, the horizontal load across the beam m/s².
-    gravity : float
-        γ, m/s².
-    yawed : bool
-        Whether the lag of axis 2 makes up for the tangential acceleration.
-    outward : float
-        Way from the steady state to standstill: −1 of a spin-up, +1 of a spin-down.
-    """
-
-    still: Any
-    steady: Any
-    rate: Any
-    yaw: Any
-    roll: Any
-    across: Any
-    gravity: float = static()
-    yawed: bool = static()
-    outward: float = static()
+    still: Any  # its time, s
+    steady: Any  # time of the steady state, s
+    rate: Any  # ω1, rad/s
+    yaw: Any  # θ2, rad
+    roll: Any  # θ3, rad
+    across: Any  # horizontal load across the beam, m/s²
+    gravity: float = static()  # γ, m/s²
+    yawed: bool = static()  # whether the lag of axis 2 makes up for the tangential acceleration
+    outward: float = static()  # way to standstill: −1 of a spin-up, +1 of a spin-down
 
     def pose(self, t: Any, order: int) -> Pose:
         """Rate of axis 1 (rad/s) and angles of axes 2 and 3 (rad) at times `t` (s), with derivatives up to `order`."""

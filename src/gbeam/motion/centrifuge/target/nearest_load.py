@@ -26,10 +26,7 @@ Flags = NDArray[np.bool_]
 
 
 def unwrapped(times: Floats, y: Floats, x: Floats, whole: float) -> tuple[Floats, Floats]:
-    """Angle atan2(y, x) of a load over time, and how much it counts.
-
-    `times` (k,) s, `y`, `x` (k,) m/s²; returns (k,).
-    """
+    """Angle atan2(y, x) of a load (k,) m/s² over times (k,) s, and how much it counts, (k,)."""
     size = np.hypot(y, x)
     directed = size >= _DIRECTED * whole
     if not directed.any():
@@ -103,28 +100,15 @@ class NearestLoad(Profile):
       in the direction of the path, and the part along the beam is kept.
 
     Three times differentiable in size where the load is; the direction goes over to the path's where they agree.
-
-    Parameters
-    ----------
-    flight : Profile
-        Vector, base axes, m/s², without corners.
-    path : Profile or None
-        Angles (φ, β), rad: φ = atan2(f_z, f_y) about the beam, β = atan2(hypot(f_y, f_z), f_x) from it. None if
-        the load is never below idle, and where it is known to be in reach but for what rounding its corners cuts.
-    gate : Profile or None
-        One, and zero where the load is held at idle whatever the flight's is; it changes where that is below idle.
-        None if it is one throughout.
-    idle, least : float
-        Least size, and least load across the beam, m/s²; zero where there is no such limit.
-    has_idle, has_least : bool
-        Whether they are above zero.
     """
 
-    flight: Profile
+    flight: Profile  # vector, base axes, m/s², without corners
+    # angles, rad, φ = atan2(f_z, f_y) about the beam and β = atan2(hypot(f_y, f_z), f_x) from it; None of a load that
+    # is never below idle, or out of reach for its corners only
     path: Profile | None
-    gate: Profile | None
-    idle: Any
-    least: Any
+    gate: Profile | None  # one, and zero where the load is held at idle, at whose ends it is below that; None if one
+    idle: Any  # least size, m/s²; zero where there is none
+    least: Any  # least load across the beam, m/s², likewise
     has_idle: bool = static()
     has_least: bool = static()
 

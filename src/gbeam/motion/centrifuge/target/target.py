@@ -23,10 +23,7 @@ Row = tuple[float, float, float, float]  # start s, end s, number of the reason,
 
 
 def stretches(times: Floats, reasons: NDArray[np.int64], size: Floats, reach: Floats, flight: Profile) -> list[Row]:
-    """Rows of the runs of knots with one reason, by start.
-
-    `times` (k,) s, `reasons` (k,), `size`, `reach` (k,).
-    """
+    """Rows of the runs of knots at times (k,) s with one reason, by start."""
 
     def edge(outside: int, inside: int) -> float:
         """Time at which a reason ends and another, or none, begins: between two neighbouring knots, or at the last."""
