@@ -15,6 +15,7 @@ MODULES: tuple[str, ...] = (
     "codes.calculix",
     "codes.calculix_solid",
     "codes.calculix_specimens",
+    "codes.calculix_shells",
     "codes.calculix_flights",
     "codes.calculix_fillet",
     "codes.calculix_bent",

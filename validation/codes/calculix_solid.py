@@ -25,6 +25,7 @@ import gbeam as gb
 from gbeam.constants import STANDARD_GRAVITY as G
 from gbeam.results.solids import von_mises
 from gbeam.solids.elements import chunks, mass_matrix
+from gbeam.solids.shape_functions import KINDS
 from validation.table import Row
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "examples"))
@@ -48,10 +49,12 @@ def solid() -> gb.SolidMesh:
 
 
 class Specimen(NamedTuple):
-    """A mesh of hexahedra of 20 nodes and its materials by name."""
+    """A mesh, its materials by name, CalculiX's elements, and the thickness of those that are shells, m."""
 
     mesh: Callable[[], gb.SolidMesh]
     materials: Mapping[str, gb.Material]
+    element: str = "C3D20"
+    thickness: float | None = None
 
 
 BRACKET = Specimen(solid, example.MATERIALS)
@@ -162,7 +165,8 @@ def static(load: str, specimen: Specimen = BRACKET) -> tuple[np.ndarray, float]:
     steps = f"*STEP\n*STATIC\n*DLOAD\n{load}\n*NODE PRINT, NSET=NALL\nU\n*EL PRINT, ELSET=SOLID\nS\n*END STEP\n"
     moved, _, stress = run(steps, "dat", specimen).partition(" stresses ")
     rows = np.array([line.split() for line in moved.splitlines() if re.match(r" +\d+ +[-\d]", line)], dtype=float)
-    points = np.array([line.split()[2:] for line in stress.splitlines() if re.match(r" +\d+ +\d+ ", line)], dtype=float)
+    printed = [line.split()[2:8] for line in stress.splitlines() if re.match(r" +\d+ +\d+ ", line)]
+    points = np.array(printed, dtype=float)
     return rows[:, 1:], float(von_mises(points[:, [0, 1, 2, 5, 4, 3]]).max())  # xy, xz, yz there
 
 
@@ -184,16 +188,33 @@ def printed_frequencies(text: str) -> np.ndarray:
     return np.array([row[2] for row in found], dtype=float)
 
 
+def written(mesh: gb.SolidMesh, shell: bool) -> tuple[np.ndarray, list[np.ndarray], np.ndarray]:
+    """Places (k, 3) of the nodes of a file, of shells in the middle of their points on both faces, the nodes (e, n) of
+    each block's elements, and those that are held.
+    """
+    if not shell:
+        return mesh.points, [block.nodes for block in mesh.blocks], np.flatnonzero(mesh.clamped)
+    count, elements = np.bincount(mesh.numbers), []
+    for block in mesh.blocks:
+        corners, both = KINDS[block.kind].shell, mesh.numbers[block.nodes]
+        elements.append(both[:, np.r_[:corners, 2 * corners : corners + both.shape[1] // 2]])
+    places = np.stack([np.bincount(mesh.numbers, at) / count for at in mesh.points.T], axis=1)
+    return places, elements, np.unique(mesh.numbers[mesh.clamped])
+
+
 def run(steps: str, kind: str, specimen: Specimen = BRACKET) -> str:
     """Run ccx in a folder of its own, and return what it wrote."""
-    mesh = specimen.mesh()
+    mesh, shell = specimen.mesh(), specimen.thickness is not None
+    places, elements, held = written(mesh, shell)
     lines = ["*NODE, NSET=NALL"]
-    lines += [f"{i}, {x:.12g}, {y:.12g}, {z:.12g}" for i, (x, y, z) in enumerate(mesh.points, 1)]
+    lines += [f"{i}, {x:.12g}, {y:.12g}, {z:.12g}" for i, (x, y, z) in enumerate(places, 1)]
     number = 1
-    for block in mesh.blocks:
-        lines.append(f"*ELEMENT, TYPE=C3D20, ELSET={block.material.upper() or 'ALONE'}")
-        for nodes in block.nodes + 1:
-            lines += [", ".join(map(str, [number, *nodes[:10]])) + ",", ", ".join(map(str, nodes[10:]))]
+    for block, nodes_of in zip(mesh.blocks, elements, strict=True):
+        lines.append(f"*ELEMENT, TYPE={specimen.element}, ELSET={block.material.upper() or 'ALONE'}")
+        for nodes in nodes_of + 1:
+            first, *rest = np.split(np.array([number, *nodes]), [11])
+            lines += [", ".join(map(str, first)) + "," * (len(rest[0]) > 0)]
+            lines += [", ".join(map(str, each)) for each in rest if len(each)]
             number += 1
     kinds = {name.upper() or "ALONE": metal for name, metal in specimen.materials.items()}
     lines += ["*ELSET, ELSET=SOLID", *kinds, "*ELSET, ELSET=EALL", "SOLID"]
@@ -202,10 +223,12 @@ def run(steps: str, kind: str, specimen: Specimen = BRACKET) -> str:
         lines += [f"*ELEMENT, TYPE=MASS, ELSET={name}", f"{number}, {node + 1}"]
         lines += [f"*MASS, ELSET={name}", f"{mesh.point_masses[node]:.12g}", "*ELSET, ELSET=EALL", name]
         number += 1
-    lines += ["*NSET, NSET=FOOT", *(f"{i}" for i in np.flatnonzero(mesh.clamped) + 1), "*BOUNDARY", "FOOT, 1, 3"]
+    lines += ["*NSET, NSET=FOOT", *(f"{i}" for i in held + 1), "*BOUNDARY", f"FOOT, 1, {6 if shell else 3}"]
     for name, metal in kinds.items():
         lines += [f"*MATERIAL, NAME={name}", "*ELASTIC", f"{metal.youngs_modulus}, {metal.poissons_ratio}"]
-        lines += ["*DENSITY", f"{metal.density}", f"*SOLID SECTION, ELSET={name}, MATERIAL={name}"]
+        lines += ["*DENSITY", f"{metal.density}"]
+        lines.append(f"*{'SHELL' if shell else 'SOLID'} SECTION, ELSET={name}, MATERIAL={name}")
+        lines += [f"{specimen.thickness}"] * shell
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "solid.inp").write_text("\n".join(lines) + "\n" + steps, encoding="ascii")
         environment = os.environ | {"OMP_NUM_THREADS": "1"}
