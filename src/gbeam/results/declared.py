@@ -20,8 +20,6 @@ from dataclasses import dataclass
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar
 
-import numpy as np
-
 Role = Literal["variable", "coordinate", "labels", "fact", "part", "rows"]
 INSIDE = "."  # name or key of a part whose fields stand among those of the record that has it
 # Names of the places along dimensions that are the same everywhere.
@@ -77,8 +75,14 @@ def quantity(
     """
     declaration = Declaration(words, unit, tuple(" ".join(dims).split()), role, name, key, note, frame, flags, optional)
     if empty:
-        default["default_factory"] = lambda: np.empty([_SIZES.get(dim, 0) for dim in declaration.dims])
+        default["default_factory"] = lambda: _empty(declaration.dims)
     return dataclasses.field(metadata={_METADATA: declaration}, **default)
+
+
+def _empty(dims: tuple[str, ...]) -> Any:
+    import numpy as np  # which reading a scenario needs not
+
+    return np.empty([_SIZES.get(dim, 0) for dim in dims])
 
 
 def fact(words: str, unit: str = "", **more: Any) -> Any:

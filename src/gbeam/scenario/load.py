@@ -17,6 +17,7 @@ from pydantic import ValidationError
 from gbeam.errors import InputError
 from gbeam.guards.limits import EMBEDDED, PROBLEMS
 from gbeam.scenario.schema import Environments, Flight, Scenario, kind_of_scenario
+from gbeam.scenario.schema.fields import files
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.text.overrides import override
 from gbeam.scenario.text.source import Source, parse, read_text
@@ -50,13 +51,8 @@ def _files(scenario: Environments) -> Iterator[tuple[str, str]]:
     for name, motion in scenario.motion.items():
         if isinstance(motion, Flight) and motion.record is not None:
             yield name, motion.record.file
-    yield from ((f"beam.{key}", file) for key, file in getattr(getattr(scenario, "beam", None), "files", ()))
-    for name, controller in getattr(scenario, "controllers", {}).items():
-        for k, law in enumerate(controller.law):
-            if getattr(law, "file", None) is not None:
-                yield f"controllers.{name}.law[{k}].file", law.file
-    for name, body in getattr(scenario, "bodies", {}).items():
-        yield from ((f"bodies.{name}.{key}", file) for key, file in getattr(body, "files", ()))
+    for key in ("beam", "controllers", "bodies"):
+        yield from files(getattr(scenario, key, None), (key,))
 
 
 # A sweep's cases are of one text; `override` copies it.

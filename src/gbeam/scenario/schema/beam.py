@@ -29,6 +29,7 @@ from gbeam.scenario.schema.fields import (
     SecondMoments,
     Stiffness,
     Table,
+    Vector,
     existing_file,
     refuse,
     wrong,
@@ -36,16 +37,6 @@ from gbeam.scenario.schema.fields import (
 from gbeam.scenario.schema.profile import ForceOverTime, MomentOverTime, SpreadForceOverTime
 
 PointName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z_]\w*$", max_length=64)]
-
-
-class Vector(Table):
-    """Components x, y and z, of which some are given."""
-
-    @model_validator(mode="after")
-    def _any(self) -> Vector:
-        if all(getattr(self, axis) is None for axis in "xyz"):
-            refuse([((), wrong("has no component", "give one or more of x, y and z"))])
-        return self
 
 
 class Forces(Vector):
@@ -380,9 +371,3 @@ class Beam(Table):
         if self.length is None and (self.line is None or self.line.stations is not None):
             refuse([((), wrong("length is missing", 'add length = "20 mm": length from root to tip', mark="key"))])
         return self
-
-    @property
-    def files(self) -> Iterator[tuple[str, str]]:
-        """Files that it names, by their keys."""
-        if self.line is not None and isinstance(self.line.points, str):
-            yield "line.points", self.line.points

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pathlib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, get_args
 
 from pydantic import (
     AfterValidator,
@@ -18,6 +18,7 @@ from pydantic import (
     Tag,
     ValidationInfo,
     WithJsonSchema,
+    model_validator,
 )
 from pydantic import ValidationError as PydanticError
 from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, core_schema
@@ -81,6 +82,16 @@ def refuse(problems: Iterable[tuple[Loc, PydanticCustomError]]) -> None:
         raise PydanticError.from_exception_data("scenario", details)
 
 
+class Vector(Table):
+    """Components x, y and z, of which some are given."""
+
+    @model_validator(mode="after")
+    def _any(self) -> Vector:
+        if all(getattr(self, axis) is None for axis in "xyz"):
+            refuse([((), wrong("has no component", "give one or more of x, y and z"))])
+        return self
+
+
 @dataclass(frozen=True)
 class Quantity:
     """Annotation of a float that is read from a number in SI or from text with a unit."""
@@ -142,15 +153,20 @@ def fields_of(table: type[BaseModel]) -> dict[str, FieldInfo]:
 def kind_of(table: BaseModel, key: str) -> str:
     """Kind of quantity that a key of a table holds, a key of ``KINDS``; empty where it holds none."""
     field = fields_of(type(table)).get(key)
-    return "" if field is None else _kind_in([*field.metadata, field.annotation])
+    return "" if field is None else _kind_in(_parts_of(field))
 
 
 def _kind_in(parts: Iterable[Any]) -> str:
-    for part in parts:
-        kind = part.kind if isinstance(part, Quantity) else _kind_in(get_args(part))
-        if kind:
-            return kind
-    return ""
+    return next((part.kind for part in parts if isinstance(part, Quantity)), "")
+
+
+def _parts_of(field: FieldInfo) -> tuple[Any, ...]:
+    """Parts of the annotation of a field, at any depth."""
+    left, parts = [field.annotation, *reversed(field.metadata)], []
+    while left:
+        parts.append(left.pop())
+        left += reversed(get_args(parts[-1]))
+    return tuple(parts)
 
 
 Length = Annotated[float, Quantity("length", "positive")]
@@ -189,38 +205,34 @@ RotationalStiffness = Annotated[float, Quantity("rotational stiffness", "positiv
 # A union would report the errors of both branches; the tags pick one, and explain drops them from the place.
 ONE_OR_LIST = Discriminator(lambda value: "list" if isinstance(value, (list, tuple)) else "one")
 _SOME = Field(min_length=1, max_length=ENTRIES)
-Lengths = Annotated[
-    Annotated[Length, Tag("one")] | Annotated[tuple[Length, ...], _SOME, Tag("list")],
-    ONE_OR_LIST,
-]
-Areas = Annotated[
-    Annotated[Area, Tag("one")] | Annotated[tuple[Area, ...], _SOME, Tag("list")],
-    ONE_OR_LIST,
-]
-SecondMoments = Annotated[
-    Annotated[SecondMoment, Tag("one")] | Annotated[tuple[SecondMoment, ...], _SOME, Tag("list")],
-    ONE_OR_LIST,
-]
-Ratios = Annotated[
-    Annotated[Ratio, Tag("one")] | Annotated[tuple[Ratio, ...], _SOME, Tag("list")],
-    ONE_OR_LIST,
-]
+_T = TypeVar("_T")
+OneOrSome = Annotated[Annotated[_T, Tag("one")] | Annotated[tuple[_T, ...], _SOME, Tag("list")], ONE_OR_LIST]
+Lengths = OneOrSome[Length]
+Areas = OneOrSome[Area]
+SecondMoments = OneOrSome[SecondMoment]
+Ratios = OneOrSome[Ratio]
 
 
 def quantities(table: BaseModel) -> dict[str, tuple[float, str]]:
     """Value in SI and kind, a key of ``KINDS``, of every quantity of a scenario, by its path."""
-    return {path_text(path): (value, kind) for path, value, kind in _of(table, (), "")}
+    numbers = ((path, value, _kind_in(parts)) for path, value, parts in _leaves(table) if type(value) in (int, float))
+    return {path_text(path): (float(value), kind) for path, value, kind in numbers if kind}
 
 
-def _of(node: Any, path: Path, kind: str) -> Iterator[tuple[Path, float, str]]:
+def files(tables: Any, path: Path) -> Iterator[tuple[str, str]]:
+    """Files that a table, or several at a path, name, by the paths of their keys."""
+    for place, value, parts in _leaves(tables, path):
+        if isinstance(value, str) and any(getattr(part, "func", None) is existing_file for part in parts):
+            yield path_text(place), value
+
+
+def _leaves(node: Any, path: Path = (), parts: tuple[Any, ...] = ()) -> Iterator[tuple[Path, Any, tuple[Any, ...]]]:
+    """Path of every value, the value, and the parts of the annotation of the key that has it."""
     if isinstance(node, BaseModel):
-        for key, name in zip(fields_of(type(node)), type(node).model_fields, strict=True):
-            yield from _of(getattr(node, name), (*path, key), kind_of(node, key))
-    elif isinstance(node, Mapping):
-        for key, value in node.items():
-            yield from _of(value, (*path, key), kind)
-    elif isinstance(node, tuple):
-        for index, value in enumerate(node):
-            yield from _of(value, (*path, index), kind)
-    elif kind and isinstance(node, (int, float)) and not isinstance(node, bool):
-        yield path, float(node), kind
+        for (key, field), name in zip(fields_of(type(node)).items(), type(node).model_fields, strict=True):
+            yield from _leaves(getattr(node, name), (*path, key), _parts_of(field))
+    elif isinstance(node, (Mapping, tuple)):
+        for step, value in node.items() if isinstance(node, Mapping) else enumerate(node):
+            yield from _leaves(value, (*path, step), parts)
+    else:
+        yield path, node, parts

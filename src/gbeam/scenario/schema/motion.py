@@ -21,6 +21,7 @@ from gbeam.scenario.schema.fields import (
     Table,
     Time,
     Turn3,
+    Vector,
     refuse,
     wrong,
 )
@@ -79,18 +80,12 @@ def _missing(first: str, second: str) -> tuple[Loc, PydanticCustomError]:
     return (), wrong(f"{first} or {second} is missing", hint, mark="key")
 
 
-class Components(Table):
+class Components(Vector):
     """An acceleration by components in base axes; those left out are zero."""
 
     x: AccelerationProfile | None = Field(default=None, description="profile of the component along the beam")
     y: AccelerationProfile | None = Field(default=None, description="profile of the component along the width")
     z: AccelerationProfile | None = Field(default=None, description="profile of the component through the thickness")
-
-    @model_validator(mode="after")
-    def _any(self) -> Components:
-        if self.x is None and self.y is None and self.z is None:
-            refuse([((), wrong("has no component", "give one or more of x, y and z"))])
-        return self
 
 
 class Flight(Table):

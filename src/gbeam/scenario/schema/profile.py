@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Generic, Literal, TypeVar, get_args
+from functools import reduce
+from operator import or_
+from typing import TYPE_CHECKING, Annotated, Any, Generic, Literal, TypeVar, get_args
 
 from pydantic import ConfigDict, Discriminator, Field, StrictBool, Tag, model_validator
 
@@ -111,35 +113,14 @@ class Sum(Smoothed[L, S], Generic[L, S]):
     ] = Field(min_length=1, description="the profiles that are added")
 
 
-# Written out: a generic alias of a union of pydantic models loses its parameters, and of models that a function makes
-# of a generic one none can be pickled.
-AccelerationProfile = Annotated[
-    Constant[Acceleration, Jerk]
-    | Trapezoid[Acceleration, Jerk]
-    | SmoothStep[Acceleration, Jerk]
-    | Sine[Acceleration, Jerk]
-    | Listed[Acceleration, Jerk]
-    | Sum[Acceleration, Jerk],
-    Discriminator("profile"),
-]
-RateProfile = Annotated[
-    Constant[AngularRate, AngularAcceleration]
-    | Trapezoid[AngularRate, AngularAcceleration]
-    | SmoothStep[AngularRate, AngularAcceleration]
-    | Sine[AngularRate, AngularAcceleration]
-    | Listed[AngularRate, AngularAcceleration]
-    | Sum[AngularRate, AngularAcceleration],
-    Discriminator("profile"),
-]
-TorqueProfile = Annotated[
-    Constant[Torque, TorqueRate]
-    | Trapezoid[Torque, TorqueRate]
-    | SmoothStep[Torque, TorqueRate]
-    | Sine[Torque, TorqueRate]
-    | Listed[Torque, TorqueRate]
-    | Sum[Torque, TorqueRate],
-    Discriminator("profile"),
-]
+_KINDS: dict[str, Any] = {
+    "constant": Constant,
+    "trapezoid": Trapezoid,
+    "smooth-step": SmoothStep,
+    "sine": Sine,
+    "table": Listed,
+    "sum": Sum,
+}
 
 
 def _constant_or_profile(value: Any) -> Any:
@@ -147,56 +128,34 @@ def _constant_or_profile(value: Any) -> Any:
     return value.get("profile") if isinstance(value, dict) else getattr(value, "profile", "one")
 
 
-ForceOverTime = Annotated[
-    Annotated[Force, Tag("one")]
-    | Annotated[Constant[Force, ForceRate], Tag("constant")]
-    | Annotated[Trapezoid[Force, ForceRate], Tag("trapezoid")]
-    | Annotated[SmoothStep[Force, ForceRate], Tag("smooth-step")]
-    | Annotated[Sine[Force, ForceRate], Tag("sine")]
-    | Annotated[Listed[Force, ForceRate], Tag("table")]
-    | Annotated[Sum[Force, ForceRate], Tag("sum")],
-    Discriminator(_constant_or_profile),
-]
-MomentOverTime = Annotated[
-    Annotated[Torque, Tag("one")]
-    | Annotated[Constant[Torque, TorqueRate], Tag("constant")]
-    | Annotated[Trapezoid[Torque, TorqueRate], Tag("trapezoid")]
-    | Annotated[SmoothStep[Torque, TorqueRate], Tag("smooth-step")]
-    | Annotated[Sine[Torque, TorqueRate], Tag("sine")]
-    | Annotated[Listed[Torque, TorqueRate], Tag("table")]
-    | Annotated[Sum[Torque, TorqueRate], Tag("sum")],
-    Discriminator(_constant_or_profile),
-]
-SpreadForceOverTime = Annotated[
-    Annotated[ForcePerLength, Tag("one")]
-    | Annotated[Constant[ForcePerLength, ForcePerLengthRate], Tag("constant")]
-    | Annotated[Trapezoid[ForcePerLength, ForcePerLengthRate], Tag("trapezoid")]
-    | Annotated[SmoothStep[ForcePerLength, ForcePerLengthRate], Tag("smooth-step")]
-    | Annotated[Sine[ForcePerLength, ForcePerLengthRate], Tag("sine")]
-    | Annotated[Listed[ForcePerLength, ForcePerLengthRate], Tag("table")]
-    | Annotated[Sum[ForcePerLength, ForcePerLengthRate], Tag("sum")],
-    Discriminator(_constant_or_profile),
-]
-SpeedOverTime = Annotated[
-    Annotated[Speed, Tag("one")]
-    | Annotated[Constant[Speed, Growth], Tag("constant")]
-    | Annotated[Trapezoid[Speed, Growth], Tag("trapezoid")]
-    | Annotated[SmoothStep[Speed, Growth], Tag("smooth-step")]
-    | Annotated[Sine[Speed, Growth], Tag("sine")]
-    | Annotated[Listed[Speed, Growth], Tag("table")]
-    | Annotated[Sum[Speed, Growth], Tag("sum")],
-    Discriminator(_constant_or_profile),
-]
-TurnOverTime = Annotated[
-    Annotated[AngularRate, Tag("one")]
-    | Annotated[Constant[AngularRate, AngularAcceleration], Tag("constant")]
-    | Annotated[Trapezoid[AngularRate, AngularAcceleration], Tag("trapezoid")]
-    | Annotated[SmoothStep[AngularRate, AngularAcceleration], Tag("smooth-step")]
-    | Annotated[Sine[AngularRate, AngularAcceleration], Tag("sine")]
-    | Annotated[Listed[AngularRate, AngularAcceleration], Tag("table")]
-    | Annotated[Sum[AngularRate, AngularAcceleration], Tag("sum")],
-    Discriminator(_constant_or_profile),
-]
+def _profiles(quantity: Any, rate: Any, *, bare: bool = False) -> Any:
+    """Type of a profile of a quantity, or of a `bare` one too; its tables are known by name, by which they pickle."""
+    kinds = {name: kind[quantity, rate] for name, kind in _KINDS.items()}
+    globals().update({kind.__name__: kind for kind in kinds.values()})
+    if not bare:
+        return Annotated[reduce(or_, kinds.values()), Discriminator("profile")]
+    either = (Annotated[kind, Tag(name)] for name, kind in {"one": quantity, **kinds}.items())
+    return Annotated[reduce(or_, either), Discriminator(_constant_or_profile)]
+
+
+if TYPE_CHECKING:  # type checkers make no tables
+    AccelerationProfile = Any
+    RateProfile = Any
+    TorqueProfile = Any
+    ForceOverTime = Any
+    MomentOverTime = Any
+    SpreadForceOverTime = Any
+    SpeedOverTime = Any
+    TurnOverTime = Any
+else:
+    AccelerationProfile = _profiles(Acceleration, Jerk)
+    RateProfile = _profiles(AngularRate, AngularAcceleration)
+    TorqueProfile = _profiles(Torque, TorqueRate)
+    ForceOverTime = _profiles(Force, ForceRate, bare=True)
+    MomentOverTime = _profiles(Torque, TorqueRate, bare=True)
+    SpreadForceOverTime = _profiles(ForcePerLength, ForcePerLengthRate, bare=True)
+    SpeedOverTime = _profiles(Speed, Growth, bare=True)
+    TurnOverTime = _profiles(AngularRate, AngularAcceleration, bare=True)
 
 
 _Skipped = Annotated[

@@ -18,6 +18,7 @@ from gbeam.scenario.schema.fields import (
     Mass,
     MomentOfInertia,
     Offset,
+    OneOrSome,
     Place3,
     Pressure,
     Quantity,
@@ -232,13 +233,6 @@ class SolidBody(Reduced):
         default=None, description="file of a coarser mesh with the same groups, by which the mesh's error is estimated"
     )
 
-    @property
-    def files(self) -> Iterator[tuple[str, str]]:
-        """Files that it names, by their keys."""
-        yield "mesh", self.mesh
-        if self.coarser is not None:
-            yield "coarser", self.coarser
-
     @model_validator(mode="after")
     def _one_way(self) -> SolidBody:
         if (self.material is None) == (not self.materials):
@@ -251,12 +245,6 @@ class SolidBody(Reduced):
         return self
 
 
-_Files = Annotated[
-    Annotated[File, Tag("one")] | Annotated[tuple[File, ...], Field(min_length=1, max_length=ENTRIES), Tag("list")],
-    ONE_OR_LIST,
-]
-
-
 _NodePoints = Annotated[dict[str, StrictInt], Field(max_length=ENTRIES)]
 
 
@@ -264,7 +252,7 @@ class MatricesBody(Reduced):
     """A structure by the matrices of a finite-element program."""
 
     kind: Literal["matrices"] = Field(default="matrices", description="kind of the body; may be left out")
-    matrices: _Files = Field(
+    matrices: OneOrSome[File] = Field(
         description="file with mass and stiffness matrix, or a list of several that complete one another: NPZ, NPY, "
         "Matrix Market, MAT, matrices of Abaqus, CalculiX and Nastran; relative to the folder of the scenario file"
     )
@@ -289,16 +277,6 @@ class MatricesBody(Reduced):
         default=None, description="inertia about the centre of mass that they must have: [x, y, z], or three rows"
     )
 
-    @property
-    def files(self) -> Iterator[tuple[str, str]]:
-        """Files that it names, by their keys."""
-        if isinstance(self.matrices, str):
-            yield "matrices", self.matrices
-        else:
-            yield from ((f"matrices[{i}]", file) for i, file in enumerate(self.matrices))
-        if self.nodes is not None:
-            yield "nodes", self.nodes
-
 
 class StandardInputBody(Table):
     """A flexible body of standard input data, as multibody programs exchange them."""
@@ -314,19 +292,11 @@ class StandardInputBody(Table):
     )
     points: _NodePoints = Field(default_factory=dict, description="numbers of nodes of output by name")
 
-    @property
-    def files(self) -> Iterator[tuple[str, str]]:
-        """Files that it names, by their keys."""
-        yield "standard_input_data", self.standard_input_data
-
 
 _Frequencies = Annotated[
     tuple[Annotated[float, Quantity("frequency", "positive")], ...], Field(min_length=1, max_length=ENTRIES)
 ]
-_Masses = Annotated[
-    Annotated[Mass, Tag("one")] | Annotated[tuple[Mass, ...], Field(min_length=1, max_length=ENTRIES), Tag("list")],
-    ONE_OR_LIST,
-]
+_Masses = OneOrSome[Mass]
 _Shape = Annotated[tuple[Direction, ...], Field(max_length=ENTRIES)]
 MEASURED = ("frequency", "damping_ratio", "shapes", "nodes", "modal_mass")
 
@@ -364,12 +334,6 @@ class ModalTestBody(Table):
     points: _NodePoints = Field(
         default_factory=dict, description="numbers of nodes of output by name; without a file from 0"
     )
-
-    @property
-    def files(self) -> Iterator[tuple[str, str]]:
-        """Files that it names, by their keys."""
-        if self.modal_test is not None:
-            yield "modal_test", self.modal_test
 
     @model_validator(mode="after")
     def _one_way(self) -> ModalTestBody:

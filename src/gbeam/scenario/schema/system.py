@@ -18,7 +18,7 @@ from pydantic_core import PydanticCustomError
 from gbeam.guards.limits import ENTRIES, NAME
 from gbeam.mechanics.tree.joints import COUPLINGS, GROUND, KINDS, SLIDES, Kind
 from gbeam.printable import shortened
-from gbeam.scenario.schema.beam import Beam, Vector
+from gbeam.scenario.schema.beam import Beam
 from gbeam.scenario.schema.control import Controller
 from gbeam.scenario.schema.fields import (
     Acceleration,
@@ -32,6 +32,7 @@ from gbeam.scenario.schema.fields import (
     Speed,
     Table,
     Turn3,
+    Vector,
     refuse,
     wrong,
 )
