@@ -202,6 +202,7 @@ def run(
     "static",
     "Where the beam rests relative to its base at one time of the motions, or the system in its joints.",
     motion=None,
+    deforms=False,
 )
 def static(
     case: AnyCase, motion: str | None = None, at: float | None = None, needs: Needs = Needs()

@@ -264,7 +264,7 @@ def test_comparison_with_root_loads_or_without_parts(study: Study) -> None:
     np.testing.assert_array_equal(_lines(shear)["spin"], history.force_centrifuge[:, 2])
     np.testing.assert_array_equal(_lines(shear)["flight"], history.force_flight[:, 2])
     # What moves along z bends about y.
-    assert moment.get_ylabel() == "moment M_y, N m"
+    assert moment.get_ylabel() == "moment about y, N m"
     np.testing.assert_array_equal(_lines(moment)["flight"], history.moment_flight[:, 1])
     (alone,) = replace(compared, root=None).plot()
     np.testing.assert_array_equal(alone.get_lines()[0].get_ydata(), 1e3 * compared.difference[:, 2])

@@ -14,7 +14,7 @@ import gbeam as gb
 from gbeam.figures import description, figures_of
 from gbeam.numerics.samples import thinned
 from gbeam.plots import draw
-from gbeam.report.page.parts import COLUMNS, Numbers, drawn
+from gbeam.report.page.parts import COLUMNS, FITTING, Numbers, drawn
 from gbeam.report.page.result import report_of, report_of_file
 from gbeam.results.cases import Indices, Parameter, Statistics
 from gbeam.results.imitation.comparison import Comparison
@@ -161,7 +161,12 @@ def _compare(figure: description.Figure) -> None:
 
 
 def _compare_lines(axes: object, panel: description.Panel, spec: dict, numbers: np.ndarray) -> None:
-    assert axes.get_ylabel().replace("\n", " ") == spec["y"] and axes.get_xlabel() in ("", spec["x"])
+    label, (quantity, _, unit) = axes.get_ylabel().replace("\n", " "), panel.y.rpartition(", ")
+    assert label == panel.y and axes.get_xlabel() in ("", spec["x"])
+    # On a page a long quantity is in the caption alone.
+    assert (
+        spec["y"] == (label if len(label) <= FITTING else unit) and (panel.title or quantity or label) in spec["title"]
+    )
     assert axes.get_title(loc="left") in spec["title"]
     lines, series = axes.get_lines(), spec["series"][len(spec["series"]) - len(panel.lines) :]
     assert len(lines) == len(panel.lines) + len(panel.levels) + len(panel.marks)

@@ -59,8 +59,8 @@ def endless() -> meshio.Mesh:
 BAD: list[tuple[Callable[[], Any], dict[str, Any], str]] = [
     (triangles, {}, r"mesh has no solid elements: 1 of kind triangle; give thickness, for shells, or mesh the volume"),
     (pyramids, {}, r"mesh has 1 elements of kind pyramid; use tetra, tetra10"),
-    (inverted, {}, r"mesh has 1 elements turned inside out or folded: 2; mesh it again"),
-    (folded, {}, r"mesh has 1 elements turned inside out or folded: 2;"),
+    (inverted, {}, r"mesh has 1 element turned inside out or folded: 2; mesh it again"),
+    (folded, {}, r"mesh has 1 element turned inside out or folded: 2;"),
     (endless, {}, r"mesh has points of shape .* or not finite"),
     (
         two_parts,
@@ -142,6 +142,10 @@ def test_what_is_no_mesh(tmp_path: Path) -> None:
     (tmp_path / "solid.msh").write_text("garbage", encoding="utf-8")
     with pytest.raises(gb.InputError, match=r"mesh .*solid\.msh cannot be read: .*; give a file of Gmsh"):
         solid(tmp_path / "solid.msh")
+    lacking = "*NODE\n1, 0, 0, 0\n*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n"
+    (tmp_path / "solid.inp").write_text(lacking, encoding="utf-8")
+    with pytest.raises(gb.InputError, match=r"solid\.inp cannot be read: number 2 is named in it, and is not there"):
+        solid(tmp_path / "solid.inp")
     with pytest.raises(gb.InputError, match=r"mesh .* is a folder"):
         solid(tmp_path)
     with pytest.raises(OSError):

@@ -172,3 +172,20 @@ def test_files_without_matrices_are_refused(tmp_path: Path) -> None:
     np.savez(tmp_path / "b.npz", name=np.array("model"))
     with pytest.raises(gb.InputError, match=r"path .*b\.npz holds no matrix"):
         gb.read_matrix(tmp_path / "b.npz")
+
+
+def test_nodes_lie_beside_their_matrices(tmp_path: Path) -> None:
+    """As an array of that name in NPZ and MAT files; given twice, or with matrices of two sizes, they are refused."""
+    m, k, nodes = frame(3)
+    arrays = {"M": m, "K": k, "nodes": nodes}
+    np.savez(tmp_path / "model.npz", **arrays)
+    scipy.io.savemat(tmp_path / "model.mat", arrays)
+    for name in ("model.npz", "model.mat"):
+        read = gb.ImportedModel.read(tmp_path / name, length_unit="m")
+        np.testing.assert_array_equal(read.nodes, nodes)
+        assert read.stiffness.shape == (24, 24)
+    with pytest.raises(gb.InputError, match="nodes are in two of the files; give them once"):
+        gb.ImportedModel.read(tmp_path / "model.npz", tmp_path / "model.mat")
+    np.savez(tmp_path / "unlike.npz", **(arrays | {"M": m[:18, :18]}))
+    with pytest.raises(gb.InputError, match=r"stiffness has the shape \(24, 24\); give \(18, 18\), as the mass"):
+        gb.ImportedModel.read(tmp_path / "unlike.npz")

@@ -128,7 +128,6 @@ def test_what_deforms_is_not_asked_of_a_box() -> None:
     box, hub = gb.RigidSpecimen.box(2.0, (0.4, 0.2, 0.1), (0.0, 0.0, 0.0)).structure, gb.Hub(radius=2.0)
     for ask in (
         lambda: gb.modes(box),
-        lambda: gb.static(box, acceleration=(0.0, 0.0, G)),
         lambda: gb.linearize(box, hub),
         lambda: gb.campbell(box, hub, end=1.0),
         lambda: gb.critical_speed(box, hub),
@@ -136,6 +135,20 @@ def test_what_deforms_is_not_asked_of_a_box() -> None:
     ):
         with pytest.raises(gb.InputError, match="structure is rigid, and this is of what deforms; ask simulate"):
             ask()
+
+
+def test_a_box_at_rest_says_what_each_bolt_carries() -> None:
+    """Of four bolts under a centre of mass 50 mm above them, under a specific force of 10 m/s² along x and z."""
+    bolts = [(x, y, 0.0) for x in (-0.1, 0.1) for y in (-0.08, 0.08)]
+    box = gb.RigidSpecimen.box(3.0, (0.3, 0.2, 0.1), (0, 0, 0.05), bolts=bolts, bolt_axis=(0, 0, 1))
+    rest = gb.static(box.structure, acceleration=(10.0, 0.0, 10.0))
+    assert rest.stable and rest.specimen is not None and rest.loads is not None
+    np.testing.assert_allclose(rest.loads.root_force[0], (30.0, 0.0, 30.0))
+    # The moment 0.05 m × 30 N presses the row behind and lifts that in front, 0.2 m apart; the weight presses on all.
+    tension = [np.sign(x) * 0.05 * 30 / 0.2 / 2 - 30 / 4 for x, *_ in bolts]
+    np.testing.assert_allclose(rest.specimen.tension[0], tension, rtol=1e-12)
+    np.testing.assert_allclose(rest.specimen.shear[0], 30 / 4)
+    assert "bolts: tension up to -3.75 N, shear up to 7.5 N" in repr(rest)
 
 
 def test_a_box_on_the_f16_flight_is_newtons() -> None:

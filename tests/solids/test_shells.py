@@ -272,7 +272,7 @@ def crossed() -> meshio.Mesh:
         (pair(), 0.0, "thickness is 0 m; give a positive, finite value"),
         (pair(), {"deck": 0.1}, "thickness.deck is 'deck', which is no group of the mesh"),
         (pair(cell_sets={"a": [[0]], "b": [[0]]}), {"a": 0.1, "b": 0.2}, "thickness gives 1 elements two: 'a' and 'b'"),
-        (crossed(), 0.01, "mesh has 1 elements turned inside out or folded: 1"),
+        (crossed(), 0.01, "mesh has 1 element turned inside out or folded: 1"),
         (block("hexahedron", (1, 1, 1), (1.0, 1.0, 1.0)), 0.1, "thickness is one, in a mesh that has solid elements"),
         (
             meshio.Mesh(np.zeros((10, 3)), {"triangle10": [range(10)]}),

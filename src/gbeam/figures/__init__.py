@@ -118,8 +118,9 @@ def _of_system(result: SystemResponse, title: str) -> dict[str, Describe]:
 
 def _of_deflections(deflections: Sequence[Deflection], title: str = "") -> dict[str, Describe]:
     """Return what describes the figures of a beam's rest in several motions: all together, then the loads of each."""
-    every: dict[str, Describe] = {"static": partial(steady.static, deflections, title)}
-    for each in deflections:
+    bending = [each for each in deflections if each.specimen is None]
+    every: dict[str, Describe] = {"static": partial(steady.static, bending, title)} if bending else {}
+    for each in bending:
         if each.loads is not None:
             every[f"loads_{each.motion}"] = partial(response.loads_along, each, each.loads, title)
     return every

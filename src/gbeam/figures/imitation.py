@@ -12,9 +12,7 @@ from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.measures import Shock
 from gbeam.results.result import Floats
 
-# Of a bending beam, by the axis along which it moves: force and moment of the root's section, and the latter's index.
-_FORCES = ("axial force N", "shear V_y", "shear V_z")
-_MOMENTS = (("torque", 0), ("moment M_z", 2), ("moment M_y", 1))
+_BENDS = (0, 2, 1)  # axis of the root's moment that bends along each axis; about x it twists
 _Part = tuple[str, str, str, dict[str, Floats]]  # what it shows, SI unit, quantity, values by name
 
 
@@ -53,12 +51,12 @@ def _less(c: Comparison) -> str:
 def _root(c: Comparison, axis: int) -> Iterator[_Part]:
     if c.root is None:
         return
-    history, (bent, k) = c.root.history, _MOMENTS[axis]
+    history, k = c.root.history, _BENDS[axis]
     for si, name, flight, centrifuge, i in (
-        ("N", _FORCES[axis], history.force_flight, history.force_centrifuge, axis),
-        ("N m", bent, history.moment_flight, history.moment_centrifuge, k),
+        ("N", f"force along {'xyz'[axis]}", history.force_flight, history.force_centrifuge, axis),
+        ("N m", f"moment about {'xyz'[k]}", history.moment_flight, history.moment_centrifuge, k),
     ):
-        yield "root's section", si, name, {c.flight: flight[:, i], c.centrifuge: centrifuge[:, i]}
+        yield "loads at the root", si, name, {c.flight: flight[:, i], c.centrifuge: centrifuge[:, i]}
 
 
 def _tip(c: Comparison, axis: int) -> Iterator[_Part]:

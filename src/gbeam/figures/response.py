@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -123,22 +123,23 @@ def _spans(responses: Mapping[str, Response], compared: Comparison) -> tuple[Spa
 
 def sizes(study: Study) -> Figure:
     """Describe the sizes of stress, root force and root moment of all environments together."""
-    every = {name: (each.time, each.loads) for name, each in study.responses.items() if each.loads is not None}
-    kinds = (
-        ("largest stress", "Pa", lambda loads: loads.stress.max(axis=1)),
-        ("root force", "N", lambda loads: np.linalg.norm(loads.section_force[:, 0], axis=1)),
-        ("root moment", "N m", lambda loads: np.linalg.norm(loads.section_moment[:, 0], axis=1)),
+    loaded = {name: each for name, each in study.responses.items() if each.loads is not None}
+    kinds: tuple[tuple[str, str, Callable[[Response, Any], Floats]], ...] = (
+        ("largest stress", "Pa", lambda of, its: its.stress.max(axis=1) if of.solid is None else of.solid.von_mises),
+        ("root force", "N", lambda _, loads: np.linalg.norm(loads.section_force[:, 0], axis=1)),
+        ("root moment", "N m", lambda _, loads: np.linalg.norm(loads.section_moment[:, 0], axis=1)),
     )
     panels: list[Panel] = []
     for words, si, size in kinds:
-        values = {name: (time, size(loads)) for name, (time, loads) in every.items()}
+        values = {name: (each.time, size(each, each.loads)) for name, each in loaded.items()}
         known = {name: each for name, each in values.items() if np.isfinite(each[1]).any()}
         scale, unit = scale_of(si, *(each for _, each in known.values()))
         look = looks(study)
         lines = tuple(Line(time, scale * each, name, **look[name]) for name, (time, each) in known.items())
         if lines:
             panels.append(Panel(f"{words}, {unit}", lines, zero=True, named=not panels))
-    return Figure(study.title, "sizes of the loads, root and largest stress anywhere", tuple(panels))
+    stress = " and largest stress anywhere" if len(panels) == len(kinds) else ""
+    return Figure(study.title, f"sizes of the loads at the root{stress}", tuple(panels))
 
 
 def loads_along(deflection: Deflection, loads: Loads, title: str = "") -> Figure:
@@ -157,11 +158,11 @@ def carried_along(loads: Loads) -> tuple[Panel, ...]:
 
 def loads(response: Response, carried: Loads, title: str = "") -> Figure:
     """Describe over time what the root, or the base of a solid, carries, the extreme stresses, and a hub's torque."""
-    beam = response.solid is None and response.specimen is None
+    beam = response.point_acceleration is None  # which only the loads of a beam have
     panels = [*carried_at_root(response.time, carried, SECTION if beam else BASE)]
     if carried.beam_torque is not None:
         scale, unit = scale_of("N m", carried.beam_torque)
-        panels.append(Panel(f"torque for the beam, {unit}", (Line(response.time, scale * carried.beam_torque),)))
+        panels.append(Panel(f"torque from the hub, {unit}", (Line(response.time, scale * carried.beam_torque),)))
     spans = stretches(response.axes, response.time)
     words = (
         "loads in the root's section, and stress anywhere along the beam" if beam else "loads on the base, base axes"

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from gbeam.constants import STANDARD_GRAVITY
+from gbeam.report.words import tidy
 from gbeam.results.description import (
     Described,
     Description,
@@ -61,7 +62,7 @@ def _beam(case: Description) -> list[str]:
 
 
 def _specimen(case: SpecimenDescription) -> list[str]:
-    centre = ", ".join(f"{1e3 * each:.4g}" for each in case.centre)
+    centre = ", ".join(f"{1e3 * each:.4g}" for each in tidy(case.centre, max(map(abs, case.centre))))
     lines = [f"  {case.name:<9} {case.kind}, {case.mass:.4g} kg, centre of mass at ({centre}) mm"]
     if case.coordinates:
         modes = ", ".join(f"{each:.4g}" for each in case.frequency)

@@ -12,6 +12,7 @@ from gbeam.report.words import by_beam, columns, error_words, number, percent, r
 from gbeam.results.equilibrium import Critical, CriticalMap, Deflection
 from gbeam.results.errors import Errors, along
 from gbeam.results.modal import Campbell, Modes
+from gbeam.results.solids import SpecimenLoads
 from gbeam.results.state_space import ACCURATE, Gauge, StateSpace, Truncation
 from gbeam.results.system import SystemModes, SystemRest
 
@@ -22,6 +23,8 @@ def deflection(deflections: Iterable[Deflection]) -> str:
 
 
 def _deflection(deflection: Deflection) -> str:
+    if deflection.specimen is not None:
+        return _rigid(deflection, deflection.specimen)
     x, y, z = tidy(1e3 * deflection.tip, 1e3 * float(np.abs(deflection.displacement).max()))
     warning = "" if deflection.stable else "; UNSTABLE: no beam would stay there"
     tip = f"tip x {x:.6g} mm, y {y:.6g} mm, z {z:.6g} mm"
@@ -29,6 +32,18 @@ def _deflection(deflection: Deflection) -> str:
     loads = [] if deflection.loads is None else [f"  {resting_loads(deflection.loads)}"]
     more = [] if deflection.solid is None else [f"  {line}" for line in deflection.solid.lines]
     return "\n".join([first, *loads, *more, f"  {_deflection_errors(deflection.errors)}", *warning_lines(deflection)])
+
+
+def _rigid(deflection: Deflection, specimen: SpecimenLoads) -> str:
+    """What holds a rigid specimen: its fixture, and each bolt."""
+    lines = [f"{deflection.motion} at {deflection.time:.4g} s: {deflection.model}"]
+    lines += [] if deflection.loads is None else [f"  {resting_loads(deflection.loads)}"]
+    lines += [f"  {specimen.lines[0]}"]
+    rows = zip(specimen.bolts, specimen.tension[0], specimen.shear[0], strict=True)
+    for k, (place, tension, shear) in enumerate(rows, 1):
+        x, y, z = (1e3 * float(each) for each in place)
+        lines.append(f"  bolt {k} at ({x:.4g}, {y:.4g}, {z:.4g}) mm: tension {tension:.4g} N, shear {shear:.4g} N")
+    return "\n".join([*lines, *warning_lines(deflection)])
 
 
 def _deflection_errors(errors: Errors) -> str:

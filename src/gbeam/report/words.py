@@ -111,7 +111,7 @@ def resting_loads(loads: Loads) -> str:
         extremes = loads.stress_tension[0], loads.stress_compression[0]
         words += f"; {stress_words(loads.stations, *extremes, loads.yield_strength)}"
     if loads.beam_torque is not None:
-        words += f"; torque for the beam {tidy(loads.beam_torque, lever)[0]:.5g} N m"
+        words += f"; torque from the hub {tidy(loads.beam_torque, lever)[0]:.5g} N m"
     return words
 
 
@@ -123,7 +123,7 @@ def largest_loads(peaks: LoadPeaks) -> str:
         extremes = peaks.tension.value, peaks.compression.value
         words += f"; {stress_words(peaks.stations, *extremes, peaks.yield_strength)}"
     if peaks.beam_torque is not None:
-        words += f"; torque for the beam {number(float(peaks.beam_torque.value))} N m"
+        words += f"; torque from the hub {number(float(peaks.beam_torque.value))} N m"
     return words
 
 

@@ -13,7 +13,7 @@ from gbeam.results.facts import at_place
 from gbeam.results.parts import Loads
 from gbeam.results.response import BaseMotion
 from gbeam.results.result import Figured, Floats, Part, Result, brief
-from gbeam.results.solids import SolidStress
+from gbeam.results.solids import SolidStress, SpecimenLoads
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -46,6 +46,9 @@ class Deflection(Figured):
     )
     errors: Errors = part("of displacement, root loads and stress", name=None, default_factory=Errors)
     solid: SolidStress | None = part("stress of a solid, of one time", name=None, optional=True, default=None)
+    specimen: SpecimenLoads | None = part(
+        "loads of a rigid specimen, of one time", name=None, optional=True, default=None
+    )
 
     @declared("", "forces, moments and stresses of the sections", role="part", name=None, key="loads", optional=True)
     def carried(self) -> Loads | None:
@@ -61,9 +64,12 @@ class Deflection(Figured):
         rest = "stable" if self.stable else "NOT stable: no beam would stay there"
         total = self.errors.displacement.total
         error = f"; estimated error {100 * total:.2g} %" if math.isfinite(total) else ""
+        head = f"Deflection{of} ({self.model}) at {self.time:.4g} s:"
+        if self.specimen is not None:
+            first, *others = self.specimen.lines
+            return self._with_warnings(f"{head} {first}", *others)
         lines = () if self.solid is None else self.solid.lines
-        first = f"Deflection{of} ({self.model}) at {self.time:.4g} s: tip ({tip}) mm{error}; {rest}"
-        return self._with_warnings(first, *lines)
+        return self._with_warnings(f"{head} tip ({tip}) mm{error}; {rest}", *lines)
 
 
 LOST = {"critical_speed": "rad/s", "critical_acceleration": "m/s^2", "critical_load_factor": ""}

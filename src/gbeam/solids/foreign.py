@@ -65,6 +65,8 @@ def read_mesh(source: str | os.PathLike[str] | Any) -> Any:
             return reader.read(io.StringIO(unread.sub("", text)))
     except (Exception, SystemExit) as error:
         words = shortened(" ".join((said.getvalue() or str(error)).split()), 200)
+        if isinstance(error, KeyError):  # meshio looks up by its number what a set or an element names
+            words = f"number {error.args[0]} is named in it, and is not there"
         fix = "give a file of Gmsh, Nastran, Abaqus, CalculiX or VTK, with its ending"
         raise InputError("mesh", f"{os.fspath(source)} cannot be read: {words}", fix) from None
 

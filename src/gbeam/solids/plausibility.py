@@ -31,8 +31,9 @@ def refuse_folded(mesh: SolidMesh) -> None:
         bad += block.numbers[~(grown.min(axis=1) > FLAT * np.abs(grown).max(axis=1))].tolist()
     if bad:
         some = ", ".join(map(str, bad[:3])) + (", ..." if len(bad) > 3 else "")
+        count = "1 element" if len(bad) == 1 else f"{len(bad)} elements"
         fix = "mesh it again, or number their nodes the other way round"
-        raise InputError("mesh", f"has {len(bad)} elements turned inside out or folded: {some}", fix)
+        raise InputError("mesh", f"has {count} turned inside out or folded: {some}", fix)
 
 
 def refuse_loose(mesh: SolidMesh) -> None:

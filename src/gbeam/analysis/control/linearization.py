@@ -329,6 +329,7 @@ def linearize(
     choice("loop", loop, ("open",))
     if motion is None:
         raise InputError("motion", "is missing", "give a Flight, a Hub or a Centrifuge")
+    structure.require_coordinates()
     structure.require_damping("the state-space model")
     if rate is None:
         point = operating_point(structure, motion, time, q, qd)
@@ -425,6 +426,7 @@ def nonlinear_system(structure: Structure, motion: Motion, *, gauges: Sequence[G
     """
     control = import_control()
 
+    structure.require_coordinates()
     straight = np.zeros(structure.size)
     if motion.free:
         point, states = on_hub(structure, motion, 0.0, q=straight), coordinate_signals(structure, 1)

@@ -139,6 +139,7 @@ def modes(
             return of_system
         judged = Richer(state).errors(state, moving.value, moving.modes.T, gyroscopic=gyroscopic)
         return replace(of_system, errors=judged, warnings=of_system.warnings + doubtful(judged))
+    structure.require_coordinates()
     point = operating_point(structure, motion, time)
     warnings = input_warnings(structure, motion, name=name, span=(time, time), base=point.base)
     computed = modes_at(structure, point, gyroscopic=gyroscopic, name=name, time=time)

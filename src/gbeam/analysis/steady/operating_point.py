@@ -225,7 +225,6 @@ def placed(
     structure: Structure, base: Base, q: Array | None, qd: Array | None
 ) -> tuple[Array, Array, Coefficients | None, bool]:
     """Coordinates and rates, by default of the relative equilibrium with its coefficients, and whether they are."""
-    structure.require_coordinates()
     coefficients = None
     if q is None:
         (at, _), coefficients = equilibrium_about(structure, base)

@@ -140,6 +140,7 @@ def turned(
         joint, _, angle = coordinate.rpartition(".")
         history = structure.joints[joint].rates.get(angle) if joint else motion.rate  # type: ignore[union-attr]
         return Turning(Drive(motion, time, coordinate), held), history
+    structure.require_coordinates()
     if turning is not None:
         raise InputError("turning", "is given of one beam", "leave it out: its hub turns")
     if motion is None:

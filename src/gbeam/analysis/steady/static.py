@@ -229,4 +229,5 @@ def deflection_at(
         loads=loads,
         errors=errors,
         solid=parts.get("solid"),
+        specimen=parts.get("specimen"),
     )

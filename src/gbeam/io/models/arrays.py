@@ -19,6 +19,7 @@ from gbeam.printable import shortened
 
 Matrices = dict[str, Any]
 ORIGINS = "P"  # of interface frames, beside K and M, in Simscape
+NODES = "nodes"  # places of all nodes, beside the matrices
 
 
 class Contents(TypedDict, total=False):
@@ -65,6 +66,9 @@ def read(path: str) -> Contents:
             contents["matrices"][key] = sparse_parts(each)
         elif getattr(each, "ndim", 0) == 2 and each.dtype.kind in "fiu" and min(each.shape) > 1:
             contents["matrices"][key] = each
+    if NODES in every and len(every) > 1:
+        contents["matrices"].pop(NODES, None)
+        contents["places"] = np.atleast_2d(np.asarray(every[NODES], dtype=float))
     origins = every.get(ORIGINS)
     if origins is not None and {"K", "M"} <= set(every):
         places = np.atleast_2d(np.asarray(origins, dtype=float))

@@ -114,6 +114,8 @@ class Model:
         m, of_m = self.matrix("mass", mass)
         k, of_k = self.matrix("stiffness", stiffness)
         if of_m is None or of_k is None or np.array_equal(of_m, of_k):
+            if m.shape != k.shape:
+                raise InputError("stiffness", f"has the shape {k.shape}", f"give {m.shape}, as the mass matrix has")
             unknowns = of_k if of_m is None else of_m
             if unknowns is not None and len(unknowns) != k.shape[0]:
                 problem = f"are {k.shape[0]}, and the files name {len(unknowns)} unknowns"
@@ -129,7 +131,7 @@ class Model:
                 raise InputError("nodes", "are given, and the files have some", "leave them out")
             numbers, places, axes = None, np.asarray(nodes, dtype=float), None
         elif self.places is None:
-            fix = "give nodes, or a file that has them: .inp, .bdf, .asm"
+            fix = "give nodes, an array of that name beside the matrices, or a file that has them: .inp, .bdf, .asm"
             raise InputError("nodes", "are in none of the files", fix)
         else:
             numbers, places, axes = self.numbers, np.asarray(self.places, dtype=float), self.axes
@@ -165,6 +167,8 @@ def model_of(paths: Sequence[str | os.PathLike[str]]) -> Model:
 
 def _joined(first: dict[str, Any], then: Any) -> dict[str, Any]:
     """Nodes of two files."""
+    if not ("numbers" in first and "numbers" in then):
+        raise InputError("nodes", "are in two of the files", "give them once")
     new = ~np.isin(then["numbers"], first["numbers"])
     pairs = {key: (first[key], then[key][new]) for key in ("numbers", "places", "axes") if key in first and key in then}
     return then | {key: np.concatenate(pair) for key, pair in pairs.items()}

@@ -16,7 +16,7 @@ from gbeam.report import words
 from gbeam.report.page.machine import machine_section, verdict
 from gbeam.report.page.parts import Cell, Value, folded, heading, known, listed, paragraph, section, table
 from gbeam.report.steady import RESTING, ROUNDING
-from gbeam.report.words import number, percent
+from gbeam.report.words import number, percent, tidy
 from gbeam.results.errors import along
 
 Facts = Mapping[str, Any]
@@ -28,6 +28,8 @@ def run_body(facts: Facts, viewer: str, drawn: str) -> str:
     parts = [verdicts(facts), section("Motion", viewer)]
     parts.append(section("Histories", drawn and paragraph(_HINT, "faint gbeam-screen") + drawn))
     parts += [heading("Response"), tips_table(motions), loads_table(motions)]
+    parts += [stress_table({name: each["solid"] for name, each in motions.items() if "solid" in each})]
+    parts += [specimen_tables({name: each["specimen"] for name, each in motions.items() if "specimen" in each})]
     parts += [machine_section(name, each) for name, each in motions.items() if "limits" in each]
     parts += [heading("Accuracy"), _errors(motions)]
     parts += [folded(f"{name}: in words", listed(each["lines"])) for name, each in motions.items()]
@@ -83,9 +85,10 @@ def loads_table(motions: Facts, of: str = "motion") -> str:
     head = [of, "root force, N", "at, s", "root moment, N m", "at, s", "stress, MPa", "at, s", "margin on yield"]
     if all(row[-1] is None for row in rows):
         head, rows = head[:-1], [row[:-1] for row in rows]
+    caption = "Largest loads of the root, and stress anywhere"
     if all(math.isnan(row[5]) for row in rows):  # without extreme fibres
-        head, rows = head[:5], [row[:5] for row in rows]
-    return table(head, rows, "Largest loads of the root, and stress anywhere")
+        head, rows, caption = head[:5], [row[:5] for row in rows], "Largest loads of the root"
+    return table(head, rows, caption)
 
 
 ERRORS = {
@@ -100,11 +103,14 @@ ERRORS = {
 def _errors(motions: Facts) -> str:
     rows = []
     for name, motion in motions.items():
-        for quantity in ("displacement", "loads", "stress"):
+        for quantity in ("loads",) if "specimen" in motion else ("displacement", "loads", "stress"):
             parts = [known(motion["errors"][quantity][key]) for key in ERRORS]
             if math.isfinite(parts[0]):
                 rows.append([name, quantity, *(words.percent(part) for part in parts)])
-    head = ("motion", "of", *ERRORS.values())
+    head = ["motion", "of", *ERRORS.values()]
+    for k in range(len(head) - 1, 2, -1):  # what is judged of no motion
+        if all(row[k] == words.percent(math.nan) for row in rows):
+            head, rows = head[:k] + head[k + 1 :], [row[:k] + row[k + 1 :] for row in rows]
     caption = "Estimated errors, of the largest size"
     return table(head, rows, caption, words=(0, 1)) or paragraph("no error estimate", "faint")
 
@@ -195,8 +201,11 @@ def static_body(facts: Facts, viewer: str, drawn: str) -> str:
         for name, each in motions.items()
         if not each["stable"]
     ]
-    parts += [heading("Deflection"), _tips(motions), resting_loads_table(motions)]
+    rigid = {name: each["specimen"] for name, each in motions.items() if "specimen" in each}
+    bending = {name: each for name, each in motions.items() if name not in rigid}
+    parts += [heading("Deflection" if bending else "Loads"), _tips(bending), resting_loads_table(motions)]
     parts += [stress_table({name: each["solid"] for name, each in motions.items() if "solid" in each})]
+    parts += [specimen_tables(rigid)]
     return "".join([*parts, section("Along the beam", drawn)])
 
 
@@ -218,8 +227,11 @@ def resting_loads_table(motions: Facts, of: str = "motion") -> str:
         return [name, *vectors, 1e-6 * max(stress, default=np.nan)]
 
     head = (of, *(f"{what} {axis}" for what in ("force, N:", "moment, N m:") for axis in "xyz"), "stress, MPa")
-    rows = (row(name, each["loads"]) for name, each in motions.items() if "loads" in each)
-    return table(head, rows, "Of the base on the root, base axes; largest stress anywhere")
+    rows = [row(name, each["loads"]) for name, each in motions.items() if "loads" in each]
+    caption = "Of the base on the root, base axes; largest stress anywhere"
+    if all(size is None for each in motions.values() for size in each.get("loads", {}).get("stress", ())):
+        head, rows, caption = head[:-1], [each[:-1] for each in rows], caption.partition(";")[0]
+    return table(head, rows, caption)
 
 
 def stress_table(solids: Facts, of: str = "motion") -> str:
@@ -233,6 +245,26 @@ def stress_table(solids: Facts, of: str = "motion") -> str:
 
     head = (of, "von Mises, MPa", "x, mm", "y, mm", "z, mm", "material", "least margin on yield")
     return table(head, (row(*each) for each in solids.items()), "Largest stress, and where it is", words=(0, 5))
+
+
+def specimen_tables(rigid: Facts) -> str:
+    """Load at the corners of a rigid specimen in every motion, and on its bolts."""
+
+    def row(name: str, each: Facts) -> list[Value]:
+        worst, limit = each["largest_load"], known(each.get("spread_limit"))
+        place = [1e3 * worst["place"][axis] for axis in "xyz"]
+        return [name, worst["g"], *place, worst["time"], percent(each["spread"]), percent(limit)]
+
+    head = ("motion", "largest, g", "x, mm", "y, mm", "z, mm", "at, s", "spread over the specimen", "limit")
+    corners = table(head, (row(*each) for each in rigid.items()), "Load at the corners")
+    force = max((each["force"]["max_abs"] for each in rigid.values()), default=0.0)
+    bolts = [
+        [name, f"{k}", *(1e3 * bolt["place"][axis] for axis in "xyz"), *tidy((bolt["tension"], bolt["shear"]), force)]
+        for name, each in rigid.items()
+        for k, bolt in enumerate(each["bolts"], 1)
+    ]
+    of_bolts = ("motion", "bolt", "x, mm", "y, mm", "z, mm", "tension, N", "shear, N")
+    return corners + table(of_bolts, bolts, "Largest loads of the bolts, alike and without preload", words=(0, 1))
 
 
 def critical_body(facts: Facts, viewer: str, drawn: str) -> str:

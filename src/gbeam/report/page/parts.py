@@ -166,6 +166,7 @@ class Numbers:
         return base64.b64encode(self.array.tobytes()).decode("ascii")
 
 
+FITTING = 30  # letters beside an axis; of longer labels the caption has the quantity
 _NUDGE = 1e-5  # of the whole width: places that are the same are drawn beside each other
 
 
@@ -187,13 +188,14 @@ def _figure(figure: Figure, numbers: Numbers, header: dict[str, Any]) -> str:
 
 def _plot(panel: Panel, subject: str, numbers: Numbers, specs: list[dict[str, Any]]) -> tuple[str, str]:
     """Add a plot, and return its place and caption."""
-    place, quantity = f"plot-{len(specs)}", panel.y.rpartition(", ")[0] or panel.y
+    place, (quantity, _, unit) = f"plot-{len(specs)}", panel.y.rpartition(", ")
+    quantity, label = quantity or panel.y, panel.y if len(panel.y) <= FITTING else unit
     low, high = panel.limits or (-np.inf, np.inf)
     series = [{**each, "x": numbers.add(x), "y": numbers.add(np.clip(y, low, high))} for each, x, y in _series(panel)]
     shaded = [[start, end] for start, end, _ in panel.spans] + [[each.value, each.value] for each in panel.marks]
     levels = [{"label": each.label, "value": each.value} for each in panel.levels]
     title = f"{subject}: {panel.title or quantity}"
-    spec: dict[str, Any] = {"id": place, "title": title, "x": panel.x, "y": panel.y}
+    spec: dict[str, Any] = {"id": place, "title": title, "x": panel.x, "y": label}
     spec |= {"time": panel.x == "time, s", "series": series, "bands": shaded, "levels": levels}
     specs.append(spec | ({"logX": True, "logY": True} if panel.logarithmic else {}))
     return place, "; ".join([": ".join(filter(None, (quantity, panel.title))), *_said(panel)])

@@ -261,7 +261,7 @@ class MatricesBody(Reduced):
     nodes: File | None = Field(
         default=None,
         description="file of a matrix with the places of the nodes, a row of x, y, z each, in length_unit, where the "
-        "others lack them",
+        "others have none, as an array nodes or in files of their programs",
     )
     length_unit: str = Field(default="m", description="unit of length of the program, such as mm; of time it is s")
     mass_unit: str = Field(default="kg", description="unit of mass of the program, such as Mg")
