@@ -147,7 +147,9 @@ def test_bodies_without_a_beam_are_named_as_not_judged() -> None:
 
 
 def test_a_controller_answers_what_is_lacking() -> None:
-    """With a loop the richer system is run: what it says is the difference itself."""
+    """With a loop the richer system is run: what it says is the difference itself. The samples are too slow for higher
+    modes, whose loop grows: what thick beams do in it is not known.
+    """
     system = arm("exact", 0.0, 1)
     spin = replace(system.joints["spin"], effort=None, initial=0.5)
     held = gb.System(
@@ -167,7 +169,37 @@ def test_a_controller_answers_what_is_lacking() -> None:
     assert true > 1e-4 and errors.slender - errors.step == pytest.approx(true, rel=1e-3)
     beam, other = response.beams["beam"].loads, truth.beams["beam"].loads
     assert response.errors.loads.slender - response.errors.loads.step == pytest.approx(apart(beam, other)[0], rel=1e-3)
-    assert 0 < response.errors.displacement.beam_theory < 0.02
+    assert np.isnan(response.errors.displacement.beam_theory) and "do not hold" in response.errors.note
+
+
+def test_the_theory_of_slender_beams_is_judged_in_the_loop_that_holds_a_plant() -> None:
+    """A thick column that would fall: beside it by the exact model with shear and rotary inertia, in the same loop. The
+    commands that the slender one was given let the thick one fall: 4.0 % of the way, for 0.16 %, and 2.5 % of the
+    loads, for 6.2 %.
+    """
+    soft = replace(THICK, length=0.5, section=gb.Section.rectangle(0.05, 0.05))
+    soft = replace(soft, material=gb.Material(1200.0, 50e6, poissons_ratio=0.0))
+    hub = gb.RigidBody(0.5, (0.05, 0.05, 0.05))
+    joints = {
+        "pin": gb.Joint("revolute", "hub", axes=[(0, 1, 0)], turn=(0, -np.pi / 2, 0), initial=0.05),
+        "clamp": gb.Joint("fixed", "column", on="hub.root"),
+    }
+    hold = gb.Feedback(lambda t, y: [-15.0 * y[0] - y[1]], ["pin.angle", "pin.angle_rate"], ["pin.angle"], sample=0.005)
+
+    def column(beam: gb.Beam, **shapes: int) -> gb.System:
+        body = gb.assemble(beam, "exact", axial=0, y=0, z=3, **shapes)
+        return gb.System({"hub": hub, "column": body}, joints, controllers={"hold": hold}, gravity=(0, 0, -9.81))
+
+    how: Any = {"duration": 1.0, "step": 0.0025}
+    response = gb.simulate(column(soft), **how)
+    thick = gb.simulate(column(replace(soft, rotary_inertia=True), shear_z=3), estimate=False, **how)
+    size = np.linalg.norm(response.place - response.place[0], axis=-1).max()
+    true = np.linalg.norm(thick.place - response.place, axis=-1).max() / size
+    loads, stress = apart(response.beams["column"].loads, thick.beams["column"].loads)
+    errors = response.errors
+    assert 1e-3 < true < 2e-3 and errors.displacement.beam_theory == pytest.approx(true, rel=0.03)
+    assert 0.05 < loads < 0.07 and errors.loads.beam_theory == pytest.approx(loads, rel=0.1)
+    assert errors.stress.beam_theory == pytest.approx(stress, rel=0.1)
 
 
 def test_a_place_at_rest_is_judged() -> None:

@@ -47,11 +47,9 @@ FEWEST = 3  # times of a response that is judged
 NOT_ALL = "shapes and model are not judged of {}, which is made of no beam"
 FAR = "shapes and models are not judged: a system with more shapes does not follow"
 
-
-BENT_FAR = (
-    "errors by the theory of slender beams are not known: the beams turn or bend too far for thick beams that are "
-    "linear about the straight one"
-)
+UNKNOWN = "errors by the theory of slender beams are not known: "
+BENT_FAR = UNKNOWN + "the beams turn or bend too far for thick beams that are linear about the straight one"
+LOOP_LOST = UNKNOWN + "controllers do not hold the system with more shapes in its beams"
 LOST = 10.0  # times the motion, or the extent of the system: a larger answer of linear equations is none
 
 
@@ -111,8 +109,9 @@ def system_errors(
                 truth, same, *alone = _departing(richer(system, bases, exact=True), of, inputs, bases, settled=settled)
             else:
                 some = [bases, *({name: bases[name]} for name in bases if len(bases) > 1)]
-                ran = [_run(richer(system, each, exact=True), again, len(of.time)) for each in some]
-                truth, *alone = (each.read(judged) for each in ran)
+                truth, *alone = (
+                    _run(richer(system, each, exact=True), again, len(of.time)).read(judged) for each in some
+                )
                 same = truth
                 if not every_exact:
                     same = _run(richer(system, bases, exact=False), again, len(of.time)).read(judged)
@@ -120,9 +119,11 @@ def system_errors(
             return SystemErrors(ErrorEstimate(step), note=FAR)
         if not np.isfinite(truth[PLACE]).all():
             return SystemErrors(ErrorEstimate(step), note=FAR)
-        beyond = _beyond(system, of, inputs, settled=settled)
+        # Without a loop, and at rest, what is computed is put into the equations: it may bend farther than they know.
+        loop = again if len(of.time) > 1 else None
+        beyond = _beyond(system, of, inputs, loop, settled=settled)
     if not beyond.sizes.get(PLACE, math.nan) <= LOST * max(sizes[PLACE], _extent(place)):
-        beyond, note = Lacking({}, {}), "; ".join(filter(None, (note, BENT_FAR)))
+        beyond, note = Lacking({}, {}), "; ".join(filter(None, (note, LOOP_LOST if loop else BENT_FAR)))
 
     def apart(key: Quantity, a: Reading, b: Reading) -> float:
         size = 0.0 if key in nothing else sizes[key] or float(np.linalg.norm(truth[key], axis=-1).max())
@@ -207,10 +208,10 @@ def _departing(
         yield at.moved(respond(alone, 0.0)).read(())
 
 
-def _beyond(system: System, of: Trajectory, inputs: InputsOf, *, settled: bool) -> Lacking:
+def _beyond(system: System, of: Trajectory, inputs: InputsOf, again: Again | None, *, settled: bool) -> Lacking:
     """Find what the theory of slender beams lacks: in the equations of thick beams, without and with plate action, what
-    is computed leaves more than in those of slender ones, under the commands that controllers gave; NaN where thick
-    beams have no answer.
+    is computed leaves more than in those of slender ones, which thick beams answer; or both are run `again`. NaN where
+    thick beams have no answer.
     """
     judged = judged_beams(system)
     theories = theories_of(system)
@@ -227,21 +228,30 @@ def _beyond(system: System, of: Trajectory, inputs: InputsOf, *, settled: bool) 
     columns = {name: [k for k, each in enumerate(names) if each == name] for name in judged}
     bent = {name: full.of.q[:, columns[name]] for name in judged}
     plates = {name: each.plate(bent[name]) for name, each in theories.items()}
-    words, sizes = dict[str, str](), dict[Quantity, float]()
+    words = dict[str, str]()
     try:
         residual = full.residual()
         for name, each in theories.items():
             by = causes(each, bent[name], residual[:, columns[name]], bent[name] @ plates[name])
             words[name] = described(judged[name], by)
-        without, respond = slender.read(judged), follower(full, settled=settled)
-        stiffness = np.zeros((residual.shape[1],) * 2)
-        for name, plate in plates.items():
-            stiffness[np.ix_(columns[name], columns[name])] = plate
-        for stiffer in (0.0, stiffness) if stiffness.any() else (0.0,):
-            flat = residual + full.of.q @ stiffness if stiffer is stiffness else residual
-            for key, values in full.moved(respond(flat, stiffer)).read(judged).items():
-                away = float(np.linalg.norm(values - without[key], axis=-1).max())
-                sizes[key] = float(np.maximum(sizes.get(key, 0.0), away))
+        respond = follower(full, settled=settled) if again is None else None
+
+        def answer(plates: Mapping[str, Floats]) -> Answered:
+            """Answer of thick beams that are so much stiffer."""
+            if again is not None:
+                stiffer = {name: each.variants(plates[name])[1] for name, each in theories.items()}
+                return _run(itself(with_beams(system, stiffer)), again, len(of.time))
+            assert respond is not None
+            added = np.zeros((residual.shape[1],) * 2)
+            for name, plate in plates.items():
+                added[np.ix_(columns[name], columns[name])] = plate
+            return full.moved(respond(residual + full.of.q @ added, added))
+
+        without = (slender if again is None else _run(itself(thin), again, len(of.time))).read(judged)
+        beam, strip = {name: 0 * each for name, each in plates.items()}, plates
+        flat = any(each.any() for each in plates.values())
+        truths = [answer(each).read(judged) for each in ((beam, strip) if flat else (beam,))]
     except (ComputationError, np.linalg.LinAlgError):
         return Lacking({}, {})
-    return Lacking(sizes, words)
+    away = [{key: np.linalg.norm(each[key] - without[key], axis=-1).max() for key in without} for each in truths]
+    return Lacking({key: float(np.maximum.reduce([each[key] for each in away])) for key in without}, words)
