@@ -1,6 +1,7 @@
 # make demo: install and run the main job; make test: the tests; make check: what CI checks besides;
 # make validate: compare with other codes and write docs/validation.md (minutes; what is not installed is left out);
 # make fuzz: 10,000 malformed inputs, then runs that are interrupted, killed and out of disk (half an hour);
+# make walk: every verb over every example and more trees, its files read again, its page opened (hours);
 # make docs: the documentation site, in out/docs;
 # make web: the viewer and the app's page, from web/ into the package (needs Node; users of the package do not);
 # make web-check: their tests, and whether what is built in the package is that of web/;
@@ -20,7 +21,7 @@ unexport PYTHONDONTWRITEBYTECODE
 # Folders that ruff reads.
 CODE := src tests validation fuzz mutants benchmarks examples docs .ci
 
-.PHONY: demo test web web-check check validate fuzz docs benchmark mutants dist wheels lock audit clean
+.PHONY: demo test web web-check check validate fuzz walk docs benchmark mutants dist wheels lock audit clean
 
 demo: .venv/installed
 	$(BIN)/gbeam run $(EXAMPLE) --out out/f16_8g_turn
@@ -64,6 +65,11 @@ docs: .venv/dev-installed
 fuzz: .venv/dev-installed
 	OPENBLAS_NUM_THREADS=1 JAX_COMPILATION_CACHE_DIR=$(CACHE) $(BIN)/python -m fuzz
 	OPENBLAS_NUM_THREADS=1 JAX_COMPILATION_CACHE_DIR=$(CACHE) $(BIN)/python -m fuzz.faults
+
+# Some of it: .venv/bin/python -m fuzz.walk robot_arm run
+walk: .venv/dev-installed
+	$(BIN)/python .ci/browser.py
+	OPENBLAS_NUM_THREADS=1 JAX_COMPILATION_CACHE_DIR=$(CACHE) $(BIN)/python -m fuzz.walk
 
 benchmark: .venv/dev-installed
 	$(BIN)/python benchmarks/latency.py

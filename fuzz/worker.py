@@ -54,8 +54,8 @@ def warm_up() -> None:
     assert "jax" not in sys.modules, "a process that JAX has threads in cannot be forked"
 
 
-def call(case: Case, folder: Path) -> Answer:
-    """Run a case in an empty folder."""
+def call(case: Case, folder: Path, seconds: int = SECONDS, patience: int = PATIENCE, memory: int = MEMORY) -> Answer:
+    """Run a case in an empty folder, within so much processor time, time and memory."""
     for name, data in case.files.items():
         file = folder / name
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -66,7 +66,7 @@ def call(case: Case, folder: Path) -> Answer:
         start = time.monotonic()
         child = os.fork()
         if child == 0:
-            _child(case.arguments, folder, aside, out, err)
+            _child(case.arguments, folder, aside, out, err, (seconds, patience, memory))
         _, status, usage = os.wait4(child, 0)
         made = tuple(sorted(str(each.relative_to(folder)) for each in set(folder.rglob("*")) - before))
         defects = [each.read_text() for each in Path(aside).glob("gbeam-defect-*")]
@@ -76,8 +76,9 @@ def call(case: Case, folder: Path) -> Answer:
         )  # fmt: skip
 
 
-def _child(arguments: list[str], folder: Path, aside: str, out: Path, err: Path) -> None:
+def _child(arguments: list[str], folder: Path, aside: str, out: Path, err: Path, limits: tuple[int, int, int]) -> None:
     """Become the command line; never returns."""
+    seconds, patience, memory = limits
     status = 70
     try:
         os.chdir(folder)
@@ -86,10 +87,10 @@ def _child(arguments: list[str], folder: Path, aside: str, out: Path, err: Path)
             os.dup2(os.open(file, os.O_CREAT | os.O_WRONLY), number)
         sys.stdout = os.fdopen(1, "w", encoding="utf-8", closefd=False)
         sys.stderr = os.fdopen(2, "w", encoding="utf-8", closefd=False)
-        resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS + 5))
-        resource.setrlimit(resource.RLIMIT_DATA, (MEMORY, MEMORY))
+        resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5))
+        resource.setrlimit(resource.RLIMIT_DATA, (memory, memory))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        signal.alarm(PATIENCE)
+        signal.alarm(patience)
         if arguments[:1] == ["app"]:
             from fuzz.app import play as main
         else:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 from pathlib import Path
+from typing import Any
 
 # What .ci/browser.py installs where there is none.
 INSTALLED = Path(__file__).parents[2] / ".cache" / "chromium" / "chromium"
@@ -47,3 +48,13 @@ def environment(program: Path) -> dict[str, str]:
     here = program.parent
     own = {"LD_LIBRARY_PATH": str(here / "lib"), "FONTCONFIG_PATH": str(here)} if program == INSTALLED else {}
     return {**os.environ, **own}
+
+
+def watch(page: Any) -> list[str]:
+    """Start a list of what a page complains of, or requests from elsewhere."""
+    faults: list[str] = []
+    # Reading pixels from software's WebGL is slow, and Chromium says so.
+    page.on("console", lambda said: faults.append(said.text) if "GPU stall" not in said.text else None)
+    page.on("pageerror", lambda error: faults.append(str(error)))
+    page.on("request", lambda asked: faults.append(asked.url) if not asked.url.startswith(("file:", "data:")) else None)
+    return faults

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -14,15 +13,7 @@ from gbeam.cli import main
 from gbeam.cli.process import FIGURES
 
 from ..scenarios import FAST, SLEWING
-from .chromium import arguments, environment, find
-
-
-@dataclass
-class Opened:
-    """A page, and what it complained of or requested."""
-
-    page: Any
-    faults: list[str] = field(default_factory=list)
+from .chromium import arguments, environment, find, watch
 
 
 @pytest.fixture(scope="module")  # while it is open no other test of the process can run an event loop
@@ -117,12 +108,7 @@ def opened(browser: Any) -> Iterator[Any]:
         context = browser.new_context(viewport={"width": width, "height": height}, **options)
         contexts.append(context)
         page = context.new_page()
-        seen = Opened(page)
-        every.append(seen)
-        # Reading pixels from software's WebGL is slow, and Chromium says so.
-        page.on("console", lambda m: seen.faults.append(m.text) if "GPU stall" not in m.text else None)
-        page.on("pageerror", lambda error: seen.faults.append(str(error)))
-        page.on("request", lambda r: seen.faults.append(r.url) if not r.url.startswith(("file:", "data:")) else None)
+        every.append(watch(page))
         if before:
             page.add_init_script(before)
         page.goto(file.as_uri())
@@ -132,4 +118,4 @@ def opened(browser: Any) -> Iterator[Any]:
     yield of
     for context in contexts:
         context.close()
-    assert [seen.faults for seen in every if seen.faults] == []
+    assert [faults for faults in every if faults] == []
