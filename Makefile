@@ -54,10 +54,12 @@ check: .venv/dev-installed
 validate: .venv/dev-installed
 	OPENBLAS_NUM_THREADS=1 JAX_COMPILATION_CACHE_DIR=$(CACHE) $(BIN)/python -m validation
 
-# The pages made from the schemas, then the site; warnings are errors, and nothing is fetched from a network.
+# The pages made from the schemas, each put in its place at once, for tests that read it meanwhile; then the site;
+# warnings are errors, and nothing is fetched from a network.
 docs: .venv/dev-installed
-	$(BIN)/gbeam schema --markdown > docs/scenario.md
-	$(BIN)/gbeam schema --results --markdown > docs/results.md
+	mkdir -p out
+	$(BIN)/gbeam schema --markdown > out/scenario.md && mv out/scenario.md docs/
+	$(BIN)/gbeam schema --results --markdown > out/results.md && mv out/results.md docs/
 	$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going docs out/docs
 	@echo "out/docs/index.html"
 
@@ -92,8 +94,9 @@ wheels: dist
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps -e .
 	@touch $@
 
+# Python compiles what is imported; pip would compile everything, for a minute.
 .venv/dev-installed: .venv/installed requirements-dev.lock
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-dev.lock
+	$(BIN)/python -m pip install --quiet --no-compile --disable-pip-version-check --require-hashes -r requirements-dev.lock
 	@touch $@
 
 .venv/uv-installed: .venv/installed
