@@ -226,7 +226,7 @@ def write_zarr(sweep: Sweep, path: str | os.PathLike[str]) -> None:
     """Write a sweep as a Zarr store, which ``xarray.open_zarr`` opens, whole or not at all."""
     import zarr  # noqa: F401  # xarray takes one that cannot be loaded for one that is not installed
 
-    bytearray(_ROOM)  # a thread that lacks it is waited for without end: a MemoryError comes first
+    np.empty(_ROOM, np.uint8)  # a thread that lacks it is waited for without end: a MemoryError comes first
     final = Path(path)
     hidden = Path(tempfile.mkdtemp(prefix=f".{final.name}-", dir=final.parent))
     try:
