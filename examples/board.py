@@ -1,6 +1,7 @@
 """The mesh of data/board.msh: a circuit board on four screws with a transformer, a connector and a processor.
 
-Hexahedra of 20 nodes, one through the thickness; `python examples/board.py` writes it again. board.toml flies it.
+Shells of eight nodes in the board's middle; `python examples/board.py` writes it again, and prints what hexahedra in
+their place would change. board.toml flies it.
 """
 
 from __future__ import annotations
@@ -9,45 +10,80 @@ from pathlib import Path
 
 import meshio
 import numpy as np
-from bracket import divided, hexahedra
+from bracket import Floats, divided, hexahedra
+
+import gbeam as gb
 
 HERE = Path(__file__).parent
 LENGTH, WIDTH, THICKNESS, CELL = 160.0, 100.0, 1.6, 10.0  # mm
 # Footprints, mm: from and to along x and y. A screw holds the cell in each corner.
-COMPONENTS = {
+FOOTPRINTS = {
     "transformer": ((60.0, 100.0), (30.0, 70.0)),
     "connector": ((0.0, 20.0), (30.0, 70.0)),
     "processor": ((120.0, 150.0), (40.0, 70.0)),
 }
+GROUPS = ("board", "screws", *FOOTPRINTS)
+MASSES = {"transformer": 0.14, "connector": 0.035, "processor": 0.06}  # kg
+LAMINATE = gb.Orthotropic(
+    density=1900,
+    youngs_moduli=(22e9, 19e9, 8e9),
+    poissons_ratios=(0.15, 0.3, 0.3),
+    shear_moduli=(4e9, 2.5e9, 2.5e9),
+    axes=((1, 0, 0), (0, 1, 0)),
+)
 
 
-def mesh() -> meshio.Mesh:
-    """The board in mm, its lower face on z = 0; groups are the solid `board`, `screws` below and components on top."""
-    cells = int(LENGTH / CELL), int(WIDTH / CELL)
-    points, solids = hexahedra(divided(0, LENGTH, cells[0]), divided(0, WIDTH, cells[1]), divided(0, THICKNESS, 1))
-    used, number = np.unique(solids, return_inverse=True)
-    points, solids = points[used], number.reshape(-1, 20)
-    middle = points[solids].mean(axis=1)
-    edge = [(each < CELL) | (each > size - CELL) for each, size in ((middle[:, 0], LENGTH), (middle[:, 1], WIDTH))]
-    below, above = [0, 1, 2, 3, 8, 9, 10, 11], [4, 5, 6, 7, 12, 13, 14, 15]
-    blocks, tags = [("hexahedron20", solids)], [np.full(len(solids), 1)]
-    groups = {"board": np.array([1, 3])}
-    for name, faces, chosen in (
-        ("screws", below, edge[0] & edge[1]),
-        *((c, above, over(middle, c)) for c in COMPONENTS),
-    ):
-        groups[name] = np.array([len(groups) + 1, 2])
-        blocks.append(("quad8", solids[chosen][:, faces]))
-        tags.append(np.full(int(chosen.sum()), groups[name][0]))
-    return meshio.Mesh(points, blocks, cell_data={"gmsh:physical": tags, "gmsh:geometrical": tags}, field_data=groups)
+def mesh(size: float = CELL) -> meshio.Mesh:
+    """The board in mm, its middle on z = 0, of shells; a group is what is not below a component or held by a screw."""
+    points, cells = block(size)
+    shells = cells[:, [0, 1, 2, 3, 8, 9, 10, 11]]
+    used, nodes = np.unique(shells, return_inverse=True)
+    nodes, points = nodes.reshape(shells.shape), points[used] * (1, 1, 0)
+    tags = [1 + group_of(points[nodes].mean(axis=1))]
+    names = {name: np.array([i, 2]) for i, name in enumerate(GROUPS, 1)}
+    return meshio.Mesh(points, [("quad8", nodes)], cell_data={"gmsh:physical": tags, "gmsh:geometrical": tags},
+                       field_data=names)  # fmt: skip
 
 
-def over(middle: np.ndarray, component: str) -> np.ndarray:
-    """Elements below a component."""
-    spans = COMPONENTS[component]
-    inside = [(middle[:, i] > low) & (middle[:, i] < high) for i, (low, high) in enumerate(spans)]
-    return np.logical_and(*inside)
+def solids(size: float = CELL) -> meshio.Mesh:
+    """The board of hexahedra of 20 nodes, its middle on z = 0; groups have the nodes of the whole thickness."""
+    points, nodes = block(size)
+    group = group_of(points[nodes].mean(axis=1))
+    sets = {name: np.unique(nodes[group == i]) for i, name in enumerate(GROUPS)}
+    return meshio.Mesh(points, {"hexahedron20": nodes}, point_sets=sets)
+
+
+def block(size: float) -> tuple[Floats, np.ndarray]:
+    """Points and hexahedra of 20 nodes."""
+    lines = divided(0, LENGTH, round(LENGTH / size)), divided(0, WIDTH, round(WIDTH / size))
+    points, cells = hexahedra(*lines, divided(-THICKNESS / 2, THICKNESS / 2, 1))
+    used, nodes = np.unique(cells, return_inverse=True)
+    return points[used], nodes.reshape(cells.shape)
+
+
+def group_of(middle: Floats) -> np.ndarray:
+    """Numbers in GROUPS of elements by their middles (e, 3)."""
+    x, y = middle[:, 0], middle[:, 1]
+    group = np.where((np.abs(x - LENGTH / 2) > LENGTH / 2 - CELL) & (np.abs(y - WIDTH / 2) > WIDTH / 2 - CELL), 1, 0)
+    for name, ((left, right), (front, back)) in FOOTPRINTS.items():
+        group[(x > left) & (x < right) & (y > front) & (y < back)] = GROUPS.index(name)
+    return group
+
+
+def lowest(board: meshio.Mesh, **more: float) -> str:
+    """The lowest frequencies of a mesh with its components."""
+    solid = gb.SolidMesh.read(board, materials=LAMINATE, clamp="screws", unit="mm", point_masses=MASSES, **more)
+    frequency = solid.reduced(modes=4, damping_ratio=0.02).frequency
+    return f"{len(np.unique(solid.numbers)):5} nodes: " + ", ".join(f"{each:.2f}" for each in frequency) + " Hz"
+
+
+def main() -> None:
+    """Write the mesh, and print what other ones give."""
+    meshio.write(HERE / "data" / "board.msh", mesh(), file_format="gmsh22", binary=False)
+    for size in (CELL, CELL / 2):
+        print(f"{size:g} mm, shells,    ", lowest(mesh(size), thickness=1e-3 * THICKNESS))
+        print(f"{size:g} mm, hexahedra, ", lowest(solids(size)))
 
 
 if __name__ == "__main__":
-    meshio.write(HERE / "data" / "board.msh", mesh(), file_format="gmsh22", binary=False)
+    main()

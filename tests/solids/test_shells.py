@@ -12,6 +12,7 @@ import pytest
 import gbeam as gb
 from gbeam.solids.elements import chunks, stiffness_matrix
 from gbeam.solids.links import Linked
+from validation.codes.calculix_specimens import example as board
 
 from .bodies import STEEL, STIFF, block
 
@@ -159,6 +160,8 @@ def test_a_gauge_reads_the_face_on_which_it_is() -> None:
     along = dict(zip(stress.points, stress.point_stress[0, :, 0], strict=True))
     assert along["above"] == pytest.approx(wanted, rel=5e-3) and along["below"] == pytest.approx(-wanted, rel=5e-3)
     assert along["middle"] == along["above"]
+    (part,) = chunks(model.mesh.points, model.mesh.blocks, "stress")
+    assert part.of(np.zeros(len(part.nodes), dtype=bool)).stress(model.shapes).shape[0] == 0
     assert stress.worst.von_mises == pytest.approx(4 * wanted, rel=5e-3) and stress.worst.place[0] == 0
 
 
@@ -255,6 +258,19 @@ def test_a_laminate_is_its_plate() -> None:
     mesh.points[:] = mesh.points[:, [0, 2, 1]]
     with pytest.raises(gb.InputError, match=r"materials\.axes do not lie in 32 elements of shells; give the elements"):
         read(mesh, 0.003, BOARD)
+
+
+def test_the_board_of_the_examples_is_that_of_hexahedra() -> None:
+    """With elements of 10 mm shells are softer, by less than the mesh of hexahedra is too stiff."""
+    groups = {"materials": board.LAMINATE, "clamp": "screws", "unit": "mm", "point_masses": board.MASSES}
+    shells, solids = (
+        gb.SolidMesh.read(mesh, **groups, **more).reduced(modes=4, damping_ratio=0).frequency
+        for mesh, more in ((board.mesh(), {"thickness": "1.6 mm"}), (board.solids(), {}))
+    )
+    assert (shells < solids).all() and (shells > 0.96 * solids).all()
+    file = gb.read_scenario("examples/board.toml")
+    assert isinstance(file, gb.SpecimenCase)
+    np.testing.assert_allclose(gb.modes(file.structure).frequency[:4], shells, rtol=1e-9)
 
 
 def pair(**more: Any) -> meshio.Mesh:

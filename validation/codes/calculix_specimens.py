@@ -38,8 +38,8 @@ BORE, RIM, ANGLE, SHEET = 50.0, 200.0, np.pi / 3, 4.0  # mm; of the disc
 def board() -> gb.SolidMesh:
     """The board with its components."""
     return gb.SolidMesh.read(
-        example.mesh(), materials={"board": EPOXY}, clamp="screws", unit="mm", point_masses=MASSES,
-        points={"tip": (0.08, 0.05, 0.0016)},
+        example.solids(), materials=EPOXY, clamp="screws", unit="mm", point_masses=MASSES,
+        points={"tip": (0.08, 0.05, 0.0008)},
     )  # fmt: skip
 
 
@@ -77,7 +77,7 @@ def strip() -> gb.SolidMesh:
 
 # Rates of a spin about z, rad/s, and how far its axis lies from the root, m.
 CASES = {
-    "board": (Specimen(board, {"board": EPOXY}), 5.0, 1.0),
+    "board": (Specimen(board, {"": EPOXY}), 5.0, 1.0),
     "disc sector": (Specimen(sector, {"": STEEL}), 600.0, 1e-3 * BORE),
     "strip": (Specimen(strip, {"": ALUMINIUM}), 60.0, 0.1),
 }

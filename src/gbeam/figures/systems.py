@@ -165,8 +165,7 @@ def stress(result: SolidStress, title: str = "") -> Figure:
 
 def _where(result: SolidStress) -> str:
     x, y, z = (1e3 * float(each) for each in result.worst.place)
-    at = f"at ({x:.4g}, {y:.4g}, {z:.4g}) mm, {result.worst.time:.4g} s"
-    return f"{at}; elements there differ by {100 * result.worst.spread:.2g} %"
+    return f"at ({x:.4g}, {y:.4g}, {z:.4g}) mm, {result.worst.time:.4g} s{result.worst.apart}"
 
 
 def specimen(result: SpecimenLoads, title: str = "") -> Figure:

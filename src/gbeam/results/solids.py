@@ -38,6 +38,13 @@ class StressAt(Part):
             return None
         return float(yield_margin(self.yield_strength, np.array(self.von_mises)))
 
+    @property
+    def apart(self) -> str:
+        """How far the elements that share the node are apart, in words."""
+        return (
+            f"; elements there differ by {float(f'{100 * self.spread:.2g}'):g} %" if self.spread else ", of one element"
+        )
+
 
 @dataclass(frozen=True, repr=False, eq=False)
 class SolidStress(Figured):
@@ -142,10 +149,9 @@ def von_mises(stress: Floats) -> Floats:
 def said(stress: StressAt) -> str:
     """A stress with its place and time, and how sure the mesh is of it."""
     x, y, z = (1e3 * float(each) for each in stress.place)
-    apart = f"; elements there differ by {100 * stress.spread:.2g} %" if stress.spread else ", of one element"
     return (
         f"von Mises {1e-6 * stress.von_mises:.4g} MPa at ({x:.4g}, {y:.4g}, {z:.4g}) mm, node {stress.node}, at "
-        f"{stress.time:.4g} s{apart}"
+        f"{stress.time:.4g} s{stress.apart}"
     )
 
 

@@ -68,8 +68,8 @@ class Part(NamedTuple):
         """Stresses (e, q, 6, m) under displacements (k, 3, m) of all nodes, of which the slopes may be known."""
         if self.assumed is not None:
             e, q, _, k, _ = self.assumed.shape
-            strained = self.assumed.reshape(e, q * 6, 3 * k) @ u[self.nodes].reshape(e, 3 * k, -1)
-            return np.asarray(self.elasticity @ strained.reshape(e, q, 6, -1))
+            strained = self.assumed.reshape(e, q * 6, 3 * k) @ u[self.nodes].reshape(e, 3 * k, u.shape[-1])
+            return np.asarray(self.elasticity @ strained.reshape(e, q, 6, u.shape[-1]))
         slopes = self.slopes(u) if slopes is None else slopes
         law = (self.elasticity @ STRAIN.reshape(6, 9)).reshape(6, 3, 3).swapaxes(1, 2).reshape(6, 9)
         return np.asarray(law @ slopes.reshape(*slopes.shape[:2], 9, slopes.shape[-1]))
