@@ -27,50 +27,25 @@ STATIONS = 81  # along the beam, at which shapes are given
 
 @dataclass(frozen=True)
 class Needs:
-    """Parts of an answer that are read; the costly ones that are not need not be computed.
+    """Parts of an answer that are read; the costly ones that are not need not be computed."""
 
-    Parameters
-    ----------
-    errors : bool
-        Estimates of its own errors: most of the time of a steady state.
-    loads : bool
-        Loads of the sections.
-    shapes : bool
-        Shapes all along the beam, not only at the case's own stations.
-    """
-
-    errors: bool = True
-    loads: bool = True
-    shapes: bool = False
+    errors: bool = True  # estimates of its own: most of the time of a steady state
+    loads: bool = True  # of the sections
+    shapes: bool = False  # all along the beam, not only at the case's own stations
 
 
 @dataclass(frozen=True)
 class Question:
-    """A question that a case answers.
+    """A question that a case answers."""
 
-    Parameters
-    ----------
-    name : str
-        The command line's verb.
-    about : str
-        In one sentence.
-    answer : callable
-        Of a case, the name of a motion or None, the time at which it is frozen or None, what is needed and options by
-        name: a record, or several.
-    motion : str or None
-        Kind of motion that answers, empty for any; None where all that can answer do.
-    differentiable : bool
-        Whether its figures are smooth in the scenario's values.
-    deforms : bool
-        Whether it is about what deforms, which a rigid specimen does not.
-    """
-
-    name: str
-    about: str
+    name: str  # the command line's verb
+    about: str  # in one sentence
+    # of a case, the name of a motion or None, the time at which it is frozen or None, what is needed and options by
+    # name: a record, or several
     answer: Callable[..., Any]
-    motion: str | None = ""
-    differentiable: bool = True
-    deforms: bool = True
+    motion: str | None = ""  # kind of motion that answers, empty for any; None where all that can answer do
+    differentiable: bool = True  # whether its figures are smooth in the scenario's values
+    deforms: bool = True  # whether it is about what deforms, which a rigid specimen does not
 
     @property
     def records(self) -> tuple[type, ...]:
@@ -89,9 +64,7 @@ class Question:
         return bool(self.answer.__annotations__.get("case") == "AnyCase")
 
     def refuse(self, case: AnyCase, before: str = "") -> None:
-        """Raise InputError if the case is a system, and only one structure has an answer; or of a specimen without
-        coordinates one that needs them.
-        """
+        """Raise InputError where the case is a system and only one structure answers, or is rigid and has to deform."""
         from gbeam.analysis.case import SystemCase
 
         if isinstance(case, SystemCase) and not self.of_systems:
@@ -129,13 +102,7 @@ def differentiable() -> tuple[str, ...]:
 
 
 def motion_of(motions: Mapping[str, Any], name: str | None, kind: str = "") -> str:
-    """The name of the motion that answers: the one named, or else the only one, or the only one of a kind.
-
-    Raises
-    ------
-    InputError
-        If there is no such motion, or more than one could be meant.
-    """
+    """The name of the motion that answers: the one named, or else the only one, or the only one of a kind."""
     if name is not None:
         if name not in motions:
             raise InputError("--motion", f"is {name!r}", f"the scenario has {', '.join(motions)}")
@@ -251,9 +218,7 @@ def critical_speed(
     upper: float | None = None,
     progress: Callable[[str, float], None] | None = None,
 ) -> Critical:
-    """The rate of a hub or a joint, factor of the loads or acceleration of the root up to `upper` at which beams
-    buckle.
-    """
+    """The rate, factor of the loads or acceleration of the root, up to `upper`, at which beams buckle."""
     from gbeam.analysis.steady import stability
     from gbeam.analysis.steady.operating_point import held_base
     from gbeam.mechanics.tree.system import System
@@ -341,13 +306,7 @@ def campbell(
 
 
 def machine_of(case: AnyCase, motion: str | None) -> tuple[str, Any]:
-    """The centrifuge that answers, and its name.
-
-    Raises
-    ------
-    InputError
-        If it is no centrifuge.
-    """
+    """The centrifuge that answers, and its name; an InputError where it is none."""
     from gbeam.motion import Centrifuge
 
     name = motion_of(case.motions, motion, CENTRIFUGE)

@@ -149,19 +149,9 @@ class Case(_InEnvironments):
 
     @property
     def automatic(self) -> bool:
-        """Whether the numbers of shapes are chosen by the errors."""
         return self.model.automatic
 
     def one_beam(self, where: str, what: str) -> Case:
-        """Return the case itself.
-
-        Parameters
-        ----------
-        where : str
-            Place of the error.
-        what : str
-            The answer, for the error.
-        """
         return self
 
     @property
@@ -337,15 +327,6 @@ class SpecimenCase(_InEnvironments):
         return self.structure
 
     def one_beam(self, where: str, what: str) -> Case:
-        """Refuse an answer that is of one beam, at the specimen.
-
-        Parameters
-        ----------
-        where : str
-            Place of the error.
-        what : str
-            The answer, for the error.
-        """
         return super().one_beam(f"{where}.{self.name}", what)
 
     @property

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -143,13 +143,13 @@ def placement(placement: Placement, written: str | None = None) -> str:
     )
     measure += f" of {placement.point}" if placement.point and {"tip", "vibration"} & parts.keys() else ""
     share = f", {placement.fraction:.4f} of the length" if placement.straight else ""
-    now = _place(before) if before is not None else f"{1e3 * placement.current:.2f} mm"
+    now = place_words(before.place) if before is not None else f"{1e3 * placement.current:.2f} mm"
     nearest = "" if placement.outcome == "done" else " (nearest to the limits, which none keeps)"
     lines = [
         f"{placement.centrifuge}, tracking {placement.flight}: least {measure}{nearest}",
-        f"  control point  {_place(best)} from the root{share} (now {now})",
+        f"  control point  {place_words(best.place)} from the root{share} (now {now})",
         f"  largest load   {largest(best.largest_load, None if before is None else before.largest_load)}",
-        f"  mounting       {best.mounting}{_turned(best)}",
+        f"  mounting       {best.mounting}{turned(best.turn)}",
         f"  smoothing      {1e3 * best.smoothing:.4g} ms{_range(placement)}",
     ]
     if placement.changes:
@@ -181,7 +181,7 @@ def _measures(placement: Placement) -> list[str]:
     lines.append(" " * 19 + 2 * "".join(place.ljust(13) for place in places_of(straight=placement.straight).values()))
     for name in placement.values["best"]:
         rows = (placement.values, placement.totals)
-        cells = [_percent(each[place][name]) if each else "–" for each in rows for place in _PLACES]
+        cells = [of_peak(each[place][name]) if each else "–" for each in rows for place in _PLACES]
         lines.append(f"  {name:<17}" + "".join(cell.ljust(13) for cell in cells))
     return [line.rstrip() for line in lines]
 
@@ -191,18 +191,20 @@ def places_of(*, straight: bool) -> dict[str, str]:
     return _PLACES if straight else _PLACES | {"middle": "mid-way"}
 
 
-def _percent(share: float) -> str:
+def of_peak(share: float) -> str:
+    """A share of flight's peak, in words."""
     return f"{100 * share:.3g} %" if share > 1e-8 else "0 %"  # below, it is rounding
 
 
-def _place(candidate: Candidate) -> str:
-    """A control point, along x or anywhere."""
-    place = [f"{1e3 * each:.2f}" for each in candidate.place]
-    return f"({', '.join(place)}) mm" if any(candidate.place[1:]) else f"{place[0]} mm"
+def place_words(place: Sequence[float]) -> str:
+    """A control point (3,) m, along x or anywhere, in words."""
+    words = [f"{1e3 * each:.2f}" for each in place]
+    return f"({', '.join(words)}) mm" if any(place[1:]) else f"{words[0]} mm"
 
 
-def _turned(candidate: Candidate) -> str:
-    return f", turned by {degrees(candidate.turn)}" if any(candidate.turn) else ""
+def turned(turn: Sequence[float]) -> str:
+    """A rotation vector (3,) rad in words; empty where there is none."""
+    return f", turned by {degrees(turn)}" if any(turn) else ""
 
 
 def _range(placement: Placement) -> str:
@@ -255,8 +257,8 @@ def _candidates(placement: Placement, measure: str) -> list[str]:
 
 
 def _candidate(candidate: Candidate) -> str:
-    words = f"  {candidate.mounting}{_turned(candidate)}, {1e3 * candidate.smoothing:.4g} ms: "
-    words += f"{100 * candidate.total_error:.3g} % at {_place(candidate)}; "
+    words = f"  {candidate.mounting}{turned(candidate.turn)}, {1e3 * candidate.smoothing:.4g} ms: "
+    words += f"{100 * candidate.total_error:.3g} % at {place_words(candidate.place)}; "
     if candidate.exceeded:
         worst, others = max(candidate.exceeded, key=lambda use: use.share), len(candidate.exceeded) - 1
         return words + f"exceeds {worst}" + (f" and {others} more" if others else "")

@@ -82,7 +82,7 @@ class Neighbourhood:
                 self._enrich()
             else:
                 structure = self.case.assemble()
-                runs = {name: self._differentiated(structure, name, grid).own() for name, grid in grids.items()}
+                runs = {name: self._differentiated(structure, name, grid).unvaried() for name, grid in grids.items()}
                 self.answer = study_of(self.case, {name: _possible(structure, each) for name, each in runs.items()})
         else:
             self.answer = question.facts(self.case)

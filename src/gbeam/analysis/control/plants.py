@@ -150,7 +150,7 @@ class OnHub:
         about = Differentiated(self.structure, hub, settings, Grid(settings.step, 1), "", loads=False)
         posed = [about.pair(*((None, driven(self.hub, each)) for each in pair)) for pair in pairs]
         both = about.responses(posed, np.full(len(posed), width))
-        return _ran(about.own()), ((_ran(less), _ran(more)) for less, more in both)
+        return _ran(about.unvaried()), ((_ran(less), _ran(more)) for less, more in both)
 
 
 def _ran(of: Response) -> Ran:

@@ -326,8 +326,8 @@ class _Trials:
             candidate = trial.candidate
             excess = candidate.share if self.choice.limited and candidate.exceeded else 0.0
             # Mirror images differ by rounding, and by what a search leaves: then the scenario's own comes first.
-            own = self.choice.turns[0] if self.choice.turns else None
-            as_mounted = candidate.mounting == self.choice.mountings[0] and trial.turn == own
+            written = self.choice.turns[0] if self.choice.turns else None
+            as_mounted = candidate.mounting == self.choice.mountings[0] and trial.turn == written
             return excess, candidate.total_error * (1.0 if as_mounted else 1 + _WORTH)
 
         return sorted(self.evaluated.values(), key=rank)

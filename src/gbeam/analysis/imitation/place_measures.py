@@ -146,14 +146,14 @@ def choice_of(
     )  # fmt: skip
 
 
-def turns_of(own: Turn, ways: str) -> tuple[Turn, ...]:
+def turns_of(turn: Turn, ways: str) -> tuple[Turn, ...]:
     """Turns by name: the scenario's own first, then those that bring other directions of the specimen along axis 3,
     each once of the two that are opposite, which are the two mountings.
     """
     if ways == "own":
         return ()
     directions = [each for each in product((1, 0, -1), repeat=3) if each > (0, 0, 0)]
-    turns, along = [own], [rotation_of(own)[0]]
+    turns, along = [turn], [rotation_of(turn)[0]]
     for each in sorted(directions, key=np.count_nonzero):
         direction = np.array(each) / np.linalg.norm(each)
         if (np.count_nonzero(each) == 1 or ways == "any") and max(np.abs(along @ direction)) < 1 - SAME:

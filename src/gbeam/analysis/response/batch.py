@@ -53,7 +53,7 @@ class _Ended:
 
     index: int
     posed: Posed
-    made: Run
+    run: Run
     errors: StepErrors
     known: dict[str, Any]
 
@@ -241,17 +241,17 @@ def _responses_of(ended: list[_Ended]) -> Iterator[tuple[int, Response]]:
     """Places and responses of cases whose runs are made; peaks of those of one structure are found together."""
 
     def key(case: _Ended) -> Hashable:
-        return id(case.posed.structure), case.made.trajectory.time.tobytes()
+        return id(case.posed.structure), case.run.trajectory.time.tobytes()
 
     for some in _alike([case for case in ended if case.known], key):
         posed, moved = some[0].posed, np.stack([case.known["moved"] for case in some])
-        trajectories, late = [case.made.trajectory for case in some], posed.settings.residual_from
+        trajectories, late = [case.run.trajectory for case in some], posed.settings.residual_from
         peaks = displacement_peaks(posed.structure, trajectories, posed.problem.first, moved, late)
         for case, displacement, case_peaks in zip(some, moved, peaks, strict=True):
             case.known.update(moved=displacement.copy(), peaks=case_peaks)
     for case in ended:
-        posed, step = case.posed, case.made.step
-        inputs = posed.structure, posed.motion, posed.settings, posed.problem, (None, case.made.trajectory, None)
+        posed, step = case.posed, case.run.step
+        inputs = posed.structure, posed.motion, posed.settings, posed.problem, (None, case.run.trajectory, None)
         yield case.index, response_of(*inputs, "", step, case.errors, posed.stride(step), **case.known)
 
 

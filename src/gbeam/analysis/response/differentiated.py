@@ -230,7 +230,7 @@ class Differentiated:
                 return True
         return False
 
-    def own(self) -> Response:
+    def unvaried(self) -> Response:
         """The response of the run itself, made as those of the pairs are."""
         return self._response(self.nominal, [None] * 3)
 

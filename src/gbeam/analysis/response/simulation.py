@@ -51,19 +51,19 @@ NOTHING = 1e-7  # of the other load, over a length of the beam: a force or momen
 
 @dataclass(frozen=True, eq=False)
 class Posed:
-    """A run at the flight's times from a problem's state, ready for any step; `coarse` and `given` in s."""
+    """A run at the flight's times from a problem's state, ready for any step; `coarse` and `fixed` in s."""
 
     structure: Structure
     motion: Motion
     settings: ResponseSettings
     problem: Problem
     coarse: float
-    given: float | None
+    fixed: float | None
 
     @property
     def kept(self) -> float:
         """Step of the results, s."""
-        return self.given or self.coarse
+        return self.fixed or self.coarse
 
     @cached_property
     def felt(self) -> Corners:
@@ -76,7 +76,7 @@ class Posed:
         """Plan the runs that the settings need."""
         if not self.structure.size:  # nothing is integrated
             return once(self.kept, StepErrors(0.0, 0.0, 0.0))
-        return planned(self.settings, self.coarse, self.given)
+        return planned(self.settings, self.coarse, self.fixed)
 
     def steps(self, step: float) -> Steps:
         """Steps of about a length, s; one that does not divide the duration goes beyond the end."""

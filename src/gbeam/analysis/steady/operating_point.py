@@ -29,7 +29,7 @@ REST = Base(*np.zeros((3, 3)))
 @dataclass(frozen=True, eq=False)
 class OperatingPoint:
     """A state (y, ẏ, ÿ; u) at which a residual vanishes, and the base's motion there, with a free hub if it is on one;
-    `found` are coefficients already known.
+    `known` are coefficients that are.
     """
 
     structure: Structure
@@ -39,13 +39,13 @@ class OperatingPoint:
     ydd: Array
     u: Array
     base: Base
-    found: Coefficients | None = None
+    known: Coefficients | None = None
     hub: Any = None
 
     @cached_property
     def about(self) -> Coefficients:
         """Coefficients of small departures from the beam's coordinates."""
-        return expanded(self.structure, self.q)[0] if self.found is None else self.found
+        return expanded(self.structure, self.q)[0] if self.known is None else self.known
 
     @property
     def first(self) -> int:

@@ -194,7 +194,7 @@ def _departing(
     yield at.moved(respond(residual, 0.0)).read(bases)
     # In the new coordinates it leaves what its shapes do, in its own what its models leave out.
     new = np.ones(residual.shape[1], dtype=bool)
-    new[exact.own] = False
+    new[exact.shared] = False
     yield at.moved(respond(np.where(new, residual, 0.0), 0.0)).read(bases)
     theirs = [exact.system.coordinates[k] for k in exact.system.tree.free]
     for name in bases if len(bases) > 1 else ():

@@ -37,14 +37,14 @@ class Richer(NamedTuple):
     """A system with more shapes, which of its unknown coordinates are those of the system that lacks them, and that."""
 
     system: System
-    own: IntArray
+    shared: IntArray
     of: System
     renamed: Mapping[str, str]  # names there of those of its coordinates that are called otherwise
 
     def lifted(self, y: Floats) -> Floats:
         """Coordinates (..., n) of the system as those of the richer one."""
         out = np.zeros((*y.shape[:-1], len(self.system.tree.free)))
-        out[..., self.own] = y
+        out[..., self.shared] = y
         return out
 
 
@@ -109,7 +109,7 @@ class Answered(NamedTuple):
 
     def residual(self) -> Floats:
         """Residual (t, n) of the richer system's equations, less that of the one that lacks the shapes."""
-        rich, original = self.rich.system, self.rich.own
+        rich, original = self.rich.system, self.rich.shared
         out = []
         for s in pieces(len(self.of.time), rich.tree.size):
             y, yd, ydd = self.of.q[s], self.of.qd[s], self.of.qdd[s]

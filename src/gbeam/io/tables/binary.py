@@ -6,8 +6,8 @@ import math
 import os
 import warnings
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from functools import lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -32,14 +32,21 @@ def read_hdf5(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
     A vector is a column by its path, ``group/az``, or the path's last word; a matrix is one column per vector,
     ``acc[:,0]``. The attribute `units` is the unit; `scale_factor`, `add_offset` and `_FillValue` are applied.
     """
-    try:
+    with _refused(path, "cannot be read", "give an HDF5 or netCDF file"):
         with open(path, "rb") as file:
             old = file.read(3) == _NETCDF_3
         return Table(tuple(_netcdf_3(path) if old else hdf5_columns(path)))
-    except MemoryError:
+
+
+@contextmanager
+def _refused(path: str | os.PathLike[str], problem: str, fix: str) -> Iterator[None]:
+    """Refuse a damaged file, which leads its library to any exception."""
+    try:
+        yield
+    except (InputError, MemoryError):
         raise
-    except Exception as error:  # a damaged file leads to any
-        raise InputError("record.file", f"{path} cannot be read ({error})", "give an HDF5 or netCDF file") from None
+    except Exception as error:
+        raise InputError("record.file", f"{path} {problem} ({error})", fix) from None
 
 
 def hdf5_columns(path: str | os.PathLike[str], *, matlab: bool = False) -> list[Column]:
@@ -111,14 +118,9 @@ def read_mat(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
     A vector is a column by its name, ``az``, or a structure's field by its path, ``rec.az``, or the path's last word; a
     matrix is one column per vector, ``acc(:,1)``.
     """
-    try:
-        with warnings.catch_warnings():
-            warnings.filterwarnings("error", ".*may be corrupt")  # numbers of a VAX or a Cray, which SciPy misreads
-            columns = _any_version(path, words)
-    except (InputError, MemoryError):
-        raise
-    except Exception as error:  # loadmat raises whatever a damaged file leads to
-        raise InputError("record.file", f"{path} is not a MAT file ({error})", "save the record by MATLAB") from None
+    with _refused(path, "is not a MAT file", "save the record by MATLAB"), warnings.catch_warnings():
+        warnings.filterwarnings("error", ".*may be corrupt")  # numbers of a VAX or a Cray, which SciPy misreads
+        columns = _any_version(path, words)
     if not columns:
         fix = "save vectors of numbers; a table T as s = table2struct(T, 'ToScalar', true)"
         raise InputError("record.file", f"{path} holds no numeric variables", fix)
@@ -182,13 +184,9 @@ def read_uff(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
     """
     import pyuff  # 0.2 s to import
 
-    try:
+    with _refused(path, "is not a universal file", "export it as UFF 58"):
         file = pyuff.UFF(os.fspath(path))
         sets = [file.read_sets(i) for i, kind in enumerate(file.get_set_types()) if int(kind) == 58]
-    except MemoryError:
-        raise
-    except Exception as error:  # pyuff raises Exception itself
-        raise InputError("record.file", f"{path} is not a universal file ({error})", "export it as UFF 58") from None
     sets = [one for one in sets if one["func_type"] in _RESPONSES and np.isrealobj(one["data"])]
     if not sets:
         raise InputError("record.file", f"{path} holds no time response", "export data sets of type 58")

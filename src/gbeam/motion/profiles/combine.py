@@ -28,20 +28,16 @@ class _Combined(Profile):
 
     @property
     def breaks(self) -> Any:
-        """Times of the parts' jumps, s."""
         return merged_breaks(*self.parts)
 
     def corners(self, step: float) -> NDArray[np.float64]:
-        """Union of the parts' corners, s."""
         return np.unique(np.concatenate([part.corners(step) for part in self.parts]))
 
     def knots(self, step: float) -> NDArray[np.float64]:
-        """Union of the parts' knots, s."""
         return np.unique(np.concatenate([part.knots(step) for part in self.parts]))
 
     @property
     def extent(self) -> tuple[float, float] | None:
-        """From the first time of any of the parts to the last, s."""
         return merged_extent(*self.parts)
 
 
@@ -74,11 +70,10 @@ class Sum(_Combined):
             raise InputError("parts", "is empty", "list one profile or more")
 
     def series(self, t: Any, order: int) -> Series:
-        """Sum of the parts' at times `t` (s)."""
         return reduce(add, (part.series(t, order) for part in self.parts))
 
     def smoothed(self, width: Any) -> Profile:
-        """Convolution is linear: the sum of the smoothed parts."""
+        # Convolution is linear.
         return Sum(tuple(part.smoothed(width) for part in self.parts))
 
 
@@ -89,11 +84,9 @@ class Vector(_Combined):
     parts: tuple[Profile, Profile, Profile]
 
     def series(self, t: Any, order: int) -> Series:
-        """Vector at times `t` (s)."""
         return stack([part.series(t, order) for part in self.parts])
 
     def smoothed(self, width: Any) -> Profile:
-        """Component by component."""
         x, y, z = (part.smoothed(width) for part in self.parts)
         return Vector((x, y, z))
 
@@ -110,29 +103,23 @@ class Turned(Profile):
 
     @property
     def breaks(self) -> Any:
-        """Times of the other's jumps, s."""
         return self.profile.breaks
 
     def corners(self, step: float) -> NDArray[np.float64]:
-        """The other's, s."""
         return self.profile.corners(step)
 
     def knots(self, step: float) -> NDArray[np.float64]:
-        """The other's, s."""
         return self.profile.knots(step)
 
     @property
     def extent(self) -> tuple[float, float] | None:
-        """The other's, s."""
         return self.profile.extent
 
     @property
     def record(self) -> RecordSummary | None:
-        """The flight's record that the other is, if it is one."""
         return self.profile.record
 
     def smoothed(self, width: Any) -> Profile:
-        """Convolution is linear: the smoothed one in other axes."""
         return Turned(self.profile.smoothed(width), self.matrix)
 
 
@@ -249,7 +236,6 @@ class Clamped(Profile):
         return np.concatenate([[first], np.clip(self.profile.corners(step), first, last), [last]])
 
     def knots(self, step: float) -> NDArray[np.float64]:
-        """Knots between the two times, s."""
         return np.unique(np.clip(self.profile.knots(step), float(self.first), float(self.last)))
 
     def smoothed(self, width: Any) -> Profile:

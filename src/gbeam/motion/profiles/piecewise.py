@@ -68,21 +68,17 @@ class PiecewiseLinear(Profile):
 
     @property
     def breaks(self) -> Any:
-        """Times of the knots, s, shape (k,)."""
         return self.times
 
     @property
     def record(self) -> RecordSummary | None:
-        """The flight's record that it is, if it is one."""
         return self.summary
 
     def corners(self, step: float) -> NDArray[np.float64]:
-        """Times of the knots at which the slope changes, s."""
         bent = (np.diff(np.asarray(self.slopes), axis=0) != 0).reshape(len(self.times), -1).any(axis=1)
         return np.asarray(self.times)[bent]
 
     def knots(self, step: float) -> NDArray[np.float64]:
-        """Times of the knots, s, whatever the `step`."""
         return np.asarray(self.times)
 
     def smoothed(self, width: Any) -> Profile:
@@ -170,7 +166,6 @@ class SmoothedPiecewiseLinear(Rounded):
 
     @property
     def sharp(self) -> Profile:
-        """The table."""
         return self.table
 
 

@@ -158,12 +158,10 @@ class Rounded(Profile):
 
     @property
     def record(self) -> RecordSummary | None:
-        """The flight's record that the sharp profile is, if it is one."""
         return self.sharp.record
 
     @property
     def extent(self) -> tuple[float, float] | None:
-        """First and last time of the sharp profile, s."""
         return self.sharp.extent
 
 
@@ -286,7 +284,6 @@ class Convolved(Rounded):
 
     @property
     def sharp(self) -> Profile:
-        """The profile."""
         return self.profile
 
 

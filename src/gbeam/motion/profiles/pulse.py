@@ -25,7 +25,6 @@ class _Pulse(Profile):
 
     @property
     def breaks(self) -> Any:
-        """Start and end, s, shape (2,)."""
         return self.start + self.duration * np.arange(2.0)
 
     def corners(self, step: float) -> NDArray[np.float64]:
@@ -34,7 +33,6 @@ class _Pulse(Profile):
         return np.asarray(self.start + self.duration * (np.arange(1 + parts) / parts))
 
     def knots(self, step: float) -> NDArray[np.float64]:
-        """Times over the duration, s, no further apart than `step`."""
         return sampled(float(self.start), float(self.start + self.duration), step)
 
 
@@ -83,7 +81,6 @@ class SmoothStep(_Pulse):
         return Series.of([self.level * h / self.duration**k for k, h in enumerate(orders)], order)
 
     def integral(self, t: Any) -> Any:
-        """Integral from before the start to times `t` (s)."""
         phase = (as_array(t) - self.start) / self.duration
         return self.level * self.duration * hann_orders(0, 0, phase - 0.5)[0]
 
@@ -198,7 +195,6 @@ class SplineProfile(Profile):
         return np.asarray(self.start + self.duration * np.linspace(0, 1, 1 + (pieces if short else 1)))
 
     def knots(self, step: float) -> NDArray[np.float64]:
-        """Times over the duration, s, no further apart than `step`."""
         return sampled(float(self.start), float(self.start + self.duration), step)
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.figures.description import raised
-from gbeam.report.machine import followed, largest, places_of
+from gbeam.report.machine import followed, largest, of_peak, place_words, places_of, turned
 from gbeam.report.page.parts import Cell, Value, folded, heading, known, listed, paragraph, section, table, verbatim
 from gbeam.report.words import number
 from gbeam.results.imitation.accounting import PeakPair
@@ -216,15 +216,11 @@ def _options(options: list[Facts]) -> str:
 
 
 def _point(facts: Facts) -> str:
-    """A control point, along x or anywhere."""
-    place = [facts["place"][axis] for axis in "xyz"]
-    words = [f"{1e3 * each:.2f}" for each in place]
-    return f"({', '.join(words)}) mm" if any(place[1:]) else f"{words[0]} mm"
+    return place_words([*facts["place"].values()])
 
 
 def _turned(facts: Facts) -> str:
-    turn = [facts["turn"][axis] for axis in "xyz"]
-    return f", turned by ({', '.join(f'{math.degrees(each):.4g}' for each in turn)}) deg" if any(turn) else ""
+    return turned([*facts["turn"].values()])
 
 
 def _use(use: Facts) -> str:
@@ -232,4 +228,4 @@ def _use(use: Facts) -> str:
 
 
 def _of_peak(share: float | None) -> str:
-    return "–" if share is None else f"{100 * share:.3g} %" if share > 1e-8 else "0 %"
+    return "–" if share is None else of_peak(share)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from gbeam.results.declared import INSIDE, declared, fact, part, quantity, rows
@@ -14,7 +14,7 @@ from gbeam.results.result import Part, Result
 MEASURES = ("root-shear", "root-moment", "vibration", "tip", "load")
 
 
-def degrees(turn: tuple[float, float, float]) -> str:
+def degrees(turn: Sequence[float]) -> str:
     """A rotation vector in words."""
     return "({}) deg".format(", ".join(f"{math.degrees(each):.4g}" for each in turn))
 

@@ -116,7 +116,6 @@ class NearestLoad(Profile):
         assign(self, idle=as_array(self.idle), least=as_array(self.least))
 
     def series(self, t: Any, order: int) -> Series:
-        """Load at times `t` (s), m/s²."""
         now = as_array(t)
         flight = self.flight.series(now, order)
         xp = namespace(now, flight.value, self.idle)
@@ -162,16 +161,13 @@ class NearestLoad(Profile):
 
     @property
     def breaks(self) -> Any:
-        """Breaks of the load and of the path, s."""
         return self.flight.breaks if self.path is None else merged_breaks(self.flight, self.path)
 
     def corners(self, step: float) -> NDArray[np.float64]:
-        """Breaks of the load and of the path, s."""
         breaks = self.flight.corners(step)
         return breaks if self.path is None else np.union1d(breaks, self.path.corners(step))
 
     def knots(self, step: float) -> NDArray[np.float64]:
-        """Breaks of the load and of the path, s."""
         knots = self.flight.knots(step)
         return knots if self.path is None else np.union1d(knots, self.path.knots(step))
 
