@@ -173,6 +173,8 @@ def test_the_mesh_converges_and_says_by_how_much() -> None:
     fine = meshes[2].reduced(modes=2, damping_ratio=0, coarser=middle)
     apart = [abs(middle.frequency[0] - coarse.frequency[0]), abs(fine.frequency[0] - middle.frequency[0])]
     assert fine.mesh_error[0] == pytest.approx(apart[1] / fine.frequency[0]) and apart[1] < apart[0] / 2
+    stated = gb.modes(fine.structure).error_estimate
+    np.testing.assert_allclose(stated, fine.mesh_error)
     assert np.isnan(middle.mesh_error).all() and "unknown" in repr(middle) and "error of the mesh up to" in repr(fine)
     rough = meshes[1].reduced(modes=2, damping_ratio=0, coarser=replace(coarse, frequency=1.2 * coarse.frequency))
     assert any("mesh it finer" in each for each in rough.structure.warnings)

@@ -13,7 +13,7 @@ import pytest
 import gbeam as gb
 from gbeam.cli import main
 from gbeam.report.page.result import report_of, shown
-from gbeam.report.steady import deflection, system_rest
+from gbeam.report.steady import deflection, system_modes, system_rest
 from gbeam.report.study import system_response
 
 from ..solids.test_damage_at_points import HALF, METAL, B, H, L, beam, block, runs, solid
@@ -131,3 +131,34 @@ def test_a_mesh_in_a_system_is_drawn_where_it_is() -> None:
     frame = numbers.array[ours["frame"]["at"] :][:10]
     np.testing.assert_allclose(frame, [0, 0, 0, 1, 0, 0, 0, 0, 0, 0], atol=1e-12)
     assert one["largest"] == pytest.approx(two["largest"], rel=2e-3)
+
+
+def test_modes_of_a_mesh_are_drawn_by_its_surface() -> None:
+    """Alone and in a system the same, 15 % of its size, coloured by stress; static shapes are no modes."""
+    alone = gb.modes(strip())
+    system = gb.System({"strip": strip()}, {"clamp": gb.Joint("fixed", "strip")})
+    held = gb.modes(system)
+    count = len(alone.frequency)
+    np.testing.assert_allclose(held.frequency[:count], alone.frequency, rtol=1e-6)
+    assert count == strip().resolved < strip().size == len(held.frequency)
+    assert held.reached == pytest.approx(alone.frequency[-1], rel=1e-6) and "upper bounds" in system_modes(held)
+    drawn = []
+    for result in (alone, held):
+        header, numbers = shown(result)
+        assert len(header["modes"]["motions"]) == len(result.frequency)
+        motion = header["modes"]["motions"][1]
+        (surface,) = (part["surface"] for part in motion["parts"] if "surface" in part)
+        shapes, sizes = (
+            numbers.array[ref["at"] :][: np.prod(ref["shape"])].reshape(ref["shape"])
+            for ref in (surface["shapes"], surface["sizes"])
+        )
+        moved = np.einsum("ts,sva->tva", sizes, shapes)
+        assert np.linalg.norm(moved, axis=-1).max() == pytest.approx(motion["largest"], rel=1e-4)
+        np.testing.assert_allclose(moved[0], moved[-1], atol=1e-6 * motion["largest"])  # one period
+        assert surface["largest"] > 0 and motion["period"] == 2.0
+        drawn.append(np.abs(moved[0]) / np.abs(moved[0]).max())
+    np.testing.assert_allclose(*drawn, atol=1e-4)
+    (rest,) = shown(gb.static(strip(), acceleration=(0.0, 0.0, 78.5)))[0]["scene"]["motions"]
+    assert "surface" in rest["parts"][0] and rest["largest"] == pytest.approx(
+        np.linalg.norm(gb.static(strip(), acceleration=(0.0, 0.0, 78.5)).tip), rel=0.02
+    )

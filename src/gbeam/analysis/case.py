@@ -396,7 +396,7 @@ def describe(case: Case | SpecimenCase | SystemCase) -> Description | SpecimenDe
             centre=np.array(moment) / total,
             coordinates=structure.size,
             points=structure.points,
-            frequency=np.asarray(structure.rest[0])[:MODES] / (2 * np.pi) if structure.size else np.empty(0),
+            frequency=np.asarray(structure.rest[0])[: min(MODES, structure.resolved)] / (2 * np.pi),
             **_described(case, doubts),
         )
     beam = case.beam

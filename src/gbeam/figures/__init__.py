@@ -118,7 +118,7 @@ def _of_system(result: SystemResponse, title: str) -> dict[str, Describe]:
 
 def _of_deflections(deflections: Sequence[Deflection], title: str = "") -> dict[str, Describe]:
     """Return what describes the figures of a beam's rest in several motions: all together, then the loads of each."""
-    bending = [each for each in deflections if each.specimen is None]
+    bending = [each for each in deflections if each.solid is None and each.specimen is None]
     every: dict[str, Describe] = {"static": partial(steady.static, bending, title)} if bending else {}
     for each in bending:
         if each.loads is not None:

@@ -64,6 +64,10 @@ class Recovery(Protocol):
         """Fields of a response, by name, from its times (t,), base motion (t, 3) and coordinates (t, n)."""
         ...
 
+    def in_modes(self, modes: Array) -> Any:
+        """Surface for pictures in modes (k, n)."""
+        ...
+
     def strain(self, point: str, along: Any) -> Array:
         """Normal strain at a named point in a direction of its axes, by unit coordinates, (n,)."""
         ...
@@ -129,6 +133,9 @@ class Structure:
         Whether the stress of loads is left out of the stiffness of a structure of particles.
     recovery : Recovery or None
         What responses of a solid or a rigid specimen have besides.
+    mesh_error : tuple of float or None
+        Where static shapes are among the coordinates, errors of the frequencies of its modes by the mesh, as fractions,
+        NaN where unknown: these frequencies are the lowest, and those above are none of the specimen's.
 
     Examples
     --------
@@ -163,6 +170,7 @@ class Structure:
     turns: Array | None = None
     unstiffened: bool = static(default=False)
     recovery: Recovery | None = static(default=None)
+    mesh_error: tuple[float, ...] | None = static(default=None)
 
     def __repr__(self) -> str:
         shapes = ", ".join(f"{n} {way}" for n, way in zip(self.counts, FAMILIES, strict=True) if n)
@@ -308,6 +316,11 @@ class Structure:
         """Circular frequencies (n,) rad/s, ascending, and mass-normalised modes (n, n) on a base at rest."""
         return rest_modes(self.coefficients.mass, self.coefficients.stiffness)
 
+    @property
+    def resolved(self) -> int:
+        """Number of the lowest frequencies that are the specimen's, and not of static shapes."""
+        return self.size if self.mesh_error is None else len(self.mesh_error)
+
     def at_time(self, time: float) -> Structure:
         """Return the structure with its loads frozen at a `time`, s: as static, modes and stability take it."""
         return self if self.history is None else replace(self, load_values=self.history(np.asarray(float(time))))
@@ -369,6 +382,7 @@ def linear_structure(
     turns: Array | None = None,
     warnings: tuple[str, ...] = (),
     unstiffened: bool = False,
+    mesh_error: tuple[float, ...] | None = None,
 ) -> Structure:
     """Structure whose equations are those of coefficients, with its particles (k,) and its stations."""
     return Structure(
@@ -387,4 +401,5 @@ def linear_structure(
         points=points,
         turns=turns,
         unstiffened=unstiffened,
+        mesh_error=mesh_error,
     )

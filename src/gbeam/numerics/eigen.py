@@ -100,6 +100,10 @@ class Vibrations(NamedTuple):
     decaying: Floats
     largest: float
 
+    def oscillating(self, which: Any) -> Vibrations:
+        """These with some of the oscillating modes."""
+        return self._replace(value=self.value[which], modes=self.modes[:, which])
+
     @property
     def frequency(self) -> Floats:
         """Natural frequencies, rad/s."""

@@ -62,11 +62,13 @@ def modes(modes: Modes) -> str:
     turning = float((modes.base.w_WB_B**2).sum() ** 0.5)
     rate = turning if turning > RESTING else 0.0
     lines = [f"{modes.motion} at {modes.time:.4g} s: {modes.model}, base turning at {rate:.4g} rad/s"]
-    width = max((len(along(d)) for d in modes.direction), default=0)
+    width, known = max((len(along(d)) for d in modes.direction), default=0), np.isfinite(modes.error_estimate).any()
     rows = enumerate(zip(modes.frequency, modes.damping_ratio, modes.direction, modes.error_estimate, strict=True), 1)
     for i, (frequency, ratio, direction, error) in rows:
         damping, way = ratio if abs(ratio) > ROUNDING else 0.0, f"{along(direction):<{width}}"
-        lines.append(f"  {i:>3}  {frequency:12.6g} Hz  damping {damping:8.4g}  {way}  error {percent(error):>10}")
+        stated = f"  error {percent(error):>10}" if known else ""
+        lines.append(f"  {i:>3}  {frequency:12.6g} Hz  damping {damping:8.4g}  {way}{stated}".rstrip())
+    lines += [] if known or modes.surface is None else ["  the mesh's error is not known: give a coarser one"]
     if not modes.damping_given:
         lines.append("  undamped: beam.damping_ratio is not given")
     if modes.rigid:
@@ -253,6 +255,8 @@ def system_modes(modes: SystemModes) -> str:
         damping = ratio if abs(ratio) > 1e-10 else 0.0
         known = f"  error {percent(error):>7}" if math.isfinite(error) else ""
         lines.append(f"  {k + 1:>3}  {frequency:12.6g} Hz  damping {damping:8.4g}{known}  {listed}")
+    if (modes.frequency > modes.reached).any():
+        lines.append(f"  above {modes.reached:.4g} Hz, to which the modes of meshes and matrices reach, upper bounds")
     if modes.rigid:
         lines.append(f"  and {modes.rigid} motion{'' if modes.rigid == 1 else 's'} of zero frequency")
     lines += [f"  {each}" for each in modes.instabilities]

@@ -13,7 +13,7 @@ from gbeam.results.facts import at_place
 from gbeam.results.parts import Loads
 from gbeam.results.response import BaseMotion
 from gbeam.results.result import Figured, Floats, Part, Result, brief
-from gbeam.results.solids import SolidStress, SpecimenLoads
+from gbeam.results.solids import SolidStress, SpecimenLoads, Surface
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -46,6 +46,7 @@ class Deflection(Figured):
     )
     errors: Errors = part("of displacement, root loads and stress", name=None, default_factory=Errors)
     solid: SolidStress | None = part("stress of a solid, of one time", name=None, optional=True, default=None)
+    surface: Surface | None = part("surface of a solid, for pictures", name="surface_", key=None, default=None)
     specimen: SpecimenLoads | None = part(
         "loads of a rigid specimen, of one time", name=None, optional=True, default=None
     )

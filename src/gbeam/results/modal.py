@@ -13,6 +13,7 @@ from gbeam.results.equilibrium import Critical
 from gbeam.results.errors import ErrorEstimate, FrequencyErrors, Instability, Oscillating, totals
 from gbeam.results.response import BaseMotion
 from gbeam.results.result import Complex, Figured, Floats, Part
+from gbeam.results.solids import SurfaceModes
 
 SHOWN = 6  # frequencies in a short description
 FAR = 2.0  # times the highest multiple of the speed: a mode above would press the others to the ground
@@ -107,6 +108,8 @@ class Modes(Oscillating, Figured):
         "", "direction of the section's width at rest", "station axis", name="section_across", key="section.across",
         optional=True, default=None,
     )  # fmt: skip
+
+    surface: SurfaceModes | None = part("surface of a solid, for pictures", name="surface_", key=None, default=None)
 
     @property
     def edge(self) -> Complex:

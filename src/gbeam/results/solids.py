@@ -14,7 +14,7 @@ from gbeam.errors import InputError
 from gbeam.guards.checks import vector
 from gbeam.results.declared import declared, fact, labels, part, quantity
 from gbeam.results.parts import yield_margin
-from gbeam.results.result import Figured, Floats, Part
+from gbeam.results.result import Complex, Figured, Floats, Part
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -156,8 +156,8 @@ def said(stress: StressAt) -> str:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Surface(Part):
-    """Surface of a solid for pictures, coarser than its mesh, in a few shapes that move and stress it over time."""
+class Skin(Part):
+    """Surface of a solid for pictures, coarser than its mesh, and a few shapes that move and stress it."""
 
     vertices: Floats = quantity("m", "place of the vertex from the root, undeformed", "vertex axis")
     triangles: NDArray[np.int_] = quantity("", "vertices of the triangle, from 0", "triangle corner_of_triangle")
@@ -165,8 +165,21 @@ class Surface(Part):
     stress: Floats = quantity(
         "Pa", "stress xx, yy, zz, yz, xz, xy at the vertex", "surface_shape vertex stress_component"
     )
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Surface(Skin):
+    """Surface of a solid over time."""
+
     time: Floats = quantity("s", "some of the times", "surface_time", role="coordinate")
     sizes: Floats = quantity("", "size of the shape over time", "surface_time surface_shape")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class SurfaceModes(Skin):
+    """Surface of a solid in modes."""
+
+    sizes: Complex = quantity("", "size of the shape, in the size of the mode's shape", "mode surface_shape")
 
 
 @dataclass(frozen=True, repr=False, eq=False)

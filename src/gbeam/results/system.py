@@ -17,7 +17,7 @@ from gbeam.results.machine import AxesResult, Driven
 from gbeam.results.parts import LoadPeaks, Loads, Outline
 from gbeam.results.response import BaseMotion
 from gbeam.results.result import Complex, Figured, Floats, Part
-from gbeam.results.solids import SolidStress, Surface
+from gbeam.results.solids import SolidStress, Surface, SurfaceModes
 
 ENERGIES = ("kinetic", "elastic", "gravity")
 _OF_POINTS = {"place": "place", "velocity": "velocity", "acceleration": "acceleration", "spin": "angular_velocity"}
@@ -459,6 +459,15 @@ class SystemModes(Oscillating, Figured):
     beams: Mapping[str, BeamShape] = rows(
         "beams, by the name of the body", "body", optional=True, name="", key=None, default_factory=dict
     )
+
+    reached: float = fact(
+        "frequency to which the modes of meshes and matrices among the bodies reach, at rest: those above are upper "
+        "bounds", "Hz", note="NaN where there are none", default=math.nan,
+    )  # fmt: skip
+    surfaces: Mapping[str, SurfaceModes] = rows(
+        "surfaces of meshes for pictures, by the name of the body", "body", optional=True, name="surface_", key=None,
+        default_factory=dict,
+    )  # fmt: skip
 
     @declared("", "body that moves most", "mode", name=None)
     def foremost(self) -> tuple[str, ...]:

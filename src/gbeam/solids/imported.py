@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -268,6 +269,7 @@ class ImportedModel(Value):
             kind=kind,
             warnings=(*doubts, *more),
             unstiffened=bool(doubts or more),
+            mesh_error=(math.nan,) * modes,
         )
 
     def _node(self, where: str, number: int) -> int:

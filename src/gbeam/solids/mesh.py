@@ -348,6 +348,7 @@ class SolidMesh(Value):
             points=self.named_points,
             kind=kind,
             warnings=(*self.warnings, *doubts),
+            mesh_error=tuple(error.tolist()),
         )
         return SolidModel(self, replace(structure, recovery=NodalStress.of(self, shapes)), shapes, frequency, error)
 
@@ -404,7 +405,9 @@ def _node(at: Floats, middles: Floats, name: str, place: Any, group: Any) -> int
     away = np.linalg.norm(middles - place, axis=1)
     size = float(np.linalg.norm(np.ptp(at, axis=0)))
     if away.min() > 0.1 * size:
-        raise InputError(where, f"is {away.min():.3g} m from the nearest node", "give a place on the solid, in m")
+        x, y, z = middles[away.argmin()]
+        fix = f"give a place on the solid, in m: that node is at ({x:.4g}, {y:.4g}, {z:.4g}) m"
+        raise InputError(where, f"is {away.min():.3g} m from the nearest node", fix)
     nodes = np.flatnonzero(away == away.min())
     arms = at[nodes] - middles[nodes]
     return int(nodes[(arms @ (place - middles[nodes[0]]) > MIDDLE * (arms**2).sum(axis=1)).argmax()])

@@ -281,6 +281,15 @@ class RigidSpecimen(Value):
         """
         return {"specimen": self._loads(time, base, motion, environment)}
 
+    def in_modes(self, modes: Any) -> None:
+        """Return nothing: a rigid body has no modes.
+
+        Parameters
+        ----------
+        modes : (k, 0)
+            Coordinates.
+        """
+
     def strain(self, point: str, along: Any) -> Floats:
         """Refuse a strain, which a rigid body has none of.
 

@@ -11,8 +11,8 @@ import numpy as np
 
 from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
-from gbeam.results.result import Floats
-from gbeam.results.solids import SolidStress, StressAt, Surface, von_mises
+from gbeam.results.result import Complex, Floats
+from gbeam.results.solids import SolidStress, StressAt, Surface, SurfaceModes, von_mises
 from gbeam.solids.elements import TENSOR, chunks
 from gbeam.solids.shape_functions import KINDS, Indices, extrapolation
 
@@ -87,30 +87,35 @@ class NodalStress(Value):
 
     def parts(self, time: Floats, base: Any, q: Floats, *, motion: str, model: str, environment: str) -> dict[str, Any]:
         """The stress of a response."""
-        solid = solid_stress(self, time, q, motion=motion, model=model)
-        return {"solid": solid, "surface": self._surface(time, q)}
+        some = np.unique(np.linspace(0, len(time) - 1, TIMES).round().astype(int))
+        skin, sizes = self._skin(q[some])
+        surface = Surface(**skin, time=time[some], sizes=sizes)
+        return {"solid": solid_stress(self, time, q, motion=motion, model=model), "surface": surface}
 
-    def _surface(self, time: Floats, q: Floats) -> Surface:
-        """The surface in the few shapes in which the coordinates (t, n) moved and stressed it most."""
+    def in_modes(self, modes: Complex) -> SurfaceModes:
+        """The surface in modes (k, n)."""
+        skin, sizes = self._skin(np.concatenate([modes.real, modes.imag]))
+        return SurfaceModes(**skin, sizes=sizes[: len(modes)] + 1j * sizes[len(modes) :])
+
+    def _skin(self, q: Floats) -> tuple[dict[str, Any], Floats]:
+        """The surface in the few shapes in which coordinates (t, n) move and stress it most, and their sizes (t, s)."""
         vertices, triangles = surface_of(self.mesh)
         count = len(self.mesh.points)
         # At a vertex of two materials the first.
         first = np.full(count, -1)
         first[self.node[::-1]] = np.arange(len(self.known))[::-1]
         stress = self.table[first[vertices]]
-        some = np.unique(np.linspace(0, len(time) - 1, TIMES).round().astype(int))
         size = np.sqrt((stress**2).sum(axis=(0, 1)))
-        left, sizes, right = np.linalg.svd(q[some] * size, full_matrices=False)
+        left, sizes, right = np.linalg.svd(q * size, full_matrices=False)
         kept = max(1, int((sizes > ENOUGH * sizes[0]).sum()))
         mixed = (right[:kept] / np.where(size > 0, size, np.inf)).T  # coordinates of unit shapes
-        return Surface(
-            vertices=self.mesh.points[vertices],
-            triangles=triangles,
-            shapes=np.moveaxis(self.shapes[vertices] @ mixed, -1, 0),
-            stress=np.moveaxis(stress @ mixed, -1, 0),
-            time=time[some],
-            sizes=left[:, :kept] * sizes[:kept],
-        )
+        skin = {
+            "vertices": self.mesh.points[vertices],
+            "triangles": triangles,
+            "shapes": np.moveaxis(self.shapes[vertices] @ mixed, -1, 0),
+            "stress": np.moveaxis(stress @ mixed, -1, 0),
+        }
+        return skin, left[:, :kept] * sizes[:kept]
 
     def _elements(self, wanted: int | None = None) -> Iterator[tuple[Indices, Floats]]:
         """Pairs (m,) and stresses (m, 6, n) at the nodes of elements: of all, or of those at one pair."""

@@ -143,6 +143,7 @@ def campbell(
         tell(progress, f"frequencies at {rate:.4g} rad/s", (rate - start) / (end - start))
         state = point_at(rate)
         moving, first = state.moving, state.first
+        moving = moving.oscillating(slice(structure.resolved if isinstance(structure, Structure) else None))
         damping = -moving.value.real / moving.frequency
         mass = state.linear.mass[first:, first:]
         directions = state.directions(moving.modes)

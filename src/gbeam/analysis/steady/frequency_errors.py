@@ -48,6 +48,13 @@ def doubtful(errors: FrequencyErrors) -> tuple[str, ...]:
     return tuple(said)
 
 
+def of_mesh(structure: Structure, count: int) -> FrequencyErrors | None:
+    """Errors of the first frequencies of a solid by its mesh; None where a coarser one did not tell."""
+    total = np.array(structure.mesh_error or ())[:count]
+    unknown = np.full(count, np.nan)
+    return FrequencyErrors(unknown, unknown, unknown, total) if np.isfinite(total).any() else None
+
+
 class ByTheory(NamedTuple):
     """Errors (k,) by the theory of slender beams, the causes of the largest, and frequencies unknown to it, Hz."""
 

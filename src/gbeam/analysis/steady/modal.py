@@ -7,7 +7,7 @@ from typing import overload
 
 import numpy as np
 
-from gbeam.analysis.steady.frequency_errors import Richer, doubtful, judgeable
+from gbeam.analysis.steady.frequency_errors import Richer, doubtful, judgeable, of_mesh
 from gbeam.analysis.steady.operating_point import OperatingPoint, drawn, extent, operating_point
 from gbeam.analysis.system.linear import instabilities, system_modes
 from gbeam.analysis.system.steady import Drive, steady
@@ -30,7 +30,9 @@ def modes_at(
     time: float = float("nan"),
 ) -> Modes:
     """Modes about an operating point."""
-    moving = point.vibrations(gyroscopic=gyroscopic)
+    rigid = int(point.first and not np.abs(point.linear.stiffness[:, 0]).any())
+    own = slice(structure.resolved + point.first - rigid)  # with the hub's
+    moving = point.vibrations(gyroscopic=gyroscopic).oscillating(own)
     coordinates, direction = moving.modes[point.first :], point.directions(moving.modes)
     shape = np.moveaxis(structure.station_slopes(point.q) @ coordinates, -1, 0)
     # Turn each shape so that its largest component is 1.
@@ -39,6 +41,7 @@ def modes_at(
     if twist is not None:
         largest = np.where(np.array(direction) == "twist", _largest(twist * extent(structure)), largest)
     scale = np.where(largest == 0, 1, largest)
+    recovery = structure.recovery
     return Modes(
         motion=name,
         model=structure.kind,
@@ -53,9 +56,10 @@ def modes_at(
         twist=None if twist is None else twist / scale[:, None],
         equilibrium=np.asarray(structure.displacement(point.q)),
         instabilities=instabilities(point, moving),
-        rigid=int(point.first and not np.abs(point.linear.stiffness[:, 0]).any()),
+        rigid=rigid,
         damping_given=structure.damping_ratio is not None,
         overdamped=moving.decaying,
+        surface=None if recovery is None or not len(moving.value) else recovery.in_modes((coordinates / scale).T),
     )
 
 
@@ -147,4 +151,6 @@ def modes(
     if errors and judgeable(structure):
         stated = Richer(point).errors(point, computed.eigenvalue, computed.coordinates, gyroscopic=gyroscopic)
         warnings += doubtful(stated)
+    elif errors and not point.first:
+        stated = of_mesh(structure, len(computed.eigenvalue))
     return replace(computed, errors=stated, warnings=warnings, **drawn(structure))

@@ -228,6 +228,5 @@ def deflection_at(
         warnings=warnings,
         loads=loads,
         errors=errors,
-        solid=parts.get("solid"),
-        specimen=parts.get("specimen"),
+        **{key: parts.get(key) for key in ("solid", "surface", "specimen")},
     )

@@ -19,6 +19,7 @@ from gbeam.analysis.system.steady import Drive, SteadySystem, steady
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.checks import choice
 from gbeam.integrate.equations import Trajectory
+from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.control import signal_names
 from gbeam.mechanics.tree.equations import Inputs
 from gbeam.mechanics.tree.signals import Driven, deforming, drives_of, measurements, signals_of
@@ -93,6 +94,8 @@ def system_modes(state: SteadySystem, moving: Vibrations, time: float, name: str
     largest = flat[np.arange(len(flat)), np.abs(flat).argmax(axis=1)] if flat.size else np.ones(len(shape))
     scale = np.where(largest == 0, 1, largest)
     warnings = system.warnings + state.point.sticking(system)
+    bodies = (each for each in system.bodies.values() if isinstance(each, Structure))
+    reduced = [each for each in bodies if each.resolved < each.size]
     if state.changing:
         warnings += (f"the system turns, and its equations with it: these are modes of the place at {time:g} s",)
     return SystemModes(
@@ -108,6 +111,12 @@ def system_modes(state: SteadySystem, moving: Vibrations, time: float, name: str
         attitude=parameters_of_all(np.stack([frame.R for frame in state.frames])),
         assembly=assembly_of(system),
         beams=_shapes(state, moving.modes / scale),
+        reached=min((float(each.rest[0][each.resolved - 1]) / (2 * np.pi) for each in reduced), default=math.nan),
+        surfaces={
+            body: each.recovery.in_modes((moving.modes / scale)[deforming(state.names, body)].T)
+            for body, each in system.bodies.items()
+            if isinstance(each, Structure) and each.recovery is not None and len(moving.value)
+        },
         rigid=len(local.y) - len(moving.value) - (len(moving.diverging) + len(moving.decaying)) // 2,
         instabilities=instabilities(state, moving),
         warnings=warnings,

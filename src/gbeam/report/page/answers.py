@@ -131,8 +131,8 @@ def modes_body(facts: Facts, viewer: str, drawn: str) -> str:
     if not facts["damping_given"]:
         parts.append(paragraph("undamped: beam.damping_ratio is not given", "faint"))
     if facts["modes"]:
-        scale = "to scale" if facts.get("section", {}).get("width") else "not to scale: the result does not hold it"
-        drawing = paragraph(f"largest displacement 15 % of the length; the section is drawn {scale}", "faint")
+        unknown = "" if facts.get("section", {}).get("width") else "; a beam's section, which the result lacks, is not"
+        drawing = paragraph(f"largest displacement 15 % of the length; the rest is drawn to scale{unknown}", "faint")
         parts.append(section("Shapes", viewer and viewer + drawing + drawn))
     return "".join(parts)
 
@@ -158,7 +158,10 @@ def modes_table(facts: Facts) -> str:
         ]
         for i, each in enumerate(facts["modes"], 1)
     ]
-    return table(("mode", "frequency, Hz", "damping ratio", "along", "estimated error"), rows, words=(3,))
+    head = ("mode", "frequency, Hz", "damping ratio", "along", "estimated error")
+    if all(row[-1] == percent(np.nan) for row in rows):
+        return table(head[:-1], (row[:-1] for row in rows), words=(3,))
+    return table(head, rows, words=(3,))
 
 
 def tracks_table(facts: Facts) -> str:
@@ -203,7 +206,12 @@ def static_body(facts: Facts, viewer: str, drawn: str) -> str:
     ]
     rigid = {name: each["specimen"] for name, each in motions.items() if "specimen" in each}
     bending = {name: each for name, each in motions.items() if name not in rigid}
-    parts += [heading("Deflection" if bending else "Loads"), _tips(bending), resting_loads_table(motions)]
+    parts += [
+        section("View", viewer),
+        heading("Deflection" if bending else "Loads"),
+        _tips(bending),
+        resting_loads_table(motions),
+    ]
     parts += [stress_table({name: each["solid"] for name, each in motions.items() if "solid" in each})]
     parts += [specimen_tables(rigid)]
     return "".join([*parts, section("Along the beam", drawn)])

@@ -186,11 +186,11 @@ def _viewer(
 ) -> dict[str, dict[str, Any]]:
     """Viewer of a kind, if it has one."""
     if kind == "Modes" and facts["modes"]:
-        return {"modes": shapes(modes_in(facts), numbers)}
+        return {"modes": shapes(modes_in(facts), variables, numbers)}
     if kind == "SystemModes" and facts["modes"] and "hangs_on" in variables:
         return {"modes": shapes_of_system(facts, variables, numbers)}
     motions = facts["motions"] if kind in ("Study", "SystemStudy") else {}
-    if kind == "SystemRest":
+    if kind in ("Deflection", "SystemRest"):
         motions = {name: {"environment": "rest"} for name in facts["motions"]}
     if kind == "SystemResponse":  # of one motion, alone
         motions = {facts["name"] or facts["environment"]: facts}

@@ -229,7 +229,9 @@ def _plans(facts: Facts, variables: Facts) -> tuple[MachinePlan, ...]:
 
 def _deflection(name: str, facts: Facts) -> Deflection:
     loads = facts.get("loads")
-    return _read(Deflection, facts, motion=name, loads=loads and _at_rest(loads))
+    of: dict[str, Any] = {"solid": SolidStress, "specimen": SpecimenLoads}
+    more: dict[str, Any] = {key: _read(kind, facts[key]) for key, kind in of.items() if facts.get(key)}
+    return _read(Deflection, facts, motion=name, loads=loads and _at_rest(loads), **more)
 
 
 def _rest(name: str, facts: Facts) -> SystemRest:

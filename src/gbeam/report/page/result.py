@@ -20,6 +20,7 @@ from gbeam.report.facts import facts, origin_json, whole
 from gbeam.report.page.document import html
 from gbeam.report.page.parts import Numbers
 from gbeam.report.page.scene import scene, shapes, shapes_of_system
+from gbeam.results.equilibrium import Deflection
 from gbeam.results.modal import Modes
 from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response
@@ -27,7 +28,8 @@ from gbeam.results.result import Result
 from gbeam.results.study import Study, SystemStudy
 from gbeam.results.system import SystemModes, SystemResponse, SystemRest
 
-SHOWN = Study, Response, SystemStudy, SystemResponse, SystemModes, SystemRest  # in motion, or in three dimensions
+# In motion, or in three dimensions.
+SHOWN = Study, Response, SystemStudy, SystemResponse, Deflection, Modes, SystemModes, SystemRest
 _FIX = "give the result.nc of `gbeam run`, its folder, or the JSON of another verb"
 
 
@@ -47,6 +49,7 @@ def variables_of(result: Result) -> dict[str, Any]:
     """The arrays that the file of a result holds, by path, of a place at rest that of its motion."""
     of = whole(result)
     within = f"motions/{of.name}" if isinstance(of, SystemRest) else ""
+    within = f"motions/{of.motion}" if isinstance(of, Deflection) else within
     return {
         f"{path or within}/{name}" if path or within else name: each.values
         for path, group in groups_of(of).items()
@@ -59,7 +62,7 @@ def shown(result: Result) -> tuple[dict[str, Any], Numbers]:
     numbers = Numbers()
     header: dict[str, Any] = {"plots": [], "maps": []}
     if isinstance(result, Modes):
-        header["modes"] = shapes(result, numbers)
+        header["modes"] = shapes(result, variables_of(result), numbers)
         return header, numbers
     if isinstance(result, SystemModes) and result.assembly is not None and len(result.frequency):
         header["modes"] = shapes_of_system(facts(result), variables_of(result), numbers)
@@ -68,8 +71,9 @@ def shown(result: Result) -> tuple[dict[str, Any], Numbers]:
     if isinstance(of, (Study, SystemStudy)):
         environments = {name: each.environment for name, each in of.responses.items()}
         header["scene"] = scene(environments, variables_of(of), numbers)
-    if isinstance(of, SystemRest):
-        header["scene"] = scene({of.name: "rest"}, variables_of(of), numbers)
+    if isinstance(of, (Deflection, SystemRest)):
+        name = of.motion if isinstance(of, Deflection) else of.name
+        header["scene"] = scene({name: "rest"}, variables_of(of), numbers)
     if header.get("scene") is None:
         raise InputError("result", f"{type(result).__name__} has no beam in motion to show", "print it, or plot it")
     return header, numbers

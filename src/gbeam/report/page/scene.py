@@ -20,6 +20,7 @@ TIMES = 1500  # of bodies that have no outline of their own
 SIGNS = np.array(np.meshgrid(*[(-1, 1)] * 3)).reshape(3, -1).T  # of a box's corners
 CORNERS = (SIGNS + 1) / 2
 SURFACE = ("vertices", "triangles", "shapes", "stress", "sizes")
+MESH = ("shapes", "sizes_real", "sizes_imag")  # of a surface in modes
 LINE = (("rest", "place"), ("across", "across"))  # of a beam that is not straight, and where an outline has it
 FAR = 4  # times their own size: bodies that go farther are followed
 AMPLITUDE, TURN = 0.15, 0.6  # of a mode: of the length, of the largest displacement; rad, the largest rotation
@@ -37,7 +38,8 @@ def scene(motions: Mapping[str, str], variables: Variables, numbers: Numbers) ->
         if "outline" in of:
             shown.append((motion(name, environment, of, numbers), of["outline_time"], of["outline"]))
         elif "surface_vertices" in of:
-            shown.append(_solid(name, environment, of, numbers))
+            at_rest = np.ndim(of["root_acceleration"]) == 1
+            shown.append(_solid(name, environment, _still(of) if at_rest else of, numbers))
         elif "hangs_on" in of:
             shown.append(_system(name, environment, of if of["place"].ndim == 3 else _resting(of), numbers))
     if not shown:
@@ -75,21 +77,24 @@ def motion(name: str, environment: str, variables: Variables, numbers: Numbers) 
 def _solid(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple[dict[str, Any], Floats, Floats]:
     """One motion of a solid: its surface in a few shapes; times and displacements (t, v, 3), the largest last."""
     some, at = v["surface_time"], v["surface_vertices"]
-    surface, tip = _surface({key: v[f"surface_{key}"] for key in SURFACE}, v["solid_von_mises"], numbers)
+    surface, tip = _surface({key: v[f"surface_{key}"] for key in SURFACE}, v.get("solid_von_mises"), numbers)
     index = np.searchsorted(v["time"], some - 1e-12).clip(max=len(v["time"]) - 1)
-    low, high = at.min(axis=0), at.max(axis=0)
-    radius = float(np.linalg.norm(high - low)) / 2
     header = {
         "name": name,
         "environment": environment,
         "parts": [{"surface": surface}],
-        "length": 2 * radius,
         "time": numbers.add(some),
         "largest": _largest(tip),
-        "middle": numbers.add((low + high)[None] / 2),
-        "radiusShown": 1.05 * radius,
+        **_around(at, numbers),
     }
     return header | _carried(v, index, at, numbers), some, tip
+
+
+def _around(places: Floats, numbers: Numbers) -> dict[str, Any]:
+    """Length and view of a solid at places (p, 3)."""
+    low, high = places.min(axis=0), places.max(axis=0)
+    radius = float(np.linalg.norm(high - low)) / 2
+    return {"length": 2 * radius, "middle": numbers.add((low + high)[None] / 2), "radiusShown": 1.05 * radius}
 
 
 def _surface(of: Variables, stress: Floats | None, numbers: Numbers) -> tuple[dict[str, Any], Floats]:
@@ -228,21 +233,30 @@ def shape(points: Floats, width: Floats, thickness: Floats, is_round: Any) -> di
     }
 
 
+def _still(v: Variables) -> Variables:
+    """A solid at rest as one that moves, at one time."""
+    return {**v, "time": np.zeros(1), "root_acceleration": v["root_acceleration"][None]}
+
+
 def _resting(v: Variables) -> Variables:
     """A system at rest as one that moves, at one time."""
     return {**v, "time": np.zeros(1), "place": v["place"][None], "attitude": v["attitude"][None]}
 
 
-def shapes(modes: Modes, numbers: Numbers) -> dict[str, Any]:
-    """Shapes of every mode of a beam, at some of the stations, as motions of a period."""
+def shapes(modes: Modes, variables: Variables, numbers: Numbers) -> dict[str, Any]:
+    """Shapes of every mode of a beam, at some of the stations, or of a solid's surface, as motions of a period."""
+    ways = zip(modes.frequency, modes.direction, strict=True)
+    labels = [f"{i}: {number(frequency)} Hz, {way}" for i, (frequency, way) in enumerate(ways, 1)]
+    if "surface_vertices" in variables:
+        surface = {key.removeprefix("surface_"): each for key, each in variables.items() if key.startswith("surface_")}
+        return {"labels": labels, "motions": [_of_surface(k, each, surface, numbers) for k, each in enumerate(labels)]}
     x = modes.stations
     some = np.unique(np.linspace(0, len(x) - 1, SHOWN).round().astype(int))
     sizes = [
         (each if each.size else x[-1] * part * np.ones(len(x)))[some]
         for each, part in ((modes.width, WIDE), (modes.thickness, THICK))
     ]
-    ways = zip(modes.frequency, modes.direction, strict=True)
-    labels, motions = [f"{i}: {number(frequency)} Hz, {way}" for i, (frequency, way) in enumerate(ways, 1)], []
+    motions = []
     line: dict[str, Any] = {}
     view: dict[str, Any] = {"length": float(x[-1])}
     if modes.place is not None and modes.across is not None:
@@ -263,6 +277,24 @@ def shapes(modes: Modes, numbers: Numbers) -> dict[str, Any]:
     return {"labels": labels, "motions": motions}
 
 
+def _of_surface(k: int, label: str, surface: dict[str, Any], numbers: Numbers) -> dict[str, Any]:
+    """One mode of a solid's surface."""
+    view = _around(surface["vertices"], numbers)
+    moved = _in_mode(surface, k)
+    amplitude = _amplitude(view["length"], moved, 0.0)
+    drawn, tip = _surface({**surface, "sizes": amplitude * _swung(_complex(surface, "sizes")[k])}, None, numbers)
+    return _mode(label, {"parts": [{"surface": drawn}], **view, "time": numbers.add(PHASES), "largest": _largest(tip)})
+
+
+def _in_mode(surface: Mapping[str, Any], k: int) -> float:
+    """Largest displacement of a surface in a mode, in the size of its shape."""
+    return _largest(np.abs(np.einsum("s,sva->va", _complex(surface, "sizes")[k], surface["shapes"])))
+
+
+def _complex(v: Mapping[str, Any], name: str) -> Any:
+    return v[f"{name}_real"] + 1j * v[f"{name}_imag"]
+
+
 def shapes_of_system(facts: Mapping[str, Any], v: Variables, numbers: Numbers) -> dict[str, Any]:
     """Every mode of a system as a motion of a period."""
     rows = enumerate(zip(facts["modes"], v["share"], strict=True), 1)
@@ -273,10 +305,14 @@ def shapes_of_system(facts: Mapping[str, Any], v: Variables, numbers: Numbers) -
     _, radius = _view(resting["place"])
 
     def of(name: str, k: int) -> Any:
-        return v[f"{name}_real"][k] + 1j * v[f"{name}_imag"][k]
+        return _complex(v, name)[k]
 
+    meshes = {
+        body: {key: v[f"surface_{body}_{key}"] for key in MESH} for body in v["body"] if f"surface_{body}_vertices" in v
+    }
     for k, label in enumerate(labels):
         most = [np.abs(of(each, k)).max() for each in ("shape", *(f"{body}_outline_shape" for body in beams))]
+        most += [_in_mode(each, k) for each in meshes.values()]
         amplitude = _amplitude(2 * radius, float(max(most)), float(np.abs(of("turn", k)).max()))
         turned = [Rotation.from_rotvec(amplitude * each) * rest for each in _swung(of("turn", k))]
         moving = {
@@ -288,6 +324,9 @@ def shapes_of_system(facts: Mapping[str, Any], v: Variables, numbers: Numbers) -
         for body in beams:
             moving[f"{body}_outline_time"] = PHASES
             moving[f"{body}_outline"] = v[f"{body}_outline"] + amplitude * _swung(of(f"{body}_outline_shape", k))
+        for body, mesh in meshes.items():
+            moving[f"{body}_surface_time"] = PHASES
+            moving[f"surface_{body}_sizes"] = amplitude * _swung(_complex(mesh, "sizes")[k])
         motions.append(_mode(label, _system(label, label, moving, numbers)[0]))
     return {"labels": labels, "motions": motions}
 
