@@ -8,10 +8,12 @@ from typing import Any
 import meshio
 import numpy as np
 import pytest
+from scipy.linalg import eigh
 
 import gbeam as gb
 
 from .bodies import STEEL, block
+from .test_shells import sheet
 
 # In mm, t, N and s. Node 901 is at 900, beside the middle of the end, and 902 in the air.
 PLACES = {900: (205.0, 4.0, 0.0), 901: (205.0, 4.0, 0.0), 902: (0.0, 0.0, 300.0)}
@@ -162,3 +164,60 @@ def test_a_unit_that_is_none_is_refused(tmp_path: Path) -> None:
 def test_a_damaged_card_is_placed(tmp_path: Path) -> None:
     with pytest.raises(gb.InputError, match=r"part.bdf has masses, links or springs that cannot be read: .*mend"):
         read(nastran(tmp_path, "CONM2,92,x,,0.1"), mass_unit="Mg")
+
+
+def tipped(folder: Path, words: str, **more: Any) -> gb.SolidMesh:
+    """A strip of shells, 200 x 10 x 2 mm, its tip in the middle at node 900, read with statements besides its mesh."""
+    mesh = sheet("quad8", (8, 1), (200.0, 10.0))
+    used, cells = np.unique(mesh.cells[0].data, return_inverse=True)
+    places = mesh.points[used] - (0, 5.0, 0)
+    ends = {name: np.flatnonzero(places[:, 0] == x) for name, x in (("wall", 0.0), ("end", 200.0))}
+    file = folder / "strip.inp"
+    meshio.write(file, meshio.Mesh(places, {"quad8": cells.reshape(-1, 8)}, point_sets=ends))
+    tip = int(ends["end"][places[ends["end"], 1] == 0][0]) + 1
+    section = "*SHELL SECTION, ELSET=ALL, MATERIAL=STEEL\n2.\n"
+    file.write_text(file.read_text() + section + words.format(tip=tip))
+    unit = {"mass_unit": "Mg"} if words else {}
+    return gb.SolidMesh.read(file, materials=STEEL, clamp="wall", unit="mm", thickness="2 mm", **unit, **more)
+
+
+BODY = """*ELEMENT, TYPE=MASS, ELSET=m
+900, {node}
+*MASS, ELSET=m
+1e-3
+*ELEMENT, TYPE=ROTARYI, ELSET=j
+901, {node}
+*ROTARY INERTIA, ELSET=j
+0.2, 2., 2.
+"""
+
+
+def test_a_body_on_shells(tmp_path: Path) -> None:
+    """On an edge that is rigid, or on its middle alone, beside a body on the end of a beam without mass."""
+    edge = "*RIGID BODY, NSET=end, REF NODE={tip}\n" + BODY.replace("node", "tip")
+    body = gb.RigidBody(1.0, np.diag([2e-4, 2e-3, 2e-3]))
+    rigid = tipped(tmp_path, edge)
+    wanted = tipped(tmp_path, "", links={"end": "end"}, carried={"end": body})
+    assert rigid.warnings == ()
+    np.testing.assert_allclose(frequencies(rigid, 4), frequencies(wanted, 4), rtol=1e-8)
+    length, bent = 0.2, STEEL.youngs_modulus * 0.01 * 0.002**3 / 12
+    stiffness = bent * np.array([[12 / length**3, -6 / length**2], [-6 / length**2, 4 / length]])
+    closed = np.sqrt(eigh(stiffness, np.diag([1.0, 2e-3]), eigvals_only=True)) / 2 / np.pi
+    for mesh, close in ((rigid, 2e-3), (tipped(tmp_path, BODY.replace("node", "tip")), 0.015)):
+        found = frequencies(mesh, 3)
+        for each in closed:
+            assert np.abs(found / each - 1).min() < close
+
+
+def test_a_node_of_a_shell_turns_about_axes_across_its_normal(tmp_path: Path) -> None:
+    """Whichever way round the mesh is; about the normal nothing holds it, and a spring there does nothing."""
+    words = BODY.replace("node", "tip")
+    alone = frequencies(tipped(tmp_path, words), 5)
+    np.testing.assert_allclose(frequencies(tipped(tmp_path, words, turn=(0.3, -0.2, 0.9)), 5), alone, rtol=1e-8)
+    spring = "*ELEMENT, TYPE=SPRING1, ELSET=s\n902, {tip}\n*SPRING, ELSET=s\n"
+    about = [frequencies(tipped(tmp_path, f"{words}{spring}{way}\n1e6\n"), 5) for way in (5, 6)]
+    np.testing.assert_allclose(about[1], alone, rtol=1e-9)
+    clamped = np.sqrt(12 * STEEL.youngs_modulus * 0.01 * 0.002**3 / 12 / 0.2**3) / 2 / np.pi
+    assert about[0][0] == pytest.approx(clamped, rel=0.025)
+    heavier = tipped(tmp_path, "*ELEMENT, TYPE=MASS, ELSET=m\n900, {tip}\n*MASS, ELSET=m\n1e-3\n")
+    assert heavier.mass == pytest.approx(tipped(tmp_path, "").mass + 1.0)

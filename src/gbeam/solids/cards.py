@@ -177,13 +177,14 @@ def _members(rows: list[list[str]], sets: Mapping[str, list[int]], generated: bo
 
 @dataclass(frozen=True)
 class Placed:
-    """Nodes of a file: places (f, 3) m in base axes, rotation to these from the file's, numbers (f,) among those of the
-    solid or less than zero, and whether a node of the solid follows the base.
+    """Nodes of a file: places (f, 3) m in base axes, and rotation to these from the file's; points (k, 3) of the solid,
+    the nodes (k,) for which they stand, and whether they follow the base.
     """
 
     places: Floats
     rotation: Floats
-    solid: Indices
+    points: Floats
+    numbers: Indices
     clamped: Any
 
 
@@ -194,7 +195,9 @@ def with_cards(cards: Cards, links: Links, nodes: Placed, size: float, mass: flo
     if cards.index and len(cards.index) != len(nodes.places):
         problem = f"has {len(cards.index)} nodes where its masses and links are, and {len(nodes.places)} in all"
         raise InputError("mesh", problem, "write it into one file, without includes")
-    solid_of = {number: int(nodes.solid[i]) for number, i in cards.index.items()}
+    ends = np.cumsum(np.bincount(nodes.numbers, minlength=len(nodes.places)))[:-1]
+    points_of = np.split(np.argsort(nodes.numbers, kind="stable"), ends)
+    solid_of = {number: points_of[i] for number, i in cards.index.items()}
     place_of = {number: nodes.places[i] for number, i in cards.index.items()}
     within = float(np.linalg.norm(np.ptp(nodes.places, axis=0))) * APART
     members, places, owner = dict(links.nodes), dict(links.places), dict[int, str]()
@@ -203,7 +206,7 @@ def with_cards(cards: Cards, links: Links, nodes: Placed, size: float, mass: flo
     def link(name: str, numbers: tuple[int, ...]) -> None:
         if unknown := [each for each in numbers if each not in solid_of]:
             raise _refused(name, f"names node {unknown[0]}, which is not there", "export it too")
-        chosen = np.unique([solid_of[each] for each in numbers if solid_of[each] >= 0]).astype(int)
+        chosen = np.unique(np.concatenate([solid_of[each] for each in numbers]))
         if len(chosen) and nodes.clamped[chosen].all():
             owner.update(dict.fromkeys(numbers, base))
             return
@@ -211,8 +214,8 @@ def with_cards(cards: Cards, links: Links, nodes: Placed, size: float, mass: flo
         shared += [other for other, held in members.items() if np.isin(chosen, held).any()]
         if shared or nodes.clamped[chosen].any():
             raise _refused(name, f"shares nodes with {shared[0] if shared else 'the clamp'}", "make them one")
-        if len(chosen) > 1:
-            coupling(f"mesh, {name}:", nodes.places[np.isin(nodes.solid, chosen)])
+        if len(np.unique(nodes.numbers[chosen])) > 1:
+            coupling(f"mesh, {name}:", nodes.points[chosen])
         members[name], places[name] = chosen, place_of[numbers[0]]
         owner.update(dict.fromkeys(numbers, name))
 
@@ -224,28 +227,30 @@ def with_cards(cards: Cards, links: Links, nodes: Placed, size: float, mass: flo
     for name, numbers in cards.rigid.items():
         link(name, numbers)
     carried: dict[str, list[tuple[float, Floats, Floats]]] = {}
-    for each in cards.lumps:
+    # First those that turn, which a mass on the same node joins.
+    for each in sorted(cards.lumps, key=lambda lump: not (lump.inertia.any() or lump.offset.any())):
         tensor = mass * size**2 * nodes.rotation @ each.inertia @ nodes.rotation.T
         offset = size * nodes.rotation @ each.offset
-        node = solid_of.get(each.node, -1)
-        if each.node not in owner and node >= 0:
-            if tensor.any() or offset.any():
+        alike = solid_of.get(each.node, ())
+        if each.node not in owner and len(alike):
+            if not tensor.any() and not offset.any():
+                weights[alike] += mass * each.mass / len(alike)
+                continue
+            if len(alike) == 1:
                 fix = "join it to the solid by a rigid link"
                 raise _refused(each.name, f"has an offset or inertia on node {each.node}, which does not turn", fix)
-            weights[node] += mass * each.mass
-            continue
         name = owned(each.name, each.node)
         if name != base:
             at = place_of[each.node] + offset - places[name]
             carried.setdefault(name, []).append((mass * each.mass, at, tensor))
     held = dict(links.springs)
     for k, spring in enumerate(cards.springs):
-        ends = [owned(spring.name, number) for number in spring.nodes]
+        joined = [owned(spring.name, number) for number in spring.nodes]
         across = max(float(np.linalg.norm(place_of[each] - place_of[spring.nodes[0]])) for each in spring.nodes)
         if across > within:
             raise _refused(spring.name, f"joins nodes {across:.3g} m apart", "let it join nodes at one place")
-        between = tuple(dict.fromkeys(each for each in ends if each != base))
-        if not between or (len(spring.nodes) == 2 and ends[0] == ends[1]):
+        between = tuple(dict.fromkeys(each for each in joined if each != base))
+        if not between or (len(spring.nodes) == 2 and joined[0] == joined[1]):
             continue  # between what moves together
         if not np.allclose(nodes.rotation, np.eye(3)):
             raise _refused(spring.name, "lies along the mesh's axes, and turn turns them", "leave turn out")
@@ -287,4 +292,4 @@ def _together(name: str, parts: list[tuple[float, Floats, Floats]]) -> RigidBody
         tensor += inertia + mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
     if tensor.any() and not whole:
         raise _refused(name, "has inertia and no mass")
-    return RigidBody(whole, tensor, tuple(centre))
+    return RigidBody(whole, (tensor + tensor.T) / 2, tuple(centre))  # turned, it is symmetric but for rounding

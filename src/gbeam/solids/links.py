@@ -164,7 +164,7 @@ class Linked:
     """
 
     def __init__(self, mesh: SolidMesh) -> None:
-        from scipy.sparse import coo_array, eye_array
+        from scipy.sparse import coo_array
 
         links, self.count = mesh.links, len(mesh.points)
         self._links, self._number = links, {name: i for i, name in enumerate(links.nodes)}
@@ -204,15 +204,18 @@ class Linked:
         middles = np.stack(sums, axis=1) / np.maximum(count, 1)[:, None]
         middles[: len(named)] = named
         self._arms = self.points[self._tied] - middles[of]
-        self._axes, turning = np.tile(np.eye(3), (len(middles), 1, 1)), np.ones((len(middles), 3), dtype=bool)
         second = np.zeros((len(middles), 3, 3))
-        np.add.at(second, of, self._arms[:, :, None] * self._arms[:, None])
-        size, axes = np.linalg.eigh(second[len(named) :])
-        self._axes[len(named) :], turning[len(named) :, 2] = axes, size[:, 1] > ON_A_LINE * size[:, 2]
-        alone, moving = np.flatnonzero(of_link < 0), [links.moving(name) for name in members]
-        of_shells = np.ones(int((3 + turning[len(named) :].sum(axis=1)).sum()), dtype=bool)
-        free = np.concatenate([np.repeat(~mesh.clamped[alone], 3), *moving, of_shells])
+        on_mesh = self._tied < self.count
+        np.add.at(second, of[on_mesh], (self._arms[:, :, None] * self._arms[:, None])[on_mesh])
+        size, axes = np.linalg.eigh(second)
+        on_line = (size[:, 1] <= ON_A_LINE * size[:, 2]) & (size[:, 2] > 0)
+        self._axes = np.where(on_line[:, None, None], axes, np.eye(3))
+        turning = np.stack([np.ones_like(on_line), np.ones_like(on_line), ~on_line], axis=1)
+        alone, moving = np.flatnonzero(of_link < 0), np.ones((len(middles), 6), dtype=bool)
+        for name, i in self._number.items():
+            moving[i] = links.moving(name)
         unknown = np.concatenate([np.ones_like(turning), turning], axis=1)
+        free = np.concatenate([np.repeat(~mesh.clamped[alone], 3), moving[unknown]])
         numbers = np.where(unknown, 3 * len(alone) + np.cumsum(unknown).reshape(unknown.shape) - 1, -1)
         move = np.concatenate([np.tile(np.eye(3), (len(of), 1, 1)), self._about(self._arms)], axis=2)
         used = np.broadcast_to((numbers[of] >= 0)[:, None], move.shape)
@@ -227,9 +230,11 @@ class Linked:
             shape=(3 * len(points), len(free)),
         ).tocsr()[:, free]
         self._kept = np.flatnonzero(free)
-        self._unknown = np.where((numbers >= 0) & free[numbers], np.cumsum(free)[numbers] - 1, -1)
-        every = eye_array(len(free), format="csr")[:, free]
-        self._turns = {name: every[numbers[i, 3:]] for name, i in self._number.items()}
+        number = np.where((numbers >= 0) & free[numbers], np.cumsum(free)[numbers] - 1, -1)[:, None, 3:]
+        turned = np.broadcast_to(number >= 0, self._axes.shape)
+        row = np.broadcast_to(np.arange(3 * len(middles)).reshape(-1, 3, 1), turned.shape)[turned]
+        entries = self._axes[turned], (row, np.broadcast_to(number, turned.shape)[turned])
+        self._turn = coo_array(entries, shape=(3 * len(middles), len(self._kept))).tocsr()
 
     def _about(self, arms: Floats) -> Floats:
         """Displacements (p, 3, 3) of tied points by turns about the axes of their links, in columns."""
@@ -277,9 +282,8 @@ class Linked:
 
         total = self.condensed(matrix)
         for between, stiffness, _ in self._links.springs.values():
-            turn = self._turns[between[0]]
-            if len(between) > 1:
-                turn = turn - self._turns[between[1]]
+            turn, *other = (self._turn[3 * self._number[name] :][:3] for name in between)
+            turn = turn - other[0] if other else turn
             total = total + turn.T @ diags_array(stiffness[3:]) @ turn
         return total
 
@@ -332,8 +336,7 @@ class Linked:
 
     def _rotations(self, unknowns: Floats) -> Floats:
         """Rotations (l, 3, n) of the links by unknowns (u, n)."""
-        each = self._unknown[:, 3:]
-        return np.einsum("lai,lin->lan", self._axes, np.where(each[..., None] >= 0, unknowns[each], 0.0))
+        return np.asarray(self._turn @ unknowns).reshape(len(self._axes), 3, -1)
 
 
 def _particles(body: RigidBody) -> tuple[Floats, Floats]:

@@ -236,17 +236,12 @@ class SolidMesh(Value):
         exponents = {name: float(each.fatigue_exponent) for name, each in kinds.items()}
         about: dict[str, Any] = {"strengths": strengths, "exponents": exponents, "interfaces": hung}
         tied, read = Links.of(group, links or {}, carried or {}, springs or {}, at, clamped), tuple[str, ...]()
-        if thickness is not None:
-            read = THICKNESS
-            if mass_unit is not None:
-                problem = "is given beside thickness, and masses, links and springs of a file are read for solids only"
-                raise InputError("mass_unit", problem, "give those as point_masses, links, carried and springs")
-        elif mass_unit is not None:
-            new = np.full(len(places), -1)
-            new[numbers] = np.arange(len(numbers))
+        if mass_unit is not None:
             cards, weight = cards_of(source), unit_size("mass_unit", mass_unit, "mass")
-            tied, more = with_cards(cards, tied, Placed(middles, rotation, new, clamped), size, weight)
+            tied, more = with_cards(cards, tied, Placed(middles, rotation, at, numbers, clamped), size, weight)
             weights, read = weights + more, cards.words
+        if thickness is not None:
+            read += THICKNESS
         about["links"] = tied
         about["turns"] = {name: tuple(place.turn) for name, place in given.items() if isinstance(place, Place)}
         solid = cls(at, blocks, clamped, numbers, weights, named | {TIP: tip}, **about)
