@@ -11,6 +11,7 @@ from scipy import sparse
 from scipy.linalg import eigh
 
 import gbeam as gb
+from gbeam.motion import constant
 from gbeam.solids.elements import mass_matrix, stiffness_matrix
 from gbeam.solids.links import attached
 
@@ -122,3 +123,23 @@ def test_what_holds_no_body_is_refused() -> None:
         solid(mesh, STIFF, interfaces={"seat": "lid"})
     with pytest.raises(gb.InputError, match=r"joints\.weld\.on is a point of particles, which do not say how it turns"):
         with_body(reduced(8), "tip")
+
+
+def test_an_interface_has_the_stress_and_strain_of_its_section() -> None:
+    """Half-way along a bar that hangs and carries a body: (ρ A (L - x) + m) g / A, the mean over the section."""
+    g, half = 50.0, LENGTH / 2
+    groups = {"end": lambda x: x[:, 0] == LENGTH, "middle": lambda x: np.isclose(x[:, 0], half)}
+    mesh = block("hexahedron20", (8, 1, 1), (LENGTH, WIDTH, HEIGHT), groups=groups)
+    bar = solid(mesh, STIFF, interfaces={"seat": "end", "cut": "middle"}).reduced(modes=4, damping_ratio=0.0).structure
+    rest = gb.static(with_body(bar, "seat", gb.RigidBody(0.1, (2e-5, 4e-5, 3e-5)), gravity=(g, 0.0, 0.0)))
+    area = WIDTH * HEIGHT
+    pull = (STIFF.density * area * half + 0.1) * g / area
+    carried = rest.solids["strip"]
+    assert carried.points == ("seat", "cut", "tip") and {"strip.cut", "strip.seat"} <= set(rest.points)
+    assert carried.point_stress[0, 1, 0] == pytest.approx(pull, rel=1e-3)
+    assert carried.strain_at("cut")[0] == pytest.approx(pull / STIFF.youngs_modulus, rel=1e-3)
+    plant = gb.linearize(bar, gb.Flight(x=constant(1.0)), gauges=[gb.Gauge("cut")])
+    gain = plant.d - plant.c @ np.linalg.solve(plant.a, plant.b)
+    (row,) = (k for k, each in enumerate(plant.outputs) if "strain" in each.name)
+    column = [each.name for each in plant.inputs].index("base_acceleration_x")
+    assert gain[row, column] == pytest.approx(-STIFF.density * half / STIFF.youngs_modulus, rel=1e-3)

@@ -286,7 +286,7 @@ class Response(Driven, Figured):
         Parameters
         ----------
         point : str
-            A node with a name.
+            A node with a name, or an interface, whose strain is the mean of its nodes'.
         along : (3,)
             Direction of its grid, in axes of the point.
 

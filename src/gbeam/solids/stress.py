@@ -72,18 +72,29 @@ class NodalStress(Value):
 
     def strain(self, point: str, along: Any) -> Floats:
         """Normal strain at a named point in a direction of its axes, by unit coordinates, (n,)."""
-        if point not in self.mesh.stations:
-            raise InputError("at", f"is {point!r}", f"choose from {', '.join(self.mesh.stations)}")
-        pair = int(np.flatnonzero(self.node == self.mesh.stations[point])[0])
+        if point not in self.mesh.named_points:
+            raise InputError("at", f"is {point!r}", f"choose from {', '.join(self.mesh.named_points)}")
         x, y, z = self.mesh.axes(point) @ np.asarray(along, dtype=float) / np.linalg.norm(along)
         shares = np.array([x * x, y * y, z * z, y * z, x * z, x * y])  # of strains with twice the tensor's shear
-        return np.asarray(shares @ self.compliance(pair) @ self.table[pair])
+        return np.asarray(shares @ self.strained(self.pairs_at(point)))
 
-    def compliance(self, pair: Any) -> Floats:
-        """Strains (6, 6) of unit stresses in the material of a pair."""
-        name = self.material[pair]
-        elasticity = next(block.elasticity for block in self.mesh.blocks if block.material == name)
-        return np.asarray(np.linalg.inv(elasticity))
+    def pairs_at(self, point: str, size: Floats | None = None) -> Indices:
+        """Pairs of the node of a named point, or of the nodes of an interface: of two materials at a node that of the
+        larger size (p,), or the first.
+        """
+        nodes = self.mesh.interfaces.get(point, [self.mesh.stations.get(point)])
+        order = np.arange(len(self.known)) if size is None else np.argsort(-size, kind="stable")
+        order = order[np.isin(self.node[order], nodes)]
+        return np.asarray(order[np.unique(self.node[order], return_index=True)[1]])
+
+    def strained(self, pairs: Indices) -> Floats:
+        """Strains of unit coordinates (6, n) with twice the tensor's shear, their mean at pairs."""
+        materials, total = self.material, np.zeros(self.table.shape[1:])
+        for name in {materials[pair] for pair in pairs}:
+            elasticity = next(block.elasticity for block in self.mesh.blocks if block.material == name)
+            some = [pair for pair in pairs if materials[pair] == name]
+            total += np.linalg.solve(elasticity, self.table[some].sum(axis=0))
+        return np.asarray(total / len(pairs))
 
     def parts(self, time: Floats, base: Any, q: Floats, *, motion: str, model: str, environment: str) -> dict[str, Any]:
         """The stress of a response."""
@@ -257,15 +268,13 @@ def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> S
             yield_strength=strength if np.isfinite(strength) else None,
         )
 
-    # At a node of two materials, that which is stressed more.
-    chosen = [max(np.flatnonzero(of_pair == node), key=largest.__getitem__) for node in mesh.stations.values()]
-    stress = np.einsum("pvn,tn->tpv", nodal.table[chosen], q, optimize=True)
-    axes = [mesh.axes(name) for name in mesh.stations]
+    names = mesh.named_points
+    chosen = [nodal.pairs_at(name, largest) for name in names]
+    tables = np.stack([[nodal.table[pairs].mean(axis=0), nodal.strained(pairs)] for pairs in chosen], axis=1)
+    stress, strain = np.einsum("kpvn,tn->ktpv", tables, q, optimize=True)
+    axes = [mesh.axes(name) for name in names]
     along = [turned(each, of) for each, of in zip(stress.swapaxes(0, 1), axes, strict=True)]
-    strained = (
-        each @ nodal.compliance(pair).T * HALVES for each, pair in zip(stress.swapaxes(0, 1), chosen, strict=True)
-    )
-    strains = [turned(each, of) / HALVES for each, of in zip(strained, axes, strict=True)]
+    strains = [turned(each * HALVES, of) / HALVES for each, of in zip(strain.swapaxes(0, 1), axes, strict=True)]
     every = np.zeros(len(mesh.points))
     np.maximum.at(every, of_pair, largest)
     return SolidStress(
@@ -273,7 +282,7 @@ def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> S
         von_mises=over,
         worst=at(worst),
         nearest_yield=at(int((largest / strengths).argmax())) if np.isfinite(strengths).any() else None,
-        points=tuple(mesh.stations),
+        points=names,
         point_von_mises=von_mises(stress),
         point_principal=principal(stress),
         point_stress=np.stack(along, axis=1),
@@ -282,7 +291,7 @@ def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> S
         exponents=exponents[foremost],
         material_normal=np.stack([ranging(q @ nodal.table[pair].T) for pair in foremost], axis=1),
         point_normal=np.stack([ranging(each) for each in stress.swapaxes(0, 1)], axis=1),
-        point_exponent=exponents[chosen],
+        point_exponent=exponents[[pairs[0] for pairs in chosen]],
         nodes=mesh.points,
         node_von_mises=every,
         **about,
