@@ -8,7 +8,7 @@ which nothing can be computed, is refused.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -81,6 +81,13 @@ def choice(where: str, name: str, choices: Iterable[str]) -> None:
         close = difflib.get_close_matches(str(name), names, n=1)
         guess = f"did you mean {close[0]!r}? " if close else ""
         raise InputError(where, f"is {name!r}", f"{guess}choose one of {', '.join(names)}")
+
+
+def index_of(where: str, name: str, names: Sequence[str]) -> int:
+    """Return the index of a name among some; InputError where it is none of them."""
+    if name not in names:
+        raise InputError(where, f"is {name!r}", f"choose from {', '.join(names)}")
+    return names.index(name)
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ import numpy as np
 from gbeam.arrays.namespace import is_traced
 from gbeam.constants import BY_STRAINS
 from gbeam.errors import InputError
+from gbeam.guards.checks import index_of
 from gbeam.results.declared import INSIDE, declared, fact, part, quantity
 from gbeam.results.errors import Errors
 from gbeam.results.machine import AxesResult, Driven
@@ -244,12 +245,7 @@ class Response(Driven, Figured):
         InputError
             If there is no such point.
         """
-        return self.displacement[:, self._station(point)]
-
-    def _station(self, point: str) -> int:
-        if point not in self.points:
-            raise InputError("point", f"is {point!r}", f"choose from {', '.join(self.points)}")
-        return self.points.index(point)
+        return self.displacement[:, index_of("point", point, self.points)]
 
     @property
     def accelerations(self) -> Floats | None:
@@ -274,7 +270,7 @@ class Response(Driven, Figured):
         InputError
             If there is no such point, the run has no accelerations, or its samples do not resolve the sensor.
         """
-        station, every = self._station(point), self.accelerations
+        station, every = index_of("point", point, self.points), self.accelerations
         if every is None:
             raise InputError("response", "has no accelerations", "leave loads = true in its settings")
         felt = every[:, station]

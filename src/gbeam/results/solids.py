@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
-from gbeam.guards.checks import vector
+from gbeam.guards.checks import index_of, vector
 from gbeam.results.declared import declared, fact, labels, part, quantity
 from gbeam.results.parts import yield_margin
 from gbeam.results.result import Complex, Figured, Floats, Part
@@ -111,13 +111,12 @@ class SolidStress(Figured):
 
     def strain_at(self, point: str, along: Sequence[float] = (1.0, 0.0, 0.0)) -> Floats:
         """Return what a strain gauge at a named point reads, (t,), as :meth:`gbeam.Response.strain_at` does."""
-        if point not in self.points:
-            raise InputError("point", f"is {point!r}", f"choose from {', '.join(self.points)}")
+        station = index_of("point", point, self.points)
         way = np.asarray(vector("along", along), dtype=float)
         if not way.any():
             raise InputError("along", "is zero", "give a direction, such as (1, 0, 0)")
         x, y, z = way / np.linalg.norm(way)
-        strain = self.point_strain[:, self.points.index(point)]
+        strain = self.point_strain[:, station]
         return np.asarray(strain @ np.array([x * x, y * y, z * z, y * z, x * z, x * y]))
 
     @property

@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from gbeam.errors import InputError
+from gbeam.guards.checks import index_of
 from gbeam.results.declared import INSIDE, declared, fact, labels, part, quantity, rows
 from gbeam.results.errors import FrequencyErrors, Instability, Oscillating, SystemErrors
 from gbeam.results.facts import at_place
@@ -248,7 +248,7 @@ class SystemResponse(Driven, Figured):
         InputError
             If there is no such point.
         """
-        return self.place[:, _index("point", point, self.points)]
+        return self.place[:, index_of("point", point, self.points)]
 
     def signal(self, name: str) -> Floats:
         """Return what a sensor would read, by the name of an output of :func:`gbeam.linearize`, (t,) SI.
@@ -274,7 +274,7 @@ class SystemResponse(Driven, Figured):
             return np.asarray(getattr(self.beams[body].loads, load)[:, "xyz".index(kind)])
         if name.endswith("_rate") and name.removesuffix("_rate") in self.coordinates:
             return self.qd[:, self.coordinates.index(name.removesuffix("_rate"))]
-        return self.q[:, _index("name", name, self.coordinates)]
+        return self.q[:, index_of("name", name, self.coordinates)]
 
     def coordinate(self, name: str) -> Floats:
         """Return a coordinate over time, (t,) m or rad: ``joint.angle``.
@@ -289,7 +289,7 @@ class SystemResponse(Driven, Figured):
         InputError
             If there is no such coordinate.
         """
-        return self.q[:, _index("name", name, self.coordinates)]
+        return self.q[:, index_of("name", name, self.coordinates)]
 
     def __repr__(self) -> str:
         of = f" {self.name!r}" if self.name else ""
@@ -380,7 +380,7 @@ class SystemRest(Figured):
         InputError
             If there is no such point.
         """
-        return self.place[_index("point", point, self.points)]
+        return self.place[index_of("point", point, self.points)]
 
     def coordinate(self, name: str) -> Floats:
         """Return a coordinate, m or rad.
@@ -395,7 +395,7 @@ class SystemRest(Figured):
         InputError
             If there is no such coordinate.
         """
-        return self.q[_index("name", name, self.coordinates)]
+        return self.q[index_of("name", name, self.coordinates)]
 
     def __repr__(self) -> str:
         size = np.linalg.norm(self.displacement, axis=-1)
@@ -486,12 +486,6 @@ class SystemModes(Oscillating, Figured):
             lines.append(f"{count} left out")
         lines += map(str, self.instabilities)
         return self._with_warnings(*lines)
-
-
-def _index(where: str, name: str, names: tuple[str, ...]) -> int:
-    if name not in names:
-        raise InputError(where, f"is {name!r}", f"choose from {', '.join(names)}")
-    return names.index(name)
 
 
 def named(response: SystemResponse) -> Mapping[str, Floats]:

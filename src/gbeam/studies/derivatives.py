@@ -7,7 +7,7 @@ and smooth, they come from central differences of fourth order, with how far the
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any
@@ -20,7 +20,6 @@ from gbeam.analysis.response.differentiated import Differentiated, Grid, Variant
 from gbeam.analysis.response.simulation import simulate
 from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.mechanics.structure import Structure
-from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress, tell
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
@@ -142,9 +141,10 @@ class Neighbourhood:
                 if about[name].jumps_move(pair):
                     jumping.add(k)
                 pairs[name][k] = pair
+        smooth = {name: [k for k in each if k not in jumping] for name, each in pairs.items()}
         responses = {
-            name: _only(about[name], [(k, pair) for k, pair in each.items() if k not in jumping], 2 * steps)
-            for name, each in pairs.items()
+            name: about[name].responses([pairs[name][k] for k in chosen], 2 * steps[chosen])
+            for name, chosen in smooth.items()
         }
         rows = []
         for k, each in enumerate(self.parameters):
@@ -198,7 +198,7 @@ class Neighbourhood:
     def _variant(self, case: Case, k: int, name: str) -> Variant:
         if self.parameters[k].path.startswith("beam."):
             return case.assemble(), None
-        return None, _motion(case, name)
+        return None, case.motions[name]
 
     def _enrich(self) -> None:
         """The model with as many shapes as the study found it needs."""
@@ -277,16 +277,6 @@ def _runs(case: Case, steps: Mapping[str, float]) -> Study:
         settings = replace(case.response, step=step, estimate=False)
         responses[name] = simulate(structure, case.motions[name], settings, name=name)
     return study_of(case, responses)
-
-
-def _motion(case: Case, name: str) -> Motion:
-    return case.motions[name]
-
-
-def _only(
-    about: Differentiated, chosen: Sequence[tuple[int, Any]], widths: Floats
-) -> Iterator[tuple[Response, Response]]:
-    return about.responses([pair for _, pair in chosen], widths[[k for k, _ in chosen]])
 
 
 def _slope(less: Floats, middle: Floats, more: Floats, step: float) -> tuple[Floats, Floats]:

@@ -12,7 +12,7 @@ from gbeam.analysis.imitation.specimen import specimen_of
 from gbeam.analysis.response.peaks import maxima, near_maxima, seven_point, vector_peaks
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import positive
+from gbeam.guards.checks import index_of, positive
 from gbeam.motion.bases.base import gradients
 from gbeam.numerics.samples import interpolated, largest_riding_acceleration, low_pass
 from gbeam.results.imitation.accounting import TOLERANCE, PeakPair
@@ -261,9 +261,7 @@ def _rms(values: Floats, covered: Flags) -> Floats:
 
 def _station(response: Response, point: str) -> int:
     """Number of the station that is the tip: the last, or a named point."""
-    if point and point not in response.points:
-        raise InputError("point", f"is {point!r}", f"choose from {', '.join(response.points)}")
-    return response.points.index(point) if point else len(response.stations) - 1
+    return index_of("point", point, response.points) if point else len(response.stations) - 1
 
 
 def _statistics(

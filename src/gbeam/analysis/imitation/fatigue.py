@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gbeam.analysis.response.peaks import turning_points
-from gbeam.errors import InputError
+from gbeam.guards.checks import index_of
 from gbeam.mechanics.tree.system import ROOT
 from gbeam.results.imitation.measures import Fatigue, StressCycles
 from gbeam.results.parts import Loads
@@ -62,8 +62,7 @@ def places_of(response: Response | SystemResponse) -> dict[str, Cyclic]:
 
 def cyclic_at(response: Response | SystemResponse, at: str) -> Cyclic | None:
     """Stress at a named point; None where there is none."""
-    if at not in response.points:
-        raise InputError("damage_at", f"is {at!r}", f"choose from {', '.join(response.points)}")
+    index_of("damage_at", at, response.points)
     if isinstance(response, SystemResponse):
         body, _, point = at.partition(".")
         beam, solid = response.beams.get(body), response.solids.get(body)

@@ -213,14 +213,14 @@ def linearize(
             raise InputError(option, f"stands beside {beside}", "give one of them")
 
     from gbeam.analysis.control.linearization import linearize, surface_gauges
+    from gbeam.guards.checks import index_of
     from gbeam.results.state_space import Gauge
 
     gauges: Any = ()
     if isinstance(case, SpecimenCase):
         names = case.structure.points
         for text in strain_at:
-            if text not in names:
-                raise InputError("--strain-at", f"is {text!r}", f"choose from {', '.join(names)}")
+            index_of("--strain-at", text, names)
         gauges = [Gauge(text, along=way) for text in strain_at for way in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
     elif strain_at:
         beam = loaded.beam.beam

@@ -31,6 +31,8 @@ from gbeam.scenario.schema.fields import (
     Table,
     Vector,
     existing_file,
+    listed,
+    optional,
     refuse,
     wrong,
 )
@@ -42,35 +44,35 @@ PointName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z_]\w*$", max_leng
 class Forces(Vector):
     """A force by components, each a quantity or a profile; those left out are zero."""
 
-    x: ForceOverTime | None = Field(default=None, description="component along the beam")
-    y: ForceOverTime | None = Field(default=None, description="component along the width")
-    z: ForceOverTime | None = Field(default=None, description="component through the thickness")
+    x: ForceOverTime | None = optional("component along the beam")
+    y: ForceOverTime | None = optional("component along the width")
+    z: ForceOverTime | None = optional("component through the thickness")
 
 
 class LoadMoments(Vector):
     """A moment by components, each a quantity or a profile; those left out are zero."""
 
-    x: MomentOverTime | None = Field(default=None, description="moment about x, along the beam")
-    y: MomentOverTime | None = Field(default=None, description="moment about y: positive bends the tip to -z")
-    z: MomentOverTime | None = Field(default=None, description="moment about z: positive bends the tip to +y")
+    x: MomentOverTime | None = optional("moment about x, along the beam")
+    y: MomentOverTime | None = optional("moment about y: positive bends the tip to -z")
+    z: MomentOverTime | None = optional("moment about z: positive bends the tip to +y")
 
 
 class SpreadForces(Vector):
     """A force per length by components, each a quantity or a profile; those left out are zero."""
 
-    x: SpreadForceOverTime | None = Field(default=None, description="component along the beam")
-    y: SpreadForceOverTime | None = Field(default=None, description="component along the width")
-    z: SpreadForceOverTime | None = Field(default=None, description="component through the thickness")
+    x: SpreadForceOverTime | None = optional("component along the beam")
+    y: SpreadForceOverTime | None = optional("component along the width")
+    z: SpreadForceOverTime | None = optional("component through the thickness")
 
 
 class Load(Table):
     """A force, a moment or both at a station; or a force spread evenly over the length."""
 
-    at: Position | None = Field(default=None, description="position from the root, along the beam")
-    force: Forces | None = Field(default=None, description="force at the station: { x, y, z }")
-    moment: LoadMoments | None = Field(default=None, description="moment at the station: { x, y, z }")
-    distributed: SpreadForces | None = Field(
-        default=None, description="force per length over the whole beam: { x, y, z }; instead of at, force and moment"
+    at: Position | None = optional("position from the root, along the beam")
+    force: Forces | None = optional("force at the station: { x, y, z }")
+    moment: LoadMoments | None = optional("moment at the station: { x, y, z }")
+    distributed: SpreadForces | None = optional(
+        "force per length over the whole beam: { x, y, z }; instead of at, force and moment"
     )
     follower: StrictBool = Field(
         default=False,
@@ -97,10 +99,8 @@ class Load(Table):
 class Stations(Table):
     """Positions at which the dimensions of a section are listed."""
 
-    stations: tuple[Position, ...] = Field(
-        default=(),
-        max_length=ENTRIES,
-        description="positions from root to tip at which the dimensions are listed, linear in between",
+    stations: tuple[Position, ...] = listed(
+        "positions from root to tip at which the dimensions are listed, linear in between"
     )
 
 
@@ -144,19 +144,15 @@ class General(Flat):
     area: Areas = Field(description="area")
     inertia_y: SecondMoments = Field(description="∫z² dA, which bends the beam along z")
     inertia_z: SecondMoments = Field(description="∫y² dA, which bends the beam along y")
-    extreme_fibre_y: Lengths | None = Field(default=None, description="outer fibre along y, for stress")
-    extreme_fibre_z: Lengths | None = Field(default=None, description="outer fibre along z, for stress")
-    torsion_constant: SecondMoments | None = Field(
-        default=None,
-        description="J of the torque G J α', for modes.twist and for the stated error of a model without twist",
+    extreme_fibre_y: Lengths | None = optional("outer fibre along y, for stress")
+    extreme_fibre_z: Lengths | None = optional("outer fibre along z, for stress")
+    torsion_constant: SecondMoments | None = optional(
+        "J of the torque G J α', for modes.twist and for the stated error of a model without twist"
     )
-    shear_coefficient_y: Ratios | None = Field(
-        default=None,
-        description="k of the shear force k G A γ along y, for modes.shear_y; in the stated error 1/2 where left out",
+    shear_coefficient_y: Ratios | None = optional(
+        "k of the shear force k G A γ along y, for modes.shear_y; in the stated error 1/2 where left out"
     )
-    shear_coefficient_z: Ratios | None = Field(
-        default=None, description="k of the shear force along z, for modes.shear_z, likewise"
-    )
+    shear_coefficient_z: Ratios | None = optional("k of the shear force along z, for modes.shear_z, likewise")
 
 
 Entry = Annotated[float, Field(strict=True, allow_inf_nan=False)]
@@ -208,19 +204,13 @@ class Material(Table):
 
     density: Density = Field(description="mass per volume")
     youngs_modulus: Pressure = Field(description="Young's modulus")
-    yield_strength: Pressure | None = Field(
-        default=None, description="stress at which it yields; with it results give the margin"
+    yield_strength: Pressure | None = optional("stress at which it yields; with it results give the margin")
+    fatigue_exponent: Exponent | None = optional(
+        "m of Wöhler's curve, N Δσᵐ = constant: about 3 for welds, 10 for smooth parts; 5 where left out"
     )
-    fatigue_exponent: Exponent | None = Field(
-        default=None,
-        description="m of Wöhler's curve, N Δσᵐ = constant: about 3 for welds, 10 for smooth parts; 5 where left out",
-    )
-    poissons_ratio: Ratio | None = Field(
-        default=None, description="of plates, and for the stated error, where 0.3 is taken if it is left out"
-    )
-    shear_modulus: Pressure | None = Field(
-        default=None,
-        description="of twist and shear, in exact and in the stated error; E/(2 (1 + ν)) where left out",
+    poissons_ratio: Ratio | None = optional("of plates, and for the stated error, where 0.3 is taken if it is left out")
+    shear_modulus: Pressure | None = optional(
+        "of twist and shear, in exact and in the stated error; E/(2 (1 + ν)) where left out"
     )
 
 
@@ -237,13 +227,11 @@ class PointMass(Table):
 
     at: Position = Field(description="position from the root, along the beam")
     mass: Mass = Field(description="mass")
-    inertia: Moments | None = Field(
-        default=None, description="moments of inertia about its centre, for a body that is not a point"
+    inertia: Moments | None = optional("moments of inertia about its centre, for a body that is not a point")
+    offset: tuple[Offset, Offset, Offset] | None = optional(
+        "centre of mass from the beam's axis: [x, y, z] in axes of the section"
     )
-    offset: tuple[Offset, Offset, Offset] | None = Field(
-        default=None, description="centre of mass from the beam's axis: [x, y, z] in axes of the section"
-    )
-    name: PointName | None = Field(default=None, description="name of the point of output at its place")
+    name: PointName | None = optional("name of the point of output at its place")
 
 
 class Point(Table):
@@ -256,11 +244,11 @@ class Point(Table):
 class Root(Table):
     """Springs between the base and the beam's root; a direction left out is rigid."""
 
-    translation_x: Stiffness | None = Field(default=None, description="spring along x, along the beam")
-    translation_y: Stiffness | None = Field(default=None, description="spring along y, along the width")
-    translation_z: Stiffness | None = Field(default=None, description="spring along z, through the thickness")
-    rotation_y: RotationalStiffness | None = Field(default=None, description="spring about y, against bending along z")
-    rotation_z: RotationalStiffness | None = Field(default=None, description="spring about z, against bending along y")
+    translation_x: Stiffness | None = optional("spring along x, along the beam")
+    translation_y: Stiffness | None = optional("spring along y, along the width")
+    translation_z: Stiffness | None = optional("spring along z, through the thickness")
+    rotation_y: RotationalStiffness | None = optional("spring about y, against bending along z")
+    rotation_z: RotationalStiffness | None = optional("spring about z, against bending along y")
 
 
 class Piece(Table):
@@ -282,27 +270,24 @@ _Places = Annotated[
 class Line(Table):
     """The line along which a beam lies at rest: by points, by pieces, or straight with a twist at stations."""
 
-    points: _Places | None = Field(
-        default=None,
-        description="places in base axes, [x, y, z], from the root, [0, 0, 0]; or a file of text with a row for each, "
-        "relative to the folder of the scenario file: columns x, y, z, of which those left out are zero, and twist",
+    points: _Places | None = optional(
+        "places in base axes, [x, y, z], from the root, [0, 0, 0]; or a file of text with a row for each, "
+        "relative to the folder of the scenario file: columns x, y, z, of which those left out are zero, and twist"
     )
-    length_unit: str | None = Field(
-        default=None, description="unit of x, y and z in a file that does not say it, in brackets or a row of units"
+    length_unit: str | None = optional(
+        "unit of x, y and z in a file that does not say it, in brackets or a row of units"
     )
     smooth: StrictBool = Field(
         default=True, description="false if the points are corners of straight pieces, not of a cubic spline"
     )
-    pieces: tuple[Piece, ...] | None = Field(
-        default=None, max_length=ENTRIES, description="[ { length, twist, turn_y, turn_z } ] from root to tip"
+    pieces: tuple[Piece, ...] | None = optional(
+        "[ { length, twist, turn_y, turn_z } ] from root to tip", max_length=ENTRIES
     )
-    stations: tuple[Position, ...] | None = Field(
-        default=None, max_length=ENTRIES, description="positions of the twist on a straight line, from root to tip"
+    stations: tuple[Position, ...] | None = optional(
+        "positions of the twist on a straight line, from root to tip", max_length=ENTRIES
     )
-    twist: tuple[Angle, ...] | None = Field(
-        default=None,
-        max_length=ENTRIES,
-        description="angle of the section about the line at each point or station, linear in between",
+    twist: tuple[Angle, ...] | None = optional(
+        "angle of the section about the line at each point or station, linear in between", max_length=ENTRIES
     )
 
     @model_validator(mode="after")
@@ -328,40 +313,26 @@ class Line(Table):
 class Beam(Table):
     """The beam: held at its root by the moving base, straight along x or along a line."""
 
-    length: Length | None = Field(
-        default=None, description="length from root to tip, along the line; left out where the line says it"
-    )
+    length: Length | None = optional("length from root to tip, along the line; left out where the line says it")
     section: Section = Field(description="cross-section, by shape or by properties: { area, inertia_y, inertia_z }")
-    material: Material | None = Field(
-        default=None,
-        description="linear elastic material: { density, youngs_modulus, yield_strength }; none beside matrices",
+    material: Material | None = optional(
+        "linear elastic material: { density, youngs_modulus, yield_strength }; none beside matrices"
     )
-    damping_ratio: Ratios | None = Field(
-        default=None,
-        description="modal damping ratio: one for all modes, or a list with one per mode, ascending in frequency; of "
+    damping_ratio: Ratios | None = optional(
+        "modal damping ratio: one for all modes, or a list with one per mode, ascending in frequency; of "
         "the modes of the beam on a base at rest, also where the hub is free. run, place, models and linearize need "
-        "it, 0 for none; the rest take none where it is left out",
+        "it, 0 for none; the rest take none where it is left out"
     )
-    masses: tuple[PointMass, ...] = Field(
-        default=(), max_length=ENTRIES, description="masses fixed to the beam: [ { at, mass } ]"
-    )
+    masses: tuple[PointMass, ...] = listed("masses fixed to the beam: [ { at, mass } ]")
     root: Root = Field(default_factory=Root, description="springs that hold the root, which is rigid where left out")
-    loads: tuple[Load, ...] = Field(
-        default=(),
-        max_length=ENTRIES,
-        description="forces and moments on the beam: [ { at, force, moment, distributed, follower } ]",
-    )
-    points: tuple[Point, ...] = Field(
-        default=(), max_length=ENTRIES, description="points of output beside the tip: [ { name, at } ]"
-    )
+    loads: tuple[Load, ...] = listed("forces and moments on the beam: [ { at, force, moment, distributed, follower } ]")
+    points: tuple[Point, ...] = listed("points of output beside the tip: [ { name, at } ]")
     rotary_inertia: StrictBool = Field(
         default=True,
         description="false for sections that do not resist turning by their own second moments, each a point on the "
         "axis: the theory of Euler and Bernoulli",
     )
-    line: Line | None = Field(
-        default=None, description="reference line at rest, where it is not straight along x: { points, pieces, twist }"
-    )
+    line: Line | None = optional("reference line at rest, where it is not straight along x: { points, pieces, twist }")
 
     @model_validator(mode="after")
     def _complete(self) -> Beam:

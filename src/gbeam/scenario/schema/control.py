@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Discriminator, Field, model_validator
 
 from gbeam.guards.limits import ENTRIES
-from gbeam.scenario.schema.fields import Duration, File, Quantity, Ratio, Table, Time, refuse, wrong
+from gbeam.scenario.schema.fields import Duration, File, Quantity, Ratio, Table, Time, optional, refuse, wrong
 
 _Rate = Annotated[float, Quantity("angular rate", "positive")]
 _Rows = tuple[tuple[Ratio, ...], ...]
@@ -28,9 +28,7 @@ class PID(Table):
     kp: Ratio = Field(default=0.0, description=f"proportional gain, {_SI}")
     ki: Ratio = Field(default=0.0, description=f"integral gain, {_SI} s")
     kd: Ratio = Field(default=0.0, description=f"derivative gain, {_SI}/s")
-    smoothing: Duration | None = Field(
-        default=None, description="time constant of the filter of the derivative: needed with kd"
-    )
+    smoothing: Duration | None = optional("time constant of the filter of the derivative: needed with kd")
 
     @model_validator(mode="after")
     def _filtered(self) -> PID:
@@ -61,15 +59,14 @@ class Matrices(Table):
     """A law with states of its own: x' = A x + B e, efforts = C x + D e, by rows or from a file."""
 
     kind: Literal["state-space"] = Field(description="kind of the law")
-    file: File | None = Field(
-        default=None,
-        description="file of matrices A, B, C, D: .npz, .mat or .json, relative to the scenario's folder; with dt, Ts "
-        "or step, s, above zero it is in discrete time, and then the only law",
+    file: File | None = optional(
+        "file of matrices A, B, C, D: .npz, .mat or .json, relative to the scenario's folder; with dt, Ts "
+        "or step, s, above zero it is in discrete time, and then the only law"
     )
-    a: _Rows | None = Field(default=None, description="A, by rows, in continuous time")
-    b: _Rows | None = Field(default=None, description="B, by rows: a column for every measurement")
-    c: _Rows | None = Field(default=None, description="C, by rows: a row for every effort")
-    d: _Rows | None = Field(default=None, description="D, by rows")
+    a: _Rows | None = optional("A, by rows, in continuous time")
+    b: _Rows | None = optional("B, by rows: a column for every measurement")
+    c: _Rows | None = optional("C, by rows: a row for every effort")
+    d: _Rows | None = optional("D, by rows")
 
     @model_validator(mode="after")
     def _one_way(self) -> Matrices:
@@ -99,9 +96,7 @@ class Controller(Table):
     law: tuple[Law, ...] = Field(min_length=1, description="laws one after the other: [{ kind, ... }, ...]")
     sample: Duration = Field(description="time between samples")
     delay: Time = Field(default=0.0, description="time from a sample until its efforts act")
-    limit: tuple[Annotated[float, Quantity("ratio", "positive")], ...] | None = Field(
-        default=None, description="largest size of every effort, N or N m: [20]"
+    limit: tuple[Annotated[float, Quantity("ratio", "positive")], ...] | None = optional(
+        "largest size of every effort, N or N m: [20]"
     )
-    reference: tuple[Ratio, ...] | None = Field(
-        default=None, description="aim of every measurement, in SI units; zero unless given: [0.5, 0]"
-    )
+    reference: tuple[Ratio, ...] | None = optional("aim of every measurement, in SI units; zero unless given: [0.5, 0]")

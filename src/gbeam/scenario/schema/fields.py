@@ -48,6 +48,21 @@ class Table(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
 
+def optional(words: str, **more: Any) -> Any:
+    """Declare a key that may be left out, and is None then."""
+    return Field(default=None, description=words, **more)
+
+
+def listed(words: str) -> Any:
+    """Declare a list that may be left out."""
+    return Field(default=(), max_length=ENTRIES, description=words)
+
+
+def by_name(words: str) -> Any:
+    """Declare tables or values by names that the user gives, which may be left out."""
+    return Field(default_factory=dict, max_length=ENTRIES, description=words)
+
+
 def wrong(message: str, hint: str = "", *, mark: Literal["value", "key"] = "value") -> PydanticCustomError:
     """Make the error of one value."""
     return PydanticCustomError("scenario", "{message}", {"message": message, "hint": hint, "mark": mark})

@@ -7,7 +7,6 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Field, StrictBool, Tag, create_model, model_validator
 from pydantic_core import PydanticCustomError
 
-from gbeam.guards.limits import ENTRIES
 from gbeam.results.imitation.criteria import RULES
 from gbeam.scenario.schema.fields import (
     ONE_OR_LIST,
@@ -22,6 +21,8 @@ from gbeam.scenario.schema.fields import (
     Time,
     Turn3,
     Vector,
+    by_name,
+    optional,
     refuse,
     wrong,
 )
@@ -34,39 +35,31 @@ Ratios = Annotated[Annotated[Ratio, Tag("one")] | Annotated[tuple[Ratio, Ratio],
 Levels = Annotated[Annotated[Level, Tag("one")] | Annotated[tuple[Level, Level], Tag("list")], ONE_OR_LIST]
 
 _TYPES: dict[str, Any] = {"most": Share, "least": Share, "ratio": Ratios, "level": Levels}
-_FIELDS: dict[str, Any] = {
-    rule.name: (_TYPES[rule.kind] | None, Field(default=None, description=rule.words)) for rule in RULES.values()
-}
+_FIELDS: dict[str, Any] = {rule.name: (_TYPES[rule.kind] | None, optional(rule.words)) for rule in RULES.values()}
 _Limits = create_model("_Limits", __base__=Table, **_FIELDS)
 
 
 class Accept(_Limits):  # type: ignore[misc, valid-type]
     """Limits of the differences from flight; one that is not kept ends in exit status 1."""
 
-    tolerance: Share | None = Field(
-        default=None,
-        description="difference from the flight's load within which it counts as followed, as a share; 5 % if left out",
+    tolerance: Share | None = optional(
+        "difference from the flight's load within which it counts as followed, as a share; 5 % if left out"
     )
-    tolerance_of: Literal["peak", "instant"] | None = Field(
-        default=None,
-        description="what tolerance is a share of. peak: the flight's largest load, as where it is left out; instant: "
-        "its load at each time",
+    tolerance_of: Literal["peak", "instant"] | None = optional(
+        "what tolerance is a share of. peak: the flight's largest load, as where it is left out; instant: "
+        "its load at each time"
     )
-    point: str | None = Field(
-        default=None,
-        description='point whose displacement is that of the tip, and whose spectra srs is of: "camera", or of a '
-        'system "arm.tip"; left out, the tip, and of a system the point that moves farthest in flight',
+    point: str | None = optional(
+        'point whose displacement is that of the tip, and whose spectra srs is of: "camera", or of a '
+        'system "arm.tip"; left out, the tip, and of a system the point that moves farthest in flight'
     )
-    control: dict[str, Share] = Field(
-        default_factory=dict,
-        max_length=ENTRIES,
-        description="weights of control points by the names of points: srs is of the weighted mean of the spectra "
-        "there, in place of the tip's",
+    control: dict[str, Share] = by_name(
+        "weights of control points by the names of points: srs is of the weighted mean of the spectra "
+        "there, in place of the tip's"
     )
-    damage_at: str | None = Field(
-        default=None,
-        description="point whose fatigue damage is that of damage; left out, the root of a beam, and of a solid where "
-        "its von Mises stress is largest, of several materials that whose stress ranges most in flight",
+    damage_at: str | None = optional(
+        "point whose fatigue damage is that of damage; left out, the root of a beam, and of a solid where "
+        "its von Mises stress is largest, of several materials that whose stress ranges most in flight"
     )
 
     @property
@@ -83,21 +76,17 @@ def _missing(first: str, second: str) -> tuple[Loc, PydanticCustomError]:
 class Components(Vector):
     """An acceleration by components in base axes; those left out are zero."""
 
-    x: AccelerationProfile | None = Field(default=None, description="profile of the component along the beam")
-    y: AccelerationProfile | None = Field(default=None, description="profile of the component along the width")
-    z: AccelerationProfile | None = Field(default=None, description="profile of the component through the thickness")
+    x: AccelerationProfile | None = optional("profile of the component along the beam")
+    y: AccelerationProfile | None = optional("profile of the component along the width")
+    z: AccelerationProfile | None = optional("profile of the component through the thickness")
 
 
 class Flight(Table):
     """The root accelerates as recorded or prescribed, and the axes do not turn."""
 
     kind: Literal["flight"] = Field(description="kind of the motion")
-    record: Record | None = Field(
-        default=None, description="a measured record: { file, time, x, y, z, unit }; or acceleration"
-    )
-    acceleration: Components | None = Field(
-        default=None, description="profiles: { x, y, z }, those left out zero; or record"
-    )
+    record: Record | None = optional("a measured record: { file, time, x, y, z, unit }; or acceleration")
+    acceleration: Components | None = optional("profiles: { x, y, z }, those left out zero; or record")
     smoothing: Time = Field(default=0.0, description="width of the kernel that rounds the corners; 0 leaves them sharp")
 
     @model_validator(mode="after")
@@ -113,15 +102,11 @@ class Flight(Table):
 class AxisLimit(Table):
     """Limits of one axis of the machine."""
 
-    rate: Annotated[float, Quantity("angular rate", "positive")] | None = Field(
-        default=None, description="largest rate, of either sign"
+    rate: Annotated[float, Quantity("angular rate", "positive")] | None = optional("largest rate, of either sign")
+    acceleration: Annotated[float, Quantity("angular acceleration", "positive")] | None = optional(
+        "largest acceleration, of either sign"
     )
-    acceleration: Annotated[float, Quantity("angular acceleration", "positive")] | None = Field(
-        default=None, description="largest acceleration, of either sign"
-    )
-    jerk: Annotated[float, Quantity("angular jerk", "positive")] | None = Field(
-        default=None, description="largest jerk, of either sign"
-    )
+    jerk: Annotated[float, Quantity("angular jerk", "positive")] | None = optional("largest jerk, of either sign")
 
 
 class Limits(Table):
@@ -132,11 +117,11 @@ class Limits(Table):
         default_factory=AxisLimit, description="yaw at the arm's end: { rate, acceleration, jerk }"
     )
     axis3: AxisLimit = Field(default_factory=AxisLimit, description="roll about the beam: { rate, acceleration, jerk }")
-    inertia: Annotated[float, Quantity("moment of inertia", "positive")] | None = Field(
-        default=None, description="moment of inertia of all that turns about axis 1; gives the arm's power"
+    inertia: Annotated[float, Quantity("moment of inertia", "positive")] | None = optional(
+        "moment of inertia of all that turns about axis 1; gives the arm's power"
     )
-    power: Annotated[float, Quantity("power", "positive")] | None = Field(
-        default=None, description="largest power that speeds the arm up or brakes it; needs inertia"
+    power: Annotated[float, Quantity("power", "positive")] | None = optional(
+        "largest power that speeds the arm up or brakes it; needs inertia"
     )
 
 
@@ -151,10 +136,10 @@ class Centrifuge(Table):
 
     kind: Literal["centrifuge"] = Field(description="kind of the motion")
     tracks: str = Field(description="NAME of the flight motion that it imitates")
-    machine: Literal["human-7.6m", "specimen-3.3m", "large-15m"] | None = Field(
-        default=None, description="an example machine, which gives arm, idle and limits where they are left out"
+    machine: Literal["human-7.6m", "specimen-3.3m", "large-15m"] | None = optional(
+        "an example machine, which gives arm, idle and limits where they are left out"
     )
-    arm: Length | None = Field(default=None, description="radius from the main axis to the control point; or machine")
+    arm: Length | None = optional("radius from the main axis to the control point; or machine")
     control_point: Annotated[Annotated[Position, Tag("one")] | Annotated[Place3, Tag("list")], ONE_OR_LIST] = Field(
         description="point of the specimen that feels the flight's load, from the root: along x, or [x, y, z]"
     )
@@ -169,8 +154,8 @@ class Centrifuge(Table):
         description="true if the target is specific force, of which gravity is a part on the machine; "
         "false if it is acceleration"
     )
-    idle: Annotated[float, Quantity("acceleration", "positive")] | None = Field(
-        default=None, description="load below which the target is held up to this magnitude"
+    idle: Annotated[float, Quantity("acceleration", "positive")] | None = optional(
+        "load below which the target is held up to this magnitude"
     )
     clip: StrictBool = Field(
         default=False, description="true to carry on with a held target where the gimbals cannot reach; idle implies it"
@@ -185,14 +170,11 @@ class Centrifuge(Table):
         "turned across the arm at standstill, so that the load has its right direction all the way; idle: it begins "
         "and ends in the state that it has at the flight's first and last time, which the commands' header gives",
     )
-    spin_up: Duration | None = Field(
-        default=None,
-        description="time from standstill to the flight's first time, such as 10 s; left out, one within the limits "
-        "in which the arm turns once or more",
+    spin_up: Duration | None = optional(
+        "time from standstill to the flight's first time, such as 10 s; left out, one within the limits "
+        "in which the arm turns once or more"
     )
-    spin_down: Duration | None = Field(
-        default=None, description="time from the flight's last time to standstill; left out, likewise"
-    )
+    spin_down: Duration | None = optional("time from the flight's last time to standstill; left out, likewise")
     mounting: Literal["upright", "inverted"] = Field(
         default="upright",
         description="which of the two ways the specimen sits in the gimbals. Under a load across it, its tip points "
@@ -206,8 +188,8 @@ class Centrifuge(Table):
     limits: Limits = Field(
         default_factory=Limits, description="what the machine can do: { axis1, axis2, axis3, inertia, power }"
     )
-    commands: Commands | None = Field(default=None, description="axis motions for the controller: { sample }")
-    accept: Accept | None = Field(default=None, description="how well it must reproduce the flight: { tip, peaks }")
+    commands: Commands | None = optional("axis motions for the controller: { sample }")
+    accept: Accept | None = optional("how well it must reproduce the flight: { tip, peaks }")
 
     @property
     def along(self) -> float:
@@ -232,29 +214,26 @@ class Hub(Table):
 
     kind: Literal["hub"] = Field(description="kind of the motion")
     radius: Position = Field(description="from the hub's axis to the beam's root")
-    rate: RateProfile | None = Field(default=None, description="profile of the hub's rate; or inertia and torque")
-    inertia: Annotated[float, Quantity("moment of inertia", "positive")] | None = Field(
-        default=None,
-        description="moment of inertia of the hub about its axis; beside a rate it gives the torque of the drive",
+    rate: RateProfile | None = optional("profile of the hub's rate; or inertia and torque")
+    inertia: Annotated[float, Quantity("moment of inertia", "positive")] | None = optional(
+        "moment of inertia of the hub about its axis; beside a rate it gives the torque of the drive"
     )
-    torque: TorqueProfile | None = Field(default=None, description="profile of the torque on the hub; needs inertia")
-    stiffness: Annotated[float, Quantity("rotational stiffness", "zero or more")] | None = Field(
-        default=None, description="torsional spring from a free hub to the ground, at ease at the hub's initial angle"
+    torque: TorqueProfile | None = optional("profile of the torque on the hub; needs inertia")
+    stiffness: Annotated[float, Quantity("rotational stiffness", "zero or more")] | None = optional(
+        "torsional spring from a free hub to the ground, at ease at the hub's initial angle"
     )
-    damping: Annotated[float, Quantity("rotational damping", "zero or more")] | None = Field(
-        default=None, description="torsional damper from a free hub to the ground"
+    damping: Annotated[float, Quantity("rotational damping", "zero or more")] | None = optional(
+        "torsional damper from a free hub to the ground"
     )
     pointing: Literal["outward", "inward"] = Field(
         default="outward", description="from the root away from the hub's axis, or towards it"
     )
-    setting_angle: Annotated[float, Quantity("angle")] | None = Field(
-        default=None,
-        description="turn of the section about the beam; at 0, or left out, its y axis lies in the plane of rotation",
+    setting_angle: Annotated[float, Quantity("angle")] | None = optional(
+        "turn of the section about the beam; at 0, or left out, its y axis lies in the plane of rotation"
     )
-    gravity: tuple[Acceleration, Acceleration, Acceleration] | None = Field(
-        default=None,
-        description='acceleration of free fall [x, y, z] in hub axes at hub angle zero, such as [0, 0, "-1 g"]: '
-        "x to the root, z the hub's axis; it keeps its direction as the hub turns",
+    gravity: tuple[Acceleration, Acceleration, Acceleration] | None = optional(
+        'acceleration of free fall [x, y, z] in hub axes at hub angle zero, such as [0, 0, "-1 g"]: '
+        "x to the root, z the hub's axis; it keeps its direction as the hub turns"
     )
 
     @model_validator(mode="after")

@@ -28,6 +28,7 @@ from gbeam.scenario.schema.fields import (
     Time,
     Torque,
     TorqueRate,
+    optional,
     refuse,
     wrong,
 )
@@ -176,8 +177,8 @@ class Record(Table):
         description="name of the column of times, numbers or times of day; in MAT, HDF5 and netCDF of the variable, "
         "such as rec.t or acc(:,1); in UFF time"
     )
-    time_unit: Literal["s", "ms", "us", "min"] | None = Field(
-        default=None, description="unit of the times; what the file says if left out, or else s"
+    time_unit: Literal["s", "ms", "us", "min"] | None = optional(
+        "unit of the times; what the file says if left out, or else s"
     )
     x: str = Field(description='column of the x component, along the beam; "-" in front changes the sign, "0" is none')
     y: str = Field(description='column of the y component, along the width; "-" in front changes the sign, "0" is none')
@@ -188,27 +189,21 @@ class Record(Table):
         description="what the components are. specific-force: what accelerometers measure, 1 g upwards in level "
         "flight; acceleration: none then",
     )
-    p: str | None = Field(
-        default=None, description="column of the body rate about x; p, q and r fly the specimen with them"
-    )
-    q: str | None = Field(default=None, description='column of the body rate about y; "-" and "0" as for x, y and z')
-    r: str | None = Field(default=None, description='column of the body rate about z; "-" and "0" likewise')
-    rate_unit: Literal["rad/s", "deg/s"] | None = Field(default=None, description="unit of p, q and r")
-    begin: Moment | None = Field(
-        default=None,
-        alias="from",
-        description="first time of the part that is flown, on the record's own clock, such as 2 s, or 12:34:56.7 where "
+    p: str | None = optional("column of the body rate about x; p, q and r fly the specimen with them")
+    q: str | None = optional('column of the body rate about y; "-" and "0" as for x, y and z')
+    r: str | None = optional('column of the body rate about z; "-" and "0" likewise')
+    rate_unit: Literal["rad/s", "deg/s"] | None = optional("unit of p, q and r")
+    begin: Moment | None = optional(
+        "first time of the part that is flown, on the record's own clock, such as 2 s, or 12:34:56.7 where "
         "its times are times of day; the record's first if left out",
+        alias="from",
     )
-    to: Moment | None = Field(
-        default=None, description="last time of the part that is flown, likewise; the record's last if left out"
+    to: Moment | None = optional("last time of the part that is flown, likewise; the record's last if left out")
+    cutoff: Annotated[float, Quantity("frequency", "positive")] | None = optional(
+        "cut-off of a zero-phase low-pass, -6 dB, such as 5 Hz; none if left out"
     )
-    cutoff: Annotated[float, Quantity("frequency", "positive")] | None = Field(
-        default=None, description="cut-off of a zero-phase low-pass, -6 dB, such as 5 Hz; none if left out"
-    )
-    resample: Annotated[float, Quantity("frequency", "positive")] | None = Field(
-        default=None,
-        description="new sampling rate, such as 200 Hz, and times may jitter; the record's own if left out",
+    resample: Annotated[float, Quantity("frequency", "positive")] | None = optional(
+        "new sampling rate, such as 200 Hz, and times may jitter; the record's own if left out"
     )
     despike: StrictBool = Field(default=False, description="replace single samples far off their neighbours")
     skip_checks: _Skipped = Field(

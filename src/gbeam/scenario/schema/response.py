@@ -21,6 +21,7 @@ from gbeam.scenario.schema.fields import (
     Step,
     Table,
     Time,
+    optional,
     refuse,
     wrong,
 )
@@ -37,15 +38,15 @@ PARAMETERS: dict[str, tuple[str, ...]] = {
 class TipDisplacement(Table):
     """A displacement of the tip across the beam, by components; those left out are free."""
 
-    y: Offset | None = Field(default=None, description="component along the width")
-    z: Offset | None = Field(default=None, description="component through the thickness")
+    y: Offset | None = optional("component along the width")
+    z: Offset | None = optional("component through the thickness")
 
 
 class TipVelocity(Table):
     """A velocity of the tip across the beam, by components; those left out are free."""
 
-    y: Speed | None = Field(default=None, description="component along the width")
-    z: Speed | None = Field(default=None, description="component through the thickness")
+    y: Speed | None = optional("component along the width")
+    z: Speed | None = optional("component through the thickness")
 
 
 class Initial(Table):
@@ -56,19 +57,15 @@ class Initial(Table):
         description="equilibrium: at rest in the relative equilibrium with the base's motion and the loads then; "
         "undeformed: straight and at rest",
     )
-    acceleration: tuple[Acceleration, Acceleration, Acceleration] | None = Field(
-        default=None,
-        description='released from the static deflection under this acceleration of the root, [0, 0, "2 g"], and under '
-        "the loads then",
+    acceleration: tuple[Acceleration, Acceleration, Acceleration] | None = optional(
+        'released from the static deflection under this acceleration of the root, [0, 0, "2 g"], and under '
+        "the loads then"
     )
-    tip_displacement: TipDisplacement | None = Field(
-        default=None,
-        description="released from the static deflection by a force at the tip that displaces it so: { y, z }",
+    tip_displacement: TipDisplacement | None = optional(
+        "released from the static deflection by a force at the tip that displaces it so: { y, z }"
     )
-    tip_velocity: TipVelocity | None = Field(
-        default=None,
-        description="velocity of the tip relative to the base, the beam moving in the shape of that deflection: "
-        "{ y, z }",
+    tip_velocity: TipVelocity | None = optional(
+        "velocity of the tip relative to the base, the beam moving in the shape of that deflection: { y, z }"
     )
 
     @property
@@ -80,19 +77,17 @@ class Initial(Table):
 class Response(Table):
     """Response over time."""
 
-    duration: Duration | None = Field(
-        default=None, description="length of the computation; left out beside a record, of which `to` asks for a part"
+    duration: Duration | None = optional(
+        "length of the computation; left out beside a record, of which `to` asks for a part"
     )
     step: Step = Field(default="auto", description="time step, or auto")
     integrator: Literal["newmark", "hht", "generalized-alpha", "gauss"] = Field(
         default="newmark", description="time integrator; of a system gauss where it is left out"
     )
-    beta: Ratio | None = Field(default=None, description="parameter of newmark")
-    gamma: Ratio | None = Field(default=None, description="parameter of newmark")
-    alpha: Ratio | None = Field(default=None, description="parameter of hht")
-    rho_inf: Ratio | None = Field(
-        default=None, description="parameter of generalized-alpha: spectral radius at infinite frequency"
-    )
+    beta: Ratio | None = optional("parameter of newmark")
+    gamma: Ratio | None = optional("parameter of newmark")
+    alpha: Ratio | None = optional("parameter of hht")
+    rho_inf: Ratio | None = optional("parameter of generalized-alpha: spectral radius at infinite frequency")
     tolerance: Annotated[float, Quantity("ratio", "positive")] = Field(
         default=1e-2,
         description="largest total error (step, shapes and model) without a warning; an automatic step aims at a "
@@ -106,12 +101,9 @@ class Response(Table):
     initial: Initial = Field(
         default_factory=Initial, description="state at the start; the relative equilibrium if left out"
     )
-    residual_from: Time | None = Field(default=None, description="time from which the residual vibration is measured")
-    stations: tuple[Position, ...] | None = Field(
-        default=None,
-        min_length=1,
-        max_length=ENTRIES,
-        description="positions from the root for the output; the tip if left out",
+    residual_from: Time | None = optional("time from which the residual vibration is measured")
+    stations: tuple[Position, ...] | None = optional(
+        "positions from the root for the output; the tip if left out", min_length=1, max_length=ENTRIES
     )
 
     histories: Step = Field(

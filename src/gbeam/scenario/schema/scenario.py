@@ -13,7 +13,7 @@ from gbeam.guards.limits import NAME, SHAPES, TITLE
 from gbeam.printable import advise, shortened, unprintable
 from gbeam.questions import QUESTIONS
 from gbeam.scenario.schema.beam import Beam
-from gbeam.scenario.schema.fields import Loc, Table, refuse, wrong
+from gbeam.scenario.schema.fields import Loc, Table, optional, refuse, wrong
 from gbeam.scenario.schema.motion import Centrifuge, Flight, Hub, Motion
 from gbeam.scenario.schema.response import Response
 
@@ -47,16 +47,14 @@ class Model(Table):
         "without axial coordinates. CFOAM: FOAM's field, complete energy. fourth-order: exact's places to that order, "
         "complete. exact: any rotation"
     )
-    modes: Modes | None = Field(
-        default=None,
-        description="numbers of shapes: { axial, y, z, twist, shear_y, shear_z }; where left out, `run` raises "
-        "those of axial, y and z until they are enough",
+    modes: Modes | None = optional(
+        "numbers of shapes: { axial, y, z, twist, shear_y, shear_z }; where left out, `run` raises "
+        "those of axial, y and z until they are enough"
     )
-    shapes: Literal["clamped-free", "adapted"] | None = Field(
-        default=None,
-        description="clamped-free: shapes of the bare uniform beam (for `exact` and `fourth-order`, polynomials); the "
+    shapes: Literal["clamped-free", "adapted"] | None = optional(
+        "clamped-free: shapes of the bare uniform beam (for `exact` and `fourth-order`, polynomials); the "
         "default for these two and where `modes` are given. adapted: the modes at rest of this beam with its tapers, "
-        "masses and root springs, of which fewer are needed; the default where `modes` are left out",
+        "masses and root springs, of which fewer are needed; the default where `modes` are left out"
     )
 
 
@@ -77,9 +75,7 @@ class Sweep(Table):
         default=(), description="histories over time by motion, quantity and axis, such as flight.tip.z"
     )
     verb: Verb = Field(default="run", description="whose figures")
-    samples: int | None = Field(
-        default=None, ge=1, strict=True, description="how many are drawn from distributions; 64"
-    )
+    samples: int | None = optional("how many are drawn from distributions; 64", ge=1, strict=True)
     sampler: Literal["sobol", "latin", "random", "saltelli"] = Field(
         default="sobol", description="how they are drawn; saltelli for Sobol indices"
     )
@@ -125,7 +121,7 @@ class Environments(Titled):
         min_length=1, description="what the base does: one environment or more, each [motion.NAME]"
     )
     response: Response = Field(default_factory=Response, description="response over time")
-    sweep: Sweep | None = Field(default=None, description="many cases, for gbeam sweep")
+    sweep: Sweep | None = optional("many cases, for gbeam sweep")
 
     _source: Source | None = PrivateAttr(None)
 

@@ -26,6 +26,8 @@ from gbeam.scenario.schema.fields import (
     Ratios,
     Table,
     Turn3,
+    by_name,
+    optional,
     refuse,
     wrong,
 )
@@ -151,70 +153,47 @@ class SolidBody(Reduced):
         'the folder of the scenario file; needs pip install "gbeam[mesh]"; or of STEP, which Gmsh meshes, with '
         'pip install "gbeam[gmsh]"'
     )
-    unit: str | None = Field(
-        default=None, description='unit of the coordinates in the mesh, such as "mm"; STEP files say theirs'
+    unit: str | None = optional('unit of the coordinates in the mesh, such as "mm"; STEP files say theirs')
+    mass_unit: str | None = optional(
+        'unit of mass in a file of Nastran, Abaqus or CalculiX, such as "Mg" beside mm, N and s: with it '
+        "the file's masses, rigid links and springs are read"
     )
-    mass_unit: str | None = Field(
-        default=None,
-        description='unit of mass in a file of Nastran, Abaqus or CalculiX, such as "Mg" beside mm, N and s: with it '
-        "the file's masses, rigid links and springs are read",
+    thickness: Length | None = optional(
+        "of all triangles and quadrilaterals of a mesh without solids, which are shells by it"
     )
-    thickness: Length | None = Field(
-        default=None,
-        description="of all triangles and quadrilaterals of a mesh without solids, which are shells by it",
+    thicknesses: dict[str, Length] = by_name(
+        "of the shells of each group, by its name or number, instead of thickness; in a mesh with solids "
+        "other surfaces only name groups"
     )
-    thicknesses: dict[str, Length] = Field(
-        default_factory=dict,
-        max_length=ENTRIES,
-        description="of the shells of each group, by its name or number, instead of thickness; in a mesh with solids "
-        "other surfaces only name groups",
+    element_size: Length | None = optional("largest edge of the elements by which STEP files are meshed")
+    material: SolidMaterial | None = optional(
+        "of all elements: { density, youngs_modulus, poissons_ratio, yield_strength }, or orthotropic "
+        "{ density, youngs_moduli, poissons_ratios, shear_moduli, axes }"
     )
-    element_size: Length | None = Field(
-        default=None, description="largest edge of the elements by which STEP files are meshed"
-    )
-    material: SolidMaterial | None = Field(
-        default=None,
-        description="of all elements: { density, youngs_modulus, poissons_ratio, yield_strength }, or orthotropic "
-        "{ density, youngs_moduli, poissons_ratios, shear_moduli, axes }",
-    )
-    materials: dict[str, SolidMaterial] = Field(
-        default_factory=dict,
-        max_length=ENTRIES,
-        description="of the elements of each group, by its name or number, instead of material",
+    materials: dict[str, SolidMaterial] = by_name(
+        "of the elements of each group, by its name or number, instead of material"
     )
     clamp: _Groups = Field(description="name of the group whose nodes follow the base or the joint, or a list of them")
-    masses: dict[str, Mass] = Field(
-        default_factory=dict,
-        max_length=ENTRIES,
-        description="masses by the name of a point, or of a group over whose nodes each is spread evenly",
+    masses: dict[str, Mass] = by_name(
+        "masses by the name of a point, or of a group over whose nodes each is spread evenly"
     )
-    points: dict[str, _Point] = Field(
-        default_factory=dict,
-        max_length=ENTRIES,
-        description="points of output by name: the place [x, y, z] from the root for the nearest node, or a group of "
+    points: dict[str, _Point] = by_name(
+        "points of output by name: the place [x, y, z] from the root for the nearest node, or a group of "
         "one node, or with axes of stress and strain { at, turn }; tip is the node farthest from the root where it is "
-        "not given",
+        "not given"
     )
-    interfaces: dict[str, str] = Field(
-        default_factory=dict,
-        max_length=ENTRIES,
-        description="groups by the name of a point that moves and turns as their nodes do on average: other bodies "
-        "hang on it, and it is put out",
+    interfaces: dict[str, str] = by_name(
+        "groups by the name of a point that moves and turns as their nodes do on average: other bodies "
+        "hang on it, and it is put out"
     )
-    links: dict[str, _Groups] = Field(
-        default_factory=dict,
-        max_length=ENTRIES,
-        description="rigid links by name: a group, or a list of them, whose nodes move together as one rigid body",
+    links: dict[str, _Groups] = by_name(
+        "rigid links by name: a group, or a list of them, whose nodes move together as one rigid body"
     )
-    carried: dict[str, Carried] = Field(
-        default_factory=dict,
-        max_length=ENTRIES,
-        description="bodies by the name of the rigid link that carries each: { mass, centre, inertia }",
+    carried: dict[str, Carried] = by_name(
+        "bodies by the name of the rigid link that carries each: { mass, centre, inertia }"
     )
-    springs: dict[str, Spring] = Field(
-        default_factory=dict,
-        max_length=ENTRIES,
-        description="springs by name, between two rigid links or one and the base: { between, stiffness }",
+    springs: dict[str, Spring] = by_name(
+        "springs by name, between two rigid links or one and the base: { between, stiffness }"
     )
     origin: Place3 = Field(
         default=(0.0, 0.0, 0.0), description="the root in the mesh, whose acceleration the motion gives: [x, y, z]"
@@ -226,11 +205,9 @@ class SolidBody(Reduced):
         default=(1.0, 1.0, 1.0),
         description="factors of the mesh's coordinates, such as [1, 1, 1.25] for a board a quarter thicker",
     )
-    coarser_size: Length | None = Field(
-        default=None, description="element_size of a coarser mesh, by which the mesh's error is estimated"
-    )
-    coarser: File | None = Field(
-        default=None, description="file of a coarser mesh with the same groups, by which the mesh's error is estimated"
+    coarser_size: Length | None = optional("element_size of a coarser mesh, by which the mesh's error is estimated")
+    coarser: File | None = optional(
+        "file of a coarser mesh with the same groups, by which the mesh's error is estimated"
     )
 
     @model_validator(mode="after")
@@ -258,10 +235,9 @@ class MatricesBody(Reduced):
     )
     mass_matrix: str = Field(default="", description="name of the mass matrix in them, where it is not the usual one")
     stiffness_matrix: str = Field(default="", description="name of the stiffness matrix, likewise")
-    nodes: File | None = Field(
-        default=None,
-        description="file of a matrix with the places of the nodes, a row of x, y, z each, in length_unit, where the "
-        "others have none, as an array nodes or in files of their programs",
+    nodes: File | None = optional(
+        "file of a matrix with the places of the nodes, a row of x, y, z each, in length_unit, where the "
+        "others have none, as an array nodes or in files of their programs"
     )
     length_unit: str = Field(default="m", description="unit of length of the program, such as mm; of time it is s")
     mass_unit: str = Field(default="kg", description="unit of mass of the program, such as Mg")
@@ -271,11 +247,9 @@ class MatricesBody(Reduced):
     )
     points: _NodePoints = Field(default_factory=dict, description="numbers of nodes of output by name")
     interfaces: tuple[str, ...] = Field(default=(), description="names of points on which other bodies hang")
-    total_mass: Mass | None = Field(default=None, description="mass that the matrices must have, within 1 %")
-    centre: Place3 | None = Field(default=None, description="centre of mass that they must have: [x, y, z]")
-    inertia: Inertia | None = Field(
-        default=None, description="inertia about the centre of mass that they must have: [x, y, z], or three rows"
-    )
+    total_mass: Mass | None = optional("mass that the matrices must have, within 1 %")
+    centre: Place3 | None = optional("centre of mass that they must have: [x, y, z]")
+    inertia: Inertia | None = optional("inertia about the centre of mass that they must have: [x, y, z], or three rows")
 
 
 class StandardInputBody(Table):
@@ -287,9 +261,7 @@ class StandardInputBody(Table):
     standard_input_data: File = Field(
         description="file of the body's modal object, in SI; relative to the folder of the scenario file"
     )
-    damping_ratio: Ratios | None = Field(
-        default=None, description="of critical damping, in place of the damping in the file"
-    )
+    damping_ratio: Ratios | None = optional("of critical damping, in place of the damping in the file")
     points: _NodePoints = Field(default_factory=dict, description="numbers of nodes of output by name")
 
 
@@ -307,25 +279,22 @@ class ModalTestBody(Table):
     kind: Literal["modal-test"] = Field(
         default="modal-test", description="kind of the body; may be left out beside modal_test"
     )
-    modal_test: File | None = Field(
-        default=None,
-        description="universal file (.uff, .unv) of the modes and the nodes; or frequency, damping_ratio, shapes, "
-        "nodes and modal_mass. Relative to the folder of the scenario file",
+    modal_test: File | None = optional(
+        "universal file (.uff, .unv) of the modes and the nodes; or frequency, damping_ratio, shapes, "
+        "nodes and modal_mass. Relative to the folder of the scenario file"
     )
-    frequency: _Frequencies | None = Field(default=None, description="natural frequencies, without a file")
-    damping_ratio: Ratios | None = Field(
-        default=None, description="of critical damping, of every mode, or a list; beside a file in place of its own"
+    frequency: _Frequencies | None = optional("natural frequencies, without a file")
+    damping_ratio: Ratios | None = optional(
+        "of critical damping, of every mode, or a list; beside a file in place of its own"
     )
-    shapes: Annotated[tuple[_Shape, ...], Field(max_length=ENTRIES)] | None = Field(
-        default=None,
-        description="displacements of the nodes in each mode, without a file: [ [ [x, y, z], ... ], ... ]",
+    shapes: Annotated[tuple[_Shape, ...], Field(max_length=ENTRIES)] | None = optional(
+        "displacements of the nodes in each mode, without a file: [ [ [x, y, z], ... ], ... ]"
     )
-    nodes: Annotated[tuple[Place3, ...], Field(max_length=ENTRIES)] | None = Field(
-        default=None, description="places of the nodes from the root, without a file: [ [x, y, z], ... ]"
+    nodes: Annotated[tuple[Place3, ...], Field(max_length=ENTRIES)] | None = optional(
+        "places of the nodes from the root, without a file: [ [x, y, z], ... ]"
     )
-    modal_mass: _Masses | None = Field(
-        default=None,
-        description="that goes with the shapes, of every mode, or a list; beside a file in place of its own",
+    modal_mass: _Masses | None = optional(
+        "that goes with the shapes, of every mode, or a list; beside a file in place of its own"
     )
     masses: _Masses = Field(
         description="share of the specimen's mass at the nodes, in the order of their numbers: a list, or one that all "
@@ -363,26 +332,19 @@ class RigidKeys(Table):
         "where it is left out that of an even box",
     )
     centre: Place3 = Field(default=(0.0, 0.0, 0.0), description="centre of mass from the root: [x, y, z]")
-    size: tuple[Offset, Offset, Offset] | None = Field(
-        default=None, description="edges [x, y, z] of the box that it fills, about middle"
-    )
-    middle: Place3 | None = Field(
-        default=None, description="middle of the box from the root, [x, y, z]; the centre of mass where left out"
-    )
+    size: tuple[Offset, Offset, Offset] | None = optional("edges [x, y, z] of the box that it fills, about middle")
+    middle: Place3 | None = optional("middle of the box from the root, [x, y, z]; the centre of mass where left out")
     corners: _Places = Field(
         default=(), description=_OF_SPECIMEN + "corners of its envelope where it is no box: [ [x, y, z], ... ]"
     )
     bolts: _Places = Field(
         default=(), description=_OF_SPECIMEN + "places of the bolts that hold it, alike: [ [x, y, z], ... ]"
     )
-    bolt_axis: Direction | None = Field(
-        default=None, description=_OF_SPECIMEN + "direction of the bolts, away from the fixture: [x, y, z]"
-    )
+    bolt_axis: Direction | None = optional(_OF_SPECIMEN + "direction of the bolts, away from the fixture: [x, y, z]")
 
-    spread_limit: Exponent | None = Field(
-        default=None,
-        description=_OF_SPECIMEN + "largest difference of the load at a corner to the centre's that the test order "
-        'accepts, over the largest of the centre, such as "10 %"; beyond it the run is not accepted',
+    spread_limit: Exponent | None = optional(
+        _OF_SPECIMEN + "largest difference of the load at a corner to the centre's that the test order "
+        'accepts, over the largest of the centre, such as "10 %"; beyond it the run is not accepted'
     )
 
     def alone(self) -> Iterator[str]:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import AfterValidator, ConfigDict, Discriminator, Field, StrictBool, Tag, create_model, model_validator
 from pydantic_core import PydanticCustomError
 
-from gbeam.guards.limits import ENTRIES, NAME
+from gbeam.guards.limits import NAME
 from gbeam.mechanics.tree.joints import COUPLINGS, GROUND, KINDS, SLIDES, Kind
 from gbeam.printable import shortened
 from gbeam.scenario.schema.beam import Beam
@@ -33,6 +33,9 @@ from gbeam.scenario.schema.fields import (
     Table,
     Turn3,
     Vector,
+    by_name,
+    listed,
+    optional,
     refuse,
     wrong,
 )
@@ -62,10 +65,8 @@ Name = Annotated[str, AfterValidator(_named)]
 class RigidBody(RigidKeys):
     """A rigid body."""
 
-    points: dict[Name, PlaceOfBody] = Field(
-        default_factory=dict,
-        max_length=ENTRIES,
-        description="points by name, on which other bodies hang, forces act and output is given: { at, turn }",
+    points: dict[Name, PlaceOfBody] = by_name(
+        "points by name, on which other bodies hang, forces act and output is given: { at, turn }"
     )
 
 
@@ -74,10 +75,8 @@ class BeamBody(Beam):
 
     kind: Literal["beam"] = Field(description="kind of the body")
     model: Model = Field(description="the model of its deformation; modes are to be given: { kind, modes, shapes }")
-    stations: tuple[Position, ...] = Field(
-        default=(),
-        max_length=ENTRIES,
-        description="positions from the root of sections with loads and stress, beside those of its points",
+    stations: tuple[Position, ...] = listed(
+        "positions from the root of sections with loads and stress, beside those of its points"
     )
 
 
@@ -159,7 +158,7 @@ def _table(base: type[Table], name: str, about: str, fields: Mapping[str, Any]) 
 
 
 def _optional(of: Any, description: str) -> tuple[Any, Any]:
-    return (of | None, Field(default=None, description=description))
+    return (of | None, optional(description))
 
 
 def _joint(name: str, kind: Kind) -> Any:
@@ -191,7 +190,7 @@ def _joint(name: str, kind: Kind) -> Any:
         words = "stiffness between two coordinates"
         within = {
             f"{one}_{two}": (Annotated[float, Quantity(COUPLINGS[(one in SLIDES) + (two in SLIDES)])] | None,
-                             Field(default=None, alias=f"{one}-{two}", description=words))
+                             optional(words, alias=f"{one}-{two}"))
             for one, two in combinations(kind.given, 2)
         }  # fmt: skip
         table = _table(
@@ -212,25 +211,25 @@ else:
 class PointForces(Vector):
     """A force on a point by components, each a quantity or a profile; those left out are zero."""
 
-    x: ForceOverTime | None = Field(default=None, description="component along x")
-    y: ForceOverTime | None = Field(default=None, description="component along y")
-    z: ForceOverTime | None = Field(default=None, description="component along z")
+    x: ForceOverTime | None = optional("component along x")
+    y: ForceOverTime | None = optional("component along y")
+    z: ForceOverTime | None = optional("component along z")
 
 
 class PointMoments(Vector):
     """A moment on a point by components, each a quantity or a profile; those left out are zero."""
 
-    x: MomentOverTime | None = Field(default=None, description="component about x")
-    y: MomentOverTime | None = Field(default=None, description="component about y")
-    z: MomentOverTime | None = Field(default=None, description="component about z")
+    x: MomentOverTime | None = optional("component about x")
+    y: MomentOverTime | None = optional("component about y")
+    z: MomentOverTime | None = optional("component about z")
 
 
 class PointForce(Table):
     """A force and a moment on a point, such as thrust."""
 
     on: str = Field(description='the point: "bus.nozzle"')
-    force: PointForces | None = Field(default=None, description="force on the point: { x, y, z }")
-    moment: PointMoments | None = Field(default=None, description="moment on the point: { x, y, z }")
+    force: PointForces | None = optional("force on the point: { x, y, z }")
+    moment: PointMoments | None = optional("moment on the point: { x, y, z }")
     follower: StrictBool = Field(
         default=False, description="true if the components turn with the point; false if they keep to the ground's axes"
     )
@@ -245,8 +244,8 @@ class PointForce(Table):
 class Surroundings(Table):
     """[system]: loads that act on all bodies."""
 
-    gravity: tuple[Acceleration, Acceleration, Acceleration] | None = Field(
-        default=None, description='acceleration of free fall, axes of the ground: [0, 0, "-1 g"]; none on a motion'
+    gravity: tuple[Acceleration, Acceleration, Acceleration] | None = optional(
+        'acceleration of free fall, axes of the ground: [0, 0, "-1 g"]; none on a motion'
     )
 
 
