@@ -56,9 +56,7 @@ class Chunk:
 
 @dataclass(frozen=True)
 class Stretch:
-    """Many chunks of a run's steps without inputs; `shape` is (groups, steps), `times` (steps, stages) s is where
-    inputs are needed.
-    """
+    """Many chunks without inputs; `shape` is (groups, steps), `times` (steps, stages) s where inputs are needed."""
 
     steps: Steps
     shape: tuple[int, int]

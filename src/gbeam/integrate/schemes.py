@@ -84,9 +84,7 @@ class Scheme:
 
 
 def powers_of_step(m: int, stages: int) -> dict[str, NDArray[np.int64]]:
-    """Powers of the step, from −2 to 2, in a tableau's entries: z = (q*, v*, c) and (q, q̇, q̈) are of orders 0, 1, 2
-    in 1/step.
-    """
+    """Powers of the step, −2 to 2, in a tableau: z = (q*, v*, c) and (q, q̇, q̈) are of orders 0, 1, 2 in 1/step."""
     k, pair, x = np.arange(m), np.arange(2)[:, None], np.full(stages, 2)
     return {
         "w_q": np.tile(k, (stages, 1)),

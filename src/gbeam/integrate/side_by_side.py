@@ -63,9 +63,7 @@ class Run:
 
     @cached_property
     def inputs(self) -> Any:
-        """Inputs (1 + t s, ...) of linear equations: at the first instant, then at every stage, and at the end of a
-        step without one.
-        """
+        """Inputs (1 + t s, ...) of linear equations: first, at every stage, and at the end of a step without one."""
         steps, offsets = self.steps, self.scheme.offsets
         at = [steps.times(offset) for offset in offsets] + ([] if self.scheme.ends else [steps.end])
         return self.equations.drive(np.append(steps.first[:1], np.stack(at, axis=1)))

@@ -211,9 +211,7 @@ class _Window:
         self.slope = tuple(np.moveaxis(slope.reshape(*(self.x.shape[:2] if len(slope) > 1 else (1, 1)), 3, n, n), 2, 0))
 
     def _between(self, function: Any, *, alone: bool = False) -> Array:
-        """Values (t s or 1, ...) of a function of states and inputs at some stages, and between these; at the first
-        `alone`.
-        """
+        """Values (t s or 1, ...) of a function of states and inputs at stages and between; at the first `alone`."""
         count = self.x.shape[0] * self.x.shape[1]
         samples = 1 if alone else 1 + math.ceil((count - 1) / (1 if len(self.x) == 1 else self.apart))
         at = np.linspace(0, count - 1, samples).round().astype(int)

@@ -300,9 +300,7 @@ def _history(beam: Beam) -> LoadHistory | None:
 
 
 def load_work(beam: Beam, field: Field, rule: Quadrature, first: int) -> tuple[LoadWork, Array]:
-    """Find the work of the loads, at points of their own, counted from `first`, or on all quadrature nodes; and these
-    points.
-    """
+    """Find the work of the loads, at points counted from `first` or on all quadrature nodes, and these points."""
     station, which, weight = [], [], []
     for k, load in enumerate(beam.loads):
         if load.at is None:

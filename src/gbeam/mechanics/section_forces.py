@@ -110,9 +110,7 @@ def section_forces(
 
 
 def _of_ends(structure: Structure, base: BaseMotion, q: Array, qd: Array, qdd: Array, time: Array) -> Loads:
-    """Loads, without stress, at the root of a structure of constant coefficients, and at its tip, which carries nothing
-    outboard.
-    """
+    """Loads without stress at the root of constant coefficients, and at the tip, which carries nothing outboard."""
     xp = namespace(q, base.a_WO_B)
     applied = None if structure.history is None else structure.history(time)
     root = Frame(None, None, None, base.w_WB_B, base.a_WO_B, base.alpha_WB_B)

@@ -29,9 +29,7 @@ ZONE = 0.9  # of one term's length: what several terms leave of it
 
 
 def stiffening(beam: Beam, x: Array, bent: Array) -> tuple[Array, Array]:
-    """Factors (p,) on EI_y and EI_z at x (p,) by which the strip is stiffer than a beam, at sizes of curvatures (2, p),
-    1/m.
-    """
+    """Factors (p,) on EI_y, EI_z at x (p,) by which a strip is stiffer than a beam, at curvatures (2, p), 1/m."""
     if beam.material is None:  # what its matrices say is all that is known
         return np.ones(len(x)), np.ones(len(x))
     ratio, (width, thickness) = float(beam.material.ratio), beam.section.at(x).extents()
@@ -106,9 +104,7 @@ def theory_of(structure: Structure, hung: tuple[int, ...] = ()) -> Theory:
 
 
 class _Parts:
-    """Parts of a beam's energies at nodes, bodies, loads and stations: strains by nodal values, family by family, and
-    springs.
-    """
+    """A beam's energies at nodes, bodies, loads and stations: strains by nodal values, and springs."""
 
     def __init__(self, structure: Structure, beam: Beam, rule: Quadrature, hung: tuple[int, ...] = ()) -> None:
         self.structure, self.beam, self.rule = structure, beam, rule
@@ -152,9 +148,7 @@ class _Parts:
         return np.concatenate([*inward, springs])
 
     def answers(self, coordinates: Array) -> Array:
-        """Static answers (m, k) of the thick beam: to the inertia of its own shapes, to accelerations, loads and what
-        hangs on it.
-        """
+        """Static answers (m, k) of the thick beam: to its own shapes' inertia, accelerations, loads and hung bodies."""
         at, mass, offset = particles_of(self.beam, self.rule, rotary=True)
         arm = np.einsum("pab,pb->ap", self.axes[at], offset)[..., None]
         onto = at == np.arange(len(self.points))[:, None]  # (points, particles)

@@ -34,9 +34,7 @@ _ROW, _COLUMN = np.tril_indices(3, -1)
 
 
 class Loss(NamedTuple):
-    """A stretch of time in which a disturbance grows by a factor of logarithm `growth`, and what base and loads do at
-    its start.
-    """
+    """A stretch of time in which a disturbance grows by exp(`growth`), and what base and loads do at its start."""
 
     start: float
     end: float
@@ -64,9 +62,7 @@ class Drive(NamedTuple):
 
 
 def worst_loss(structure: Structure, time: Array, base: BaseMotion, q: Array) -> Loss | None:
-    """Stretch of a run in which a disturbance grows most, about q (t, n) of a complete model unless on its way to
-    stability.
-    """
+    """Stretch in which a disturbance grows most, about q (t, n) of a complete model unless on its way to stability."""
     c = structure.coefficients
     loads = None if c.loads is None or structure.history is None else structure.history(time)
     drive = Drive(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads)

@@ -175,9 +175,7 @@ EQUILIBRIUM = Initial()
 
 @dataclass(frozen=True)
 class Problem:
-    """Equations and initial state (n,) for the integrator, the beam's from index `first`; `stable` tells of its
-    equilibrium.
-    """
+    """Equations and initial state (n,) for the integrator, the beam's from `first`; `stable` is its equilibrium."""
 
     equations: LinearEquations | NonlinearEquations
     q: Array

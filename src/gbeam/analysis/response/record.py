@@ -76,9 +76,7 @@ def response_of(
     moved: Array | None = None,
     peaks: Peaks | None = None,
 ) -> Response:
-    """Sample spin-up, flight and spin-down on the coarse grid and describe them, with what is known already of a flight
-    alone.
-    """
+    """Sample spin-up, flight and spin-down on the coarse grid and describe them, with what a flight alone gave."""
     up, trajectory, down = runs
     every, flight = joined(up, trajectory, down, stride)
     last = trajectory if down is None else down

@@ -28,9 +28,7 @@ _SAMPLES = 2000  # times at most at which the loads of two runs are compared
 
 @dataclass(frozen=True)
 class Readings:
-    """Functions that read tip and root moment (..., 3) from coordinates, and histories (t, ..., k) of loads from a
-    trajectory.
-    """
+    """Tip and root moment (..., 3) from coordinates, and histories (t, ..., k) of loads from a trajectory."""
 
     tip: Callable[[Floats], Floats]
     moment: Callable[[Floats], Floats]
@@ -74,9 +72,7 @@ def difference(coarse: Floats, fine: Floats, ratio: int) -> float:
 
 
 def observed_order(before: float, now: float, ratios: tuple[int, int], highest: float) -> float:
-    """Order p of three runs with steps 1, 1/r₁, 1/(r₁ r₂): their differences are as (r₁ᵖ − 1)/(1 − r₂⁻ᵖ) for errors C
-    hᵖ.
-    """
+    """Order p of three runs, steps 1, 1/r₁, 1/(r₁ r₂): errors C hᵖ differ as (r₁ᵖ − 1)/(1 − r₂⁻ᵖ)."""
     first, second = ratios
 
     def lack(p: float) -> float:

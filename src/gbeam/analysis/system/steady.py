@@ -307,9 +307,7 @@ class Loaded:
         return steady(of, replace(self.drive, factor=factor))
 
     def share(self, system: System) -> float:
-        """Stiffness that loads and forces bring, over that of the system; where they only bend it, how far, over its
-        extent.
-        """
+        """Stiffness that loads and forces bring, over the system's; if they only bend it, how far, over its extent."""
         rest, pushed = self(system, 0.0), self(system, SLIGHT)
         square, modes = symmetric_modes(*(symmetric(each) for each in (rest.linear.stiffness, rest.linear.mass)))
         held = modes[:, square > RIGID**2 * square[-1]] / np.sqrt(square[square > RIGID**2 * square[-1]])

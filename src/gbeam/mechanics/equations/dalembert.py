@@ -79,9 +79,7 @@ class FreeHub:
     hub_force: bool = static()
 
     def residual(self, y: Array, yd: Array, ydd: Array, torque: Array, load_values: Array | None = None) -> Array:
-        """Residual (..., n + 1) of hub and beam, y = (θ, q), under a torque on the hub, N m, and load components (...,
-        loads, 6).
-        """
+        """Residual (..., n + 1) of y = (θ, q) under a torque on the hub, N m, and load components (..., loads, 6)."""
         (angle, q), (rate, qd), (alpha, qdd) = ((each[..., 0], each[..., 1:]) for each in (y, yd, ydd))
         # Products of constants with one vector stand together: one matrix product in a compiled step.
         elastic, k2q, b1q = _rows(q, self.stiffness, self.k2, self.b1)
@@ -187,9 +185,7 @@ class Complete:
         alpha_WB_B: Array,
         load_values: Array | None = None,
     ) -> Array:
-        """Residual (..., n) on a base with given acceleration (or specific force), angular velocity and angular
-        acceleration (..., 3).
-        """
+        """Residual (..., n) on a base with acceleration (or specific force) and angular ones and rates (..., 3)."""
         return self.demanded(q, qd, qdd, a_WO_B, w_WB_B, alpha_WB_B, load_values)[0]
 
     def demanded(

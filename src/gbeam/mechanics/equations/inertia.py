@@ -200,9 +200,7 @@ class Bodies:
         return turned(rows, vector)
 
     def _aside(self, tangents: Tangents, base: Vector) -> tuple[Vector, Vector]:
-        """Forces of the sections' mass beside the axis, and moments about it of the whole, that the nodes' motion asks
-        for.
-        """
+        """Forces of the sections' mass beside the axis, and its moments about it, that the nodes' motion asks for."""
         assert self.aside is not None
         x, y, z = self.aside
         arm = turned(tangents.rotation, (x, y, z))
@@ -254,9 +252,7 @@ class Inertia:
         return out
 
     def about(self, q: Array) -> tuple[Places, Geometric | None]:
-        """Places of the particles about coordinates (n,), and their geometric stiffness unless they have second
-        derivatives.
-        """
+        """Places about coordinates (n,), and their geometric stiffness unless they have second derivatives."""
         if not isinstance(self.field, StrainField):
             return self.field.about(q), None
         places, bent = self.field.about(q, self.mass)

@@ -189,9 +189,7 @@ def coefficients(
     geometric: Geometric | None = None,
     loads: LoadTerms | None = None,
 ) -> Coefficients:
-    """Sum the coefficients of a linear model over particles (k,) kg; `geometric` replaces the places' second
-    derivatives.
-    """
+    """Sum a linear model's coefficients over particles (k,) kg; `geometric` replaces second derivatives of places."""
     xp = namespace(mass, places.r0, places.first, stiffness)
     r0, first = places.r0, places.first
     axes, n = r0.shape[1], first.shape[2]

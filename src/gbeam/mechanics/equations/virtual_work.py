@@ -22,9 +22,7 @@ Array = Any
 
 @record
 class LoadWork:
-    """Loads on a field, δW = Σ F·δr + M·δθ: at each point (p,) the load's index, its weight (1 or m) and whether it
-    follows.
-    """
+    """Loads on a field, δW = Σ F·δr + M·δθ: at points (p,) the load's index, weight (1 or m), and if it follows."""
 
     field: StrainField | SeriesField | Polynomials
     load: Array
@@ -66,9 +64,7 @@ class LoadWork:
         return self.terms(count, places, rotation, turns.first, turns.second)
 
     def terms(self, count: int, places: Places, rotation: Array, turn: Array, bend: Array) -> LoadTerms:
-        """Load terms about coordinates from places, section rotations (p, 3, 3) and their first and second derivatives
-        there.
-        """
+        """Load terms about coordinates, by places and section rotations (p, 3, 3) with two derivatives."""
         xp = namespace(places.first, rotation, self.weight)
         r, slope, second = places.r0, places.first, places.second
         epsilon = xp.asarray(EPSILON)

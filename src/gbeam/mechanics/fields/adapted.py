@@ -126,9 +126,7 @@ def space(beam: Beam, rule: Quadrature, along: int, counts: Counts) -> Space:
 
 
 def adapted_shapes(beam: Beam, rule: Quadrature, counts: Counts) -> Families:
-    """Modes at rest of the beam, direction by direction, from M κ = μ K κ with μ = 1/ω²: K is diagonal, M nearly
-    singular.
-    """
+    """Modes at rest of the beam by direction, from M κ = μ K κ with μ = 1/ω²: K is diagonal, M nearly singular."""
     families: list[Family] = [lambda x: Shapes(*np.zeros((3, len(x), 0)))] * 6
     for of in spaces_of(beam, rule, counts):
         scale = 1 / np.sqrt(of.stiffness)

@@ -90,9 +90,7 @@ def legendre_bending(x: Array, length: float, count: int) -> Shapes:
 
 
 def closed_forms(length: float, counts: Counts) -> Families:
-    """Fixed-free bar shapes and clamped-free bending shapes: those of the bare uniform beam, which is rigid in twist
-    and shear.
-    """
+    """Fixed-free bar and clamped-free bending shapes: of the bare uniform beam, rigid in twist and shear."""
 
     def family(shapes: Callable[[Array, float, int], Shapes], count: int) -> Family:
         return lambda x: shapes(x, length, count)

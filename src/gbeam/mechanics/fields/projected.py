@@ -32,9 +32,7 @@ class ProjectedField(Expanded):
     foreshortening: bool = static()
 
     def rotation(self, q: Array, at: Any = slice(None)) -> Array:
-        """Rotations (..., points, 3, 3) of sections to second order: they follow the tangent, whose slopes the strain
-        lessens.
-        """
+        """Rotations (..., points, 3, 3) to second order: along the tangent, whose slopes the strain lessens."""
         xp = namespace(self.x, q)
         slope_s, slope_v, slope_w = at_nodes(self.slopes[:, at], q)
         slope_v, slope_w = (1 - slope_s) * slope_v, (1 - slope_s) * slope_w
@@ -121,9 +119,7 @@ def about_x(angle: Array) -> Array:
 
 @record
 class RootedField(Expanded):
-    """A field on a root that springs hold: moved by p and turned by R(φ), whose components are the last coordinates, m
-    and rad.
-    """
+    """A field on a root that springs hold, moved by p and turned by R(φ): the last coordinates, m and rad."""
 
     inner: ProjectedField
     x: Array

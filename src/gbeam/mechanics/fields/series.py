@@ -152,9 +152,7 @@ class SeriesField:
         return self.exact.rotation(q, at)
 
     def turning(self, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array, Array]:
-        """Rotations (..., p, 3, 3) of the sections at the points, and their angular velocities and accelerations (...,
-        p, 3), base axes.
-        """
+        """Rotations (..., p, 3, 3) of the points' sections, their angular velocities and accelerations, base axes."""
         return self.exact.turning(q, qd, qdd)
 
     # --- forces come back
@@ -205,9 +203,7 @@ class SeriesField:
         return Places(self.positions(q), self.slopes(q), second)
 
     def curved(self, q: Array) -> tuple[Places, Array, Turns]:
-        """Places of the points about coordinates (n,) to second order, their sections' rotations (p, 3, 3), and the
-        derivatives of these.
-        """
+        """Places about coordinates (n,) to second order, the sections' rotations (p, 3, 3) and their derivatives."""
         _, rotation, turns = self.exact.curved(q)
         return self.about(q), rotation, turns
 

@@ -150,9 +150,7 @@ class StrainField:
     def moving(
         self, q: Array, qd: Array, qdd: Array, base: tuple[Vector, Vector] = (NONE, NONE), *, points: bool = False
     ) -> Tangents:
-        """Rotations, t and its rates at the nodes, arms, and rotations at `points`, on a base with an angular velocity
-        and acceleration.
-        """
+        """Rotations, t and its rates at the nodes, arms, and rotations at `points`, on a base that turns."""
         still = self.tangents(q, points=points)
         rotation, t = still.rotation, still.t
         rate, change = (tuple(self.sums(x)) for x in (qd, qdd))
@@ -216,9 +214,7 @@ class StrainField:
         return xp.stack([joined(xp, row, (*q.shape[:-1], count)) for row in rotation], axis=-2)
 
     def turning(self, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array, Array]:
-        """Rotations (..., p, 3, 3) of the sections at the points, and their angular velocities and accelerations (...,
-        p, 3), base axes.
-        """
+        """Rotations (..., p, 3, 3) of the points' sections, their angular velocities and accelerations, base axes."""
         xp, shape = namespace(self.strains, self.offset, q), (*q.shape[:-1], len(self.cumulative))
         tangents = self.moving(q, qd, qdd, points=True)
         w, alpha = (joined(xp, mapped(each, self.cumulative), shape) for each in (tangents.turn, tangents.turnd))
@@ -265,9 +261,7 @@ class StrainField:
         return x, y, z
 
     def columns(self, tangents: Tangents) -> Columns:
-        """How t moves and the nodes' sections turn with coordinates, of tangents with an axis of length one before the
-        nodes.
-        """
+        """How t moves and nodes' sections turn with coordinates, of tangents with a unit axis before the nodes."""
         shapes: Any = tuple(part.T if shaped else 0 for part, shaped in zip(self.strains, self.shaped, strict=True))
         fixed = (turned(tangents.rotation, part) for part in (shapes[:3], shapes[3:]))
         strain, turn = (_carried(each, tangents.w, tangents.alpha) for each in fixed)
@@ -331,17 +325,13 @@ class StrainField:
         return whole + xp.swapaxes(whole, -1, -2)
 
     def about(self, q: Array, mass: Array) -> tuple[Places, Array]:
-        """Places of particles (p,) kg about coordinates (n,), to first order, and Σ m ∂²r/∂q² and Σ m r_b ∂²r/∂q²,
-        (4, 3, n, n).
-        """
+        """Places about coordinates (n,), to first order, and Σ m ∂²r/∂q² and Σ m r_b ∂²r/∂q², (4, 3, n, n)."""
         xp = namespace(self.strains, self.offset, q, mass)
         r = self.positions(q)
         return Places(r, self.slopes(q)), self.weighted(q, xp.concatenate([mass[None], mass * r.T]))
 
     def curved(self, q: Array) -> tuple[Places, Array, Turns]:
-        """Places of the points about coordinates (n,) to second order, their sections' rotations (p, 3, 3), and the
-        derivatives of these.
-        """
+        """Places about coordinates (n,) to second order, the sections' rotations (p, 3, 3) and their derivatives."""
         xp, count = namespace(self.strains, self.offset, q), len(self.cumulative)
         slopes, angle = self.jacobians(q)
         rotation, even = self.rotation(q), xp.eye(count)

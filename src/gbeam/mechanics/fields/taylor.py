@@ -14,9 +14,7 @@ from gbeam.mechanics.fields.vectors import NONE, Vector, absent, cross, joined, 
 
 @record
 class Places:
-    """Places r = r0 + J q + ½ q H q of points, base axes: (p, 3) m, (p, 3, n), and (p, 3, n, n) or None where they are
-    linear.
-    """
+    """Places r = r0 + J q + ½ q H q of points, base axes: (p, 3) m, (p, 3, n), and (p, 3, n, n) or None if linear."""
 
     r0: Any
     first: Any

@@ -152,9 +152,7 @@ def sine_cosine(angle: Array) -> tuple[Array, Array]:
 
 @cache
 def _compiled() -> Any:
-    """Rotations' functions by polynomials for XLA, behind a product with the unit matrix, so that they are computed
-    once.
-    """
+    """Rotations' polynomials for XLA, behind a product with the unit matrix, so that they are computed once."""
     import jax
 
     import gbeam.arrays.jax_setup  # noqa: F401
