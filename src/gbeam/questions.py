@@ -199,7 +199,8 @@ def modes(
 
     name, time = motion_of(case.environments, motion), _time(case, at)
     options: dict[str, Any] = {"gyroscopic": gyroscopic, "errors": needs.errors, "name": name}
-    return modal.modes(_structure(case, needs), prepared(case, name), time, **options)
+    known = _structure(case, replace(needs, errors=True))  # twist is measured at the edges of sections
+    return modal.modes(known, prepared(case, name), time, **options)
 
 
 @question(

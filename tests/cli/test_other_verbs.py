@@ -34,6 +34,7 @@ def test_check(fast: Path, gbeam: Call) -> None:
 def test_check_writes_what_it_prints(hub: Path, gbeam: Call) -> None:
     answer = gbeam("check", hub, "--json", "--out", "there")
     assert json.loads(Path("there/check.json").read_text(encoding="utf-8")) == answer.json
+    assert "check.json is of a kind that has no report" in gbeam("report", "there/check.json").err
 
 
 @pytest.mark.parametrize("kind", ["flight", "hub"])

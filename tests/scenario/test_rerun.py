@@ -258,6 +258,21 @@ def test_the_json_of_a_verb_is_computed_again(
     assert answer.status == 1 and "was TLAM, is FOAM" in answer.out
 
 
+def test_the_netcdf_of_a_search_is_computed_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, gbeam: Callable[..., Answer]
+) -> None:
+    """It was run as responses, none of whose numbers are in the file: nothing was there any more."""
+    monkeypatch.chdir(tmp_path)
+    Path("s.toml").write_text(EVERY_MOTION.replace("4 s", "0.5 s"), encoding="utf-8")
+    goal = ("--verb", "modes", "--minimise", "modes[0].frequency", "--over", "beam.length", "--motion", "flight")
+    assert gbeam("optimize", "s.toml", *goal, "--out", "out").status == 0
+    Path("s.toml").unlink()
+    answer = gbeam("rerun", "out/optimum.nc")
+    assert answer.status == 0 and answer.out.endswith("computed again: the same to the last digit\n"), answer
+    with pytest.raises(gb.InputError, match="holds no responses but another answer"):
+        gb.rerun("out/optimum.nc")
+
+
 def test_nothing_is_written_by_computing_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, gbeam: Callable[..., Answer]
 ) -> None:

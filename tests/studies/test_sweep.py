@@ -54,6 +54,24 @@ def test_frequencies_of_drawn_stiffnesses_are_its_root(fast: Path) -> None:
     assert found.units == {"modes[0].frequency": "Hz"}
 
 
+def test_frequencies_of_twist_are_measured(fast: Path) -> None:
+    """A beam that twists has edges, by which its modes are told apart: a defect stopped all studies of its modes."""
+    twisting = [
+        "model.kind=exact",
+        "model.modes.twist=2",
+        "beam.material.poissons_ratio=0.3",
+        "beam.rotary_inertia=true",
+    ]
+    found = gb.sweep(
+        fast, {"beam.length": [0.15, 0.3]}, ["modes[3].frequency"], verb="modes", motion="flight", overrides=twisting
+    )
+    case = gb.read_scenario(fast, twisting)
+    alone = gb.modes(case.assemble(), case.motions["flight"])
+    assert alone.direction[3] == "twist" and found.measures["modes[3].frequency"][1] == alone.frequency[3]
+    # GJ/(ρ I_p) is that of the section: a frequency is as one over the length.
+    assert found.measures["modes[3].frequency"][0] == pytest.approx(2 * alone.frequency[3], rel=1e-2)
+
+
 def test_the_verdict_is_a_measure(fast: Path) -> None:
     found = gb.sweep(fast, {"motion.spin.control_point": [0.0, 0.15]}, ["verdict.tip", "flight.tip.z.max_abs"])
     compared = gb.study(gb.read_scenario(fast)).comparisons[0]

@@ -15,7 +15,7 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.limits import BINARY_BYTES, existing, refuse_large_file
+from gbeam.guards.limits import BINARY_BYTES, existing, parse_json, refuse_large_file
 from gbeam.io.hdf5 import RECORD
 from gbeam.io.netcdf import FACTS
 from gbeam.results.provenance import Provenance, present
@@ -51,7 +51,8 @@ def rerun(path: str | os.PathLike[str]) -> Reproduction:
     Raises
     ------
     InputError
-        If the file cannot be read or holds no scenario, or the scenario or a record is not the one that was run.
+        If the file cannot be read or holds no responses or no scenario, or the scenario or a record is not the one
+        that was run.
     ComputationError
         If there is no answer any more.
 
@@ -66,16 +67,46 @@ def rerun(path: str | os.PathLike[str]) -> Reproduction:
     >>> gb.rerun(path).reproduced
     True
     """
-    from gbeam.analysis.environments import study
-    from gbeam.io.stored import read_stored, stored
+    from gbeam.io.stored import read_stored
 
     before = read_stored(path)
+    if not is_run(facts_of(before)):
+        raise InputError(str(path), "holds no responses but another answer", "`gbeam rerun` runs its verb again")
+    return run_again(path, before)
+
+
+def facts_of(stored: Stored) -> dict[str, Any]:
+    """The facts that a netCDF file holds; none where it has none, or they are damaged."""
     try:
-        origin = before.provenance
+        facts = parse_json(str(stored.variables[FACTS]))
+    except (KeyError, ValueError):
+        return {}
+    return facts if isinstance(facts, dict) else {}
+
+
+def is_run(facts: Mapping[str, Any]) -> bool:
+    """Whether facts are of responses, or do not say."""
+    form = facts.get("form")
+    return not isinstance(form, dict) or form.get("kind") in ("Study", "SystemStudy")
+
+
+def origin_of(path: str | os.PathLike[str], stored: Stored) -> Provenance:
+    """Provenance of a file, which must be that of its scenario."""
+    try:
+        origin = stored.provenance
     except Exception:  # zlib's, where bytes are damaged, or what lacks an attribute
-        fix = "give the file as `gbeam run` wrote it"
+        fix = "give the file as gbeam wrote it"
         raise InputError(str(path), "does not say where it comes from: it is damaged", fix) from None
     checked(str(path), origin)
+    return origin
+
+
+def run_again(path: str | os.PathLike[str], before: Stored) -> Reproduction:
+    """Compute the responses of a file again."""
+    from gbeam.analysis.environments import study
+    from gbeam.io.stored import stored
+
+    origin = origin_of(path, before)
     with TemporaryDirectory(prefix="gbeam-") as folder:
         changes = [*origin.overrides, *records(origin, Path(folder))]
         case = build(loads(origin.scenario, str(path), changes, folder=folder), ahead=True)

@@ -130,14 +130,15 @@ def report(
 
 
 def rerun(
-    result: Annotated[Path, Parameter(help="A result.nc of `gbeam run`, or the JSON of another verb.")],
+    result: Annotated[Path, Parameter(help="A result.nc of `gbeam run`, or the file of another verb.")],
     /,
     *,
     json: Json = False,
 ) -> int:
     """Compute a result again, from the scenario and the records that its file holds, and compare every number.
 
-    The JSON of other verbs, such as modes.json, holds no records: these are read from where they were.
+    Of verbs other than run the command is run again, on that scenario. Their JSON, such as modes.json, holds no
+    records: these are read from where they were.
 
     It is reproduced where nothing differs in the last digit; with other versions, or on another platform, where nothing
     differs by more than 1e-9 of its largest value. Says what differs, and what has changed since. Writes nothing. Exit
@@ -145,15 +146,7 @@ def rerun(
     """
     from gbeam.report import facts as report
 
-    if result.suffix == ".json":
-        from gbeam.cli.verbs.responses import answer_again
-
-        again = answer_again(result)
-    else:
-        from gbeam.scenario.rerun import rerun
-
-        with Watch(f"reading {result} and computing it again"):
-            again = rerun(result)
+    again = answer_again(result) if result.suffix == ".json" else _of_netcdf(result)
     show(report.reproduction_text(again), report.reproduction_json(again), json)
     if not again.reproduced:
         complain(f"not reproduced: {len(again.differences)} of {again.compared} differ")
@@ -164,12 +157,30 @@ def rerun(
 _ABOUT = {"provenance", "files", "seconds", "written", "lines"}  # of the computation, or the figures in words
 
 
+def _of_netcdf(file: Path) -> Reproduction:
+    from gbeam.io.stored import read_stored
+    from gbeam.scenario.rerun import facts_of, is_run, origin_of, run_again
+
+    stored = read_stored(file)
+    facts = facts_of(stored)
+    if not is_run(facts):
+        return _compared(file, facts, origin_of(file, stored))
+    with Watch(f"reading {file} and computing it again"):
+        return run_again(file, stored)
+
+
 def answer_again(file: Path) -> Reproduction:
     """Run the command of a verb's JSON again, on the scenario that the JSON holds, and compare every value."""
-    from gbeam.scenario.rerun import checked, records, reproduction
+    from gbeam.scenario.rerun import checked
 
     facts, origin = _read(file)
     checked(str(file), origin)
+    return _compared(file, facts, origin)
+
+
+def _compared(file: Path, facts: dict[str, Any], origin: Provenance) -> Reproduction:
+    from gbeam.scenario.rerun import records, reproduction
+
     with TemporaryDirectory(prefix="gbeam-") as folder:
         scenario = Path(folder) / "scenario.toml"
         scenario.write_text(origin.scenario, encoding="utf-8")
