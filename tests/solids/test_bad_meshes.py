@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -144,9 +145,36 @@ def test_what_is_no_mesh(tmp_path: Path) -> None:
         solid(tmp_path / "solid.msh")
     lacking = "*NODE\n1, 0, 0, 0\n*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n"
     (tmp_path / "solid.inp").write_text(lacking, encoding="utf-8")
+    with pytest.raises(gb.InputError, match=r"mesh has element 1 on node 2, which is not in solid\.inp"):
+        solid(tmp_path / "solid.inp")
+    (tmp_path / "solid.inp").write_text("*NODE\n1, 0, 0, 0\n*NSET, NSET=wall\n2\n", encoding="utf-8")
     with pytest.raises(gb.InputError, match=r"solid\.inp cannot be read: number 2 is named in it, and is not there"):
         solid(tmp_path / "solid.inp")
     with pytest.raises(gb.InputError, match=r"mesh .* is a folder"):
         solid(tmp_path)
     with pytest.raises(OSError):
         solid(tmp_path / "none.msh")
+
+
+@pytest.mark.parametrize(
+    ("name", "file_format"),
+    [("a.inp", "abaqus"), ("a.bdf", "nastran"), ("a.msh", "gmsh22"), ("b.msh", "gmsh"), ("a.vtk", "vtk42")],
+)
+def test_an_element_on_a_node_that_is_not_there_is_named(tmp_path: Path, name: str, file_format: str) -> None:
+    """By its number in the file, as is the node; of VTK, which has no numbers, by their places."""
+    whole, file = mesh("hexahedron20"), tmp_path / name
+    used, cells = np.unique(whole.cells[0].data, return_inverse=True)
+    cells = cells.reshape(-1, 20)
+    last = len(used) - 1
+    where = int(np.argwhere((cells == last).any(axis=1))[0, 0]) + 1
+    options = {} if name.endswith(("inp", "bdf")) else {"binary": False}
+    if file_format == "vtk42":
+        cells[cells == last] = 998
+    meshio.write(file, meshio.Mesh(whole.points[used], {"hexahedron20": cells}), file_format=file_format, **options)
+    head, word, tail = file.read_text().partition("$Elements" if name.endswith("msh") else "*ELEMENT")
+    node = last + 1 if name.endswith("bdf") else 999
+    renumbered = re.sub(rf"(?<=[\s,]){last + 1}\b", "999", tail)
+    file.write_text(head.replace(f"GRID*   {node} ", f"GRID*   {node + 1} ") + word + renumbered)
+    place = f"of {last + 1}; write it" if file_format == "vtk42" else f"which is not in {name}; write it again with all"
+    with pytest.raises(gb.InputError, match=rf"mesh has element {where} on node {node},? {place}"):
+        gb.SolidMesh.read(file, materials=STEEL, clamp="wall", unit="m")

@@ -13,9 +13,9 @@ import numpy as np
 from gbeam.errors import InputError
 from gbeam.mechanics.tree.system import RigidBody
 from gbeam.numerics.eigen import Floats
-from gbeam.solids.foreign import abaqus_keywords, ending_of
 from gbeam.solids.links import Links, coupling
 from gbeam.solids.shape_functions import Indices
+from gbeam.solids.texts import abaqus_keywords, ending_of
 
 NASTRAN, ABAQUS = (".bdf", ".fem", ".nas"), (".inp",)
 APART = 1e-6  # of the size of a mesh: nodes that are farther apart are not one place

@@ -7,8 +7,7 @@ import io
 import os
 import re
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Mapping
-from itertools import pairwise
+from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -21,6 +20,7 @@ from gbeam.guards.units import UnitError, quantity
 from gbeam.printable import shortened
 from gbeam.results.result import Floats
 from gbeam.solids.shape_functions import KINDS, Indices
+from gbeam.solids.texts import ending_of, missing_node
 
 _INTERNAL = "gmsh:"  # begins the names of sets that nobody gave
 _ENTITIES = "gmsh:geometrical"
@@ -40,6 +40,7 @@ _POINTWISE = re.compile(
     r"^\*ELEMENT *,(?=[^\n]*TYPE *= *(?:MASS|ROTARYI|SPRING[12A])\b)[^\n]*\n(?:(?!\*)[^\n]*(?:\n|$))*", re.M | re.I
 )
 _SCALAR = re.compile(r"^CELAS[1-4]\b[^\n]*\n(?:\*[^\n]*\n)*", re.MULTILINE)
+AGAIN = "write it again with all of its nodes"
 THICKNESS = ("PSHELL", "SHELL SECTION")
 _UNREAD = {".bdf": _SCALAR, ".fem": _SCALAR, ".nas": _SCALAR, ".inp": _POINTWISE}  # elements that stop meshio
 _WORDS = {".bdf": _NASTRAN, ".fem": _NASTRAN, ".nas": _NASTRAN, ".inp": _ABAQUS}
@@ -64,6 +65,8 @@ def read_mesh(source: str | os.PathLike[str] | Any) -> Any:
             reader = meshio.abaqus if ending_of(source) == ".inp" else meshio.nastran
             return reader.read(io.StringIO(unread.sub("", text)))
     except (Exception, SystemExit) as error:
+        if missing := missing_node(source):
+            raise InputError("mesh", missing, AGAIN) from None
         words = shortened(" ".join((said.getvalue() or str(error)).split()), 200)
         if isinstance(error, KeyError):  # meshio looks up by its number what a set or an element names
             words = f"number {error.args[0]} is named in it, and is not there"
@@ -104,25 +107,6 @@ def left_out(source: Any, read: Collection[str] = ()) -> list[str]:
         return []
     listed = ", ".join(f"{name} ({count})" for name, count in counts.items())
     return [f"the mesh: {listed} in {Path(source).name} are not read: their masses, stiffness and constraints lack"]
-
-
-def abaqus_keywords(text: str) -> Iterator[tuple[str, dict[str, str], list[list[str]]]]:
-    """Keywords of a file of Abaqus or CalculiX, with their options and the fields of their lines."""
-    lines = [line for line in text.splitlines() if line.strip() and not line.startswith("**")]
-    starts = [i for i, line in enumerate(lines) if line.startswith("*")]
-    for first, end in pairwise([*starts, len(lines)]):
-        while lines[first].rstrip().endswith(",") and first + 1 < end:
-            lines[first + 1] = lines[first].rstrip() + lines[first + 1]
-            first += 1
-        word, *options = lines[first][1:].split(",")
-        pairs = (each.partition("=") for each in options if each.strip())
-        rows = [[each.strip() for each in line.split(",")] for line in lines[first + 1 : end]]
-        yield " ".join(word.upper().split()), {key.strip().upper(): value.strip() for key, _, value in pairs}, rows
-
-
-def ending_of(source: Any) -> str:
-    """The ending of a file's name, in small letters; empty of what is no file."""
-    return Path(source).suffix.lower() if isinstance(source, (str, os.PathLike)) else ""
 
 
 def _text(source: Any) -> str:
@@ -176,6 +160,17 @@ def elements_of(mesh: Any, thickness: float | Mapping[str, float] | None) -> lis
             raise InputError("mesh", f"has {counts[kind]} elements of kind {kind}", f"use {known}")
         elements.append(Elements(i, which, kind, nodes, thick))
     return elements
+
+
+def refuse_missing(source: Any, mesh: Any, elements: Iterable[Elements]) -> None:
+    """Refuse elements on nodes that are not in the mesh."""
+    first = np.cumsum([0, *(len(block.data) for block in mesh.cells)])
+    for each in elements:
+        lacking = np.argwhere((each.nodes < 0) | (each.nodes >= len(mesh.points)))
+        for i, k in lacking[:1]:
+            number, node = first[each.block] + each.which[i] + 1, each.nodes[i, k] + 1
+            words = f"has element {number} on node {node} of {len(mesh.points)}"
+            raise InputError("mesh", missing_node(source) or words, AGAIN)
 
 
 def assigned(mesh: Any, where: str, values: Any, blocks: Iterable[int]) -> dict[int, Indices]:

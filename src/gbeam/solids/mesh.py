@@ -36,6 +36,7 @@ from gbeam.solids.foreign import (
     elements_of,
     left_out,
     nodes_in,
+    refuse_missing,
     unit_size,
 )
 from gbeam.solids.links import Linked, Links, attached, refuse_names
@@ -199,8 +200,7 @@ class SolidMesh(Value):
         elements = elements_of(mesh, thickness)
         used = np.unique(np.concatenate([each.nodes.ravel() for each in elements]))
         refuse_cost("mesh", 3 * len(used) * (1 if thickness is None else 2))
-        if used[0] < 0 or used[-1] >= len(places):
-            raise InputError("mesh", f"has elements on node {used[-1] + 1} of {len(places)}", "write it again")
+        refuse_missing(source, mesh, elements)
         for i, factor in enumerate(scale):
             positive(f"scale[{i}]", factor, "")
         rotation = Rotation.from_rotvec(turn).as_matrix()
