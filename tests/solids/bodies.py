@@ -9,7 +9,9 @@ import meshio
 import numpy as np
 
 import gbeam as gb
+from gbeam.solids.foreign import import_meshio
 
+import_meshio()  # by which it knows wedges of 15 nodes
 # Nodes of VTK's hexahedron of 27 nodes, in halves of its edges.
 CORNERS = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 2, 2), (0, 2, 2)]
 BOTTOM, TOP = [(1, 0, 0), (2, 1, 0), (1, 2, 0), (0, 1, 0)], [(1, 0, 2), (2, 1, 2), (1, 2, 2), (0, 1, 2)]
@@ -21,6 +23,7 @@ PATHS = [((1, 0, 0), (1, 1, 0)), ((1, 1, 0), (0, 1, 0)), ((0, 1, 0), (0, 1, 1)),
 PATHS += [((0, 0, 1), (1, 0, 1)), ((1, 0, 1), (1, 0, 0))]
 TETRAHEDRA = [2 * np.array([(0, 0, 0), first, second, (1, 1, 1)]) for first, second in PATHS]
 WEDGES = [[(0, 0, 0), (2, 0, 0), (2, 2, 0)], [(0, 0, 0), (2, 2, 0), (0, 2, 0)]]
+SIDES = np.array([(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)])  # of wedges
 PAIRS = [(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)]
 
 STEEL = gb.Material(density=7850, youngs_modulus=210e9, poissons_ratio=0.3)
@@ -31,8 +34,9 @@ def elements(kind: str) -> list[np.ndarray]:
     """Nodes, in halves of a cell's edges, of the elements that fill a cell."""
     if kind.startswith("hexahedron"):
         return [HEXAHEDRON[: int(kind.removeprefix("hexahedron") or 8)]]
-    if kind == "wedge":
-        return [np.array([*each, *(np.add(each, (0, 0, 2)))]) for each in WEDGES]
+    if kind.startswith("wedge"):
+        corners = [np.array([*each, *np.add(each, (0, 0, 2))]) for each in WEDGES]
+        return [np.concatenate([e, e[SIDES].sum(axis=1) // 2]) if kind == "wedge15" else e for e in corners]
     middles = [[(t[i] + t[j]) // 2 for i, j in PAIRS] if kind == "tetra10" else [] for t in TETRAHEDRA]
     return [np.array([*t, *m]) for t, m in zip(TETRAHEDRA, middles, strict=True)]
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import meshio
 import numpy as np
@@ -15,6 +16,7 @@ from scipy.spatial.transform import Rotation
 import gbeam as gb
 from gbeam.motion import constant
 from gbeam.solids.elements import STRAIN, chunks, mass_matrix, stiffness_matrix
+from gbeam.solids.foreign import read_mesh
 from gbeam.solids.shape_functions import KINDS
 
 from .bodies import PAIRS, STEEL, STIFF, block, solid
@@ -310,3 +312,28 @@ def test_a_beam_meshed_as_a_solid_gives_what_the_beam_gives() -> None:
     largest = np.abs(tips[1]).max()
     assert largest > 2e-3
     np.testing.assert_allclose(tips[0], tips[1], atol=3e-3 * largest)
+
+
+# CalculiX 2.20's frequencies of a steel bar of 200 x 20 x 10 mm, 20 x 2 x 1 cells of two C3D15, clamped at one end, Hz.
+C3D15 = [210.3198, 416.6794, 1304.513, 2500.825, 3078.834, 3595.691, 6483.083]
+
+
+def test_wedges_of_fifteen_nodes_are_those_of_calculix(tmp_path: Path) -> None:
+    """Read from a file of Abaqus, and in the numbering of Nastran and Gmsh, which differ."""
+    bar = block("wedge15", (20, 2, 1), (0.2, 0.02, 0.01))
+    used, cells = np.unique(bar.cells[0].data, return_inverse=True)
+    wall = np.flatnonzero(bar.points[used][:, 0] == 0)
+    part = meshio.Mesh(bar.points[used], {"wedge15": cells.reshape(-1, 15)}, point_sets={"wall": wall})
+    meshio.write(tmp_path / "bar.inp", part)
+    mesh = gb.SolidMesh.read(tmp_path / "bar.inp", materials=STEEL, clamp="wall", unit="m")
+    assert mesh.mass == pytest.approx(7850 * 0.2 * 0.02 * 0.01, rel=1e-12)
+    np.testing.assert_allclose(mesh.reduced(modes=7, damping_ratio=0).frequency, C3D15, rtol=1.5e-5)
+    places = bar.points[bar.cells[0].data]
+    formats: tuple[tuple[str, dict[str, Any]], ...] = (
+        ("bar.bdf", {}),
+        ("bar.msh", {"file_format": "gmsh22", "binary": False}),
+    )
+    for name, options in formats:
+        meshio.write(tmp_path / name, part, **options)
+        again = read_mesh(tmp_path / name)
+        np.testing.assert_allclose(again.points[again.cells[0].data], places, atol=1e-12)

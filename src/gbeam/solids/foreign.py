@@ -46,14 +46,22 @@ _UNREAD = {".bdf": _SCALAR, ".fem": _SCALAR, ".nas": _SCALAR, ".inp": _POINTWISE
 _WORDS = {".bdf": _NASTRAN, ".fem": _NASTRAN, ".nas": _NASTRAN, ".inp": _ABAQUS}
 
 
-def read_mesh(source: str | os.PathLike[str] | Any) -> Any:
-    """Return meshio's mesh in a file, or the mesh itself."""
-    if not isinstance(source, (str, os.PathLike)):
-        return source
+def import_meshio() -> Any:
+    """Import meshio; an InputError says how to install it where it is not."""
     try:
         import meshio
     except ModuleNotFoundError:
         raise InputError("", "meshio is not installed", 'install it with: pip install "gbeam[mesh]"') from None
+    # Version 5.3.5 reads wedges of 15 nodes, and fails on them where it looks up how many dimensions they have.
+    meshio._mesh.topological_dimension.setdefault("wedge15", 3)
+    return meshio
+
+
+def read_mesh(source: str | os.PathLike[str] | Any) -> Any:
+    """Return meshio's mesh in a file, or the mesh itself."""
+    if not isinstance(source, (str, os.PathLike)):
+        return source
+    meshio = import_meshio()
     refuse_large_file("mesh", source, BINARY_BYTES, "mesh it more coarsely")
     said = io.StringIO()
     try:

@@ -6,6 +6,7 @@ the upper one, and then the middles of their edges alike; between the faces it i
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -30,7 +31,7 @@ class Kind:
     """Kind of element by meshio's name: scikit-fem's, and the degrees of the quadrature of stiffness, mass and stress;
     the monomials in which stress is extrapolated, by their exponents; the ratio of length to thickness above which a
     layer of one locks in bending: of eight across a clamped plate by 3 % and more (`tests/solids/test_thin.py`); the
-    number of its corners in a shell's surface.
+    number of its corners in a shell's surface; the degree of the quadrature along a wedge where that is another one.
     """
 
     element: str
@@ -41,11 +42,17 @@ class Kind:
     linear: bool = False
     long: float = np.inf
     shell: int = 0
+    along: int = 0
 
 
 _LINEAR = ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1))
 _TRILINEAR = tuple((i, j, k) for i in (0, 1) for j in (0, 1) for k in (0, 1))
 _WEDGE = tuple((i, j, k) for i, j in ((0, 0), (1, 0), (0, 1)) for k in (0, 1))
+# The serendipity wedge of 15 nodes, which scikit-fem has not: its monomials, its corners and middles of edges.
+_WEDGE15 = (*_WEDGE, *((i, 2 - i, k) for i in (0, 1, 2) for k in (0, 1)), (0, 0, 2), (1, 0, 2), (0, 1, 2))
+_UPRIGHT = np.array([[x, y, z] for z in (0.0, 1.0) for x, y in ((0, 0), (1, 0), (0, 1))])
+_SIDES = np.array([(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)])
+_NODES = {"wedge15": np.concatenate([_UPRIGHT, _UPRIGHT[_SIDES].mean(axis=1)])}
 KINDS = {
     "tetra": Kind("ElementTetP1", 1, 2, 1, _LINEAR[:1], linear=True),
     "tetra10": Kind("ElementTetP2", 2, 5, 2, _LINEAR, long=6.0),
@@ -53,6 +60,7 @@ KINDS = {
     "hexahedron20": Kind("ElementHexS2", 5, 7, 3, _TRILINEAR, long=12.0),
     "hexahedron27": Kind("ElementHex2", 5, 7, 3, _TRILINEAR),
     "wedge": Kind("ElementWedge1", 3, 5, 3, _WEDGE, linear=True),
+    "wedge15": Kind("ElementWedge1", 2, 5, 2, _WEDGE, long=6.0, along=5),
     "triangle": Kind("ElementTriP1", 2, 4, 2, _WEDGE[:2], shell=3),
     "triangle6": Kind("ElementTriP2", 2, 5, 2, _WEDGE, shell=3),
     "quad": Kind("ElementQuad1", 3, 5, 3, _TRILINEAR, shell=4),
@@ -76,10 +84,14 @@ def shape_functions(kind: str, degree: int) -> tuple[Floats, Floats, Floats, Flo
     from skfem.refdom import RefLine, RefTri
 
     domain = getattr(import_skfem(), KINDS[kind].element)().refdom
-    if kind == "wedge" or KINDS[kind].shell:
+    upright = kind.startswith("wedge")
+    if upright or KINDS[kind].shell:
         # scikit-fem 12's rule of wedges has the triangle across another axis, and half the weights.
-        rules = get_quadrature(RefTri if kind == "wedge" else domain, degree)
-        (flat, over), (line, along) = rules, get_quadrature(RefLine, degree if kind == "wedge" else ACROSS)
+        rules = get_quadrature(RefTri if upright else domain, degree)
+        (flat, over), (line, along) = (
+            rules,
+            get_quadrature(RefLine, (KINDS[kind].along or degree) if upright else ACROSS),
+        )
         points = np.concatenate([np.repeat(flat, len(along), axis=1), np.tile(line, len(over))])
         weights = np.outer(over, along).ravel()
     else:
@@ -98,12 +110,25 @@ def shapes_at(kind: str, points: Floats) -> tuple[Floats, Floats]:
 
 
 def _basis(kind: str, points: Floats) -> tuple[Floats, Floats]:
-    """Shape functions (q, k) and their derivatives (q, k, d) at points (q, d) of scikit-fem's element."""
+    """Shape functions (q, k) and their derivatives (q, k, d) at points (q, d) of the reference element."""
+    if kind in _NODES:
+        of_nodes = np.linalg.inv(_monomials(_NODES[kind], _WEDGE15))
+        slopes = [_monomials(points, _WEDGE15, along) @ of_nodes for along in range(3)]
+        return _monomials(points, _WEDGE15) @ of_nodes, np.stack(slopes, axis=2)
     element, at = getattr(import_skfem(), KINDS[kind].element)(), np.ascontiguousarray(points.T)
     pairs = [element.lbasis(at, i) for i in _order(kind)]
     values = np.stack([np.broadcast_to(value, len(points)) for value, _ in pairs], axis=1)
     slopes = [np.stack([np.broadcast_to(each, len(points)) for each in slope], axis=1) for _, slope in pairs]
     return values, np.stack(slopes, axis=1)
+
+
+def _monomials(at: Floats, powers: Sequence[tuple[int, int, int]], along: int | None = None) -> Floats:
+    """Monomials (q, m) of some powers at points (q, 3), or their derivatives along an axis."""
+    each, factor = np.array(powers), np.ones(len(powers))
+    if along is not None:
+        factor = each[:, along].astype(float)
+        each = np.maximum(each - np.eye(3, dtype=int)[along], 0)
+    return np.asarray(factor * np.prod(at[:, None, :] ** each, axis=-1))
 
 
 def tangents(kind: str, points: Floats, nodes: Indices, at: Floats) -> Floats:
@@ -120,18 +145,13 @@ def both_faces(kind: str, below: Any, above: Any) -> Any:
 @cache
 def extrapolation(kind: str) -> Floats:
     """Values at the nodes of a polynomial by those at the points of stress, (k, q)."""
-    points = shape_functions(kind, KINDS[kind].stress)[0]
-    powers = np.array(KINDS[kind].monomials)
-
-    def monomials(at: Floats) -> Floats:
-        return np.prod(at[:, None, :] ** powers, axis=-1)
-
-    return monomials(reference(kind)) @ np.linalg.pinv(monomials(points))
+    points, powers = shape_functions(kind, KINDS[kind].stress)[0], KINDS[kind].monomials
+    return np.asarray(_monomials(reference(kind), powers) @ np.linalg.pinv(_monomials(points, powers)))
 
 
 def middle_nodes(kind: str) -> Floats:
-    """Places of the nodes in scikit-fem's reference element, of shells that of the middle surface."""
-    return np.array(getattr(import_skfem(), KINDS[kind].element).doflocs)
+    """Places of the nodes in the reference element, of shells that of the middle surface, in scikit-fem's order."""
+    return _NODES[kind] if kind in _NODES else np.array(getattr(import_skfem(), KINDS[kind].element).doflocs)
 
 
 def reference(kind: str) -> Floats:

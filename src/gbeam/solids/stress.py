@@ -176,7 +176,7 @@ def hull(points: Floats) -> Floats:
 
 def corners_of(kind: str) -> int:
     """Number of corners of an element."""
-    return 2 * KINDS[kind].shell or {"tetra": 4, "tetra10": 4, "wedge": 6}.get(kind, 8)
+    return 2 * KINDS[kind].shell or {"tetra": 4, "tetra10": 4, "wedge": 6, "wedge15": 6}.get(kind, 8)
 
 
 def outer_triangles(mesh: Any) -> Indices:
