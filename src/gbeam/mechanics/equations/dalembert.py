@@ -185,7 +185,7 @@ class Complete:
         alpha_WB_B: Array,
         load_values: Array | None = None,
     ) -> Array:
-        """Residual (..., n) on a base with acceleration (or specific force) and angular ones and rates (..., 3)."""
+        """Residual (..., n) under a base's acceleration (specific force), angular rate and acceleration (..., 3)."""
         return self.demanded(q, qd, qdd, a_WO_B, w_WB_B, alpha_WB_B, load_values)[0]
 
     def demanded(

@@ -66,7 +66,7 @@ def unit_in_name(name: str) -> str:
 
 def is_unit(text: str) -> bool:
     """Whether a cell of a file is a unit of time, acceleration or rate, perhaps in brackets."""
-    return any(_canonical(text, quantity) is not None for quantity in _SPELLINGS)
+    return any(spelled(text, quantity) is not None for quantity in _SPELLINGS)
 
 
 def unit_of(
@@ -82,9 +82,9 @@ def unit_of(
     unit = declared
     for column, stated_unit in stated:
         text = stated_unit or unit_in_name(column)
-        canonical = _canonical(text, quantity)
+        canonical = spelled(text, quantity)
         if canonical is None:
-            other = [kind for kind in _TELLING if kind != quantity and _canonical(text, kind) and text not in _BARE]
+            other = [kind for kind in _TELLING if kind != quantity and spelled(text, kind) and text not in _BARE]
             if other:
                 problem = f"is {unit or 'missing'}, and the file gives column {column!r} in {text}, of {other[0]}"
                 fix = 'name another column; if the file is wrong, add skip_checks = ["unit"]'
@@ -106,15 +106,11 @@ def unit_of(
     return unit
 
 
-def _canonical(text: str, quantity: str) -> str | None:
+def spelled(text: str, quantity: str) -> str | None:
+    """Return the unit that a file's spelling stands for, whether a record may be in it or not; None for none."""
     words = text.strip().strip("[]()").replace("²", "^2").replace("**", "^").replace("µ", "u").replace("μ", "u")
     words = words.split(" since ")[0]  # "seconds since 2024-01-01", as netCDF has it
     return _SPELLINGS[quantity].get("".join(words.replace("·", "").replace("*", "").lower().split()))
-
-
-def spelled(text: str, quantity: str) -> str | None:
-    """Return the unit that a file's spelling stands for, whether a record may be in it or not; None for none."""
-    return _canonical(text, quantity)
 
 
 _TRUST = 'if the name misleads, add skip_checks = ["columns"]'

@@ -27,16 +27,17 @@ from gbeam.results.system import BeamResponse, Invariants, Loop, SystemModes, Sy
 Facts = Mapping[str, Any]
 _NONE = np.empty(0)
 _R = TypeVar("_R")
+_S = TypeVar("_S", Study, SystemStudy)
 
 
 def figures_in(kind: str, facts: Facts, variables: Facts) -> dict[str, Describe]:
     """Return what describes the figures of a result of a kind, from its JSON and, of histories, its variables."""
     match kind:
         case "Study":
-            study = _study(facts, variables)
+            study = _study(Study, _response, facts, variables)
             return figures_of(study) if study.responses else {}
         case "SystemStudy":
-            return figures_of(_system_study(facts, variables))
+            return figures_of(_study(SystemStudy, _system_response, facts, variables))
         case "SystemRest":
             return figures_of(tuple(_rest(name, each) for name, each in facts["motions"].items()))
         case "MachinePlan":
@@ -129,31 +130,18 @@ def _vectors(values: Facts) -> Floats:
     return np.stack([_array(each) for each in values.values()], axis=-1)
 
 
-def _study(facts: Facts, variables: Facts) -> Study:
-    responses = {}
-    for name, each in facts["motions"].items():
-        v = _under(f"motions/{name}/", variables)
-        if "environment" in each and "time" in v:
-            responses[name] = _response(name, each, v)
-    comparisons = []
-    for each in facts["comparisons"]:
-        v = _under(f"comparisons/{each['centrifuge']}/", variables)
-        if "time" in v and each["flight"] in responses:
-            comparisons.append(_comparison(each, v, responses[each["flight"]].stations))
-    return Study("", responses, tuple(comparisons))
-
-
-def _system_study(facts: Facts, variables: Facts) -> SystemStudy:
+def _study(kind: type[_S], read: Callable[..., Any], facts: Facts, variables: Facts) -> _S:
+    """The responses in all environments that have one, and their comparisons."""
     responses, comparisons = {}, []
     for name, each in facts["motions"].items():
         v = _under(f"motions/{name}/", variables)
         if "time" in v:
-            responses[name] = _system_response(each, v, name=name)
+            responses[name] = read(each, v, name=name)
     for each in facts["comparisons"]:
         v = _under(f"comparisons/{each['centrifuge']}/", variables)
-        if "time" in v:
-            comparisons.append(_comparison(each, v, _NONE))
-    return SystemStudy("", responses, tuple(comparisons))
+        if "time" in v and each["flight"] in responses:
+            comparisons.append(_comparison(each, v, getattr(responses[each["flight"]], "stations", _NONE)))
+    return kind("", responses, tuple(comparisons))
 
 
 def _system_response(facts: Facts, v: Facts, **more: Any) -> SystemResponse:
@@ -172,7 +160,7 @@ def _system_response(facts: Facts, v: Facts, **more: Any) -> SystemResponse:
     return _read(SystemResponse, facts, v, base=None, **more)
 
 
-def _response(name: str, facts: Facts, v: Facts) -> Response:
+def _response(facts: Facts, v: Facts, name: str) -> Response:
     return _read(
         Response, facts, v, name=name, base=_read(BaseMotion, {}, v),
         hub=_read(HubResult, {}, v) if "hub_angle" in v else None,
