@@ -71,6 +71,7 @@ def test_parts_that_touch_are_joined_and_round_ones_weigh_what_they_are(files: d
 @pytest.mark.parametrize(
     ("name", "options", "words"),
     [
+        ("bar.step", {"element_size": 1e-5}, r"element_size makes 1\.5e\+11 unknowns, whose factors would take"),
         ("bar.step", {"clamp": "foot"}, r"clamp is 'foot'.*surface 1, at \(0, 10, 2.5\) mm, 100 mm²; surface 2"),
         ("bar.step", {"unit": "mm"}, "unit is 'mm' beside a file that says its own; leave it out"),
         ("bar.step", {"element_size": None}, "element_size is missing; give the one to mesh"),

@@ -189,3 +189,17 @@ def test_nodes_lie_beside_their_matrices(tmp_path: Path) -> None:
     np.savez(tmp_path / "unlike.npz", **(arrays | {"M": m[:18, :18]}))
     with pytest.raises(gb.InputError, match=r"stiffness has the shape \(24, 24\); give \(18, 18\), as the mass"):
         gb.ImportedModel.read(tmp_path / "unlike.npz")
+
+
+def test_a_campbell_diagram_says_what_it_leaves_out_at_its_fastest() -> None:
+    """Of the order of Ω²/ω², of which a beam's own stiffening is 1.2; at rest there is nothing to say."""
+    m, k, nodes = frame(4)
+    model = gb.ImportedModel(m, k, nodes).reduced(modes=2, damping_ratio=0.01, clamp=[0])
+    said = [
+        each
+        for each in gb.campbell(model, gb.Hub(radius=0.0), end=20.0, count=2).warnings
+        if "left out changes" in each
+    ]
+    share = 100 * (20.0 / (2 * np.pi * gb.modes(model).frequency[0])) ** 2
+    assert len(said) == 1 and f"by the order of {share:.2g} %" in said[0]
+    assert not any("left out changes" in each for each in gb.modes(model, gb.Hub(radius=0.5)).warnings)

@@ -181,6 +181,7 @@ def _mass(beam: Beam) -> float:
     return float(beam.density * np.mean(area) * beam.length)
 
 
+NEGLIGIBLE = 1e-9  # of the stiffness: what is less is rounding of a motion at rest
 NOTICED = 0.01  # of the largest: a smaller share along a direction without shapes is none
 STIFFER = 10.0  # times the other direction: from there on the driven one should be meant
 SLOWEST, FASTEST = 1e-3, 1e6  # Hz, of a beam's lowest natural frequency
@@ -230,7 +231,7 @@ def _unstiffened(structure: Structure, base: Any, where: str) -> Iterator[str]:
     length, square = float(structure.length), float(structure.rest[0][0]) ** 2
     size = [np.linalg.norm(np.reshape(each, (-1, 3)), axis=-1) for each in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)]
     share = float((size[0] / length + size[1] ** 2 + size[2]).max()) / square
-    if share > 0:
+    if share > NEGLIGIBLE:
         yield (
             f"{where} loads the body so that the stiffness that is left out changes the square of its lowest "
             f"frequency by the order of {100 * share:.2g} %"

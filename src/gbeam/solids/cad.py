@@ -11,12 +11,14 @@ from gbeam.errors import InputError
 from gbeam.guards.checks import positive
 from gbeam.guards.limits import BINARY_BYTES, MESHER_BYTES, MESHER_SECONDS, refuse_large_file
 from gbeam.guards.processes import confined
+from gbeam.numerics.sparse import refuse_cost
 from gbeam.progress import PATIENCE, Bar
 from gbeam.solids.foreign import read_mesh, refuse_systems, unit_size
 
 ENDINGS = (".step", ".stp")
 AROUND = 12  # elements around a full circle at least
 UNNAMED = "Open CASCADE"  # begins the names that nobody gave
+DENSE = 5  # nodes in a cube of the size: fewer than Gmsh makes, 8 to 12 where a part is several elements thick
 FINEST = 10  # how much shorter than the given size edges may be there
 
 
@@ -92,6 +94,8 @@ def _mesh_into(path: str, size: float, out: str) -> dict[str, str]:
                 about[name] = f"at ({x:.4g}, {y:.4g}, {z:.4g}) mm{area}"
         if not model.getEntities(3):
             raise InputError("mesh", f"{path} has no solids", "export the part as a solid, not its surfaces")
+        volume = sum(model.occ.getMass(dim, tag) for dim, tag in model.getEntities(3))
+        refuse_cost("element_size", round(3 * DENSE * volume / size**3))
         model.mesh.generate(3)
         gmsh.write(out)
     except InputError:

@@ -19,6 +19,7 @@ FLAT = 1e-6  # of the largest volume of a part of it: an element with less anywh
 STRAIGHT = 1e-6  # of the size: points that are nearer to a line do not hold a body
 LARGE, HEAVY = 20.0, 1e4  # m and kg: nobody mounts more on a machine
 SMALL = 1e-3  # m
+SLIVERS = 0.01  # of all elements: a few long ones of a mesher lock nothing
 PART = 0.1  # of the linear elements: fewer that fill a thickness are at edges
 
 
@@ -93,7 +94,7 @@ def doubts_of(mesh: SolidMesh, unit: str) -> list[str]:
         for block, each in zip(mesh.blocks, alone, strict=True)
     ]
     long = np.concatenate(locking)
-    if len(long):
+    if len(long) > SLIVERS * sum(len(each) for each in alone):
         doubts.append(
             f"{len(long)} elements fill a thickness alone and are up to {long.max():.2g} times as long as it: they may "
             "lock in bending; make them shorter, or use hexahedra of 27 nodes"

@@ -192,7 +192,11 @@ def campbell(
             replace(crossing, errors=crossing_errors(crossing, mode, slope, richer, point_at))
             for crossing, mode, slope in met
         ]
-    doubts = lost.warnings if isinstance(structure, System) else input_warnings(structure, motion, name=name)
+    if isinstance(structure, System):
+        doubts = lost.warnings
+    else:
+        fast = point_at(last).base if structure.unstiffened else None  # where most is left out
+        doubts = input_warnings(structure, motion, name=name, base=fast)
     warnings = doubts + (() if errors is None else doubtful(errors))
     warnings += doubtful_crossings(crossings, "" if errors is None else errors.theory)
     if lost.value is not None:
