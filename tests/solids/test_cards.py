@@ -130,6 +130,46 @@ def test_abaqus_says_the_same(tmp_path: Path) -> None:
     np.testing.assert_allclose(frequencies(read(file, mass_unit="Mg")), frequencies(wanted), rtol=1e-9)
 
 
+def test_rigid_bars_that_meet_are_one_rigid_element(tmp_path: Path) -> None:
+    """Four from a node to the corners of the end, and one that hangs a mass on it."""
+    card = conm2(902)
+    wanted = frequencies(read(nastran(tmp_path, card, "RBE2,95,902,123456,900"), mass_unit="Mg"))
+    file = nastran(tmp_path, card, "RBAR,95,900,902,123456")
+    np.testing.assert_allclose(frequencies(read(file, mass_unit="Mg")), wanted, rtol=1e-10)
+    text = file.read_text()
+    (rigid,) = (line for line in text.splitlines() if line.startswith("RBE2"))
+    ends = rigid.split(",")[4:]
+    bars = "\n".join(f"RBAR,{i},900,{node},,123456" for i, node in enumerate(ends, 300))
+    file.write_text(text.replace(rigid, bars))
+    mesh = read(file, mass_unit="Mg")
+    assert mesh.warnings == ()
+    np.testing.assert_allclose(frequencies(mesh), wanted, rtol=1e-10)
+
+
+@pytest.mark.parametrize("surface", ["NODE\nend", "ELEMENT\n2, S4", "ELEMENT\nlast, S4"])
+def test_a_kinematic_coupling_is_a_rigid_link(tmp_path: Path, surface: str) -> None:
+    """Of a surface of nodes or of a face, whose nodes are eight; its node in a second list of nodes."""
+    file, end = written(tmp_path, ".inp")
+    plain, mesh = file.read_text(), meshio.read(file)
+    face = np.flatnonzero(mesh.points[:, 0] == 200.0) + 1 if "S4" in surface else end
+    rest = "*NODE\n900, 205., 4., 0.\n" + BODY.format(node=900) + "*ELSET, ELSET=last\n2\n"
+    coupled = f"*SURFACE, NAME=seat, TYPE={surface}\n*COUPLING, REF NODE=900, SURFACE=seat, CONSTRAINT NAME=c\n"
+    file.write_text(f"{plain}{rest}{coupled}*KINEMATIC\n1, 3\n")
+    found = read(file, mass_unit="Mg")
+    assert found.warnings == () and list(found.links.nodes) == ["*COUPLING c"]
+    nodes = f"*NSET, NSET=face\n{', '.join(map(str, face))}\n*RIGID BODY, NSET=face, REF NODE=900\n"
+    (tmp_path / "rigid.inp").write_text(plain + rest + nodes)
+    wanted = read(tmp_path / "rigid.inp", mass_unit="Mg")
+    np.testing.assert_allclose(frequencies(found), frequencies(wanted), rtol=1e-9)
+    for words, problem in (
+        ("*KINEMATIC\n1, 2\n", "COUPLING c, which holds the components 1, 2 alone"),
+        ("*DISTRIBUTING\n1, 6\n", r"\*DISTRIBUTING, which is not read; give it as"),
+    ):
+        file.write_text(f"{plain}{rest}{coupled}{words}")
+        with pytest.raises(gb.InputError, match=problem):
+            read(file, mass_unit="Mg")
+
+
 def read_plain(folder: Path, text: str, **more: Any) -> gb.SolidMesh:
     file = folder / "plain.inp"
     file.write_text(text)
@@ -142,7 +182,8 @@ def read_plain(folder: Path, text: str, **more: Any) -> gb.SolidMesh:
         ("CONM2,92,900,3,0.1", "has CONM2 92, which is in coordinate system 3; export it in the basic system"),
         ("CONM2,92,2,,0.1,5.", "has CONM2 92, which has an offset or inertia on node 2, which does not turn"),
         ("RBE2,95,902,3,1,2", "has RBE2 95, which holds the components 3 alone"),
-        ("RBE2,95,902,123456,900,901", "has RBE2 95, which shares nodes with RBE2 91; make them one"),
+        ("RBE2,95,902,123,900,901", "has RBE2 91, which shares nodes with RBE2 95; make them one"),
+        ("RBAR,95,902,900,123,456", "has RBAR 95, which holds the components 123 and 456 of its ends"),
         ("CELAS2,5,1.0,900,1,902,1", r"has CELAS2 5, which joins nodes 0.363 m apart"),
         ("CELAS2,5,1.0,900,1,901,2", "has CELAS2 5, which joins unlike components"),
         ("CELAS1,5,6,900,1", "has CELAS1 5, which names PELAS 6, which is not there"),

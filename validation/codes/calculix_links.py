@@ -1,11 +1,14 @@
 """Rigid links, a body on one and springs between them, in CalculiX (*RIGID BODY, *MASS, *SPRING) and in gbeam on the
 same mesh of hexahedra of 20 nodes: a steel bar of 200 by 20 by 10 mm, clamped at one end, whose middle and other end
-are faces that stay plane. The body is a mass beside the bar, so that the end bends and twists it.
+are faces that stay plane. The body is a mass beside the bar, so that the end bends and twists it. The last case is a
+file of CalculiX with *COUPLING and *KINEMATIC, which both read; *DISTRIBUTING carries no inertia in CalculiX's modes.
 """
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 import meshio
@@ -13,7 +16,7 @@ import numpy as np
 
 import gbeam as gb
 from gbeam.solids.links import WAYS
-from validation.codes.calculix_solid import Specimen, printed_frequencies, run
+from validation.codes.calculix_solid import Specimen, deck, printed_frequencies, run
 from validation.codes.calculix_specimens import STEEL, grid
 from validation.table import Row
 
@@ -43,8 +46,27 @@ def rows() -> Iterator[Row]:
         mesh = bar(**more)
         ours = mesh.reduced(modes=COUNT + 6, damping_ratio=0.0).frequency
         theirs = _frequencies(mesh, model)
-        for n in range(COUNT):
-            yield Row(words, f"mode {n + 1}", theirs[n], float(ours[n]), "Hz", CLOSE, "20 × 2 × 1 C3D20")
+        yield from _rows(words, theirs, ours)
+    mesh, (last, other) = bar(), (20 * 2 - 1, 20 * 2)
+    node = f"*NODE\n{FIRST + 2}, {', '.join(f'{x:.12g}' for x in END + BESIDE)}\n"
+    surface = f"*SURFACE, NAME=SEAT, TYPE=ELEMENT\n{last}, S4\n{other}, S4\n"
+    coupled = f"*COUPLING, REF NODE={FIRST + 2}, SURFACE=SEAT, CONSTRAINT NAME=SEATED\n*KINEMATIC\n1, 3\n"
+    model = node + surface + coupled + _mass(1)
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "bar.inp"
+        file.write_text(deck(model, _specimen(mesh)), encoding="ascii")
+        read = gb.SolidMesh.read(file, materials=STEEL, clamp="FOOT", unit="m", mass_unit="kg")
+    ours = read.reduced(modes=COUNT + 6, damping_ratio=0.0).frequency
+    yield from _rows("mass on a kinematic coupling of the end, in one file", _frequencies(mesh, model), ours)
+
+
+def _rows(words: str, theirs: np.ndarray, ours: np.ndarray) -> Iterator[Row]:
+    for n in range(COUNT):
+        yield Row(words, f"mode {n + 1}", theirs[n], float(ours[n]), "Hz", CLOSE, "20 × 2 × 1 C3D20")
+
+
+def _specimen(mesh: gb.SolidMesh) -> Specimen:
+    return Specimen(lambda: mesh, {"": STEEL})
 
 
 def bar(**more: Any) -> gb.SolidMesh:
@@ -90,4 +112,4 @@ def _frequencies(mesh: gb.SolidMesh, model: str) -> np.ndarray:
     for name, nodes in mesh.links.nodes.items():
         faces += f"*NSET, NSET={name.upper()}\n" + "\n".join(f"{n + 1}" for n in nodes) + "\n"
     steps = f"{faces}{model}*STEP\n*FREQUENCY\n{COUNT}\n*END STEP\n"
-    return printed_frequencies(run(steps, "dat", Specimen(lambda: mesh, {"": STEEL})))
+    return printed_frequencies(run(steps, "dat", _specimen(mesh)))

@@ -202,8 +202,8 @@ def written(mesh: gb.SolidMesh, shell: bool) -> tuple[np.ndarray, list[np.ndarra
     return places, elements, np.unique(mesh.numbers[mesh.clamped])
 
 
-def run(steps: str, kind: str, specimen: Specimen = BRACKET) -> str:
-    """Run ccx in a folder of its own, and return what it wrote."""
+def deck(steps: str, specimen: Specimen = BRACKET) -> str:
+    """Write a file of CalculiX."""
     mesh, shell = specimen.mesh(), specimen.thickness is not None
     places, elements, held = written(mesh, shell)
     lines = ["*NODE, NSET=NALL"]
@@ -229,8 +229,13 @@ def run(steps: str, kind: str, specimen: Specimen = BRACKET) -> str:
         lines += ["*DENSITY", f"{metal.density}"]
         lines.append(f"*{'SHELL' if shell else 'SOLID'} SECTION, ELSET={name}, MATERIAL={name}")
         lines += [f"{specimen.thickness}"] * shell
+    return "\n".join(lines) + "\n" + steps
+
+
+def run(steps: str, kind: str, specimen: Specimen = BRACKET) -> str:
+    """Run ccx in a folder of its own, and return what it wrote."""
     with tempfile.TemporaryDirectory() as folder:
-        (Path(folder) / "solid.inp").write_text("\n".join(lines) + "\n" + steps, encoding="ascii")
+        (Path(folder) / "solid.inp").write_text(deck(steps, specimen), encoding="ascii")
         environment = os.environ | {"OMP_NUM_THREADS": "1"}
         subprocess.run(["ccx", "solid"], cwd=folder, check=True, capture_output=True, env=environment)
         return (Path(folder) / f"solid.{kind}").read_text(encoding="ascii")

@@ -39,6 +39,7 @@ _ABAQUS = re.compile(
 _POINTWISE = re.compile(
     r"^\*ELEMENT *,(?=[^\n]*TYPE *= *(?:MASS|ROTARYI|SPRING[12A])\b)[^\n]*\n(?:(?!\*)[^\n]*(?:\n|$))*", re.M | re.I
 )
+_LISTS = re.compile(r"^\*NODE *(?:,[^\n]*)?\n((?:(?!\*)[^\n]*(?:\n|$))*)", re.MULTILINE | re.IGNORECASE)
 _SCALAR = re.compile(r"^CELAS[1-4]\b[^\n]*\n(?:\*[^\n]*\n)*", re.MULTILINE)
 AGAIN = "write it again with all of its nodes"
 THICKNESS = ("PSHELL", "SHELL SECTION")
@@ -68,10 +69,12 @@ def read_mesh(source: str | os.PathLike[str] | Any) -> Any:
         # It prints what fails and exits.
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
             unread = _UNREAD.get(ending_of(source))
-            if unread is None or not unread.search(text := _text(source)):
+            text = _text(source) if unread else ""
+            plain = _one_list(unread.sub("", text)) if unread else ""
+            if plain == text:
                 return meshio.read(source)
             reader = meshio.abaqus if ending_of(source) == ".inp" else meshio.nastran
-            return reader.read(io.StringIO(unread.sub("", text)))
+            return reader.read(io.StringIO(plain))
     except (Exception, SystemExit) as error:
         if missing := missing_node(source):
             raise InputError("mesh", missing, AGAIN) from None
@@ -80,6 +83,16 @@ def read_mesh(source: str | os.PathLike[str] | Any) -> Any:
             words = f"number {error.args[0]} is named in it, and is not there"
         fix = "give a file of Gmsh, Nastran, Abaqus, CalculiX or VTK, with its ending"
         raise InputError("mesh", f"{os.fspath(source)} cannot be read: {words}", fix) from None
+
+
+def _one_list(text: str) -> str:
+    """A file of Abaqus with its nodes in one list, of which meshio takes the last one only."""
+    lists = list(_LISTS.finditer(text))
+    if len(lists) < 2:
+        return text
+    start = lists[0].start()
+    nodes = "".join(each[1] for each in lists)
+    return f"{text[:start]}*NODE\n{nodes}{_LISTS.sub('', text[start:])}"
 
 
 def unit_size(where: str, unit: str, kind: str) -> float:

@@ -21,7 +21,7 @@ from gbeam.mechanics.tree.system import Place, RigidBody
 from gbeam.numerics.sparse import refuse_cost
 from gbeam.results.result import Floats
 from gbeam.solids.cad import mesh_of
-from gbeam.solids.cards import Placed, cards_of, with_cards
+from gbeam.solids.cards import cards_of
 from gbeam.solids.elements import (
     Block,
     chunks,
@@ -41,6 +41,7 @@ from gbeam.solids.foreign import (
 )
 from gbeam.solids.links import Linked, Links, attached, refuse_names
 from gbeam.solids.model import SolidModel, mesh_errors
+from gbeam.solids.placed import Placed, with_cards
 from gbeam.solids.plausibility import doubts_of, refuse_folded, refuse_loose
 from gbeam.solids.shape_functions import Indices
 from gbeam.solids.shells import points_of, refuse_oblique

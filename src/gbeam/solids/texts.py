@@ -27,6 +27,16 @@ def abaqus_keywords(text: str) -> Iterator[tuple[str, dict[str, str], list[list[
         yield " ".join(word.upper().split()), {key.strip().upper(): value.strip() for key, _, value in pairs}, rows
 
 
+def abaqus_elements(rows: list[list[str]]) -> Iterator[tuple[int, list[int]]]:
+    """Numbers of elements and of their nodes in the lines of a keyword."""
+    listed: list[str] = []
+    for row in rows:
+        listed += row
+        if row[-1]:  # a comma at the end goes on in the next line
+            yield int(listed[0]), [int(each) for each in listed[1:] if each]
+            listed = []
+
+
 def ending_of(source: Any) -> str:
     """The ending of a file's name, in small letters; empty of what is no file."""
     return Path(source).suffix.lower() if isinstance(source, (str, os.PathLike)) else ""
@@ -52,16 +62,8 @@ def _abaqus(text: str) -> Listed:
     blocks = list(abaqus_keywords(text))
     nodes = {int(row[0]) for word, _, rows in blocks if word == "NODE" for row in rows}
 
-    def elements() -> Iterator[tuple[int, list[int]]]:
-        for word, _, rows in blocks:
-            listed: list[str] = []
-            for row in rows if word == "ELEMENT" else ():
-                listed += row
-                if row[-1]:  # a comma at the end goes on in the next line
-                    yield int(listed[0]), [int(each) for each in listed[1:] if each]
-                    listed = []
-
-    return nodes, elements()
+    every = (rows for word, _, rows in blocks if word == "ELEMENT")
+    return nodes, (element for rows in every for element in abaqus_elements(rows))
 
 
 def _nastran(text: str) -> Listed:

@@ -1,0 +1,137 @@
+"""Masses, rigid links and springs of a file among those of a solid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gbeam.errors import InputError
+from gbeam.mechanics.tree.system import RigidBody
+from gbeam.results.result import Floats
+from gbeam.solids.cards import Cards, refused
+from gbeam.solids.links import Links, coupling
+from gbeam.solids.shape_functions import Indices
+
+APART = 1e-6  # of the size of a mesh: nodes that are farther apart are not one place
+
+
+@dataclass(frozen=True)
+class Placed:
+    """Nodes of a file: places (f, 3) m in base axes, and rotation to these from the file's; points (k, 3) of the solid,
+    the nodes (k,) for which they stand, and whether they follow the base.
+    """
+
+    places: Floats
+    rotation: Floats
+    points: Floats
+    numbers: Indices
+    clamped: Any
+
+
+def with_cards(cards: Cards, links: Links, nodes: Placed, size: float, mass: float) -> tuple[Links, Floats]:
+    """Links with those of a file, whose units of length and mass are given, m and kg, and of time s; and its masses on
+    nodes of the solid (k,), kg.
+    """
+    if cards.index and len(cards.index) != len(nodes.places):
+        problem = f"has {len(cards.index)} nodes where its masses and links are, and {len(nodes.places)} in all"
+        raise InputError("mesh", problem, "write it into one file, without includes")
+    ends = np.cumsum(np.bincount(nodes.numbers, minlength=len(nodes.places)))[:-1]
+    points_of = np.split(np.argsort(nodes.numbers, kind="stable"), ends)
+    solid_of = {number: points_of[i] for number, i in cards.index.items()}
+    place_of = {number: nodes.places[i] for number, i in cards.index.items()}
+    within = float(np.linalg.norm(np.ptp(nodes.places, axis=0))) * APART
+    members, places, owner = dict(links.nodes), dict(links.places), dict[int, str]()
+    base, weights = "the base", np.zeros(len(nodes.clamped))
+
+    def link(name: str, numbers: tuple[int, ...]) -> None:
+        if unknown := [each for each in numbers if each not in solid_of]:
+            raise refused(name, f"names node {unknown[0]}, which is not there", "export it too")
+        chosen = np.unique(np.concatenate([solid_of[each] for each in numbers]))
+        if len(chosen) and nodes.clamped[chosen].all():
+            owner.update(dict.fromkeys(numbers, base))
+            return
+        shared = [owner[each] for each in numbers if each in owner]
+        shared += [other for other, held in members.items() if np.isin(chosen, held).any()]
+        if shared or nodes.clamped[chosen].any():
+            raise refused(name, f"shares nodes with {shared[0] if shared else 'the clamp'}", "make them one")
+        if len(np.unique(nodes.numbers[chosen])) > 1:
+            coupling(f"mesh, {name}:", nodes.points[chosen])
+        members[name], places[name] = chosen, place_of[numbers[0]]
+        owner.update(dict.fromkeys(numbers, name))
+
+    def owned(name: str, number: int) -> str:
+        if number not in owner:
+            link(f"node {number}" if number in solid_of else name, (number,))
+        return owner[number]
+
+    for name, numbers in cards.rigid.items():
+        link(name, numbers)
+    carried: dict[str, list[tuple[float, Floats, Floats]]] = {}
+    # First those that turn, which a mass on the same node joins.
+    for each in sorted(cards.lumps, key=lambda lump: not (lump.inertia.any() or lump.offset.any())):
+        tensor = mass * size**2 * nodes.rotation @ each.inertia @ nodes.rotation.T
+        offset = size * nodes.rotation @ each.offset
+        alike = solid_of.get(each.node, ())
+        if each.node not in owner and len(alike):
+            if not tensor.any() and not offset.any():
+                weights[alike] += mass * each.mass / len(alike)
+                continue
+            if len(alike) == 1:
+                fix = "join it to the solid by a rigid link"
+                raise refused(each.name, f"has an offset or inertia on node {each.node}, which does not turn", fix)
+        name = owned(each.name, each.node)
+        if name != base:
+            at = place_of[each.node] + offset - places[name]
+            carried.setdefault(name, []).append((mass * each.mass, at, tensor))
+    held = dict(links.springs)
+    for k, spring in enumerate(cards.springs):
+        joined = [owned(spring.name, number) for number in spring.nodes]
+        across = max(float(np.linalg.norm(place_of[each] - place_of[spring.nodes[0]])) for each in spring.nodes)
+        if across > within:
+            raise refused(spring.name, f"joins nodes {across:.3g} m apart", "let it join nodes at one place")
+        between = tuple(dict.fromkeys(each for each in joined if each != base))
+        if not between or (len(spring.nodes) == 2 and joined[0] == joined[1]):
+            continue  # between what moves together
+        if not np.allclose(nodes.rotation, np.eye(3)):
+            raise refused(spring.name, "lies along the mesh's axes, and turn turns them", "leave turn out")
+        alone = [each for each in between if len(members[each]) == 1]
+        if spring.stiffness[3:].any() and alone:
+            raise refused(spring.name, f"turns {alone[0]} of the solid, which does not", "join it by a rigid link")
+        held[f"{spring.name}, {k + 1}"] = (
+            between,
+            mass * spring.stiffness * np.repeat([1.0, size**2], 3),
+            place_of[spring.nodes[0]],
+        )
+    bodies = dict(links.bodies) | {name: _together(name, parts) for name, parts in carried.items()}
+    used = {*bodies, *(each for between, *_ in held.values() for each in between)}
+    members = {name: each for name, each in members.items() if len(each) or name in used}
+    tied = Links(members, bodies, held, {name: places[name] for name in members if name in places})
+    for name, chosen in members.items():
+        if not len(chosen):
+            _refuse_unheld(name, tied)
+    return tied, weights
+
+
+def _refuse_unheld(name: str, links: Links) -> None:
+    """Refuse a link of no node of the solid that no spring holds."""
+    stiffness = sum((each for between, each, _ in links.springs.values() if name in between), np.zeros(6))
+    body = links.bodies.get(name)
+    resisting = np.zeros(3) if body is None else np.diag(body.tensor) + np.abs(body.centre).sum()
+    loose = stiffness[:3].min() == 0 or (stiffness[3:] == 0)[resisting > 0].any()
+    if loose:
+        raise refused(name, "is on no node of the solid, and its springs leave it a way to move", "hold it")
+
+
+def _together(name: str, parts: list[tuple[float, Floats, Floats]]) -> RigidBody:
+    """One body of masses, centres and inertias about these."""
+    whole = sum(mass for mass, *_ in parts)
+    centre = sum((mass * at for mass, at, _ in parts), np.zeros(3)) / whole if whole else np.zeros(3)
+    tensor = np.zeros((3, 3))
+    for mass, at, inertia in parts:
+        arm = at - centre
+        tensor += inertia + mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+    if tensor.any() and not whole:
+        raise refused(name, "has inertia and no mass")
+    return RigidBody(whole, (tensor + tensor.T) / 2, tuple(centre))  # turned, it is symmetric but for rounding
