@@ -15,6 +15,8 @@ from gbeam.arrays.tree import record
 from gbeam.integrate import Corners, NonlinearEquations, gauss, generalized_alpha, integrate, newmark, windows
 from gbeam.integrate.equations import accelerations, slopes
 
+from ..lagrange import quickly_compiled
+
 PUSH = 1.3  # s: the load jumps
 
 
@@ -125,7 +127,7 @@ def test_derivatives_are_those_of_automatic_differentiation() -> None:
     state = np.random.default_rng(1).normal(size=(3, 5, 2))
     force = load(np.linspace(0.0, 3.0, 5))
     made = slopes(Swing(), *state, force)
-    expected = jax.vmap(jax.jacfwd(Swing(), argnums=(0, 1, 2)))(*state, force)
+    expected = quickly_compiled(jax.vmap(jax.jacfwd(Swing(), argnums=(0, 1, 2))))(*state, force)
     for one, other in zip(made, expected, strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-12, atol=1e-12)
     qdd = accelerations(Swing(), *state[:2], force)

@@ -86,9 +86,10 @@ def test_exact_data_of_three_kinds_give_the_true_values(released: Path) -> None:
 def test_true_values_lie_within_two_sigma_in_trials(released: Path) -> None:
     tip, _, _ = histories(released)
     random, inside = np.random.default_rng(2026), np.zeros(2)
+    near = [f"{E}=66.5 GPa", f"{DAMPING}=0.0125"]  # searches from afar are tested above
     for _ in range(20):  # of 100, 96 and 94 were inside
         noisy = tip + 0.02 * np.abs(tip).max() * random.standard_normal(len(tip))
-        found = gb.fit(released, written("data.csv", "time,tip.z", TIME, noisy), [E, DAMPING])
+        found = gb.fit(released, written("data.csv", "time,tip.z", TIME, noisy), [E, DAMPING], overrides=near)
         assert np.abs(found.values / list(TRUE.values()) - 1).max() < 0.2
         inside += np.abs(found.values - list(TRUE.values())) <= 2 * found.errors
     # Of 20 that are inside with a probability of 95.4 %, 16 or fewer are so once in a hundred times.
@@ -193,7 +194,7 @@ def test_bounds_that_leave_out_the_start_are_refused(released: Path) -> None:
         gb.fit(released, data, [E, DAMPING, DENSITY])
 
 
-def test_the_command_writes_a_scenario_with_the_values(released: Path, gbeam: Call) -> None:
+def test_the_command_writes_a_scenario_with_the_values(released: Path, gbeam: Call, with_figures: None) -> None:
     tip, _, _ = histories(released)
     data = written("data.csv", "time,tip.z", TIME, tip)
     words = ("fit", released, "--data", data, "--free", f"{E},{DAMPING}")
