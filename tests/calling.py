@@ -43,6 +43,6 @@ def gbeam(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -
 
 
 @pytest.fixture
-def without_figures(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Write no figures, where a test is about something else."""
-    monkeypatch.setenv(FIGURES, "none")
+def with_figures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Write files of figures, where a test is about them."""
+    monkeypatch.delenv(FIGURES)

@@ -19,6 +19,8 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(Path(__file__).parents[1] / ".cache" / "jax"))
 # No test reads what another version of it has made.
 os.environ.setdefault("GBEAM_CACHE", "off")
+# Files of figures take most of the time of a command; a test that is about them asks for them.
+os.environ["GBEAM_FIGURES"] = "none"
 # As gbeam has it, in whichever order the tests that differentiate something themselves import JAX and gbeam.
 os.environ.setdefault("JAX_ENABLE_X64", "1")
 # A result that is written twice is written at the same time.

@@ -14,11 +14,10 @@ from gbeam.guards.checks import RANGES, implausible
 from gbeam.scenario import template
 
 from . import scenarios, specimens
-from .calling import Answer, gbeam, without_figures
+from .calling import Answer, gbeam
 
-__all__ = ["gbeam", "without_figures"]
+__all__ = ["gbeam"]
 
-pytestmark = pytest.mark.usefixtures("without_figures")
 
 STRIP, METAL = specimens.STRIP, specimens.ALUMINIUM
 FLIGHT = gb.Flight(z=9.81)

@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from ..calling import gbeam
+from ..calling import gbeam, with_figures
 
-__all__ = ["gbeam"]
+__all__ = ["gbeam", "with_figures"]

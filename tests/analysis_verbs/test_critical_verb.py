@@ -42,7 +42,7 @@ def test_acceleration(call):
     assert status == 0 and facts["critical_acceleration"] == pytest.approx(expected, rel=1e-3)
 
 
-def test_map(call):
+def test_map(call, with_figures):
     """2009 Fig. 9, and the critical speeds of its section 4 at the tip."""
     status, facts, _ = call("--masses", "0 kg, 0.1 kg, 0.5 kg", "--positions", "4 m, 8 m", "--out", "there")
     speed = np.array(facts["critical_speed"])

@@ -34,7 +34,7 @@ def call(scenario, gbeam):
     return run
 
 
-def test_modes(call):
+def test_modes(call, with_figures):
     status, facts, _ = call("modes", "--motion", "slew", "--at", "32 s", "--out", "there")
     assert status == 0
     frequencies = [mode["frequency"] for mode in facts["modes"]]
@@ -117,7 +117,7 @@ def test_campbells_plot_shows_the_modes_that_the_multiples_meet():
         assert 0 < hertz < panel.get_ylim()[1] and 0 < rpm < speed[-1] * 30 / np.pi
 
 
-def test_static(call):
+def test_static(call, with_figures):
     status, facts, _ = call("static", "--motion", "flight", "--out", "there")
     # w L⁴/8EI of a uniform load, down where the base accelerates up
     expected = 2766.7 * 7.2968e-5 * 0.980665 * 8**4 / (8 * 6.8952e10 * 8.2189e-9)
@@ -139,13 +139,13 @@ def test_critical_speed(call):
     assert status == 0 and facts["critical_speed"] is None and "keeps its equilibrium" in facts["reason"]
 
 
-def test_campbell(call):
+def test_campbell(call, with_figures):
     status, facts, _ = call("campbell", "--modes", "2", "--out", "there")
     assert status == 0 and facts["speed"][-1] == pytest.approx(2.0) and len(facts["tracks"]) == 2
     assert Path("there/campbell.png").stat().st_size > 1000
 
 
-def test_campbell_speaks_in_the_unit_given(scenario, gbeam):
+def test_campbell_speaks_in_the_unit_given(scenario, gbeam, with_figures):
     answer = gbeam("campbell", "hub.toml", "--modes", "2", "--to", "20 rpm", "--out", "there")
     assert answer.status == 0 and "TLAM, 0 to 20 rpm" in answer.out and "rad/s" not in answer.out
     assert json.loads(Path("there/campbell.json").read_text(encoding="utf-8"))["speed"][-1] == pytest.approx(

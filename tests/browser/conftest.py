@@ -10,7 +10,6 @@ from typing import Any
 import pytest
 
 from gbeam.cli import main
-from gbeam.cli.process import FIGURES
 
 from ..scenarios import FAST, SLEWING
 from .chromium import arguments, environment, find, watch
@@ -77,10 +76,8 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
         text, arguments = KINDS[kind]
         folder = tmp_path_factory.mktemp("report")
         (folder / "scenario.toml").write_text(text)
-        with pytest.MonkeyPatch.context() as patch:
-            patch.setenv(FIGURES, "none")  # a page draws for itself
-            verb = kind.split()[0]
-            assert main([verb, str(folder / "scenario.toml"), *arguments, "--out", str(folder), "--report"]) == 0
+        verb = kind.split()[0]
+        assert main([verb, str(folder / "scenario.toml"), *arguments, "--out", str(folder), "--report"]) == 0
         (file,) = folder.glob("*.html")
         return file
 

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from ..calling import gbeam, without_figures
+from ..calling import gbeam, with_figures
 from ..scenarios import FAST, FREE_HUB
 
-__all__ = ["gbeam", "without_figures"]
+__all__ = ["gbeam", "with_figures"]
 
 
 @pytest.fixture

@@ -15,7 +15,6 @@ from ..calling import Answer
 from ..scenarios import SPECIMEN, model
 
 Call = Callable[..., Answer]
-pytestmark = pytest.mark.usefixtures("without_figures")
 
 # A pull that is followed, and at 11.2 s a quick one of 3.5 g that the smoothing rounds off.
 CORNERS = {0: 1.5, 1: 1.5, 3: 6.0, 4: 6.0, 6: 1.5, 10.65: 1.5, 11.2: 3.5, 11.75: 1.5, 15.99: 1.5}

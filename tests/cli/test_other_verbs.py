@@ -143,7 +143,7 @@ def test_a_place_needs_a_motion(gbeam: Call) -> None:
     assert answer.status == 2 and "motion is missing; add one that answers" in answer.err
 
 
-def test_a_joint_that_turns_has_a_diagram(tmp_path: Path, gbeam: Call) -> None:
+def test_a_joint_that_turns_has_a_diagram(tmp_path: Path, gbeam: Call, with_figures: None) -> None:
     """The base of the arm is named; the elbow, whose axis leans with it, changes the equations."""
     arm = EXAMPLES / "robot_arm.toml"
     asked = gbeam("campbell", arm, "--to", "30 rpm")

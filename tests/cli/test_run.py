@@ -61,7 +61,7 @@ def test_json_contract(fast: Path, gbeam: Call) -> None:
     assert not Path("out").exists()
 
 
-def test_stress_yield_and_fatigue(fast: Path, gbeam: Call, without_figures: None) -> None:
+def test_stress_yield_and_fatigue(fast: Path, gbeam: Call) -> None:
     """A steady 6 g: M = m g L²/2 at the root, σ = 6 M/(b h²); a margin of one where the strength is twice that."""
     stress = 6 * (2700 * 0.02 * 0.004 * 6 * 9.80665 * 0.3**2 / 2) / (0.02 * 0.004**2)
     material = f"beam.material.yield_strength={2 * stress}"
@@ -108,7 +108,7 @@ def test_accepted_or_not(fast: Path, gbeam: Call) -> None:
     assert (tip["name"], tip["limit"], tip["passed"]) == ("tip", 0.02, True) and abs(tip["value"]) < 2e-3
 
 
-def test_accept_in_words(fast: Path, gbeam: Call, without_figures: None) -> None:
+def test_accept_in_words(fast: Path, gbeam: Call) -> None:
     answer = gbeam("run", fast, "--set", "motion.spin.accept.followed=90 %")
     assert answer.status == 0 and "accepted: followed 100 % (at least 90 %)" in answer.out
     assert not [line for line in answer.out.splitlines() if line.endswith(" ")]
@@ -171,7 +171,7 @@ def test_json_of_a_hub(hub: Path, gbeam: Call) -> None:
     assert facts["comparisons"] == []
 
 
-def test_files(fast: Path, gbeam: Call) -> None:
+def test_files(fast: Path, gbeam: Call, with_figures: None) -> None:
     answer = gbeam("run", fast, "--set", "motion.flight.acceleration.z.level=3 g")
     assert answer.status == 0
     assert "; tip: flight's peak 0.87" in " ".join(answer.out.split())
@@ -188,13 +188,13 @@ def test_files(fast: Path, gbeam: Call) -> None:
     assert str(tree["scenario"].values) == fast.read_text(encoding="utf-8")
 
 
-def test_json_lists_the_files_it_wrote(hub: Path, gbeam: Call) -> None:
+def test_json_lists_the_files_it_wrote(hub: Path, gbeam: Call, with_figures: None) -> None:
     facts = gbeam("run", hub, "--json", "--out", "there").json
     assert "there/hub_slew.png" in facts["files"]
     assert all(Path(file).stat().st_size > 0 for file in facts["files"])
 
 
-def test_diverged_is_reported_stored_and_drawn(fast: Path, gbeam: Call) -> None:
+def test_diverged_is_reported_stored_and_drawn(fast: Path, gbeam: Call, with_figures: None) -> None:
     """At 3000 g the tip moves by more than the beam is long."""
     level = "motion.flight.acceleration.z.level=3000 g"
     answer = gbeam("run", fast, "--set", level, "--json", "--out", "bad")
@@ -205,7 +205,7 @@ def test_diverged_is_reported_stored_and_drawn(fast: Path, gbeam: Call) -> None:
     assert opened("bad/result.nc").attrs["outcome"] == "diverged" and Path("bad/tip.png").exists()
 
 
-def test_diverged_in_words(fast: Path, gbeam: Call, without_figures: None) -> None:
+def test_diverged_in_words(fast: Path, gbeam: Call) -> None:
     level = "motion.flight.acceleration.z.level=3000 g"
     again = gbeam("run", fast, "--set", level)
     assert again.status == 1 and "diverged" in again.out and "out/fast" in again.out
@@ -224,9 +224,7 @@ def test_no_result_leaves_no_files(fast: Path, gbeam: Call, monkeypatch: pytest.
     assert answer.err == "gbeam: not converged: motion.flight: no relative equilibrium; use exact\n"
 
 
-def test_what_one_motion_lacks_the_others_keep(
-    fast: Path, gbeam: Call, without_figures: None, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_one_motion_lacks_the_others_keep(fast: Path, gbeam: Call, monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(*args: Any, name: str, **how: Any) -> Response:
         if name == "spin":
             raise ComputationError("not converged", "no relative equilibrium; use exact")

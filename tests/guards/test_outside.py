@@ -14,10 +14,10 @@ from typing import Any
 
 import pytest
 
-from ..calling import Answer, gbeam, without_figures
+from ..calling import Answer, gbeam
 from ..scenarios import FAST, SPECIMEN, model, response
 
-__all__ = ["gbeam", "without_figures"]
+__all__ = ["gbeam"]
 
 POSIX = pytest.mark.skipif(os.name != "posix", reason="names of files are bytes on POSIX alone")
 LINUX = pytest.mark.skipif(sys.platform != "linux", reason="other systems limit no address space")
@@ -98,7 +98,7 @@ def test_a_spring_that_numbers_do_not_hold_beside_the_beam_is_refused(stiffness:
 
 @POSIX
 def test_a_folder_whose_name_is_no_text_has_what_a_plan_writes(fast: Path) -> None:
-    answer = _called(fast.parent, "plan", "fast.toml", "--out", b"a\xffb", GBEAM_FIGURES="none")
+    answer = _called(fast.parent, "plan", "fast.toml", "--out", b"a\xffb")
     assert answer.returncode == 0 and b"Traceback" not in answer.stderr, answer.stderr
     commands = Path(os.fsdecode(os.fsencode(fast.parent) + b"/a\xffb")) / "commands_spin.csv"
     assert "a\\udcffb" in commands.read_text(encoding="utf-8")
@@ -147,7 +147,7 @@ def test_bytes_that_are_no_text_are_refused_or_written_out(fast: Path) -> None:
     answer = _called(fast.parent, "check", "fast.toml", "--set", b"title=a\xff")
     assert answer.returncode == 2 and b"\\udcff" in answer.stderr
     os.rename(fast, os.fsencode(fast.parent) + b"/n\xff.toml")
-    answer = _called(fast.parent, "modes", b"n\xff.toml", "--motion", "flight", "--out", "m", GBEAM_FIGURES="none")
+    answer = _called(fast.parent, "modes", b"n\xff.toml", "--motion", "flight", "--out", "m")
     assert answer.returncode == 0, answer.stderr
     command = json.loads((fast.parent / "m" / "modes.json").read_text(encoding="utf-8"))["provenance"]["command"]
     assert "n\\udcff.toml" in command
@@ -255,9 +255,7 @@ def test_more_words_than_any_command_has_are_one_message(gbeam: Call) -> None:
     assert answer.status == 2 and "has 60001 words, and 2000 are read at most" in answer.err
 
 
-def test_a_critical_speed_says_what_takes_long(
-    fast: Path, without_figures: None, gbeam: Call, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_critical_speed_says_what_takes_long(fast: Path, gbeam: Call, monkeypatch: pytest.MonkeyPatch) -> None:
     tlam = ("steady.toml", "--set", 'model.kind="TLAM"')
     monkeypatch.setattr("gbeam.progress._interval", lambda: 1e-3)  # shorter than any step, which none then misses
     answer = gbeam("critical-speed", *tlam)

@@ -12,12 +12,10 @@ import xarray as xr
 import gbeam as gb
 from gbeam.analysis.response import settings
 
-from ..calling import Answer, gbeam, without_figures
+from ..calling import Answer, gbeam
 from ..scenarios import FAST
 
-__all__ = ["gbeam", "without_figures"]
-
-pytestmark = pytest.mark.usefixtures("without_figures")
+__all__ = ["gbeam"]
 
 
 @pytest.fixture

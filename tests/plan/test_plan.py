@@ -13,12 +13,7 @@ from scipy.io import loadmat
 from gbeam.cli import main
 from gbeam.cli.process import FIGURES
 
-from ..calling import without_figures
 from ..scenarios import SPECIMEN, model
-
-__all__ = ["without_figures"]
-
-pytestmark = pytest.mark.usefixtures("without_figures")
 
 PLAN = """\
 title = "plan"

@@ -22,12 +22,11 @@ from gbeam.scenario.load import fingerprint
 from gbeam.scenario.text.overrides import override
 from gbeam.scenario.text.source import parse
 
-from ..calling import Answer, gbeam, without_figures
+from ..calling import Answer, gbeam
 from ..scenarios import EVERY_MOTION, FAST, FLIGHT, SPECIMEN, model, response
 
-__all__ = ["gbeam", "without_figures"]
+__all__ = ["gbeam"]
 
-pytestmark = pytest.mark.usefixtures("without_figures")
 
 RECORD = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
 RECORDED = (

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from ..calling import gbeam
+from ..calling import gbeam, with_figures
 from ..scenarios import FAST
 
-__all__ = ["gbeam"]
+__all__ = ["gbeam", "with_figures"]
 
 
 @pytest.fixture

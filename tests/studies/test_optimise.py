@@ -91,7 +91,7 @@ def test_what_cannot_be_minimised_is_refused(fast: Path, minimise: str, over: st
         gb.optimise(fast, minimise, [over], subject_to=[subject] if subject else [])
 
 
-def test_the_command_writes_a_scenario_a_file_and_a_plot(fast: Path, gbeam: Call) -> None:
+def test_the_command_writes_a_scenario_a_file_and_a_plot(fast: Path, gbeam: Call, with_figures: None) -> None:
     words = ("optimize", fast, "--verb", "static", "--minimise", "flight.loads.root_force.z", "--over", THICKNESS)
     done = gbeam(*words, "--bounds", f"{THICKNESS}=3 mm:5 mm", "--write", "best.toml", "--out", "best")
     assert done.status == 0 and "on its bound" in done.out

@@ -176,7 +176,7 @@ def test_a_run_that_is_not_done_has_no_derivative(fast: Path) -> None:
         gb.sensitivity(fast, ["flight.tip.z.max_abs"], [E], overrides=[f"{E}=1e6"])
 
 
-def test_the_command_prints_a_table_and_writes_a_file_and_plots(fast: Path, gbeam: Call) -> None:
+def test_the_command_prints_a_table_and_writes_a_file_and_plots(fast: Path, gbeam: Call, with_figures: None) -> None:
     words = ("sensitivity", fast, "--verb", "static", "--of", "flight.tip.z", "--with", f"{E}, {LENGTH}")
     done = gbeam(*words, "--out", "found")
     assert done.status == 0 and done.out.index(LENGTH) < done.out.index(E)  # the more important first

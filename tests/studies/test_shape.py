@@ -28,7 +28,9 @@ def slewing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return file
 
 
-def test_a_command_does_what_the_slew_does_and_its_scenario_leaves_what_it_says(slewing: Path, gbeam: Call) -> None:
+def test_a_command_does_what_the_slew_does_and_its_scenario_leaves_what_it_says(
+    slewing: Path, gbeam: Call, with_figures: None
+) -> None:
     answer = gbeam("shape", slewing, "--out", "shaped", "--json").json
     assert answer["goal"] == {"rate": 1.0} and answer["duration"] == 6.0 and answer["motion"] == "slew"
     left = {name: each["residual_amplitude"] for name, each in answer["commands"].items()}

@@ -200,7 +200,7 @@ def test_the_scenario_says_what_varies_where_the_call_does_not(fast: Path, gbeam
     assert other.verb == "static" and other.outcome.shape == (1,)
 
 
-def test_files_and_words(fast: Path, gbeam: Call) -> None:
+def test_files_and_words(fast: Path, gbeam: Call, with_figures: None) -> None:
     arguments = ("--verb", "static", "--over", f"{LEVEL}=2:8:4 g", "--measure", "flight.tip.z", "--netcdf")
     answer = gbeam("sweep", fast, *arguments, "--out", "there")
     assert answer.status == 0 and "4 cases: 4 done" in answer.out and "flight.tip.z, m" in answer.out
