@@ -15,6 +15,7 @@ import sys
 import tempfile
 import tomllib
 from collections.abc import Iterator
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -62,8 +63,10 @@ def command_lines(scenario: dict[str, Any]) -> Iterator[list[str]]:
     figures = {"modes": "modes[0].frequency", "static": "tip.z", "critical-speed": "critical_speed"}
     if "joints" in scenario:
         figures["static"] = f"{next(iter(scenario['bodies']))}.root.displacement.z"
-    turned = [name for name, each in scenario.get("joints", {}).items() if each["kind"] in ("revolute", "prismatic")]
-    turning, joint = (["--turning", f"{turned[0]}.angle"], ["--joint", f"{turned[0]}.angle"]) if turned else ([], [])
+    kinds = {name: each["kind"] for name, each in scenario.get("joints", {}).items()}
+    turning = [["--turning", f"{name}.angle"] for name, kind in kinds.items() if kind == "revolute"][:1]
+    moved = {"revolute": "angle", "prismatic": "displacement"}
+    joint = [["--joint", f"{name}.{moved[kind]}"] for name, kind in kinds.items() if kind in moved][:1]
     cases = f"{value}={0.95 * size:g}, {1.05 * size:g}"
     yield ["check"]
     yield ["plan"]
@@ -72,7 +75,7 @@ def command_lines(scenario: dict[str, Any]) -> Iterator[list[str]]:
         for verb in ("static", "modes", "linearize"):
             yield [verb, *motion]
         for verb in ("campbell", "critical-speed"):
-            yield [verb, *motion, *turning, *(["--to", "30 rpm"] if verb == "campbell" else [])]
+            yield [verb, *motion, *chain(*turning), *(["--to", "30 rpm"] if verb == "campbell" else [])]
         for varied in ("loads", "acceleration"):
             yield ["critical-speed", "--vary", varied, *motion]
     motion = motions[0]
@@ -80,7 +83,7 @@ def command_lines(scenario: dict[str, Any]) -> Iterator[list[str]]:
         yield ["sensitivity", "--verb", verb, "--of", figures[verb], "--with", value, *motion]
     yield ["optimize", "--verb", "modes", "--minimise", figures["modes"], "--over", value, *motion]
     yield ["fit", "--data", "d.csv", "--free", value, *motion]
-    yield ["shape", "--duration", "2 s", "--angle", "0.1 rad", *motion, *joint]
+    yield ["shape", "--duration", "2 s", "--angle", "0.1 rad", *motion, *chain(*joint)]
     yield ["place", "--no-proof"]
     yield ["models", *short]
     yield ["sensitivity", "--with", value, *short]
@@ -106,11 +109,11 @@ def walked(verb: str, scenario: str, arguments: list[str]) -> Iterator[str]:
         for file in sorted((folder / "out").glob("*")):
             if file.suffix in (".json", ".nc") and file.stem != "command":
                 yield from (f"{file.name}: {each}" for each in _absurd(file))
-                for again in (["report", str(file)], ["rerun", str(file)]):
-                    answer = _called(again, folder)
-                    yield from (f"{again[0]}: {each}" for each in _wrong(Case("walk", again), answer))
+                for again in ("report", "rerun") if pages else ("rerun",):
+                    answer = _called([again, str(file)], folder)
+                    yield from (f"{again}: {each}" for each in _wrong(Case("walk", [again]), answer))
                     if answer.status:
-                        yield f"{again[0]} of {file.name} ends with {answer.status}: {answer.err[-300:]}"
+                        yield f"{again} of {file.name} ends with {answer.status}: {answer.err[-300:]}"
         yield from _complaints(sorted((folder / "out").glob("*.html")))
 
 

@@ -122,6 +122,13 @@ def test_a_force_at_a_point_is_driven_and_reported() -> None:
     assert 0 < loop.saturated[1] < 1 and np.abs(loop.applied[:, :2]).max() <= 0.015
 
 
+@pytest.mark.parametrize(("limit", "fix"), [(None, "s: limit it, or look for"), (20.0, "s: look for what grows")])
+def test_efforts_beyond_all_bounds_say_what_to_do(limit: float | None, fix: str) -> None:
+    law = gb.Feedback(lambda t, y: -y, ["hinge.angle"], ["hinge.angle"], sample=SAMPLE, limit=limit)
+    with pytest.raises(gb.ComputationError, match=fix):
+        law.effort(0.1, np.array([np.nan]), None)
+
+
 def test_a_relay_limits_cycle() -> None:
     """A law that jumps is satisfied too: at every sample the command is that of the state there."""
     relay = gb.Feedback(lambda t, y: -30.0 * np.sign(y[:1] + 0.5 * y[1:]), NAMES, ["axis.angle"], SAMPLE)

@@ -44,7 +44,7 @@ Floats = NDArray[np.float64]
 Reading = dict[Quantity, Floats]
 Again = Callable[[System], tuple[Trajectory, InputsOf]]
 FEWEST = 3  # times of a response that is judged
-NOT_ALL = "shapes and model are not judged of {}, which is made of no beam"
+NOT_ALL = "shapes and model are not judged of {}: not made of a beam"
 FAR = "shapes and models are not judged: a system with more shapes does not follow"
 
 UNKNOWN = "errors by the theory of slender beams are not known: "

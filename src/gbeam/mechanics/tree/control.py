@@ -185,7 +185,8 @@ class Feedback(Value):
         """Efforts, unless the law has left all bounds."""
         if not np.isfinite(efforts).all():
             problem = f"the law of the controller of {', '.join(self.drive)} gives {efforts} at {t:.6g} s"
-            raise ComputationError("diverged", f"{problem}: limit it, or look for what grows there")
+            fix = "limit it, or look" if self.limit is None else "look"
+            raise ComputationError("diverged", f"{problem}: {fix} for what grows there")
         return efforts
 
     def limited(self, efforts: Floats) -> Floats:
