@@ -8,13 +8,13 @@ from functools import cache
 from typing import Any
 
 from gbeam.scenario import json_schema
+from gbeam.scenario.reference import tag_of
 from gbeam.scenario.schema import kind_of_scenario
 from gbeam.scenario.text.overrides import value_of
 from gbeam.scenario.text.revise import toml
 from gbeam.scenario.values import Path, path_text, written_at
 
 Node = dict[str, Any]
-_TAGS = ("kind", "shape", "profile")  # keys that say which of several tables one is
 LISTED = 40  # tables of a list that the form shows
 LONGEST = 1000  # characters of a value that the form shows; longer ones are edited as text
 
@@ -46,10 +46,10 @@ def value_at(path: Path, data: Any, text: str) -> Any:
 
 def new_table(path: Path, data: Any, choice: str) -> dict[str, Any]:
     """Return a table of a kind, with the values that the one of another kind at its place shares with it."""
-    table = {_tag(each)[1]: each for each in reversed(_tables(_schema_at(path, data)))}[choice]
+    table = {tag_of(each)[1]: each for each in reversed(_tables(_schema_at(path, data)))}[choice]
     before = written_at(data, path)
     kept = before if isinstance(before, dict) else {}
-    key = _tag(table)[0]
+    key = tag_of(table)[0]
     return ({key: choice} if key else {}) | {
         name: value for name, value in kept.items() if name in table["properties"] and name != key
     }
@@ -81,7 +81,7 @@ def _top(data: dict[str, Any]) -> Node:
 
 def _inside(table: Node, data: dict[str, Any], path: Path) -> list[Node]:
     """The entries of a table, known ones first."""
-    tag = _tag(table)[0]
+    tag = tag_of(table)[0]
     required = table.get("required", ())
     known = table["properties"]
     entries = [
@@ -116,7 +116,7 @@ def _entry(schema: Node, around: Any, path: Path, *, required: bool) -> Node:
 def _table(schema: Node, tables: list[Node], raw: Any, path: Path) -> Node:
     table = _table_of(tables, raw)
     inside = [] if table is None or not isinstance(raw, dict) else _inside(table, raw, path)
-    choice = "" if table is None or not isinstance(raw, dict) else _tag(table)[1]
+    choice = "" if table is None or not isinstance(raw, dict) else tag_of(table)[1]
     about = "" if table is None or len(tables) == 1 else table.get("description", "")
     return {"kind": "table", "options": _words(schema), "choice": choice, "about": about, "inside": inside}
 
@@ -156,7 +156,7 @@ def _quantities(schema: Node) -> Iterator[Node]:
 
 def _words(schema: Node) -> list[str]:
     """The words of the tables that one may choose of; an empty one for those that only their keys tell apart."""
-    return [*dict.fromkeys(_tag(each)[1] for each in _tables(schema))]
+    return [*dict.fromkeys(tag_of(each)[1] for each in _tables(schema))]
 
 
 def _tables(schema: Node) -> list[Node]:
@@ -166,20 +166,13 @@ def _tables(schema: Node) -> list[Node]:
 def _table_of(tables: list[Node], raw: Any) -> Node | None:
     """The table that is written, by its word and its keys; None where the word is none of theirs."""
     written = raw if isinstance(raw, dict) else {}
-    tags = [_tag(each) for each in tables]
+    tags = [tag_of(each) for each in tables]
     able = [
         table
         for table, (key, word) in zip(tables, tags, strict=True)
         if len(tables) == 1 or not key or written.get(key, table["properties"][key].get("default")) == word
     ]
     return max(able, key=lambda table: len(table["properties"].keys() & written.keys()), default=None)
-
-
-def _tag(table: Node) -> tuple[str, str]:
-    """Key and word by which a table is told from others at its place; empty where it is the only one."""
-    properties = table["properties"]
-    words = ((key, properties.get(key, {}).get("const")) for key in _TAGS)
-    return next(((key, word) for key, word in words if word), ("", ""))
 
 
 def _names_tables(schema: Node) -> bool:

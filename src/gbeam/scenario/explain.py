@@ -12,7 +12,7 @@ from gbeam.guards.kinds import KINDS
 from gbeam.guards.units import spoken
 from gbeam.printable import advise
 from gbeam.scenario.schema import kind_of_scenario
-from gbeam.scenario.schema.fields import Quantity, Table, fields_of
+from gbeam.scenario.schema.fields import TAGS, Quantity, Table, fields_of, inside, parts_of
 from gbeam.scenario.text.diagnostics import Diagnostic
 from gbeam.scenario.text.source import Mark, Source
 from gbeam.scenario.values import Path
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from pydantic.fields import FieldInfo
     from pydantic_core import ErrorDetails
 
-_TAGS = ("kind", "profile", "shape")
 # A list, not a pattern: the message may quote what a user wrote, braces and all.
 _PLACEHOLDER = re.compile(r"\{(value|beam\.length|response\.duration)\}")
 _NOT_A = {
@@ -107,8 +106,7 @@ def _path(loc: tuple[int | str, ...], source: Source) -> Path:
 
 def _tag(field: FieldInfo | None, node: dict[str, Any]) -> object:
     """Return the tag that pydantic puts into its places below the table `node`, if it is one of a union."""
-    parts = [] if field is None else [*field.metadata, *_inside(field.annotation)]
-    told = next((each.discriminator for each in parts if isinstance(each, Discriminator)), "profile")
+    told = next((each.discriminator for each in parts_of(field) if isinstance(each, Discriminator)), "profile")
     return told(node) if callable(told) else node.get(told)
 
 
@@ -144,7 +142,7 @@ def _table(source: Source, path: Path) -> type[Table] | None:
     if (chosen := tag_of.get(str(_tag(field, written)))) is not None:
         return chosen
     for table in tables:
-        for tag in _TAGS:
+        for tag in TAGS:
             if tag in table.model_fields:
                 names = list(_literals(table.model_fields[tag].annotation))
                 if written.get(tag, table.model_fields[tag].default) in names:
@@ -152,21 +150,15 @@ def _table(source: Source, path: Path) -> type[Table] | None:
     return tables[0] if len(tables) == 1 else None
 
 
-def _inside(annotation: Any) -> Iterator[Any]:
-    yield annotation
-    for part in get_args(annotation):
-        yield from _inside(part)
-
-
 def _tables(annotation: Any) -> Iterator[type[Table]]:
-    for part in _inside(annotation):
+    for part in inside(annotation):
         if isinstance(part, type) and issubclass(part, Table):
             yield part
 
 
 def _tagged(annotation: Any) -> Iterator[tuple[str, type[Table]]]:
     """Tables of a union by their tags."""
-    for part in _inside(annotation):
+    for part in inside(annotation):
         if get_origin(part) is Annotated:
             table, *marks = get_args(part)
             if isinstance(table, type) and issubclass(table, Table):
@@ -174,27 +166,26 @@ def _tagged(annotation: Any) -> Iterator[tuple[str, type[Table]]]:
 
 
 def _literals(annotation: Any) -> Iterator[Any]:
-    for part in _inside(annotation):
+    for part in inside(annotation):
         if get_origin(part) is Literal:
             yield from get_args(part)
 
 
 def _length(annotation: Any) -> int:
     """Number of entries of a tuple of fixed length."""
-    lengths = (len(get_args(each)) for each in _inside(annotation) if get_origin(each) is tuple)
+    lengths = (len(get_args(each)) for each in inside(annotation) if get_origin(each) is tuple)
     return next(lengths, 3)
 
 
 def _choices(field: FieldInfo | None) -> tuple[str, list[str]]:
     """Name of the key that picks among the tables of a union, and what it may be."""
     tables = list(_tables(field.annotation if field else None))
-    tag = next(tag for tag in _TAGS if tag in tables[0].model_fields)
+    tag = next(tag for tag in TAGS if tag in tables[0].model_fields)
     return tag, [name for table in tables for name in _literals(table.model_fields[tag].annotation)]
 
 
 def _quantity(field: FieldInfo | None) -> Quantity | None:
-    parts = [] if field is None else [*field.metadata, *_inside(field.annotation)]
-    return next((part for part in parts if isinstance(part, Quantity)), None)
+    return next((part for part in parts_of(field) if isinstance(part, Quantity)), None)
 
 
 def _add(key: str, field: FieldInfo | None) -> str:

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from gbeam.guards.kinds import KINDS
+from gbeam.scenario.schema.fields import TAGS
 from gbeam.scenario.template import json_schema
 
 _INTRODUCTION = """\
@@ -87,14 +88,8 @@ class _Page:
 
     def _heading(self, name: str) -> str:
         first, *others = self.places[name]
-        key, word = self._kind(name)
+        key, word = tag_of(self.tables[name])
         return ", ".join([first, *([f'{key} = "{word}"'] if key else []), *others])
-
-    def _kind(self, name: str) -> tuple[str, str]:
-        """The key by which a table is told from others at its place, and its word; empty where it is the only one."""
-        properties = self.tables[name]["properties"]
-        words = ((key, properties.get(key, {}).get("const")) for key in ("kind", "shape", "profile"))
-        return next(((key, word) for key, word in words if word), ("", ""))
 
     def _table(self, name: str) -> str:
         table = self.tables[name]
@@ -121,7 +116,7 @@ class _Page:
             quantity = name.partition(_OF)[2].replace("-", " ")
             if quantity:
                 return f"[profile](#profiles) of {quantity}"
-            return f"[{self._kind(name)[1] or 'table'}](#{_anchor(self._heading(name))})"
+            return f"[{tag_of(self.tables[name])[1] or 'table'}](#{_anchor(self._heading(name))})"
         if "enum" in schema or "const" in schema:
             return ", ".join(f'`"{word}"`' for word in schema.get("enum", [schema.get("const")]))
         choices = [each for each in schema.get("anyOf", schema.get("oneOf", [])) if each.get("type") != "null"]
@@ -163,7 +158,7 @@ class _Page:
         parts = [_PROFILES + "".join(f"| {name} | {self._rate_of(name)} |\n" for name in spoken)]
         for name in self.profiles:
             if name.endswith(f"{_OF}{quantities[0]}"):
-                heading, table = f'profile = "{self._kind(name)[1]}"', self.tables[name]
+                heading, table = f'profile = "{tag_of(self.tables[name])[1]}"', self.tables[name]
                 parts.append(f"### {heading}\n\n{table['description']}\n\n{self._keys(table, spoken[0])}")
         return "\n".join(parts).replace(f"[profile](#profiles) of {spoken[0]}", "[profile](#profiles)")
 
@@ -171,6 +166,13 @@ class _Page:
         """Name of a quantity's rate of change, which the flanks of a trapezoid have."""
         trapezoid = self.tables[f"Trapezoid{_OF}{quantity.replace(' ', '-')}"]
         return str(trapezoid["properties"]["jerk"]["x-quantity"])
+
+
+def tag_of(table: dict[str, Any]) -> tuple[str, str]:
+    """Key and word by which a table is told from others at its place; empty where it is the only one."""
+    properties = table["properties"]
+    words = ((key, properties.get(key, {}).get("const")) for key in TAGS)
+    return next(((key, word) for key, word in words if word), ("", ""))
 
 
 def _named(schema: dict[str, Any], listed: bool = False) -> Iterator[tuple[str, bool]]:

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 
 Sign = Literal["any", "positive", "zero or more"]
 Loc = tuple[int | str, ...]
+TAGS = ("kind", "shape", "profile")  # keys that say which of several tables one is
 
 # Kinds of which the objects say what is possible, and which unit was meant: gbeam.guards.checks.
 _OF_OBJECTS = ("length", "area", "second moment of area", "density", "pressure", "time")
@@ -167,21 +168,23 @@ def fields_of(table: type[BaseModel]) -> dict[str, FieldInfo]:
 
 def kind_of(table: BaseModel, key: str) -> str:
     """Kind of quantity that a key of a table holds, a key of ``KINDS``; empty where it holds none."""
-    field = fields_of(type(table)).get(key)
-    return "" if field is None else _kind_in(_parts_of(field))
+    return _kind_in(parts_of(fields_of(type(table)).get(key)))
 
 
 def _kind_in(parts: Iterable[Any]) -> str:
     return next((part.kind for part in parts if isinstance(part, Quantity)), "")
 
 
-def _parts_of(field: FieldInfo) -> tuple[Any, ...]:
-    """Parts of the annotation of a field, at any depth."""
-    left, parts = [field.annotation, *reversed(field.metadata)], []
-    while left:
-        parts.append(left.pop())
-        left += reversed(get_args(parts[-1]))
-    return tuple(parts)
+def parts_of(field: FieldInfo | None) -> tuple[Any, ...]:
+    """What is said of a field, and the parts of its annotation at any depth; none where there is no field."""
+    return () if field is None else (*field.metadata, *inside(field.annotation))
+
+
+def inside(annotation: Any) -> Iterator[Any]:
+    """Parts of an annotation at any depth, itself first."""
+    yield annotation
+    for part in get_args(annotation):
+        yield from inside(part)
 
 
 Length = Annotated[float, Quantity("length", "positive")]
@@ -245,7 +248,7 @@ def _leaves(node: Any, path: Path = (), parts: tuple[Any, ...] = ()) -> Iterator
     """Path of every value, the value, and the parts of the annotation of the key that has it."""
     if isinstance(node, BaseModel):
         for (key, field), name in zip(fields_of(type(node)).items(), type(node).model_fields, strict=True):
-            yield from _leaves(getattr(node, name), (*path, key), _parts_of(field))
+            yield from _leaves(getattr(node, name), (*path, key), parts_of(field))
     elif isinstance(node, (Mapping, tuple)):
         for step, value in node.items() if isinstance(node, Mapping) else enumerate(node):
             yield from _leaves(value, (*path, step), parts)
