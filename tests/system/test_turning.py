@@ -106,12 +106,12 @@ def test_what_changes_as_it_turns_is_refused(turning: str | None) -> None:
     assert any("equations with it" in each for each in doubt.warnings) and not gb.modes(along).warnings
 
 
-def test_what_may_turn_is_asked_for() -> None:
+def test_what_may_turn_is_asked_for_where_it_is_not_the_only_angle() -> None:
     structure = gb.assemble(STRIP, "FOAM", axial=1, y=1, z=1)
-    for system, turning, problem in (
-        (panels(structure, FREE, "rim"), None, "is missing"),
-        (panels(structure, FREE, "rim"), "clamp_rim.x", "no angle"),
-    ):
+    one = panels(structure, FREE, "rim")
+    two = gb.System(one.bodies, {**one.joints, "clamp_rim": replace(FREE, body="panel_rim", on="bus.rim")})
+    assert gb.critical_speed(one, upper=5.0).value == gb.critical_speed(one, turning="spin.angle", upper=5.0).value
+    for system, turning, problem in ((two, None, "is missing"), (one, "clamp_rim.x", "no angle")):
         with pytest.raises(gb.InputError, match=problem) as caught:
             gb.campbell(system, turning=turning, end=5.0)
         assert caught.value.where == "turning" and "spin.angle" in caught.value.fix

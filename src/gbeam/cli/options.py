@@ -91,7 +91,10 @@ SmoothVerb = Annotated[_Smooth, Parameter(help="Whose figures.")]
 # Of campbell and critical-speed.
 Turns = Annotated[
     str | None,
-    Parameter(name="--turning", help="Of a system, the angle that turns, base.angle; else its one prescribed angle."),
+    Parameter(
+        name="--turning",
+        help="Of a system, the angle that turns, base.angle; else its only prescribed one, or only one.",
+    ),
 ]
 
 # Of critical-speed.

@@ -81,8 +81,8 @@ def campbell(
         Its own rate or torque is not used; a free hub turns with the beam. A system needs none where one of its joints
         turns.
     turning : str, optional
-        Of a system: the joint's angle that turns, ``joint.angle``; without a hub by default the only prescribed one. An
-        angle that is not prescribed turns with the bodies, as a free hub does.
+        Of a system: the joint's angle that turns, ``joint.angle``; without a hub by default the only prescribed one,
+        or the only one. An angle that is not prescribed turns with the bodies, as a free hub does.
     speeds : (v,), optional
         Rates of the hub to begin with, ascending, rad/s; in their place `start`, `end` and `count`.
     start, end : float

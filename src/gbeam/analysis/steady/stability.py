@@ -76,7 +76,8 @@ def critical_speed(
     motion : Hub, optional
         Its own rate or torque is not used. A system needs none where one of its joints turns.
     turning : str, optional
-        Of a system: the joint's angle that turns, ``joint.angle``; without a hub by default the only prescribed one.
+        Of a system: the joint's angle that turns, ``joint.angle``; without a hub by default the only prescribed one,
+        or the only one.
     upper : float, optional
         End of the search, rad/s; by default ten times the lowest natural frequency.
     time : float

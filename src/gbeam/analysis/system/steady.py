@@ -254,7 +254,9 @@ def steady(system: System, drive: Drive, *, held: bool = False, start: Floats | 
 
 
 def turning_of(system: System, motion: Motion | None, turning: str | None) -> str:
-    """Name of the coordinate that turns, given or the only prescribed one, empty where the hub below does."""
+    """Name of the coordinate that turns: given, or the only prescribed angle, or the only one; empty where the hub
+    below does.
+    """
     angles = [
         f"{name}.{each}"
         for name, joint in system.joints.items()
@@ -268,11 +270,11 @@ def turning_of(system: System, motion: Motion | None, turning: str | None) -> st
         return turning
     if isinstance(motion, Hub):
         return ""
-    driven = [each for each in angles if system.coordinates.index(each) in system.tree.fixed]
-    if len(driven) != 1:
-        listed = ", ".join(driven or angles) or "a revolute joint's, which it has not"
+    choices = [each for each in angles if system.coordinates.index(each) in system.tree.fixed] or angles
+    if len(choices) != 1:
+        listed = ", ".join(choices) or "a revolute joint's, which it has not"
         raise InputError("turning", "is missing", f"say which angle turns: {listed}")
-    return driven[0]
+    return choices[0]
 
 
 @dataclass(frozen=True)
