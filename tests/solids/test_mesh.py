@@ -15,6 +15,8 @@ from scipy.spatial.transform import Rotation
 
 import gbeam as gb
 from gbeam.motion import constant
+from gbeam.report.study import of_beam
+from gbeam.report.words import percent
 from gbeam.solids.elements import STRAIN, chunks, mass_matrix, stiffness_matrix
 from gbeam.solids.foreign import read_mesh
 from gbeam.solids.shape_functions import KINDS
@@ -177,6 +179,10 @@ def test_the_mesh_converges_and_says_by_how_much() -> None:
     assert fine.mesh_error[0] == pytest.approx(apart[1] / fine.frequency[0]) and apart[1] < apart[0] / 2
     stated = gb.modes(fine.structure).error_estimate
     np.testing.assert_allclose(stated, fine.mesh_error)
+    run = gb.simulate(fine.structure, gb.Flight(z=constant(1.0)), duration=0.01, name="push")
+    assert np.isnan(run.errors.stress.total) and np.isfinite(run.errors.displacement.total)
+    said = f"by a coarser one {percent(fine.mesh_error[0])} of the lowest frequency"
+    assert said in run.errors.note and said in " ".join(of_beam(run))
     assert np.isnan(middle.mesh_error).all() and "unknown" in repr(middle) and "error of the mesh up to" in repr(fine)
     rough = meshes[1].reduced(modes=2, damping_ratio=0, coarser=replace(coarse, frequency=1.2 * coarse.frequency))
     assert any("mesh it finer" in each for each in rough.structure.warnings)

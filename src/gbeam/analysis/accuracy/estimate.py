@@ -81,6 +81,15 @@ def negligible(sizes: Mapping[str, float], length: float) -> set[str]:
     return {name for name, each in least.items() if name in sizes and sizes[name] <= NOTHING * each}
 
 
+def unjudged(structure: Structure) -> str:
+    """Errors of a structure that is no beam besides those of the time step, in words."""
+    if structure.mesh_error is None:
+        return UNKNOWN
+    known = structure.mesh_error[0]
+    mesh = "" if math.isnan(known) else f", by a coarser one {percent(known)} of the lowest frequency"
+    return f"the modes that are left out and the mesh are not judged{mesh}"
+
+
 def response_errors(
     structure: Structure,
     motion: Motion,
@@ -98,7 +107,9 @@ def response_errors(
     """
     if structure.source is None or loads is None or len(tip) < 3:
         alone = [ErrorEstimate(step=step, total=step) for step in steps]
-        return Errors(alone[0], alone[1], alone[2], UNKNOWN), ()
+        if loads is None or not np.isfinite(loads.stress).any():  # such as a solid's, which is not judged
+            alone[2] = ErrorEstimate()
+        return Errors(alone[0], alone[1], alone[2], unjudged(structure)), ()
     every = tip, loads.force[:, 0], loads.moment[:, 0], loads.stress.max(axis=1)
     sizes = dict(zip(Quantities._fields, map(largest, every), strict=True))
     sheared = 0.0 if loads.von_mises is None else float(np.nan_to_num(loads.von_mises).max())

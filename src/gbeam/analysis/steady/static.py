@@ -11,7 +11,7 @@ import numpy as np
 
 from gbeam.analysis.accuracy.beam_theory import described, static_theory
 from gbeam.analysis.accuracy.correction import Sampled
-from gbeam.analysis.accuracy.estimate import LIMIT, UNKNOWN, cause_and_cure, of_bodies, percent
+from gbeam.analysis.accuracy.estimate import LIMIT, cause_and_cure, of_bodies, percent, unjudged
 from gbeam.analysis.accuracy.response_errors import IntArray, Quantities, driven, quantities
 from gbeam.analysis.steady.equilibrium import keeps, solve_equilibrium
 from gbeam.analysis.steady.operating_point import OperatingPoint, on_base, operating_point
@@ -43,7 +43,7 @@ def static_errors(point: OperatingPoint, displacement: Floats, loads: Loads | No
     """Estimated errors of an equilibrium, as fractions of displacement (s, 3), root load and stress, and warnings."""
     structure = point.structure
     if structure.source is None or loads is None:
-        return Errors(note=UNKNOWN), ()
+        return Errors(note=unjudged(structure)), ()
     computed = Quantities(displacement[-1:], loads.force[:, 0], loads.moment[:, 0], loads.stress.max(axis=1))
     more = enrichment(structure, point.base)
     which = driven(more, lambda rich, index: _lifted(rich, index, point))
