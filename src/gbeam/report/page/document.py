@@ -136,9 +136,9 @@ PAGES = {
 def _kind(facts: Mapping[str, Any]) -> str | None:
     if "form" in facts:
         return str(facts["form"]["kind"])
+    motions = facts.get("motions", {}).values()
     if "outcome" not in facts:  # as of gbeam check, which computes nothing
         return None
-    motions = facts.get("motions", {}).values()
     for name, page in PAGES.items():
         if facts.keys() >= set(page.keys) and all(motion.keys() >= set(page.of_motions) for motion in motions):
             return name
