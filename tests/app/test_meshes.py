@@ -14,6 +14,8 @@ from gbeam.scenario.template import template
 from ..scenarios import FAST
 from .conftest import Site
 
+pytestmark = pytest.mark.usefixtures("reading_in_process")
+
 meshio = pytest.importorskip("meshio")
 BRACKET = Path(__file__).parents[2] / "examples" / "data" / "bracket.msh"
 CLAMPED = {"mesh": "bracket.msh", "unit": "mm", "clamp": "screwed"}

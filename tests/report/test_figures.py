@@ -25,6 +25,8 @@ from gbeam.results.study import Study
 
 from .test_page import BEAM, _fit, _optimum, _sensitivity, _shaped, header_of
 
+pytestmark = pytest.mark.usefixtures("reading_in_process")
+
 GRID = np.linspace(0.1, 0.8, 8)
 LENGTH = Parameter("beam.length", GRID, "m")
 WIDTHS, KINDS = Parameter("beam.width", GRID[:3], "m"), Parameter("kind", np.array(["a", "b", "c"], dtype=object))

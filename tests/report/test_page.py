@@ -33,6 +33,8 @@ from gbeam.results.result import Result
 from gbeam.results.searches import CommandRun, FittedColumn, Requirement
 from gbeam.results.study import Study
 
+pytestmark = pytest.mark.usefixtures("reading_in_process")
+
 BEAM = gb.Beam(0.3, gb.Section.rectangle(0.02, 0.004), gb.Material(2700, 70e9), damping_ratio=0.01)
 NASTY = "</script><script>alert(1)</script> <b>&\" '\u202e\x1b[31m"
 

@@ -14,6 +14,8 @@ import gbeam as gb
 from gbeam.mechanics.tree.control import in_series, lead_lag, notch, pid
 from gbeam.scenario import ScenarioError, build, loads
 
+pytestmark = pytest.mark.usefixtures("reading_in_process")
+
 POINTING = (Path(__file__).parents[2] / "examples" / "pointing_satellite.toml").read_text(encoding="utf-8")
 
 

@@ -16,6 +16,8 @@ import gbeam as gb
 from gbeam.scenario import ScenarioError
 from tests.solids.test_modal_tests import beam, measured
 
+pytestmark = pytest.mark.usefixtures("reading_in_process")
+
 EXAMPLES = Path("examples/data").resolve()
 TURN = """
 [motion.turn]

@@ -27,6 +27,8 @@ from ..scenarios import EVERY_MOTION, FAST, FLIGHT, SPECIMEN, model, response
 
 __all__ = ["gbeam"]
 
+pytestmark = pytest.mark.usefixtures("reading_in_process")
+
 
 RECORD = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
 RECORDED = (

@@ -19,6 +19,8 @@ from scipy import sparse
 import gbeam as gb
 from gbeam.motion import constant
 
+pytestmark = pytest.mark.usefixtures("reading_in_process")
+
 ROOT, TIP = 7, 12  # numbers of nodes
 
 

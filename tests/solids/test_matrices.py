@@ -17,6 +17,8 @@ from gbeam.solids.elements import mass_matrix, stiffness_matrix
 
 from .bodies import block, solid
 
+pytestmark = pytest.mark.usefixtures("reading_in_process")
+
 L, E, RHO, B, H = 0.5, 70e9, 2700.0, 0.02, 0.01
 EI_Y, EI_Z, EA, GJ, MU = E * B * H**3 / 12, E * H * B**3 / 12, E * B * H, 1e3, RHO * B * H  # about y: bending along z
 
