@@ -1,7 +1,8 @@
 """Rigid links, a body on one and springs between them, in CalculiX (*RIGID BODY, *MASS, *SPRING) and in gbeam on the
 same mesh of hexahedra of 20 nodes: a steel bar of 200 by 20 by 10 mm, clamped at one end, whose middle and other end
-are faces that stay plane. The body is a mass beside the bar, so that the end bends and twists it. The last case is a
-file of CalculiX with *COUPLING and *KINEMATIC, which both read; *DISTRIBUTING carries no inertia in CalculiX's modes.
+are faces that stay plane. The body is a mass beside the bar, so that the end bends and twists it. The last cases are
+files that both read: *COUPLING with *KINEMATIC, and *DISTRIBUTING COUPLING, in the middle of its nodes, for CalculiX
+leaves out that its node turns. *COUPLING with *DISTRIBUTING carries no inertia in CalculiX's modes.
 """
 
 from __future__ import annotations
@@ -48,16 +49,23 @@ def rows() -> Iterator[Row]:
         theirs = _frequencies(mesh, model)
         yield from _rows(words, theirs, ours)
     mesh, (last, other) = bar(), (20 * 2 - 1, 20 * 2)
-    node = f"*NODE\n{FIRST + 2}, {', '.join(f'{x:.12g}' for x in END + BESIDE)}\n"
     surface = f"*SURFACE, NAME=SEAT, TYPE=ELEMENT\n{last}, S4\n{other}, S4\n"
     coupled = f"*COUPLING, REF NODE={FIRST + 2}, SURFACE=SEAT, CONSTRAINT NAME=SEATED\n*KINEMATIC\n1, 3\n"
-    model = node + surface + coupled + _mass(1)
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "bar.inp"
-        file.write_text(deck(model, _specimen(mesh)), encoding="ascii")
-        read = gb.SolidMesh.read(file, materials=STEEL, clamp="FOOT", unit="m", mass_unit="kg")
-    ours = read.reduced(modes=COUNT + 6, damping_ratio=0.0).frequency
-    yield from _rows("mass on a kinematic coupling of the end, in one file", _frequencies(mesh, model), ours)
+    mean = (
+        f"*ELEMENT, TYPE=DCOUP3D, ELSET=MEAN\n{FIRST + 1}, {FIRST + 2}\n*DISTRIBUTING COUPLING, ELSET=MEAN\nEND, 1.\n"
+    )
+    end = "*NSET, NSET=END\n" + "".join(f"{n + 1}\n" for n in mesh.links.nodes["end"])
+    for words, place, joint in (
+        ("mass on a kinematic coupling of the end, in one file", END + BESIDE, surface + coupled),
+        ("mass that moves as the end does on average, in one file", END, end + mean),
+    ):
+        model = f"*NODE\n{FIRST + 2}, {', '.join(f'{x:.12g}' for x in place)}\n{joint}{_mass(1)}"
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "bar.inp"
+            file.write_text(deck(model, _specimen(mesh)), encoding="ascii")
+            read = gb.SolidMesh.read(file, materials=STEEL, clamp="FOOT", unit="m", mass_unit="kg")
+        ours = read.reduced(modes=COUNT + 6, damping_ratio=0.0).frequency
+        yield from _rows(words, _frequencies(mesh, model), ours)
 
 
 def _rows(words: str, theirs: np.ndarray, ours: np.ndarray) -> Iterator[Row]:

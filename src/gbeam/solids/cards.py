@@ -6,6 +6,7 @@ import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -41,7 +42,8 @@ class Spring(NamedTuple):
 @dataclass(frozen=True)
 class Cards:
     """Statements of a file besides its mesh: places of nodes in it by their numbers, nodes that a rigid link holds, by
-    its name, masses, and springs; and the words of it that are read.
+    its name, those of a link that has the mean motion of others, with their weights, masses, and springs; and the words
+    of it that are read.
     """
 
     index: Mapping[int, int] = field(default_factory=dict)
@@ -49,6 +51,7 @@ class Cards:
     lumps: tuple[Lump, ...] = ()
     springs: tuple[Spring, ...] = ()
     words: tuple[str, ...] = ()
+    mean: Mapping[str, tuple[int, Mapping[int, float]]] = field(default_factory=dict)
 
 
 def cards_of(source: Any) -> Cards:
@@ -103,6 +106,7 @@ def _nastran(source: str | os.PathLike[str]) -> Cards:
             raise refused(name, f"holds the components {' and '.join(filter(None, held))} of its ends")
         whole[name] = int(row[1]), int(row[2])
     rigid |= _joined(whole)
+    mean = {f"RBE3 {row[0]}": (int(row[2]), _weights(f"RBE3 {row[0]}", row[3:])) for row in rows("RBE3")}
     for row in rows("CONM2"):
         name = f"CONM2 {row[0]}"
         if row[2] not in ("", 0):
@@ -133,8 +137,21 @@ def _nastran(source: str | os.PathLike[str]) -> Cards:
     for each in springs:
         if turned.intersection(each.nodes):
             raise refused(each.name, "acts along axes of a coordinate system", "export its nodes in the basic system")
-    words = ("CONM2", "RBE2", "RBAR", "CELAS1", "CELAS2", "CBUSH")
-    return Cards({number: i for i, (number, _) in enumerate(grids)}, rigid, tuple(lumps), tuple(springs), words)
+    words = ("CONM2", "RBE2", "RBE3", "RBAR", "CELAS1", "CELAS2", "CBUSH")
+    return Cards({number: i for i, (number, _) in enumerate(grids)}, rigid, tuple(lumps), tuple(springs), words, mean)
+
+
+def _weights(name: str, fields: list[Any]) -> dict[int, float]:
+    """Weights of the nodes whose mean motion an RBE3 has."""
+    held, *rest = [each for each in fields if each != ""]
+    end = next((i for i, each in enumerate(rest) if isinstance(each, str)), len(rest))
+    weights, starts = dict[int, float](), [i for i, each in enumerate(rest[:end]) if isinstance(each, float)]
+    for start, stop in pairwise([*starts, end]):
+        weight, ways, *nodes = rest[start:stop]
+        if ways not in (123, 123456) or held not in (123, 123456):
+            raise refused(name, f"holds the components {held} by the components {ways}")
+        weights |= dict.fromkeys(nodes, weight)
+    return weights
 
 
 def _joined(rigid: Mapping[str, tuple[int, ...]]) -> dict[str, tuple[int, ...]]:
@@ -150,6 +167,7 @@ def _joined(rigid: Mapping[str, tuple[int, ...]]) -> dict[str, tuple[int, ...]]:
 def _abaqus(source: str | os.PathLike[str]) -> Cards:
     index, sets, elements = dict[int, int](), dict[str, list[int]](), dict[str, list[list[int]]]()
     rigid, lumps, springs = dict[str, tuple[int, ...]](), list[Lump](), list[Spring]()
+    mean = dict[str, tuple[int, Mapping[int, float]]]()
     blocks = list(abaqus_keywords(Path(source).read_text(encoding="utf-8", errors="replace")))
     for word, options, rows in blocks:
         if word == "NODE":
@@ -194,15 +212,20 @@ def _abaqus(source: str | os.PathLike[str]) -> Cards:
             if held and not held >= {1, 2, 3}:
                 raise refused(name, f"holds the components {', '.join(map(str, sorted(held)))} alone")
             rigid[name] = node, *sorted(_surface(blocks, sets, surface) - {node})
-        elif word in ("DISTRIBUTING", "DISTRIBUTING COUPLING", "KINEMATIC COUPLING"):
-            raise refused(
-                f"*{word}", "is not read", "give it as *COUPLING and *KINEMATIC, which is stiffer, or as a link"
-            )
-    read = (*_VALUED, "RIGID BODY", "COUPLING", "KINEMATIC")
-    return Cards(index, rigid, tuple(lumps), tuple(springs), read)
+        elif word == "DISTRIBUTING":
+            name, node, surface = coupled
+            if "NODE" not in [about.get("TYPE", "").upper() for _, about, _ in blocks if about.get("NAME") == surface]:
+                fix = "give a surface of nodes, or *DISTRIBUTING COUPLING, which has them"
+                raise refused(name, "shares forces out by the areas of faces", fix)
+            mean[name] = node, dict.fromkeys(_surface(blocks, sets, surface), 1.0)
+        elif word == "DISTRIBUTING COUPLING":
+            pairs = ((number, row[1]) for row in rows for number in _members([row[:1]], sets, False))
+            mean[name] = on[0][0], {number: float(weight) for number, weight in pairs}
+    read = (*_VALUED, "RIGID BODY", "COUPLING", "KINEMATIC", "DISTRIBUTING", "DISTRIBUTING COUPLING")
+    return Cards(index, rigid, tuple(lumps), tuple(springs), read, mean)
 
 
-POINTWISE = ("MASS", "ROTARYI", "SPRING1", "SPRING2")
+POINTWISE = ("MASS", "ROTARYI", "SPRING1", "SPRING2", "DCOUP3D")
 _VALUED = ("MASS", "ROTARY INERTIA", "SPRING")
 
 

@@ -37,7 +37,8 @@ _ABAQUS = re.compile(
     re.MULTILINE | re.IGNORECASE,
 )
 _POINTWISE = re.compile(
-    r"^\*ELEMENT *,(?=[^\n]*TYPE *= *(?:MASS|ROTARYI|SPRING[12A])\b)[^\n]*\n(?:(?!\*)[^\n]*(?:\n|$))*", re.M | re.I
+    r"^\*ELEMENT *,(?=[^\n]*TYPE *= *(?:MASS|ROTARYI|SPRING[12A]|DCOUP3D)\b)[^\n]*\n(?:(?!\*)[^\n]*(?:\n|$))*",
+    re.M | re.I,
 )
 _LISTS = re.compile(r"^\*NODE *(?:,[^\n]*)?\n((?:(?!\*)[^\n]*(?:\n|$))*)", re.MULTILINE | re.IGNORECASE)
 _SCALAR = re.compile(r"^CELAS[1-4]\b[^\n]*\n(?:\*[^\n]*\n)*", re.MULTILINE)

@@ -30,15 +30,17 @@ for _a, _b, _c in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
     CROSS[_a, _b, _c], CROSS[_b, _a, _c] = 1.0, -1.0
 
 
-def coupling(where: str, points: Floats) -> tuple[Floats, Floats]:
-    """Centre (3,) of nodes (g, 3), and its mean displacement and rotation (6, g, 3) by those of the nodes.
+def coupling(where: str, points: Floats, weights: Floats | None = None) -> tuple[Floats, Floats]:
+    """Centre (3,) of nodes (g, 3) with weights (g,), and its mean displacement and rotation (6, g, 3) by those of the
+    nodes.
 
     The rotation is that which leaves the least squares; forces and moments on the centre are shared out by the
     transpose, so that the nodes may move between themselves.
     """
-    centre = points.mean(axis=0)
+    share = np.full(len(points), 1 / len(points)) if weights is None else weights / weights.sum()
+    centre = share @ points
     arms = points - centre
-    second = (arms**2).sum() * np.eye(3) - arms.T @ arms
+    second = share @ (arms**2).sum(axis=1) * np.eye(3) - (share * arms.T) @ arms
     moments = np.linalg.eigvalsh(second)
     if not moments[0] > ON_A_LINE * moments[2]:
         fix = "name a group with three nodes or more that lie on no line"
@@ -46,8 +48,8 @@ def coupling(where: str, points: Floats) -> tuple[Floats, Floats]:
     cross = np.zeros((3, len(points), 3))  # [axis, node, component]: r × e
     for axis, (i, j) in enumerate(((1, 2), (2, 0), (0, 1))):
         cross[axis, :, j], cross[axis, :, i] = arms[:, i], -arms[:, j]
-    turn = np.einsum("ab,bkc->akc", np.linalg.inv(second), cross)
-    shift = np.broadcast_to(np.eye(3)[:, None] / len(points), (3, len(points), 3))
+    turn = np.einsum("ab,bkc,k->akc", np.linalg.inv(second), cross, share)
+    shift = np.eye(3)[:, None] * share[:, None]
     return centre, np.concatenate([shift, turn])
 
 
@@ -77,13 +79,15 @@ def refuse_names(interfaces: Mapping[str, str], points: Mapping[str, int]) -> No
 class Links(Value):
     """Links of a mesh: nodes (g,) that move as one rigid body, bodies whose roots are in the middle of a link's nodes,
     and springs, N/m and N m/rad along and about x, y, z, from a link to another one or to the base, where the middle of
-    the first is or at a place; and places (3,) m of links, in place of the middles of their nodes.
+    the first is or at a place; places (3,) m of links, in place of the middles of their nodes; and weights (g,) of the
+    nodes of a link that leaves them free, and has their mean motion.
     """
 
     nodes: dict[str, Indices] = field(default_factory=dict)
     bodies: dict[str, RigidBody] = field(default_factory=dict)
     springs: dict[str, tuple[tuple[str, ...], Floats, Floats | None]] = field(default_factory=dict)
     places: dict[str, Floats] = field(default_factory=dict)
+    weights: dict[str, Floats] = field(default_factory=dict)
 
     @classmethod
     def of(
@@ -139,7 +143,8 @@ class Links(Value):
         pairs = [
             [self.nodes[name][0] for name in between if len(self.nodes[name])] for between, *_ in self.springs.values()
         ]
-        return [each for each in (*self.nodes.values(), *map(np.array, pairs)) if len(each) > 1]
+        rigid = [nodes for name, nodes in self.nodes.items() if name not in self.weights]
+        return [each for each in (*rigid, *map(np.array, pairs)) if len(each) > 1]
 
     def moving(self, name: str) -> Any:
         """Ways (6,) in which a link moves: of a single node it turns only where a spring or a body resists it."""
@@ -168,7 +173,7 @@ class Linked:
 
         links, self.count = mesh.links, len(mesh.points)
         self._links, self._number = links, {name: i for i, name in enumerate(links.nodes)}
-        members = {name: list(nodes) for name, nodes in links.nodes.items()}
+        members = {name: [] if name in links.weights else list(nodes) for name, nodes in links.nodes.items()}
         named = np.array(
             [
                 links.places[name] if name in links.places else mesh.points[nodes].mean(axis=0)
@@ -203,6 +208,8 @@ class Linked:
         sums = [np.bincount(of, at, minlength=len(named)) for at in self.points[self._tied].T]
         middles = np.stack(sums, axis=1) / np.maximum(count, 1)[:, None]
         middles[: len(named)] = named
+        for name, weights in links.weights.items():
+            middles[self._number[name]] = coupling("", mesh.points[links.nodes[name]], weights)[0]
         self._arms = self.points[self._tied] - middles[of]
         second = np.zeros((len(middles), 3, 3))
         on_mesh = self._tied < self.count
@@ -215,6 +222,7 @@ class Linked:
         for name, i in self._number.items():
             moving[i] = links.moving(name)
         unknown = np.concatenate([np.ones_like(turning), turning], axis=1)
+        unknown[[self._number[name] for name in links.weights]] = False
         free = np.concatenate([np.repeat(~mesh.clamped[alone], 3), moving[unknown]])
         numbers = np.where(unknown, 3 * len(alone) + np.cumsum(unknown).reshape(unknown.shape) - 1, -1)
         move = np.concatenate([np.tile(np.eye(3), (len(of), 1, 1)), self._about(self._arms)], axis=2)
@@ -235,6 +243,25 @@ class Linked:
         row = np.broadcast_to(np.arange(3 * len(middles)).reshape(-1, 3, 1), turned.shape)[turned]
         entries = self._axes[turned], (row, np.broadcast_to(number, turned.shape)[turned])
         self._turn = coo_array(entries, shape=(3 * len(middles), len(self._kept))).tocsr()
+        for name, weights in links.weights.items():
+            self._follow(self._number[name], members[name], links.nodes[name], weights)
+
+    def _follow(self, link: int, members: list[int], nodes: Indices, weights: Floats) -> None:
+        """Let points of a link, and its rotation, follow the mean motion of nodes."""
+        from scipy.sparse import coo_array
+
+        centre, mean = coupling("", self.points[nodes], weights)
+        mean = mean.reshape(6, -1)
+        arms = np.einsum("pb,abc->pca", self.points[members] - centre, CROSS)
+        moved = mean[:3] + np.einsum("pca,ak->pck", arms, mean[3:])
+        sources, points = (3 * nodes[:, None] + np.arange(3)).ravel(), 3 * len(self.points)
+
+        def spread(rows: Indices, values: Floats, count: int) -> Any:
+            pairs = np.repeat(rows, len(sources)), np.tile(sources, len(rows))
+            return coo_array((values.ravel(), pairs), shape=(count, points)).tocsr() @ self._map
+
+        self._turn = self._turn + spread(3 * link + np.arange(3), mean[3:], self._turn.shape[0])
+        self._map = self._map + spread((3 * np.array(members)[:, None] + np.arange(3)).ravel(), moved, points)
 
     def _about(self, arms: Floats) -> Floats:
         """Displacements (p, 3, 3) of tied points by turns about the axes of their links, in columns."""

@@ -43,6 +43,7 @@ def with_cards(cards: Cards, links: Links, nodes: Placed, size: float, mass: flo
     place_of = {number: nodes.places[i] for number, i in cards.index.items()}
     within = float(np.linalg.norm(np.ptp(nodes.places, axis=0))) * APART
     members, places, owner = dict(links.nodes), dict(links.places), dict[int, str]()
+    mean = dict[str, Floats]()
     base, weights = "the base", np.zeros(len(nodes.clamped))
 
     def link(name: str, numbers: tuple[int, ...]) -> None:
@@ -53,7 +54,7 @@ def with_cards(cards: Cards, links: Links, nodes: Placed, size: float, mass: flo
             owner.update(dict.fromkeys(numbers, base))
             return
         shared = [owner[each] for each in numbers if each in owner]
-        shared += [other for other, held in members.items() if np.isin(chosen, held).any()]
+        shared += [other for other, held in members.items() if other not in mean and np.isin(chosen, held).any()]
         if shared or nodes.clamped[chosen].any():
             raise refused(name, f"shares nodes with {shared[0] if shared else 'the clamp'}", "make them one")
         if len(np.unique(nodes.numbers[chosen])) > 1:
@@ -68,6 +69,16 @@ def with_cards(cards: Cards, links: Links, nodes: Placed, size: float, mass: flo
 
     for name, numbers in cards.rigid.items():
         link(name, numbers)
+    for name, (number, shares) in cards.mean.items():
+        if unknown := [each for each in (number, *shares) if each not in solid_of]:
+            raise refused(name, f"names node {unknown[0]}, which is not there", "export it too")
+        if len(solid_of[number]) or number in owner:
+            raise refused(name, f"moves node {number}, which the solid or a rigid link moves too", "leave one out")
+        members[name] = np.concatenate([solid_of[each] for each in shares])
+        parts = [(solid_of[each], weight) for each, weight in shares.items()]
+        mean[name] = np.concatenate([np.full(len(points), weight / max(len(points), 1)) for points, weight in parts])
+        coupling(f"mesh, {name}:", nodes.points[members[name]], mean[name])
+        places[name], owner[number] = place_of[number], name
     carried: dict[str, list[tuple[float, Floats, Floats]]] = {}
     # First those that turn, which a mass on the same node joins.
     for each in sorted(cards.lumps, key=lambda lump: not (lump.inertia.any() or lump.offset.any())):
@@ -107,7 +118,13 @@ def with_cards(cards: Cards, links: Links, nodes: Placed, size: float, mass: flo
     bodies = dict(links.bodies) | {name: _together(name, parts) for name, parts in carried.items()}
     used = {*bodies, *(each for between, *_ in held.values() for each in between)}
     members = {name: each for name, each in members.items() if len(each) or name in used}
-    tied = Links(members, bodies, held, {name: places[name] for name in members if name in places})
+    tied = Links(
+        members,
+        bodies,
+        held,
+        {name: places[name] for name in members if name in places},
+        {name: mean[name] for name in members if name in mean},
+    )
     for name, chosen in members.items():
         if not len(chosen):
             _refuse_unheld(name, tied)
