@@ -92,7 +92,7 @@ def sensitivity(
     template = template_of(scenario, overrides)
     of = of or usual(template, verb)
     if not of:
-        raise InputError(OPTION, "is missing", 'name figures: --of "tip.z.max_abs, verdict.tip"')
+        raise InputError(OPTION, "is missing", 'name figures: --of "tip.z.max_abs, verdict.tip"; list prints all')
     offered(verb, of, OPTION)
     question = Question(template, verb, motion, at)
     chosen, refused = _possible(question, physical_values(template, parameters), strict=bool(parameters))

@@ -137,7 +137,8 @@ def sweep(
         measure = (*usual(template, verb), *judged(template, verb))
     names = tuple(measure)
     if not (names or histories):
-        raise InputError("--measure", "is missing", 'name figures: --measure "tip.z.max_abs, verdict.tip"')
+        fix = 'name figures: --measure "tip.z.max_abs, verdict.tip"; list prints all'
+        raise InputError("--measure", "is missing", fix)
     over_time = _over_time(tuple(histories), times, verb)
     if not 1 <= workers <= WORKERS:
         raise InputError("--workers", f"is {workers}", f"give 1 to {WORKERS}; a --scheduler has any number")

@@ -32,7 +32,7 @@ def cause_and_cure(shapes: float, model: float, beam_theory: float, theory: str)
         return f"the theory of slender beams ({theory})", BEYOND
     if not shapes >= model:
         return "the model", 'check with model.kind = "exact"'
-    return "too few shapes", "raise model.modes or leave them out"
+    return "too few shapes", "raise model.modes, which one [beam] may leave out"
 
 
 def wrong_by(what: str, size: str, errors: ErrorEstimate, theory: str) -> str:
