@@ -61,8 +61,10 @@ def command_lines(scenario: dict[str, Any]) -> Iterator[list[str]]:
     short = ["--set", "response.duration=1 s"] if float(response.get("duration", "0 s").split()[0]) > 1 else []
     value, size = next(_values(scenario, ""))
     figures = {"modes": "modes[0].frequency", "static": "tip.z", "critical-speed": "critical_speed"}
+    of_run = []
     if "joints" in scenario:
-        figures["static"] = f"{next(iter(scenario['bodies']))}.root.displacement.z"
+        *_, last = scenario["bodies"]
+        figures["static"], of_run = f"{last}.root.displacement.z", [f"{last}.root.displacement_max"]
     kinds = {name: each["kind"] for name, each in scenario.get("joints", {}).items()}
     turning = [["--turning", f"{name}.angle"] for name, kind in kinds.items() if kind == "revolute"][:1]
     moved = {"revolute": "angle", "prismatic": "displacement"}
@@ -86,10 +88,10 @@ def command_lines(scenario: dict[str, Any]) -> Iterator[list[str]]:
     yield ["shape", "--duration", "2 s", "--angle", "0.1 rad", *motion, *chain(*joint)]
     yield ["place", "--no-proof"]
     yield ["models", *short]
-    yield ["sensitivity", "--with", value, *short]
+    yield ["sensitivity", "--with", value, *short, *(f"--of={each}" for each in of_run)]
     for verb, figure in figures.items():
         yield ["sweep", "--verb", verb, "--over", cases, "--measure", figure, *motion]
-    yield ["sweep", "--over", "response.step=2 ms, 4 ms", *short]
+    yield ["sweep", "--over", "response.step=2 ms, 4 ms", *short, *(f"--measure={each}" for each in of_run)]
 
 
 MEASURED = b"mode,frequency [Hz]\n1,12\n2,60\n"
