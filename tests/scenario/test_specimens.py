@@ -11,6 +11,7 @@ from scipy.io import mmwrite
 
 import gbeam as gb
 from gbeam.errors import InputError
+from gbeam.report.page.result import shown
 from gbeam.scenario import ScenarioError
 from tests.solids.bodies import block
 from tests.solids.test_shells import sheet
@@ -114,6 +115,21 @@ def test_a_box_alone_is_a_rigid_specimen(folder: Path) -> None:
     assert loads.bolt_tension.max() == pytest.approx(same.bolt_tension.max(), rel=1e-12)
     assert gb.describe(case).mass == pytest.approx(3.0)
     assert answer.state == "done"
+
+
+def test_a_box_is_drawn_with_its_load(folder: Path) -> None:
+    """Its corners, and the acceleration of its base at the time of the largest."""
+    case = case_of(folder, BOX + SPIN)
+    header, numbers = shown(gb.study(case))
+    (motion,) = header["scene"]["motions"]
+    (part,) = motion["parts"]
+    assert part["box"]["size"] == pytest.approx([0.3, 0.2, 0.1]) and part["box"]["centre"] == pytest.approx(
+        [0, 0, 0.05]
+    )
+    load = numbers.array[motion["load"]["at"] :][: np.prod(motion["load"]["shape"])].reshape(-1, 3)
+    largest = np.linalg.norm(gb.study(case).responses["spin"].base.a_WO_B, axis=1).max()
+    assert motion["largestLoad"] == pytest.approx(largest) and len(load) == motion["time"]["shape"][0]
+    assert np.linalg.norm(load, axis=1).max() == pytest.approx(largest, rel=1e-6)
 
 
 @pytest.mark.parametrize(("limit", "state"), [("10 %", "done"), ("5 %", "not accepted")])

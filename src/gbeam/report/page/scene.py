@@ -40,6 +40,8 @@ def scene(motions: Mapping[str, str], variables: Variables, numbers: Numbers) ->
         elif "surface_vertices" in of:
             at_rest = np.ndim(of["root_acceleration"]) == 1
             shown.append(_solid(name, environment, _still(of) if at_rest else of, numbers))
+        elif "specimen_corner_place" in of:
+            shown.append(_rigid(name, environment, of, numbers))
         elif "hangs_on" in of:
             shown.append(_system(name, environment, of if of["place"].ndim == 3 else _resting(of), numbers))
     if not shown:
@@ -88,6 +90,25 @@ def _solid(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple
         **_around(at, numbers),
     }
     return header | _carried(v, index, at, numbers), some, tip
+
+
+def _rigid(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple[dict[str, Any], Floats, Floats]:
+    """One motion of a rigid specimen: the box about its corners, and its bolts; times and the load (t, 1, 3)."""
+    index = np.arange(0, len(v["time"]), -(-len(v["time"]) // TIMES))
+    corners, bolts = v["specimen_corner_place"], v.get("specimen_bolt_place", np.empty((0, 3)))
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    box = {"size": (high - low).tolist(), "centre": ((low + high) / 2).tolist(), "rotation": np.eye(3).ravel().tolist()}
+    still = np.zeros((len(index), 10))
+    still[:, 3] = 1.0  # at the base and along its axes
+    header = {
+        "name": name,
+        "environment": environment,
+        "parts": [{"frame": numbers.add(still), "box": box, "points": np.asarray(bolts).tolist()}],
+        "time": numbers.add(v["time"][index]),
+        "largest": 0.0,
+        **_around(np.concatenate([corners, bolts]), numbers),
+    }
+    return header | _carried(v, index, corners, numbers), v["time"][index], v["root_acceleration"][index, None]
 
 
 def _around(places: Floats, numbers: Numbers) -> dict[str, Any]:
