@@ -94,9 +94,11 @@ wheels: dist
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps -e .
 	@touch $@
 
-# Python compiles what is imported; pip would compile everything, for a minute.
+# Python compiles what is imported; pip would compile everything, for a minute. What readers import is compiled here, for
+# they have 10 s of processor time.
 .venv/dev-installed: .venv/installed requirements-dev.lock
 	$(BIN)/python -m pip install --quiet --no-compile --disable-pip-version-check --require-hashes -r requirements-dev.lock
+	$(BIN)/python -c "import meshio, pyyeti.nastran"
 	@touch $@
 
 .venv/uv-installed: .venv/installed
