@@ -176,6 +176,18 @@ def test_an_rbe3_moves_as_its_nodes_do_on_average(tmp_path: Path) -> None:
     assert (found < rigid).all() and found[3] < 0.997 * rigid[3]
 
 
+@pytest.mark.parametrize("words", ["*KINEMATIC\n1, 3\n", "*DISTRIBUTING\n"])
+def test_a_coupling_of_a_surface_that_is_not_there_is_refused(tmp_path: Path, words: str) -> None:
+    file, _ = written(tmp_path, ".inp")
+    plain = file.read_text()
+    for first, name in (("", ""), ("*COUPLING, REF NODE=1, SURFACE=seat\n", "seat")):
+        file.write_text(plain + first + words)
+        with pytest.raises(
+            gb.InputError, match=rf"^mesh has a coupling of surface '{name}', which is not there; export"
+        ):
+            read(file, mass_unit="Mg")
+
+
 def test_distributing_couplings_are_an_rbe3(tmp_path: Path) -> None:
     """With the weights of their nodes, or with even ones of a surface of nodes."""
     wanted = frequencies(averaged(tmp_path, card="CONM2,92,900,,1e-3,0.,0.,0.,\n+,0.2,0.,2.,0.,0.,2."))

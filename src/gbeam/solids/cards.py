@@ -59,6 +59,8 @@ def cards_of(source: Any) -> Cards:
     ending = ending_of(source)
     try:
         return _nastran(source) if ending in NASTRAN else _abaqus(source) if ending in ABAQUS else Cards()
+    except InputError:
+        raise
     except (ValueError, TypeError, IndexError, KeyError) as error:
         problem = f"{os.fspath(source)} has masses, links or springs that cannot be read: {error}"
         raise InputError("mesh", problem, "mend them, or leave mass_unit out") from None
@@ -167,7 +169,7 @@ def _joined(rigid: Mapping[str, tuple[int, ...]]) -> dict[str, tuple[int, ...]]:
 def _abaqus(source: str | os.PathLike[str]) -> Cards:
     index, sets, elements = dict[int, int](), dict[str, list[int]](), dict[str, list[list[int]]]()
     rigid, lumps, springs = dict[str, tuple[int, ...]](), list[Lump](), list[Spring]()
-    mean = dict[str, tuple[int, Mapping[int, float]]]()
+    mean, coupled = dict[str, tuple[int, Mapping[int, float]]](), ("*COUPLING", 0, "")
     blocks = list(abaqus_keywords(Path(source).read_text(encoding="utf-8", errors="replace")))
     for word, options, rows in blocks:
         if word == "NODE":
@@ -214,10 +216,11 @@ def _abaqus(source: str | os.PathLike[str]) -> Cards:
             rigid[name] = node, *sorted(_surface(blocks, sets, surface) - {node})
         elif word == "DISTRIBUTING":
             name, node, surface = coupled
+            nodes = _surface(blocks, sets, surface)
             if "NODE" not in [about.get("TYPE", "").upper() for _, about, _ in blocks if about.get("NAME") == surface]:
                 fix = "give a surface of nodes, or *DISTRIBUTING COUPLING, which has them"
                 raise refused(name, "shares forces out by the areas of faces", fix)
-            mean[name] = node, dict.fromkeys(_surface(blocks, sets, surface), 1.0)
+            mean[name] = node, dict.fromkeys(nodes, 1.0)
         elif word == "DISTRIBUTING COUPLING":
             pairs = ((number, row[1]) for row in rows for number in _members([row[:1]], sets, False))
             mean[name] = on[0][0], {number: float(weight) for number, weight in pairs}
@@ -243,7 +246,7 @@ def _surface(blocks: list[Any], sets: Mapping[str, list[int]], name: str) -> set
     """Nodes of a surface of nodes, of faces of solid elements by Abaqus's numbers, or of shells."""
     named = [(options, rows) for word, options, rows in blocks if word == "SURFACE" and options.get("NAME") == name]
     if not named:
-        raise refused(f"surface {name}", "is not there", "export it too")
+        raise refused(f"a coupling of surface {name!r}", "is not there", "export it too")
     options, rows = named[0]
     if options.get("TYPE", "").upper() == "NODE":
         return set(_members(rows, sets, False))
