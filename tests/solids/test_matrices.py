@@ -205,3 +205,14 @@ def test_a_campbell_diagram_says_what_it_leaves_out_at_its_fastest() -> None:
     share = 100 * (20.0 / (2 * np.pi * gb.modes(model).frequency[0])) ** 2
     assert len(said) == 1 and f"by the order of {share:.2g} %" in said[0]
     assert not any("left out changes" in each for each in gb.modes(model, gb.Hub(radius=0.5)).warnings)
+
+
+def test_matrices_that_are_not_positive_definite_are_refused() -> None:
+    """With positive diagonals: a motion with less than no stiffness, or with less than no mass."""
+    chain = np.kron(2 * np.eye(5) - np.eye(5, k=1) - np.eye(5, k=-1), np.eye(3))
+    nodes = [(0.02 * i, 0.0, 0.0) for i in range(1, 6)]
+    mixed = np.eye(5)
+    mixed[0, 1] = mixed[1, 0] = 2.0
+    for name, m, k in (("stiffness", np.eye(15), chain - np.eye(15)), ("mass", np.kron(mixed, np.eye(3)), chain)):
+        with pytest.raises(gb.InputError, match=f"{name} is not positive definite"):
+            gb.ImportedModel(m, 1e5 * k, nodes).reduced(modes=4, damping_ratio=0.01)

@@ -16,6 +16,7 @@ from gbeam.errors import InputError
 from gbeam.numerics.eigen import Floats
 from gbeam.numerics.sparse import factorised, lowest_modes
 
+NEGATIVE = 1e-6  # of the largest: a mass that is less than none, and no rounding
 ZERO = 1e-10  # of the largest of the eigenvalues computed: a smaller one is that of a motion without strain
 ALIKE = 1e-9  # of its energy: what is left of a static answer beside the modes and the others adds nothing
 HOLD = "hold the structure so that nothing moves without strain"
@@ -67,6 +68,8 @@ def reduce(stiffness: Any, mass: Any, loads: Floats, modes: int) -> Reduced:
         raise InputError("stiffness", "is not positive definite", HOLD)
     basis = np.concatenate([vector, _complement(stiffness, mass, vector, static)], axis=1)
     inverse, within = _dense(basis.T @ (stiffness @ basis), basis.T @ (mass @ basis))
+    if inverse.min() < -NEGATIVE * inverse.max():
+        raise InputError("mass", "is not positive definite", "is it the right matrix?")
     if _moving(inverse) < len(inverse):
         fix = "give the nodes of interfaces mass in every direction, and inertia where they turn"
         raise InputError("mass", "leaves a static answer to forces or moments without mass", fix)
