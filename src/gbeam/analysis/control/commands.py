@@ -93,11 +93,11 @@ class Vibration:
 
     def rows(self, time: Floats, drive: Floats, ratio: float = 1.0) -> Complex:
         """Vibration left in each mode, m, (k, ...), by drives (t, ...), with frequencies `ratio` times as high."""
-        left = np.exp(-ratio * np.outer(self.eigenvalue, time))
-        weight = self.gain * np.exp(ratio * self.eigenvalue.real * time[-1])
+        # With what decays until the end: alone the exponent of a fast mode has no number.
+        left = np.exp(ratio * (self.eigenvalue.real[:, None] * time[-1] - np.outer(self.eigenvalue, time)))
         flat = drive.reshape(len(time), -1)
         values = np.stack([np.trapezoid(each[:, None] * flat, time, axis=0) for each in left])
-        return (weight[:, None] * values).reshape(len(left), *drive.shape[1:])
+        return (self.gain[:, None] * values).reshape(len(left), *drive.shape[1:])
 
     def amplitude(self, time: Floats, drive: Floats, ratio: Floats) -> Floats:
         """The amplitude that a drive (t,) leaves, all modes together, m, (r,)."""
