@@ -61,7 +61,7 @@ def test_windows_find_what_the_compiled_steps_find(make: Any) -> None:
 @pytest.mark.parametrize("make", [newmark, gauss])
 def test_no_digit_that_counts_depends_on_the_windows(make: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     expected = integrate(SWING, make(), *START, **KNOWN)
-    for sizes in ({"FIRST": 1, "MOST": 1}, {"FIRST": 7, "MOST": 13}, {"FEW": 1}, {"LEAST": 300, "MOVED": 0.5}):
+    for sizes in ({"FIRST": 1, "MOST": 1}, {"FIRST": 7, "MOST": 13}, {"STALE": 0.1}, {"LATE": 2, "MOVED": 0.5}):
         with monkeypatch.context() as patch:
             for name, value in sizes.items():
                 patch.setattr(windows, name, value)

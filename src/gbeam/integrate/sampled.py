@@ -189,7 +189,3 @@ class Held:
     def driven(self, inputs: Any, stages: int) -> Any:
         """Inputs at all stages with the commands."""
         return self.sampling.controllers.driven(inputs, np.repeat(self.u, stages, axis=0))
-
-    def at_ends(self, inputs: Any, count: int) -> Any:
-        """Inputs at the ends of the first steps with the commands until then."""
-        return self.sampling.controllers.driven(inputs, self.u[:count])

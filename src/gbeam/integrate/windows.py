@@ -6,52 +6,55 @@ x and L with respect to the state z before it,
 
     δx = −J⁻¹ (r + L δz),    δz₊ = g δz + d δx + (g z + d x − z₊).
 
-A window begins with every step like the last one before it, of which the first correction makes the linear response
-about that state. Derivatives are found at some of its steps and interpolated between these. Where the corrections do
-not shrink, what has converged at the window's beginning is kept and a shorter window begins behind it, a single step
-at last, which takes Newton's method proper.
+The window slides: steps that have converged leave it at its beginning, and where its last one is near more follow, each
+at first like the last, of which the next correction makes the linear response about that state. Derivatives are found
+at some of the steps that have moved since they were, and interpolated between these. Steps that stay far are taken out;
+where the first one does, the window begins anew and shorter, with a single step at last, which takes Newton's method
+proper.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from gbeam.arrays.tree import each_leaf
 from gbeam.integrate.equations import NonlinearEquations, accelerations, slopes, solved
-from gbeam.integrate.sampled import Held, sampling_of
+from gbeam.integrate.sampled import Held, Sampling, sampling_of
 from gbeam.integrate.schemes import Scheme, Tableau
 from gbeam.integrate.steps import Steps
 
 Array = Any
 Piece = tuple[Any, ...]
-FIRST, MOST, LONGEST = 100, 200, 1000  # steps in a window: at first, at most, and where derivatives hold all along
-NEAR, APART, FAR = 4, 12, 24  # stages between derivatives: at least, at first, and at most
-CORRECTIONS, ALONE = 10, 25  # of a window at most, and of a single step
+FIRST, MOST, LONGEST = 50, 200, 1000  # steps in a window: at first, at most, and where derivatives hold all along
+NEAR, APART, FAR = 4, 8, 24  # stages between derivatives: at least, at first, and at most
+AHEAD, ENOUGH = 400, 100  # steps whose drives are evaluated at once, and whose ends are found together, at least
+FEW = 64  # steps under way, up to which more follow: of many, a call of the residual costs little beside its sums
+LATE, ALONE = 6, 25  # corrections of a step until it is near, and of a single one, or the first, until it converges
 HALVINGS = 8  # of a correction of a single step
-MOVED = 0.3  # size of a correction after which derivatives are found anew
-FEW = 3  # times, after which a window that is still so far away ends, and up to which the next one may be longer
+MOVED, STALE = 0.3, 1.0  # sizes of a correction of steps that are far, and of several after which derivatives are old
+QUICK = 2  # corrections until the last step is near, up to which more steps follow it the next time
 SLOW, FAST = 0.3, 0.01  # of the last correction: where one is larger, derivatives are closer, where smaller farther
 CLOSE = 0.03  # of the last correction of accelerations at ends: where one is larger, the mass is found there
+CORRECTIONS = 10  # of accelerations at ends at most
 QUICKEST, STALLED = 0.01, 0.9  # factors of corrections: none is thought to be smaller, and where they do not shrink
-LEAST = 4  # steps behind those that have converged, which go on with what they have: at least
 TOLERANCE, ROUNDING = 1e-9, 1e-6  # of the largest acceleration: error left by the last correction, and where it stalls
 TINY = float(np.finfo(float).tiny)
 CANCELLED = 100 * float(np.finfo(float).eps)  # of the forces at a coordinate, each a sum of many: their rounding
-GROWN = 10.0  # times the rounding where a window begins, which is known there, unlike that of iterates that diverge
+GROWN = 10.0  # times the rounding of steps that have converged, which is known, unlike that of iterates that diverge
 EARLIER = 0.01  # of the largest acceleration before a step, whose own may all vanish: to be told from none
 
 
 def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, steps: Steps) -> Iterator[Piece]:
-    """Integrate; yields the initial state, then by windows the kept q, q̇, q̈ (k, n) and whether each was solved."""
+    """Integrate; yields the initial state, then by pieces the kept q, q̇, q̈ (k, n) and whether each was solved."""
     if not q.size:  # all motion is prescribed
         still = np.zeros((1 + np.count_nonzero(steps.kept), 0))
         yield from ((each, each, each, np.ones(len(each), dtype=bool)) for each in (still[:1], still[1:]))
         return
-    residual, drive, sampling = equations.residual, equations.drive, sampling_of(equations, steps)
+    residual, drive = equations.residual, equations.drive
 
     def demanded(t: Any, q: Array, qd: Array) -> Array:
         return accelerations(residual, q[None], qd[None], drive(np.array([t])))[0]
@@ -59,121 +62,182 @@ def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, 
     with np.errstate(all="ignore"):  # of iterates that diverge
         qdd = demanded(steps.first[0], q, qd)
     yield q[None], qd[None], qdd[None], np.array([True])
+    window, begin, solved = _Window(residual, drive, scheme, steps, sampling_of(equations, steps)), 0, True
     # A scheme whose last stage is the end of a step begins anew after a jump: no window goes beyond one.
-    ends = np.append(np.flatnonzero(steps.anew[:-1]) + 1 if scheme.ends else [], len(steps)).astype(int)
-    z, x = scheme.tableau(steps.length[0]).first @ np.stack([q, qd, qdd]), qdd
-    done, size, apart, slope, noise = 0, FIRST, APART, None, np.inf
-    start: Any = z, x, slope
-    while done < len(steps):
-        part = steps[done : min(done + size, ends[np.searchsorted(ends, done, side="right")])]
-        with np.errstate(all="ignore"):
-            held = None if sampling is None else Held(sampling, done, len(part))
-            window = _Window(residual, drive, scheme, part, z, x, slope, apart, held, noise)
-            count, near, times = window.solve()
-            noise = window.most
-            apart = window.apart if count == len(part) else max(window.apart // 2, NEAR)
-            if not count and len(part) == 1:
-                failed = np.full((1, z.shape[-1]), np.nan)
+    for end in np.append(np.flatnonzero(steps.anew[:-1]) + 1 if scheme.ends else [], len(steps)).astype(int):
+        window.begin(scheme.tableau(steps.length[begin]).first @ np.stack([q, qd, qdd]), qdd)
+        while begin < end:
+            with np.errstate(all="ignore"):
+                solved = window.solve(end, min(end, begin + ENOUGH))
+                if window.first > begin:
+                    *ended, qdds = window.ended()
+                    q, qd = (each[-1] for each in ended)
+                    if scheme.ends and window.first == end and steps.anew[end - 1]:
+                        qdd, qdds[-1] = (demanded(at[end - 1], q, qd) for at in (steps.resume, steps.end))
+                    kept = steps.kept[begin : window.first]
+                    yield *(each[kept] for each in (*ended, qdds)), np.ones(np.count_nonzero(kept), dtype=bool)
+            if not solved:
+                failed = np.full((1, len(qdd)), np.nan)
                 yield failed, failed, failed, np.array([False])
                 return
-            # What is near goes on, in a shorter window than this one.
-            going = near > count + LEAST and near - count < len(part)
-            if count == len(part):
-                size = min(size + size // 2 + 1, MOST if times else LONGEST) if times <= FEW else size
-            elif going:
-                size = near - count
-            else:
-                size = max(count, len(part) // 2)
-            if count:
-                # Between derivatives of iterates that diverged lies nothing to begin with.
-                slope = window.slope_at(count - 1) if count == len(part) else None
-                start = window.z[count], window.x[count - 1, -1], slope
-            z, x, slope = window.behind(count, near) if going else start
-            if not count:
-                continue
-            q, qd, qdd = window.ended(count)
-            end = part[count - 1]
-            if scheme.ends and end.anew:
-                x = demanded(end.resume, q[-1], qd[-1])
-                qdd[-1] = demanded(end.end, q[-1], qd[-1])
-                z = scheme.tableau(end.following).first @ np.stack([q[-1], qd[-1], x])
-                start = z, x, slope
-        done, kept = done + count, part.kept[:count]
-        yield q[kept], qd[kept], qdd[kept], np.ones(np.count_nonzero(kept), dtype=bool)
+            begin = window.first
 
 
 class _Window:
-    """Steps that are solved together: their states z (t + 1, m, n) and accelerations x (t, s, n), corrected in place,
-    and the `slope` of the equations, K, C and M (1 or t, s, n, n), from stages so far `apart`.
+    """Steps under way, from the `first` on: their states z (t + 1, m, n) and accelerations x (t, s, n), corrected in
+    place, and the `slope` of the equations, K, C and M (1 or t, s, n, n), from stages so far `apart`. Of each step (t,)
+    the last correction, absolute and of the accelerations, how many there were, and how far all since its derivatives
+    were found have moved it.
     """
 
-    def __init__(
-        self,
-        residual: Any,
-        drive: Any,
-        scheme: Scheme,
-        steps: Steps,
-        z: Array,
-        x: Array,
-        slope: Any,
-        apart: int,
-        held: Held | None,
-        noise: float,
-    ) -> None:
-        self.residual, self.drive, self.scheme, self.steps, self.apart = residual, drive, scheme, steps, apart
-        equal = bool((steps.length == steps.length[0]).all())
-        self.t: Tableau = scheme.tableau(steps.length[:1] if equal else steps.length)
-        self.inputs = drive(np.stack([steps.times(offset) for offset in scheme.offsets], axis=1).ravel())
-        self.z = np.array(np.broadcast_to(z, (len(steps) + 1, *z.shape[-2:])))
-        self.x = np.array(np.broadcast_to(x, (len(steps), len(scheme.offsets), x.shape[-1])))
-        self.slope, self.held, self.free = slope, held, self.inputs
-        if held is not None:
-            held.begin(self.z[:-1])
-            self.inputs = held.driven(self.free, len(scheme.offsets))
-        if slope is None or not all(np.isfinite(each).all() for each in slope):
-            self._differentiate(alone=True)
-        self.most = noise if len(self.slope[0]) > 1 else np.inf
+    z: Array
+    x: Array
+    start: Array
+    slope: Any
+    maps: Any
+    size: Array
+    moved: Array
+    count: Array
+    since: Array
+    most: float
 
-    def solve(self) -> tuple[int, int, int]:
-        """Correct the window; returns how many of its steps have converged, from the first on, how many are near, and
-        how many times derivatives were found.
-        """
-        count, times = len(self.steps), 0
-        size, good = np.full(count, np.inf), np.zeros(count, dtype=bool)
-        moved = size
-        maps, fresh = self._maps(), False
-        for _ in range(ALONE if count == 1 else CORRECTIONS):
-            before, size, last = size, self._correct(*maps), moved.max()
-            if count == 1:
-                self._shorten(maps[0])
+    def __init__(self, residual: Any, drive: Any, scheme: Scheme, steps: Steps, sampling: Sampling | None) -> None:
+        self.residual, self.drive, self.scheme, self.steps, self.sampling = residual, drive, scheme, steps, sampling
+        self.first, self.apart, self.more, self.again = 0, APART, FIRST, LONGEST
+        self.ahead, self.driven, self.held = range(0), cast(Any, None), cast(Any, None)
+        self.done: list[tuple[Array, ...]] = []
+
+    def begin(self, z: Array, x: Array) -> None:
+        """Begin with no step, from a state z (m, n) and accelerations (n,)."""
+        self.z, self.x, self.start, self.slope = z[None], np.zeros((0, len(self.scheme.offsets), len(x))), x, None
+        self.size, self.moved, self.count, self.since = np.zeros((4, 0))
+        self.most, self.maps = np.inf, None
+
+    def solve(self, end: int, enough: int) -> bool:
+        """Correct steps before `end` until `enough` have converged; false where one fails."""
+        while self.first < enough:
+            self._follow(end)
+            self._differentiate()
+            if self.maps is None:
+                self.maps = self._maps()
+            fresh, before, alone = self.since == 0, self.size, len(self.x) == 1
+            self.size, self.count = self._correct(*self.maps), self.count + 1
+            if alone:
+                self._shorten(self.maps[0])
+            near, self.moved = self.moved[-1] <= MOVED, self.size / _reach(self.x)
+            if self.moved[-1] <= MOVED and not near and self.count[-1] <= QUICK:
+                self.more = min(self.more + self.more // 2 + 1, LONGEST)
             # By derivatives of another state corrections may shrink slowly without being rounding.
-            good, fresh = _converged(size, before, self.x, self.noise, stalls=fresh), False
-            moved = size / _reach(self.x)
-            largest = moved.max()
-            if good.all() or not np.isfinite(size[0]) or (not largest <= MOVED and times > FEW and count > 1):
-                break
-            if largest > MOVED or not largest <= SLOW * last:
-                if times and largest <= MOVED:
-                    self.apart = max(self.apart // 2, NEAR)
-                self._differentiate()
-                maps, times, fresh = self._maps(), times + 1, True
-            elif largest < FAST * last:
+            good = _converged(self.size, before, self.x, self.noise, stalls=fresh & (self.count > 1))
+            slow = ~good & (self.count > 1) & ~(self.size <= SLOW * before)
+            self.since = np.where(slow, np.inf, self.since + self.moved)
+            if slow.any():
+                self.apart = max(self.apart // 2, NEAR)
+            elif (self.size < FAST * before).all():
                 self.apart = min(self.apart + 1, FAR)
-        return _first(good), _first(moved <= MOVED), times
+            far = ~np.isfinite(self.size) | (~(self.moved <= MOVED) & (self.count >= (ALONE if alone else LATE)))
+            far[0] |= self.count[0] >= ALONE
+            if self.sampling is None or good.all():
+                count = _first(good)
+                self._leave(count)
+                far = far[count:]
+            if far.any() and not self._withdraw(int(np.argmax(far))):
+                return False
+        return True
 
-    def ended(self, count: int) -> tuple[Array, Array, Array]:
-        """q, q̇, q̈ (count, n) at the ends of the first steps."""
+    def _follow(self, end: int) -> None:
+        """Let more steps follow where the last one is near."""
+        count = len(self.x)
+        if count and (self.sampling is not None or count > FEW or self.again == 1 or not self.moved[-1] <= MOVED):
+            return
+        longest = LONGEST if self.slope is not None and len(self.slope[0]) == 1 else MOST
+        more = min(self.more, end - self.first - count, longest - count)
+        if more <= 0:
+            return
+        last = self.x[-1:, -1:] if count else self.start
+        self.z = np.concatenate([self.z, np.repeat(self.z[-1:], more, axis=0)])
+        self.x = np.concatenate([self.x, np.broadcast_to(last, (more, *self.x.shape[1:]))])
+        if self.slope is not None and len(self.slope[0]) == count > 1:
+            self.slope = tuple(
+                np.concatenate([each, np.broadcast_to(each[-1:, -1:], (more, *each.shape[1:]))]) for each in self.slope
+            )
+        elif self.slope is not None:
+            self.slope = tuple(each[-1:, -1:] for each in self.slope)
+        self.size, self.moved, self.count, self.since = (
+            np.append(each, np.full(more, value))
+            for each, value in ((self.size, np.inf), (self.moved, np.inf), (self.count, 0.0), (self.since, 0.0))
+        )
+        self._place()
+
+    def _place(self) -> None:
+        """Find the tableau and the inputs of the steps."""
+        stages, last, length = len(self.scheme.offsets), self.first + len(self.x), self.steps.length
+        if last > self.ahead.stop:
+            self.ahead = range(self.first, min(max(last, self.first + AHEAD), len(self.steps)))
+            some = self.steps[self.ahead.start : self.ahead.stop]
+            self.driven = self.drive(np.stack([some.times(offset) for offset in self.scheme.offsets], axis=1).ravel())
+        length, begin = length[self.first : last], self.first - self.ahead.start
+        self.t: Tableau = self.scheme.tableau(length[:1] if (length == length[0]).all() else length)
+        at = slice(stages * begin, stages * (begin + len(length)))
+        self.inputs = self.free = each_leaf(lambda leaf: leaf[at], self.driven)
+        self.maps = None
+        if self.sampling is not None:
+            self.held = Held(self.sampling, self.first, len(length))
+            self.held.begin(self.z[:-1])
+            self.inputs = self.held.driven(self.free, stages)
+
+    def _leave(self, count: int) -> None:
+        """Take out the first steps, which have converged."""
+        if not count:
+            return
         z, x, t = self.z[:count], self.x[:count], self.t
-        ends = t.end_z[:count] @ z + t.end_x[:count] @ x
-        q, qd = ends[:, 0], ends[:, 1]
+        weights = [each if len(each) == 1 else each[:count] for each in (t.end_z, t.end_x)]
+        ends = weights[0] @ z + weights[1] @ x
+        mass = np.broadcast_to(self.slope[2], (len(self.x), *x.shape[1:], x.shape[-1]))[:count]
+        self.done.append((ends[:, 0], ends[:, 1], x, mass, *([] if self.held is None else [self.held.u[:count]])))
+        self.start, self.most = x[-1, -1], GROWN * float(self.rounding[:count].max())
+        self.first, self.again = self.first + count, LONGEST
+        self._keep(slice(count, None))
+
+    def _keep(self, some: slice) -> None:
+        """Keep some of the steps, the first or the last."""
+        z, many = slice(some.start, some.stop if some.stop is None else some.stop + 1), len(self.x)
+        self.z, self.x = self.z[z], self.x[some]
+        self.size, self.moved, self.count, self.since = (
+            each[some] for each in (self.size, self.moved, self.count, self.since)
+        )
+        if len(self.slope[0]) == many > 1:
+            last = tuple(each[-1:, -1:] for each in self.slope)
+            self.slope = tuple(each[some] for each in self.slope) if len(self.x) else last
+        if len(self.x):
+            self._place()
+
+    def _withdraw(self, first: int) -> bool:
+        """Take out steps from one on that stay far; false where a single step does."""
+        if first:
+            self.more = max(min(self.more, len(self.x)) // 2, 1)
+            self._keep(slice(None, first))
+            return True
+        if len(self.x) == self.again == 1:
+            return False
+        self.more = self.again = max(min(len(self.x), self.again) // 4, 1)
+        self.begin(self.z[0], self.start)
+        return True
+
+    def ended(self) -> tuple[Array, Array, Array]:
+        """q, q̇, q̈ (t, n) at the ends of the steps that have left since the last call."""
+        q, qd, x, mass, *commands = map(np.concatenate, zip(*self.done, strict=True))
+        self.done = []
         if self.scheme.ends:
             return q, qd, x[:, -1].copy()
-        inputs, mass, size = self._at_ends(count), self.slope[2], np.full(count, np.inf)
-        at = np.arange(len(self.x))[:, None] + np.array(self.scheme.offsets)
-        qdd = _interpolated(at.ravel(), self.x.reshape(-1, self.x.shape[-1]), np.arange(1, count + 1))
+        inputs, size = self.drive(self.steps.end[self.first - len(q) : self.first]), np.full(len(q), np.inf)
+        if self.sampling is not None:
+            inputs = self.sampling.controllers.driven(inputs, *commands)
+        at = np.arange(len(x))[:, None] + np.array(self.scheme.offsets)
+        qdd = _interpolated(at.ravel(), x.reshape(-1, x.shape[-1]), np.arange(1, len(x) + 1))
         mass = (mass[:, -1] + np.concatenate([mass[1:, 0], mass[-1:, -1]])) / 2
         for _ in range(CORRECTIONS):  # with the mass at hand, for the equations are linear in q̈
-            change = solved(mass[:count], self.residual(q, qd, qdd, inputs)[..., None])[..., 0]
+            change = solved(mass, self.residual(q, qd, qdd, inputs)[..., None])[..., 0]
             qdd = qdd - change
             before, size = size, _largest(change)
             if _converged(size, before, qdd, 0.0, stalls=True).all():
@@ -182,21 +246,6 @@ class _Window:
                 break
         return q, qd, accelerations(self.residual, q, qd, inputs)
 
-    def _at_ends(self, count: int) -> Any:
-        """Inputs at the ends of the first steps."""
-        inputs = self.drive(self.steps.end[:count])
-        return inputs if self.held is None else self.held.at_ends(inputs, count)
-
-    def behind(self, count: int, near: int) -> tuple[Array, Array, Any]:
-        """States, accelerations and slope of the steps from `count` to `near`."""
-        some = slice(count, near)
-        slope = tuple(each[some] if len(each) > 1 else each for each in self.slope)
-        return self.z[count : near + 1], self.x[some], slope
-
-    def slope_at(self, step: int) -> tuple[Array, ...]:
-        """K, C and M (1, 1, n, n) at the last stage of a step."""
-        return tuple(each[step:, -1:][:1] if len(each) > 1 else each[:, -1:] for each in self.slope)
-
     def _stages(self) -> tuple[Array, Array, Array]:
         """q, q̇, q̈ (t s, n) at the stages."""
         t, z, x = self.t, self.z[:-1], self.x
@@ -204,19 +253,34 @@ class _Window:
         n = x.shape[-1]
         return q.reshape(-1, n), qd.reshape(-1, n), x.reshape(-1, n)
 
-    def _differentiate(self, *, alone: bool = False) -> None:
-        """Find K, C and M at some stages, and between these; at the first `alone`."""
-        n = self.x.shape[-1]
-        slope = self._between(lambda *state: np.stack(slopes(self.residual, *state), axis=1), alone=alone)
-        self.slope = tuple(np.moveaxis(slope.reshape(*(self.x.shape[:2] if len(slope) > 1 else (1, 1)), 3, n, n), 2, 0))
+    def _differentiate(self) -> None:
+        """Find K, C and M at some stages from the first old one on, and between these; at the very first alone."""
+        (count, stages, n), shape = self.x.shape, (-1, self.x.shape[1], 3, self.x.shape[2], self.x.shape[2])
 
-    def _between(self, function: Any, *, alone: bool = False) -> Array:
-        """Values (t s or 1, ...) of a function of states and inputs at stages and between; at the first `alone`."""
-        count = self.x.shape[0] * self.x.shape[1]
-        samples = 1 if alone else 1 + math.ceil((count - 1) / (1 if len(self.x) == 1 else self.apart))
-        at = np.linspace(0, count - 1, samples).round().astype(int)
+        def function(*state: Any) -> Array:
+            return np.stack(slopes(self.residual, *state), axis=1)
+
+        if self.slope is None:
+            self.slope = tuple(np.moveaxis(self._between(function, None)[:, None], 2, 0))
+        stale = ~(self.since <= (STALE if count > 1 else MOVED))
+        if not stale.any():
+            return
+        first = int(np.argmax(stale))
+        found = np.moveaxis(self._between(function, first).reshape(shape), 2, 0)
+        held = (np.broadcast_to(each, (count, stages, n, n))[:first] for each in self.slope)
+        self.slope = tuple(np.concatenate(pair) for pair in zip(held, found, strict=True))
+        self.since[first:], self.maps = 0.0, None
+
+    def _between(self, function: Any, first: int | None = 0) -> Array:
+        """Values (t s, ...) of a function of states and inputs from a step on; of the first stage alone without one."""
+        steps, stages, _ = self.x.shape
+        begin, count = (0, 1) if first is None else (stages * first, stages * (steps - first))
+        samples = 1 + math.ceil((count - 1) / (1 if steps == 1 else self.apart))
+        at = begin + np.linspace(0, count - 1, samples).round().astype(int)
+        if first is not None:  # of the first step all, so that it converges as by Newton's method
+            at = np.union1d(at, begin + np.arange(stages))
         values = function(*(each[at] for each in self._stages()), each_leaf(lambda leaf: leaf[at], self.inputs))
-        return _interpolated(at, values, np.arange(count)) if samples > 1 else values
+        return _interpolated(at, values, np.arange(begin, begin + count)) if len(at) > 1 else values
 
     def _maps(self) -> tuple[Array, Array, Array]:
         """Inverse J⁻¹ (t, s n, s n) of steps, J⁻¹ L (t, s n, m n), and maps of δz over the steps, (t, m n, m n)."""
@@ -228,10 +292,10 @@ class _Window:
         # Of forces that cancel something is left, which no correction of the accelerations takes away.
         sizes = (np.abs(each).reshape(-1, stages, n, 1) for each in self._stages())
         forces = sum(np.abs(by) @ each for by, each in zip(self.slope, sizes, strict=True))
-        noise = _largest(CANCELLED * _products(np.abs(inverse), forces.reshape(-1, stages * n)))
+        self.rounding = _largest(CANCELLED * _products(np.abs(inverse), forces.reshape(-1, stages * n)))
         if self.most == np.inf:
-            self.most = GROWN * float(noise.max())
-        self.noise = np.minimum(noise, self.most)
+            self.most = GROWN * float(self.rounding.max())
+        self.noise = np.minimum(self.rounding, self.most)
         step = (t.g[:, :, None, :, None] * np.eye(n)[:, None, :]).reshape(-1, states * n, states * n)
         if self.held is not None:
             self.held.push(inverse, t, self._between(self.held.sampling.onto))
@@ -248,8 +312,8 @@ class _Window:
         if self.held is not None:
             change = change + self.held.changed(self.x.shape)
             self.inputs = self.held.driven(self.free, self.x.shape[1])
-        self.moved = moved.reshape(self.z.shape), change
-        self.z += self.moved[0]
+        self.change = moved.reshape(self.z.shape), change
+        self.z += self.change[0]
         self.x -= change
         return _largest(change)
 
@@ -274,7 +338,7 @@ class _Window:
 
     def _shorten(self, inverse: Array) -> None:
         """Halve a single step's correction until the next is smaller: a friction or a stop bends within a step."""
-        (state, change), share = self.moved, 1.0
+        (state, change), share = self.change, 1.0
         whole = np.linalg.norm(change)
         for _ in range(HALVINGS):
             following = inverse @ self.residual(*self._stages(), self.inputs).reshape(1, -1, 1)
