@@ -108,13 +108,15 @@ def restrict(memory: int, seconds: int) -> None:
         resource.setrlimit(kind, (soft, hard))
 
 
-def end_with_parent() -> None:
-    """Let the system kill this process where the one that started it ends first; Linux alone does."""
+def end_with_parent(parent: int) -> None:
+    """Let the system kill this process where the one that started it ends, or has ended; Linux alone does."""
     if sys.platform == "linux":
         import ctypes
         import signal
 
         ctypes.CDLL(None).prctl(_END_WITH_PARENT, signal.SIGKILL)
+        if os.getppid() != parent:
+            os._exit(1)
 
 
 def read_json(file: Path, fix: str) -> dict[str, Any]:

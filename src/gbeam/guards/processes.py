@@ -49,7 +49,7 @@ def confined(
     size = os.stat(path).st_size
     memory, seconds = (memory or READER_BYTES) + 3 * size, (seconds or READER_SECONDS) + size // READER_RATE
     function = [reader.__module__, reader.__qualname__]
-    request = json.dumps([memory, seconds, function, [os.fspath(path), *arguments]]).encode()
+    request = json.dumps([os.getpid(), memory, seconds, function, [os.fspath(path), *arguments]]).encode()
     with tempfile.TemporaryFile() as reply:
         try:
             status = subprocess.run(
@@ -85,8 +85,8 @@ def confined(
 
 def serve() -> None:
     """Answer the request on standard input with a file of arrays on standard output."""
-    end_with_parent()
-    memory, seconds, (module, name), arguments = json.load(sys.stdin)
+    parent, memory, seconds, (module, name), arguments = json.load(sys.stdin)
+    end_with_parent(parent)
     restrict(memory, seconds)
     try:
         with os.fdopen(os.dup(1), "wb") as reply, warnings.catch_warnings(record=True) as said:
