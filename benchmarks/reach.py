@@ -1,0 +1,218 @@
+"""Every figure of reach: gbeam beside Exudyn at equal error, in turn in one process, and how long first calls take.
+
+    python benchmarks/reach.py [--only driven] [--markdown]
+
+Each code has the quickest of its settings that comes within an error, or the most accurate where none does; later calls
+of both are timed in turn: processor times, s. A profile says which part of gbeam's call is spent where. What was
+measured is kept in reach.json, each figure as it was last, with the load of the machine, which slows both codes;
+`--markdown` prints that as a table.
+"""
+# ruff: noqa: E402  # a file beside this one has the name of a package
+
+from __future__ import annotations
+
+import argparse
+import cProfile
+import importlib.util
+import json
+import os
+import pstats
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+HERE = Path(sys.path.pop(0))
+import exudyn  # noqa: F401  # the package, before this folder is searched again
+
+sys.path.insert(0, str(HERE))
+import closed_loop  # takes this folder out of those that are searched
+
+sys.path.insert(0, str(HERE))
+import space_beams  # likewise
+
+sys.path.insert(0, str(HERE))
+import numpy as np
+from exudyn_choices import PROBLEMS, Choice
+
+import gbeam as gb
+
+spec = importlib.util.spec_from_file_location("comparison", HERE / "exudyn.py")
+assert spec is not None and spec.loader is not None
+comparison = importlib.util.module_from_spec(spec)
+sys.modules["comparison"] = comparison
+spec.loader.exec_module(comparison)
+
+Call = Callable[[], Any]
+Settings = dict[str, Call]  # by words
+RECORD, WITHIN, TURNS = HERE / "reach.json", 1e-4, 1
+SPACE = {  # goal; gbeam's reference, its settings and Exudyn's
+    "driven": (10, "driven base in space, torsion and shear", (7, 0.02), [(5, 0.04)], [(64, 0.005)]),
+    "free hub in space": (8, "free hub in space, torsion and shear", (6, 0.025), [(4, 0.1)], [(64, 0.005)]),
+    "satellite": (10, "free body with two panels in space", (8, 0.005), [(6, 0.01)], [(64, 0.005)]),
+}
+RUNS = {
+    "driven": (space_beams.driven_ours, space_beams.driven_theirs),
+    "free hub in space": (space_beams.free_ours, space_beams.free_theirs),
+    "satellite": (space_beams.satellite_ours, space_beams.satellite_theirs),
+}
+PLANE = {
+    "slew, FOAM": (60, [Choice(0, 3, "clamped-free", "gauss", step) for step in (0.2, 0.25)]),
+    "free hub, FOAM": (12, [Choice(0, 3, "adapted", "gauss", step) for step in (0.125, 0.2)]),
+    "free hub, exact": (8, [Choice(0, 4, "clamped-free", "gauss", step) for step in (0.1, 0.2)]),
+}
+PARTS = {"residual": "_correct", "derivatives": "_differentiate", "factors": "_maps", "ends": "ended"}
+MODELS = ("TLAM", "FOAM", "SFOAM", "CFOAM", "fourth-order", "exact")
+FIRST = """
+import sys, time
+import gbeam as gb
+strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+hub = gb.Hub(radius=0.5, inertia=0.02, torque=gb.Sine(0.2, 1.0))
+times = []
+for end in (0.5, 20.0) if sys.argv[1] == "FOAM" else (0.5,):
+    began = time.process_time()
+    gb.simulate(gb.assemble(beam, sys.argv[1], y=4, z=1), hub, duration=end, estimate=False, loads=False)
+    times.append(time.process_time() - began)
+print(*times)
+"""
+
+
+def seconds(call: Call) -> float:
+    """Processor time of a call, s."""
+    began = time.process_time()
+    call()
+    return time.process_time() - began
+
+
+def quickest(settings: Settings, error: Callable[[Any], float], within: float) -> tuple[str, float]:
+    """Words and error of the quickest setting within an error; of the most accurate one where none is."""
+    rows = []
+    for words, call in settings.items():
+        reached = error(call())
+        rows.append((not reached <= within, seconds(call) if reached <= within else reached, words, reached))
+    return min(rows)[2:]
+
+
+def compared(ours: Settings, theirs: Settings, errors: tuple[Any, Any], within: float) -> dict[str, Any]:
+    """Both codes' quickest settings within an error, their times in turn, and gbeam's profile."""
+    (mine, reached), (other, away) = (
+        quickest(settings, error, within) for settings, error in zip((ours, theirs), errors, strict=True)
+    )
+    turns = [(seconds(ours[mine]), seconds(theirs[other])) for _ in range(TURNS)]
+    quick, slow = (min(each) for each in zip(*turns, strict=True))
+    profile = cProfile.Profile(time.process_time)
+    profile.runcall(ours[mine])
+    stats: Any = pstats.Stats(profile).stats  # type: ignore[attr-defined]
+    times = {name: row[3] for (_, _, name), row in stats.items()}
+    whole = max(times.values())
+    shares = {part: round(times.get(name, 0.0) / whole, 2) for part, name in PARTS.items()}
+    rows = {"gbeam": [mine, quick, reached], "Exudyn": [other, slow, away]}
+    return {"measured": round(slow / quick, 2), "unit": "times Exudyn", **rows, "profile": shares}
+
+
+def in_space(name: str) -> dict[str, Any]:
+    """A beam, or two, in space: errors from a converged run of gbeam, of the tip's place at common times."""
+    goal, words, finest, *settings = SPACE[name]
+    at, tip = RUNS[name][0](*finest)
+    common, peak = np.arange(0.0, at[-1], 0.2), np.linalg.norm(tip - tip[0], axis=1).max()
+    reference = tip[np.searchsorted(at, common - 1e-9)]
+
+    def error(answer: Any) -> float:
+        places = answer[1][np.searchsorted(answer[0], common - 1e-9)]
+        return float(np.linalg.norm(places - reference, axis=1).max() / peak)
+
+    ours, theirs = (
+        {
+            f"{size} {kind}, {1e3 * step:g} ms": lambda run=run, size=size, step=step: run(size, step)
+            for size, step in of
+        }
+        for run, of, kind in zip(RUNS[name], settings, ("shapes", "elements"), strict=True)
+    )
+    return {"figure": words, "goal": goal, **compared(ours, theirs, (error, error), WITHIN)}
+
+
+def in_plane(name: str) -> dict[str, Any]:
+    """The hub-beam of 2009: errors of the peak and the residual amplitude, from each model's converged run."""
+    (goal, choices), problem = PLANE[name], PROBLEMS[name]
+
+    def error_of(model: str) -> Any:
+        reference = comparison.Reference(problem.drive, model)
+
+        def error(answer: Any) -> float:
+            errors = reference.errors(answer)
+            return abs(errors.peak) if errors.reach("peak") else np.inf
+
+        return error
+
+    def call(choice: Any) -> Call:
+        if isinstance(choice, Choice):
+            made = comparison.structure_of(problem.drive, problem.model, choice.axial, choice.bending, choice.shapes)
+            return lambda: comparison.tip_of(made, problem.drive, choice.integrator, choice.step)
+        return comparison.HubBeam(problem.drive, choice).solve
+
+    ours, theirs = ({str(choice): call(choice) for choice in each} for each in (choices, problem.settings))
+    errors = error_of(problem.model), error_of("exact")
+    return {"figure": name, "goal": goal, **compared(ours, theirs, errors, WITHIN)}
+
+
+def in_loop(_: str) -> dict[str, Any]:
+    """The satellite under a sampled controller: errors of the hub's angle from each code's converged run."""
+    settings: tuple[Settings, Settings] = (
+        {"FOAM, 10 ms": lambda: closed_loop.ours(0.01), "exact, 10 ms": lambda: closed_loop.ours(0.01, "exact")},
+        {f"4 elements, {step:g} ms": lambda s=step: closed_loop.theirs(4, round(2e4 / s)) for step in (10, 5, 2.5)},
+    )
+    finest = closed_loop.ours(0.01 / 8), closed_loop.theirs(8, 16_000)
+    errors = tuple(lambda answer, of=of: float(np.abs(answer - of).max() / np.abs(of).max()) for of in finest)
+    return {"figure": "closed loop of the satellite, 20 s", "goal": 1, **compared(*settings, errors, 1.2e-4)}
+
+
+def first_calls(_: str) -> dict[str, Any]:
+    """First calls in new processes, every model on a free hub, the slowest, and 20 s of a stiff strip by FOAM."""
+    rows = {}
+    for model in MODELS:
+        words = [sys.executable, "-c", FIRST, model]
+        rows[model] = [round(float(each), 2) for each in subprocess.check_output(words, text=True).split()]
+    first, later = max(row[0] for row in rows.values()), rows["FOAM"][1]
+    figure = "first call of a new size in a new process, and 20 s of a stiff strip after it"
+    return {"figure": figure, "goal": [2, 1], "measured": [first, later], "unit": "s", "models": rows}
+
+
+FIGURES = {name: in_space for name in SPACE} | {name: in_plane for name in PLANE}
+FIGURES |= {"closed loop": in_loop, "first calls": first_calls}
+
+
+def table(record: dict[str, Any]) -> Iterator[str]:
+    """Lines of the table, in Markdown."""
+    yield "| figure | goal | measured | gbeam | Exudyn | where gbeam's time goes |"
+    yield "|---|---|---|---|---|---|"
+    for row in record.values():
+        codes = []
+        for code in ("gbeam", "Exudyn"):
+            words, took, error = row.get(code, ("", 0.0, 0.0))
+            codes.append(f"{words}: {took:.3g} s, error {error:.1e}" if words else "–")
+        parts = row.get("profile") or row["models"]
+        where = ", ".join(f"{k} {100 * v:.0f} %" if isinstance(v, float) else f"{k} {v}" for k, v in parts.items())
+        yield f"| {row['figure']} | {row['goal']} | {row['measured']} {row['unit']} | {' | '.join(codes)} | {where} |"
+
+
+def main() -> None:
+    """Measure, and keep what was measured."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--only", default="", help="only figures whose name contains this")
+    parser.add_argument("--markdown", action="store_true", help="measure nothing: print the record as a table")
+    options = parser.parse_args()
+    record = json.loads(RECORD.read_text()) if RECORD.exists() else {}
+    for name, measure in FIGURES.items() if not options.markdown else ():
+        if options.only in name:
+            record[name] = measure(name) | {"versions": f"gbeam {gb.__version__}, load {os.getloadavg()[0]:.0f}"}
+            print(json.dumps(record[name], ensure_ascii=False), flush=True)
+            RECORD.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n")
+    if options.markdown:
+        print("\n".join(table(record)))
+
+
+if __name__ == "__main__":
+    main()
