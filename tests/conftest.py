@@ -15,6 +15,7 @@ from types import SimpleNamespace
 from typing import IO, Any
 
 import hypothesis
+import numpy as np
 import pytest
 
 # A busy machine is no error.
@@ -61,6 +62,13 @@ def _release_programs() -> Iterator[None]:
 
         jax.clear_caches()
         gc.collect()
+
+
+@pytest.fixture(autouse=True)
+def plainly_printed() -> Iterator[None]:
+    """Let NumPy print as it does by default: pyyeti changes that when it is imported."""
+    with np.printoptions(legacy=False):
+        yield
 
 
 @pytest.fixture

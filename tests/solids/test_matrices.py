@@ -213,6 +213,6 @@ def test_matrices_that_are_not_positive_definite_are_refused() -> None:
     nodes = [(0.02 * i, 0.0, 0.0) for i in range(1, 6)]
     mixed = np.eye(5)
     mixed[0, 1] = mixed[1, 0] = 2.0
-    for name, m, k in (("stiffness", np.eye(15), chain - np.eye(15)), ("mass", np.kron(mixed, np.eye(3)), chain)):
+    for name, m, k in (("stiffness", np.eye(15), chain - 0.5 * np.eye(15)), ("mass", np.kron(mixed, np.eye(3)), chain)):
         with pytest.raises(gb.InputError, match=f"{name} is not positive definite"):
             gb.ImportedModel(m, 1e5 * k, nodes).reduced(modes=4, damping_ratio=0.01)

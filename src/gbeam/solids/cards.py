@@ -75,7 +75,8 @@ def refused(name: str, problem: str, fix: str = OTHERWISE) -> InputError:
 
 def _nastran(source: str | os.PathLike[str]) -> Cards:
     try:
-        from pyyeti.nastran import bulk
+        with np.printoptions():  # that the import changes
+            from pyyeti.nastran import bulk
     except ModuleNotFoundError:
         raise InputError("", "pyyeti is not installed", 'install it with: pip install "gbeam[nastran]"') from None
 
