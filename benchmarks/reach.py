@@ -48,9 +48,15 @@ spec.loader.exec_module(comparison)
 Call = Callable[[], Any]
 Settings = dict[str, Call]  # by words
 RECORD, WITHIN, TURNS = HERE / "reach.json", 1e-4, 1
-SPACE = {  # goal; gbeam's reference, its settings and Exudyn's
-    "driven": (10, "driven base in space, torsion and shear", (7, 0.02), [(5, 0.04)], [(64, 0.005)]),
-    "free hub in space": (8, "free hub in space, torsion and shear", (6, 0.025), [(4, 0.1)], [(64, 0.005)]),
+SPACE = {  # goal; gbeam's reference, its settings and Exudyn's: numbers of shapes, of elements, and steps, s
+    "driven": (10, "driven base in space, torsion", (7, 0.02), [(5, 0.04), (6, 0.02)], [(64, 0.005), (128, 0.0025)]),
+    "free hub in space": (
+        None,
+        "free hub in space, torsion",
+        (6, 0.025),
+        [(4, 0.1), (5, 0.05)],
+        [(64, 0.005), (128, 0.0025)],
+    ),
     "satellite": (10, "free body with two panels in space", (8, 0.005), [(6, 0.01)], [(64, 0.005)]),
 }
 RUNS = {
@@ -149,8 +155,8 @@ def in_plane(name: str) -> dict[str, Any]:
 
     def call(choice: Any) -> Call:
         if isinstance(choice, Choice):
-            made = comparison.structure_of(problem.drive, problem.model, choice.axial, choice.bending, choice.shapes)
-            return lambda: comparison.tip_of(made, problem.drive, choice.integrator, choice.step)
+            beam = comparison.structure_of(problem.drive, problem.model, choice.axial, choice.bending, choice.shapes)
+            return lambda: comparison.tip_of(beam, problem.drive, choice.integrator, choice.step)
         return comparison.HubBeam(problem.drive, choice).solve
 
     ours, theirs = ({str(choice): call(choice) for choice in each} for each in (choices, problem.settings))
@@ -195,7 +201,8 @@ def table(record: dict[str, Any]) -> Iterator[str]:
             codes.append(f"{words}: {took:.3g} s, error {error:.1e}" if words else "–")
         parts = row.get("profile") or row["models"]
         where = ", ".join(f"{k} {100 * v:.0f} %" if isinstance(v, float) else f"{k} {v}" for k, v in parts.items())
-        yield f"| {row['figure']} | {row['goal']} | {row['measured']} {row['unit']} | {' | '.join(codes)} | {where} |"
+        goal, measured = row["goal"] or "–", f"{row['measured']} {row['unit']}"
+        yield f"| {row['figure']} | {goal} | {measured} | {' | '.join(codes)} | {where} |"
 
 
 def main() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -105,6 +106,14 @@ def test_a_mass_on_springs_has_its_frequencies(tmp_path: Path) -> None:
         assert np.abs(found / each - 1).min() < 1e-6
     with pytest.raises(gb.InputError, match=r"node 902, which is on no node of the solid, and its springs leave it"):
         read(nastran(tmp_path, f"CONM2,7,902,,{LUMP}"), mass_unit="Mg")
+
+
+def test_reading_leaves_how_numpy_prints(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """pyyeti, imported for the first time, sets the options of NumPy 1.13."""
+    for name in [each for each in sys.modules if each.partition(".")[0] == "pyyeti"]:
+        monkeypatch.delitem(sys.modules, name)
+    read(nastran(tmp_path, conm2(900)), mass_unit="Mg")
+    assert str(np.array([0.25, 0.5])) == "[0.25 0.5 ]"
 
 
 def test_abaqus_says_the_same(tmp_path: Path) -> None:
