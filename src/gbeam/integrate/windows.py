@@ -266,9 +266,9 @@ class _Window:
         if not stale.any():
             return
         first = int(np.argmax(stale))
-        found = np.moveaxis(self._between(function, first).reshape(shape), 2, 0)
+        renewed = np.moveaxis(self._between(function, first).reshape(shape), 2, 0)
         held = (np.broadcast_to(each, (count, stages, n, n))[:first] for each in self.slope)
-        self.slope = tuple(np.concatenate(pair) for pair in zip(held, found, strict=True))
+        self.slope = tuple(np.concatenate(pair) for pair in zip(held, renewed, strict=True))
         self.since[first:], self.maps = 0.0, None
 
     def _between(self, function: Any, first: int | None = 0) -> Array:

@@ -16,9 +16,7 @@ from gbeam.errors import InputError
 from gbeam.numerics.eigen import Floats
 from gbeam.solids.shape_functions import KINDS, Indices, reference
 from gbeam.solids.stress import FACES, corners_of
-from gbeam.solids.texts import abaqus_elements, abaqus_keywords, ending_of
-
-NASTRAN, ABAQUS = (".bdf", ".fem", ".nas"), (".inp",)
+from gbeam.solids.texts import ABAQUS, NASTRAN, abaqus_elements, abaqus_keywords, ending_of
 
 
 class Lump(NamedTuple):
@@ -70,6 +68,7 @@ OTHERWISE = "give it as a link, a body or a spring in place of mass_unit"
 
 
 def refused(name: str, problem: str, fix: str = OTHERWISE) -> InputError:
+    """The error that a named statement of a file cannot be taken."""
     return InputError("mesh", f"has {name}, which {problem}", fix)
 
 
@@ -90,12 +89,8 @@ def _nastran(source: str | os.PathLike[str]) -> Cards:
 
     grids = [(int(row[0]), row[5]) for row in rows("GRID")]
     turned = {number for number, system in grids if system not in ("", 0)}
-    rigid, whole, lumps, springs = (
-        dict[str, tuple[int, ...]](),
-        dict[str, tuple[int, ...]](),
-        list[Lump](),
-        list[Spring](),
-    )
+    rigid, whole = dict[str, tuple[int, ...]](), dict[str, tuple[int, ...]]()
+    lumps, springs = list[Lump](), list[Spring]()
     for row in rows("RBE2"):
         name = f"RBE2 {row[0]}"
         if row[2] not in (123, 123456):

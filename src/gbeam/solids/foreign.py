@@ -20,7 +20,7 @@ from gbeam.guards.units import UnitError, quantity
 from gbeam.printable import shortened
 from gbeam.results.result import Floats
 from gbeam.solids.shape_functions import KINDS, Indices
-from gbeam.solids.texts import ending_of, missing_node
+from gbeam.solids.texts import ABAQUS, NASTRAN, ending_of, missing_node
 
 _INTERNAL = "gmsh:"  # begins the names of sets that nobody gave
 _ENTITIES = "gmsh:geometrical"
@@ -44,8 +44,8 @@ _LISTS = re.compile(r"^\*NODE *(?:,[^\n]*)?\n((?:(?!\*)[^\n]*(?:\n|$))*)", re.MU
 _SCALAR = re.compile(r"^CELAS[1-4]\b[^\n]*\n(?:\*[^\n]*\n)*", re.MULTILINE)
 AGAIN = "write it again with all of its nodes"
 THICKNESS = ("PSHELL", "SHELL SECTION")
-_UNREAD = {".bdf": _SCALAR, ".fem": _SCALAR, ".nas": _SCALAR, ".inp": _POINTWISE}  # elements that stop meshio
-_WORDS = {".bdf": _NASTRAN, ".fem": _NASTRAN, ".nas": _NASTRAN, ".inp": _ABAQUS}
+_UNREAD = dict.fromkeys(NASTRAN, _SCALAR) | dict.fromkeys(ABAQUS, _POINTWISE)  # elements that stop meshio
+_WORDS = dict.fromkeys(NASTRAN, _NASTRAN) | dict.fromkeys(ABAQUS, _ABAQUS)
 
 
 def import_meshio() -> Any:
@@ -74,7 +74,7 @@ def read_mesh(source: str | os.PathLike[str] | Any) -> Any:
             plain = _one_list(unread.sub("", text)) if unread else ""
             if plain == text:
                 return meshio.read(source)
-            reader = meshio.abaqus if ending_of(source) == ".inp" else meshio.nastran
+            reader = meshio.abaqus if ending_of(source) in ABAQUS else meshio.nastran
             return reader.read(io.StringIO(plain))
     except (Exception, SystemExit) as error:
         if missing := missing_node(source):
@@ -107,7 +107,7 @@ def unit_size(where: str, unit: str, kind: str) -> float:
 
 def refuse_systems(source: Any) -> None:
     """Refuse a file of Nastran with places in coordinate systems, which meshio takes for the basic one."""
-    if _WORDS.get(ending_of(source)) is not _NASTRAN:
+    if ending_of(source) not in NASTRAN:
         return
     for line in _text(source).splitlines():
         if not line.startswith("GRID"):

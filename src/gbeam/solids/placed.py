@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -46,9 +47,12 @@ def with_cards(cards: Cards, links: Links, nodes: Placed, size: float, mass: flo
     mean = dict[str, Floats]()
     base, weights = "the base", np.zeros(len(nodes.clamped))
 
-    def link(name: str, numbers: tuple[int, ...]) -> None:
+    def refuse_unknown(name: str, numbers: Iterable[int]) -> None:
         if unknown := [each for each in numbers if each not in solid_of]:
             raise refused(name, f"names node {unknown[0]}, which is not there", "export it too")
+
+    def link(name: str, numbers: tuple[int, ...]) -> None:
+        refuse_unknown(name, numbers)
         chosen = np.unique(np.concatenate([solid_of[each] for each in numbers]))
         if len(chosen) and nodes.clamped[chosen].all():
             owner.update(dict.fromkeys(numbers, base))
@@ -70,8 +74,7 @@ def with_cards(cards: Cards, links: Links, nodes: Placed, size: float, mass: flo
     for name, numbers in cards.rigid.items():
         link(name, numbers)
     for name, (number, shares) in cards.mean.items():
-        if unknown := [each for each in (number, *shares) if each not in solid_of]:
-            raise refused(name, f"names node {unknown[0]}, which is not there", "export it too")
+        refuse_unknown(name, (number, *shares))
         if len(solid_of[number]) or number in owner:
             raise refused(name, f"moves node {number}, which the solid or a rigid link moves too", "leave one out")
         members[name] = np.concatenate([solid_of[each] for each in shares])

@@ -8,6 +8,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+NASTRAN, ABAQUS = (".bdf", ".fem", ".nas"), (".inp",)  # endings
 Listed = tuple[set[int], Iterator[tuple[int, list[int]]]]
 # Nodes at most of Nastran's elements, behind which other fields are.
 CARDS = {"CTETRA": 10, "CHEXA": 20, "CPENTA": 15, "CTRIA3": 3, "CTRIA6": 6, "CQUAD4": 4, "CQUAD8": 8}
@@ -106,5 +107,5 @@ def _gmsh(text: str) -> Listed:
     return numbers, listed()
 
 
-READERS: dict[str, Callable[[str], Listed]] = {".inp": _abaqus, ".msh": _gmsh}
-READERS |= dict.fromkeys((".bdf", ".fem", ".nas"), _nastran)
+READERS: dict[str, Callable[[str], Listed]] = {".msh": _gmsh}
+READERS |= dict.fromkeys(ABAQUS, _abaqus) | dict.fromkeys(NASTRAN, _nastran)
