@@ -35,7 +35,7 @@ def _deflection(deflection: Deflection) -> str:
 
 
 def _rigid(deflection: Deflection, specimen: SpecimenLoads) -> str:
-    """What holds a rigid specimen: its fixture, and each bolt."""
+    """Fixture and bolts that hold a rigid specimen."""
     lines = [f"{deflection.motion} at {deflection.time:.4g} s: {deflection.model}"]
     lines += [] if deflection.loads is None else [f"  {resting_loads(deflection.loads)}"]
     lines += [f"  {specimen.lines[0]}"]

@@ -40,7 +40,7 @@ class StressAt(Part):
 
     @property
     def apart(self) -> str:
-        """How far the elements that share the node are apart, in words."""
+        """Difference of the elements that share the node, in words."""
         return (
             f"; elements there differ by {float(f'{100 * self.spread:.2g}'):g} %" if self.spread else ", of one element"
         )

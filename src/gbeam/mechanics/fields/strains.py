@@ -261,7 +261,7 @@ class StrainField:
         return x, y, z
 
     def columns(self, tangents: Tangents) -> Columns:
-        """How t moves and nodes' sections turn with coordinates, of tangents with a unit axis before the nodes."""
+        """Slopes of t and of nodes' turns by coordinates, of tangents with a unit axis before the nodes."""
         shapes: Any = tuple(part.T if shaped else 0 for part, shaped in zip(self.strains, self.shaped, strict=True))
         fixed = (turned(tangents.rotation, part) for part in (shapes[:3], shapes[3:]))
         strain, turn = (_carried(each, tangents.w, tangents.alpha) for each in fixed)

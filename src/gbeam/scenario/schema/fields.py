@@ -176,7 +176,7 @@ def _kind_in(parts: Iterable[Any]) -> str:
 
 
 def parts_of(field: FieldInfo | None) -> tuple[Any, ...]:
-    """What is said of a field, and the parts of its annotation at any depth; none where there is no field."""
+    """Metadata of a field and the parts of its annotation at any depth; none where there is no field."""
     return () if field is None else (*field.metadata, *inside(field.annotation))
 
 
