@@ -6,6 +6,7 @@ import os
 import sys
 from collections.abc import Callable
 from contextlib import suppress
+from contextvars import ContextVar
 from pathlib import Path
 from threading import Event, Thread
 from time import monotonic
@@ -22,6 +23,7 @@ FILE = "GBEAM_PROGRESS_FILE"  # environment: the file that has the last line, in
 EVERY = 5.0  # s between lines where there is no terminal and no notebook
 PATIENCE = 2.0  # s without a sign of life that a user of a command takes
 _REDRAW = 0.1  # s
+_SHOWN: ContextVar[Bar | None] = ContextVar("shown", default=None)
 
 # Argument of the public functions: called with what is being done and the share of it; True shows a Bar.
 Progress: TypeAlias = Callable[[str, float], None] | bool | None
@@ -32,7 +34,7 @@ class Bar:
 
     Use it as a context, and call it with what is being done (`first` until then) and the fraction done; or, of a sweep,
     with the numbers of cases that are done, of those that failed among them, and of all. So many seconds of `patience`
-    without a sign of life need no explanation.
+    without a sign of life need no explanation. A bar within another is a step of that one, which shows it.
     """
 
     def __init__(self, first: str = "computing", *, patience: float = 0.0) -> None:
@@ -43,9 +45,13 @@ class Bar:
         # A thread, not a look at the clock in __call__: before the first call it may be silent for long.
         self._thread = Thread(target=self._show, daemon=True)
         self._bar: _Drawn | None = None
+        self._outer: Bar | None = None
 
     def __call__(self, *news: Any) -> None:
         """Show how much of what is done."""
+        if self._outer is not None:
+            self._outer(*news)
+            return
         what, share = news if len(news) == 2 else _of_cases(*news)
         before, done = self._now
         if what != before or share < done:
@@ -97,6 +103,12 @@ class Bar:
             self._bar.stop()  # which shows the cursor again
 
     def __enter__(self) -> Self:
+        self._outer = _SHOWN.get()
+        if self._outer is not None:
+            self._interrupted = self._outer._now
+            self._outer(*self._now)
+            return self
+        self._token = _SHOWN.set(self)
         if sys.stderr is not None:
             self._thread.start()
         return self
@@ -104,6 +116,10 @@ class Bar:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        if self._outer is not None:
+            self._outer(*self._interrupted)
+            return
+        _SHOWN.reset(self._token)
         self._over.set()
         if self._thread.is_alive():
             self._thread.join()  # it may be starting the bar at this moment

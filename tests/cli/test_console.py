@@ -109,6 +109,15 @@ def test_a_bar_counts_the_cases_of_a_sweep() -> None:
     assert bar.line().startswith("3 of 12 cases, 1 failed: 25%")
 
 
+def test_a_bar_within_another_is_a_step_of_that_one(capsys: pytest.CaptureFixture[str]) -> None:
+    with progress.Bar("reading", patience=60.0) as outer:
+        with progress.Bar("reducing") as inner:
+            inner("reducing", 0.5)
+            assert outer.line().startswith("reducing: 50%")
+        assert outer.line() == "reading"
+    assert capsys.readouterr().err == ""
+
+
 def test_plain_lines_need_no_rich() -> None:
     code = "import sys, time; from gbeam.progress import Bar\nwith Bar(): time.sleep(0.2)\nprint('rich' in sys.modules)"
     ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
