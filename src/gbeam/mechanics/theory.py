@@ -66,7 +66,7 @@ SLENDER, SHEAR, TWIST = (0, 4, 5), (1, 2), (3,)  # strains: stretch, shear along
 
 
 class Theory(NamedTuple):
-    """A beam by slender and by thick theory, with the structure's `own` coordinates first: `columns` of shear and
+    """A beam by slender and by thick theory, with the structure's `size` coordinates first: `columns` of shear and
     twist, `curvature` (2, g, n), `rigidity` (2, g) N m³, `bodies` (b, 3, n), and what the thick one's equations have
     `beyond`.
     """
@@ -79,7 +79,7 @@ class Theory(NamedTuple):
     node: Array
     bodies: Array
     beam: Beam
-    own: int
+    size: int
     beyond: tuple[Array, LinearTerms]
 
     def plate(self, q: Array) -> Array:
@@ -207,7 +207,7 @@ class _Parts:
 
     def theory(self, families: Families) -> Theory:
         """Both theories, with own shapes."""
-        strains = self.own(families)
+        strains = self.shaped(families)
         answers = self.answers(strains)
         blocks = [np.concatenate([strains, self.others(answers, self.modelled, strains)], axis=1)]
         lacking = (tuple(set(family) - set(self.modelled)) for family in (SHEAR, TWIST))
@@ -219,7 +219,7 @@ class _Parts:
         offset = np.array([body.offset for body in self.beam.masses]).reshape(-1, 3)
         _, about_y, about_z = self.beam.rigidities(self.rule.node)
         models = self.model(slender, rotary=self.beam.rotary_inertia), self.model(thick, rotary=True)
-        count_own = strains.shape[1]
+        count = strains.shape[1]
         return Theory(
             *models,
             {"shear": slice(ends[1], ends[2]), "twist": slice(ends[2], ends[3])},
@@ -228,11 +228,11 @@ class _Parts:
             self.rule.node,
             bodies.points(slice(None), offset).slopes(np.zeros(thick.shape[1])),
             self.beam,
-            count_own,
-            _beyond(*models, count_own),
+            count,
+            _beyond(*models, count),
         )
 
-    def own(self, families: Families) -> Array:
+    def shaped(self, families: Families) -> Array:
         """Strains (m, n) of the structure's own coordinates."""
         nodal = shaped_strains(self.rule, families)
         strains = nodal.reshape(-1, nodal.shape[2])

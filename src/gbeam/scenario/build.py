@@ -216,7 +216,7 @@ def _response(
     if table.residual_from is not None and not start <= table.residual_from < end:
         fix = f"give a time from {start:g} s to {end:g} s"
         parts.errors.append(InputError("response.residual_from", f"is {table.residual_from:g} s", fix))
-    initial = parts.attempt("response.initial", Initial, **table.initial.given)
+    initial = parts.attempt("response.initial", Initial, **table.initial.settings)
     if initial is None:
         return None
     return parts.attempt(

@@ -23,7 +23,7 @@ from gbeam.guards.units import UnitError, argument
 from gbeam.mechanics.assembly import assemble
 from gbeam.mechanics.models import Model
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.joints import COUPLINGS, SLIDES, Joint
+from gbeam.mechanics.tree.joints import COUPLINGS, OF_COORDINATES, SLIDES, Joint, kind_of_value
 from gbeam.mechanics.tree.system import RigidBody, System
 from gbeam.printable import advise
 from gbeam.results.provenance import Provenance
@@ -38,19 +38,6 @@ from gbeam.structure.beam import Beam
 if TYPE_CHECKING:
     from gbeam.scenario.load import AnyScenario
 
-# Kinds of what is said of a joint's coordinate: of a displacement, and of an angle.
-OF_COORDINATES = {
-    "initial": ("length", "angle"),
-    "initial_rate": ("speed", "angular rate"),
-    "stiffness": ("stiffness", "rotational stiffness"),
-    "ease": ("length", "angle"),
-    "damping": ("damping", "rotational damping"),
-    "friction": ("force", "torque"),
-    "stops": ("length", "angle"),
-    "stop_stiffness": ("stiffness", "rotational stiffness"),
-    "rate": ("speed", "angular rate"),
-    "effort": ("force", "torque"),
-}
 _LONGEST = 100  # numbers of a list that are values of a study; more are a record
 
 
@@ -279,8 +266,8 @@ def _below(node: Any, kind: str) -> dict[Any, tuple[Any, str]]:
 def _kind(node: Any, owner: str, name: str) -> str:
     """Kind of an argument of an object; of a joint that of its coordinates, where these are of one kind."""
     if isinstance(node, Joint) and name in OF_COORDINATES:
-        slides = {each in SLIDES for each in node.coordinates}
-        return OF_COORDINATES[name][not slides.pop()] if len(slides) == 1 else ""
+        kinds = {kind_of_value(name, each) for each in node.coordinates}
+        return kinds.pop() if len(kinds) == 1 else ""
     if isinstance(node, Joint) and name == "coupling":
         counts = {sum(each in SLIDES for each in str(pair).split("-")) for pair in node.coupling or ()}
         return COUPLINGS[counts.pop()] if len(counts) == 1 else ""

@@ -99,7 +99,7 @@ def static_theory(structure: Structure, resting: Callable[[Structure], Sampled])
 
 
 def _gap(theory: Theory, full: Sampled, thin: Sampled, plate: Floats) -> _Gap:
-    c, count = theory.thick.coefficients, theory.own
+    c, count = theory.thick.coefficients, theory.size
     features = c.features(full.base.a_WO_B, full.base.w_WB_B, full.base.alpha_WB_B, full.loads)
     mass, terms = theory.beyond
     velocity, stiffness, force = terms.each

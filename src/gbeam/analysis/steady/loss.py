@@ -122,7 +122,7 @@ def judged(critical: Critical, path: Path, structure: Structure | System, progre
         model, words = "the system", _in_words(richer, point, models, plates)
     else:
         base, values, theory = point.base, point.structure.load_values, richer.theories[""]
-        lowest = _lowest(theory.slender, values, base)[:, : theory.own]
+        lowest = _lowest(theory.slender, values, base)[:, : theory.size]
         causes = mode_causes(theory, base, values, lowest, np.zeros(1), plates[""])
         model, words = critical.model, described(structure, causes)
     doubts = doubtful_loss(critical.quantity, model, errors, words)

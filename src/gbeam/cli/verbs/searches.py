@@ -190,7 +190,7 @@ def shape(
     from gbeam.studies.shape import driven_joint, hub_of, scenario_with, slides
     from gbeam.studies.shape import shape_hub_command as compute
 
-    def given(option: str, text: str | None, kind: str) -> float | None:
+    def optional(option: str, text: str | None, kind: str) -> float | None:
         return None if text is None else number(option, text, kind)
 
     from gbeam.scenario.build import read_scenario
@@ -202,14 +202,14 @@ def shape(
         case = case.one_beam("bodies", "gbeam shape")
         name, hub = hub_of(case, motion)
     straight = isinstance(case, SystemCase) and slides(name)
-    bound = given("--limit", limit, DRIVES[hub.free, straight][1])
+    bound = optional("--limit", limit, DRIVES[hub.free, straight][1])
     with Watch() as watch:
         answer = compute(
             case,
-            angle=given("--angle", angle, "angle"),
-            rate=given("--rate", rate, "speed" if straight else "angular rate"),
-            distance=given("--distance", distance, "length"),
-            duration=given("--duration", duration, "time"),
+            angle=optional("--angle", angle, "angle"),
+            rate=optional("--rate", rate, "speed" if straight else "angular rate"),
+            distance=optional("--distance", distance, "length"),
+            duration=optional("--duration", duration, "time"),
             limit=float("inf") if bound is None else bound,
             robust=number("--robust", robust, "ratio"),
             check=check or "",

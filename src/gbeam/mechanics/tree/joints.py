@@ -25,7 +25,25 @@ _EYE = np.eye(3)
 _EASY = ("stiffness", "ease", "damping", "friction", "stop_stiffness")
 DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")
 SLIDES = ("displacement", "x", "y", "z")  # coordinates in m; others are angles
+# Kinds of what is said of a coordinate: of a displacement, and of an angle.
+OF_COORDINATES = {
+    "initial": ("length", "angle"),
+    "initial_rate": ("speed", "angular rate"),
+    "stiffness": ("stiffness", "rotational stiffness"),
+    "ease": ("length", "angle"),
+    "damping": ("damping", "rotational damping"),
+    "friction": ("force", "torque"),
+    "stops": ("length", "angle"),
+    "stop_stiffness": ("stiffness", "rotational stiffness"),
+    "rate": ("speed", "angular rate"),
+    "effort": ("force", "torque"),
+}
 COUPLINGS = ("rotational stiffness", "force", "stiffness")  # of two coordinates, by how many are displacements
+
+
+def kind_of_value(key: str, coordinate: str) -> str:
+    """Kind of quantity of what a key says of a coordinate."""
+    return OF_COORDINATES[key][coordinate not in SLIDES]
 
 
 class Kind(NamedTuple):

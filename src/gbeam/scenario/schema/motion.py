@@ -63,7 +63,7 @@ class Accept(_Limits):  # type: ignore[misc, valid-type]
     )
 
     @property
-    def given(self) -> dict[str, Any]:
+    def limits(self) -> dict[str, Any]:
         """Values that are given, by name."""
         return {name: value for name, value in self if value not in (None, {})}
 
@@ -199,7 +199,7 @@ class Centrifuge(Table):
     @property
     def limits_of_acceptance(self) -> dict[str, Any]:
         """Limits of [accept] by name; empty without the table."""
-        return {} if self.accept is None else self.accept.given
+        return {} if self.accept is None else self.accept.limits
 
     @model_validator(mode="after")
     def _some_arm(self) -> Centrifuge:

@@ -69,7 +69,7 @@ class Initial(Table):
     )
 
     @property
-    def given(self) -> dict[str, Any]:
+    def settings(self) -> dict[str, Any]:
         """Settings that are given, as the object takes them."""
         return self.model_dump(exclude_none=True)
 

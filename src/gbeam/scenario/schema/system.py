@@ -6,7 +6,7 @@ displacements and which are angles, and so the units of everything about them.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import reduce
 from itertools import combinations
 from operator import or_
@@ -16,20 +16,16 @@ from pydantic import AfterValidator, ConfigDict, Discriminator, Field, StrictBoo
 from pydantic_core import PydanticCustomError
 
 from gbeam.guards.limits import NAME
-from gbeam.mechanics.tree.joints import COUPLINGS, GROUND, KINDS, SLIDES, Kind
+from gbeam.mechanics.tree.joints import COUPLINGS, GROUND, KINDS, SLIDES, Kind, kind_of_value
 from gbeam.printable import shortened
 from gbeam.scenario.schema.beam import Beam
 from gbeam.scenario.schema.control import Controller
 from gbeam.scenario.schema.fields import (
     Acceleration,
-    Angle,
-    AngularRate,
     Loc,
-    Offset,
     Place3,
     Position,
     Quantity,
-    Speed,
     Table,
     Turn3,
     Vector,
@@ -112,36 +108,34 @@ else:
     Body = Annotated[reduce(or_, (Annotated[each, Tag(name)] for name, each in BODIES.items())), Discriminator(_kind)]
 
 
-class _Of:
-    """Types of what is said of a coordinate: of a displacement, and of an angle."""
-
-    def __init__(self, slide: Any, turn: Any) -> None:
-        self.types = slide, turn
-
-    def __call__(self, coordinate: str) -> Any:
-        return self.types[coordinate not in SLIDES]
+_OVER_TIME = {"speed": SpeedOverTime, "angular rate": TurnOverTime, "force": ForceOverTime, "torque": MomentOverTime}
 
 
-def _quantities(slide: str, turn: str) -> _Of:
-    return _Of(*(Annotated[float, Quantity(kind, "zero or more")] for kind in (slide, turn)))
+def _number(kind: str) -> Any:
+    return Annotated[float, Quantity(kind)]
 
 
-_LENGTHS = _Of(Offset, Angle)
-_STIFFNESSES = _quantities("stiffness", "rotational stiffness")
-# Of every key about coordinates: its types, what it is, and whether it is of rates.
-_ABOUT: dict[str, tuple[_Of, str, bool]] = {
-    "initial": (_LENGTHS, "coordinate at the start", False),
-    "initial_rate": (_Of(Speed, AngularRate), "rate at the start", True),
-    "stiffness": (_STIFFNESSES, "spring", False),
-    "ease": (_LENGTHS, "coordinate at which the spring has no force", False),
-    "damping": (_quantities("damping", "rotational damping"), "damper", False),
-    "friction": (_quantities("force", "torque"), "Coulomb friction", False),
-    "stops": (_Of(tuple[Offset, Offset], tuple[Angle, Angle]),
-              "lowest and highest coordinate, at which stops begin to give way", False),
-    "stop_stiffness": (_STIFFNESSES, "stiffness of the stops", False),
-    "rate": (_Of(SpeedOverTime, TurnOverTime), "prescribed rate, instead of effort: a quantity or a profile", False),
-    "effort": (_Of(ForceOverTime, MomentOverTime), "force or torque of a drive: a quantity or a profile", False),
-}  # fmt: skip
+def _size(kind: str) -> Any:
+    return Annotated[float, Quantity(kind, "zero or more")]
+
+
+def _pair(kind: str) -> Any:
+    return tuple.__class_getitem__((_number(kind), _number(kind)))
+
+
+# Of every key about coordinates: the type of a quantity of its kind, and its words.
+_ABOUT: dict[str, tuple[Callable[[str], Any], str]] = {
+    "initial": (_number, "coordinate at the start"),
+    "initial_rate": (_number, "rate at the start"),
+    "stiffness": (_size, "spring"),
+    "ease": (_number, "coordinate at which the spring has no force"),
+    "damping": (_size, "damper"),
+    "friction": (_size, "Coulomb friction"),
+    "stops": (_pair, "lowest and highest coordinate, at which stops begin to give way"),
+    "stop_stiffness": (_size, "stiffness of the stops"),
+    "rate": (_OVER_TIME.__getitem__, "prescribed rate, instead of effort: a quantity or a profile"),
+    "effort": (_OVER_TIME.__getitem__, "force or torque of a drive: a quantity or a profile"),
+}
 
 
 class Coordinates(Table):
@@ -177,13 +171,13 @@ def _joint(name: str, kind: Kind) -> Any:
         fields["axes"] = (listed, Field(description=f"directions in axes of the point{second}: [{vectors}]"))
     fields["at"] = (Place3, Field(default=(0.0, 0.0, 0.0), description="place of the joint from the point: [x, y, z]"))
     fields["turn"] = (Turn3, Field(default=(0.0, 0.0, 0.0), description=turn))
-    for key, (types, words, of_rates) in _ABOUT.items():
-        names = kind.given_rates if of_rates else kind.given
+    for key, (type_of, words) in _ABOUT.items():
+        names = kind.given_rates if key == "initial_rate" else kind.given
+        within = {each: _optional(type_of(kind_of_value(key, each)), words) for each in names}
         if len(names) == 1:
-            fields[key] = _optional(types(names[0]), words)
+            fields[key] = within[names[0]]
         elif names:
             title = f"{name}_{key}".title().replace("_", "")
-            within = {each: _optional(types(each), words) for each in names}
             table = _table(Coordinates, title, f"{words[0].upper()}{words[1:]}, by coordinate.", within)
             fields[key] = _optional(table, f"{words}: {{ {', '.join(names)} }}")
     if len(kind.given) > 1:
@@ -299,7 +293,7 @@ class SystemScenario(Environments, Tree):
                 yield ("bodies", name, key), wrong("is of a specimen alone on its base", hint, mark="key")
         of_tip: list[Loc] = [("response", "stations")] if self.response.stations is not None else []
         initial = self.response.initial
-        of_tip += [("response", "initial", key) for key in initial.given if key != "state"]
+        of_tip += [("response", "initial", key) for key in initial.settings if key != "state"]
         for place in of_tip:
             yield place, wrong("is of one beam", "leave it out: output is at the points of the bodies", mark="key")
 
