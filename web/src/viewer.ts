@@ -65,8 +65,8 @@ export class Viewer {
     });
     this.canvas.tabIndex = 0;
     this.canvas.setAttribute("role", "img");
-    this.canvas.setAttribute("aria-label", "The beam in motion. Space plays, arrow keys turn the view, Page Up and Down step.");
-    this.paper.alt = "The beam in motion, at the time that the viewer shows.";
+    this.canvas.setAttribute("aria-label", "The structure in motion. Space plays, arrow keys turn the view, Page Up and Down step.");
+    this.paper.alt = "The structure in motion, at the time that the viewer shows.";
     this.stage.append(this.canvas, this.paper);
     this.renderer = renderer(this.canvas);
     this.renderer.setScissorTest(true);
@@ -241,7 +241,9 @@ export class Viewer {
     }
     if (largestLoad > 0) {
       const wanted = this.panels.some((panel) => panel.motion.reference);
-      const words = wanted ? "load at the control point: orange made, black or white of the target" : "load at the root: orange";
+      const rooted = this.panels.some((panel) => panel.motion.load && !panel.motion.reference);
+      const where = `load at the control point${rooted ? ", of a flight at the root" : ""}`;
+      const words = wanted ? `${where}: orange made, black or white of the target` : "load at the root: orange";
       legend.append(element("span", "", `${words}; axes x orange, y green, z blue`));
     }
   }

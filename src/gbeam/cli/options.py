@@ -48,7 +48,7 @@ Report = Annotated[
     option(
         "--report",
         "Also write the result as one page of HTML that opens without a network, with plots that zoom and the "
-        "beam in motion; without --out into out/NAME.",
+        "structure in motion; without --out into out/NAME.",
     ),
 ]
 

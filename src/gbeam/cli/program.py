@@ -32,7 +32,7 @@ _FILES = {
     "place": ("centrifuge", ""),
     "sweep": ("many", "Figures of many cases: over ranges, lists or samples of any values of a scenario."),
     "sensitivity": ("many", "Which values of a scenario a figure depends on, and how much."),
-    "report": ("responses", "Write a result as one page of HTML: tables, plots that zoom, and the beam in motion."),
+    "report": ("responses", "Write a result as one page of HTML: tables, plots that zoom, and the motion in 3-D."),
     "optimize": ("searches", "Values of a scenario at which a figure is least, within limits."),
     "shape": ("searches", "The rate or torque of a hub that leaves the least vibration of its beam."),
     "fit": ("searches", "Values of a scenario from a measurement, by least squares."),

@@ -111,7 +111,7 @@ def report(
     *,
     out: Out = None,
 ) -> int:
-    """Write a result as one page of HTML that opens without a network: tables, plots that zoom, the beam in motion.
+    """Write a result as one page of HTML that opens without a network: tables, plots that zoom, the motion in 3-D.
 
     Nothing is computed: what the page says is in the file. It goes beside the file, or into --out. Exit status: 0 done,
     2 the file cannot be read or holds no result that has a report.

@@ -75,7 +75,7 @@ def shown(result: Result) -> tuple[dict[str, Any], Numbers]:
         name = of.motion if isinstance(of, Deflection) else of.name
         header["scene"] = scene({name: "rest"}, variables_of(of), numbers)
     if header.get("scene") is None:
-        raise InputError("result", f"{type(result).__name__} has no beam in motion to show", "print it, or plot it")
+        raise InputError("result", f"{type(result).__name__} has no motion to show", "print it, or plot it")
     return header, numbers
 
 
@@ -133,7 +133,7 @@ def widget(result: Result) -> Any:
     assets = files("gbeam.report.page") / "assets"
 
     class Viewer(anywidget.AnyWidget):
-        """The beam in motion."""
+        """The structure in motion."""
 
         _esm = (assets / "gbeam.js").read_text(encoding="utf-8")
         _css = (assets / "gbeam.css").read_text(encoding="utf-8")
