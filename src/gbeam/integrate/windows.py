@@ -7,8 +7,9 @@ x and L with respect to the state z before it,
     δx = −J⁻¹ (r + L δz),    δz₊ = g δz + d δx + (g z + d x − z₊).
 
 The window slides: steps that have converged leave it at its beginning, and where its last one is near more follow, each
-at first like the last, of which the next correction makes the linear response about that state. Derivatives are found
-at some of the steps that have moved since they were, and interpolated between these. Steps that stay far are taken out;
+at first like the last, of which the next correction makes the linear response about that state. The derivatives at one
+state serve all steps until corrections shrink slowly; then they are found at some of the steps that have moved since
+they were, and interpolated between these, until corrections shrink fast for long. Steps that stay far are taken out;
 where the first one does, the window begins anew and shorter, with a single step at last, which takes Newton's method
 proper.
 """
@@ -85,9 +86,9 @@ def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, 
 
 class _Window:
     """Steps under way, from the `first` on: their states z (t + 1, m, n) and accelerations x (t, s, n), corrected in
-    place, and the `slope` of the equations, K, C and M (1 or t, s, n, n), from stages so far `apart`. Of each step (t,)
-    the last correction, absolute and of the accelerations, how many there were, and how far all since its derivatives
-    were found have moved it.
+    place, and the `slope` of the equations, K, C and M (1 or t, s, n, n), from stages so far `apart`. Rows (4, t) of
+    `corrections` are their last size, absolute and of the accelerations, how many there were, and how far all since
+    its derivatives were found have moved a step.
     """
 
     z: Array
@@ -95,23 +96,24 @@ class _Window:
     start: Array
     slope: Any
     maps: Any
-    size: Array
-    moved: Array
-    count: Array
-    since: Array
+    corrections: Array
     most: float
 
     def __init__(self, residual: Any, drive: Any, scheme: Scheme, steps: Steps, sampling: Sampling | None) -> None:
         self.residual, self.drive, self.scheme, self.steps, self.sampling = residual, drive, scheme, steps, sampling
-        self.first, self.apart, self.more, self.again = 0, APART, FIRST, LONGEST
+        self.first, self.apart, self.more, self.again = 0, FAR + 1, FIRST, LONGEST
         self.ahead, self.driven, self.held = range(0), cast(Any, None), cast(Any, None)
         self.done: list[tuple[Array, ...]] = []
 
     def begin(self, z: Array, x: Array) -> None:
         """Begin with no step, from a state z (m, n) and accelerations (n,)."""
         self.z, self.x, self.start, self.slope = z[None], np.zeros((0, len(self.scheme.offsets), len(x))), x, None
-        self.size, self.moved, self.count, self.since = np.zeros((4, 0))
-        self.most, self.maps = np.inf, None
+        self.corrections, self.most, self.maps = np.zeros((4, 0)), np.inf, None
+
+    @property
+    def even(self) -> bool:
+        """Whether the derivatives at one state serve all steps."""
+        return self.apart > FAR
 
     def solve(self, end: int, enough: int) -> bool:
         """Correct steps before `end` until `enough` have converged; false where one fails."""
@@ -120,35 +122,39 @@ class _Window:
             self._differentiate()
             if self.maps is None:
                 self.maps = self._maps()
-            fresh, before, alone = self.since == 0, self.size, len(self.x) == 1
-            self.size, self.count = self._correct(*self.maps), self.count + 1
+            size, moved, count, since = self.corrections
+            fresh, before, far, alone = since == 0, size.copy(), not moved[-1] <= MOVED, len(size) == 1
+            size[:] = self._correct(*self.maps)
+            count += 1
             if alone:
                 self._shorten(self.maps[0])
-            near, self.moved = self.moved[-1] <= MOVED, self.size / _reach(self.x)
-            if self.moved[-1] <= MOVED and not near and self.count[-1] <= QUICK:
+            moved[:] = size / _reach(self.x)
+            if far and moved[-1] <= MOVED and count[-1] <= QUICK:
                 self.more = min(self.more + self.more // 2 + 1, LONGEST)
             # By derivatives of another state corrections may shrink slowly without being rounding.
-            good = _converged(self.size, before, self.x, self.noise, stalls=fresh & (self.count > 1))
-            slow = ~good & (self.count > 1) & ~(self.size <= SLOW * before)
-            self.since = np.where(slow, np.inf, self.since + self.moved)
+            good = _converged(size, before, self.x, self.noise, stalls=fresh & (count > 1))
+            slow = ~good & (count > 1) & ~(size <= SLOW * before)
+            since[:] = np.where(slow, np.inf, since + moved)
             if slow.any():
-                self.apart = max(self.apart // 2, NEAR)
-            elif (self.size < FAST * before).all():
-                self.apart = min(self.apart + 1, FAR)
-            far = ~np.isfinite(self.size) | (~(self.moved <= MOVED) & (self.count >= (ALONE if alone else LATE)))
-            far[0] |= self.count[0] >= ALONE
+                self.apart = APART if self.even else max(self.apart // 2, NEAR)
+            elif (size < FAST * before).all():
+                self.apart += 1
+            lost = ~np.isfinite(size) | (~(moved <= MOVED) & (count >= (ALONE if alone else LATE)))
+            lost[0] |= count[0] >= ALONE
             if self.sampling is None or good.all():
-                count = _first(good)
-                self._leave(count)
-                far = far[count:]
-            if far.any() and not self._withdraw(int(np.argmax(far))):
+                done = _first(good)
+                self._leave(done)
+                lost = lost[done:]
+            if lost.any() and not self._withdraw(int(np.argmax(lost))):
                 return False
         return True
 
     def _follow(self, end: int) -> None:
         """Let more steps follow where the last one is near."""
         count = len(self.x)
-        if count and (self.sampling is not None or count > FEW or self.again == 1 or not self.moved[-1] <= MOVED):
+        if count and (self.sampling is not None or count > FEW or self.again == 1):
+            return
+        if count and not self.corrections[1, -1] <= MOVED:
             return
         longest = LONGEST if self.slope is not None and len(self.slope[0]) == 1 else MOST
         more = min(self.more, end - self.first - count, longest - count)
@@ -157,16 +163,14 @@ class _Window:
         last = self.x[-1:, -1:] if count else self.start
         self.z = np.concatenate([self.z, np.repeat(self.z[-1:], more, axis=0)])
         self.x = np.concatenate([self.x, np.broadcast_to(last, (more, *self.x.shape[1:]))])
-        if self.slope is not None and len(self.slope[0]) == count > 1:
+        if self.slope is not None and len(self.slope[0]) == count > 1 and not self.even:
             self.slope = tuple(
                 np.concatenate([each, np.broadcast_to(each[-1:, -1:], (more, *each.shape[1:]))]) for each in self.slope
             )
         elif self.slope is not None:
             self.slope = tuple(each[-1:, -1:] for each in self.slope)
-        self.size, self.moved, self.count, self.since = (
-            np.append(each, np.full(more, value))
-            for each, value in ((self.size, np.inf), (self.moved, np.inf), (self.count, 0.0), (self.since, 0.0))
-        )
+        begun = np.repeat([[np.inf], [np.inf], [0.0], [0.0]], more, axis=1)
+        self.corrections = np.concatenate([self.corrections, begun], axis=1)
         self._place()
 
     def _place(self) -> None:
@@ -202,10 +206,7 @@ class _Window:
     def _keep(self, some: slice) -> None:
         """Keep some of the steps, the first or the last."""
         z, many = slice(some.start, some.stop if some.stop is None else some.stop + 1), len(self.x)
-        self.z, self.x = self.z[z], self.x[some]
-        self.size, self.moved, self.count, self.since = (
-            each[some] for each in (self.size, self.moved, self.count, self.since)
-        )
+        self.z, self.x, self.corrections = self.z[z], self.x[some], self.corrections[:, some]
         if len(self.slope[0]) == many > 1:
             last = tuple(each[-1:, -1:] for each in self.slope)
             self.slope = tuple(each[some] for each in self.slope) if len(self.x) else last
@@ -235,9 +236,11 @@ class _Window:
             inputs = self.sampling.controllers.driven(inputs, *commands)
         at = np.arange(len(x))[:, None] + np.array(self.scheme.offsets)
         qdd = _interpolated(at.ravel(), x.reshape(-1, x.shape[-1]), np.arange(1, len(x) + 1))
-        mass = (mass[:, -1] + np.concatenate([mass[1:, 0], mass[-1:, -1]])) / 2
+        # Where derivatives at one state serve all steps, so does its mass.
+        between = mass[-1:, -1] if self.even else (mass[:, -1] + np.concatenate([mass[1:, 0], mass[-1:, -1]])) / 2
+        inverse = solved(between, np.broadcast_to(np.eye(between.shape[-1]), between.shape))
         for _ in range(CORRECTIONS):  # with the mass at hand, for the equations are linear in q̈
-            change = solved(mass, self.residual(q, qd, qdd, inputs)[..., None])[..., 0]
+            change = _products(inverse, self.residual(q, qd, qdd, inputs))
             qdd = qdd - change
             before, size = size, _largest(change)
             if _converged(size, before, qdd, 0.0, stalls=True).all():
@@ -262,14 +265,15 @@ class _Window:
 
         if self.slope is None:
             self.slope = tuple(np.moveaxis(self._between(function, None)[:, None], 2, 0))
-        stale = ~(self.since <= (STALE if count > 1 else MOVED))
+        since = self.corrections[3]
+        stale = ~(since < np.inf if self.even and count > 1 else since <= (STALE if count > 1 else MOVED))
         if not stale.any():
             return
         first = int(np.argmax(stale))
         renewed = np.moveaxis(self._between(function, first).reshape(shape), 2, 0)
         held = (np.broadcast_to(each, (count, stages, n, n))[:first] for each in self.slope)
         self.slope = tuple(np.concatenate(pair) for pair in zip(held, renewed, strict=True))
-        self.since[first:], self.maps = 0.0, None
+        since[first:], self.maps = 0.0, None
 
     def _between(self, function: Any, first: int | None = 0) -> Array:
         """Values (t s, ...) of a function of states and inputs from a step on; of the first stage alone without one."""
