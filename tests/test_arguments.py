@@ -247,8 +247,8 @@ class Given:
             "optimise": (
                 (self.fast, "flight.tip.z", ["beam.section.width"]),
                 {
-                    "subject_to": (), "bounds": None, "verb": "static", "motion": "flight", "at": 0.0, "starts": 1,
-                    "overrides": (), "progress": None,
+                    "subject_to": (), "bounds": None, "verb": "static", "motion": "flight", "at": 0.0, "options": None,
+                    "starts": 1, "overrides": (), "progress": None,
                 },
             ),
             "place": (
@@ -294,14 +294,14 @@ class Given:
             "rerun": ((self.fast,), {}),
             "sensitivity": (
                 (self.fast, ["flight.tip.z"], ["beam.section.width"]),
-                {"verb": "static", "motion": "flight", "at": 0.0, "overrides": (), "progress": None},
+                {"verb": "static", "motion": "flight", "at": 0.0, "options": None, "overrides": (), "progress": None},
             ),
             "shape_hub_command": (
                 (self.slew,),
                 {
                     "angle": 1.0, "rate": None, "distance": None, "duration": 2.0, "limit": 1e6, "robust": 0.0,
                     "check": "", "motion": "slew", "joint": None, "point": None,
-                    "overrides": (), "progress": None,
+                    "starts": 1, "overrides": (), "progress": None,
                 },
             ),
             "shape_command": (
@@ -324,7 +324,8 @@ class Given:
             "sweep": (
                 (self.fast, {"beam.length": [0.29]}, ["flight.tip.z"]),
                 {
-                    "histories": (), "times": 11, "verb": "static", "motion": "flight", "at": 0.0, "overrides": (),
+                    "histories": (), "times": 11, "verb": "static", "motion": "flight", "at": 0.0, "options": None,
+                    "overrides": (),
                     "samples": None, "sampler": None, "seed": None, "workers": 1, "scheduler": None, "store": None,
                     "resume": False, "confirmed": False, "progress": None,
                 },

@@ -6,11 +6,14 @@ command line, the app and the schema of scenarios. To add one, decorate its func
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args, get_origin, get_type_hints
 
 from gbeam.errors import InputError
+from gbeam.printable import advise
 
 if TYPE_CHECKING:
     from gbeam.analysis.case import AnyCase
@@ -35,6 +38,38 @@ class Needs:
 
 
 @dataclass(frozen=True)
+class Option:
+    """An option of a question: an argument of its function, with its words.
+
+    Of a quantity `kind` is its kind, or gives it from all options.
+    """
+
+    argument: str
+    type: Any
+    default: Any
+    words: str
+    kind: str | Callable[[Mapping[str, Any]], str] = ""
+
+    @property
+    def flag(self) -> str:
+        """Name on the command line."""
+        return f"--{self.argument.rstrip('_').replace('_', '-')}"
+
+    def read(self, value: Any, options: Mapping[str, Any]) -> Any:
+        """Value that the function takes, SI of a quantity; InputError where it is none."""
+        choices = next(
+            (get_args(each) for each in (self.type, *get_args(self.type)) if get_origin(each) is Literal), ()
+        )
+        if choices and value not in choices:
+            raise InputError(self.flag, f"is {value!r}", advise(str(value), choices))
+        if not (self.kind and isinstance(value, str)):
+            return value
+        from gbeam.guards.units import read_quantity
+
+        return read_quantity(self.flag, value, self.kind if isinstance(self.kind, str) else self.kind(options))
+
+
+@dataclass(frozen=True)
 class Question:
     """A question that a case answers."""
 
@@ -46,6 +81,30 @@ class Question:
     motion: str | None = ""  # kind of motion that answers, empty for any; None where all that can answer do
     differentiable: bool = True  # whether its figures are smooth in the scenario's values
     deforms: bool = True  # whether it is about what deforms, which a rigid specimen does not
+    # Figures that are meant where none is named, of a motion and a beam by their names, or of a machine, and one whose
+    # limits of acceptance are set; of a beam, and of a system of bodies.
+    usual: tuple[str, ...] = ()
+    usual_of_systems: tuple[str, ...] = ()
+
+    @property
+    def options(self) -> dict[str, Option]:
+        """Options by their names: the function's arguments that are annotated with words."""
+        asked = [each for each in inspect.signature(self.answer).parameters.values() if each.kind is each.KEYWORD_ONLY]
+        written = SimpleNamespace(__annotations__={each.name: each.annotation for each in asked})
+        hints = get_type_hints(written, self.answer.__globals__, include_extras=True)
+        known = [(each, get_args(hints[each.name])) for each in asked if get_origin(hints[each.name]) is Annotated]
+        options = [Option(each.name, hint, each.default, *words) for each, (hint, *words) in known]
+        return {each.flag[2:]: each for each in options}
+
+    def chosen(self, options: Mapping[str, Any]) -> dict[str, Any]:
+        """Options by the arguments of the function, each as it takes it; InputError where one is not its own."""
+        known = self.options
+        for name in options:
+            if name not in known:
+                problem = f"is no option of {self.name}"
+                raise InputError(f"--{name}", problem, advise(name, known) if known else "leave it out")
+        every = {name: each.default for name, each in known.items()} | dict(options)
+        return {known[name].argument: known[name].read(value, every) for name, value in options.items()}
 
     @property
     def records(self) -> tuple[type, ...]:
@@ -154,7 +213,22 @@ def _time(case: AnyCase, at: float | None) -> float:
 
 
 @question(
-    "run", "Compute the response in every environment of a scenario, and compare them.", motion=None, deforms=False
+    "run",
+    "Compute the response in every environment of a scenario, and compare them.",
+    motion=None,
+    deforms=False,
+    usual=(
+        "motions.{motion}.tip.size.max_abs",
+        "motions.{motion}.loads.root_moment.size.max_abs",
+        "comparisons.{machine}.verdict.followed",
+        "comparisons.{limited}.verdict.accepted",
+    ),
+    usual_of_systems=(
+        "motions.{motion}.points.{beam}.tip.displacement_max",
+        "motions.{motion}.beams.{beam}.root_moment.size.max_abs",
+        "comparisons.{machine}.verdict.followed",
+        "comparisons.{limited}.verdict.accepted",
+    ),
 )
 def run(
     case: AnyCase, motion: str | None = None, at: float | None = None, needs: Needs = Needs()
@@ -185,6 +259,8 @@ def static(
 @question(
     "modes",
     "Frequencies, damping and shapes about the equilibrium at one time of a motion.",
+    usual=("modes[0].frequency",),
+    usual_of_systems=("modes[0].frequency",),
 )
 def modes(
     case: AnyCase,
@@ -203,6 +279,15 @@ def modes(
     return modal.modes(known, prepared(case, name), time, **options)
 
 
+_TURNING = "Of a system, the angle that turns, base.angle; else its only prescribed one, or only one."
+_SPEED = 'Such as "60 rpm"; by default from rest to the largest rate of the motion.'
+_VARIED = {"rate": "angular rate", "loads": "ratio", "acceleration": "acceleration"}  # kinds of what is raised
+
+
+def _kind_varied(options: Mapping[str, Any]) -> str:
+    return _VARIED[options["vary"]]
+
+
 @question(
     "critical-speed",
     "The rate, load or acceleration at which the equilibrium of a beam or a system is lost.",
@@ -214,19 +299,27 @@ def critical_speed(
     at: float | None = None,
     needs: Needs = Needs(),
     *,
-    vary: Literal["rate", "loads", "acceleration"] = "rate",
-    turning: str | None = None,
-    upper: float | None = None,
+    vary: Annotated[
+        Literal["rate", "loads", "acceleration"],
+        "What is raised: the rate of the hub or joint; all loads on beams and points, by one factor, the base being "
+        "frozen; or the acceleration of the root along the beam, which pushes it.",
+    ] = "rate",
+    turning: Annotated[str | None, _TURNING] = None,
+    to: Annotated[
+        float | None, 'End of search, such as "20 rad/s"; by default ten times what the beam resists.', _kind_varied
+    ] = None,
     progress: Callable[[str, float], None] | None = None,
 ) -> Critical:
-    """The rate, factor of the loads or acceleration of the root, up to `upper`, at which beams buckle."""
+    """The rate, factor of the loads or acceleration of the root, up to `to`, at which beams buckle."""
     from gbeam.analysis.steady import stability
     from gbeam.analysis.steady.operating_point import held_base
     from gbeam.mechanics.tree.system import System
 
+    if to is not None and not to > 0:
+        raise InputError("to", f"is {to:g}", "give a value above zero, where the search ends")
     name, time = motion_of(case.environments, motion, HUB), _time(case, at)
     base, structure = prepared(case, name), _structure(case, needs)
-    options: dict[str, Any] = {"upper": upper, "progress": progress}
+    options: dict[str, Any] = {"upper": to, "progress": progress}
     if isinstance(structure, System):
         options |= {"motion": base, "time": time}
     else:
@@ -289,19 +382,24 @@ def campbell(
     at: float | None = None,
     needs: Needs = Needs(),
     *,
-    turning: str | None = None,
-    start: float = 0.0,
-    end: float | None = None,
-    modes: int = 8,
-    orders: int = 4,
+    turning: Annotated[str | None, _TURNING] = None,
+    from_: Annotated[float | None, _SPEED, "angular rate"] = None,
+    to: Annotated[float | None, _SPEED, "angular rate"] = None,
+    modes: Annotated[int, "How many to follow."] = 8,
+    orders: Annotated[int, "Multiples of the speed, 1 to this."] = 4,
     progress: Callable[[str, float], None] | None = None,
 ) -> Campbell:
     """Frequencies from one rate of a hub or a joint to another, rad/s, and crossings with multiples of the rate."""
     from gbeam.analysis.steady import campbell
 
+    if orders < 0:
+        raise InputError("orders", f"is {orders}", "give 0 or more")
     name = motion_of(case.environments, motion, HUB)
+    base = prepared(case, name)
+    if to is None and getattr(base, "free", False):
+        raise InputError("to", "is missing: the hub is driven by a torque", 'give the largest speed, such as "5 rad/s"')
     return campbell.campbell(
-        case.assemble(), prepared(case, name), turning=turning, start=start, end=end, modes=modes,
+        case.assemble(), base, turning=turning, start=from_ or 0.0, end=to, modes=modes,
         orders=range(1, orders + 1), time=_time(case, at), name=name, progress=progress,
     )  # fmt: skip
 

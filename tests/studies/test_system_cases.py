@@ -95,3 +95,47 @@ def test_errors_that_no_figure_needs_are_not_computed() -> None:
         "examples/hubbeam2009_slew_2p8.toml", ["model.modes={ axial = 1, y = 2, z = 0 }"]
     ).assemble()
     assert gb.modes(beam, errors=False).errors is None and gb.modes(beam).errors is not None
+
+
+def test_options_of_a_question_are_those_of_its_sweeps_and_searches() -> None:
+    """The joint that turns, and the end of the search, as options say."""
+    strip = gb.Beam(
+        0.3, gb.Section.rectangle(width=0.02, thickness=0.004), gb.Material(2700.0, 70e9), damping_ratio=0.0
+    )
+    joints = {
+        "spin": gb.Joint("revolute", "bus", axes=[(0, 0, 1)]),
+        "hinge": gb.Joint("revolute", "panel", on="bus.root", axes=[(0, 1, 0)], stiffness=5.0),
+    }
+    panel = gb.assemble(strip, "FOAM", axial=1, y=2, z=2)
+    case = replace(made(), system=gb.System({"bus": gb.RigidBody(1.0, (1.0, 1.0, 1.0)), "panel": panel}, joints))
+    by, options = "joints.hinge.stiffness", {"turning": "spin.angle", "to": "60 rpm"}
+    with pytest.raises(gb.InputError, match="turning is missing"):
+        gb.sweep(case, [f"{by}=5"], ["speed[1]"], verb="campbell", options={"to": "60 rpm"})
+    swept = gb.sweep(case, [f"{by}=5"], ["searched_to"], verb="critical-speed", options=options)
+    assert swept.state == "done" and swept.measures["searched_to"][0] == pytest.approx(2 * np.pi)
+    slopes = [
+        gb.sensitivity(case, parameters=[by], verb="modes", options={"gyroscopic": each}) for each in (True, False)
+    ]
+    assert slopes[0].measures == ("modes[0].frequency",) and slopes[0].derivatives == slopes[1].derivatives > 0
+    for wrong, message in (
+        ({"turnin": "spin.angle"}, "--turnin is no option of critical-speed; did you mean 'turning'"),
+        ({"to": "30 m"}, "--to .*angular rate"),
+        ({"to": "30 m", "vary": "loads"}, "--to .*ratio"),
+        ({"vary": "speed"}, "--vary is 'speed'; choose one of rate, loads, acceleration"),
+    ):
+        with pytest.raises(gb.InputError, match=message):
+            gb.sweep(case, [f"{by}=5"], ["searched_to"], verb="critical-speed", options=wrong)
+    with pytest.raises(gb.InputError, match="--turning is no option of run; leave it out"):
+        gb.sweep(case, [f"{by}=5"], options={"turning": "spin.angle"})
+
+
+def test_a_system_has_figures_that_are_meant_where_none_is_named() -> None:
+    by = ["joints.hinge_right.stiffness"]
+    of_file = gb.sensitivity(SATELLITE, parameters=by, overrides=SHORT)
+    of_case = gb.sweep(made(), [f"{by[0]}=100"])
+    assert tuple(of_case.measures) == of_file.measures and np.isfinite(of_file.figures).all()
+    assert of_file.measures[:2] == (
+        "motions.ground.points.right.tip.displacement_max",
+        "motions.ground.points.left.tip.displacement_max",
+    )
+    assert of_file.units == ("m", "m", "N m", "N m")

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, make_dataclass, replace
+from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -13,7 +14,7 @@ from cyclopts import Parameter
 from gbeam.cli.process import Watch, command
 from gbeam.cli.publication import refuse_unwritable
 from gbeam.errors import InputError
-from gbeam.questions import QUESTIONS, differentiable, motion_of, prepared, refuse_rigid
+from gbeam.questions import QUESTIONS, Needs, Question, differentiable, motion_of, prepared, refuse_rigid
 
 if TYPE_CHECKING:
     from gbeam.analysis.case import AnyCase, Case
@@ -88,28 +89,7 @@ IgnoreLimits = Annotated[
 
 SmoothVerb = Annotated[_Smooth, Parameter(help="Whose figures.")]
 
-# Of campbell and critical-speed.
-Turns = Annotated[
-    str | None,
-    Parameter(
-        name="--turning",
-        help="Of a system, the angle that turns, base.angle; else its only prescribed one, or only one.",
-    ),
-]
-
 # Of critical-speed.
-Vary = Annotated[
-    Literal["rate", "loads", "acceleration"],
-    Parameter(
-        name="--vary",
-        help="What is raised: the rate of the hub or joint; all loads on beams and points, by one factor, the base "
-        "being frozen; or the acceleration of the root along the beam, which pushes it.",
-    ),
-]
-To = Annotated[
-    str | None,
-    Parameter(name="--to", help='End of search, such as "20 rad/s"; by default ten times what the beam resists.'),
-]
 Masses = Annotated[str | None, Parameter(name="--masses", help='A map instead, with one more mass: "0.1 kg, 0.5 kg".')]
 Positions = Annotated[
     str | None, Parameter(name="--positions", help='Where that mass sits: "2 m, 5 m, 8 m"; by default all along.')
@@ -147,11 +127,6 @@ AtLoop = Annotated[
         help="Of a system with controllers: open; closed, from sample to sample, with margins; or cut at a drive, "
         '"pointing: axis.angle".',
     ),
-]
-
-# Of campbell.
-Speed = Annotated[
-    str | None, Parameter(help='Such as "60 rpm"; by default from rest to the largest rate of the motion.')
 ]
 
 # Of fit and optimize.
@@ -205,6 +180,44 @@ Check = Annotated[
 ]
 
 
+def options_of(*verbs: str) -> Any:
+    """Options of some questions as arguments of a verb: a record of them as the command line has them, like Output.
+
+    Of several questions those that a user gives are of one of them, which refuses the others.
+    """
+    words: dict[str, dict[str, list[str]]] = {}
+    known: dict[str, Any] = {}
+    for verb in verbs:
+        for name, each in QUESTIONS[verb].options.items():
+            known.setdefault(name, each)
+            words.setdefault(name, {}).setdefault(each.words, []).append(verb)
+    fields: list[tuple[str, Any, Any]] = []
+    for name, each in known.items():
+        said = [text if len(verbs) == 1 else f"Of {' and '.join(of)}: {text}" for text, of in words[name].items()]
+        kind = str | None if each.kind else each.type
+        fields.append((each.argument, Annotated[kind, Parameter(name=each.flag, help=" ".join(said))], each.default))
+    return Parameter(name="*")(make_dataclass("Options", fields, frozen=True, namespace={"__module__": __name__}))
+
+
+if TYPE_CHECKING:
+
+    class Options:
+        """Of all questions."""
+
+    SmoothOptions = Options
+    CampbellOptions = Options
+    CriticalOptions = Options
+else:
+    Options, SmoothOptions = options_of(*QUESTIONS), options_of(*differentiable())
+    CampbellOptions, CriticalOptions = options_of("campbell"), options_of("critical-speed")
+
+
+def asked(options: Any) -> dict[str, Any]:
+    """Options of a question that were given, by their names: those that are not as without them."""
+    every = {each.name: (getattr(options, each.name), each.default) for each in fields(options)}
+    return {name.rstrip("_"): value for name, (value, default) in every.items() if value != default}
+
+
 @dataclass(frozen=True)
 class Input:
     """A scenario as read, and the case that it describes."""
@@ -238,6 +251,15 @@ class Input:
             from gbeam.scenario import placed
 
             raise placed(self.scenario, [error.within(f"motion.{chosen}")]) from None
+
+    def answer(self, question: Question, motion: str | None, at: str | None, options: Any, needs: Needs) -> Any:
+        """Answer of a question with the options of the command line."""
+        time, chosen = self.time(at), question.chosen(asked(options))
+        places = {each.argument.rstrip("_"): each.flag for each in question.options.values()}
+        with Watch() as watch, self.placing(**places):
+            if "progress" in signature(question.answer).parameters:
+                chosen["progress"] = watch
+            return question.answer(self.case, motion, time, needs, **chosen)
 
     def time(self, text: str | None) -> float:
         """Time of ``--at``, s; the response's start where it is not given."""
@@ -289,12 +311,9 @@ def naming(option: str) -> Iterator[None]:
 
 def number(option: str, text: str, kind: str) -> float:
     """Read an option with a unit."""
-    from gbeam.guards.units import UnitError, argument
+    from gbeam.guards.units import read_quantity  # not needed, nor imported, for help
 
-    try:
-        return argument(text, kind)
-    except UnitError as error:
-        raise InputError(option, error.problem, error.hint or "write a number with its unit") from None
+    return read_quantity(option, text, kind)
 
 
 def numbers(option: str, text: str, kind: str) -> list[float]:

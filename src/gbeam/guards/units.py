@@ -11,6 +11,7 @@ import re
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+from gbeam.errors import InputError
 from gbeam.guards.kinds import KINDS, USUAL, Kind
 from gbeam.guards.limits import QUANTITY
 from gbeam.printable import closest, shortened
@@ -142,6 +143,14 @@ def argument(text: str, kind: str) -> float:
     """Read a quantity of the command line, where a bare number is text too: ``2.5`` is SI, ``60 rpm`` is not."""
     match = NUMBER.fullmatch(text) if len(text) <= QUANTITY else None
     return quantity(float(text) if match and not match[2] else text, kind)
+
+
+def read_quantity(where: str, text: str, kind: str, of: str = "") -> float:
+    """Read a quantity of the command line; the InputError of what is none begins with the words it is `of`."""
+    try:
+        return argument(text, kind)
+    except UnitError as error:
+        raise InputError(where, f"{of}{error.problem}", error.hint or "write a number with its unit") from None
 
 
 def unit_of(text: str, kind: str) -> tuple[str, float]:

@@ -63,6 +63,7 @@ class Question:
     verb: str
     motion: str | None
     at: float | None = None
+    options: Mapping[str, Any] = field(default_factory=dict)  # of the verb, as its function takes them
     keys: tuple[Keys, ...] = ()
     functions: tuple[Function, ...] = ()
     histories: tuple[History | SystemHistory, ...] = ()
@@ -72,6 +73,7 @@ class Question:
     def __post_init__(self) -> None:
         if self.verb not in QUESTIONS:
             raise InputError("--verb", f"is {self.verb!r}", advise(self.verb, QUESTIONS))
+        QUESTIONS[self.verb].chosen(self.options)  # before anything is computed
 
     @cached_property
     def width(self) -> int:
@@ -98,7 +100,7 @@ class Question:
 
     def facts(self, case: AnyCase) -> Facts:
         """Answer of the verb, as JSON."""
-        return answered(self.verb, case, self.motion, self.at, self.needs)
+        return answered(self.verb, case, self.motion, self.at, self.needs, self.options)
 
     def row(self, number: int, overrides: Sequence[str]) -> Row:
         """Compute one case. What goes wrong in it is part of the row: the other cases go on."""

@@ -28,10 +28,13 @@ Facts = Mapping[str, Any]
 KIND = ""  # key of the kind of answers in facts; no figure's path begins so
 
 
-def answered(verb: str, case: AnyCase, motion: str | None, at: float | None, needs: Needs) -> Facts:
+def answered(
+    verb: str, case: AnyCase, motion: str | None, at: float | None, needs: Needs, options: Mapping[str, Any]
+) -> Facts:
     """The facts of a question's answer."""
-    QUESTIONS[verb].refuse(case)
-    return answer_facts(QUESTIONS[verb].answer(case, motion, at, needs), case.title)
+    question = QUESTIONS[verb]
+    question.refuse(case)
+    return answer_facts(question.answer(case, motion, at, needs, **question.chosen(options)), case.title)
 
 
 def answer_facts(answer: Any, title: str = "") -> Facts:
@@ -154,19 +157,18 @@ def _fits(ends: Sequence[str], path: Sequence[str]) -> bool:
     return any(re.fullmatch(r"\.".join(words[first:]), name) for first in range(len(words)))
 
 
-def usual(template: Template, verb: str) -> tuple[str, ...]:
-    """Figures of ``run`` that are meant where none is named: of every motion the largest of tip and root moment."""
-    if verb != "run" or template.of_system:
+def usual(template: Template, verb: str, *, judged: bool = False) -> tuple[str, ...]:
+    """Figures that are meant where none is named; with those of verdicts, which have no derivative, if `judged`."""
+    question = QUESTIONS.get(verb)
+    if question is None:
         return ()
-    ends = ("tip.size.max_abs", "loads.root_moment.size.max_abs")
-    return tuple(f"motions.{name}.{end}" for name in template.motions for end in ends)
-
-
-def judged(template: Template, verb: str) -> tuple[str, ...]:
-    """Further ones, of every centrifuge: the share of the flight that is followed, and whether limits accept it."""
     limited = [name for name, accepts in template.imitations.items() if accepts]
-    figures = [f"comparisons.{name}.verdict.followed" for name in template.imitations]
-    return tuple(figures + [f"comparisons.{name}.verdict.accepted" for name in limited]) if verb == "run" else ()
+    every = question.usual_of_systems if template.of_system else question.usual
+    figures = [each.replace("{motion}", name) for name in template.motions for each in every if "{motion}" in each]
+    figures += [each for each in every if "{motion}" not in each]
+    for key, names in (("{beam}", template.beams), ("{machine}", template.imitations), ("{limited}", limited)):
+        figures = [each.replace(key, name) for each in figures for name in (names if key in each else ("",))]
+    return tuple(each for each in figures if judged or not each.startswith("comparisons."))
 
 
 def value_at(facts: Facts, keys: Keys) -> float:

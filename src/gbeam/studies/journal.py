@@ -195,7 +195,7 @@ def identity(question: Question, cases: Cases, measures: Sequence[str], historie
     return {
         "version": gbeam.__version__,
         **question.template.identity,
-        "question": [question.verb, question.motion, question.at],
+        "question": [question.verb, question.motion, question.at, dict(question.options)],
         "parameters": [each.path for each in cases.variations],
         "values": digest.hexdigest(),
         "measures": list(measures),

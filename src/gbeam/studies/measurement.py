@@ -15,7 +15,7 @@ from gbeam.analysis.case import AnyCase, Case, SpecimenCase, SystemCase
 from gbeam.analysis.control.linearization import surface_gauge
 from gbeam.errors import InputError
 from gbeam.guards.kinds import KINDS
-from gbeam.guards.units import UnitError, argument
+from gbeam.guards.units import read_quantity
 from gbeam.io.tables.table import Table
 from gbeam.motion.records.text import read_text
 from gbeam.printable import advise
@@ -218,10 +218,7 @@ def _examples(modal: bool) -> str:
 
 def _factor(unit: str, kind: str, name: str) -> float:
     """SI value of one unit."""
-    try:
-        return argument(f"1 {unit}" if unit else "1", kind)
-    except UnitError as error:
-        raise InputError(OPTION, f"has the column {name!r} in {unit!r}: {error.problem}", error.hint) from None
+    return read_quantity(OPTION, f"1 {unit}" if unit else "1", kind, f"has the column {name!r} in {unit!r}: ")
 
 
 def _gauged(text: str, axis: str, case: SpecimenCase) -> str:
@@ -242,12 +239,10 @@ def _way(axis: str) -> Floats:
 
 def _position(text: str, face: str, case: Case) -> float:
     """Position of a gauge on a face of the beam, m."""
+    at = case.beam.named_points.get(text.strip())
+    at = read_quantity(OPTION, text.strip(), "length", f"has a gauge at {text!r}: ") if at is None else at
     try:
-        at = case.beam.named_points.get(text.strip())
-        at = argument(text.strip(), "length") if at is None else at
         surface_gauge(case.beam, at, face)
-    except UnitError as error:
-        raise InputError(OPTION, f"has a gauge at {text!r}: {error.problem}", error.hint) from None
     except InputError as error:
         raise InputError(OPTION, f"has a gauge that {error.problem}", error.fix) from None
     return at

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -15,7 +15,7 @@ from gbeam.analysis.case import Case, SpecimenCase, SystemCase
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.kinds import KINDS
-from gbeam.guards.units import UnitError, argument
+from gbeam.guards.units import read_quantity
 from gbeam.progress import Progress
 from gbeam.results.imitation.criteria import BROKEN
 from gbeam.results.result import Floats
@@ -44,6 +44,7 @@ def optimise(
     verb: str = "run",
     motion: str | None = None,
     at: float | None = None,
+    options: Mapping[str, Any] | None = None,
     starts: int = 1,
     overrides: Sequence[str] = (),
     progress: Progress = None,
@@ -68,7 +69,7 @@ def optimise(
         Requirements: ``limits`` (of every machine), or ``FIGURE <= VALUE`` and ``>=``, with a unit or SI.
     bounds : mapping of str to a pair, optional
         By path, in SI or as text with a unit; a tenth to ten times the scenario's value where not given.
-    verb, motion, at
+    verb, motion, at, options
         As for :func:`gbeam.sensitivity`.
     starts : int
         Searches: one from the scenario's values, the others from values spread over the bounds.
@@ -103,7 +104,7 @@ def optimise(
     parameters = named(template, over, "--over")
     offered(verb, [minimise], OPTION)
     limits = np.array([bounds_of(each, bounds or {}, "--over") for each in parameters])
-    question = Question(template, verb, motion, at)
+    question = Question(template, verb, motion, at, options or {})
     first = Neighbourhood(question, parameters, progress=progress)
     goal = _goal(facts_of(first.answer), first.case, minimise, subject_to)
     # On the way no more is computed than is read; the last answer is whole.
@@ -186,10 +187,7 @@ def _machine_limits(facts: Facts) -> Any:
 
 def _bound(text: str, unit: str, name: str) -> float:
     kind = "frequency" if unit == "Hz" else next((kind for kind, each in KINDS.items() if each.unit == unit), "ratio")
-    try:
-        return argument(text, kind)
-    except UnitError as error:
-        raise InputError(SUBJECT, f"of {name}: {error.problem}", error.hint) from None
+    return read_quantity(SUBJECT, text, kind, f"of {name}: ")
 
 
 _PRECISE, _EVALUATIONS = 1e-7, 40  # of one search

@@ -14,7 +14,7 @@ import numpy as np
 from gbeam.errors import GbeamError, InputError
 from gbeam.guards.kinds import KINDS
 from gbeam.guards.limits import refuse_more
-from gbeam.guards.units import UnitError, argument
+from gbeam.guards.units import read_quantity
 from gbeam.printable import advise
 from gbeam.results.result import Flags, Floats
 from gbeam.scenario.load import load
@@ -139,10 +139,7 @@ def with_values(
 
 
 def _quantity(each: PhysicalValue, text: float | str) -> float:
-    try:
-        return argument(text, each.kind) if isinstance(text, str) else float(text)
-    except UnitError as error:
-        raise InputError("--bounds", f"of {each.path}: {error.problem}", error.hint) from None
+    return read_quantity("--bounds", text, each.kind, f"of {each.path}: ") if isinstance(text, str) else float(text)
 
 
 MAX_STARTS = 1000

@@ -41,6 +41,7 @@ def sensitivity(
     verb: str = "run",
     motion: str | None = None,
     at: float | None = None,
+    options: Mapping[str, Any] | None = None,
     overrides: Sequence[str] = (),
     progress: Progress = None,
 ) -> Sensitivity:
@@ -66,6 +67,8 @@ def sensitivity(
         Which motion, for a verb that answers for one.
     at : float, optional
         Time at which that motion is frozen, s; the start of the response by default.
+    options : mapping of str to values, optional
+        Options of the verb by their names on its command line, such as ``{"turning": "base.angle", "to": "60 rpm"}``.
     overrides : sequence of str
         Changes of the scenario, such as ``beam.length=250 mm``.
     progress : callable or bool, optional
@@ -94,7 +97,7 @@ def sensitivity(
     if not of:
         raise InputError(OPTION, "is missing", 'name figures: --of "tip.z.max_abs, verdict.tip"; list prints all')
     offered(verb, of, OPTION)
-    question = Question(template, verb, motion, at)
+    question = Question(template, verb, motion, at, options or {})
     chosen, refused = _possible(question, physical_values(template, parameters), strict=bool(parameters))
     if not chosen:
         raise InputError("--with", "has no value that may be a little more and a little less", "name some")

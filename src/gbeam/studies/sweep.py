@@ -21,7 +21,7 @@ from gbeam.results.cases import Sweep
 from gbeam.studies.cases import Cases, read_cases
 from gbeam.studies.cluster import on_scheduler
 from gbeam.studies.evaluate import Function, Question, Row, Task, may_share, width
-from gbeam.studies.figures import HISTORY, TIMES, judged, offered, usual
+from gbeam.studies.figures import HISTORY, TIMES, offered, usual
 from gbeam.studies.journal import Journal, identity, opened
 from gbeam.studies.start import NO_HISTORIES, OverTime, Start, go_on, start
 from gbeam.studies.statistics import indices, statistics
@@ -45,6 +45,7 @@ def sweep(
     verb: str | None = None,
     motion: str | None = None,
     at: float | None = None,
+    options: Mapping[str, Any] | None = None,
     overrides: Sequence[str] = (),
     samples: int | None = None,
     sampler: str | None = None,
@@ -82,6 +83,8 @@ def sweep(
         Which motion, for a verb that answers for one.
     at : float, optional
         Time at which that motion is frozen, s; the start of the response by default.
+    options : mapping of str to values, optional
+        Options of the verb by their names on its command line, such as ``{"turning": "base.angle", "to": "60 rpm"}``.
     overrides : sequence of str
         Changes of the scenario that all cases share, such as ``beam.length=250 mm``.
     samples : int, optional
@@ -134,7 +137,7 @@ def sweep(
         sampler, seed = sampler or table.sampler, table.seed if seed is None else seed
     verb = verb or "run"
     if not (measure or histories):
-        measure = (*usual(template, verb), *judged(template, verb))
+        measure = usual(template, verb, judged=True)
     names = tuple(measure)
     if not (names or histories):
         fix = 'name figures: --measure "tip.z.max_abs, verdict.tip"; list prints all'
@@ -149,7 +152,7 @@ def sweep(
         offered(verb, names)
     functions = tuple(measure.values()) if isinstance(measure, Mapping) else ()
     share = not functions and may_share(verb, [each.path for each in cases.variations])
-    question = Question(template, verb, motion, at, functions=functions, together=share)
+    question = Question(template, verb, motion, at, options or {}, functions=functions, together=share)
     known = {} if store is None else identity(question, cases, names, [over_time.names, over_time.count])
     journal, done = opened(store, resume, known)
     kept = {row.case for row in done}

@@ -16,14 +16,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gbeam.analysis.case import AnyCase, Case, SystemCase
+from gbeam.analysis.system.histories import beams_of
 from gbeam.arrays.tree import altered, arguments_of
 from gbeam.errors import InputError
 from gbeam.guards.kinds import KINDS, kind_of_argument
-from gbeam.guards.units import UnitError, argument
+from gbeam.guards.units import read_quantity
 from gbeam.mechanics.assembly import assemble
 from gbeam.mechanics.models import Model
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.joints import COUPLINGS, OF_COORDINATES, SLIDES, Joint, kind_of_value
+from gbeam.mechanics.tree.joints import COUPLINGS, GROUND, OF_COORDINATES, SLIDES, Joint, kind_of_value
 from gbeam.mechanics.tree.system import RigidBody, System
 from gbeam.printable import advise
 from gbeam.results.provenance import Provenance
@@ -32,6 +33,7 @@ from gbeam.scenario.load import change, provenance
 from gbeam.scenario.schema import Centrifuge
 from gbeam.scenario.schema.fields import kind_of, quantities
 from gbeam.scenario.schema.scenario import Sweep as SweepTable
+from gbeam.scenario.schema.system import BeamBody
 from gbeam.scenario.values import Distribution, Path, parse_path, path_text
 from gbeam.structure.beam import Beam
 
@@ -59,8 +61,14 @@ class ScenarioTemplate:
 
     @property
     def motions(self) -> tuple[str, ...]:
-        """Names of the motions."""
-        return tuple(self.scenario.motion)
+        """Names of the motions, or of the ground at rest where there is none."""
+        return tuple(self.scenario.motion) or (GROUND,)
+
+    @property
+    def beams(self) -> tuple[str, ...]:
+        """Names of the bodies of a system that are beams."""
+        bodies = getattr(self.scenario, "bodies", {})
+        return tuple(name for name, body in bodies.items() if isinstance(body, BeamBody))
 
     @property
     def imitations(self) -> dict[str, bool]:
@@ -154,7 +162,11 @@ class CaseTemplate:
 
     @property
     def motions(self) -> tuple[str, ...]:
-        return tuple(self.case.motions)
+        return tuple(self.case.environments)
+
+    @property
+    def beams(self) -> tuple[str, ...]:
+        return tuple(beams_of(self.case.system)) if isinstance(self.case, SystemCase) else ()
 
     @property
     def imitations(self) -> dict[str, bool]:
@@ -306,10 +318,7 @@ def _read(current: Any, kind: str, text: str, path: Path) -> Any:
         return text == "true"
     if isinstance(current, str):
         return text.strip('"')
-    try:
-        value = argument(text, kind or "ratio")
-    except UnitError as error:
-        raise InputError(path_text(path), error.problem, error.hint) from None
+    value = read_quantity(path_text(path), text, kind or "ratio")
     return int(value) if isinstance(current, int) and value == int(value) else value
 
 

@@ -9,7 +9,20 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from gbeam.cli.failures import FAILED, complain
-from gbeam.cli.options import At, MotionName, Output, ScenarioFile, SmoothVerb, Verb, names, number, option
+from gbeam.cli.options import (
+    At,
+    MotionName,
+    Options,
+    Output,
+    ScenarioFile,
+    SmoothOptions,
+    SmoothVerb,
+    Verb,
+    asked,
+    names,
+    number,
+    option,
+)
 from gbeam.cli.outputs import LIST, deliver, list_figures
 from gbeam.cli.process import Watch, command
 from gbeam.cli.publication import refuse_unwritable
@@ -48,6 +61,7 @@ def sweep(
     verb: Annotated[Verb | None, Parameter(help="Whose figures; run by default.")] = None,
     motion: MotionName = None,
     at: At = None,
+    options: Options = Options(),
     samples: Annotated[int | None, Parameter(help='How many are drawn of distributions, "200"; 64 by default.')] = None,
     sampler: Annotated[
         Literal["sobol", "latin", "random", "saltelli"] | None,
@@ -88,6 +102,7 @@ def sweep(
             verb=verb,
             motion=motion,
             at=None if at is None else number("--at", at, "time"),
+            options=asked(options),
             overrides=output.overrides,
             samples=samples,
             sampler=sampler,
@@ -136,6 +151,7 @@ def sensitivity(
     verb: SmoothVerb = "run",
     motion: MotionName = None,
     at: At = None,
+    options: SmoothOptions = SmoothOptions(),
     output: Output = Output(),
 ) -> int:
     """Rank the values of a scenario by how much a figure depends on them: a table and a tornado plot.
@@ -159,6 +175,7 @@ def sensitivity(
             verb=verb,
             motion=motion,
             at=time,
+            options=asked(options),
             overrides=output.overrides,
             progress=watch,
         )

@@ -5,15 +5,14 @@ from __future__ import annotations
 from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
-from cyclopts import Parameter
-
-from gbeam import questions
 from gbeam.cli.options import (
     At,
     AtLoop,
     Balanced,
+    CampbellOptions,
+    CriticalOptions,
     Input,
     Inputs,
     Masses,
@@ -24,11 +23,8 @@ from gbeam.cli.options import (
     Positions,
     Rate,
     ScenarioFile,
-    Speed,
     StrainAt,
-    To,
-    Turns,
-    Vary,
+    asked,
     naming,
     number,
     numbers,
@@ -37,6 +33,7 @@ from gbeam.cli.options import (
 from gbeam.cli.outputs import deliver
 from gbeam.cli.process import Watch
 from gbeam.errors import InputError
+from gbeam.questions import QUESTIONS, Needs
 
 
 def campbell(
@@ -44,11 +41,7 @@ def campbell(
     /,
     *,
     motion: MotionName = None,
-    turning: Turns = None,
-    start: Annotated[Speed, Parameter(name="--from")] = None,
-    end: Annotated[Speed, Parameter(name="--to")] = None,
-    modes: Annotated[int, Parameter(name="--modes", help="How many to follow.")] = 8,
-    orders: Annotated[int, Parameter(name="--orders", help="Multiples of the speed, 1 to this.")] = 4,
+    options: CampbellOptions = CampbellOptions(),
     output: Output = Output(),
 ) -> int:
     """Frequencies against the speed of a hub or a joint, in the unit of --to or --from, and where multiples meet them.
@@ -59,25 +52,14 @@ def campbell(
     """
     folder = output.folder(scenario, always=True)
     loaded = read("campbell", scenario, output.overrides)
-    name, chosen = loaded.motion(motion, kind="hub")
-    low = 0.0 if start is None else number("--from", start, "angular rate")
-    high = None if end is None else number("--to", end, "angular rate")
-    if orders < 0:
-        raise InputError("--orders", f"is {orders}", "give 0 or more")
-    if high is None and getattr(chosen, "free", False):
-        fix = 'give the largest speed, such as "5 rad/s"'
-        raise InputError("--to", "is missing: the hub is driven by a torque", fix)
-
-    with Watch() as watch, loaded.placing(to="--to", modes="--modes", turning="--turning", speeds="--to"):
-        diagram = questions.campbell(
-            loaded.case, name, turning=turning, start=low, end=high, modes=modes, orders=orders, progress=watch
-        )
+    name, _ = loaded.motion(motion, kind="hub")
+    diagram = loaded.answer(QUESTIONS["campbell"], name, None, options, Needs())
 
     from gbeam.figures import steady
     from gbeam.guards.units import unit_of
 
     # In words and in the diagram speeds are in the unit in which they are given.
-    unit, size = unit_of(end or start or "0", "angular rate")
+    unit, size = unit_of(asked(options).get("to") or asked(options).get("from", "0"), "angular rate")
     figures = {"campbell": partial(steady.campbell, diagram, loaded.case.title, (1 / size, unit))}
     deliver(
         diagram, "campbell", folder, output, origin=loaded.case.provenance, figures=figures,
@@ -86,18 +68,13 @@ def campbell(
     return 0
 
 
-KINDS = {"rate": "angular rate", "loads": "ratio", "acceleration": "acceleration"}
-
-
 def critical_speed(
     scenario: ScenarioFile,
     /,
     *,
     motion: MotionName = None,
-    vary: Vary = "rate",
-    turning: Turns = None,
     at: At = None,
-    to: To = None,
+    options: CriticalOptions = CriticalOptions(),
     masses: Masses = None,
     positions: Positions = None,
     output: Output = Output(),
@@ -109,25 +86,18 @@ def critical_speed(
     map also as CSV and plot; with --report also critical_speed.html.
     """
     folder = output.folder(scenario)
-    loaded = read("critical-speed", scenario, output.overrides)
-    upper = None if to is None else number("--to", to, KINDS[vary])
-    if upper is not None and not upper > 0:
-        raise InputError("--to", f"is {to}", "give a value above zero, where the search ends")
+    loaded, question = read("critical-speed", scenario, output.overrides), QUESTIONS["critical-speed"]
     if masses is None and positions is not None:
         raise InputError("--positions", "stands without --masses", 'add --masses "0.1 kg, 0.5 kg"')
     if masses is not None:
         with loaded.placing():
             loaded.case.one_beam("bodies", "a map of --masses")
-        if vary != "rate":
-            raise InputError("--masses", f"stands beside --vary {vary}", "a map is of hub rates")
-        return critical_map(loaded, motion, masses, positions, upper, folder, output)
+        chosen = question.chosen(asked(options))
+        if "vary" in chosen:
+            raise InputError("--masses", f"stands beside --vary {chosen['vary']}", "a map is of hub rates")
+        return critical_map(loaded, motion, masses, positions, chosen.get("to"), folder, output)
     name, _ = loaded.motion(motion, kind="hub")
-    time = loaded.time(at)
-
-    with Watch() as watch, loaded.placing(to="--to", turning="--turning"):
-        critical = questions.critical_speed(
-            loaded.case, name, time, vary=vary, turning=turning, upper=upper, progress=watch
-        )
+    critical = loaded.answer(question, name, at, options, Needs())
     deliver(
         critical, "critical_speed", folder, output, origin=loaded.case.provenance, listed=False,
         motion=name,
