@@ -65,7 +65,7 @@ def test_it_ends_at_the_critical_speed():
     structure = assemble(beam_2009(), Model("TLAM", 0, 3, 0))
     told: list[tuple[str, float]] = []
     found = campbell(structure, HUB_2009, end=5.0, count=10, modes=2, progress=lambda *news: told.append(news))
-    assert told[1] == ("equilibrium at a hub rate of 0.07812 rad/s", 1 / 64)
+    assert told[1] == ("equilibrium, hub rate 0.07812 rad/s", 1 / 64)
     assert dict(told)["frequencies at 1.455 rad/s"] == pytest.approx(2.91074 / 2 / 5)
     assert found.critical is not None and found.critical.value == pytest.approx(2.91074, abs=1e-5)
     assert found.speed[-1] < found.critical.value and found.frequency[-1, 0] < 1e-2

@@ -59,7 +59,7 @@ def first_loss_along(
 
     @cache
     def margin(value: float) -> float:
-        tell(progress, f"equilibrium at a {quantity} of {value:.4g} {unit}", value / upper)
+        tell(progress, f"equilibrium, {quantity} {value:.4g} {unit}", value / upper)
         state = _state(path, of, value)
         return -1.0 if state is None else state.margin
 
@@ -80,7 +80,7 @@ def first_loss_along(
         return answer(0.0, "divergence", "", f"the {which} is unstable before anything moves")
     from scipy.optimize import brentq
 
-    root = brentq(margin, grid[first - 1], grid[first], xtol=1e-11, maxiter=200)
+    root = brentq(margin, grid[first - 1], grid[first], xtol=1e-11, rtol=1e-9, maxiter=200)
     state = _state(path, of, root) or path(of, grid[first - 1])
     beyond = _state(path, of, root * (1 + 1e-5))
     if beyond is None:
