@@ -301,7 +301,7 @@ class Given:
                 {
                     "angle": 1.0, "rate": None, "distance": None, "duration": 2.0, "limit": 1e6, "robust": 0.0,
                     "check": "", "motion": "slew", "joint": None, "point": None,
-                    "starts": 1, "overrides": (), "progress": None,
+                    "overrides": (), "progress": None,
                 },
             ),
             "shape_command": (
