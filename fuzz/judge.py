@@ -16,7 +16,7 @@ _PLACED = re.compile(r"(gbeam: \S|--set .|[^\n]+\.\w+(:\d+:\d+)?: .|\S[^\n]*: .)
 _SAID = re.compile(r"^gbeam: \S.*$", re.MULTILINE)  # what is under way, or a warning
 
 
-def judge(case: Case, answer: Answer) -> str:
+def judge(case: Case, answer: Answer, memory: int = MEMORY) -> str:
     """Name the fault of an answer; empty where there is none."""
     everything = answer.out + answer.err
     if answer.status < 0:
@@ -28,7 +28,7 @@ def judge(case: Case, answer: Answer) -> str:
         return f"killed by {number.name}"
     if "Traceback (most recent call last)" in everything or answer.status not in (0, 1, 2):
         return f"defect: {_last_line(answer)}"
-    if "out of memory" in answer.err or answer.memory > MEMORY:
+    if "out of memory" in answer.err or answer.memory > memory:
         return f"memory: {answer.memory / 1e9:.2g} GB {_first_line(answer.err)}"
     if _TERMINAL.search(everything):
         return "control characters on the terminal"

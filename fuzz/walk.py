@@ -135,7 +135,7 @@ def _values(table: dict[str, Any], path: str) -> Iterator[tuple[str, float]]:
 
 
 def _wrong(case: Case, answer: Answer) -> Iterator[str]:
-    if fault := judge(case, answer):
+    if fault := judge(case, answer, MEMORY):
         yield fault
     for line in (answer.out + answer.err).splitlines():
         if _NAN.search(line) or any(float(each) > 100 * LARGEST for each in _SHARE.findall(line)):
