@@ -77,10 +77,10 @@ if TYPE_CHECKING:  # the same names as in _HOME: tests/test_public.py
     from gbeam.results.cases import Sweep as Sweep
     from gbeam.results.imitation.comparison import Comparison as Comparison
     from gbeam.results.response import Response as Response
+    from gbeam.results.response import Sensor as Sensor
     from gbeam.results.searches import Fit as Fit
     from gbeam.results.searches import Optimum as Optimum
     from gbeam.results.searches import ShapedCommand as ShapedCommand
-    from gbeam.results.sensors import Sensor as Sensor
     from gbeam.results.state_space import Gauge as Gauge
     from gbeam.results.state_space import StateSpace as StateSpace
     from gbeam.results.study import Study as Study
@@ -159,7 +159,7 @@ _HOME = {
     "Section": "structure.section",
     "Sensitivity": "results.cases",
     "ShapedCommand": "results.searches",
-    "Sensor": "results.sensors",
+    "Sensor": "results.response",
     "Sine": "motion.profiles.pulse",
     "SmoothStep": "motion.profiles.pulse",
     "SolidMesh": "solids.mesh",

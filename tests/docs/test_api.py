@@ -34,6 +34,5 @@ def test_every_module_of_results_with_records_is_on_the_page_of_results() -> Non
         "gbeam.results.imitation.comparison",
         "gbeam.results.declared",
         "gbeam.results.facts",
-        "gbeam.results.sensors",
     }
     assert listed | others == with_records

@@ -198,7 +198,7 @@ def test_what_libraries_say_of_too_little_memory_is_understood(words: str) -> No
 
 def test_a_scheduler_that_is_not_there_is_one_line(fast: Path) -> None:
     pytest.importorskip("distributed")
-    code = "import sys, gbeam.studies.cluster as c; c.CONNECTION = 1.0; from gbeam.cli import main; "
+    code = "import sys, gbeam.studies.workers as c; c.CONNECTION = 1.0; from gbeam.cli import main; "
     code += "sys.exit(main(sys.argv[1:]))"
     sweep = [
         "sweep",

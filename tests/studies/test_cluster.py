@@ -142,7 +142,7 @@ def test_workers_started_by_hand_lose_no_case_when_one_is_killed(
 ) -> None:
     monkeypatch.setattr("gbeam.studies.sweep._LONGEST", 1)
     with monkeypatch.context() as patch:
-        patch.setattr("gbeam.studies.cluster.CONNECTION", 1.0)
+        patch.setattr("gbeam.studies.workers.CONNECTION", 1.0)
         with pytest.raises(InputError, match="has no workers; start some with: dask worker"):
             gb.sweep(fast, LEVELS, TIP, verb="static", scheduler=by_hand.address)
     by_hand.two()
@@ -184,7 +184,7 @@ def test_a_driver_and_a_scheduler_that_are_killed_are_resumed(
         gb.sweep(fast, LENGTHS, {"length": measures.slow}, **arguments, progress=kill)
     assert first < journal.read_bytes().count(b"\n") < 25
     with pytest.raises(InputError, match="does not answer"):
-        monkeypatch.setattr("gbeam.studies.cluster.CONNECTION", 0.5)
+        monkeypatch.setattr("gbeam.studies.workers.CONNECTION", 0.5)
         gb.sweep(fast, LENGTHS, {"length": measures.slow}, **arguments)
     found = gb.sweep(fast, LENGTHS, {"length": measures.slow}, store="there", resume=True)
     assert data(found).identical(data(whole))

@@ -24,9 +24,9 @@ from gbeam.questions import QUESTIONS
 # `gbeam --help` imports none.
 _FILES = {
     "run": ("responses", ""),
-    "campbell": ("steady_states", ""),
-    "critical-speed": ("steady_states", ""),
-    "linearize": ("steady_states", "State-space model A, B, C, D about the equilibrium at one time of a motion."),
+    "campbell": ("questions", ""),
+    "critical-speed": ("questions", ""),
+    "linearize": ("questions", "State-space model A, B, C, D about the equilibrium at one time of a motion."),
     "models": ("responses", "Compute a scenario by every model, and compare them with the exact one."),
     "plan": ("centrifuge", ""),
     "place": ("centrifuge", ""),
@@ -109,7 +109,7 @@ def _app(chosen: str) -> App:
     )
     for verb, about in verbs().items():
         # The help of the chosen verb is its own docstring, which says more.
-        file, _ = _FILES.get(verb, ("question", ""))
+        file, _ = _FILES.get(verb, ("questions", ""))
         called = f"gbeam.cli.verbs.{file}:{verb.replace('-', '_')}"
         app.command(called, name=verb, help=None if verb == chosen else about)
     app.register_install_completion_command(help="Let the shell complete verbs and options: bash, zsh or fish.")

@@ -19,14 +19,13 @@ from gbeam.guards.limits import HISTORY_BYTES, WORKERS, refuse_more
 from gbeam.progress import tell
 from gbeam.results.cases import Sweep
 from gbeam.studies.cases import Cases, read_cases
-from gbeam.studies.cluster import on_scheduler
 from gbeam.studies.evaluate import Function, Question, Row, Task, may_share, width
 from gbeam.studies.figures import HISTORY, TIMES, offered, usual
 from gbeam.studies.journal import Journal, identity, opened
 from gbeam.studies.start import NO_HISTORIES, OverTime, Start, go_on, start
 from gbeam.studies.statistics import indices, statistics
 from gbeam.studies.template import template_of
-from gbeam.studies.workers import processes, serially
+from gbeam.studies.workers import on_scheduler, processes, serially
 
 MANY = 100_000  # cases beyond which a sweep is begun only when that is confirmed
 _BATCH = 0.5  # s: what is lost at most when a process ends, and how often the store is synchronised
