@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from gbeam.figures.description import raised
-from gbeam.report import words
 from gbeam.report.page.machine import machine_section, verdict
 from gbeam.report.page.parts import Cell, Value, folded, heading, known, listed, paragraph, section, table
 from gbeam.report.steady import RESTING, ROUNDING
@@ -65,10 +64,8 @@ def tips_table(motions: Facts) -> str:
             size, left = (known(peak.get(key)) for key in ("max_abs", "residual_amplitude"))
             if size > 1e-9 * max(known(other["max_abs"]) for other in each["tip"].values()):
                 rows.append([name, axis, 1e3 * size, peak["time_of_max"], 1e3 * left])
-    head = ["motion", "tip along", "largest, mm", "at, s", "residual amplitude, mm"]
-    if all(math.isnan(float(row[-1])) for row in rows):
-        head, rows = head[:-1], [row[:-1] for row in rows]
-    return table(head, rows, "Displacement of the tip relative to the base axes", words=(0, 1))
+    head = ("motion", "tip along", "largest, mm", "at, s", "residual amplitude, mm")
+    return table(head, rows, "Displacement of the tip relative to the base axes", words=(0, 1), optional=(4,))
 
 
 def loads_table(motions: Facts, of: str = "motion") -> str:
@@ -82,13 +79,10 @@ def loads_table(motions: Facts, of: str = "motion") -> str:
             largest, margin = known(stress.get("max")), loads.get("margin", {}).get("min")
             row = [name, force["max_abs"], force["time_of_max"], moment["max_abs"], moment["time_of_max"]]
             rows.append([*row, 1e-6 * largest, stress.get("time_of_max"), margin])
-    head = [of, "root force, N", "at, s", "root moment, N m", "at, s", "stress, MPa", "at, s", "margin on yield"]
-    if all(row[-1] is None for row in rows):
-        head, rows = head[:-1], [row[:-1] for row in rows]
-    caption = "Largest loads of the root, and stress anywhere"
-    if all(math.isnan(row[5]) for row in rows):  # without extreme fibres
-        head, rows, caption = head[:5], [row[:5] for row in rows], "Largest loads of the root"
-    return table(head, rows, caption)
+    head = (of, "root force, N", "at, s", "root moment, N m", "at, s", "stress, MPa", "at, s", "margin on yield")
+    stressed = any(math.isfinite(row[5]) for row in rows)  # of extreme fibres
+    caption = f"Largest loads of the root{', and stress anywhere' if stressed else ''}"
+    return table(head, rows, caption, optional=(5, 6, 7))
 
 
 ERRORS = {
@@ -106,13 +100,10 @@ def _errors(motions: Facts) -> str:
         for quantity in ("loads",) if "specimen" in motion else ("displacement", "loads", "stress"):
             parts = [known(motion["errors"][quantity][key]) for key in ERRORS]
             if math.isfinite(parts[0]):
-                rows.append([name, quantity, *(words.percent(part) for part in parts)])
-    head = ["motion", "of", *ERRORS.values()]
-    for k in range(len(head) - 1, 2, -1):  # what is judged of no motion
-        if all(row[k] == words.percent(math.nan) for row in rows):
-            head, rows = head[:k] + head[k + 1 :], [row[:k] + row[k + 1 :] for row in rows]
-    caption = "Estimated errors, of the largest size"
-    return table(head, rows, caption, words=(0, 1)) or paragraph("no error estimate", "faint")
+                rows.append([name, quantity, *map(percent, parts)])
+    head, caption = ("motion", "of", *ERRORS.values()), "Estimated errors, of the largest size"
+    shown = table(head, rows, caption, words=(0, 1), optional=range(3, len(head)))
+    return shown or paragraph("no error estimate", "faint")
 
 
 def modes_body(facts: Facts, viewer: str, drawn: str) -> str:
@@ -158,10 +149,9 @@ def modes_table(facts: Facts) -> str:
         ]
         for i, each in enumerate(facts["modes"], 1)
     ]
-    head = ("mode", "frequency, Hz", "damping ratio", "along", "estimated error")
-    if all(row[-1] == percent(np.nan) for row in rows):
-        return table(head[:-1], (row[:-1] for row in rows), words=(3,))
-    return table(head, rows, words=(3,))
+    return table(
+        ("mode", "frequency, Hz", "damping ratio", "along", "estimated error"), rows, words=(3,), optional=(4,)
+    )
 
 
 def tracks_table(facts: Facts) -> str:
@@ -220,7 +210,7 @@ def static_body(facts: Facts, viewer: str, drawn: str) -> str:
 def _tips(motions: Facts) -> str:
     def row(name: str, each: Facts) -> list[Value]:
         error = known(each["errors"]["displacement"]["total"])
-        return [name, each["time"], each["model"], *(1e3 * each["tip"][axis] for axis in "xyz"), words.percent(error)]
+        return [name, each["time"], each["model"], *(1e3 * each["tip"][axis] for axis in "xyz"), percent(error)]
 
     head = ("motion", "at, s", "model", "x, mm", "y, mm", "z, mm", "estimated error")
     return table(head, (row(*each) for each in motions.items()), "Displacement of the tip", words=(0, 2))
@@ -235,11 +225,10 @@ def resting_loads_table(motions: Facts, of: str = "motion") -> str:
         return [name, *vectors, 1e-6 * max(stress, default=np.nan)]
 
     head = (of, *(f"{what} {axis}" for what in ("force, N:", "moment, N m:") for axis in "xyz"), "stress, MPa")
-    rows = [row(name, each["loads"]) for name, each in motions.items() if "loads" in each]
-    caption = "Of the base on the root, base axes; largest stress anywhere"
-    if all(size is None for each in motions.values() for size in each.get("loads", {}).get("stress", ())):
-        head, rows, caption = head[:-1], [each[:-1] for each in rows], caption.partition(";")[0]
-    return table(head, rows, caption)
+    loads = {name: each["loads"] for name, each in motions.items() if "loads" in each}
+    stressed = any(size is not None for each in loads.values() for size in each["stress"])
+    caption = f"Of the base on the root, base axes{'; largest stress anywhere' if stressed else ''}"
+    return table(head, (row(*each) for each in loads.items()), caption, optional=(7,))
 
 
 def stress_table(solids: Facts, of: str = "motion") -> str:
@@ -285,7 +274,7 @@ def critical_body(facts: Facts, viewer: str, drawn: str) -> str:
         ["how it is lost", Cell(facts["kind"] or "–")],
         ["along", Cell(facts["direction"] or "–")],
         ["model", Cell(facts["model"])],
-        ["estimated error", Cell(words.percent(known(facts["error_estimate"])))],
+        ["estimated error", Cell(percent(known(facts["error_estimate"])))],
     ]
     motion = f"motion {facts['motion']}: " if facts["motion"] else ""
     return paragraph(f"{motion}{facts['reason']}", "verdict") + table(("", ""), rows)
@@ -294,8 +283,8 @@ def critical_body(facts: Facts, viewer: str, drawn: str) -> str:
 def critical_map_body(facts: Facts, viewer: str, drawn: str) -> str:
     """Hub rates at which the equilibrium is lost, against one more mass and where it sits."""
     speed = np.array(facts["critical_speed"], dtype=float)
-    head = ("at, m", *(f"{words.number(mass)} kg" for mass in facts["mass"]))
+    head = ("at, m", *(f"{number(mass)} kg" for mass in facts["mass"]))
     rows = ([place, *values] for place, values in zip(facts["position"], speed.T.tolist(), strict=True))
-    caption = f"Critical hub rate, rad/s, with one more mass; –: none up to {words.number(facts['searched_to'])} rad/s"
+    caption = f"Critical hub rate, rad/s, with one more mass; –: none up to {number(facts['searched_to'])} rad/s"
     text = paragraph(f"motion {facts['motion']}, model {facts['model']}")
     return text + table(head, rows, caption, words=()) + section("Figure", drawn)

@@ -55,10 +55,11 @@ def _peaks(judged: Facts, names: tuple[str, str]) -> str:
             where = pair.get("place_machine", "").removeprefix("the ")
             times = pair["time_flight"], pair["time_machine"]
             rows.append([label, scale * flight, scale * machine, _change(ratio), *times, where])
-    head = ["largest", *names, "change", "in flight at, s", "on the machine at, s", ""]
-    if not any(row[-1] for row in rows):
-        head, rows = head[:-1], [row[:-1] for row in rows]
-    return table(head, rows, "Largest over the whole flight; loads over the machine's whole run", words=(0, 6))
+    head, caption = (
+        ("largest", *names, "change", "in flight at, s", "on the machine at, s", ""),
+        "Largest over the whole",
+    )
+    return table(head, rows, f"{caption} flight; loads over the machine's whole run", words=(0, 6), optional=(6,))
 
 
 def _load_peaks(judged: Facts) -> str:

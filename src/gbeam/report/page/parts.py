@@ -74,17 +74,24 @@ def table(
     rows: Iterable[Sequence[Value]],
     caption: str = "",
     words: Iterable[int] = (0,),
+    optional: Iterable[int] = (),
 ) -> str:
-    """A table whose columns are numbers, to the right with four digits, but for those of `words`."""
-    texts = set(words)
-    cells = [[_cell(value, column not in texts) for column, value in enumerate(row)] for row in rows]
-    if not cells:
+    """A table whose columns are numbers, to the right with four digits, but for those of `words`.
+
+    The columns that are `optional` are left out where no row has anything there.
+    """
+    texts, every = set(words), [[_shown(value) for value in row] for row in rows]
+    if not every:
         return ""
+    empty = {column for column in optional if all(row[column].text in ("", "–") for row in every)}
+    kept = [column for column in range(len(head)) if column not in empty]
     top = "".join(
-        f'<th scope="col"{_class("" if column in texts else "number")}>{_breaking(name)}</th>' if name else "<td></td>"
-        for column, name in enumerate(head)
+        f'<th scope="col"{_class("" if column in texts else "number")}>{_breaking(head[column])}</th>'
+        if head[column]
+        else "<td></td>"
+        for column in kept
     )
-    body = "".join(f"<tr>{''.join(row)}</tr>" for row in cells)
+    body = "".join(f"<tr>{''.join(_cell(row[column], column not in texts) for column in kept)}</tr>" for row in every)
     title = f"<caption>{escaped(caption)}</caption>" if caption else ""
     top = f"<thead><tr>{top}</tr></thead>" if any(head) else ""
     return f'<div class="gbeam-wide"><table>{title}{top}<tbody>{body}</tbody></table></div>'
@@ -114,20 +121,18 @@ def known(value: float | None) -> float:
     return math.nan if value is None else float(value)
 
 
-def _cell(value: Value, numeric: bool) -> str:
-    kind = bar = ""
+def _shown(value: Value) -> Cell:
     if isinstance(value, Cell):
-        kind = value.kind
-        if math.isfinite(value.share):
-            bar = f'<meter class="share" min="0" max="1" value="{min(value.share, 1.0):.3f}"></meter>'
-        text = value.text
-    elif value is None or isinstance(value, (int, float)):
-        text = number(known(value))
-    else:
-        text = value
-    names = " ".join(each for each in (kind, "number" if numeric else "") if each)
-    inside = f"{bar}<span>{escaped(text)}</span>" if bar else escaped(text)
-    return f"<td{_class(names)}>{inside}</td>"
+        return value
+    return Cell(value if isinstance(value, str) else number(known(value)))
+
+
+def _cell(cell: Cell, numeric: bool) -> str:
+    inside = escaped(cell.text)
+    if math.isfinite(cell.share):
+        bar = f'<meter class="share" min="0" max="1" value="{min(cell.share, 1.0):.3f}"></meter>'
+        inside = f"{bar}<span>{inside}</span>"
+    return f"<td{_class(' '.join(filter(None, (cell.kind, 'number' if numeric else ''))))}>{inside}</td>"
 
 
 def _class(names: str) -> str:
