@@ -89,9 +89,9 @@ def test_no_digit_that_counts_depends_on_the_units(make: Any, radian: float, sec
         np.testing.assert_allclose(each, expected, atol=1e-8 * np.abs(expected).max())
 
 
-def test_derivatives_at_one_state_serve_all_steps_of_small_motions() -> None:
+def test_derivatives_at_one_state_serve_windows_of_small_motions() -> None:
     def derivatives(size: float) -> int:
-        """Number of times they are found in a run of 300 steps."""
+        """Number of states at which they are found in a run of 300 steps."""
         calls: list[int] = []
 
         def counted(q: Any, qd: Any, qdd: Any, force: Any) -> Any:
@@ -101,9 +101,10 @@ def test_derivatives_at_one_state_serve_all_steps_of_small_motions() -> None:
 
         equations = NonlinearEquations(counted, lambda t: size * np.stack([np.sin(5 * t), 0 * t], axis=-1))
         assert integrate(equations, gauss(), *np.zeros((2, 2)), step=0.01, count=300).whole
-        return len(calls)
+        return sum(calls)
 
-    assert derivatives(1e-3) == 1 < derivatives(1.0)
+    assert derivatives(1e-3) <= 6  # windows
+    assert derivatives(1.0) > 60
 
 
 def test_a_window_too_long_for_newton_is_cut() -> None:

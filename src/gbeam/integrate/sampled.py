@@ -105,15 +105,17 @@ class Sampling:
         qdd = accelerations(self.residual, q, qd, inputs) if self.controllers.accelerates(c) else 0 * q
         return self.controllers.measured(c, q, qd, qdd, inputs)
 
-    def slopes(self, c: int, at: Array, q: Array, qd: Array, held: Array) -> tuple[Array, Array]:
-        """Derivatives of measurements with respect to (q, q̇), (t, k, 2 n), and to the commands before (t, k, m)."""
+    def slopes(self, c: int, at: Array, q: Array, qd: Array, held: Array) -> tuple[Array, Array | None]:
+        """Derivatives of measurements with respect to (q, q̇), (t, k, 2 n), and to the commands before (t, k, m); None
+        of those where only accelerations would follow at once.
+        """
         inputs = self.controllers.driven(self.drive(self.steps.begin[at]), held)
         accelerates = self.controllers.accelerates(c)
         qdd = accelerations(self.residual, q, qd, inputs) if accelerates else 0 * q
         by_place, by_rate, by_change = slopes(partial(self.controllers.measured, c), q, qd, qdd, inputs)
         slope = np.concatenate([by_place, by_rate], axis=-1)
         if not accelerates:
-            return slope, np.zeros((*slope.shape[:2], self.count))
+            return slope, None
         # M δq̈ = −(K δq + C δq̇ + the derivatives by what is commanded).
         k, damping, mass = slopes(self.residual, q, qd, qdd, inputs)
         rest = np.concatenate([k, damping, self.onto(q, qd, qdd, inputs)], axis=-1)
@@ -141,7 +143,7 @@ class Held:
         self.samples = [np.flatnonzero(taken[first : first + count] >= 0) for taken in sampling.taken]
         self.sample = [{int(k): i for i, k in enumerate(each)} for each in self.samples]
         self.values: list[Array] = []
-        self.slope: list[tuple[Array, Array]] = []
+        self.slope: list[tuple[Array, Array | None]] = []
 
     def begin(self, z: Array) -> None:
         """Find how measurements follow the states z (t, m, n) at the beginnings of steps."""
@@ -172,10 +174,9 @@ class Held:
         """Take the samples of a step whose state is to be moved (m n,), and return what its commands change."""
 
         def measured(c: int) -> Array:
-            i = self.sample[c][k]
-            by_state, by_command = (each[i] for each in self.slope[c])
-            before = self.change[k - 1] if k else 0 * self.before
-            return self.values[c][i] + by_state @ moved + by_command @ before
+            i, (by_state, by_command) = self.sample[c][k], self.slope[c]
+            value = self.values[c][i] + by_state[i] @ moved
+            return value + by_command[i] @ self.change[k - 1] if k and by_command is not None else value
 
         self.sampling.sampled(self.first + k, measured)
         self.change[k] = self.sampling.held(self.first + k) - self.u[k]

@@ -7,11 +7,11 @@ x and L with respect to the state z before it,
     δx = −J⁻¹ (r + L δz),    δz₊ = g δz + d δx + (g z + d x − z₊).
 
 The window slides: steps that have converged leave it at its beginning, and where its last one is near more follow, each
-at first like the last, of which the next correction makes the linear response about that state. The derivatives at one
-state serve all steps until corrections shrink slowly; then they are found at some of the steps that have moved since
-they were, and interpolated between these, until corrections shrink fast for long. Steps that stay far are taken out;
-where the first one does, the window begins anew and shorter, with a single step at last, which takes Newton's method
-proper.
+at first like the last, of which the next correction makes the linear response about that state. The derivatives at its
+first state serve a whole window until corrections shrink slowly; then they are found at some of the steps that have
+moved since they were, and interpolated between these, until corrections shrink fast for long. Steps that stay far are
+taken out; where the first one does, the window begins anew and shorter, with a single step at last, which takes
+Newton's method proper.
 """
 
 from __future__ import annotations
@@ -112,7 +112,7 @@ class _Window:
 
     @property
     def even(self) -> bool:
-        """Whether the derivatives at one state serve all steps."""
+        """Whether the derivatives at its first state serve a whole window."""
         return self.apart > FAR
 
     def solve(self, end: int, enough: int) -> bool:
@@ -161,6 +161,8 @@ class _Window:
         if more <= 0:
             return
         last = self.x[-1:, -1:] if count else self.start
+        if not count and self.even:
+            self.slope = None
         self.z = np.concatenate([self.z, np.repeat(self.z[-1:], more, axis=0)])
         self.x = np.concatenate([self.x, np.broadcast_to(last, (more, *self.x.shape[1:]))])
         if self.slope is not None and len(self.slope[0]) == count > 1 and not self.even:

@@ -183,7 +183,7 @@ class Feedback(Value):
 
     def _finite(self, t: float, efforts: Floats) -> Floats:
         """Efforts, unless the law has left all bounds."""
-        if not np.isfinite(efforts).all():
+        if not all(map(math.isfinite, efforts)):
             problem = f"the law of the controller of {', '.join(self.drive)} gives {efforts} at {t:.6g} s"
             fix = "limit it, or look" if self.limit is None else "look"
             raise ComputationError("diverged", f"{problem}: {fix} for what grows there")
@@ -197,7 +197,10 @@ class Feedback(Value):
         efforts : (..., m)
             What the law asks for.
         """
-        return efforts if self.limit is None else np.clip(efforts, -np.asarray(self.limit), np.asarray(self.limit))
+        if self.limit is None:
+            return efforts
+        limit = np.asarray(self.limit)
+        return np.minimum(np.maximum(efforts, -limit), limit)  # np.clip takes nearly twice as long
 
 
 def signal_names(controllers: Mapping[str, Feedback], kind: Literal["drive", "measure"]) -> tuple[str, ...]:
