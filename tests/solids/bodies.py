@@ -9,9 +9,7 @@ import meshio
 import numpy as np
 
 import gbeam as gb
-from gbeam.solids.foreign import import_meshio
 
-import_meshio()  # by which it knows wedges of 15 nodes
 # Nodes of VTK's hexahedron of 27 nodes, in halves of its edges.
 CORNERS = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 2, 2), (0, 2, 2)]
 BOTTOM, TOP = [(1, 0, 0), (2, 1, 0), (1, 2, 0), (0, 1, 0)], [(1, 0, 2), (2, 1, 2), (1, 2, 2), (0, 1, 2)]
@@ -28,6 +26,13 @@ PAIRS = [(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)]
 
 STEEL = gb.Material(density=7850, youngs_modulus=210e9, poissons_ratio=0.3)
 STIFF = gb.Material(density=2700, youngs_modulus=70e9, poissons_ratio=0.0)
+
+
+class Block(meshio.CellBlock):  # type: ignore[misc]
+    """Solid elements of any kind: meshio knows no dimension of wedges of 15 nodes."""
+
+    def __init__(self, kind: str, nodes: np.ndarray) -> None:
+        self.type, self.data, self.dim, self.tags = kind, nodes, 3, []
 
 
 def elements(kind: str) -> list[np.ndarray]:
@@ -59,7 +64,7 @@ def block(
     nodes = [np.ravel_multi_index(np.moveaxis(first[:, None] + each, -1, 0), counts) for each in elements(kind)]
     chosen = {"wall": lambda x: x[:, 0] == 0} | (groups or {})
     sets = {name: np.flatnonzero(choose(straight)) for name, choose in chosen.items()}
-    return meshio.Mesh(bent(straight), {kind: np.concatenate(nodes)}, point_sets=sets)
+    return meshio.Mesh(bent(straight), [Block(kind, np.concatenate(nodes))], point_sets=sets)
 
 
 def solid(mesh: Any, material: Any = STEEL, **more: Any) -> gb.SolidMesh:

@@ -178,3 +178,81 @@ def test_an_element_on_a_node_that_is_not_there_is_named(tmp_path: Path, name: s
     place = f"of {last + 1}; write it" if file_format == "vtk42" else f"which is not in {name}; write it again with all"
     with pytest.raises(gb.InputError, match=rf"mesh has element {where} on node {node},? {place}"):
         gb.SolidMesh.read(file, materials=STEEL, clamp="wall", unit="m")
+
+
+def lines(start: str, *more: str) -> str:
+    return "\n".join([start, *more, ""])
+
+
+CUBE = [(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+NODES = lines("*NODE", *(f"{i}, {x}, {y}, {z}" for i, (x, y, z) in enumerate(CUBE, 11)))
+INP = (
+    NODES
+    + lines("*ELEMENT, TYPE=C3D8, ELSET=all", "1, 11, 12, 13, 14,", "15, 16, 17, 18")
+    + "*NSET, NSET=wall\n11, 12, 13, 14\n"
+)
+GRIDS = [f"GRID,{i},,{x}.,{y}.,{z}." for i, (x, y, z) in enumerate(CUBE, 11)]
+BDF = lines("BEGIN BULK", *GRIDS, "CHEXA,5,1,11,12,13,14,15,16,+", "+,17,18", "CQUAD4,6,7,11,12,13,14", "ENDDATA")
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "words"),
+    [
+        ("a.inp", "*ELEMENT", "*NODE\n12, 1., 1., 1.\n*ELEMENT", "has two of node 12; number them apart, in one part"),
+        ("a.inp", "*NSET", "*ELEMENT, TYPE=C3D4\n1, 11, 12, 13, 15\n*NSET", "has two of element 1; number them apart"),
+        ("a.inp", "*NODE", "*INCLUDE, INPUT=b.inp\n*NODE", "has places or nodes by INCLUDE, which is not read; .* one"),
+        ("a.inp", "*NODE", "*SYSTEM\n1., 0., 0.\n*NODE", "has places or nodes by SYSTEM, which is not read"),
+        ("a.inp", "*NODE", "*NODE, SYSTEM=C", "has places or nodes by NODE, which is not read; .* in the basic system"),
+        ("a.inp", "*NODE", "*INSTANCE, NAME=a\n5., 0., 0.\n*NODE", "has places or nodes by INSTANCE, which"),
+        ("a.inp", "C3D8,", "C3D20,", r"a\.inp cannot be read: elements of type C3D20 have not 20 nodes each; give"),
+        ("a.inp", "C3D8,", "SC8R,", r"cannot be read: elements of type SC8R are not known"),
+        ("a.bdf", "GRID,12,,", "GRID,11,,", "has two of node 11"),
+        ("a.bdf", "CQUAD4", "INCLUDE 'b.bdf'\nCQUAD4", "has places or nodes by INCLUDE, which is not read"),
+        ("a.bdf", "+,17,18", "+,17", "cannot be read: CHEXA 5 has 7 nodes"),
+        ("a.bdf", "13,14\nEND", "13,14,,0.5\nEND", "has CQUAD4 6, which has an offset or thicknesses of its own"),
+        ("a.bdf", "GRID,12", "= ,12", "cannot be read: '= ,12.*' is no card"),
+    ],
+)  # fmt: skip
+def test_what_a_text_file_says_otherwise_is_refused(tmp_path: Path, name: str, old: str, new: str, words: str) -> None:
+    """Of a cube that is read: places that are elsewhere, numbers that are twice, elements that lack nodes."""
+    (tmp_path / name).write_text(BDF if name == "a.bdf" else INP)
+    given = {"materials": STEEL, "clamp": "7" if name == "a.bdf" else "wall", "unit": "m"}
+    whole = gb.SolidMesh.read(tmp_path / name, **given)
+    assert (whole.mass, list(whole.blocks[0].numbers)) == (pytest.approx(7850.0), [5 if name == "a.bdf" else 1])
+    text = (tmp_path / name).read_text()
+    assert old in text
+    (tmp_path / name).write_text(text.replace(old, new, 1))
+    with pytest.raises(gb.InputError, match=rf"^mesh .*{words}"):
+        gb.SolidMesh.read(tmp_path / name, **given)
+
+
+# A cube in two groups, of which version 2 has its element twice, and a wall.
+GROUPED = lines("$PhysicalNames", "3", '2 7 "wall"', '3 1 "a"', '3 2 "b"', "$EndPhysicalNames")
+OF_GMSH = {
+    "2.2": lines("$Nodes", "8", *(f"{{{i}}} {x} {y} {z}" for i, (x, y, z) in enumerate(CUBE)), "$EndNodes", "$Elements",
+                 "3", "1 3 2 7 1 {0} {1} {2} {3}", "2 5 2 1 1 {0} {1} {2} {3} {4} {5} {6} {7}",
+                 "3 5 2 2 1 {0} {1} {2} {3} {4} {5} {6} {7}", "$EndElements"),
+    "4.1": lines("$Entities", "0 0 1 1", "1 0 0 0 1 1 0 1 -7 0", "1 0 0 0 1 1 1 2 1 2 0", "$EndEntities",
+                 "$Nodes", "1 8 1 8", "3 1 0 8", *(f"{{{i}}}" for i in range(8)), *(f"{x} {y} {z}" for x, y, z in CUBE),
+                 "$EndNodes", "$Elements", "2 2 1 2", "2 1 3 1", "1 {0} {1} {2} {3}", "3 1 5 1",
+                 "2 {0} {1} {2} {3} {4} {5} {6} {7}", "$EndElements"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("version", OF_GMSH)
+@pytest.mark.parametrize("first", [0, 77])
+def test_nodes_of_gmsh_may_have_any_numbers_and_elements_two_groups(tmp_path: Path, version: str, first: int) -> None:
+    text = GROUPED + OF_GMSH[version].format(first, *range(8, 1, -1))
+    (tmp_path / "a.msh").write_text(f"$MeshFormat\n{version} 0 8\n$EndMeshFormat\n{text}")
+    for material in ("a", "b", "2"):
+        cube = gb.SolidMesh.read(tmp_path / "a.msh", materials={material: STEEL}, clamp="wall", unit="m")
+        assert (cube.mass, int(cube.clamped.sum())) == (pytest.approx(7850.0), 4)
+
+
+def test_a_binary_file_of_gmsh_with_a_node_0_is_refused(tmp_path: Path) -> None:
+    """Which meshio takes for the last one."""
+    meshio.write(tmp_path / "a.msh", meshio.Mesh(CUBE, {"hexahedron": [range(8)]}), file_format="gmsh22")
+    content = (tmp_path / "a.msh").read_bytes()
+    (tmp_path / "a.msh").write_bytes(content.replace(b"8\n\x01", b"8\n\x00"))
+    with pytest.raises(gb.InputError, match="mesh has node 0; write it as text, or number its nodes from 1"):
+        gb.SolidMesh.read(tmp_path / "a.msh", materials=STEEL, clamp="1", unit="m")

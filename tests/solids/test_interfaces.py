@@ -104,7 +104,7 @@ def test_a_body_on_imported_matrices() -> None:
     m[-6:, -6:] += of_body()
     squares = eigh(k[6:, 6:], m[6:, 6:], eigvals_only=True)[:4]
     np.testing.assert_allclose(gb.modes(system).frequency[:4] * 2 * np.pi, np.sqrt(squares), rtol=1e-5)
-    with pytest.raises(gb.InputError, match=r"mass leaves a static answer to forces or moments without mass; give"):
+    with pytest.raises(gb.InputError, match=r"mass leaves a static answer without mass, or with next to none .*; give"):
         gb.ImportedModel(*frame(12)).reduced(**how)
     plain = gb.ImportedModel(np.eye(39), np.eye(39), nodes)
     with pytest.raises(gb.InputError, match=r"interfaces\[0\] is 'seat', which does not turn in the matrices; name"):

@@ -21,7 +21,7 @@ from gbeam.solids.elements import STRAIN, chunks, mass_matrix, stiffness_matrix
 from gbeam.solids.foreign import read_mesh
 from gbeam.solids.shape_functions import KINDS
 
-from .bodies import PAIRS, STEEL, STIFF, block, solid
+from .bodies import PAIRS, STEEL, STIFF, Block, block, solid
 
 L, B, H = 1.0, 0.02, 0.01
 STRIP = STIFF.density * B * H, STIFF.youngs_modulus * B * H**3 / 12  # kg/m, N m²
@@ -329,7 +329,7 @@ def test_wedges_of_fifteen_nodes_are_those_of_calculix(tmp_path: Path) -> None:
     bar = block("wedge15", (20, 2, 1), (0.2, 0.02, 0.01))
     used, cells = np.unique(bar.cells[0].data, return_inverse=True)
     wall = np.flatnonzero(bar.points[used][:, 0] == 0)
-    part = meshio.Mesh(bar.points[used], {"wedge15": cells.reshape(-1, 15)}, point_sets={"wall": wall})
+    part = meshio.Mesh(bar.points[used], [Block("wedge15", cells.reshape(-1, 15))], point_sets={"wall": wall})
     meshio.write(tmp_path / "bar.inp", part)
     mesh = gb.SolidMesh.read(tmp_path / "bar.inp", materials=STEEL, clamp="wall", unit="m")
     assert mesh.mass == pytest.approx(7850 * 0.2 * 0.02 * 0.01, rel=1e-12)

@@ -27,7 +27,7 @@ from gbeam.scenario.text.revise import toml, with_entry, without_entry
 from gbeam.scenario.text.source import parse
 from gbeam.scenario.values import Path as Place
 from gbeam.scenario.values import parse_path, path_text, walk, written_at
-from gbeam.solids.skin import is_mesh, skin
+from gbeam.solids.foreign import is_mesh, skin
 
 NAME = "scenario.toml"
 # Of a record: what its columns are.

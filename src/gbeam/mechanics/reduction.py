@@ -56,23 +56,22 @@ def reduce(stiffness: Any, mass: Any, loads: Floats, modes: int) -> Reduced:
         static = solve(loads)
         if modes > count // 2:  # the space of Lanczos' iteration would be all
             inverse, vector = _dense(stiffness.toarray(), mass.toarray())
-            have = _moving(inverse)
-            inverse, vector = inverse[:modes], vector[:, :modes]
         else:
             start = np.random.default_rng(0).standard_normal((count, WIDTH))
             inverse, vector = lowest_modes(solve, mass, start, modes)
-            have = len(inverse)
+    have, inverse, vector = _moving(inverse), inverse[:modes], vector[:, :modes]
+    if not inverse.min() > -ZERO * inverse.max():
+        raise InputError("stiffness", "is not positive definite", HOLD)
     if have < modes:
         raise InputError("modes", f"is {modes}, and only {have} motions move mass", f"give at most {have}")
-    if not inverse.min() > ZERO * inverse.max():
-        raise InputError("stiffness", "is not positive definite", HOLD)
     basis = np.concatenate([vector, _complement(stiffness, mass, vector, static)], axis=1)
     inverse, within = _dense(basis.T @ (stiffness @ basis), basis.T @ (mass @ basis))
     if inverse.min() < -NEGATIVE * inverse.max():
         raise InputError("mass", "is not positive definite", "is it the right matrix?")
     if _moving(inverse) < len(inverse):
-        fix = "give the nodes of interfaces mass in every direction, and inertia where they turn"
-        raise InputError("mass", "leaves a static answer to forces or moments without mass", fix)
+        problem = "leaves a static answer without mass, or with next to none beside the heaviest"
+        fix = "give the nodes of interfaces mass in every direction, and inertia where they turn, or carry less"
+        raise InputError("mass", problem, fix)
     return Reduced(basis @ within, 1 / inverse, static)
 
 

@@ -13,7 +13,7 @@ from gbeam.guards.limits import BINARY_BYTES, MESHER_BYTES, MESHER_SECONDS, refu
 from gbeam.guards.processes import confined
 from gbeam.numerics.sparse import refuse_cost
 from gbeam.progress import PATIENCE, Bar
-from gbeam.solids.foreign import read_mesh, refuse_systems, unit_size
+from gbeam.solids.foreign import read_mesh, unit_size
 
 ENDINGS = (".step", ".stp")
 AROUND = 12  # elements around a full circle at least
@@ -34,7 +34,6 @@ def mesh_of(source: Any, unit: str | None, element_size: float | None) -> tuple[
     if element_size is not None:
         raise InputError("element_size", "is given beside a mesh", "leave it out: it is for STEP files")
     mesh = read_mesh(source)
-    refuse_systems(source)
     if unit is None:
         raise InputError("unit", "is missing", 'give the one that the coordinates are in, such as "mm"')
     return mesh, unit_size("unit", unit, "length")

@@ -1,4 +1,4 @@
-"""Meshes in the files of other programs, and the groups in them, by meshio."""
+"""Meshes in the files of other programs, the groups in them, and the skin by which a group is chosen by sight."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,80 +21,64 @@ from gbeam.guards.units import UnitError, quantity
 from gbeam.printable import shortened
 from gbeam.results.result import Floats
 from gbeam.solids.shape_functions import KINDS, Indices
-from gbeam.solids.texts import ABAQUS, NASTRAN, ending_of, missing_node
+from gbeam.solids.shells import points_of
+from gbeam.solids.stress import surface_of
+from gbeam.solids.texts import AGAIN, TextMesh, text_mesh
 
 _INTERNAL = "gmsh:"  # begins the names of sets that nobody gave
 _ENTITIES = "gmsh:geometrical"
-# What meshio passes over, by the ending of the file, with the words that carry mass, stiffness or constraints.
-_NASTRAN = re.compile(
-    r"^(CONM[12]|CMASS[1-4]|NSM\w*|CELAS[1-4]|CBUSH\w*|RBE[123]|RBAR|RROD|RSPLINE|MPC|CBAR|CBEAM|CBEND|CROD|CONROD|CTUBE"
-    r"|CWELD|CFAST|CGAP|PSHELL|PCOMP\w?)\b",
-    re.MULTILINE,
+# Statements of Nastran, Abaqus and CalculiX that carry mass, stiffness or constraints.
+_CARRYING = re.compile(
+    r"CONM[12]|CMASS[1-4]|NSM\w*|CELAS[1-4]|CBUSH\w*|RBE[123]|RBAR|RROD|RSPLINE|CBAR|CBEAM|CBEND|CROD|CONROD|CTUBE"
+    r"|CWELD|CFAST|CGAP|CSHEAR|C(TRI|QUAD)\w*X\w*|PSHELL|PCOMP\w?|MASS|ROTARY INERTIA|NONSTRUCTURAL MASS|SPRING|TIE"
+    r"|RIGID BODY|CONNECTOR SECTION|(\w+ )?COUPLING|KINEMATIC|DISTRIBUTING|EQUATION|MPC|CONTACT PAIR|GAP|TRANSFORM"
+    r"|(BEAM|SHELL)( GENERAL)? SECTION(, \w+)*|SOLID SECTION, COMPOSITE"
 )
-_ABAQUS = re.compile(
-    r"^\* *(MASS|ROTARY INERTIA|NONSTRUCTURAL MASS|SPRING|CONNECTOR SECTION|RIGID BODY|(?:\w+ +)?COUPLING"
-    r"|KINEMATIC|DISTRIBUTING|TIE|EQUATION|MPC|CONTACT PAIR|GAP|(?:BEAM|SHELL)(?: GENERAL)? SECTION"
-    r"|SOLID SECTION[^\n]*COMPOSITE|TRANSFORM) *(?:,|$)",
-    re.MULTILINE | re.IGNORECASE,
-)
-_POINTWISE = re.compile(
-    r"^\*ELEMENT *,(?=[^\n]*TYPE *= *(?:MASS|ROTARYI|SPRING[12A]|DCOUP3D)\b)[^\n]*\n(?:(?!\*)[^\n]*(?:\n|$))*",
-    re.M | re.I,
-)
-_LISTS = re.compile(r"^\*NODE *(?:,[^\n]*)?\n((?:(?!\*)[^\n]*(?:\n|$))*)", re.MULTILINE | re.IGNORECASE)
-_SCALAR = re.compile(r"^CELAS[1-4]\b[^\n]*\n(?:\*[^\n]*\n)*", re.MULTILINE)
-AGAIN = "write it again with all of its nodes"
 THICKNESS = ("PSHELL", "SHELL SECTION")
-_UNREAD = dict.fromkeys(NASTRAN, _SCALAR) | dict.fromkeys(ABAQUS, _POINTWISE)  # elements that stop meshio
-_WORDS = dict.fromkeys(NASTRAN, _NASTRAN) | dict.fromkeys(ABAQUS, _ABAQUS)
-
-
-def import_meshio() -> Any:
-    """Import meshio; an InputError says how to install it where it is not."""
-    try:
-        import meshio
-    except ModuleNotFoundError:
-        raise InputError("", "meshio is not installed", 'install it with: pip install "gbeam[mesh]"') from None
-    # Version 5.3.5 reads wedges of 15 nodes, and fails on them where it looks up how many dimensions they have.
-    meshio._mesh.topological_dimension.setdefault("wedge15", 3)
-    return meshio
+# Ends of the names of files that hold meshes, also of surfaces and of geometry, of which the reader says what lacks.
+MESHES = {
+    ".avs", ".bdf", ".cgns", ".e", ".ex2", ".exo", ".fem", ".inp", ".mdpa", ".med", ".mesh", ".meshb", ".msh", ".nas",
+    ".su2", ".ugrid", ".vtk", ".vtu", ".iges", ".igs", ".obj", ".ply", ".step", ".stl", ".stp",
+}  # fmt: skip
+VERTICES = 20_000  # about: at which groups are still told apart
+GROUPS = 200
+SHEET = 1e-3  # thickness of a shell that is shown, of the size of the mesh
 
 
 def read_mesh(source: str | os.PathLike[str] | Any) -> Any:
-    """Return meshio's mesh in a file, or the mesh itself."""
+    """Return a mesh as of meshio in a file, or the mesh itself."""
     if not isinstance(source, (str, os.PathLike)):
         return source
-    meshio = import_meshio()
     refuse_large_file("mesh", source, BINARY_BYTES, "mesh it more coarsely")
     said = io.StringIO()
     try:
+        if (mesh := text_mesh(source)) is not None:
+            return mesh
+        import meshio
+
+        _refuse_node_0(Path(source))
         # It prints what fails and exits.
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-            unread = _UNREAD.get(ending_of(source))
-            text = _text(source) if unread else ""
-            plain = _one_list(unread.sub("", text)) if unread else ""
-            if plain == text:
-                return meshio.read(source)
-            reader = meshio.abaqus if ending_of(source) in ABAQUS else meshio.nastran
-            return reader.read(io.StringIO(plain))
+            return meshio.read(source)
+    except InputError:
+        raise
+    except ModuleNotFoundError:
+        raise InputError("", "meshio is not installed", 'install it with: pip install "gbeam[mesh]"') from None
     except (Exception, SystemExit) as error:
-        if missing := missing_node(source):
-            raise InputError("mesh", missing, AGAIN) from None
         words = shortened(" ".join((said.getvalue() or str(error)).split()), 200)
-        if isinstance(error, KeyError):  # meshio looks up by its number what a set or an element names
+        if isinstance(error, KeyError):  # looked up by its number is what a set or an element names
             words = f"number {error.args[0]} is named in it, and is not there"
         fix = "give a file of Gmsh, Nastran, Abaqus, CalculiX or VTK, with its ending"
         raise InputError("mesh", f"{os.fspath(source)} cannot be read: {words}", fix) from None
 
 
-def _one_list(text: str) -> str:
-    """A file of Abaqus with its nodes in one list, of which meshio takes the last one only."""
-    lists = list(_LISTS.finditer(text))
-    if len(lists) < 2:
-        return text
-    start = lists[0].start()
-    nodes = "".join(each[1] for each in lists)
-    return f"{text[:start]}*NODE\n{nodes}{_LISTS.sub('', text[start:])}"
+def _refuse_node_0(path: Path) -> None:
+    """Refuse a binary file of Gmsh 2 with a node 0, which meshio takes for the one with the largest number."""
+    content = path.read_bytes() if path.suffix.lower() == ".msh" else b""
+    if head := re.search(rb"\$MeshFormat\s+2\S* 1 .*?\$Nodes\s+(\d+)\n", content, re.DOTALL):
+        numbers = np.frombuffer(content, [("", "<i4"), ("", "<f8", 3)], int(head[1]), head.end())["f0"]
+        if numbers.min() < 1:
+            raise InputError("mesh", f"has node {numbers.min()}", "write it as text, or number its nodes from 1")
 
 
 def unit_size(where: str, unit: str, kind: str) -> float:
@@ -105,34 +90,17 @@ def unit_size(where: str, unit: str, kind: str) -> float:
         raise InputError(where, f"is {unit!r}: {error.problem}", fix) from None
 
 
-def refuse_systems(source: Any) -> None:
-    """Refuse a file of Nastran with places in coordinate systems, which meshio takes for the basic one."""
-    if ending_of(source) not in NASTRAN:
-        return
-    for line in _text(source).splitlines():
-        if not line.startswith("GRID"):
-            continue
-        system = line.split(",")[2] if "," in line else line[24:40] if line[4] == "*" else line[16:24]
-        if system.strip() not in ("", "0"):
-            problem = f"{os.fspath(source)} has nodes in coordinate system {system.strip()}, which is not read"
-            raise InputError("mesh", problem, "export them in the basic system")
-
-
-def left_out(source: Any, read: Collection[str] = ()) -> list[str]:
+def left_out(source: Any, mesh: Any, read: Collection[str] = ()) -> list[str]:
     """Warnings of what a file says of masses, stiffness and constraints and that is not read."""
-    words = _WORDS.get(ending_of(source))
-    if words is None:
-        return []
-    counts = Counter(" ".join(each[1].upper().split()) for each in words.finditer(_text(source)))
-    counts = Counter({name: count for name, count in counts.items() if name not in read})
+    counts = Counter[str]()
+    for word, options, _ in mesh.statements if isinstance(mesh, TextMesh) else ():
+        name = ", ".join([word, *(each for each in ("COMPOSITE", "OFFSET") if each in options)])
+        counts[name] += bool(_CARRYING.fullmatch(name)) and name not in read
+    counts = +counts
     if not counts:
         return []
     listed = ", ".join(f"{name} ({count})" for name, count in counts.items())
     return [f"the mesh: {listed} in {Path(source).name} are not read: their masses, stiffness and constraints lack"]
-
-
-def _text(source: Any) -> str:
-    return Path(source).read_text(encoding="utf-8", errors="replace")
 
 
 class Elements(NamedTuple):
@@ -184,15 +152,20 @@ def elements_of(mesh: Any, thickness: float | Mapping[str, float] | None) -> lis
     return elements
 
 
-def refuse_missing(source: Any, mesh: Any, elements: Iterable[Elements]) -> None:
+def numbers_of(mesh: Any) -> list[Indices]:
+    """Numbers of the elements of each block, by which a text file names them, or from 1."""
+    ends = np.cumsum([len(block.data) for block in mesh.cells])
+    counted = [np.arange(end - len(block.data), end) + 1 for end, block in zip(ends, mesh.cells, strict=True)]
+    return [getattr(block, "numbers", each) for block, each in zip(mesh.cells, counted, strict=True)]
+
+
+def refuse_missing(mesh: Any, elements: Iterable[Elements]) -> None:
     """Refuse elements on nodes that are not in the mesh."""
-    first = np.cumsum([0, *(len(block.data) for block in mesh.cells)])
+    numbers = numbers_of(mesh)
     for each in elements:
-        lacking = np.argwhere((each.nodes < 0) | (each.nodes >= len(mesh.points)))
-        for i, k in lacking[:1]:
-            number, node = first[each.block] + each.which[i] + 1, each.nodes[i, k] + 1
-            words = f"has element {number} on node {node} of {len(mesh.points)}"
-            raise InputError("mesh", missing_node(source) or words, AGAIN)
+        for i, k in np.argwhere((each.nodes < 0) | (each.nodes >= len(mesh.points)))[:1]:
+            element, node = numbers[each.block][each.which[i]], each.nodes[i, k] + 1
+            raise InputError("mesh", f"has element {element} on node {node} of {len(mesh.points)}", AGAIN)
 
 
 def assigned(mesh: Any, where: str, values: Any, blocks: Iterable[int]) -> dict[int, Indices]:
@@ -226,17 +199,14 @@ def elements_in(mesh: Any, name: str) -> list[Indices] | None:
     """Elements of a group in each block of the mesh; None where it is none of elements."""
     if name in mesh.cell_sets:
         return [np.asarray([] if each is None else each, dtype=int) for each in mesh.cell_sets[name]]
-    tag = mesh.field_data.get(name)
+    if name not in mesh.field_data and not name.lstrip("-").isdigit():
+        return None
+    tag, dim = mesh.field_data[name] if name in mesh.field_data else (int(name), None)
     for values in _tags(mesh):
-        if tag is None and name.lstrip("-").isdigit():
-            chosen = [np.flatnonzero(np.asarray(each) == int(name)) for each in values]
-        elif tag is not None:
-            chosen = [
-                np.flatnonzero((np.asarray(each) == int(tag[0])) & (block.dim == int(tag[1])))
-                for each, block in zip(values, mesh.cells, strict=True)
-            ]
-        else:
-            continue
+        blocks = [
+            np.asarray(each) if dim in (None, block.dim) else () for each, block in zip(values, mesh.cells, strict=True)
+        ]
+        chosen = [np.flatnonzero(np.equal(each, int(tag))) for each in blocks]
         if any(map(len, chosen)):
             return chosen
     return None
@@ -269,3 +239,37 @@ def _tags(mesh: Any) -> list[list[Any]]:
         if name != _ENTITIES
         and all(np.asarray(each).ndim == 1 and np.asarray(each).dtype.kind in "iu" for each in values)
     ]
+
+
+def is_mesh(name: str) -> bool:
+    """Whether a file holds a mesh, by the end of its name."""
+    return Path(name).suffix.lower() in MESHES
+
+
+def skin(path: str) -> dict[str, Any]:
+    """Vertices (v, 3) and triangles (f, 3) of the outer faces, in the file's unit, and the groups: their names, how
+    many nodes of elements they hold, and which vertices.
+    """
+    mesh = read_mesh(path)
+    points = np.asarray(mesh.points, dtype=float)
+    flat = not any(block.dim == 3 and len(block.data) for block in mesh.cells) and points.size
+    elements = elements_of(mesh, SHEET * float(np.ptp(points)) if flat else None)
+    used = np.unique(np.concatenate([each.nodes.ravel() for each in elements]))
+    if points.ndim != 2 or points.shape[1] != 3 or used[-1] >= len(points) or not np.isfinite(points[used]).all():
+        raise InputError("mesh", "has elements whose nodes have no place in space", "write it again")
+    points, numbers, nodes_of = points_of(points, elements)
+    blocks = [each._replace(nodes=nodes) for each, nodes in zip(elements, nodes_of, strict=True)]
+    nodes, triangles = surface_of(SimpleNamespace(points=points, blocks=blocks), VERTICES)
+    groups = list[dict[str, Any]]()
+    seen = set[bytes]()
+    for name in group_names(mesh)[:GROUPS]:
+        try:
+            inside = np.intersect1d(nodes_in(mesh, "clamp", name), used)
+        except InputError:  # a name without elements
+            continue
+        if len(inside) and inside.tobytes() not in seen:  # a number that is a name's too is left out
+            groups.append(
+                {"name": name, "nodes": len(inside), "vertices": np.flatnonzero(np.isin(numbers[nodes], inside))}
+            )
+            seen.add(inside.tobytes())
+    return {"vertices": points[nodes].astype(np.float32), "triangles": triangles, "groups": groups}

@@ -36,6 +36,7 @@ from gbeam.solids.foreign import (
     elements_of,
     left_out,
     nodes_in,
+    numbers_of,
     refuse_missing,
     unit_size,
 )
@@ -201,7 +202,7 @@ class SolidMesh(Value):
         elements = elements_of(mesh, thickness)
         used = np.unique(np.concatenate([each.nodes.ravel() for each in elements]))
         refuse_cost("mesh", 3 * len(used) * (1 if thickness is None else 2))
-        refuse_missing(source, mesh, elements)
+        refuse_missing(mesh, elements)
         for i, factor in enumerate(scale):
             positive(f"scale[{i}]", factor, "")
         rotation = Rotation.from_rotvec(turn).as_matrix()
@@ -238,7 +239,7 @@ class SolidMesh(Value):
         about: dict[str, Any] = {"strengths": strengths, "exponents": exponents, "interfaces": hung}
         tied, read = Links.of(group, links or {}, carried or {}, springs or {}, at, clamped), tuple[str, ...]()
         if mass_unit is not None:
-            cards, weight = cards_of(source), unit_size("mass_unit", mass_unit, "mass")
+            cards, weight = cards_of(source, mesh), unit_size("mass_unit", mass_unit, "mass")
             tied, more = with_cards(cards, tied, Placed(middles, rotation, at, numbers, clamped), size, weight)
             weights, read = weights + more, cards.words
         if thickness is not None:
@@ -248,7 +249,7 @@ class SolidMesh(Value):
         solid = cls(at, blocks, clamped, numbers, weights, named | {TIP: tip}, **about)
         refuse_folded(solid)
         refuse_loose(solid)
-        doubts = (*doubts_of(solid, unit or "that of the file"), *left_out(source, read))
+        doubts = (*doubts_of(solid, unit or "that of the file"), *left_out(source, mesh, read))
         return replace(solid, warnings=doubts)
 
     def __repr__(self) -> str:
@@ -418,8 +419,7 @@ def _blocks(
     without = sum(int((owner[each.block][each.which] < 0).sum()) for each in elements)
     if without:
         raise InputError("materials", f"give {without} elements none", "name the groups of all elements")
-    first = np.cumsum([0, *(len(block.data) for block in mesh.cells)])
-    blocks = []
+    numbers, blocks = numbers_of(mesh), []
     for m, (name, material) in enumerate(by_group.items()):
         where = f"materials.{name}" if name else "materials"
         try:
@@ -433,6 +433,6 @@ def _blocks(
             if thickness is not None and turned:
                 refuse_oblique(where, points, nodes[chosen], kind, along.axes)
             if chosen.any():
-                numbers = first[i] + which[chosen] + 1
-                blocks.append(Block(kind, nodes[chosen], numbers, name, float(material.density), elasticity))
+                named = numbers[i][which[chosen]]
+                blocks.append(Block(kind, nodes[chosen], named, name, float(material.density), elasticity))
     return tuple(blocks)

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.errors import InputError
 from gbeam.mechanics.tree.system import RigidBody
 from gbeam.results.result import Floats
 from gbeam.solids.cards import Cards, refused
@@ -35,13 +34,11 @@ def with_cards(cards: Cards, links: Links, nodes: Placed, size: float, mass: flo
     """Links with those of a file, whose units of length and mass are given, m and kg, and of time s; and its masses on
     nodes of the solid (k,), kg.
     """
-    if cards.index and len(cards.index) != len(nodes.places):
-        problem = f"has {len(cards.index)} nodes where its masses and links are, and {len(nodes.places)} in all"
-        raise InputError("mesh", problem, "write it into one file, without includes")
     ends = np.cumsum(np.bincount(nodes.numbers, minlength=len(nodes.places)))[:-1]
     points_of = np.split(np.argsort(nodes.numbers, kind="stable"), ends)
-    solid_of = {number: points_of[i] for number, i in cards.index.items()}
-    place_of = {number: nodes.places[i] for number, i in cards.index.items()}
+    listed = getattr(cards.mesh, "nodes", ())  # by numbers
+    solid_of = dict(zip(listed, points_of, strict=False))
+    place_of = dict(zip(listed, nodes.places, strict=False))
     within = float(np.linalg.norm(np.ptp(nodes.places, axis=0))) * APART
     members, places, owner = dict(links.nodes), dict(links.places), dict[int, str]()
     mean = dict[str, Floats]()

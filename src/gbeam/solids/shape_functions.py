@@ -136,6 +136,15 @@ def tangents(kind: str, points: Floats, nodes: Indices, at: Floats) -> Floats:
     return np.einsum("ekc,qkd->eqdc", points[nodes], _basis(kind, at)[1], optimize=True)
 
 
+def shared_area(kind: str, places: Floats) -> Floats:
+    """Integrals (k,) of the shape functions of a triangle or quadrilateral, with nodes at places (k, 3), over it."""
+    from skfem.quadrature import get_quadrature
+
+    at, weights = get_quadrature(getattr(import_skfem(), KINDS[kind].element)().refdom, KINDS[kind].mass)
+    first, second = tangents(kind, places, np.arange(len(places))[None], at.T)[0].swapaxes(0, 1)
+    return np.asarray(weights * np.linalg.norm(np.cross(first, second), axis=1) @ _basis(kind, at.T)[0])
+
+
 def both_faces(kind: str, below: Any, above: Any) -> Any:
     """Values (e, k, ...) of the nodes of the middle surface on the two faces in the order of a shell's nodes."""
     corners = KINDS[kind].shell

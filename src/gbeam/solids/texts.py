@@ -1,21 +1,131 @@
-"""Files of Abaqus, CalculiX, Nastran and Gmsh as text: keywords and cards, and elements on nodes that are not there."""
+"""Meshes in text files of Abaqus, CalculiX, Nastran and Gmsh, by the numbers of nodes and elements."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
-from itertools import pairwise
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from itertools import chain, pairwise
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gbeam.errors import InputError
 
 NASTRAN, ABAQUS = (".bdf", ".fem", ".nas"), (".inp",)  # endings
-Listed = tuple[set[int], Iterator[tuple[int, list[int]]]]
-# Nodes at most of Nastran's elements, behind which other fields are.
-CARDS = {"CTETRA": 10, "CHEXA": 20, "CPENTA": 15, "CTRIA3": 3, "CTRIA6": 6, "CQUAD4": 4, "CQUAD8": 8}
+AGAIN = "write it again with all of its nodes"
+# Kinds of elements by their dimensions and numbers of nodes.
+SHAPES = {
+    0: {1: "vertex"},
+    1: {2: "line", 3: "line3"},
+    2: {3: "triangle", 4: "quad", 6: "triangle6", 8: "quad8", 9: "quad9"},
+    3: {4: "tetra", 5: "pyramid", 6: "wedge", 8: "hexahedron", 10: "tetra10", 13: "pyramid13", 15: "wedge15",
+        20: "hexahedron20", 27: "hexahedron27"},
+}  # fmt: skip
+DIMENSIONS = {kind: dim for dim, kinds in SHAPES.items() for kind in kinds.values()}
+# Elements of Abaqus by their types, of Nastran with their numbers of nodes, of Gmsh by their numbers and dimensions.
+TYPES = {
+    r"C3D(\d+)[A-Z]*": 3, r"(S|CPS|CPE|CAX|M3D|R3D|SFM3D|STRI)\d+\w*": 2, r"[BT]\d\w*|SPRING[2A]": 1,
+    r"MASS|ROTARYI|SPRING1|DCOUP3D": 0,
+}  # fmt: skip
+CARDS = {
+    "CTETRA": (3, 4, 10), "CPYRAM": (3, 5, 13), "CPENTA": (3, 6, 15), "CHEXA": (3, 8, 20), "CTRIA3": (2, 3),
+    "CTRIAR": (2, 3), "CTRIA6": (2, 6), "CQUAD4": (2, 4), "CQUADR": (2, 4), "CQUAD8": (2, 8), "CBAR": (1, 2),
+    "CBEAM": (1, 2), "CROD": (1, 2),
+}  # fmt: skip
+GMSH = {15: 0, 1: 1, 8: 1, 2: 2, 3: 2, 9: 2, 10: 2, 16: 2} | dict.fromkeys((4, 5, 6, 7, 11, 12, 17, 18, 19), 3)
+# Nodes in meshio's order, where the file has another one.
+NASTRAN_ORDER = {"hexahedron20": [*range(12), *range(16, 20), *range(12, 16)]}
+NASTRAN_ORDER |= {"wedge15": [*range(9), 12, 13, 14, 9, 10, 11]}
+_EDGES = [*range(8), 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15]
+GMSH_ORDER = {"hexahedron20": _EDGES, "hexahedron27": [*_EDGES, 22, 23, 21, 24, 20, 25, 26]}
+GMSH_ORDER |= {"tetra10": [*range(8), 9, 8], "wedge15": [*range(7), 9, 7, 12, 14, 13, 8, 10, 11]}
 
 
-def abaqus_keywords(text: str) -> Iterator[tuple[str, dict[str, str], list[list[str]]]]:
-    """Keywords of a file of Abaqus or CalculiX, with their options and the fields of their lines."""
+class Statement(NamedTuple):
+    """A keyword of Abaqus with its options and the fields of its lines, or a card of Nastran with its fields."""
+
+    word: str
+    options: Mapping[str, str]
+    rows: list[list[str]]
+
+
+class Cells(NamedTuple):
+    """Elements of a kind, with the places of their nodes (e, k) and their numbers (e,)."""
+
+    type: str
+    data: NDArray[np.intp]
+    dim: int
+    numbers: NDArray[np.intp]
+
+
+@dataclass
+class TextMesh:
+    """Mesh with what meshio's has: places of nodes, and kinds and nodes of elements, by their numbers; numbers of the
+    nodes of sets and of the elements of groups, by their names; and all statements.
+    """
+
+    nodes: dict[int, tuple[float, ...]] = field(default_factory=dict)
+    elements: dict[int, tuple[str, tuple[int, ...]]] = field(default_factory=dict)
+    sets: dict[str, list[int]] = field(default_factory=dict)
+    groups: dict[str, list[int]] = field(default_factory=dict)
+    statements: list[Statement] = field(default_factory=list)
+    cells: list[Cells] = field(default_factory=list)
+    point_sets: dict[str, Any] = field(default_factory=dict)
+    cell_sets: dict[str, Any] = field(default_factory=dict)
+    cell_data: dict[str, Any] = field(default_factory=dict)
+    field_data: dict[str, Any] = field(default_factory=dict)
+    info: Any = None
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """Places (k, 3) of the nodes."""
+        return np.array(list(self.nodes.values()), dtype=float).reshape(-1, 3)
+
+    def add(self, noun: str, number: int, value: Any) -> None:
+        """Add a node or an element, of which there must be no other one with its number."""
+        listed: dict[int, Any] = self.nodes if noun == "node" else self.elements
+        if listed.setdefault(number, value) != value:
+            raise InputError("mesh", f"has two of {noun} {number}", "number them apart, in one part")
+
+    def place(self, order: Mapping[str, list[int]], file: str) -> None:
+        """Make blocks of elements, and sets, by the places of nodes and elements in place of their numbers."""
+        index, at = {number: i for i, number in enumerate(self.nodes)}, dict[int, tuple[int, int]]()
+        numbers = dict[str, list[int]]()
+        for number, (kind, nodes) in self.elements.items():
+            numbers.setdefault(kind, []).append(number)
+            if missing := [node for node in nodes if node not in index]:
+                raise InputError("mesh", f"has element {number} on node {missing[0]}, which is not in {file}", AGAIN)
+        for block, (kind, some) in enumerate(numbers.items()):
+            at |= {number: (block, i) for i, number in enumerate(some)}
+            data = np.array([[index[node] for node in self.elements[number][1]] for number in some])
+            self.cells.append(Cells(kind, data[:, order.get(kind, slice(None))], DIMENSIONS[kind], np.array(some)))
+        for group, some in self.groups.items():
+            pairs = np.array([at[each] for each in {*some} if each in at], dtype=int).reshape(-1, 2)
+            self.cell_sets[group] = [np.sort(pairs[pairs[:, 0] == block, 1]) for block in range(len(numbers))]
+        self.point_sets = {
+            group: np.array([index[each] for each in some], dtype=int) for group, some in self.sets.items()
+        }
+
+
+def ending_of(source: Any) -> str:
+    """The ending of a file's name, in small letters; empty of what is no file."""
+    return Path(source).suffix.lower() if isinstance(source, (str, os.PathLike)) else ""
+
+
+def text_mesh(source: str | os.PathLike[str]) -> TextMesh | None:
+    """Read a mesh in a text file of Abaqus, CalculiX, Nastran or Gmsh; nothing of a file of another kind."""
+    path, mesh, (read, order) = Path(source), TextMesh(), _READERS.get(ending_of(source), (None, {}))
+    if read is None or not read(mesh, path.read_text(encoding="utf-8", errors="replace"), path.name):
+        return None
+    mesh.place(order, path.name)
+    return mesh
+
+
+def _read_abaqus(mesh: TextMesh, text: str, _: str) -> bool:
     lines = [line for line in text.splitlines() if line.strip() and not line.startswith("**")]
     starts = [i for i, line in enumerate(lines) if line.startswith("*")]
     for first, end in pairwise([*starts, len(lines)]):
@@ -24,88 +134,187 @@ def abaqus_keywords(text: str) -> Iterator[tuple[str, dict[str, str], list[list[
             first += 1
         word, *options = lines[first][1:].split(",")
         pairs = (each.partition("=") for each in options if each.strip())
+        about = {key.strip().upper(): value.strip() for key, _, value in pairs}
         rows = [[each.strip() for each in line.split(",")] for line in lines[first + 1 : end]]
-        yield " ".join(word.upper().split()), {key.strip().upper(): value.strip() for key, _, value in pairs}, rows
+        mesh.statements.append(Statement(" ".join(word.upper().split()), about, rows))
+    for statement in mesh.statements:
+        if read := _ABAQUS.get(statement.word):
+            read(mesh, statement)
+    return True
 
 
-def abaqus_elements(rows: list[list[str]]) -> Iterator[tuple[int, list[int]]]:
-    """Numbers of elements and of their nodes in the lines of a keyword."""
-    listed: list[str] = []
+def _node(mesh: TextMesh, statement: Statement) -> None:
+    if "SYSTEM" in statement.options:
+        _refuse(mesh, statement)
+    for number, *place in statement.rows:
+        mesh.add("node", int(number), tuple(float(each or 0) for each in [*place, "", "", ""][:3]))
+    if "NSET" in statement.options:
+        mesh.sets.setdefault(statement.options["NSET"], []).extend(int(row[0]) for row in statement.rows)
+
+
+def _element(mesh: TextMesh, statement: Statement) -> None:
+    name, entries = statement.options["TYPE"].upper(), [[int(each) for each in row if each] for row in statement.rows]
+    known = [(dim, match) for pattern, dim in TYPES.items() if (match := re.fullmatch(pattern, name))]
+    if not known:
+        raise ValueError(f"elements of type {name} are not known")
+    (dim, match), every = known[0], list(chain.from_iterable(entries))
+    # Solids may go on in the next line.
+    count = int(match[1]) if dim == 3 else len(entries[0]) - 1 if entries else 1
+    if count not in SHAPES[dim] or len(every) % (count + 1):
+        raise ValueError(f"elements of type {name} have not {count} nodes each")
+    numbers, *nodes = np.reshape(every, (-1, count + 1)).T.tolist()
+    for number, on in zip(numbers, zip(*nodes, strict=True), strict=True):
+        mesh.add("element", number, (SHAPES[dim][count], on))
+    if "ELSET" in statement.options:
+        mesh.groups.setdefault(statement.options["ELSET"], []).extend(numbers)
+
+
+def _set(mesh: TextMesh, statement: Statement) -> None:
+    word, options, rows = statement
+    sets = mesh.sets if word == "NSET" else mesh.groups
+    sets.setdefault(options[word], []).extend(members(rows, sets, "GENERATE" in options))
+
+
+def _refuse(_: TextMesh, statement: Statement) -> None:
+    if statement.word != "INSTANCE" or any(map(any, statement.rows)):
+        fix = "export one mesh into one file, in the basic system"
+        raise InputError("mesh", f"has places or nodes by {statement.word}, which is not read", fix)
+
+
+_ABAQUS: dict[str, Callable[[TextMesh, Statement], None]] = {
+    "NODE": _node,
+    "ELEMENT": _element,
+    "NSET": _set,
+    "ELSET": _set,
+}
+_REFUSED = ("INCLUDE", "SYSTEM", "NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "INSTANCE")
+_ABAQUS |= dict.fromkeys(_REFUSED, _refuse)
+
+
+def members(rows: list[list[str]], sets: Mapping[str, list[int]], generated: bool = False) -> Iterator[int]:
+    """Numbers in the lines of a set of Abaqus, which may name others."""
     for row in rows:
-        listed += row
-        if row[-1]:  # a comma at the end goes on in the next line
-            yield int(listed[0]), [int(each) for each in listed[1:] if each]
-            listed = []
+        if generated:
+            first, last, *step = map(int, filter(None, row))
+            yield from range(first, last + 1, step[0] if step else 1)
+        else:
+            for each in filter(None, row):
+                yield from [int(each)] if each.isdigit() else sets[each]
 
 
-def ending_of(source: Any) -> str:
-    """The ending of a file's name, in small letters; empty of what is no file."""
-    return Path(source).suffix.lower() if isinstance(source, (str, os.PathLike)) else ""
+def real(value: str) -> float:
+    """Read a number as Nastran writes it, with or without the letter of its exponent; 0 of a blank."""
+    return float(re.sub(r"(?<=[\d.])(?=[+-])", "e", value.lower().replace("d", "e"))) if value else 0.0
 
 
-def missing_node(source: Any) -> str | None:
-    """Say which element of a text file of Abaqus, CalculiX, Nastran or Gmsh is on a node that is not there."""
-    listed = READERS.get(ending_of(source))
-    if listed is None:
-        return None
-    try:
-        nodes, elements = listed(Path(source).read_text(encoding="utf-8"))
-        for element, on in elements:
-            for node in on:
-                if node not in nodes:
-                    return f"has element {element} on node {node}, which is not in {Path(source).name}"
-    except (ValueError, IndexError, KeyError, UnicodeDecodeError):
-        pass  # not a text file, or damaged elsewhere
-    return None
+def _read_nastran(mesh: TextMesh, text: str, file: str) -> bool:
+    cards, bulk = list[list[str]](), re.split(r"^ *BEGIN +\w.*$", text, maxsplit=1, flags=re.M | re.I)[-1]
+    for line in re.split(r"^ *ENDDATA\b", bulk, maxsplit=1, flags=re.M | re.I)[0].splitlines():
+        bare = line.partition("$")[0].expandtabs().rstrip()
+        count = 4 if "*" in bare[:8].partition(",")[0] else 8
+        width = 64 // count
+        parts = bare.split(",") if "," in bare else [bare[:8], *(bare[i : i + width] for i in range(8, 72, width))]
+        first, *fields = [each.strip() for each in [*parts, *[""] * count][: count + 1]]
+        if first[:1].isalpha():
+            cards.append([first.rstrip("* _").upper(), *fields])  # meshio 5.3.5 writes CHEXA_
+        elif bare and cards:
+            if first[:1] not in ("", "+", "*"):
+                raise ValueError(f"{bare!r} is no card")
+            cards[-1] += fields
+    for word, *row in cards:
+        mesh.statements.append(Statement(word, {}, [row]))
+        if word in ("GRID", "GRDSET") and row[1] not in ("", "0"):
+            problem = f"{file} has nodes in coordinate system {row[1]}, which is not read"
+            raise InputError("mesh", problem, "export them in the basic system")
+        if word == "GRID":
+            mesh.add("node", int(row[0]), tuple(map(real, row[2:5])))
+        elif word in CARDS:
+            _nastran_element(mesh, word, row)
+        elif word == "INCLUDE":
+            _refuse(mesh, mesh.statements[-1])
+    return True
 
 
-def _abaqus(text: str) -> Listed:
-    blocks = list(abaqus_keywords(text))
-    nodes = {int(row[0]) for word, _, rows in blocks if word == "NODE" for row in rows}
-
-    every = (rows for word, _, rows in blocks if word == "ELEMENT")
-    return nodes, (element for rows in every for element in abaqus_elements(rows))
-
-
-def _nastran(text: str) -> Listed:
-    cards: list[list[str]] = []
-    for line in text.splitlines():
-        bare = line.partition("$")[0].rstrip()
-        width = 16 if "*" in bare[:8] else 8
-        fields = bare.split(",")[:9] if "," in bare else [bare[i : i + width] for i in (0, *range(8, 72, width))]
-        fields[0] = fields[0][:8].strip(" *_")
-        if fields[0][:1].isalpha():
-            cards.append(fields)
-        elif cards and bare:
-            cards[-1] += fields[1:]
-    nodes = {int(card[1]) for card in cards if card[0] == "GRID"}
-    elements = [card for card in cards if card[0] in CARDS]
-    return nodes, ((int(e[1]), [int(n) for n in e[3 : 3 + CARDS[e[0]]] if n.strip()]) for e in elements)
+def _nastran_element(mesh: TextMesh, word: str, row: list[str]) -> None:
+    (dim, *counts), number = CARDS[word], int(row[0])
+    nodes, rest = tuple(int(each) for each in row[2 : 2 + counts[-1]] if each), row[2 + counts[-1] :]
+    if len(nodes) not in counts:
+        raise ValueError(f"{word} {number} has {len(nodes)} nodes")
+    angle = 4 if word == "CQUAD8" else 0
+    if dim == 2 and any(real(each) for i, each in enumerate(rest) if i != angle):
+        raise InputError(
+            "mesh", f"has {word} {number}, which has an offset or thicknesses of its own", "leave them out"
+        )
+    mesh.add("element", number, (SHAPES[dim][len(nodes)], nodes))
+    mesh.groups.setdefault(row[1] or row[0], []).append(number)
 
 
-def _gmsh(text: str) -> Listed:
-    def rows(name: str) -> list[list[str]]:
+def _read_gmsh(mesh: TextMesh, text: str, _: str) -> bool:
+    """Read version 2.2 or 4.1 as text, of which alone it returns that it is read."""
+
+    def section(name: str) -> list[list[str]]:
         inside = text.partition(f"${name}\n")[2].partition(f"$End{name}")[0]
-        return [line.split() for line in inside.splitlines()]
+        return [line.split() for line in inside.splitlines() if line.strip()]
 
-    new, nodes, elements = float(rows("MeshFormat")[0][0]) >= 4, rows("Nodes")[1:], rows("Elements")[1:]
-    if not new:
-        return {int(row[0]) for row in nodes}, ((int(e[0]), [int(n) for n in e[3 + int(e[2]) :]]) for e in elements)
-    numbers, at = set[int](), 0
-    while at < len(nodes):  # a head with the count, so many numbers, so many places
-        count = int(nodes[at][3])
-        numbers |= {int(row[0]) for row in nodes[at + 1 : at + 1 + count]}
-        at += 1 + 2 * count
+    if not (form := re.search(r"^\$MeshFormat\s+(2(?:\.[0-2])?|4(?:\.1)?) 0 ", text, re.M)):
+        return False
+    nodes, elements = section("Nodes")[1:], section("Elements")[1:]
+    names = {(int(row[0]), row[1]): " ".join(row[2:]).strip('"') for row in section("PhysicalNames")[1:]}
+    numbered, once = dict[str, list[int]](), dict[Any, int]()
+    mesh.groups |= {name: [] for name in names.values()}
 
-    def listed() -> Iterator[tuple[int, list[int]]]:
-        at = 0
-        while at < len(elements):
-            count = int(elements[at][3])
-            yield from ((int(e[0]), [int(n) for n in e[1:]]) for e in elements[at + 1 : at + 1 + count])
-            at += 1 + count
+    def add(number: str, kind: str, on: list[str], tags: list[str]) -> None:
+        dim = GMSH.get(int(kind), 3)
+        if len(on) not in SHAPES[dim] or int(kind) not in GMSH:
+            raise ValueError(f"element {number} is of Gmsh's type {kind}")
+        element = SHAPES[dim][len(on)], tuple(map(int, on))
+        each = once.setdefault(element, int(number))  # one of two groups is there twice, by two numbers
+        mesh.add("element", each, element)
+        for tag in tags:
+            numbered.setdefault(tag, []).append(each)
+            if (dim, tag) in names:
+                mesh.groups[names[dim, tag]].append(each)
 
-    return numbers, listed()
+    if form[1].startswith("2"):
+        for number, *place in nodes:
+            mesh.add("node", int(number), tuple(map(float, place)))
+        for number, kind, count, *rest in elements:
+            add(number, kind, rest[int(count) :], [each for each in rest[: int(count)][:1] if each != "0"])
+    else:
+        physical = _physical(section("Entities"))
+        for _head, rows in _blocks(nodes, 2):
+            half = len(rows) // 2
+            for (number,), place in zip(rows[:half], rows[half:], strict=True):
+                mesh.add("node", int(number), tuple(map(float, place[:3])))
+        for (dim, entity, kind, _), rows in _blocks(elements, 1):
+            for number, *on in rows:
+                add(number, kind, on, physical.get((int(dim), entity), []))
+    named = {name: some for name, some in mesh.groups.items() if some}
+    mesh.groups = named | {tag: numbered[tag] for tag in sorted(numbered, key=int)}
+    return True
 
 
-READERS: dict[str, Callable[[str], Listed]] = {".msh": _gmsh}
-READERS |= dict.fromkeys(ABAQUS, _abaqus) | dict.fromkeys(NASTRAN, _nastran)
+def _blocks(rows: list[list[str]], times: int) -> Iterator[tuple[list[str], list[list[str]]]]:
+    """Heads of blocks, which end with a number, and so many lines of each, or so many times that."""
+    at = 0
+    while at < len(rows):
+        end = at + 1 + times * int(rows[at][3])
+        yield rows[at], rows[at + 1 : end]
+        at = end
+
+
+def _physical(rows: list[list[str]]) -> dict[tuple[int, str], list[str]]:
+    """Physical groups of points, curves, surfaces and volumes, by their dimensions and numbers."""
+    dims = [dim for dim, count in enumerate(rows[0] if rows else []) for _ in range(int(count))]
+    groups = dict[tuple[int, str], list[str]]()
+    for dim, row in zip(dims, rows[1:], strict=True):
+        count, *tags = row[4 if dim == 0 else 7 :]  # behind a place, or a box
+        groups[dim, row[0]] = [tag.lstrip("-") for tag in tags[: int(count)]]
+    return groups
+
+
+_READERS: dict[str, tuple[Callable[[TextMesh, str, str], bool], dict[str, list[int]]]] = {
+    ".msh": (_read_gmsh, GMSH_ORDER),
+    **dict.fromkeys(NASTRAN, (_read_nastran, NASTRAN_ORDER)),
+    **dict.fromkeys(ABAQUS, (_read_abaqus, {})),
+}
