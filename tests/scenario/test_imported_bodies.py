@@ -197,7 +197,7 @@ kind = "rigid"
 mass = "3 kg"
 size = ["300 mm", "200 mm", "100 mm"]
 centre = [0, 0, "50 mm"]
-points = { lid = { at = [0, 0, "100 mm"] }, edge = { at = ["150 mm", 0, 0] } }
+points = { lid = [0, 0, "100 mm"], edge = { at = ["150 mm", 0, 0] } }
 """
 MACHINE = """
 [motion.machine]

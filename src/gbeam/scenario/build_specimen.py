@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure | None:
     """The structure of a mesh."""
     from gbeam.io.kept import kept
-    from gbeam.mechanics.tree.system import Place
     from gbeam.solids.mesh import SolidMesh
 
     laws: Any = (
@@ -34,11 +33,6 @@ def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure
     if laws is None or (isinstance(laws, dict) and None in laws.values()):
         return None
 
-    points: Any = {
-        name: Place(each.at, each.turn) if isinstance(each, schema.PlaceOfBody) else each
-        for name, each in table.points.items()
-    }
-
     def read(file: str, size: float | None) -> SolidMesh:
         try:
             return SolidMesh.read(
@@ -48,7 +42,7 @@ def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure
                 unit=table.unit,
                 thickness=table.thicknesses or table.thickness,
                 element_size=size,
-                points=points,
+                points=_points(table),
                 point_masses=table.masses,
                 interfaces=table.interfaces,
                 links=table.links,
@@ -81,6 +75,16 @@ def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure
         return reduced(table.mesh, table.element_size, coarser).structure
 
     return parts.attempt(where, model)
+
+
+def _points(table: schema.SolidBody | system.RigidBody) -> dict[str, Any]:
+    """Points of a body by name: groups and places as they are, and places with axes."""
+    from gbeam.mechanics.tree.system import Place
+
+    return {
+        name: Place(each.at, each.turn) if isinstance(each, schema.PlaceOfBody) else each
+        for name, each in table.points.items()
+    }
 
 
 def _carried(name: str, table: schema.Carried) -> RigidBody:
@@ -192,12 +196,10 @@ def _same_nodes(shapes: Any, count: int) -> Any:
 
 def rigid_body_of(parts: Collector, where: str, table: system.RigidBody) -> RigidBody | None:
     """A rigid body of a system."""
-    from gbeam.mechanics.tree.system import Place, RigidBody
-
-    points = {name: Place(each.at, each.turn) for name, each in table.points.items()}
+    from gbeam.mechanics.tree.system import RigidBody
 
     def body() -> RigidBody:
-        return RigidBody(table.mass, _moments(table), table.centre, points)
+        return RigidBody(table.mass, _moments(table), table.centre, _points(table))
 
     return parts.attempt(where, body)
 
@@ -207,7 +209,8 @@ def rigid_of(parts: Collector, where: str, table: system.RigidBody) -> Structure
     from gbeam.solids.rigid import RigidSpecimen
 
     def specimen() -> RigidSpecimen:
-        corners = [*table.corners, *(each.at for each in table.points.values())]
+        points: dict[str, Any] = {name: getattr(each, "at", each) for name, each in table.points.items()}
+        corners = [*table.corners, *points.values()]
         if table.size is not None:
             ways = np.array(list(product((-0.5, 0.5), repeat=3)))
             corners = [*(_middle(table) + ways * np.asarray(table.size)), *corners]
@@ -215,7 +218,6 @@ def rigid_of(parts: Collector, where: str, table: system.RigidBody) -> Structure
             raise InputError("size", "is missing", "give the box that it fills, or its corners")
         bolts = table.bolts or None
         moments = _inertia(_moments(table))
-        points = {name: each.at for name, each in table.points.items()}
         return RigidSpecimen(
             table.mass, table.centre, moments, corners, bolts, table.bolt_axis, table.spread_limit, points
         )

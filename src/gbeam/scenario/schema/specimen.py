@@ -94,7 +94,8 @@ def _placed(point: Any) -> str:
     return "list" if isinstance(point, (list, tuple)) else "one"
 
 
-_Point = Annotated[
+Point = Annotated[Annotated[Place3, Tag("list")] | Annotated[PlaceOfBody, Tag("table")], Discriminator(_placed)]
+_MeshPoint = Annotated[
     Annotated[str, Tag("one")] | Annotated[Place3, Tag("list")] | Annotated[PlaceOfBody, Tag("table")],
     Discriminator(_placed),
 ]
@@ -177,7 +178,7 @@ class SolidBody(Reduced):
     masses: dict[str, Mass] = by_name(
         "masses by the name of a point, or of a group over whose nodes each is spread evenly"
     )
-    points: dict[str, _Point] = by_name(
+    points: dict[str, _MeshPoint] = by_name(
         "points of output by name: the place [x, y, z] from the root for the nearest node, or a group of "
         "one node, or with axes of stress and strain { at, turn }; tip is the node farthest from the root where it is "
         "not given"

@@ -42,7 +42,7 @@ from gbeam.scenario.schema.specimen import (
     Direction,
     MatricesBody,
     ModalTestBody,
-    PlaceOfBody,
+    Point,
     RigidKeys,
     SolidBody,
     StandardInputBody,
@@ -61,8 +61,9 @@ Name = Annotated[str, AfterValidator(_named)]
 class RigidBody(RigidKeys):
     """A rigid body."""
 
-    points: dict[Name, PlaceOfBody] = by_name(
-        "points by name, on which other bodies hang, forces act and output is given: { at, turn }"
+    points: dict[Name, Point] = by_name(
+        "points by name, on which other bodies hang, forces act and output is given: the place [x, y, z] from the "
+        "root, or with axes { at, turn }"
     )
 
 
