@@ -138,7 +138,18 @@ def test_a_crane_moves_its_load_by_the_equation_of_its_pendulum() -> None:
     """No beam at all: J θ'' = −m l (g sin θ + x'' cos θ) under the speed that was found, by SciPy's integrator."""
     # Whatever its own rate is.
     slewed = crane(rate=gb.SmoothStep(0.5, 8.0))
-    found = gb.shape_command(slewed, "rail.displacement", distance=5.0, duration=8.0, point="load.hook")
+    said = list[tuple[str, float]]()
+    found = gb.shape_command(
+        slewed,
+        "rail.displacement",
+        distance=5.0,
+        duration=8.0,
+        point="load.hook",
+        progress=lambda *news: said.append(news),
+    )
+    rounds = [share for words, share in said if words == "system: refining, round 1 of at most 4"]
+    assert len(rounds) > 3 and rounds == sorted(rounds) and 0.3 < rounds[-1] <= 1
+    assert {words.partition(", ")[0] for words, _ in said[-6:]} <= {"system: ZVD", "system: smooth-step"}
     profile, inertia = gb.SplineProfile(found.duration, found.coefficients), 50.0 * 2.0**2 + 1.0
     assert found.frequency[0] == pytest.approx(np.sqrt(50.0 * 2.0 * 9.81 / inertia) / 2 / np.pi, rel=1e-9)
 

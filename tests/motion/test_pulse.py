@@ -1,11 +1,14 @@
 """The smooth-step slew, 2009 (43), and the sine pulse, 2009 (44), sharp and smoothed."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
 
 from gbeam.errors import InputError
 from gbeam.motion import Profile, Sine, SmoothStep, smoothed
+from gbeam.motion.profiles.pulse import SplineProfile
 
 WIDTH = 0.3
 STEP, SINE = SmoothStep(level=3.0, duration=2.0, start=0.5), Sine(amplitude=5.0, duration=1.5)
@@ -62,3 +65,13 @@ def test_integral_of_the_smooth_step() -> None:
     expected = [quad(lambda t: float(step(t)), 0.0, time, points=[2.0, 32.0])[0] for time in times]
     np.testing.assert_allclose(step.integral(times), expected, rtol=1e-12, atol=1e-12)
     assert step.integral(40.0) == pytest.approx(3.0 * (15.0 + 8.0), rel=1e-14)
+
+
+def test_integral_of_a_spline() -> None:
+    """Before, on every piece and after it, beside quadrature."""
+    spline = SplineProfile(3.0, np.repeat([1.0, -2.0, 0.5, 4.0, -1.0], [5, 1, 2, 1, 5]), 2.0)
+    ends = [2.0 + each / 3 for each in range(10)]
+    for time in (0.0, 2.0, 2.1, 3.0, 4.4, 5.0, 7.0):
+        expected = sum(quad(spline, a, b)[0] for a, b in pairwise([e for e in ends if e < time] + [time]))
+        whole = spline.integral(np.array(time)) - spline.integral(np.array(2.0))
+        assert whole == pytest.approx(expected if time > 2 else time - 2.0, abs=1e-13)

@@ -35,9 +35,11 @@ def tangent(
     qd: Floats,
     *,
     within: System | None = None,
+    accelerations: bool = True,
 ) -> tuple[Floats, Floats, Floats]:
     """Derivatives (t + 1, n, p) of a run's q, q̇, q̈ by p parameters, from those of its start (n, p), by equations
-    linearised about its states; `within` are those that fitted steps solve.
+    linearised about its states; `within` are those that fitted steps solve. Without accelerations, q̈'s may be those of
+    the last stage.
     """
     shape = (len(steps) + 1, *q.shape)
     histories = np.empty(shape), np.empty(shape), np.empty(shape)
@@ -50,7 +52,7 @@ def tangent(
     for end in ends:
         for first in range(begin, end, _CHUNK):
             part = slice(first, min(first + _CHUNK, end))
-            z, piece = _chunk(system, within or system, scheme, z, steps[part], _part(run, part))
+            z, piece = _chunk(system, within or system, scheme, z, steps[part], _part(run, part), accelerations)
             for history, values in zip(histories, piece, strict=True):
                 history[part.start + 1 : part.stop + 1] = values
         if end < len(steps):
@@ -73,7 +75,7 @@ def _accelerations(system: System, time: Floats, run: Trajectory, at: Any, q: Fl
 
 
 def _chunk(
-    system: System, within: System, scheme: Scheme, z: Floats, steps: Steps, run: Trajectory
+    system: System, within: System, scheme: Scheme, z: Floats, steps: Steps, run: Trajectory, accelerations: bool
 ) -> tuple[Floats, tuple[Floats, Floats, Floats]]:
     """Take steps from z (m, n, p): the next z, and δq, δq̇, δq̈ at their ends."""
     t = scheme.tableau(steps.length)
@@ -104,7 +106,7 @@ def _chunk(
     q, qd, qdd = ends[:, 0], ends[:, 1], x[:, -1]
     # The last stage's is that at the end, unless the stage lies before it, or just before a jump.
     again = np.flatnonzero(steps.jump) if scheme.ends else np.arange(len(steps))
-    if again.size:
+    if again.size and accelerations:
         qdd[again] = _accelerations(system, steps.end[again], run, again + 1, q[again], qd[again])
     return state.reshape(m, n, p), (q, qd, qdd)
 

@@ -33,6 +33,7 @@ def _matrix() -> Floats:
 
 
 _BASIS = _matrix()
+_WHOLE = _BASIS.T @ (1 / np.arange(1, PIECE + 1))  # integrals of the six basis functions over one piece
 # [k, j]: weights of xᵏ in the j-th Taylor coefficient at x, for each of the six basis functions.
 _TAYLOR = np.array(
     [[comb(k + j, j) * _BASIS[k + j] if k + j < PIECE else np.zeros(PIECE) for j in range(PIECE)] for k in range(PIECE)]
@@ -57,19 +58,34 @@ class Spline:
 
     def series(self, t: Any, order: int) -> Series:
         """Values and time derivatives up to `order` at times `t` (s, any shape), (..., k)."""
+        xp, piece, powers = self._within(t)
+        # One product for all times and orders, then one for each time.
+        flat = _TAYLOR[:, : order + 1].reshape(PIECE, -1)
+        weights = xp.reshape(xp.stack(powers, axis=-1) @ flat, (*piece.shape, order + 1, PIECE))
+        taylor = weights @ self._near(piece)
+        return Series(tuple(taylor[..., j, :] / self.step**j for j in range(order + 1)))
+
+    def integral(self, t: Any) -> Any:
+        """Integrals from the start to times `t` (s, any shape), (..., k)."""
+        xp, piece, powers = self._within(t)
+        weights = xp.stack([each * powers[1] / (k + 1) for k, each in enumerate(powers)], axis=-1) @ _BASIS
+        whole = xp.einsum("i,pik->pk", _WHOLE, self._near(np.arange(len(self.coefficients) - DEGREE)))
+        before = xp.cumsum(whole, axis=0) - whole
+        return self.step * (before[piece] + (weights[..., None, :] @ self._near(piece))[..., 0, :])
+
+    def _within(self, t: Any) -> tuple[Any, Any, list[Any]]:
+        """Namespace of times, the pieces where they lie, and the powers of how far along these, from the zeroth."""
         u = (as_array(t) - self.start) / self.step
         xp = namespace(u, self.coefficients)
-        coefficients = xp.asarray(self.coefficients)
-        piece = xp.clip(xp.floor(u).astype(int), 0, coefficients.shape[0] - PIECE)
-        near = coefficients[piece[..., None] + np.arange(PIECE)]
+        piece = xp.clip(xp.floor(u).astype(int), 0, len(self.coefficients) - PIECE)
         powers = [xp.ones_like(u)]
         for _ in range(DEGREE):
             powers.append(powers[-1] * (u - piece))
-        # One product for all times and orders, then one for each time.
-        flat = _TAYLOR[:, : order + 1].reshape(PIECE, -1)
-        weights = xp.reshape(xp.stack(powers, axis=-1) @ flat, (*u.shape, order + 1, PIECE))
-        taylor = weights @ near
-        return Series(tuple(taylor[..., j, :] / self.step**j for j in range(order + 1)))
+        return xp, piece, powers
+
+    def _near(self, piece: Any) -> Any:
+        """Coefficients (..., 6, k) on which pieces depend."""
+        return namespace(self.coefficients, piece).asarray(self.coefficients)[piece[..., None] + np.arange(PIECE)]
 
 
 class Grid:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -32,10 +32,12 @@ from gbeam.motion.bases.hub import Hub
 from gbeam.motion.profiles.profile import Profile
 from gbeam.numerics.eigen import RIGID, Linear, symmetric, symmetric_modes
 from gbeam.numerics.series import STEP
+from gbeam.progress import Progress
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 
 Pair = tuple[Profile, Profile]
+Share = Callable[[float], None]  # of a computation, that is done
 _SAG, _LEAST = 1e-6, 1e-6  # of the largest deflection, and m: a smaller change as it moves is none
 _ASIDE = 1e-4  # m or rad from where a joint rests: it hardly swings
 _PLACES = (0.0, 0.19, 0.37, 0.61, 0.83, 1.0)  # shares of the way, at which that is looked for
@@ -137,12 +139,12 @@ class OnHub:
         column = linear.b[:, :3] @ base.a_WO_B[0] + linear.b[:, 3:6] @ base.alpha_WB_B[0]
         return SmallMotions(linear.a, column, linear.c[:3])
 
-    def run(self, profile: Profile, settings: ResponseSettings, name: str = "") -> Ran:
+    def run(self, profile: Profile, settings: ResponseSettings, name: str = "", progress: Progress = None) -> Ran:
         """Run a command."""
-        return _ran(simulate(self.structure, driven(self.hub, profile), settings, name=name))
+        return _ran(simulate(self.structure, driven(self.hub, profile), settings, name=name, progress=progress))
 
     def about(
-        self, profile: Profile, settings: ResponseSettings, pairs: Sequence[Pair], width: float
+        self, profile: Profile, settings: ResponseSettings, pairs: Sequence[Pair], width: float, share: Share
     ) -> tuple[Ran, Iterator[tuple[Ran, Ran]]]:
         """A run of given steps, and those of pairs of commands that differ by a width, along its exact derivatives."""
         assert settings.step is not None
@@ -150,7 +152,13 @@ class OnHub:
         about = Differentiated(self.structure, hub, settings, Grid(settings.step, 1), "", loads=False)
         posed = [about.pair(*((None, driven(self.hub, each)) for each in pair)) for pair in pairs]
         both = about.responses(posed, np.full(len(posed), width))
-        return _ran(about.unvaried()), ((_ran(less), _ran(more)) for less, more in both)
+
+        def varied() -> Iterator[tuple[Ran, Ran]]:
+            for k, (less, more) in enumerate(both, start=1):
+                share(k / len(pairs))
+                yield _ran(less), _ran(more)
+
+        return _ran(about.unvaried()), varied()
 
 
 def _ran(of: Response) -> Ran:
@@ -294,10 +302,10 @@ class OnJoint:
         joint = replace(joint, effort=command) if self.free else replace(joint, rate=command)
         return replace(self.system, joints={**self.system.joints, name: joint})
 
-    def run(self, profile: Profile, settings: ResponseSettings, name: str = "") -> Ran:
+    def run(self, profile: Profile, settings: ResponseSettings, name: str = "", progress: Progress = None) -> Ran:
         """Run a command."""
         system = self.commanded(profile)
-        of, k = simulate_system(system, None, settings, name), system.coordinates.index(self.coordinate)
+        of, k = simulate_system(system, None, settings, name, progress), system.coordinates.index(self.coordinate)
         tip, left = self._tip(system, of.time, of.q, settings)
         return Ran(of.time, tip, of.outcome, of.message, left, of.step, (of.q[:, k] - of.q[0, k], of.qd[:, k]))
 
@@ -310,7 +318,7 @@ class OnJoint:
         return tip, float(np.linalg.norm(half_ranges(time, tip, settings.residual_from or 0.0)))
 
     def about(
-        self, profile: Profile, settings: ResponseSettings, pairs: Sequence[Pair], width: float
+        self, profile: Profile, settings: ResponseSettings, pairs: Sequence[Pair], width: float, share: Share
     ) -> tuple[Ran, Iterator[tuple[Ran, Ran]]]:
         """A run of given steps, and those of pairs of commands that differ by a width, along its exact derivatives."""
         assert settings.step is not None
@@ -324,16 +332,14 @@ class OnJoint:
         steps = replace(grid, kept=np.ones(len(grid), dtype=bool))
         run = through(posed.equations, scheme, point.y, point.yd, steps)
 
-        commanded = [[self.commanded(each) for each in pair] for pair in pairs]
-
-        def command(of: System, time: Floats) -> Floats:
+        def command(of: Profile, time: Floats) -> Floats:
             """The effort (t, 1), or angle, rate and acceleration (t, 3)."""
-            inputs = of.inputs(time)
             if self.free:
-                return np.asarray(inputs.efforts)[:, [k]]
-            return np.asarray(inputs.prescribed)[..., tree.fixed.index(k)]
+                return np.asarray(of(time))[:, None]
+            return np.stack([Hub(radius=0.0, rate=of).angle(time), *of.derivatives(time)], axis=-1)
 
         def linear(time: Floats, q: Floats, qd: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+            share(float(time[0] - settings.start) / settings.duration)
             inputs = system.inputs(time)
             qdd = accelerations(tree, q, qd, inputs)
             stiffness, damping, mass = slopes(tree, q, qd, qdd, inputs)
@@ -346,11 +352,9 @@ class OnJoint:
                     moved[:, j, tree.fixed.index(k)] += 1j * STEP
                     left = tree(q + 0j, qd + 0j, qdd + 0j, replace(inputs, prescribed=moved))
                     driven[..., j] = left.imag / STEP
-            changed = np.stack([command(more, time) - command(less, time) for less, more in commanded], axis=-1) / width
+            changed = np.stack([command(more, time) - command(less, time) for less, more in pairs], axis=-1) / width
             return mass, damping, stiffness, -driven @ changed
 
-        still = np.zeros((len(tree.free), len(pairs)))
-        changes = tangent(linear, scheme, steps, run, still, still)[0]
         kept = np.append(0, 1 + np.flatnonzero(grid.kept))
 
         def moved(by: Floats | float) -> Ran:
@@ -359,8 +363,13 @@ class OnJoint:
             tip, left = self._tip(system, run.time[kept], q, settings)
             return Ran(run.time[kept], tip, "done", "", left, settings.step or np.nan)
 
-        halves = (width / 2 * changes[kept, :, j] for j in range(len(pairs)))
-        return moved(0.0), ((moved(-half), moved(half)) for half in halves)
+        def varied() -> Iterator[tuple[Ran, Ran]]:
+            still = np.zeros((len(tree.free), len(pairs)))
+            changes = tangent(linear, scheme, steps, run, still, still, accelerations=False)[0]
+            for change in np.moveaxis(width / 2 * changes[kept], -1, 0):
+                yield moved(-change), moved(change)
+
+        return moved(0.0), varied()
 
 
 Plant = OnHub | OnJoint

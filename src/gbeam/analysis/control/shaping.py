@@ -8,6 +8,7 @@ as it turns, is then made least by Gauss-Newton steps along the exact derivative
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -131,9 +132,8 @@ def shape_command(
     tested = plant if check is None else _plant(check, hub, point)
     settings = _settings(vibration, goal.duration)
     runs, warnings = [], list[str]()
-    for k, (name, profile) in enumerate(profiles.items()):
-        tell(progress, f"{tested.kind}: {name}", k / len(profiles))
-        response = tested.run(profile, replace(settings, step=None), name)
+    for name, profile in profiles.items():
+        response = tested.run(profile, replace(settings, step=None), name, _within(progress, f"{tested.kind}: {name}"))
         warnings += _missed(response, goal, name) if plant.free else []
         runs.append(
             CommandRun(
@@ -239,17 +239,18 @@ def _refined(plant: Plant, design: _Design, inner: Floats, progress: Progress) -
     """Gauss-Newton steps on what the plant's own run leaves of the point's vibration."""
     commands = design.commands
     settings = _settings(Vibration.of(plant), commands.goal.duration)
-    done = plant.run(commands.of(inner), settings)
+    done = plant.run(commands.of(inner), settings, progress=_within(progress, f"{plant.kind}: the linear design"))
     if done.outcome != "done":
         raise ComputationError(done.outcome, done.message)
     settings = replace(settings, step=done.step)
     moves = commands.free / np.abs(commands.drive @ commands.free).max(axis=0)
     best, least = inner, np.inf
     for k in range(_ROUNDS):
-        tell(progress, f"{plant.kind}: refining", k / _ROUNDS)
+        words = f"{plant.kind}: refining, round {k + 1} of at most {_ROUNDS}"
+        tell(progress, words, 0.0)
         width = _MOVED * np.abs(commands.drive @ inner + commands.fixed).max()
         pairs = [(commands.of(inner - width / 2 * move), commands.of(inner + width / 2 * move)) for move in moves.T]
-        now, both = plant.about(commands.of(inner), settings, pairs, width)
+        now, both = plant.about(commands.of(inner), settings, pairs, width, partial(tell, progress, words))
         residual = _left(now, commands.goal.duration) / design.scale
         size = float(np.linalg.norm(residual))
         if size < least:
@@ -266,6 +267,11 @@ def _refined(plant: Plant, design: _Design, inner: Floats, progress: Progress) -
         rows = np.stack(slopes, axis=1) @ np.linalg.pinv(moves)
         inner = design.solved(rows, residual - rows @ inner, inner)
     return best
+
+
+def _within(progress: Progress, words: str) -> Progress:
+    """Progress of a part, under its words."""
+    return lambda what, share: tell(progress, f"{words}, {what}", share)
 
 
 def _left(run: Ran, duration: float) -> Floats:

@@ -227,19 +227,18 @@ class LinearBody:
         return self.points.relative(q, qd, qdd)
 
     def demanded(self, q: Array, qd: Array, qdd: Array, root: Frame, loads: Array | None) -> tuple[Array, Wrench]:
-        c, xp = self.coefficients, namespace(self.coefficients.mass, q, root.a)
+        c = self.coefficients
         S, Si, Sd, J, Ji, h, hi = self._moments(q, qd)
-        Sdd = turned(Si, qdd) + xp.einsum("aij,...i,...j->...a", c.k_a, qd, qd)
-        hd = turned(hi, qdd) + xp.einsum("aij,...i,...j->...a", c.k_al, qd, qd)
+        Sdd = turned(Si, qdd) + turned(_times(c.k_a, qd), qd)
+        hd = turned(hi, qdd) + turned(_times(c.k_al, qd), qd)
         force = c.rigid[0] * root.a + cross(root.alpha, S) + cross(root.w, cross(root.w, S))
         force = force + 2 * cross(root.w, Sd) + Sdd
-        swelling = xp.einsum("...abi,...i->...ab", Ji, qd)
-        moment = cross(S, root.a) + turned(J, root.alpha) + turned(swelling, root.w) + hd
+        swelling = (root.w[..., None, None, :] @ Ji)[..., 0, :]  # ∂(J ω)/∂q
+        moment = cross(S, root.a) + turned(J, root.alpha) + turned(swelling, qd) + hd
         moment = moment + cross(root.w, turned(J, root.w) + h)
         along = qdd @ c.mass + qd @ c.damping + q @ c.stiffness
         along = along + turned_back(Si, root.a) + turned_back(hi, root.alpha)
-        along = along + xp.einsum("aij,...a,...j->...i", c.gyroscopic, root.w, qd)
-        along = along - 0.5 * xp.einsum("...abi,...a,...b->...i", Ji, root.w, root.w)
+        along = along + turned_back(_times(c.gyroscopic, qd) - 0.5 * swelling, root.w)
         if loads is not None and c.loads is not None:
             forces = c.loads.generalised(q, loads)
             force, moment, along = force - forces[..., :3], moment - forces[..., 3:6], along - forces[..., 6:]
@@ -247,12 +246,12 @@ class LinearBody:
 
     def _moments(self, q: Array, qd: Array) -> tuple[Array, ...]:
         """S, ∂S/∂q, Ṡ, J, ∂J/∂q, h and the h_i."""
-        c, xp = self.coefficients, namespace(self.coefficients.mass, q, qd)
-        Si = -c.f_a + xp.einsum("aij,...j->...ai", c.k_a, q)
+        c = self.coefficients
+        Si = -c.f_a + _times(c.k_a, q)
         S = c.rigid[1:4] + turned((Si - c.f_a) / 2, q)
-        Ji = 2 * c.f_ww - 2 * xp.einsum("abij,...j->...abi", c.k_ww, q)
-        J = c.second_moment + xp.einsum("...abi,...i->...ab", c.f_ww + Ji / 2, q)
-        hi = -c.f_al + xp.einsum("aij,...j->...ai", c.k_al, q)
+        Ji = 2 * c.f_ww - 2 * _times(c.k_ww, q)
+        J = c.second_moment + ((c.f_ww + Ji / 2) @ q[..., None, :, None])[..., 0]
+        hi = -c.f_al + _times(c.k_al, q)
         Sd, h = (turned(each, qd) for each in (Si, hi))
         return S, Si, Sd, J, Ji, h, hi
 
@@ -272,6 +271,12 @@ class LinearBody:
         spin = cross(S, root.v) + turned(J, root.w) + h
         energy = (push * root.v + spin * root.w + Sd * root.v + h * root.w).sum(axis=-1)
         return (energy + ((qd @ c.mass) * qd).sum(axis=-1)) / 2, Wrench(push, spin)
+
+
+def _times(tensor: Array, q: Array) -> Array:
+    """T_{...ij} q_j of a constant tensor, (..., its first axes, i)."""
+    flat = q @ tensor.reshape(-1, tensor.shape[-1]).T
+    return flat.reshape(*q.shape[:-1], *tensor.shape[:-1])
 
 
 def _polynomial(first: Array, second: Array, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array, Array]:

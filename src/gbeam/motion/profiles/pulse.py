@@ -174,14 +174,23 @@ class SplineProfile(Profile):
             start=as_array(finite("start", self.start)),
         )
 
+    @property
+    def _spline(self) -> Spline:
+        return Spline(0.0, self.duration / (self.coefficients.shape[0] - DEGREE), self.coefficients[:, None])
+
     def series(self, t: Any, order: int) -> Series:
         since = as_array(t) - self.start
         xp = namespace(since, self.coefficients)
-        spline = Spline(0.0, self.duration / (self.coefficients.shape[0] - DEGREE), self.coefficients[:, None])
-        inside = spline.series(xp.clip(since, 0.0, self.duration), order)
+        inside = self._spline.series(xp.clip(since, 0.0, self.duration), order)
         beyond = (since < 0) | (since > self.duration)
         first, *rest = (each[..., 0] for each in inside.coefficients)
         return Series((first, *(xp.where(beyond, 0.0, each) for each in rest)))
+
+    def integral(self, t: Any) -> Any:
+        since = as_array(t) - self.start
+        inside = namespace(since, self.coefficients).clip(since, 0.0, self.duration)
+        # Before and after it is constant.
+        return self._spline.integral(inside)[..., 0] + (since - inside) * self(t)
 
     @property
     def breaks(self) -> Any:
