@@ -292,6 +292,9 @@ def test_a_run_without_its_estimate_is_the_same_run_and_says_so() -> None:
     assert sum("no error is estimated" in each or "no loads" in each for each in bare.warnings) == 2
     with pytest.raises(gb.InputError, match="estimate = False as well"):
         gb.simulate(structure, hub, duration=6.0, loads=False)
+    chosen = gb.simulate(structure, hub, duration=6.0, estimate=False)
+    assert 0 < chosen.errors.displacement.step < 1e-3 and np.isnan(chosen.errors.displacement.shapes)
+    assert any("shapes and models are not judged: the settings say" in each for each in chosen.warnings)
     settings = gb.ResponseSettings(6.0, estimate=False)
     case = gb.Case("", appendage(damping_ratio=0.0), gb.Model.of("FOAM"), {"slew": hub}, settings)
     with pytest.raises(gb.InputError, match=r"model\.modes"):

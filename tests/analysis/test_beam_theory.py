@@ -96,6 +96,28 @@ def test_a_deflection_states_shear(kind: str) -> None:
     assert warning.endswith("mostly from the theory of slender beams (shear); " + BEYOND)
 
 
+@pytest.mark.parametrize("bent", [0.3, 3.0])
+def test_a_beam_that_is_bent_far_states_shear(bent: float) -> None:
+    """The tip moves by 0.28 and 0.96 of the length, beside the exact model with shear, alone and in a system; by thick
+    beams that are linear about the straight one 4 times as much was stated at the tip, and 6 times in the root's loads.
+    """
+    soft = replace(METAL, youngs_modulus=70e6, poissons_ratio=0.0)
+    square = gb.Section.rectangle(0.015, 0.015)
+    force = bent * 3 * 70e6 * 0.015**4 / 12 / LENGTH**2
+    tip = gb.Load(at=LENGTH, force=(0, 0, force))
+    beam = gb.Beam(LENGTH, square, soft, loads=[tip], damping_ratio=0.01)
+    slender, thick = (gb.assemble(beam, "exact", axial=2, y=0, z=6, shear_z=count) for count in (0, 4))
+    found, true = (gb.static(each, gb.Flight(z=0.0)) for each in (slender, thick))
+    size = np.linalg.norm(found.tip)
+    assert size == pytest.approx({0.3: 0.28, 3.0: 0.96}[bent] * LENGTH, rel=0.01) and found.loads is not None
+    away, other = np.linalg.norm(true.tip - found.tip) / size, true.loads
+    moment = np.linalg.norm(other.root_moment - found.loads.root_moment) / np.linalg.norm(found.loads.root_moment)
+    inside = gb.static(gb.System({"beam": slender}, {"clamp": gb.Joint("fixed", "beam")}))
+    for errors in (found.errors, inside.errors):
+        assert errors.displacement.beam_theory == pytest.approx(away, rel=5e-3)
+        assert errors.loads.beam_theory == pytest.approx(moment, rel=1e-2)
+
+
 def test_a_body_off_the_axis_twists_the_beam() -> None:
     """0.1 kg 100 mm off the axis: the third frequency is 80.8 Hz for 166, the body's deflection 17 % more; unsaid."""
     structure, truth = gb.assemble(LADEN, "FOAM"), frame(STRIP, body=True)

@@ -109,7 +109,9 @@ def apart(computed: Any, truth: Any) -> tuple[float, float]:
     ("beam", "kind", "acceleration"), [(STRIP, "exact", 1.0), (STRIP, "FOAM", 1.0), (THICK, "FOAM", 300.0)]
 )
 def test_a_system_of_one_beam_states_what_the_beam_states(beam: gb.Beam, kind: str, acceleration: float) -> None:
-    """Of a load that comes at once, and at rest: shapes, theory of slender beams, and all, of places, loads, stress."""
+    """Of a load that comes at once, and at rest: shapes, theory of slender beams, and all, of places, loads, stress. A
+    system's thick beams are bent as it is, which changes levers by 1e-7; those beside a linear model alone are not.
+    """
     structure, flight = gb.assemble(beam, kind, axial=0, y=0, z=2), gb.Flight(z=acceleration)
     system = gb.System({"beam": structure}, {"clamp": gb.Joint("fixed", "beam")})
     period = 2 * np.pi / structure.rest[0][0]
@@ -121,7 +123,7 @@ def test_a_system_of_one_beam_states_what_the_beam_states(beam: gb.Beam, kind: s
         for quantity in ("displacement", "loads", "stress"):
             stated, expected = getattr(inside, quantity), getattr(alone, quantity)
             for part in ("shapes", "beam_theory", "total"):
-                assert getattr(stated, part) == pytest.approx(getattr(expected, part), rel=rel, abs=2e-9)
+                assert getattr(stated, part) == pytest.approx(getattr(expected, part), rel=rel, abs=1e-7)
     assert moving[1].loads.beam_theory > 5e-3 and resting[1].displacement.beam_theory > 4e-3
 
 
@@ -131,7 +133,8 @@ def test_the_beam_with_few_shapes_is_named() -> None:
     assert right > 100 * left and response.errors.displacement.model < 1e-4
     doubt = gb.simulate(panels(), duration=1.0, tolerance=1e-3, step=2e-3).warnings
     assert any("most of right; raise its model.modes" in each for each in doubt)
-    assert np.isnan(gb.simulate(panels(), duration=0.1, step=2e-3, estimate=False).error_estimate)
+    bare = gb.simulate(panels(), duration=0.1, step=2e-3, estimate=False)
+    assert np.isnan(bare.error_estimate) and bare.warnings.count(bare.errors.note) == 1
 
 
 def test_bodies_without_a_beam_are_named_as_not_judged() -> None:
@@ -161,8 +164,8 @@ def test_a_controller_answers_what_is_lacking() -> None:
             )
         },
     )
-    response = gb.simulate(held, duration=1.0, step=0.01)
-    truth = gb.simulate(with_more(held).system, duration=1.0, step=0.01, estimate=False)
+    response = gb.simulate(held, duration=1.3, step=0.01)
+    truth = gb.simulate(with_more(held).system, duration=1.3, step=0.01, estimate=False)
     size = np.linalg.norm(response.place - response.place[0], axis=-1).max()
     true = np.linalg.norm(truth.place - response.place, axis=-1).max() / size
     errors = response.errors.displacement
@@ -244,16 +247,22 @@ def test_a_plant_states_the_errors_that_a_beam_on_a_free_hub_states(kind: str) -
     assert plant.accurate_to == pytest.approx(beside.accurate_to, rel=1e-9)
 
 
-def test_a_soft_beam_that_falls_far_says_that_its_theory_is_not_judged() -> None:
-    """Thick beams that are linear about the straight one answered with 4e11 % of the way it falls."""
-    soft = gb.Beam(
-        1.0, gb.Section.rectangle(0.05, 0.01), gb.Material(2700.0, 70e6, poissons_ratio=0.3), damping_ratio=0.01
-    )
-    hinge = gb.Joint("revolute", "strip", axes=[(0, 1, 0)])
-    system = gb.System(
-        {"strip": gb.assemble(soft, "exact", axial=1, y=1, z=3)}, {"hinge": hinge}, gravity=(0, 0, -9.81)
-    )
-    response = gb.simulate(system, duration=0.6, step=6e-3, initial="undeformed")
+def fallen(kind: str, *, thick: bool = False) -> gb.System:
+    """A soft strip on a hinge that falls and bends meanwhile."""
+    soft = gb.Material(2700.0, 70e6, poissons_ratio=0.0)
+    strip = gb.Beam(1.0, gb.Section.rectangle(0.05, 0.03), soft, damping_ratio=0.01, rotary_inertia=thick)
+    body = gb.assemble(strip, kind, axial=1, y=0, z=3, shear_z=3 * thick)
+    return gb.System({"strip": body}, {"hinge": gb.Joint("revolute", "strip", axes=[(0, 1, 0)])}, gravity=(0, 0, -9.81))
+
+
+def test_a_soft_beam_that_falls_far_states_what_thick_beams_do() -> None:
+    """Beside the exact model with shear and rotary inertia: linear about the straight beam they answered with 4e11 %
+    of the way, which was not known then.
+    """
+    how: Any = {"duration": 0.6, "step": 6e-3, "initial": "undeformed"}
+    response, truth = gb.simulate(fallen("exact"), **how), gb.simulate(fallen("exact", thick=True), **how)
+    size = np.linalg.norm(response.place - response.place[0], axis=-1).max()
+    true = np.linalg.norm(truth.place - response.place, axis=-1).max() / size
     error = response.errors.displacement
-    assert np.isnan(error.beam_theory) and error.shapes < error.total < 0.05
-    assert any("theory of slender beams are not known" in each for each in response.warnings)
+    assert size > 1.0 and true > 2e-4 and error.beam_theory == pytest.approx(true, rel=0.05)
+    assert not response.errors.note and response.errors.theory[0].startswith("rotary inertia and shear")

@@ -89,6 +89,12 @@ class Theory(NamedTuple):
         weighted = ((factor - 1) * self.rigidity)[..., None] * self.curvature
         return np.asarray(np.einsum("agi,agj->ij", self.curvature, weighted))
 
+    @property
+    def exact(self) -> Theory:
+        """Both theories without truncation, for answers that are bent far."""
+        slender, thick = (replace(each, kind="exact", linear=False) for each in (self.slender, self.thick))
+        return self._replace(slender=slender, thick=thick)
+
     def variants(self, plate: Array) -> tuple[Structure, Structure]:
         """The thick beam, and the same with the stiffness of a plate (n, n) besides."""
         c = self.thick.coefficients
@@ -272,7 +278,8 @@ class _Parts:
         """The linear structure with shapes of some strains (m, n)."""
         structure, beam, rest = self.structure, self.beam, np.zeros(strains.shape[1])
         field, (at, mass, offset) = self.field(strains), particles_of(beam, self.rule, rotary=rotary)
-        places, geometric = inertia_of(field.points(at, offset), mass).about(rest)
+        inertia = inertia_of(field.points(at, offset), mass)
+        places, geometric = inertia.about(rest)
         stiffness = self.energy(strains)
         work, loaded, loads = None, np.zeros(0, int), None
         if beam.loads:
@@ -291,7 +298,7 @@ class _Parts:
             places=places,
             station_places=field.points(slice(self.first_station, None)).at_rest(),
             coefficients=c.damped(damping_matrix(0.0 if ratio is None else ratio, c.mass, c.stiffness)),
-            inertia=None,
+            inertia=inertia,
             field=field,
             first_station=self.first_station,
             sections=sections_of(beam, structure.stations, self.cumulative, (mass, at), loaded, self.first_station),

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,6 +19,7 @@ from gbeam.analysis.accuracy.correction import (
     Sampled,
     Vibration,
     complete_residual,
+    linear_residual,
     operator,
     responses,
 )
@@ -86,13 +88,22 @@ def response_theory(structure: Structure, motion: Motion, solution: Solution, be
 
 def static_theory(structure: Structure, resting: Callable[[Structure], Sampled]) -> Lacking:
     """Find what an equilibrium lacks, given a function that finds it for another structure; NaN where there is none."""
-    theory = theory_of(structure)
+    theory = theory_of(structure) if structure.linear else theory_of(structure).exact
     full, thin = resting(theory.thick), resting(theory.slender)
     plate, still = theory.plate(full.p), np.zeros_like(full.p)
-    gap = _gap(theory, full, thin, plate)
+    left = linear_residual if structure.linear else complete_residual
+    beam = left(theory.thick, full)
+    beam[:, : theory.slender.size] -= left(theory.slender, thin)
+    gap = _Gap(beam, full.p @ plate)
+
+    def about(thick: Structure) -> Structure:
+        """The beam as small departures from the equilibrium see it."""
+        loaded = replace(thick, load_values=None if full.loads is None else full.loads[0])
+        return replace(thick, coefficients=loaded.about(full.p[0])[0])
+
     pairs = zip(theory.variants(plate), gap.both, strict=True)
     try:
-        moved = [np.linalg.solve(operator(thick, full).first(), -residual[0])[None] for thick, residual in pairs]
+        moved = [np.linalg.solve(operator(about(thick), full).first(), -residual[0])[None] for thick, residual in pairs]
     except np.linalg.LinAlgError:
         return UNKNOWN
     return _lacking(theory, full, thin, gap, [Correction(each, still, still) for each in moved])

@@ -15,7 +15,7 @@ from gbeam.analysis.outline import outline_of
 from gbeam.analysis.response.outcome import describe, effort, inaccuracies, stiffness
 from gbeam.analysis.response.peaks import displacement_peaks, load_peaks
 from gbeam.analysis.response.problem import Problem, start_of
-from gbeam.analysis.response.settings import NOT_ESTIMATED, ResponseSettings
+from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.stepping import joined
 from gbeam.arrays.namespace import is_jax
 from gbeam.integrate.equations import Trajectory
@@ -132,7 +132,7 @@ def response_of(
                 from_run += doubts
             else:
                 alone = [ErrorEstimate(step=step) for step in steps]
-                errors = Errors(alone[0], alone[1], alone[2], NOT_ESTIMATED)
+                errors = Errors(alone[0], alone[1], alone[2], settings.not_estimated)
             from_run += inaccuracies(structure, errors, settings) + effort(settings, len(trajectory.time) - 1, stride)
             from_run += stiffness(structure, settings, trajectory)
         from_inputs = input_warnings(structure, motion, name=name, span=(time[0], time[-1]), base=over_time)

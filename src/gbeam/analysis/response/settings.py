@@ -15,7 +15,6 @@ from gbeam.guards.limits import STEPS, refuse_more
 
 FINE = 1e-4
 KEPT = 50_000  # samples of each history that a file holds, unless the settings say how often: 36 MB of the F-16 example
-NOT_ESTIMATED = "no error is estimated: the settings say estimate = false"
 NO_LOADS = "no loads are computed, nor whether the material yields: the settings say loads = false"
 
 
@@ -59,8 +58,9 @@ class ResponseSettings(Value):
     initial : Initial
         State at the start: the relative equilibrium unless given; a name such as ``"undeformed"`` stands for its state.
     estimate : bool
-        Whether the error is estimated. Without, a given step is run once, and an automatic one is still found from
-        several, by which its own error is known; shapes and model are not judged. The result says so.
+        Whether the error is estimated. Without, a given step is run once; an automatic one, which nothing but its own
+        error can choose, is found from several runs all the same, and only shapes and model are not judged. The result
+        says so.
     loads : bool
         Whether what the sections carry, and the outline for pictures, are computed. The estimate is of loads too.
     histories : float or None
@@ -120,9 +120,14 @@ class ResponseSettings(Value):
     def warnings(self) -> tuple[str, ...]:
         """Warnings of implausible settings, and of what is left out."""
         step = () if self.step is None else implausible("response.step", "step", self.step)
-        parts = {NOT_ESTIMATED: self.estimate, NO_LOADS: self.loads}
-        left_out = tuple(words for words, wanted in parts.items() if not wanted)
+        left_out = tuple(filter(None, (self.not_estimated, "" if self.loads else NO_LOADS)))
         return (*implausible("response.duration", "duration", self.duration), *step, *left_out)
+
+    @property
+    def not_estimated(self) -> str:
+        """Errors that the settings leave out, in words."""
+        lacking = "shapes and models are not judged" if self.step is None else "no error is estimated"
+        return "" if self.estimate else f"{lacking}: the settings say estimate = false"
 
     def kept_every(self, samples: int, step: float) -> int:
         """Number of the `samples` of a history, `step` s apart, make one in a file."""

@@ -179,7 +179,7 @@ def simulate_system(
     chosen = runs[-1]
     error = math.nan if chosen.missed else error
     stride = 1 if settings.step is not None else round(coarse / chosen.step)
-    errors = SystemErrors(ErrorEstimate(error))
+    errors = SystemErrors(ErrorEstimate(error), note=settings.not_estimated)
 
     def again(of: System) -> tuple[Trajectory, InputsOf]:
         richer = PosedSystem(of, motion)
@@ -364,7 +364,7 @@ def _described(
             f"Newton's method failed at {every.time[-1]:.4g} s: give a smaller step, or look for what breaks there"
         )
     warnings += (*settings.warnings, *yielded)
-    warnings += doubts(errors, settings.tolerance)
+    warnings += tuple(each for each in doubts(errors, settings.tolerance) if each not in warnings)
     step_error = errors.displacement.step
     if outcome == "done" and step_error > settings.tolerance:
         warnings += (f"the error of the steps is {100 * step_error:.2g} %: give a smaller step or tolerance",)

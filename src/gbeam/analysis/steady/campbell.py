@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import cache
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -136,9 +137,11 @@ def campbell(
     # The last speed is short of the critical one, where a frequency is zero.
     last = end if lost.value is None or lost.value <= start else start + (lost.value - start) * (1 - 1e-6)
 
+    @cache
     def point_at(rate: float) -> Any:
         return path(structure, rate)
 
+    @cache  # crossings ask for speeds beside them that are known
     def at(rate: float) -> _Speed:
         tell(progress, f"frequencies at {rate:.4g} rad/s", (rate - start) / (end - start))
         state = point_at(rate)

@@ -3,7 +3,7 @@ beams, of every beam and of all: of places, of the loads at the beams' roots and
 
 What is computed is put into the exact model of the same system with more shapes. The residual that it leaves there is
 answered by that system's small departures, over time or at rest; in the new coordinates alone it is what shapes lack.
-Put into systems of thick and of slender beams it leaves what that theory lacks.
+Put into systems of thick and of slender beams, bent as they are, it leaves what that theory lacks.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ NOT_ALL = "shapes and model are not judged of {}: not made of a beam"
 FAR = "shapes and models are not judged: a system with more shapes does not follow"
 
 UNKNOWN = "errors by the theory of slender beams are not known: "
-BENT_FAR = UNKNOWN + "the beams turn or bend too far for thick beams that are linear about the straight one"
+BENT_FAR = UNKNOWN + "thick beams do not follow"
 LOOP_LOST = UNKNOWN + "controllers do not hold the system with more shapes in its beams"
 LOST = 10.0  # times the motion, or the extent of the system: a larger answer of linear equations is none
 

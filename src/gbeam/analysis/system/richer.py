@@ -80,7 +80,7 @@ def theories_of(system: System) -> dict[str, Theory]:
     for name, body in judged_beams(system).items():
         at, stations = system.order.index(name), [*stations_of(body).values()]
         hung = {stations[on] for of, on in loaded if of == at and on < len(stations)}
-        out[name] = theory_of(body, tuple(sorted(hung)))
+        out[name] = theory_of(body, tuple(sorted(hung))).exact
     return out
 
 

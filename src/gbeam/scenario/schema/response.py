@@ -96,7 +96,8 @@ class Response(Table):
     estimate: StrictBool = Field(
         default=True,
         description="whether the error is estimated; false: a given step is run once, and the result says that no "
-        "error is known; an automatic one is still found from several runs, and shapes and model are not judged",
+        "error is known; an automatic one, which nothing but its own error can choose, is found from several runs all "
+        "the same, and only shapes and model are not judged",
     )
     initial: Initial = Field(
         default_factory=Initial, description="state at the start; the relative equilibrium if left out"
