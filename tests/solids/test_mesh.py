@@ -180,7 +180,7 @@ def test_the_mesh_converges_and_says_by_how_much() -> None:
     stated = gb.modes(fine.structure).error_estimate
     np.testing.assert_allclose(stated, fine.mesh_error)
     run = gb.simulate(fine.structure, gb.Flight(z=constant(1.0)), duration=0.01, name="push")
-    assert np.isnan(run.errors.stress.total) and np.isfinite(run.errors.displacement.total)
+    assert run.errors.stress.total < 1e-4 and run.errors.displacement.total < 1e-4
     said = f"by a coarser one {percent(fine.mesh_error[0])} of the lowest frequency"
     assert said in run.errors.note and said in " ".join(of_beam(run))
     assert np.isnan(middle.mesh_error).all() and "unknown" in repr(middle) and "error of the mesh up to" in repr(fine)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -215,8 +215,23 @@ def _loads(beam: Beam, of: Space, along: int) -> Array:
 NODES, PER_PANEL = 14, 8  # of the quadrature: over the beam with one shape, and in a panel at least
 
 
-def enrichment(structure: Structure, base: Base | None = None) -> Enrichment:
+class Twin(NamedTuple):
+    """A structure beside that in more coordinates, which is all that is known of what it lacks."""
+
+    structure: Structure
+
+    def model(
+        self, kind: str, *, directions: tuple[bool, bool, bool] = (True, True, True)
+    ) -> tuple[Structure, NDArray[np.int_]]:
+        """The structure in more coordinates, and which of these are its own."""
+        assert self.structure.richer is not None
+        return self.structure.richer, np.arange(self.structure.size)
+
+
+def enrichment(structure: Structure, base: Base | None = None) -> Enrichment | Twin:
     """Find a structure's own shapes and those that it lacks under what the base at some times pulls along the beam."""
+    if structure.richer is not None:
+        return Twin(structure)
     alone = _without_force(structure)
     force = None if base is None else alone.bent_by(base)
     return alone if force is None else Enrichment(structure, force)

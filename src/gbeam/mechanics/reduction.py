@@ -7,8 +7,9 @@ sum over them is that over the mesh, to the last digits, at a cost that does not
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,23 +17,34 @@ from gbeam.errors import InputError
 from gbeam.numerics.eigen import Floats
 from gbeam.numerics.sparse import factorised, lowest_modes
 
+if TYPE_CHECKING:
+    from gbeam.mechanics.structure import Structure
+
 NEGATIVE = 1e-6  # of the largest: a mass that is less than none, and no rounding
 ZERO = 1e-10  # of the largest of the eigenvalues computed: a smaller one is that of a motion without strain
 ALIKE = 1e-9  # of its energy: what is left of a static answer beside the modes and the others adds nothing
 HOLD = "hold the structure so that nothing moves without strain"
+MORE = 6  # modes besides, by which the error of those left out is judged
 WIDTH = 8  # random vectors with which the search for modes begins: as many equal frequencies are told apart
 FAINT = 1e-14  # of the largest: a product of shapes that is rounding
 
 
 @dataclass(frozen=True, eq=False)
 class Reduced:
-    """Shapes (u, n) of unit modal mass, ascending in frequency, squares (n,) of their circular frequencies, and static
-    displacements (u, m) under the loads.
+    """Shapes (u, n) of unit modal mass, their stiffness (n, n), and static displacements (u, m) under the loads; the
+    first `size` are a model's coordinates, ascending in frequency, the others what some more modes have beside them.
     """
 
     shapes: Floats
-    squares: Floats
+    stiffness: Floats
     static: Floats
+    size: int
+
+    def structure(self, made: Callable[[int, Any], Structure], damping_ratio: Any) -> Structure:
+        """The structure made in the model's coordinates, with that in all of them, which damp as the model's last."""
+        ratio, count = damping_ratio, len(self.stiffness)
+        every = ratio if np.ndim(ratio) == 0 else [*ratio, *[ratio[-1]] * (count - self.size)]
+        return replace(made(self.size, ratio), richer=made(count, every))
 
 
 def linear_fields(points: Floats) -> Floats:
@@ -49,21 +61,22 @@ def inertial_loads(weights: Floats) -> Floats:
 
 def reduce(stiffness: Any, mass: Any, loads: Floats, modes: int) -> Reduced:
     """Reduce matrices (u, u) of the unknowns that are free, under `loads` (u, m)."""
-    count = len(loads)
+    count, more = len(loads), min(MORE, len(loads) - modes)
     if not 1 <= modes <= count:
         raise InputError("modes", f"is {modes}, of {count} unknowns", f"give 1 to {count}")
     with factorised(stiffness) as solve:
         static = solve(loads)
-        if modes > count // 2:  # the space of Lanczos' iteration would be all
+        if modes + more > count // 2:  # the space of Lanczos' iteration would be all
             inverse, vector = _dense(stiffness.toarray(), mass.toarray())
         else:
             start = np.random.default_rng(0).standard_normal((count, WIDTH))
-            inverse, vector = lowest_modes(solve, mass, start, modes)
-    have, inverse, vector = _moving(inverse), inverse[:modes], vector[:, :modes]
-    if not inverse.min() > -ZERO * inverse.max():
+            inverse, vector = lowest_modes(solve, mass, start, modes, more)
+    have = _moving(inverse)
+    if not inverse[:modes].min() > -ZERO * inverse.max():
         raise InputError("stiffness", "is not positive definite", HOLD)
     if have < modes:
         raise InputError("modes", f"is {modes}, and only {have} motions move mass", f"give at most {have}")
+    vector, beyond = vector[:, :modes], vector[:, modes : min(have, modes + more)]
     basis = np.concatenate([vector, _complement(stiffness, mass, vector, static)], axis=1)
     inverse, within = _dense(basis.T @ (stiffness @ basis), basis.T @ (mass @ basis))
     if inverse.min() < -NEGATIVE * inverse.max():
@@ -72,7 +85,15 @@ def reduce(stiffness: Any, mass: Any, loads: Floats, modes: int) -> Reduced:
         problem = "leaves a static answer without mass, or with next to none beside the heaviest"
         fix = "give the nodes of interfaces mass in every direction, and inertia where they turn, or carry less"
         raise InputError("mass", problem, fix)
-    return Reduced(basis @ within, 1 / inverse, static)
+    shapes = basis @ within
+    size = shapes.shape[1]
+    beyond = _complement(stiffness, mass, shapes, beyond)
+    if beyond.size:
+        beyond = beyond @ _dense(beyond.T @ (stiffness @ beyond), beyond.T @ (mass @ beyond))[1]
+        shapes = np.concatenate([shapes, beyond], axis=1)
+    joint = shapes.T @ (stiffness @ shapes)
+    joint[:size, :size] = np.diag(1 / inverse)
+    return Reduced(shapes, joint, static, size)
 
 
 def _dense(stiffness: Floats, mass: Floats) -> tuple[Floats, Floats]:

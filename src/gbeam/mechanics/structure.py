@@ -68,6 +68,10 @@ class Recovery(Protocol):
         """Surface for pictures in modes (k, n)."""
         ...
 
+    def largest(self, q: Array) -> float:
+        """Largest von Mises stress at coordinates (t, n), Pa, about."""
+        ...
+
     def strain(self, point: str, along: Any) -> Array:
         """Normal strain at a named point in a direction of its axes, by unit coordinates, (n,)."""
         ...
@@ -133,6 +137,9 @@ class Structure:
         Whether the stress of loads is left out of the stiffness of a structure of particles.
     recovery : Recovery or None
         What responses of a solid or a rigid specimen have besides.
+    richer : Structure or None
+        The same with more coordinates, of which its own come first, where some more modes were kept than it has: by
+        these the error of those left out is judged.
     mesh_error : tuple of float or None
         Where static shapes are among the coordinates, errors of the frequencies of its modes by the mesh, as fractions,
         NaN where unknown: these frequencies are the lowest, and those above are none of the specimen's.
@@ -171,6 +178,7 @@ class Structure:
     unstiffened: bool = static(default=False)
     recovery: Recovery | None = static(default=None)
     mesh_error: tuple[float, ...] | None = static(default=None)
+    richer: Structure | None = static(default=None)
 
     def __repr__(self) -> str:
         shapes = ", ".join(f"{n} {way}" for n, way in zip(self.counts, FAMILIES, strict=True) if n)
@@ -315,6 +323,11 @@ class Structure:
     def rest(self) -> tuple[Array, Array]:
         """Circular frequencies (n,) rad/s, ascending, and mass-normalised modes (n, n) on a base at rest."""
         return rest_modes(self.coefficients.mass, self.coefficients.stiffness)
+
+    @property
+    def judged(self) -> bool:
+        """Whether the errors of shapes that it lacks can be known."""
+        return (self.source is not None or self.richer is not None) and not self.traced
 
     @property
     def resolved(self) -> int:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from gbeam.integrate.equations import LinearTerms
 from gbeam.mechanics.assembly import load_work, particles_of, sections_of
-from gbeam.mechanics.enrichment import enrichment, own_families
+from gbeam.mechanics.enrichment import Enrichment, enrichment, own_families
 from gbeam.mechanics.equations.inertia import inertia_of
 from gbeam.mechanics.equations.linear import LoadTerms, coefficients, damping_matrix
 from gbeam.mechanics.equations.virtual_work import LoadWork
@@ -105,6 +105,7 @@ class Theory(NamedTuple):
 def theory_of(structure: Structure, hung: tuple[int, ...] = ()) -> Theory:
     """A structure's beam, which it must have, by two theories, with other bodies hung on some of its stations."""
     more = enrichment(structure)
+    assert isinstance(more, Enrichment)
     families = own_families(structure, more.beam, more.rule)
     return _Parts(structure, more.beam, more.rule, hung).theory(families)
 

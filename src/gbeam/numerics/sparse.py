@@ -95,14 +95,17 @@ def factorised(matrix: Any, where: str = "stiffness") -> Iterator[Callable[[Floa
 
 
 CLOSE = 1e-8  # of an inverse eigenvalue: residual of a mode that has converged; its value errs by the square
+ROUGH = 1e-2  # likewise, of those that only show what the others lack
 NONE = 1e-12  # of its length: what is left of a vector that is in the space already
 OUTSIDE = 0.5  # of the square of its length: what is left of a vector that was nearly outside of the space
 SAME = 1e-13  # of the largest eigenvalue of the products of unit vectors: two that are one
 
 
-def lowest_modes(solve: Callable[[Floats], Floats], mass: Any, start: Floats, modes: int) -> tuple[Floats, Floats]:
-    """Inverse eigenvalues (m,), the largest in size first, and vectors (n, m) of unit modal mass; fewer than `modes`
-    where no more motions move mass.
+def lowest_modes(
+    solve: Callable[[Floats], Floats], mass: Any, start: Floats, modes: int, more: int = 0
+) -> tuple[Floats, Floats]:
+    """Inverse eigenvalues (m,), the largest in size first, and vectors (n, m) of unit modal mass, of `modes` that have
+    converged and of some `more` roughly; fewer where no more motions move mass.
 
     `solve` applies the inverse of the stiffness, and `start` (n, b) begins the space. All of its vectors are kept
     orthogonal (Golub and Underwood 1977, The block Lanczos method for computing eigenvalues).
@@ -111,7 +114,8 @@ def lowest_modes(solve: Callable[[Floats], Floats], mass: Any, start: Floats, mo
     flexibility, value = np.zeros((0, 0)), np.zeros(0)
     vector, residual = flexibility, value
     new, weighed = _orthonormal(start, mass @ start, basis, mass)
-    while new.shape[1] and not (len(value) == modes and (residual < CLOSE * np.abs(value)).all()):
+    close = np.repeat([CLOSE, ROUGH], [modes, more])
+    while new.shape[1] and not (len(value) == modes + more and (residual < close * np.abs(value)).all()):
         basis.append(new)
         step = solve(weighed)
         heavy = mass @ step
@@ -119,7 +123,7 @@ def lowest_modes(solve: Callable[[Floats], Floats], mass: Any, start: Floats, mo
         flexibility = np.block([[flexibility, across[: len(flexibility)]], [across.T]])
         new, weighed = _orthonormal(step, heavy, basis, mass, across)
         value, vector = np.linalg.eigh(flexibility)
-        lowest = np.argsort(-np.abs(value), kind="stable")[:modes]
+        lowest = np.argsort(-np.abs(value), kind="stable")[: modes + more]
         value, vector = value[lowest], vector[:, lowest]
         residual = np.linalg.norm(new.T @ heavy @ vector[-step.shape[1] :], axis=0)
     # Once more by the stiffness: without what has no mass, of which products with the mass do not know.

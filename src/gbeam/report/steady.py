@@ -50,7 +50,8 @@ def _deflection_errors(errors: Errors) -> str:
     if not math.isfinite(errors.displacement.total):
         return f"no error estimate: {errors.note}" if errors.note else "no error estimate"
     tip, loads = error_words(errors.displacement), percent(errors.loads.total)
-    return f"estimated error {tip} of the tip's displacement, {loads} of the root loads"
+    note = f"; {errors.note}" if errors.note else ""
+    return f"estimated error {tip} of the tip's displacement, {loads} of the root loads{note}"
 
 
 RESTING = 1e-9  # rad/s: a smaller rate of a base is a profile's rounding

@@ -63,8 +63,11 @@ def _accuracy(response: Response) -> str:
         error = f"estimated error {error_words(response.errors.displacement)} of the largest displacement"
         if math.isfinite(response.errors.loads.total):
             error += f", {percent(response.errors.loads.total)} of the largest root load"
-        if response.point_acceleration is not None and response.errors.note:  # no beam, of which the rest is judged too
-            error += f", of the time step alone: {response.errors.note}"
+        if response.solid is not None and math.isfinite(response.errors.stress.total):
+            error += f", {percent(response.errors.stress.total)} of the largest stress"
+        if response.point_acceleration is not None and response.errors.note:  # no beam, of which all is judged
+            alone = ", of the time step alone: " if math.isnan(response.errors.displacement.shapes) else "; "
+            error += f"{alone}{response.errors.note}"
     return f"{response.model}, {response.integrator}, {step}; {error}"
 
 

@@ -154,15 +154,10 @@ def mass_matrix(points: Floats, blocks: Sequence[Block]) -> Any:
     return _assembled(len(points), blocks, 1, parts())
 
 
-def geometric_stiffness(
-    points: Floats, blocks: Sequence[Block], static: Floats, shapes: Floats, squares: Floats
-) -> Floats:
-    """Stiffness (m, n, n) that static displacements (k, 3, m) add in `shapes` (k, 3, n), to first order: with Green's
-    strain, the static stress in the squares of the slopes, and the stress of the shapes in their slopes as they turn.
-
-    `squares` (n,) are those of the shapes' frequencies. The second part couples soft coordinates with stiff ones by a
-    multiple of the stiff ones' stiffness. The square of that, which terms of fourth degree would take away again, is of
-    second order: of it only near coordinates are coupled.
+def geometric_stiffness(points: Floats, blocks: Sequence[Block], static: Floats, shapes: Floats) -> Floats:
+    """Two halves (2, m, n, n) of the stiffness that static displacements (k, 3, m) add in `shapes` (k, 3, n), to first
+    order: with Green's strain, the static stress in the squares of the slopes, and the stress of the shapes in their
+    slopes as they turn; see :func:`coupled`.
     """
     m, n = static.shape[-1], shapes.shape[-1]
     stressed, turned = np.zeros((2, m, n, n))
@@ -180,11 +175,16 @@ def geometric_stiffness(
         for load in range(m):
             stressed[load] += tall.T @ (pulls[load] @ wide).reshape(-1, n)
             turned[load] += of_shapes.reshape(-1, n).T @ (turns[load] @ across).reshape(-1, n)
-    total = stressed / 2 + turned * near(squares)
-    return total + total.swapaxes(1, 2)
+    return np.stack([stressed / 2, turned])
 
 
-def near(squares: Floats) -> Any:
-    """Whether two coordinates (n, n) have near frequencies, by the squares (n,) of theirs."""
-    ratio = np.sqrt(np.maximum.outer(squares, squares) / np.minimum.outer(squares, squares))
-    return ratio < NEAR
+def coupled(halves: Floats, stiffness: Floats) -> Floats:
+    """Stiffness (m, n, n) by two halves (2, m, n, n) in coordinates of unit mass with a stiffness (n, n).
+
+    The second half couples soft modes with stiff ones by a multiple of the stiff ones' stiffness. The square of that,
+    which terms of fourth degree would take away again, is of second order: of it only near modes are coupled.
+    """
+    squares, modes = np.linalg.eigh(stiffness)
+    near = np.maximum.outer(squares, squares) < NEAR**2 * np.minimum.outer(squares, squares)
+    total = halves[0] + modes @ (modes.T @ halves[1] @ modes * near) @ modes.T
+    return np.asarray(total + total.swapaxes(1, 2))

@@ -252,25 +252,31 @@ class ImportedModel(Value):
         attached = self._attached(interfaces, named)
         loads = np.concatenate([-(self.mass @ fields), attached], axis=1)
         reduction = reduce(self.stiffness[free][:, free], self.mass[free][:, free], loads[free], modes)
-        shapes = np.zeros((len(free), len(reduction.squares)))
-        shapes[free] = reduction.shapes
-        products = (fields.T @ (self.mass @ shapes)).reshape(3, 4, -1)
-        stress, doubts = _geometric(geometric, shapes)
-        terms, particles, more = self._terms(shapes, reduction.squares, products, body, stress)
-        first, turns = self._outputs(list(named.values()), shapes)
-        return linear_structure(
-            terms,
-            *particles,
-            Places(at[list(named.values())], first),
-            length=float(np.linalg.norm(at, axis=1).max()),
-            turns=turns,
-            damping_ratio=damping_ratio,
-            points=tuple(named),
-            kind=kind,
-            warnings=(*doubts, *more),
-            unstiffened=bool(doubts or more),
-            mesh_error=(math.nan,) * modes,
-        )
+        every = np.zeros((len(free), len(reduction.stiffness)))
+        every[free] = reduction.shapes
+
+        def made(n: int, damping_ratio: Any) -> Structure:
+            """Structure in the first coordinates."""
+            shapes = every[:, :n]
+            products = (fields.T @ (self.mass @ shapes)).reshape(3, 4, -1)
+            stress, doubts = _geometric(geometric, shapes)
+            terms, particles, more = self._terms(shapes, reduction.stiffness[:n, :n], products, body, stress)
+            first, turns = self._outputs(list(named.values()), shapes)
+            return linear_structure(
+                terms,
+                *particles,
+                Places(at[list(named.values())], first),
+                length=float(np.linalg.norm(at, axis=1).max()),
+                turns=turns,
+                damping_ratio=damping_ratio,
+                points=tuple(named),
+                kind=kind,
+                warnings=(*doubts, *more),
+                unstiffened=bool(doubts or more),
+                mesh_error=(math.nan,) * modes,
+            )
+
+        return reduction.structure(made, damping_ratio)
 
     def _node(self, where: str, number: int) -> int:
         numbers = np.asarray(self.numbers)
@@ -308,7 +314,7 @@ class ImportedModel(Value):
         return moved[:, :3], moved[:, 3:]
 
     def _terms(
-        self, shapes: Floats, squares: Floats, products: Floats, body: Floats, stress: Geometric
+        self, shapes: Floats, stiffness: Floats, products: Floats, body: Floats, stress: Geometric
     ) -> tuple[Coefficients, tuple[Floats, Places], list[str]]:
         """Coefficients, particles and what is left out of them."""
         nodes, rows = displaced(np.asarray(self.unknowns), len(np.asarray(self.nodes)))
@@ -320,8 +326,8 @@ class ImportedModel(Value):
         else:
             mass, *paths = particles_of(np.asarray(self.nodes)[nodes], moved, of_nodes)
         places = Places(*paths)
-        terms = coefficients(mass, places, np.diag(squares), geometric=stress)
-        terms = replace(terms, mass=np.eye(len(squares)), rigid=body, **inertial_forces(sums, moments))
+        terms = coefficients(mass, places, stiffness, geometric=stress)
+        terms = replace(terms, mass=np.eye(len(stiffness)), rigid=body, **inertial_forces(sums, moments))
         if missing <= EXACT:
             return terms, (mass, places), []
         if not unknown:

@@ -14,7 +14,6 @@ from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.checks import positive
 from gbeam.results.result import Floats
-from gbeam.solids.elements import near
 from gbeam.solids.shape_functions import Indices
 from gbeam.structure.attachments import checked_name
 
@@ -328,29 +327,29 @@ class Linked:
         return stiffness[self._rows]
 
     def geometric_stiffness(self, held: Any, mass: Any, loads: Floats, static: Floats, reduced: Reduced) -> Floats:
-        """Stiffness (m, n, n) of the forces that hold the points on their links, as these turn: their work in
-        θ × (θ × r)/2, under loads (points · 3, m) with answers `static` (u, m), by the coordinates of a reduction;
-        `held` are the tied points' rows of the stiffness.
+        """Two halves (2, m, n, n) of the stiffness of the forces that hold the points on their links, as these turn:
+        their work in θ × (θ × r)/2, under loads (points · 3, m) with answers `static` (u, m), by the coordinates of a
+        reduction; `held` are the tied points' rows of the stiffness.
 
-        Both the forces of the loads do, as coordinates turn the links, and those of a coordinate, as the load and
-        another one do: the latter as in :func:`gbeam.solids.elements.geometric_stiffness`.
+        The first is of the loads' forces, as coordinates turn the links, the second of a coordinate's, as the load and
+        another one do: as in :func:`gbeam.solids.elements.geometric_stiffness`.
         """
         shapes = reduced.shapes
-        total = np.zeros((loads.shape[-1], shapes.shape[-1], shapes.shape[-1]))
+        halves = np.zeros((2, loads.shape[-1], shapes.shape[-1], shapes.shape[-1]))
         if not len(self._tied):
-            return total
+            return halves
         still, moved = self._map @ static, self._map @ shapes
-        inertia = (mass @ moved.reshape(len(self.points), -1)).reshape(moved.shape) * reduced.squares
+        inertia = (mass @ moved.reshape(len(self.points), -1)).reshape(moved.shape) @ reduced.stiffness
         pulling = self._moments(held @ still - loads[self._rows])
         holding = self._moments(held @ moved - inertia[self._rows])
         holding += np.swapaxes(holding, 1, 2)
         turn, turned = self._rotations(shapes), self._rotations(static)
-        for load in range(len(total)):
+        for load in range(loads.shape[-1]):
             flat = turn.reshape(-1, turn.shape[-1])
-            total[load] = flat.T @ np.matmul(pulling[..., load], turn).reshape(flat.shape) / 2
+            halves[0, load] = flat.T @ np.matmul(pulling[..., load], turn).reshape(flat.shape) / 2
             pulled = np.einsum("lb,lbcn->lcn", turned[..., load], holding)
-            total[load] += pulled.reshape(flat.shape).T @ flat / 2 * near(reduced.squares)
-        return total + total.swapaxes(1, 2)
+            halves[1, load] = pulled.reshape(flat.shape).T @ flat / 2
+        return halves
 
     def _moments(self, forces: Floats) -> Floats:
         """Matrices (l, 3, 3, m) with f · (θ × (ϑ × r)) = (f · ϑ)(θ · r) − (f · r)(θ · ϑ), summed over links, of forces

@@ -16,7 +16,7 @@ from gbeam.guards.checks import positive
 from gbeam.mechanics.equations.linear import coefficients, geometric_of
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.reduction import inertial_loads, linear_fields, particles_of, reduce
-from gbeam.mechanics.structure import linear_structure
+from gbeam.mechanics.structure import Structure, linear_structure
 from gbeam.mechanics.tree.system import Place, RigidBody
 from gbeam.numerics.sparse import refuse_cost
 from gbeam.results.result import Floats
@@ -25,6 +25,7 @@ from gbeam.solids.cards import cards_of
 from gbeam.solids.elements import (
     Block,
     chunks,
+    coupled,
     geometric_stiffness,
     mass_matrix,
     stiffness_matrix,
@@ -325,29 +326,36 @@ class SolidMesh(Value):
         # Of moments on interfaces the stress is left out.
         pushed = [12 + 6 * i + axis for i in range(len(centres)) for axis in range(3)]
         stressed = [*range(12), *pushed]
-        fields = geometric_stiffness(self.points, self.blocks, still[:count, :, stressed], shapes, reduced.squares)
-        fields += linked.geometric_stiffness(held, mass, loads[:, stressed], reduced.static[:, stressed], reduced)
-        inertial = fields[:12].reshape(3, 4, *fields.shape[1:])
-        frequency = np.sqrt(reduced.squares[:modes]) / (2 * np.pi)
+        halves = geometric_stiffness(self.points, self.blocks, still[:count, :, stressed], shapes)
+        halves += linked.geometric_stiffness(held, mass, loads[:, stressed], reduced.static[:, stressed], reduced)
+        frequency = np.sqrt(np.diagonal(reduced.stiffness)[:modes]) / (2 * np.pi)
         error, doubts = mesh_errors(frequency, coarser)
-        masses, *paths = particles_of(linked.points, everywhere, mass)
-        places = Places(*paths)
-        stress = geometric_of(inertial[:, 0], inertial[:, 1:].swapaxes(0, 1))
-        stations, turns = self._outputs(centres, forces, shapes, fields[12:])
-        structure = linear_structure(
-            coefficients(masses, places, np.diag(reduced.squares), geometric=stress),
-            masses,
-            places,
-            stations,
-            length=float(np.linalg.norm(linked.points, axis=1).max()),
-            turns=turns,
-            damping_ratio=damping_ratio,
-            points=self.named_points,
-            kind=kind,
-            warnings=(*self.warnings, *doubts),
-            mesh_error=tuple(error.tolist()),
-        )
-        return SolidModel(self, replace(structure, recovery=NodalStress.of(self, shapes)), shapes, frequency, error)
+        nodal, length = NodalStress.of(self, shapes), float(np.linalg.norm(linked.points, axis=1).max())
+
+        def made(n: int, damping_ratio: Any) -> Structure:
+            """Structure in the first coordinates."""
+            masses, *paths = particles_of(linked.points, everywhere[..., :n], mass)
+            stiffness = reduced.stiffness[:n, :n]
+            fields = coupled(halves[..., :n, :n], stiffness)
+            inertial = fields[:12].reshape(3, 4, n, n)
+            stress = geometric_of(inertial[:, 0], inertial[:, 1:].swapaxes(0, 1))
+            stations, turns = self._outputs(centres, forces, shapes[..., :n], fields[12:])
+            structure = linear_structure(
+                coefficients(masses, Places(*paths), stiffness, geometric=stress),
+                masses,
+                Places(*paths),
+                stations,
+                length=length,
+                turns=turns,
+                damping_ratio=damping_ratio,
+                points=self.named_points,
+                kind=kind,
+                warnings=(*self.warnings, *doubts),
+                mesh_error=tuple(error.tolist()),
+            )
+            return replace(structure, recovery=replace(nodal, size=n))
+
+        return SolidModel(self, reduced.structure(made, damping_ratio), frequency, error)
 
     @property
     def named_points(self) -> tuple[str, ...]:

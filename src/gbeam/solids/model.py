@@ -32,7 +32,6 @@ class SolidModel(Value):
     mesh : SolidMesh
     structure : Structure
         That analyses take; its coordinates are modes of unit modal mass, ascending in frequency.
-    shapes : (k, 3, n) displacements of the nodes per coordinate
     frequency : (m,) natural frequencies of the modes, Hz
     mesh_error : (m,) estimated errors of the frequencies by the mesh, as fractions
         Their difference to those of a coarser mesh; NaN where there is none.
@@ -49,7 +48,6 @@ class SolidModel(Value):
 
     mesh: SolidMesh
     structure: Structure
-    shapes: Floats
     frequency: Floats
     mesh_error: Floats
 
@@ -58,6 +56,17 @@ class SolidModel(Value):
         known = np.isfinite(self.mesh_error)
         error = f"up to {100 * self.mesh_error[known].max():.2g} %" if known.any() else "unknown, give a coarser mesh"
         return f"SolidModel({self.structure.size} coordinates; {shown} Hz; error of the mesh {error})"
+
+    @property
+    def shapes(self) -> Floats:
+        """Displacements of the nodes per coordinate, (k, 3, n)."""
+        return self._nodal.shapes
+
+    @property
+    def _nodal(self) -> NodalStress:
+        nodal = self.structure.recovery
+        assert isinstance(nodal, NodalStress)
+        return nodal
 
     @typed
     def stress(self, answer: Response | Deflection) -> SolidStress:
@@ -95,9 +104,7 @@ class SolidModel(Value):
         time = np.atleast_1d(np.asarray(answer.time, dtype=float))
         name = answer.name if isinstance(answer, Response) else answer.motion
         about = {"motion": name, "model": answer.model, "warnings": answer.warnings, "provenance": answer.provenance}
-        nodal = self.structure.recovery
-        assert isinstance(nodal, NodalStress)
-        return solid_stress(nodal, time, q, **about)
+        return solid_stress(self._nodal, time, q, **about)
 
 
 def mesh_errors(frequency: Floats, coarser: SolidModel | None) -> tuple[Floats, tuple[str, ...]]:

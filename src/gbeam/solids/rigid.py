@@ -290,6 +290,16 @@ class RigidSpecimen(Value):
             Coordinates.
         """
 
+    def largest(self, q: Any) -> float:
+        """Return nothing: the stress of a rigid body is not known.
+
+        Parameters
+        ----------
+        q : (t, 0)
+            Coordinates.
+        """
+        return math.nan
+
     def strain(self, point: str, along: Any) -> Floats:
         """Refuse a strain, which a rigid body has none of.
 

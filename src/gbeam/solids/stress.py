@@ -32,15 +32,16 @@ FACES = {
 
 @dataclass(frozen=True, eq=False)
 class NodalStress(Value):
-    """Stresses of a mesh by coordinates with shapes (k, 3, n): at all pairs `known` (p,), a node and the number of a
-    material of its elements in one, those of unit coordinates (p, 6, n).
+    """Stresses of a mesh by the first `size` of coordinates with shapes (k, 3, n): at all pairs `known` (p,), a node
+    and the number of a material of its elements in one, those of unit coordinates (p, 6, n).
     """
 
     mesh: Any
-    shapes: Floats
+    every_shape: Floats
     envelope: Floats
     known: Indices
-    table: Floats
+    every_table: Floats
+    size: int
 
     @classmethod
     def of(cls, mesh: Any, shapes: Floats) -> Self:
@@ -50,14 +51,24 @@ class NodalStress(Value):
         count, names = len(mesh.points), _materials(mesh)
         pairs = [names.index(block.material) * count + np.unique(block.nodes) for block in mesh.blocks]
         known = np.unique(np.concatenate(pairs))
-        empty = cls(mesh, shapes, hull(mesh.points), known, np.empty((0, 6, shapes.shape[-1])))
+        empty = cls(mesh, shapes, hull(mesh.points), known, np.empty((0, 6, shapes.shape[-1])), shapes.shape[-1])
         total, shared = np.zeros((len(known), 6, shapes.shape[-1])), np.zeros(len(known))
         for pair, stress in empty._elements():
             some, place = np.unique(pair, return_inverse=True)
             sums = csr_array((np.ones(len(pair)), (place, np.arange(len(pair)))), shape=(len(some), len(pair)))
             total[some] += (sums @ stress.reshape(len(pair), -1)).reshape(len(some), *stress.shape[1:])
             shared[some] += np.bincount(place)
-        return replace(empty, table=total / shared[:, None, None])
+        return replace(empty, every_table=total / shared[:, None, None])
+
+    @property
+    def shapes(self) -> Floats:
+        """Displacements of the nodes by unit coordinates, (k, 3, n)."""
+        return self.every_shape[..., : self.size]
+
+    @property
+    def table(self) -> Floats:
+        """Stresses at the pairs by unit coordinates, (p, 6, n)."""
+        return self.every_table[..., : self.size]
 
     @property
     def node(self) -> Indices:
@@ -143,6 +154,10 @@ class NodalStress(Value):
         parts = [stress[at == pair] @ q for at, stress in self._elements(pair)]
         mean = float(von_mises(self.table[pair] @ q))
         return float(np.ptp(von_mises(np.concatenate(parts)))) / mean if mean > 0 else 0.0
+
+    def largest(self, q: Floats) -> float:
+        """Largest von Mises stress at the times at which one of the coordinates (t, n) is largest."""
+        return float(self.histories(q[np.unique(np.abs(q).argmax(axis=0))])[2].max())
 
     def histories(self, q: Floats) -> tuple[Floats, Indices, Floats]:
         """Largest von Mises stress over time at every pair (p,), when (p,), and over all pairs at every time (t,)."""

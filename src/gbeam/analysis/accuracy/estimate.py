@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from gbeam.analysis.accuracy.beam_theory import UNKNOWN as UNKNOWN_THEORY
 from gbeam.analysis.accuracy.beam_theory import Lacking, described, largest, response_theory
 from gbeam.analysis.accuracy.correction import RESOLVED
 from gbeam.analysis.accuracy.response_errors import Begin, Quantities, Rings, Solution, lacking
@@ -30,6 +31,8 @@ def cause_and_cure(shapes: float, model: float, beam_theory: float, theory: str)
     """The largest of the errors from too few shapes, of the model and of the beam theory, and what helps."""
     if beam_theory > max(shapes, model):
         return f"the theory of slender beams ({theory})", BEYOND
+    if math.isnan(model) and not math.isnan(shapes):  # of a solid, whose model is not judged
+        return FEW_MODES
     if not shapes >= model:
         return "the model", 'check with model.kind = "exact"'
     return "too few shapes", "raise model.modes, which one [beam] may leave out"
@@ -67,6 +70,7 @@ FEWEST, PER_PERIOD = 500, 6  # samples looked at, in all and in a period of the 
 MOST = 20_000  # samples where fast modes may ring
 LARGEST = 2.0  # times (v/L)²: error of a second-order model, up to what a beam that points inward on a hub has
 TOO_FAR = "the solution is too far from the exact model's for an estimate; it is the bound 2 (v/L)² of its class"
+FEW_MODES = "too few modes", "raise modes"
 UNKNOWN = "shapes and model are not judged: the structure was not made of a beam"
 
 
@@ -82,12 +86,14 @@ def negligible(sizes: Mapping[str, float], length: float) -> set[str]:
 
 
 def unjudged(structure: Structure) -> str:
-    """Errors of a structure that is no beam besides those of the time step, in words."""
+    """The errors of a structure that are not judged, in words."""
+    if structure.source is not None:
+        return ""
     if structure.mesh_error is None:
         return UNKNOWN
     known = structure.mesh_error[0]
     mesh = "" if math.isnan(known) else f", by a coarser one {percent(known)} of the lowest frequency"
-    return f"the modes that are left out and the mesh are not judged{mesh}"
+    return f"the mesh is not judged{mesh}"
 
 
 def response_errors(
@@ -105,22 +111,27 @@ def response_errors(
     """Estimated errors of a response, as fractions of the largest tip displacement (t, 3), load and stress, and
     warnings; `steps` are those of the time step, and the solution has `stride` steps to each of the results.
     """
-    if structure.source is None or loads is None or len(tip) < 3:
+    note = unjudged(structure)
+    if not structure.judged or loads is None or len(tip) < 3:
         alone = [ErrorEstimate(step=step, total=step) for step in steps]
-        if loads is None or not np.isfinite(loads.stress).any():  # such as a solid's, which is not judged
+        if loads is None or not np.isfinite(loads.stress).any():  # such as that of particles, which is not known
             alone[2] = ErrorEstimate()
-        return Errors(alone[0], alone[1], alone[2], unjudged(structure)), ()
+        return Errors(alone[0], alone[1], alone[2], note), ()
     every = tip, loads.force[:, 0], loads.moment[:, 0], loads.stress.max(axis=1)
     sizes = dict(zip(Quantities._fields, map(largest, every), strict=True))
+    if structure.recovery is not None:
+        sizes["stress"] = structure.recovery.largest(solution.y[:, -structure.size :])
     sheared = 0.0 if loads.von_mises is None else float(np.nan_to_num(loads.von_mises).max())
     nothing = negligible(sizes | {"sheared": sheared}, structure.length)
     period = 2 * math.pi / float(structure.rest[0][0])
     step, least = float(solution.time[1] - solution.time[0]), math.ceil(len(solution.time) / MOST)
     few = max(1, min(int(period / PER_PERIOD / (stride * step)), len(tip) // FEWEST))
     stride *= few
-    with np.errstate(all="ignore"):
-        beyond = response_theory(structure, motion, solution.some(slice(None, None, stride)), begin)
-    theory = described(structure, beyond.causes)
+    beyond, theory = UNKNOWN_THEORY, ""
+    if structure.source is not None:
+        with np.errstate(all="ignore"):
+            beyond = response_theory(structure, motion, solution.some(slice(None, None, stride)), begin)
+        theory = described(structure, beyond.causes)
 
     def judged(stride: int, computed: Quantities | None = None) -> tuple[Errors, float]:
         """Errors by every so many steps, and the rate of the fastest mode that these may have missed, rad/s."""
@@ -128,26 +139,31 @@ def response_errors(
         with np.errstate(all="ignore"):
             parts, rings = lacking(structure, motion, few, computed, begin=begin)
         if not np.isfinite(parts.total.tip).all():
-            return _bounded(structure, sizes["tip"], steps[0]), 0.0
+            bounded = structure.source is not None
+            return _bounded(structure, sizes["tip"], steps[0]) if bounded else Errors(ErrorEstimate(steps[0])), 0.0
 
         def fractions(name: str, step: float) -> ErrorEstimate:
             size = 0.0 if name in nothing else sizes[name] or largest(getattr(parts.total, name))
+            if math.isnan(size):  # of the stress of imported matrices
+                return ErrorEstimate()
             shares = (largest(getattr(part, name)) / size if size else 0.0 for part in parts)
             shapes, model, total = shares
             step = 0.0 if name in nothing else step
-            away = ErrorEstimate(step, shapes, 0.0 if structure.kind == "exact" else model, total=step + total)
+            exact = 0.0 if structure.kind == "exact" else math.nan if structure.source is None else model
+            away = ErrorEstimate(step, shapes, exact, total=step + total)
             return away.with_theory(beyond.sizes[name] / size if size else 0.0)
 
         force, moment = fractions("force", steps[1]), fractions("moment", steps[1])
         worst = max(force, moment, key=lambda each: each.total)
-        errors = Errors(fractions("tip", steps[0]), worst, fractions("stress", steps[2]), theory=theory)
+        stress = fractions("stress", steps[2])
+        errors = Errors(fractions("tip", steps[0]), worst, stress, note=note, theory=theory)
         return errors, _missed(rings, sizes, errors, RESOLVED / (least * step))
 
     errors, rate = judged(stride, Quantities(*(each[::few] for each in every)))
     finer = max(least, int(RESOLVED / (rate * step))) if rate else stride
     if finer < stride:
         errors, _ = judged(finer)
-    return errors, tuple(of_bodies(structure, beyond, sizes["tip"], tolerance))
+    return errors, tuple(of_bodies(structure, beyond, sizes["tip"], tolerance)) if structure.source else ()
 
 
 def _missed(rings: Rings, sizes: dict[str, float], errors: Errors, fastest: float) -> float:

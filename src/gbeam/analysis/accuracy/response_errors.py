@@ -21,11 +21,12 @@ from gbeam.analysis.accuracy.correction import (
     responses,
 )
 from gbeam.errors import ComputationError
-from gbeam.mechanics.enrichment import Enrichment, enrichment
-from gbeam.mechanics.section_forces import sections
+from gbeam.mechanics.enrichment import Enrichment, Twin, enrichment
+from gbeam.mechanics.section_forces import section_forces, sections
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base, mapped
 from gbeam.motion.protocol import Motion
+from gbeam.results.response import BaseMotion
 from gbeam.results.result import Floats
 from gbeam.structure.section import extreme_stresses
 
@@ -36,7 +37,9 @@ IDLE = 1e-9  # of the largest force: a direction that feels less stays out
 
 
 class Quantities(NamedTuple):
-    """Tip (t, 3) m, the root's force and moment (t, 3), and the largest size of the stress over all sections (t,)."""
+    """Tip (t, 3) m, the root's force and moment (t, 3), and the largest size of the stress over all sections (t,), of a
+    structure without sections none.
+    """
 
     tip: Floats
     force: Floats
@@ -90,6 +93,7 @@ def lacking(
     directions = driven(more, lambda rich, at: lifted(rich, at, motion, few))
     exact, index = more.model("exact", directions=directions)
     at = lifted(exact, index, motion, solution)
+    mine = lifted(structure, np.arange(structure.size), motion, solution)
     of = operator(exact, at)
     vibration = Vibration.of(of, solution.time)
     residual = complete_residual(exact, at)
@@ -99,18 +103,20 @@ def lacking(
     new[:, np.append(np.arange(first), first + index)] = 0.0
     if begin is None:
         rest = complete_residual(exact, at_rest(at))[0, first:]
+        # After a machine's spin-up the solution does not begin at rest: that is nothing that it lacks.
+        rest[index] -= complete_residual(structure, at_rest(mine))[0, first:]
         new_at_rest = rest.copy()
         new_at_rest[index] = 0.0
         start, start_of_shapes = (settled(of, each) for each in (rest, new_at_rest))
     else:
-        same = exact if structure.kind == "exact" else more.model(structure.kind, directions=directions)[0]
+        same = exact if structure.kind == exact.kind else more.model(structure.kind, directions=directions)[0]
         start, start_of_shapes = (_departure(begin, each, at) for each in (exact, same))
     correction = responses(of, vibration, solution.time)
     total = correction(residual, start)
     if computed is None:
-        computed = quantities(structure, lifted(structure, np.arange(structure.size), motion, solution))
+        computed = quantities(structure, mine)
     truth, same_shapes = quantities(exact, at.moved(*total)), computed
-    if structure.kind != "exact":
+    if structure.kind != exact.kind:
         shapes = correction(new, start_of_shapes)
         same_shapes = quantities(exact, at.moved(*(a - b for a, b in zip(total, shapes, strict=True))))
     parts = Parts(
@@ -118,6 +124,9 @@ def lacking(
         Quantities(*(a - b for a, b in zip(same_shapes, computed, strict=True))),
         Quantities(*(a - b for a, b in zip(truth, computed, strict=True))),
     )
+    if exact.recovery is not None:
+        stress = np.array([exact.recovery.largest(total.value[:, first:])])
+        parts = Parts(*(each._replace(stress=stress) for each in parts))
     return parts, _rings(exact, *vibration.shaken(of, residual, start))
 
 
@@ -131,17 +140,21 @@ def _rings(exact: Structure, rate: Floats, amplitude: Floats) -> Rings:
 
 def quantities(structure: Structure, at: Sampled) -> Quantities:
     """Tip, root loads and stress at a solution, by NumPy for complete models too."""
-    assert structure.sections is not None
+    if structure.sections is None:
+        base = BaseMotion(at.base.a_WO_B, at.base.w_WB_B, at.base.alpha_WB_B)
+        ends = section_forces(structure, base, at.p, at.pd, at.pdd, at.time)
+        tip = np.asarray(structure.displacement(at.p))[:, -1]
+        return Quantities(tip, ends.force[:, 0], ends.moment[:, 0], np.zeros(len(tip)))
     loads = sections(structure, structure.sections, at.base, at.p, at.pd, at.pdd, at.loads)
     tip = loads.place[:, -1] - structure.station_places.r0[-1]
     pair = extreme_stresses(structure.sections.values, loads.section_force, loads.section_moment)
     return Quantities(tip, loads.force[:, 0], loads.moment[:, 0], np.maximum(pair[0], -pair[1]).max(axis=1))
 
 
-def driven(more: Enrichment, lifted: Callable[[Structure, IntArray], Sampled]) -> tuple[bool, bool, bool]:
+def driven(more: Enrichment | Twin, lifted: Callable[[Structure, IntArray], Sampled]) -> tuple[bool, bool, bool]:
     """Whether new shapes along x, y and z would be moved by a solution, lifted into a structure that has them."""
     structure = more.structure
-    if all(structure.counts[:3]):
+    if isinstance(more, Twin) or all(structure.counts[:3]):
         return True, True, True
     rich, index = more.model(structure.kind)
     at = lifted(rich, index)

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.analysis.accuracy.estimate import BEYOND, percent
+from gbeam.analysis.accuracy.estimate import BEYOND, FEW_MODES, percent
 from gbeam.analysis.response.problem import Problem
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.steady.equilibrium import expanded
@@ -256,6 +256,8 @@ def inaccuracies(structure: Structure, errors: Errors, settings: ResponseSetting
         "beam_theory": f"{errors.theory}; {BEYOND}",
     }
     names = {"shapes": "too few shapes", "beam_theory": "the theory of slender beams"}
+    if structure.richer is not None:
+        names["shapes"], cures["shapes"] = FEW_MODES
     parts = [(getattr(worst, part), part, cure) for part, cure in cures.items()]
     causes = [
         f"{percent(size)} from {names.get(part, f'the {part}')} ({cure})"

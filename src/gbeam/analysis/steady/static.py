@@ -9,6 +9,7 @@ from typing import overload
 
 import numpy as np
 
+from gbeam.analysis.accuracy.beam_theory import UNKNOWN as NO_THEORY
 from gbeam.analysis.accuracy.beam_theory import described, static_theory
 from gbeam.analysis.accuracy.correction import Sampled
 from gbeam.analysis.accuracy.estimate import LIMIT, cause_and_cure, of_bodies, percent, unjudged
@@ -42,17 +43,26 @@ LOST = "shapes and model are not judged: the exact model with more shapes comes 
 def static_errors(point: OperatingPoint, displacement: Floats, loads: Loads | None) -> tuple[Errors, tuple[str, ...]]:
     """Estimated errors of an equilibrium, as fractions of displacement (s, 3), root load and stress, and warnings."""
     structure = point.structure
-    if structure.source is None or loads is None:
-        return Errors(note=unjudged(structure)), ()
+    note = unjudged(structure)
+    if not structure.judged or loads is None:
+        return Errors(note=note), ()
     computed = Quantities(displacement[-1:], loads.force[:, 0], loads.moment[:, 0], loads.stress.max(axis=1))
     more = enrichment(structure, point.base)
     which = driven(more, lambda rich, index: _lifted(rich, index, point))
-    exact = _solved(more.model("exact", directions=which)[0], point)
-    if exact is None:
+    rich, own = more.model("exact", directions=which)
+    at = _solved(rich, point)
+    if at is None:
         return Errors(note=LOST), (LOST,)
-    same = exact if structure.kind == "exact" else _solved(more.model(structure.kind, directions=which)[0], point)
-    length = structure.length
-    lacking = static_theory(structure, lambda rich: _lifted(rich, np.arange(structure.size), point))
+    exact = quantities(rich, at)
+    same: Quantities | None = exact
+    if structure.kind != rich.kind:
+        alike = more.model(structure.kind, directions=which)[0]
+        there = _solved(alike, point)
+        same = None if there is None else quantities(alike, there)
+    length, slender = structure.length, structure.source is not None
+    lacking = NO_THEORY
+    if slender:
+        lacking = static_theory(structure, lambda rich: _lifted(rich, np.arange(structure.size), point))
 
     def fractions(name: str, least: float) -> ErrorEstimate:
         def apart(a: Quantities | None, b: Quantities | None) -> float:
@@ -62,6 +72,9 @@ def static_errors(point: OperatingPoint, displacement: Floats, loads: Loads | No
             return away / size if size > least else 0.0
 
         size = max(float(np.linalg.norm(getattr(each, name))) for each in (computed, exact))
+        if not slender:
+            total = apart(computed, exact)
+            return ErrorEstimate(0.0, total, total=total)
         away = ErrorEstimate(0.0, apart(computed, same), apart(same, exact), total=apart(computed, exact))
         theory = lacking.sizes[name]
         return away.with_theory(theory / size if theory and size > least else 0.0)
@@ -72,6 +85,13 @@ def static_errors(point: OperatingPoint, displacement: Floats, loads: Loads | No
         fractions("moment", NOTHING * force * length),
         key=lambda each: each.total,
     )
+    if not slender:
+        stress = ErrorEstimate()
+        if rich.recovery is not None:
+            of_shapes = rich.recovery.largest(at.p - _lifted(rich, own, point).p) / rich.recovery.largest(at.p)
+            stress = ErrorEstimate(0.0, of_shapes, total=of_shapes)
+        errors = Errors(fractions("tip", NOTHING**2 * length), worst, stress, note=note)
+        return errors, _doubtful(errors)
     theory = described(structure, lacking.causes)
     errors = Errors(fractions("tip", NOTHING**2 * length), worst, fractions("stress", 0.0), theory=theory)
     bodies = of_bodies(structure, lacking, float(np.linalg.norm(computed.tip)), LIMIT)
@@ -111,14 +131,13 @@ def _resting(q: Floats, point: OperatingPoint) -> Sampled:
     return Sampled(np.zeros(1), at, q[None], still, still, loads=None if loads is None else np.asarray(loads)[None])
 
 
-def _solved(rich: Structure, point: OperatingPoint) -> Quantities | None:
-    """Quantities of a structure with more shapes at its own equilibrium; None where there is none."""
+def _solved(rich: Structure, point: OperatingPoint) -> Sampled | None:
+    """A structure with more shapes at its own equilibrium; None where there is none."""
     rich = replace(rich, load_values=point.structure.load_values)
     try:
-        q = solve_equilibrium(rich, point.base).q
+        return _resting(np.asarray(solve_equilibrium(rich, point.base).q), point)
     except (ComputationError, np.linalg.LinAlgError):
         return None
-    return quantities(rich, _resting(np.asarray(q), point))
 
 
 @overload
