@@ -88,8 +88,8 @@ def static_errors(point: OperatingPoint, displacement: Floats, loads: Loads | No
     if not slender:
         stress = ErrorEstimate()
         if rich.recovery is not None:
-            of_shapes = rich.recovery.largest(at.p - _lifted(rich, own, point).p) / rich.recovery.largest(at.p)
-            stress = ErrorEstimate(0.0, of_shapes, total=of_shapes)
+            away, size = (rich.recovery.largest(q) for q in (at.p - _lifted(rich, own, point).p, at.p))
+            stress = ErrorEstimate(0.0, away / size if size else 0.0, total=away / size if size else 0.0)
         errors = Errors(fractions("tip", NOTHING**2 * length), worst, stress, note=note)
         return errors, _doubtful(errors)
     theory = described(structure, lacking.causes)
