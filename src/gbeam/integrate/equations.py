@@ -89,7 +89,7 @@ class Trajectory:
         return replace(self, time=self.time[steps], q=self.q[steps], qd=self.qd[steps], qdd=self.qdd[steps])
 
 
-AT_ONCE = 50_000  # numbers of the states that are evaluated at once: more of them would leave a cache
+AT_ONCE = 5_000  # numbers of the states that are evaluated at once: of more, all sections of beams fill memory
 
 
 def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> tuple[Array, Array, Array]:
