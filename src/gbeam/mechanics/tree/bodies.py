@@ -6,6 +6,7 @@ A wrench is what motion demands: Σ m a outboard, less the loads. Forces on coor
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -275,7 +276,7 @@ class LinearBody:
 
 def _times(tensor: Array, q: Array) -> Array:
     """T_{...ij} q_j of a constant tensor, (..., its first axes, i)."""
-    flat = q @ tensor.reshape(-1, tensor.shape[-1]).T
+    flat = q @ tensor.reshape(math.prod(tensor.shape[:-1]), tensor.shape[-1]).T  # of a rigid body none
     return flat.reshape(*q.shape[:-1], *tensor.shape[:-1])
 
 
