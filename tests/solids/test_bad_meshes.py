@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -191,7 +192,7 @@ INP = (
     + lines("*ELEMENT, TYPE=C3D8, ELSET=all", "1, 11, 12, 13, 14,", "15, 16, 17, 18")
     + "*NSET, NSET=wall\n11, 12, 13, 14\n"
 )
-GRIDS = [f"GRID,{i},,{x}.,{y}.,{z}." for i, (x, y, z) in enumerate(CUBE, 11)]
+GRIDS = [f"GRID,{i},,{x}.,{y}.+0,{z}.0D0" for i, (x, y, z) in enumerate(CUBE, 11)]
 BDF = lines("BEGIN BULK", *GRIDS, "CHEXA,5,1,11,12,13,14,15,16,+", "+,17,18", "CQUAD4,6,7,11,12,13,14", "ENDDATA")
 
 
@@ -256,3 +257,11 @@ def test_a_binary_file_of_gmsh_with_a_node_0_is_refused(tmp_path: Path) -> None:
     (tmp_path / "a.msh").write_bytes(content.replace(b"8\n\x01", b"8\n\x00"))
     with pytest.raises(gb.InputError, match="mesh has node 0; write it as text, or number its nodes from 1"):
         gb.SolidMesh.read(tmp_path / "a.msh", materials=STEEL, clamp="1", unit="m")
+
+
+def test_a_library_that_meshio_needs_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Exodus's, which does not come with it."""
+    monkeypatch.setitem(sys.modules, "netCDF4", None)
+    (tmp_path / "a.e").write_bytes(b"CDF")
+    with pytest.raises(gb.InputError, match='netCDF4 is not installed; install it with: pip install "netCDF4"'):
+        gb.SolidMesh.read(tmp_path / "a.e", materials=STEEL, clamp="wall", unit="m")

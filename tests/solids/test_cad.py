@@ -24,7 +24,7 @@ LENGTH, WIDTH, THICKNESS, HOLE = 100.0, 20.0, 5.0, 4.0  # mm
 def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     """A bar, a plate with a hole and another bar beside its end, a surface, and half a file."""
     folder = tmp_path_factory.mktemp("cad")
-    of = {name: folder / name for name in ("bar.step", "plate.stp", "face.step", "half.step")}
+    of = {name: folder / name for name in ("bar.step", "plate.stp", "face.step", "half.step", "bar.igs")}
     gmsh.initialize(readConfigFiles=False, interruptible=False)
     gmsh.option.setNumber("General.Terminal", 0)
     shapes = gmsh.model.occ
@@ -36,7 +36,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
         gmsh.clear()
 
     shapes.addBox(0, 0, 0, LENGTH, WIDTH, THICKNESS)
-    written("bar.step")
+    written("bar.step", "bar.igs")
     plate = shapes.addBox(0, 0, 0, LENGTH, WIDTH, THICKNESS)
     shapes.cut([(3, plate)], [(3, shapes.addCylinder(LENGTH / 2, WIDTH / 2, 0, 0, 0, THICKNESS, HOLE))])
     shapes.addBox(LENGTH, 0, 0, 10, WIDTH, THICKNESS)
@@ -77,6 +77,7 @@ def test_parts_that_touch_are_joined_and_round_ones_weigh_what_they_are(files: d
         ("bar.step", {"element_size": None}, "element_size is missing; give the one to mesh"),
         ("bar.step", {"element_size": 0.0}, "element_size is 0 m"),
         ("face.step", {}, "has no solids; export the part as a solid"),
+        ("bar.igs", {"element_size": None}, "bar.igs is IGES, which holds surfaces .* export the part as STEP"),
         ("half.step", {}, "half.step is not meshed by Gmsh: Could not read file"),
     ],
 )

@@ -199,6 +199,17 @@ def test_what_springs_do_not_hold_is_refused() -> None:
         strip(clamp=[], links={"face": "end"}, springs=springs).reduced(modes=2, damping_ratio=0)
 
 
+def test_a_body_that_outweighs_the_solid_beyond_all_digits_is_refused_as_that() -> None:
+    """Whether the modes that are asked for have mass beside it, or the static answers to inertia; the clamp holds."""
+    body = {"end": gb.RigidBody(1e9, 1e5 * np.eye(3))}
+    for modes, words in (
+        (12, "modes is 12, and only . motions move mass; give at most"),
+        (3, "next to none .* or carry"),
+    ):
+        with pytest.raises(gb.InputError, match=words):
+            strip(links={"end": "end"}, carried=body).reduced(modes=modes, damping_ratio=0)
+
+
 def test_a_weight_beside_the_axis_of_a_spinning_bar_is_that_of_a_tree() -> None:
     """The load bends the bar, and the forces of vibration on the arm of the weight turn with it: to first order."""
     bar = gb.Section.rectangle(0.02, 0.01)

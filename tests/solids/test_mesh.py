@@ -220,7 +220,7 @@ def test_point_masses_points_and_origin() -> None:
     assert "middle_z" in [each.name for each in system.outputs]
 
 
-@pytest.mark.parametrize("name", ["solid.msh", "solid.vtu", "solid.bdf", "solid.inp", "solid.vtk"])
+@pytest.mark.parametrize("name", ["solid.msh", "solid.vtu", "solid.bdf", "solid.inp", "solid.vtk", "solid.med"])
 def test_a_mesh_comes_back_from_files(tmp_path: Path, name: str) -> None:
     """Gmsh, VTK, Nastran and Abaqus: two materials by groups of elements, the clamp by nodes or by elements."""
     mesh = block("hexahedron20", (2, 1, 1), (200.0, 50.0, 30.0))

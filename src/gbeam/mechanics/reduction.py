@@ -15,7 +15,7 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.numerics.eigen import Floats
-from gbeam.numerics.sparse import factorised, lowest_modes
+from gbeam.numerics.sparse import HOLD, factorised, lowest_modes
 
 if TYPE_CHECKING:
     from gbeam.mechanics.structure import Structure
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 NEGATIVE = 1e-6  # of the largest: a mass that is less than none, and no rounding
 ZERO = 1e-10  # of the largest of the eigenvalues computed: a smaller one is that of a motion without strain
 ALIKE = 1e-9  # of its energy: what is left of a static answer beside the modes and the others adds nothing
-HOLD = "hold the structure so that nothing moves without strain"
 MORE = 6  # modes besides, by which the error of those left out is judged
 WIDTH = 8  # random vectors with which the search for modes begins: as many equal frequencies are told apart
 FAINT = 1e-14  # of the largest: a product of shapes that is rounding

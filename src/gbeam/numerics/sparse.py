@@ -61,7 +61,6 @@ def refuse_cost(where: str, unknowns: int) -> None:
 @contextmanager
 def factorised(matrix: Any, where: str = "stiffness") -> Iterator[Callable[[Floats], Floats]]:
     """Yield a function that solves for right-hand sides (n,) or (n, m); an InputError where the matrix is singular."""
-    fix = "hold the structure so that nothing moves without strain"
     if solver() == "Pardiso":
         from pypardiso import PyPardisoSolver
         from pypardiso.pardiso_wrapper import PyPardisoError
@@ -73,7 +72,7 @@ def factorised(matrix: Any, where: str = "stiffness") -> Iterator[Callable[[Floa
             try:
                 pardiso.factorize(upper)
             except (PyPardisoError, ValueError):  # which it raises of an empty row
-                raise InputError(where, "is not positive definite", fix) from None
+                raise InputError(where, "is not positive definite", HOLD) from None
             pardiso.set_iparm(8, 0)  # refine no answer: two steps of it, which is usual, take three quarters of a solve
             yield lambda b: pardiso.solve(upper, np.asfortranarray(b)).reshape(b.shape)
         finally:
@@ -90,10 +89,11 @@ def factorised(matrix: Any, where: str = "stiffness") -> Iterator[Callable[[Floa
             options={"SymmetricMode": True},
         )
     except RuntimeError:
-        raise InputError(where, "is singular", fix) from None
+        raise InputError(where, "is singular", HOLD) from None
     yield factors.solve
 
 
+HOLD = "hold the structure, such as by a clamp, so that nothing moves without strain"
 CLOSE = 1e-8  # of an inverse eigenvalue: residual of a mode that has converged; its value errs by the square
 ROUGH = 1e-2  # likewise, of those that only show what the others lack
 NONE = 1e-12  # of its length: what is left of a vector that is in the space already

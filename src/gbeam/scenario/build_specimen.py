@@ -135,7 +135,9 @@ def matrices_of(parts: Collector, where: str, table: schema.MatricesBody) -> Str
                 inertia=inertia,
             )
         except InputError as error:
-            names = {"mass": "mass_matrix", "stiffness": "stiffness_matrix", "paths": "matrices", "path": "matrices"}
+            named = {"mass": table.mass_matrix, "stiffness": table.stiffness_matrix}
+            names = {key: f"{key}_matrix" if file else "matrices" for key, file in named.items()}
+            names |= {"paths": "matrices", "path": "matrices"}
             raise InputError(names.get(error.where, error.where), error.problem, error.fix) from None
 
     return parts.attempt(where, model)

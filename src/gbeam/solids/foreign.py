@@ -23,7 +23,7 @@ from gbeam.results.result import Floats
 from gbeam.solids.shape_functions import KINDS, Indices
 from gbeam.solids.shells import points_of
 from gbeam.solids.stress import surface_of
-from gbeam.solids.texts import AGAIN, TextMesh, text_mesh
+from gbeam.solids.texts import AGAIN, TEXTS, TextMesh, ending_of, text_mesh
 
 _INTERNAL = "gmsh:"  # begins the names of sets that nobody gave
 _ENTITIES = "gmsh:geometrical"
@@ -62,12 +62,15 @@ def read_mesh(source: str | os.PathLike[str] | Any) -> Any:
             return meshio.read(source)
     except InputError:
         raise
-    except ModuleNotFoundError:
-        raise InputError("", "meshio is not installed", 'install it with: pip install "gbeam[mesh]"') from None
+    except ModuleNotFoundError as error:  # meshio, or what it reads some formats by
+        of = "gbeam[mesh]" if error.name == "meshio" else error.name
+        raise InputError("", f"{error.name} is not installed", f'install it with: pip install "{of}"') from None
     except (Exception, SystemExit) as error:
         words = shortened(" ".join((said.getvalue() or str(error)).split()), 200)
-        if isinstance(error, KeyError):  # looked up by its number is what a set or an element names
-            words = f"number {error.args[0]} is named in it, and is not there"
+        if isinstance(error, KeyError):
+            noun = "number" if isinstance(error.args[0], int) else "set"
+            listed = ending_of(source) in TEXTS
+            words = f"{noun} {error.args[0]} is named in it, and is not there" if listed else f"meshio lacks {error}"
         fix = "give a file of Gmsh, Nastran, Abaqus, CalculiX or VTK, with its ending"
         raise InputError("mesh", f"{os.fspath(source)} cannot be read: {words}", fix) from None
 

@@ -118,7 +118,7 @@ def ending_of(source: Any) -> str:
 
 def text_mesh(source: str | os.PathLike[str]) -> TextMesh | None:
     """Read a mesh in a text file of Abaqus, CalculiX, Nastran or Gmsh; nothing of a file of another kind."""
-    path, mesh, (read, order) = Path(source), TextMesh(), _READERS.get(ending_of(source), (None, {}))
+    path, mesh, (read, order) = Path(source), TextMesh(), TEXTS.get(ending_of(source), (None, {}))
     if read is None or not read(mesh, path.read_text(encoding="utf-8", errors="replace"), path.name):
         return None
     mesh.place(order, path.name)
@@ -204,7 +204,10 @@ def members(rows: list[list[str]], sets: Mapping[str, list[int]], generated: boo
 
 def real(value: str) -> float:
     """Read a number as Nastran writes it, with or without the letter of its exponent; 0 of a blank."""
-    return float(re.sub(r"(?<=[\d.])(?=[+-])", "e", value.lower().replace("d", "e"))) if value else 0.0
+    try:
+        return float(value or 0.0)
+    except ValueError:
+        return float(re.sub(r"(?<=[\d.])(?=[+-])", "e", value.lower().replace("d", "e")))
 
 
 def _read_nastran(mesh: TextMesh, text: str, file: str) -> bool:
@@ -313,7 +316,7 @@ def _physical(rows: list[list[str]]) -> dict[tuple[int, str], list[str]]:
     return groups
 
 
-_READERS: dict[str, tuple[Callable[[TextMesh, str, str], bool], dict[str, list[int]]]] = {
+TEXTS: dict[str, tuple[Callable[[TextMesh, str, str], bool], dict[str, list[int]]]] = {
     ".msh": (_read_gmsh, GMSH_ORDER),
     **dict.fromkeys(NASTRAN, (_read_nastran, NASTRAN_ORDER)),
     **dict.fromkeys(ABAQUS, (_read_abaqus, {})),
