@@ -137,6 +137,15 @@ def test_the_beam_with_few_shapes_is_named() -> None:
     assert np.isnan(bare.error_estimate) and bare.warnings.count(bare.errors.note) == 1
 
 
+def test_a_given_step_states_its_error() -> None:
+    """By the order observed in three runs, two at most: a third of what two runs promise, that of Gauss falls faster."""
+    system = arm("FOAM", 40.0, 2)
+    response, truth = (gb.simulate(system, duration=0.4, step=step) for step in (4e-3, 5e-4))
+    size = np.linalg.norm(response.place - response.place[0], axis=-1).max()
+    true = float(np.linalg.norm(truth.place[::8] - response.place, axis=-1).max() / size)
+    assert 1e-7 < true < response.errors.displacement.step < 6 * true
+
+
 def test_bodies_without_a_beam_are_named_as_not_judged() -> None:
     slope = np.array([0.0, 0.3, 1.0])[:, None, None] * [[0.0], [0.0], [1.0]]
     place, curve = np.array([[0.0, 0, 0], [0.5, 0, 0], [1.0, 0, 0]]), np.zeros((3, 3, 1, 1))

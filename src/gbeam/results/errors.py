@@ -219,3 +219,4 @@ class StepErrors:
     displacement: float = math.nan  # of the tip
     loads: float = math.nan  # of the root's force and moment, the larger of both
     stress: float = math.nan
+    each: tuple[float, ...] = ()  # of force, moment and stress of every beam

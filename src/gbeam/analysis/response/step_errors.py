@@ -44,21 +44,40 @@ class Run:
     readings: Readings
 
     @property
+    def bends(self) -> bool:
+        """Whether a law bends within steps, whose error then depends on where."""
+        return False
+
+    @property
+    def missed(self) -> tuple[str, ...]:
+        """Warning of what the steps may miss: then their error is unknown."""
+        return ()
+
+    @property
+    def followed(self) -> bool:
+        """Whether steps are refined for the loads, too."""
+        return True
+
+    @property
     def whole(self) -> bool:
         """Whether it came to its end."""
         return self.trajectory.whole
 
     @cached_property
-    def tip(self) -> Floats:
-        """Displacement of the tip, (t, 3) m."""
+    def moved(self) -> Floats:
+        """Displacement of the tip, or of all points side by side, (t, 3 p) m."""
         return self.readings.tip(self.trajectory.q)
 
     @cached_property
     def peaks(self) -> list[Floats]:
         """Peaks of the tip's displacement and of the root's moment, (4,) each."""
         read = self.readings
-        histories = (self.tip, read.tip), (read.moment(self.trajectory.q), read.moment)
+        histories = (self.moved, read.tip), (read.moment(self.trajectory.q), read.moment)
         return [peaks_of_coordinates(self.trajectory, values, of) for values, of in histories]
+
+    def loads(self, stride: int) -> Sequence[Floats]:
+        """Histories (t, ..., k) of force, moment and stress of each beam, at every so many steps."""
+        return self.readings.loads(self.trajectory, stride)
 
 
 def difference(coarse: Floats, fine: Floats, ratio: int) -> float:
@@ -103,6 +122,15 @@ def share(runs: Sequence[Run], differences: Sequence[float], highest: float) -> 
     return 1 / (ratio(runs[-2], runs[-1]) ** order - 1)
 
 
+def left(runs: Sequence[Run], differences: Sequence[float], highest: float) -> float:
+    """Error that differences of two or three runs leave in the last, by the order observed. Of a law that bends within
+    steps none is, and two runs may agree by chance.
+    """
+    if runs[-1].bends and len(runs) > 2:
+        return max(differences[-1], differences[-2] / ratio(runs[-2], runs[-1]))
+    return differences[-1] * share(runs, differences, highest)
+
+
 @dataclass(frozen=True)
 class Estimate:
     """Estimated errors of the last of two or three runs, observed, and as promised by the scheme's order."""
@@ -115,13 +143,14 @@ class Estimate:
     @staticmethod
     def of(runs: Sequence[Run], order: int) -> Estimate:
         """Compare the runs."""
-        apart = [difference(a.tip, b.tip, ratio(a, b)) for a, b in pairwise(runs)]
-        peaks = max(_apart(a, b) for a, b in zip(runs[-2].peaks, runs[-1].peaks, strict=True))
+        apart = [difference(a.moved, b.moved, ratio(a, b)) for a, b in pairwise(runs)]
+        peaks = max((_apart(a, b) for a, b in zip(runs[-2].peaks, runs[-1].peaks, strict=True)), default=0.0)
         jump, highest = ratio(*runs[-2:]), min(order, HIGHEST_ORDER)
+        tip = left(runs, apart, highest)
         return Estimate(
-            apart[-1] * share(runs, apart, highest),
+            tip,
             peaks * share(runs, apart, order),
-            apart[-1] / (jump**highest - 1),
+            tip if runs[-1].bends else apart[-1] / (jump**highest - 1),
             peaks / (jump**order - 1),
         )
 
@@ -131,26 +160,16 @@ def _apart(coarse: Floats, fine: Floats) -> float:
 
 
 def of_everything(runs: Sequence[Run], order: int) -> StepErrors:
-    """Errors of the last run: of the tip's displacement, of the root's loads and of the stress."""
+    """Errors of the last run: of what moves, of the roots' loads and of the stress."""
     displacement = Estimate.of(runs, order).tip
     if not all(run.whole for run in runs[-2:]):
         return StepErrors(displacement)
-    runs = runs if runs[0].whole else runs[-2:]
-
-    def read(k: int, stride: int) -> Sequence[Floats]:
-        return runs[k].readings.loads(runs[k].trajectory, stride)
-
-    errors = of_histories(runs, read, lambda differences: share(runs, differences, 4 / order) * differences[-1])
-    return StepErrors(displacement, max(errors[:2]), errors[2]) if errors else StepErrors(displacement)
-
-
-def of_histories(
-    runs: Sequence[Run], read: Callable[[int, int], Sequence[Floats]], left: Callable[[Sequence[float]], float]
-) -> list[float]:
-    """Errors of the last run's histories (t, c), read every so many steps: what is `left` of differences."""
-    differences = []
-    for k, (coarse, fine) in enumerate(pairwise(runs)):
+    runs, differences = runs if runs[0].whole else runs[-2:], []
+    for coarse, fine in pairwise(runs):
         stride = max(1, (len(coarse.trajectory.time) - 1) // _SAMPLES)
-        both = read(k, stride), read(k + 1, stride * ratio(coarse, fine))
+        both = coarse.loads(stride), fine.loads(stride * ratio(coarse, fine))
         differences.append([difference(a, b, 1) for a, b in zip(*both, strict=True)])
-    return [left(each) for each in zip(*differences, strict=True)]
+    each = [left(runs, apart, 4 / order) for apart in zip(*differences, strict=True)]
+    if not each:
+        return StepErrors(displacement)
+    return StepErrors(displacement, max(each[::3] + each[1::3]), max(each[2::3]), tuple(each))

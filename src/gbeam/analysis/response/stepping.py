@@ -27,6 +27,7 @@ MAX_STEPS = 4_000_000
 LOADS_STEPS = 50_000  # at most, where it is the loads that need them
 ONE_CORNER = 1e-6  # of the duration: corners nearer to one another are one
 JUMPS = 2, 3, 4, 6, 8, 12, 16  # into how many a step is divided; a check takes four, three or two of the new ones
+BENT = 4  # into how many at most where a law bends, for errors to be seen to fall
 RIGID = 2e-3  # s: step of a specimen without coordinates
 SPARE = 1.05  # how much finer a step is than the order promises to be enough
 # Yields a step, s, and what it is for; is sent the run; returns the run that counts with its errors.
@@ -84,11 +85,13 @@ def answered(plan: Plan, run: Callable[[float, str], Run]) -> tuple[Run, StepErr
         return chosen, errors
 
 
-def planned(settings: ResponseSettings, coarse: float, step: float | None) -> Plan:
-    """The runs of some settings: those of an automatic step, or of the given one and what its estimate needs."""
+def planned(settings: ResponseSettings, coarse: float, step: float | None, most: int = MAX_STEPS) -> Plan:
+    """The runs of some settings: those of an automatic step, by so many steps at most, or of the given one and what its
+    estimate needs.
+    """
     order = scheme_of(settings).order
     if step is None:
-        return (yield from refine(coarse, order, settings))
+        return (yield from refine(coarse, order, settings, most))
     if settings.estimate:
         return (yield from check(step, order))
     return (yield from once(step, StepErrors()))
@@ -108,9 +111,9 @@ def check(step: float, order: int) -> Plan:
     return runs[0], of_everything(runs[::-1], order)
 
 
-def refine(coarse: float, order: int, settings: ResponseSettings) -> Plan:
-    """Divide the step, from twice the results', until the errors estimated of the tip's history and of the peaks are
-    within their aims; histories of root loads only to a third of the tolerance and by LOADS_STEPS.
+def refine(coarse: float, order: int, settings: ResponseSettings, limit: int = MAX_STEPS) -> Plan:
+    """Divide the step, from twice the results', until the errors estimated of what moves and of the peaks are within
+    their aims; histories of root loads, if followed, only to a third of the tolerance and by LOADS_STEPS.
     """
 
     def refined(step: float) -> tuple[float, str]:
@@ -118,24 +121,24 @@ def refine(coarse: float, order: int, settings: ResponseSettings) -> Plan:
 
     runs = [(yield 2 * coarse, "integrating"), (yield refined(coarse))]
     while True:
-        left, promised = _left(runs, order, settings)
-        both = runs[-2].whole and runs[-1].whole
+        left, promised = _left(runs[-3:], order, settings)
+        both, new = runs[-2].whole and runs[-1].whole, runs[-1]
         if both and promised <= 1 and (more := _check_needed(runs, left)):
             checked = yield more, f"checking with {1e3 * more:.3g} ms"
-            runs = sorted([*runs[-2:], checked], key=lambda each: -each.step)
-            left, _ = _left(runs, order, settings)
-        far, most = promised, MAX_STEPS
-        if both and left <= 1:
-            errors = of_everything(runs, order)
+            runs = sorted([*runs, checked], key=lambda each: -each.step)
+            left, _ = _left(runs[-3:], order, settings)
+        far, most = promised, limit
+        if both and left <= 1 and not new.missed and not (new.bends and len(runs) < 3):
+            errors = of_everything(runs[-3:], order)
             far, most = 3 * errors.loads / settings.tolerance, LOADS_STEPS
-            if not far > 1:  # as NaN is not
-                return runs[-1], errors
-        finer = finer_by(far, order)
-        stuck = not (runs[-2].whole or runs[-1].whole)
-        if stuck or settings.duration / runs[-1].step * finer > most:
+            if not (far > 1 and new.followed):  # as NaN is not
+                return new, errors
+        finer = min(finer_by(far, order), BENT if new.bends else JUMPS[-1])
+        stuck = not (runs[-2].whole or new.whole) and (new.trajectory.stopped or len(runs) > 3)
+        if stuck or settings.duration / new.step * finer > most:
             break
-        runs = [*runs[-2:], (yield refined(runs[-1].step / finer))]
-    return runs[-1], of_everything(runs, order)
+        runs.append((yield refined(new.step / finer)))
+    return runs[-1], of_everything(runs[-3:], order)
 
 
 def finer_by(far: float, order: int) -> int:
@@ -155,7 +158,7 @@ def _check_needed(runs: list[Run], left: float) -> float | None:
     a jump promise too well.
     """
     jump, new = ratio(*runs[-2:]), runs[-1]
-    if left <= 1 and jump <= 4:
+    if new.bends or (left <= 1 and jump <= 4):
         return None
     if jump > 3:
         return (4 if jump > 6 else jump // 2) * new.step

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -17,13 +15,21 @@ from gbeam.analysis.response.outcome import yielding
 from gbeam.analysis.response.peaks import half_ranges, load_peaks
 from gbeam.analysis.response.problem import Problem
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.step_errors import Run, difference, of_histories, ratio, share
-from gbeam.analysis.response.stepping import LOADS_STEPS, even_steps, finer_by, integrated, scheme_of, steps_beyond
+from gbeam.analysis.response.step_errors import Run
+from gbeam.analysis.response.stepping import (
+    LOADS_STEPS,
+    answered,
+    even_steps,
+    integrated,
+    planned,
+    scheme_of,
+    steps_beyond,
+)
 from gbeam.analysis.system.accuracy import doubts, system_errors, unmoved
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
 from gbeam.analysis.system.histories import Carried, beams_of, deflection, histories, loads_of, meshes_of
 from gbeam.analysis.system.point import Point, started, started_traced
-from gbeam.analysis.system.richer import PLACE, Answered, InputsOf, Quantity, itself, judged_beams, pieces
+from gbeam.analysis.system.richer import PLACE, Answered, InputsOf, itself, judged_beams, pieces
 from gbeam.arrays.namespace import holds_jax, namespace
 from gbeam.errors import InputError
 from gbeam.guards.limits import HISTORY_BYTES, STEPS, refuse_more
@@ -37,7 +43,7 @@ from gbeam.motion import Centrifuge
 from gbeam.motion.centrifuge.kinematics import axes_result
 from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress, tell
-from gbeam.results.errors import ErrorEstimate, SystemErrors
+from gbeam.results.errors import ErrorEstimate, StepErrors, SystemErrors
 from gbeam.results.parts import Loads
 from gbeam.results.response import BaseMotion
 from gbeam.results.system import BeamResponse, Invariants, Loop, SystemResponse
@@ -46,7 +52,7 @@ from gbeam.structure.beam import names_at
 Array = Any
 Floats = NDArray[np.float64]
 LEAST = 500  # steps of the results at least
-BENT = 4  # into how many a step is divided at most where a law bends, for errors to be seen to fall
+LOADS = "force", "moment", "stress"  # of a beam, whose errors are estimated
 BEYOND = 1e-8  # of a coordinate's range: less beyond a stop is no contact
 
 
@@ -88,15 +94,35 @@ class PosedSystem:
         """Integrate it from coordinates and rates."""
         trajectory = integrated(Problem(self.equations, q, qd, 0, True), settings, step, **how)
         sampling = self.equations.samplings[-1] if self.equations.samplings else None
-        return Ran(trajectory, step, None, self, sampling)  # type: ignore[arg-type]
+        return Ran(trajectory, step, None, self, sampling, settings.estimate)  # type: ignore[arg-type]
 
 
 @dataclass(frozen=True)
 class Ran(Run):
-    """A run of a system, with the samples of its controllers."""
+    """A run of a system, with the samples of its controllers, and whether its loads are to be judged."""
 
     posed: PosedSystem
     sampling: Sampling | None
+    judged: bool
+    followed = False
+
+    @cached_property
+    def peaks(self) -> list[Floats]:
+        """None: the history of the points is judged."""
+        return []
+
+    @cached_property
+    def bends(self) -> bool:
+        """Whether the law of a joint bends."""
+        return any(joint.holder.bends for joint in self.posed.system.joints.values())
+
+    def loads(self, stride: int) -> list[Floats]:
+        """Force and moment at the root and the stress of every beam that can be judged, at every so many steps."""
+        beams = judged_beams(self.posed.system)
+        if not beams or not self.judged:
+            return []
+        values = Answered(itself(self.posed.system), *self.every(stride)).read(beams)
+        return [values[name, each] for name in beams for each in LOADS]
 
     def loop(self, time: Floats) -> tuple[Loop | None, Floats | None]:
         """Record of its controllers, and their commands (t, m) that act at times."""
@@ -174,21 +200,23 @@ def simulate_system(
     def run(of: PosedSystem, begun: Point, step: float, what: str) -> Ran:
         return of.run(settings, begun.y, begun.yd, step, corners=jumps, progress=partial(tell, progress, what))
 
-    bends = any(joint.holder.bends for joint in system.joints.values())
-    runs, error = _stepped(lambda step, what: run(posed, point, step, what), coarse, settings, bends)
-    chosen = runs[-1]
-    error = math.nan if chosen.missed else error
+    plan = planned(settings, coarse, settings.step, LOADS_STEPS)
+    chosen, of_steps = answered(plan, lambda step, what: run(posed, point, step, what))
+    assert isinstance(chosen, Ran)
+    if chosen.missed:
+        of_steps = StepErrors()
     stride = 1 if settings.step is not None else round(coarse / chosen.step)
-    errors = SystemErrors(ErrorEstimate(error), note=settings.not_estimated)
+    errors = SystemErrors(ErrorEstimate(of_steps.displacement), note=settings.not_estimated)
 
     def again(of: System) -> tuple[Trajectory, InputsOf]:
         richer = PosedSystem(of, motion)
         return run(richer, richer.start(settings), chosen.step, "errors of shapes and models").every(stride)
 
     if settings.estimate and chosen.whole:
-        loads = {} if chosen.missed else _load_errors(runs, scheme_of(settings).order, bends)
+        steps = {(name, each): math.nan for name in judged_beams(system) for each in LOADS}
+        steps |= {PLACE: of_steps.displacement, **dict(zip(steps, of_steps.each, strict=False))}
         settled, closed = begin.state == "equilibrium", again if system.controllers else None
-        errors = system_errors(system, *chosen.every(stride), closed, {PLACE: error} | loads, settled=settled)
+        errors = system_errors(system, *chosen.every(stride), closed, steps, settled=settled)
     return _described(chosen, settings, stride, errors, name, flight, chosen.missed)
 
 
@@ -207,31 +235,6 @@ def _refuse_long(system: System, settings: ResponseSettings, step: float) -> Non
     most = int(HISTORY_BYTES / each)
     fix = f"give {most * step:.3g} s or less, or longer steps"
     refuse_more("response.duration", "steps", settings.duration / step, most, each, fix)
-
-
-def _stepped(
-    run: Callable[[float, str], Ran], coarse: float, settings: ResponseSettings, bends: bool
-) -> tuple[list[Ran], float]:
-    """Runs, of which the last counts, by a given or an automatic step, and the error of its steps in the places."""
-    order, runs = scheme_of(settings).order, [run(settings.step or 2 * coarse, "integrating")]
-    if settings.step is not None:
-        coarser = () if not settings.estimate else (4, 2) if bends else (2,)
-        runs[:0] = [run(k * settings.step, f"checking with {k} times the step") for k in coarser]
-        return runs, _step_error(runs, order, bends) if coarser else math.nan
-    runs.append(run(coarse, "refining"))
-    while True:
-        error = _step_error(runs, order, bends)
-        whole = runs[-1].whole
-        most = int(LOADS_STEPS * runs[-1].step / settings.duration)
-        few = bends and len(runs) < 3
-        needed = few or bool(runs[-1].missed)
-        finer = max(finer_by(error / settings.aim if whole else math.nan, order), 2 if needed else 0)
-        finer = min(finer, BENT if bends else finer, most)
-        lost = not (whole or runs[-2].whole) and len(runs) > 3
-        if (error <= settings.aim and whole and not needed) or finer < 2 or lost:
-            return runs, error
-        step = runs[-1].step / finer
-        runs.append(run(step, f"refining the step to {1e3 * step:.3g} ms"))
 
 
 def _traced(posed: PosedSystem, settings: ResponseSettings, name: str) -> SystemResponse:
@@ -254,37 +257,6 @@ def _with_ends(motion: Motion | None, settings: ResponseSettings, step: float) -
         return settings
     before, after = (step * count for count in steps_beyond(motion, settings, step))
     return replace(settings, start=settings.start - before, duration=settings.duration + before + after)
-
-
-def _step_error(runs: list[Ran], order: int, bends: bool) -> float:
-    """Error of the last of two or more runs' places."""
-    last = runs[-3:]
-    return _left(last, [difference(x.moved, y.moved, ratio(x, y)) for x, y in pairwise(last)], min(order, 2.0), bends)
-
-
-def _left(runs: Sequence[Run], apart: Sequence[float], order: float, bends: bool) -> float:
-    """Error that differences of two or three runs leave in the last, by the order observed. A law that bends within a
-    step leaves one that depends on where: no order is observed, and two runs may agree by chance.
-    """
-    if bends and len(runs) > 2:
-        return max(apart[-1], apart[-2] / ratio(runs[-2], runs[-1]))
-    return apart[-1] * share(runs, apart, order)
-
-
-def _load_errors(runs: list[Ran], order: int, bends: bool) -> dict[Quantity, float]:
-    """Errors of the steps in the loads at the beams' roots and in their stress."""
-    system = runs[-1].posed.system
-    beams = judged_beams(system)
-    last = runs[-3:] if runs[-3:][0].whole else runs[-2:]
-    keys = [(name, each) for name in beams for each in ("force", "moment", "stress")]
-    if not keys or len(last) < 2 or not all(run.whole for run in last):
-        return {}
-
-    def read(k: int, stride: int) -> list[Floats]:
-        values = Answered(itself(system), *last[k].every(stride)).read(beams)
-        return [values[key] for key in keys]
-
-    return dict(zip(keys, of_histories(last, read, lambda apart: _left(last, apart, 4 / order, bends)), strict=True))
 
 
 def _missed_stop(system: System, run: Trajectory) -> tuple[str, ...]:
