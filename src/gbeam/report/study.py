@@ -182,7 +182,8 @@ def of_system(response: SystemResponse) -> Iterator[str]:
     yield from (f"{body}: {line}" for body, each in response.solids.items() for line in each.lines)
     kept = response.invariants
     if kept is not None:
-        first, last = (number(float(each.sum())) for each in kept.energy[[0, -1]])
+        totals = kept.energy[[0, -1]].sum(axis=1)
+        first, last = map(number, tidy(totals.tolist(), float(np.abs(kept.energy).max())))
         yield f"energy {first} J at the start, {last} J at the end"
     error = percent(response.error_estimate)
     known = f"estimated error {error}" if math.isfinite(response.error_estimate) else "no error estimate"
