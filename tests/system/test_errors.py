@@ -138,7 +138,7 @@ def test_the_beam_with_few_shapes_is_named() -> None:
 
 
 def test_a_given_step_states_its_error() -> None:
-    """By the order observed in three runs, two at most: a third of what two runs promise, that of Gauss falls faster."""
+    """By the order observed in three runs, two at most: a third of what two say; that of Gauss falls faster."""
     system = arm("FOAM", 40.0, 2)
     response, truth = (gb.simulate(system, duration=0.4, step=step) for step in (4e-3, 5e-4))
     size = np.linalg.norm(response.place - response.place[0], axis=-1).max()
