@@ -69,7 +69,7 @@ BASES: dict[str, tuple[Callable[[Values], Any], Values]] = {
 }
 
 
-def tip_of(kind: str, base: str, *, step: float = 0.02) -> Callable[[Values], Any]:
+def tip_of(kind: str, base: str, *, step: float = 0.02, integrator: str | None = None) -> Callable[[Values], Any]:
     """Sum of the tip's displacements over time, in lengths, as a function of what beam and base are made of."""
     motion, counts = BASES[base][0], IN_PLANE.get((kind, base)) or KINDS[kind]
 
@@ -78,7 +78,8 @@ def tip_of(kind: str, base: str, *, step: float = 0.02) -> Callable[[Values], An
         damping = at.get("damping", 0.2)
         length, section, mass = (0.3, STRIP, 0.01) if base == "machine" else (LENGTH, BOX, 0.1)
         beam = Beam(length, section, material, [PointMass(length, mass)], damping_ratio=damping)
-        response = simulate(assemble(beam, Model(kind, *counts)), motion(at), duration=3.0, step=step)
+        structure = assemble(beam, Model(kind, *counts))
+        response = simulate(structure, motion(at), duration=3.0, step=step, integrator=integrator)
         return (response.tip / length).sum(axis=1)
 
     return tip
@@ -111,7 +112,8 @@ def test_derivatives_of_a_deflection_with_respect_to_what_beam_and_base_are_made
 
 @pytest.mark.parametrize("base", ["slew", "torque"])
 def test_a_batch_of_moduli_is_as_many_runs(base: str) -> None:
-    tip, moduli = tip_of("FOAM", base), np.array([0.8, 1.0, 1.3]) * E
+    """By newmark: steps of gauss are fitted to modes, which are not traced."""
+    tip, moduli = tip_of("FOAM", base, integrator="newmark"), np.array([0.8, 1.0, 1.3]) * E
     at = BASES[base][1]
     together = quickly_compiled(jax.vmap(lambda modulus: tip(at | {"modulus": modulus})))(moduli)
     for batched, modulus in zip(together, moduli, strict=True):

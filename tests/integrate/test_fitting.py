@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from gbeam.integrate import LinearEquations, gauss, integrate, newmark
+from gbeam.integrate import LinearEquations, NonlinearEquations, gauss, integrate, newmark
 from gbeam.integrate.schemes import added
 
-from .systems import VARYING
+from .systems import PENDULUM, VARYING
 
 MASS = np.array([[2.0, 0.3], [0.3, 1.0]])
 STIFFNESS = np.array([[5.0, -1.0], [-1.0, 9.0]])
@@ -71,6 +71,37 @@ def test_fitted_steps_have_the_order_of_the_scheme_where_the_matrices_vary() -> 
         (np.array([1.0, -0.5]), np.array([0.3, 0.2])),
     )
     truth = integrate(VARYING, gauss(), *start, step=4 / 2560, count=2560).q[-1]
+    errors = [
+        np.abs(integrate(fitted, gauss(), *start, step=4 / count, count=count).q[-1] - truth).max()
+        for count in (40, 80, 160)
+    ]
+    assert np.log2(np.array(errors[:-1]) / errors[1:]) == pytest.approx((4, 4), abs=0.2)
+
+
+@pytest.mark.parametrize("ratio", [0.0, 0.02])
+def test_nonlinear_equations_are_fitted_as_linear_ones_are(ratio: float) -> None:
+    linear = vibrating(ratio)
+    assert linear.rest is not None
+    damping, stiffness = linear.rest
+
+    def residual(q: Any, qd: Any, qdd: Any, t: Any) -> Any:
+        return qdd @ linear.mass + qd @ damping + q @ stiffness
+
+    equations = NonlinearEquations(residual, lambda t: t, vibrates=True)
+
+    def run(of: Any) -> Any:
+        return integrate(of, gauss(), np.array([1.0, -0.5]), np.array([0.3, 0.2]), step=STEP, count=50)
+
+    expected, fitted, plain = map(run, (linear, equations, replace(equations, vibrates=False)))
+    for name in ("q", "qd", "qdd"):
+        want, size = getattr(expected, name), np.abs(getattr(expected, name)).max()
+        np.testing.assert_allclose(getattr(fitted, name), want, atol=1e-9 * size)
+        assert np.abs(getattr(plain, name) - want).max() > 1e-3 * size
+
+
+def test_fitted_steps_of_nonlinear_equations_have_the_order_of_the_scheme() -> None:
+    fitted, start = replace(PENDULUM, vibrates=True), (np.array([0.8]), np.array([0.3]))
+    truth = integrate(PENDULUM, gauss(), *start, step=4 / 2560, count=2560).q[-1]
     errors = [
         np.abs(integrate(fitted, gauss(), *start, step=4 / count, count=count).q[-1] - truth).max()
         for count in (40, 80, 160)

@@ -418,7 +418,8 @@ def describe(case: Case | SpecimenCase | SystemCase) -> Description | SpecimenDe
 
 def _described(case: AnyCase, doubts: Sequence[Sequence[str]]) -> dict[str, Any]:
     """Parts of a description that every case has."""
-    settings = case.response
+    free = isinstance(case, SystemCase) or any(motion.free for motion in case.motions.values())
+    settings = case.response.chosen(free=free)
     return dict(
         title=case.title,
         motions={name: motion.kind for name, motion in case.motions.items()},

@@ -59,13 +59,32 @@ class LinearEquations:
 @dataclass(frozen=True, eq=False)
 class NonlinearEquations:
     """r(q, q̇, q̈; inputs(t)) = 0, (..., n), analytic and linear in q̈; leading axes of its arguments are broadcast. Its
-    arrays are arguments of a compiled program.
+    arrays are arguments of a compiled program. Where it `vibrates`, steps are fitted to its modes at q = 0.
     """
 
     residual: Any
     drive: Drive
     controllers: Any = None
     samplings: Any = None
+    vibrates: bool = False
+
+
+@record
+class Fitted:
+    """A residual with terms added to M and C (n, n), to which steps are fitted, and the `exact` one without."""
+
+    exact: Any
+    mass: Array
+    damping: Array
+
+    def __call__(self, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
+        """Residual (..., n)."""
+        return self.exact(q, qd, qdd, inputs) + (qdd @ self.mass + qd @ self.damping)
+
+
+def exact(residual: Any) -> Any:
+    """A residual without what is added to fit steps."""
+    return residual.exact if isinstance(residual, Fitted) else residual
 
 
 @dataclass(frozen=True)

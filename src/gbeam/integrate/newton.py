@@ -18,7 +18,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from gbeam.arrays.jax_setup import with_slope
-from gbeam.integrate.equations import Drive
+from gbeam.integrate.equations import Drive, exact
 from gbeam.integrate.schemes import Scheme, Tableau
 from gbeam.integrate.steps import Steps
 
@@ -167,7 +167,7 @@ def mass_and_acceleration(residual: Any, q: Array, qd: Array, inputs: Any) -> tu
 @jax.jit
 def accelerations(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
     """q̈ that the equations demand at states (k, n) and inputs (k, ...): (k, n)."""
-    return jax.vmap(lambda *state: mass_and_acceleration(residual, *state)[1])(q, qd, inputs)
+    return jax.vmap(lambda *state: mass_and_acceleration(exact(residual), *state)[1])(q, qd, inputs)
 
 
 def _next(t: Tableau, carry: Carry, x: Array) -> tuple[Carry, Array, Array]:

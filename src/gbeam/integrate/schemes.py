@@ -20,10 +20,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.arrays.tree import record
+from gbeam.arrays.namespace import holds_jax
+from gbeam.arrays.tree import each_leaf, record
 from gbeam.errors import InputError
-from gbeam.integrate.equations import LinearEquations
-from gbeam.numerics.eigen import symmetric_modes
+from gbeam.integrate.equations import Fitted, LinearEquations, NonlinearEquations, slopes
+from gbeam.numerics.eigen import symmetric, symmetric_modes
 
 Floats = NDArray[np.float64]
 
@@ -207,8 +208,25 @@ def added(equations: LinearEquations, scheme: Scheme, step: float) -> tuple[Floa
     if scheme.exponent is None or equations.rest is None:
         nothing = np.zeros(np.shape(equations.mass))
         return nothing, nothing
-    damping, stiffness = equations.rest
-    square, modes = symmetric_modes(stiffness, equations.mass)
+    return _to_modes(scheme.exponent, step, equations.mass, *equations.rest)
+
+
+def stepped(equations: NonlinearEquations, scheme: Scheme, steps: Any, n: int) -> Any:
+    """Residual of n coordinates that steps solve: fitted to its modes at q = 0 without drive; itself where it has none,
+    the scheme does not fit, or JAX traces it.
+    """
+    residual = equations.residual
+    if scheme.exponent is None or not equations.vibrates or holds_jax(residual):
+        return residual
+    still = each_leaf(lambda leaf: np.zeros(np.shape(leaf)), equations.drive(steps.first[:1]))
+    zero = np.zeros((1, n))
+    stiffness, damping, mass = (symmetric(each[0]) for each in slopes(residual, zero, zero, zero, still))
+    return Fitted(residual, *_to_modes(scheme.exponent, steps.longest, mass, damping, stiffness))
+
+
+def _to_modes(exponent: Any, step: float, mass: Floats, damping: Floats, stiffness: Floats) -> tuple[Floats, Floats]:
+    """Matrices (n, n) that M and C of steps of a length (s) need more, so that modes keep their times."""
+    square, modes = symmetric_modes(stiffness, mass)
     frequency = np.sqrt(np.maximum(square, 0.0))
     rate = np.einsum("ia,ij,ja->a", modes, damping, modes)
     fits = (frequency > 0) & (np.abs(rate) < 2 * frequency)
@@ -216,9 +234,9 @@ def added(equations: LinearEquations, scheme: Scheme, step: float) -> tuple[Floa
     angle = np.minimum(frequency * step, FITTED)
     ratio = rate / (2 * frequency)
     z = angle * (-ratio + 1j * np.sqrt(1 - ratio**2))
-    mu = scheme.exponent(z)
+    mu = exponent(z)
     # μ² m + μ h c + (ω h)² = 0 with the mode's own stiffness.
-    mass = np.abs(z / mu) ** 2
+    factor = np.abs(z / mu) ** 2
     slower = np.divide(mu.real, z.real, out=np.ones_like(ratio), where=ratio > 0)
-    shapes = equations.mass @ modes
-    return shapes * (mass - 1) @ shapes.T, shapes * (rate * (slower * mass - 1)) @ shapes.T
+    shapes = mass @ modes
+    return shapes * (factor - 1) @ shapes.T, shapes * (rate * (slower * factor - 1)) @ shapes.T

@@ -19,7 +19,7 @@ import numpy as np
 from gbeam.integrate import lanes, newton
 from gbeam.integrate.equations import LinearEquations, LinearTerms, NonlinearEquations, Trajectory
 from gbeam.integrate.newton import chunks, stretches
-from gbeam.integrate.schemes import Scheme, added
+from gbeam.integrate.schemes import Scheme, added, stepped
 from gbeam.integrate.steps import Steps
 
 Array = Any
@@ -52,7 +52,8 @@ class Run:
     def residual(self) -> tuple[list[Array], Any]:
         """Arrays and form of the residual of nonlinear equations."""
         assert isinstance(self.equations, NonlinearEquations)
-        leaves, form = jax.tree.flatten(self.equations.residual)
+        of_steps = stepped(self.equations, self.scheme, self.steps, len(self.q))
+        leaves, form = jax.tree.flatten(of_steps)
         return leaves, form
 
     @cached_property

@@ -19,8 +19,8 @@ import numpy as np
 
 import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.arrays.tree import each_leaf
-from gbeam.integrate.equations import NonlinearEquations, slopes
-from gbeam.integrate.schemes import Scheme
+from gbeam.integrate.equations import Fitted, NonlinearEquations, slopes
+from gbeam.integrate.schemes import Scheme, stepped
 from gbeam.integrate.steps import Steps
 from gbeam.integrate.windows import windows
 
@@ -32,6 +32,8 @@ def traced(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, s
     ends = [] if scheme.ends else [steps.end]
     times = np.concatenate([steps.first[:1], *(steps.times(offset) for offset in scheme.offsets), *ends])
     shape = (len(steps) + 1, len(q))
+
+    of_steps = stepped(equations, scheme, steps, len(q))
 
     def solved(residual: Any, q: Any, qd: Any, driven: Any) -> tuple[Any, ...]:
         residual, q, qd, driven = jax.tree.map(np.asarray, (residual, q, qd, driven))
@@ -58,7 +60,7 @@ def traced(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, s
         every, (residual, _, _, driven), (changed, dq, dqd, redriven) = run(*primals), primals, tangents
         return every, _changes(scheme, steps, every, (residual, driven), (changed, redriven), dq, dqd)
 
-    return run(equations.residual, jnp.asarray(q, dtype=float), jnp.asarray(qd, dtype=float), equations.drive(times))
+    return run(of_steps, jnp.asarray(q, dtype=float), jnp.asarray(qd, dtype=float), equations.drive(times))
 
 
 def _changes(scheme: Scheme, steps: Steps, run: Any, of: Any, changed: Any, dq: Array, dqd: Array) -> tuple[Array, ...]:
@@ -91,6 +93,8 @@ def _changes(scheme: Scheme, steps: Steps, run: Any, of: Any, changed: Any, dq: 
 
     def accelerated(some: slice, dq: Array, dqd: Array) -> Array:
         k, c, m = (each[some] for each in slope)
+        if isinstance(of[0], Fitted):
+            c, m = c - of[0].damping, m - of[0].mass
         left = direct[some] + (k @ dq[..., None] + c @ dqd[..., None])[..., 0]
         return -jnp.linalg.solve(m, left[..., None])[..., 0]
 

@@ -23,9 +23,9 @@ from typing import Any, cast
 import numpy as np
 
 from gbeam.arrays.tree import each_leaf
-from gbeam.integrate.equations import NonlinearEquations, accelerations, slopes, solved
+from gbeam.integrate.equations import NonlinearEquations, accelerations, exact, slopes, solved
 from gbeam.integrate.sampled import Held, Sampling, sampling_of
-from gbeam.integrate.schemes import Scheme, Tableau
+from gbeam.integrate.schemes import Scheme, Tableau, stepped
 from gbeam.integrate.steps import Steps
 
 Array = Any
@@ -55,10 +55,10 @@ def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, 
         still = np.zeros((1 + np.count_nonzero(steps.kept), 0))
         yield from ((each, each, each, np.ones(len(each), dtype=bool)) for each in (still[:1], still[1:]))
         return
-    residual, drive = equations.residual, equations.drive
+    drive, residual = equations.drive, stepped(equations, scheme, steps, len(q))
 
     def demanded(t: Any, q: Array, qd: Array) -> Array:
-        return accelerations(residual, q[None], qd[None], drive(np.array([t])))[0]
+        return accelerations(exact(residual), q[None], qd[None], drive(np.array([t])))[0]
 
     with np.errstate(all="ignore"):  # of iterates that diverge
         qdd = demanded(steps.first[0], q, qd)
@@ -233,6 +233,9 @@ class _Window:
         self.done = []
         if self.scheme.ends:
             return q, qd, x[:, -1].copy()
+        residual = exact(self.residual)
+        if residual is not self.residual:
+            mass = mass - self.residual.mass
         inputs, size = self.drive(self.steps.end[self.first - len(q) : self.first]), np.full(len(q), np.inf)
         if self.sampling is not None:
             inputs = self.sampling.controllers.driven(inputs, *commands)
@@ -242,14 +245,14 @@ class _Window:
         between = mass[-1:, -1] if self.even else (mass[:, -1] + np.concatenate([mass[1:, 0], mass[-1:, -1]])) / 2
         inverse = solved(between, np.broadcast_to(np.eye(between.shape[-1]), between.shape))
         for _ in range(CORRECTIONS):  # with the mass at hand, for the equations are linear in q̈
-            change = _products(inverse, self.residual(q, qd, qdd, inputs))
+            change = _products(inverse, residual(q, qd, qdd, inputs))
             qdd = qdd - change
             before, size = size, _largest(change)
             if _converged(size, before, qdd, 0.0, stalls=True).all():
                 return q, qd, qdd
             if not (size < CLOSE * before).all():
                 break
-        return q, qd, accelerations(self.residual, q, qd, inputs)
+        return q, qd, accelerations(residual, q, qd, inputs)
 
     def _stages(self) -> tuple[Array, Array, Array]:
         """q, q̇, q̈ (t s, n) at the stages."""

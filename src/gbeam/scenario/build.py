@@ -59,7 +59,6 @@ def build(scenario: AnyScenario, *, ahead: bool = False) -> AnyCase:
 
     parts = Collector()
     make: Callable[..., AnyCase] = Case
-    of_system = False
     if isinstance(scenario, schema.Scenario):
         structure: dict[str, Any] = {
             "beam": beam_of(parts, "beam", scenario.beam),
@@ -73,9 +72,9 @@ def build(scenario: AnyScenario, *, ahead: bool = False) -> AnyCase:
         if isinstance(scenario, SpecimenScenario):
             make, structure = SpecimenCase, {"name": scenario.specimen[0], "structure": specimen_of(parts, scenario)}
         else:
-            of_system, make, structure = True, SystemCase, {"system": system_of(parts, scenario)}
+            make, structure = SystemCase, {"system": system_of(parts, scenario)}
     motions = flights_and_hubs(parts, scenario)
-    response = _response(parts, scenario.response, motions, usual="gauss" if of_system else "newmark")
+    response = _response(parts, scenario.response, motions)
     if response is not None:
         span = (response.start, response.start + response.duration)
         motions |= centrifuges(parts, scenario, motions, span, ahead=ahead)
@@ -181,10 +180,8 @@ def _acceptance(
     return limited
 
 
-def _response(
-    parts: Collector, table: schema.Response, motions: Mapping[str, Motion], usual: str = "newmark"
-) -> ResponseSettings | None:
-    """Settings, with the usual integrator and, where no duration is written, the time that the records cover."""
+def _response(parts: Collector, table: schema.Response, motions: Mapping[str, Motion]) -> ResponseSettings | None:
+    """Settings and, where no duration is written, the time that the records cover."""
     from gbeam import integrate
     from gbeam.analysis.response.problem import Initial
     from gbeam.analysis.response.settings import ResponseSettings
@@ -197,7 +194,7 @@ def _response(
     }
     if table.parameters:
         # Made for its refusals only: the analysis makes its own.
-        parts.attempt("response", schemes[table.integrator], **table.parameters)
+        parts.attempt("response", schemes[table.scheme], **table.parameters)
     records = {name: each for name, each in motions.items() if isinstance(each, Flight) and each.record is not None}
     covered = [extent for each in records.values() if (extent := each.acceleration.extent) is not None]
     start = max((first for first, _ in covered), default=0.0)
@@ -226,7 +223,7 @@ def _response(
         start=start,
         duration=duration,
         step=None if isinstance(table.step, str) else table.step,
-        integrator=table.integrator if "integrator" in table.model_fields_set else usual,
+        integrator=table.integrator,
         parameters=table.parameters,
         tolerance=table.tolerance,
         estimate=table.estimate,

@@ -158,7 +158,7 @@ def _responses(
         motion = motion.over(settings.start, settings.start + settings.duration)
         if traced or holds_jax(motion):
             raise InputError("simulate_batch", "is given what JAX traces", "map simulate over it with jax.vmap")
-        posed, before, after = pose(structure, motion, settings)
+        posed, before, after = pose(structure, motion, settings.chosen(free=motion.free))
         if before or after:
             yield index, simulate(structure, motion, settings)
             continue

@@ -24,7 +24,7 @@ from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.stepping import corners, first_step, scheme_of, steps_beyond
 from gbeam.integrate.driver import through
 from gbeam.integrate.equations import LinearEquations, Trajectory, accelerations, slopes
-from gbeam.integrate.schemes import Scheme, added
+from gbeam.integrate.schemes import Scheme, added, stepped
 from gbeam.integrate.steps import Corners, Steps, fitted
 from gbeam.integrate.tangent import System, tangent
 from gbeam.mechanics.equations.linear import Coefficients
@@ -87,23 +87,23 @@ Pair = tuple[Posed, Posed]  # of less and of more of a parameter
 
 
 def linearised(
-    nominal: Posed, pairs: Sequence[Pair], width: Floats, within: tuple[Scheme, float] | None = None
+    nominal: Posed, pairs: Sequence[Pair], width: Floats, within: tuple[Scheme, Steps] | None = None
 ) -> System:
-    """Return the equations (those that fitted steps solve `within` a length) linearised about states of the nominal
+    """Return the equations (those that fitted steps solve `within`) linearised about states of the nominal
     problem, for pairs of parameters that differ by `width` (p,).
     """
     if isinstance(nominal.problem.equations, LinearEquations):
         return _linear(nominal, pairs, width, within)
-    return _nonlinear(nominal, pairs, width)
+    return _nonlinear(nominal, pairs, width, within)
 
 
-def _linear(nominal: Posed, pairs: Sequence[Pair], width: Floats, within: tuple[Scheme, float] | None) -> System:
+def _linear(nominal: Posed, pairs: Sequence[Pair], width: Floats, within: tuple[Scheme, Steps] | None) -> System:
     equations: Any = nominal.problem.equations
     loaded = nominal.structure.history is not None
     n = nominal.structure.size
 
     def fit(posed: Posed) -> tuple[Floats, Floats]:
-        return (np.zeros((n, n)),) * 2 if within is None else added(_equations(posed), *within)
+        return (np.zeros((n, n)),) * 2 if within is None else added(_equations(posed), within[0], within[1].longest)
 
     def matrix(posed: Posed) -> Floats:
         c, (mass, damping) = posed.structure.coefficients, fit(posed)
@@ -139,16 +139,22 @@ def _equations(posed: Posed) -> Any:
     return posed.problem.equations
 
 
-def _nonlinear(nominal: Posed, pairs: Sequence[Pair], width: Floats) -> System:
-    equations: Any = nominal.problem.equations
+def _nonlinear(nominal: Posed, pairs: Sequence[Pair], width: Floats, within: tuple[Scheme, Steps] | None) -> System:
+    def residual_of(posed: Posed) -> Any:
+        equations = _equations(posed)
+        return equations.residual if within is None else stepped(equations, *within, len(posed.problem.q))
+
+    residual, residuals = residual_of(nominal), [[residual_of(posed) for posed in pair] for pair in pairs]
 
     def system(time: Floats, q: Floats, qd: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        residual, inputs = equations.residual, equations.drive(time)
+        inputs = _equations(nominal).drive(time)
         qdd = accelerations(residual, q, qd, inputs)
         k, c, mass = slopes(residual, q, qd, qdd, inputs)
         forces = np.empty((*q.shape, len(pairs)))
         for j, pair in enumerate(pairs):
-            less, more = (each.residual(q, qd, qdd, each.drive(time)) for each in (_equations(posed) for posed in pair))
+            less, more = (
+                of(q, qd, qdd, _equations(posed).drive(time)) for of, posed in zip(residuals[j], pair, strict=True)
+            )
             forces[..., j] = -(more - less) / width[j]
         return mass, c, k, forces
 
@@ -192,6 +198,7 @@ class Differentiated:
     ) -> None:
         self.grid, self.name, self.axes = grid, name, axes
         self._own_axes: AxesResult | None = None
+        settings = settings.chosen(free=motion.free)
         self.settings = replace(settings, estimate=False, loads=loads)
         start, duration = settings.start, settings.duration
         motion = motion.over(start, start + duration)
@@ -260,7 +267,7 @@ class Differentiated:
             if run is None:
                 slopes.append(None)
                 continue
-            within = linearised(self.nominal, pairs, width, (self.scheme, steps.longest))
+            within = linearised(self.nominal, pairs, width, (self.scheme, steps))
             histories = tangent(system, self.scheme, steps, run, q, qd, within=within)
             q, qd = histories[0][-1], histories[1][-1]
             kept = np.append(True, steps.kept)

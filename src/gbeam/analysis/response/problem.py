@@ -208,7 +208,7 @@ def problem_of(structure: Structure, motion: Motion, start: float, initial: Init
         rest = None if any(map(is_jax, (c.mass, c.damping, c.stiffness))) else (c.damping, c.stiffness)
         equations = LinearEquations(c.mass, matrices, drive, lambda: c.terms, features, rest)
         return Problem(equations, q, qd, 0, stable)
-    return Problem(NonlinearEquations(OnBase(structure.equations), drive), q, qd, 0, stable)
+    return Problem(NonlinearEquations(OnBase(structure.equations), drive, vibrates=True), q, qd, 0, stable)
 
 
 def _on_free_hub(structure: Structure, hub: Any, start: float, initial: Initial) -> Problem:
@@ -218,7 +218,7 @@ def _on_free_hub(structure: Structure, hub: Any, start: float, initial: Initial)
     q, qd, stable = start_of(structure, hub, start, initial)
     residual = OnHub(structure.on_free_hub(hub), hub.mount)
     q, qd = (namespace(x).append(0.0, x) for x in (q, qd))
-    return Problem(NonlinearEquations(residual, drive), q, qd, 1, stable)
+    return Problem(NonlinearEquations(residual, drive, vibrates=True), q, qd, 1, stable)
 
 
 def start_of(structure: Structure, motion: Any, start: float, initial: Initial) -> tuple[Array, Array, bool]:

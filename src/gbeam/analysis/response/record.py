@@ -16,7 +16,7 @@ from gbeam.analysis.response.outcome import describe, effort, inaccuracies, stif
 from gbeam.analysis.response.peaks import displacement_peaks, load_peaks
 from gbeam.analysis.response.problem import Problem, start_of
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.stepping import joined
+from gbeam.analysis.response.stepping import joined, scheme_of
 from gbeam.arrays.namespace import is_jax
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.plausibility import input_warnings
@@ -154,7 +154,7 @@ def response_of(
         qd=qd[:, beam],
         base=over_time,
         peaks=peaks,
-        integrator=settings.integrator,
+        integrator=scheme_of(settings).name,
         step=step,
         steps=sum(len(run.time) - 1 for run in runs if run is not None),
         error_estimate=errors.displacement.total,

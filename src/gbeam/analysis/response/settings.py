@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TypedDict
 
 from gbeam.analysis.response.problem import Initial, begun
@@ -24,7 +24,7 @@ class Settings(TypedDict, total=False):
     duration: float
     start: float
     step: float | None
-    integrator: str
+    integrator: str | None
     parameters: Mapping[str, float]
     tolerance: float
     residual_from: float | None
@@ -47,8 +47,8 @@ class ResponseSettings(Value):
         Initial time, s.
     step : float or None
         s; None for an automatic one.
-    integrator : str
-        newmark, hht, generalized-alpha or gauss.
+    integrator : str or None
+        newmark, hht, generalized-alpha or gauss; None for gauss of systems and on free hubs, newmark otherwise.
     parameters : mapping of str to float
         The integrator's own: beta and gamma; alpha; rho_inf.
     tolerance : float
@@ -86,7 +86,7 @@ class ResponseSettings(Value):
     duration: float
     start: float = 0.0
     step: float | None = None
-    integrator: str = "newmark"
+    integrator: str | None = None
     parameters: Mapping[str, float] = field(default_factory=dict)
     tolerance: float = 1e-2
     residual_from: float | None = None
@@ -128,6 +128,12 @@ class ResponseSettings(Value):
         """Errors that the settings leave out, in words."""
         lacking = "shapes and models are not judged" if self.step is None else "no error is estimated"
         return "" if self.estimate else f"{lacking}: the settings say estimate = false"
+
+    def chosen(self, *, free: bool) -> ResponseSettings:
+        """Settings whose integrator is chosen: equations on a `free` base are not linear, and few steps cost less."""
+        if self.integrator is not None:
+            return self
+        return replace(self, integrator="gauss" if free and not self.parameters else "newmark")
 
     def kept_every(self, samples: int, step: float) -> int:
         """Number of the `samples` of a history, `step` s apart, make one in a file."""

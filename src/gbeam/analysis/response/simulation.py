@@ -216,11 +216,12 @@ def simulate(
     Returns
     -------
     Response or SystemResponse
-        Of a structure, with the loads along the beam; of a system, by default from Gauss's method, with momentum and
+        Of a structure, with the loads along the beam; of a system with momentum and
         energy, its flexible bodies at first at rest relative to their roots. The outcome is ``done``, ``diverged`` (the
         displacement left what the model can mean, or the beam lost its stability) or ``not converged`` (Newton's method
         failed). Where JAX traces the structure or the motion, its arrays are traced: their derivatives are those of the
-        discrete solution; there is no error estimate, and a step that fails leaves NaN.
+        discrete solution; there is no error estimate, a step that fails leaves NaN, and gauss fits no steps to modes
+        that are traced.
 
     Raises
     ------
@@ -243,12 +244,11 @@ def simulate(
     2.302 mm, error 1e-02
     """
     if isinstance(structure, System):
-        if settings is None:
-            options.setdefault("integrator", "gauss")
         return simulate_system(structure, motion, settings_of(settings, options), name, progress)
     settings = settings_of(settings, options)
     if motion is None:
         raise InputError("motion", "is missing", "give a Flight, a Hub or a Centrifuge; Flight(z=0.0) is at rest")
+    settings = settings.chosen(free=motion.free)
     structure.require_damping("the response")
     motion = motion.over(settings.start, settings.start + settings.duration)
     if structure.holds_jax or holds_jax(motion):

@@ -177,6 +177,7 @@ def simulate_system(
     system: System, motion: Motion | None, settings: ResponseSettings, name: str, progress: Progress = None
 ) -> SystemResponse:
     """Compute the response of a system on the ground or on a moving base."""
+    settings = settings.chosen(free=True)
     if motion is not None:
         if motion.free:
             raise InputError("motion", "is a hub that turns freely", "give it as a body on a revolute joint")

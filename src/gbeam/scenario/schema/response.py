@@ -81,8 +81,8 @@ class Response(Table):
         "length of the computation; left out beside a record, of which `to` asks for a part"
     )
     step: Step = Field(default="auto", description="time step, or auto")
-    integrator: Literal["newmark", "hht", "generalized-alpha", "gauss"] = Field(
-        default="newmark", description="time integrator; of a system gauss where it is left out"
+    integrator: Literal["newmark", "hht", "generalized-alpha", "gauss"] | None = optional(
+        "time integrator; left out gauss of systems and on free hubs, newmark otherwise"
     )
     beta: Ratio | None = optional("parameter of newmark")
     gamma: Ratio | None = optional("parameter of newmark")
@@ -114,9 +114,14 @@ class Response(Table):
     )
 
     @property
+    def scheme(self) -> str:
+        """The integrator whose parameters these are."""
+        return self.integrator or "newmark"
+
+    @property
     def parameters(self) -> dict[str, float]:
         """The integrator's parameters that are given."""
-        named = {name: getattr(self, name) for name in PARAMETERS[self.integrator]}
+        named = {name: getattr(self, name) for name in PARAMETERS[self.scheme]}
         return {name: value for name, value in named.items() if value is not None}
 
     @field_validator("integrator", mode="before")
@@ -130,11 +135,11 @@ class Response(Table):
     @model_validator(mode="after")
     def _consistent(self) -> Response:
         def problems() -> Iterator[tuple[Loc, PydanticCustomError]]:
-            takes = PARAMETERS[self.integrator]
+            takes = PARAMETERS[self.scheme]
             for name in ("beta", "gamma", "alpha", "rho_inf"):
                 if name not in takes and getattr(self, name) is not None:
                     hint = f"it takes {' and '.join(takes)}" if takes else "it has no parameters"
-                    yield (name,), wrong(f"does not belong to {self.integrator}", hint, mark="key")
+                    yield (name,), wrong(f"does not belong to {self.scheme}", hint, mark="key")
             if self.duration is not None and self.step != "auto" and self.step > self.duration:
                 hint = "give a time before the end, {response.duration}"
                 yield ("step",), wrong("{value} is longer than the computation", hint)
