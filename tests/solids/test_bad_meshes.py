@@ -206,6 +206,8 @@ BDF = lines("BEGIN BULK", *GRIDS, "CHEXA,5,1,11,12,13,14,15,16,+", "+,17,18", "C
         ("a.inp", "*NODE", "*NODE, SYSTEM=C", "has places or nodes by NODE, which is not read; .* in the basic system"),
         ("a.inp", "*NODE", "*INSTANCE, NAME=a\n5., 0., 0.\n*NODE", "has places or nodes by INSTANCE, which"),
         ("a.inp", "C3D8,", "C3D20,", r"a\.inp cannot be read: elements of type C3D20 have not 20 nodes each; give"),
+        ("a.inp", "*NODE", "*ELEMENT, TYPE=C3D8, INPUT=b.inp\n*NODE", "has places or nodes by ELEMENT, which is not"),
+        ("a.inp", "*NSET", "*ELSET, ELSET=some\nothers\n*NSET", "cannot be read: set others is named in it, and"),
         ("a.inp", "C3D8,", "SC8R,", r"cannot be read: elements of type SC8R are not known"),
         ("a.bdf", "GRID,12,,", "GRID,11,,", "has two of node 11"),
         ("a.bdf", "CQUAD4", "INCLUDE 'b.bdf'\nCQUAD4", "has places or nodes by INCLUDE, which is not read"),

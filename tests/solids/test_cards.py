@@ -339,7 +339,7 @@ def tipped(folder: Path, words: str, **more: Any) -> gb.SolidMesh:
 
 BODY = """*ELEMENT, TYPE=MASS, ELSET=m
 900, {node}
-*MASS, ELSET=m
+*MASS, ELSET=M
 1e-3
 *ELEMENT, TYPE=ROTARYI, ELSET=j
 901, {node}
@@ -363,6 +363,26 @@ def test_a_body_on_shells(tmp_path: Path) -> None:
         found = frequencies(mesh, 3)
         for each in closed:
             assert np.abs(found / each - 1).min() < close
+
+
+@pytest.mark.parametrize(
+    ("words", "problem"),
+    [
+        (
+            "*SURFACE, NAME=seat\n1, S3\n*COUPLING, REF NODE=900, SURFACE=seat\n*KINEMATIC\n1, 3\n",
+            "has the edge S3 of a",
+        ),
+        (
+            "*ELEMENT, TYPE=SPRING1, ELSET=s\n902, {tip}\n*SPRING, ELSET=S, NONLINEAR\n3\n1., 0.\n9., 1.\n",
+            "is not linear",
+        ),
+        ("*ELEMENT, TYPE=SPRINGA, ELSET=s\n902, {tip}, 1\n*SPRING, ELSET=s\n0\n9.\n", "joins unlike components"),
+        ("*MASS, ELSET=n\n1e-3\n", "masses, links or springs that cannot be read: 'n'"),
+    ],
+)
+def test_what_abaqus_says_otherwise_is_refused_by_name(tmp_path: Path, words: str, problem: str) -> None:
+    with pytest.raises(gb.InputError, match=rf"^mesh .*{problem}"):
+        tipped(tmp_path, words)
 
 
 def test_a_node_of_a_shell_turns_about_axes_across_its_normal(tmp_path: Path) -> None:

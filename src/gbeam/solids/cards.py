@@ -13,9 +13,9 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.numerics.eigen import Floats
-from gbeam.solids.shape_functions import Indices, reference, shared_area
+from gbeam.solids.shape_functions import DIMENSIONS, SHAPES, Indices, reference, shared_area
 from gbeam.solids.stress import FACES, corners_of
-from gbeam.solids.texts import ABAQUS, DIMENSIONS, NASTRAN, SHAPES, TextMesh, ending_of, members, real
+from gbeam.solids.texts import ABAQUS, NASTRAN, TextMesh, alike, ending_of, members, real
 
 Options = Mapping[str, str]
 Rows = list[list[str]]
@@ -212,10 +212,11 @@ class _Abaqus(Cards):
         self.springs += [Spring(name, nodes, stiffness) for nodes in on]
 
     def _rigid_body(self, name: str, options: Options, *_: Any) -> None:
-        if options.get("NSET") not in self.mesh.sets:
+        group = alike(self.mesh.sets, options.get("NSET", ""))
+        if group not in self.mesh.sets:
             raise refused(name, "has no set of nodes", "name them by NSET")
         ends = [int(options[key]) for key in ("REF NODE", "ROT NODE") if key in options]
-        self.rigid[f"{name} of node {ends[0] if ends else ''}".strip()] = (*ends, *self.mesh.sets[options["NSET"]])
+        self.rigid[f"{name} of node {ends[0] if ends else ''}".strip()] = (*ends, *self.mesh.sets[group])
 
     def _coupling(self, _: str, options: Options, *__: Any) -> None:
         self._coupled = dict(options)
@@ -244,7 +245,11 @@ class _Abaqus(Cards):
 
 def _surface(mesh: TextMesh, name: str) -> dict[int, float]:
     """Weights of the nodes of a surface of nodes, or of the faces of elements by Abaqus's numbers: their areas."""
-    named = [each for each in mesh.statements if each.word == "SURFACE" and each.options.get("NAME") == name]
+    named = [
+        each
+        for each in mesh.statements
+        if each.word == "SURFACE" and each.options.get("NAME", "").upper() == name.upper()
+    ]
     if not named:
         raise refused(f"a coupling of surface {name!r}", "is not there", "export it too")
     _, options, rows = named[0]
@@ -256,7 +261,7 @@ def _surface(mesh: TextMesh, name: str) -> dict[int, float]:
             kind, on = mesh.elements[number]
             if DIMENSIONS[kind] == 3:
                 on = tuple(on[i] for i in _on_face(kind, int(face[0][1:]) - 1))
-            elif face and face[0] not in ("SPOS", "SNEG", "S1", "S2"):
+            elif face and face[0].upper() not in ("SPOS", "SNEG", "S1", "S2"):
                 raise refused(f"surface {name!r}", f"has the edge {face[0]} of a shell", "give its nodes")
             areas = shared_area(SHAPES[2][len(on)], np.array([mesh.nodes[each] for each in on]))
             for node, area in zip(on, areas, strict=True):

@@ -66,6 +66,21 @@ KINDS = {
     "quad": Kind("ElementQuad1", 3, 5, 3, _TRILINEAR, shell=4),
     "quad8": Kind("ElementQuadS2", 3, 7, 3, _TRILINEAR, shell=4),
 }
+# Kinds in files, also those that are not computed, by their dimensions and numbers of nodes.
+SHAPES = {
+    0: {1: "vertex"},
+    1: {2: "line", 3: "line3"},
+    2: {3: "triangle", 4: "quad", 6: "triangle6", 8: "quad8", 9: "quad9"},
+    3: {4: "tetra", 5: "pyramid", 6: "wedge", 8: "hexahedron", 10: "tetra10", 13: "pyramid13", 15: "wedge15",
+        20: "hexahedron20", 27: "hexahedron27"},
+}  # fmt: skip
+DIMENSIONS = {kind: dim for dim, kinds in SHAPES.items() for kind in kinds.values()}
+# Nodes in meshio's order, where Nastran and Gmsh have another one.
+NASTRAN_ORDER = {"hexahedron20": [*range(12), *range(16, 20), *range(12, 16)]}
+NASTRAN_ORDER |= {"wedge15": [*range(9), 12, 13, 14, 9, 10, 11]}
+_OF_GMSH = [*range(8), 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15]
+GMSH_ORDER = {"hexahedron20": _OF_GMSH, "hexahedron27": [*_OF_GMSH, 22, 23, 21, 24, 20, 25, 26]}
+GMSH_ORDER |= {"tetra10": [*range(8), 9, 8], "wedge15": [*range(7), 9, 7, 12, 14, 13, 8, 10, 11]}
 
 
 def import_skfem() -> Any:

@@ -4,28 +4,20 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import chain, pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.errors import InputError
+from gbeam.results.result import Floats
+from gbeam.solids.shape_functions import DIMENSIONS, GMSH_ORDER, NASTRAN_ORDER, SHAPES, Indices
 
 NASTRAN, ABAQUS = (".bdf", ".fem", ".nas"), (".inp",)  # endings
 AGAIN = "write it again with all of its nodes"
-# Kinds of elements by their dimensions and numbers of nodes.
-SHAPES = {
-    0: {1: "vertex"},
-    1: {2: "line", 3: "line3"},
-    2: {3: "triangle", 4: "quad", 6: "triangle6", 8: "quad8", 9: "quad9"},
-    3: {4: "tetra", 5: "pyramid", 6: "wedge", 8: "hexahedron", 10: "tetra10", 13: "pyramid13", 15: "wedge15",
-        20: "hexahedron20", 27: "hexahedron27"},
-}  # fmt: skip
-DIMENSIONS = {kind: dim for dim, kinds in SHAPES.items() for kind in kinds.values()}
 # Elements of Abaqus by their types, of Nastran with their numbers of nodes, of Gmsh by their numbers and dimensions.
 TYPES = {
     r"C3D(\d+)[A-Z]*": 3, r"(S|CPS|CPE|CAX|M3D|R3D|SFM3D|STRI)\d+\w*": 2, r"[BT]\d\w*|SPRING[2A]": 1,
@@ -37,12 +29,6 @@ CARDS = {
     "CBEAM": (1, 2), "CROD": (1, 2),
 }  # fmt: skip
 GMSH = {15: 0, 1: 1, 8: 1, 2: 2, 3: 2, 9: 2, 10: 2, 16: 2} | dict.fromkeys((4, 5, 6, 7, 11, 12, 17, 18, 19), 3)
-# Nodes in meshio's order, where the file has another one.
-NASTRAN_ORDER = {"hexahedron20": [*range(12), *range(16, 20), *range(12, 16)]}
-NASTRAN_ORDER |= {"wedge15": [*range(9), 12, 13, 14, 9, 10, 11]}
-_EDGES = [*range(8), 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15]
-GMSH_ORDER = {"hexahedron20": _EDGES, "hexahedron27": [*_EDGES, 22, 23, 21, 24, 20, 25, 26]}
-GMSH_ORDER |= {"tetra10": [*range(8), 9, 8], "wedge15": [*range(7), 9, 7, 12, 14, 13, 8, 10, 11]}
 
 
 class Statement(NamedTuple):
@@ -57,9 +43,9 @@ class Cells(NamedTuple):
     """Elements of a kind, with the places of their nodes (e, k) and their numbers (e,)."""
 
     type: str
-    data: NDArray[np.intp]
+    data: Indices
     dim: int
-    numbers: NDArray[np.intp]
+    numbers: Indices
 
 
 @dataclass
@@ -81,7 +67,7 @@ class TextMesh:
     info: Any = None
 
     @property
-    def points(self) -> NDArray[np.float64]:
+    def points(self) -> Floats:
         """Places (k, 3) of the nodes."""
         return np.array(list(self.nodes.values()), dtype=float).reshape(-1, 3)
 
@@ -139,17 +125,14 @@ def _read_abaqus(mesh: TextMesh, text: str, _: str) -> bool:
         mesh.statements.append(Statement(" ".join(word.upper().split()), about, rows))
     for statement in mesh.statements:
         if read := _ABAQUS.get(statement.word):
-            read(mesh, statement)
+            (_refuse if {"INPUT", "SYSTEM"} & {*statement.options} else read)(mesh, statement)
     return True
 
 
 def _node(mesh: TextMesh, statement: Statement) -> None:
-    if "SYSTEM" in statement.options:
-        _refuse(mesh, statement)
     for number, *place in statement.rows:
         mesh.add("node", int(number), tuple(float(each or 0) for each in [*place, "", "", ""][:3]))
-    if "NSET" in statement.options:
-        mesh.sets.setdefault(statement.options["NSET"], []).extend(int(row[0]) for row in statement.rows)
+    _extend(mesh.sets, statement, "NSET", (int(row[0]) for row in statement.rows))
 
 
 def _element(mesh: TextMesh, statement: Statement) -> None:
@@ -165,14 +148,17 @@ def _element(mesh: TextMesh, statement: Statement) -> None:
     numbers, *nodes = np.reshape(every, (-1, count + 1)).T.tolist()
     for number, on in zip(numbers, zip(*nodes, strict=True), strict=True):
         mesh.add("element", number, (SHAPES[dim][count], on))
-    if "ELSET" in statement.options:
-        mesh.groups.setdefault(statement.options["ELSET"], []).extend(numbers)
+    _extend(mesh.groups, statement, "ELSET", numbers)
 
 
 def _set(mesh: TextMesh, statement: Statement) -> None:
-    word, options, rows = statement
-    sets = mesh.sets if word == "NSET" else mesh.groups
-    sets.setdefault(options[word], []).extend(members(rows, sets, "GENERATE" in options))
+    sets = mesh.sets if statement.word == "NSET" else mesh.groups
+    _extend(sets, statement, statement.word, members(statement.rows, sets, "GENERATE" in statement.options))
+
+
+def _extend(sets: dict[str, list[int]], statement: Statement, key: str, numbers: Iterable[int]) -> None:
+    if key in statement.options:
+        sets.setdefault(alike(sets, statement.options[key]), []).extend([*numbers])
 
 
 def _refuse(_: TextMesh, statement: Statement) -> None:
@@ -191,6 +177,11 @@ _REFUSED = ("INCLUDE", "SYSTEM", "NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELC
 _ABAQUS |= dict.fromkeys(_REFUSED, _refuse)
 
 
+def alike(sets: Mapping[str, list[int]], name: str) -> str:
+    """The name of a set, of which Abaqus has capital and small letters alike."""
+    return next((each for each in sets if each.upper() == name.upper()), name)
+
+
 def members(rows: list[list[str]], sets: Mapping[str, list[int]], generated: bool = False) -> Iterator[int]:
     """Numbers in the lines of a set of Abaqus, which may name others."""
     for row in rows:
@@ -199,7 +190,7 @@ def members(rows: list[list[str]], sets: Mapping[str, list[int]], generated: boo
             yield from range(first, last + 1, step[0] if step else 1)
         else:
             for each in filter(None, row):
-                yield from [int(each)] if each.isdigit() else sets[each]
+                yield from [int(each)] if each.isdigit() else sets[alike(sets, each)]
 
 
 def real(value: str) -> float:
