@@ -143,3 +143,29 @@ def test_an_interface_has_the_stress_and_strain_of_its_section() -> None:
     (row,) = (k for k, each in enumerate(plant.outputs) if "strain" in each.name)
     column = [each.name for each in plant.inputs].index("base_acceleration_x")
     assert gain[row, column] == pytest.approx(-STIFF.density * half / STIFF.youngs_modulus, rel=1e-3)
+
+
+def test_errors_of_a_system_are_those_of_more_modes() -> None:
+    """Under a body on its end: places and root loads of a strip of one mode, beside one of twenty, in a shock."""
+    runs = [
+        gb.simulate(
+            with_body(strip().reduced(modes=modes, damping_ratio=0.02).structure, "seat"),
+            gb.Flight(z=gb.Sine(100.0, duration=0.003), y=gb.Sine(50.0, duration=0.002)),
+            duration=0.02,
+            step=2e-5,
+        )
+        for modes in (1, 20)
+    ]
+    few, many = runs
+    size = np.linalg.norm(many.place - many.place[0], axis=-1).max()
+    place = np.linalg.norm(few.place - many.place, axis=-1).max() / size
+    force, moment = (
+        np.linalg.norm(a - b, axis=-1).max() / np.linalg.norm(b, axis=-1).max()
+        for a, b in ((few.ground_force, many.ground_force), (few.ground_moment, many.ground_moment))
+    )
+    assert place > 1e-4 and place / 2 < few.errors.displacement.shapes < 2 * place
+    assert force > 0.01 and max(force, moment) / 2 < few.errors.loads.shapes < 2 * max(force, moment)
+    stress = [np.abs(each.solids["strip"].von_mises).max() for each in runs]
+    assert few.errors.stress.shapes > abs(stress[0] / stress[1] - 1) / 2
+    assert many.errors.displacement.shapes < place / 10
+    assert few.errors.beams == ("strip",) and "the mesh of strip is not judged" in few.errors.note

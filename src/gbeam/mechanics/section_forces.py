@@ -74,7 +74,7 @@ def section_forces(
     a structure without sections at the root and the tip.
     """
     if structure.sections is None:
-        return about_the_hub(_of_ends(structure, base, q, qd, qdd, time), motion, base.alpha_WB_B)
+        return about_the_hub(_of_ends(structure, base, q, qd, qdd, time, hung), motion, base.alpha_WB_B)
     xp = namespace(q, base.a_WO_B)
     applied = None if structure.history is None else structure.history(time)
     pieces = []
@@ -109,13 +109,18 @@ def section_forces(
     return about_the_hub(loads, motion, base.alpha_WB_B)
 
 
-def _of_ends(structure: Structure, base: BaseMotion, q: Array, qd: Array, qdd: Array, time: Array) -> Loads:
+def _of_ends(
+    structure: Structure, base: BaseMotion, q: Array, qd: Array, qdd: Array, time: Array, hung: Hung | None
+) -> Loads:
     """Loads without stress at the root of constant coefficients, and at the tip, which carries nothing outboard."""
     xp = namespace(q, base.a_WO_B)
     applied = None if structure.history is None else structure.history(time)
     root = Frame(None, None, None, base.w_WB_B, base.a_WO_B, base.alpha_WB_B)
     _, wrench = body_of("", structure).demanded(q, qd, qdd, root, applied)
-    force, moment = (xp.stack([-each, 0 * each], axis=1) for each in (wrench.force, wrench.moment))
+    demanded = [wrench.force, wrench.moment]
+    if hung is not None:
+        demanded = [each + more.sum(axis=1) for each, more in zip(demanded, (hung.force, hung.moment), strict=True)]
+    force, moment = (xp.stack([-each, 0 * each], axis=1) for each in demanded)
     tip = absolute_accelerations(xp, mapped(base, lambda each: each), *structure.output[-1:].paths(q, qd, qdd))
     unknown = xp.full(force.shape[:2], np.nan)
     return Loads(

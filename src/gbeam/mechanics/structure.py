@@ -68,8 +68,8 @@ class Recovery(Protocol):
         """Surface for pictures in modes (k, n)."""
         ...
 
-    def largest(self, q: Array) -> float:
-        """Largest von Mises stress at coordinates (t, n), Pa, about."""
+    def felt(self, q: Array) -> Array:
+        """Stress at coordinates (t, n) where it is largest, (t, c) Pa."""
         ...
 
     def strain(self, point: str, along: Any) -> Array:

@@ -145,7 +145,8 @@ def by_beam(errors: SystemErrors) -> Iterator[str]:
     if len(errors.loads_by_beam):
         each = zip(errors.beams, errors.loads_by_beam, errors.stress_by_beam, strict=True)
         listed = ", ".join(
-            f"{name} {percent(float(loads))} and {percent(float(stress))}" for name, loads, stress in each
+            f"{name} {percent(float(loads))} and {percent(float(stress)) if math.isfinite(stress) else 'unknown'}"
+            for name, loads, stress in each
         )
         yield f"errors of root loads and of stress of {listed}"
     if math.isfinite(errors.displacement.beam_theory):

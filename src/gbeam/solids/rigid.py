@@ -290,15 +290,15 @@ class RigidSpecimen(Value):
             Coordinates.
         """
 
-    def largest(self, q: Any) -> float:
-        """Return nothing: the stress of a rigid body is not known.
+    def felt(self, q: Floats) -> Floats:
+        """Return no number: the stress of a rigid body is not known.
 
         Parameters
         ----------
         q : (t, 0)
             Coordinates.
         """
-        return math.nan
+        return np.full((len(q), 1), np.nan)
 
     def strain(self, point: str, along: Any) -> Floats:
         """Refuse a strain, which a rigid body has none of.

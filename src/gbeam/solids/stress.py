@@ -155,9 +155,10 @@ class NodalStress(Value):
         mean = float(von_mises(self.table[pair] @ q))
         return float(np.ptp(von_mises(np.concatenate(parts)))) / mean if mean > 0 else 0.0
 
-    def largest(self, q: Floats) -> float:
-        """Largest von Mises stress at the times at which one of the coordinates (t, n) is largest."""
-        return float(self.histories(q[np.unique(np.abs(q).argmax(axis=0))])[2].max())
+    def felt(self, q: Floats) -> Floats:
+        """Stress over time (t, c) at the pairs that one of all coordinates stresses most."""
+        most = np.unique(von_mises(np.moveaxis(self.every_table, 1, 2)).argmax(axis=0))
+        return np.asarray(np.tensordot(q, self.table[most], (1, 2)).reshape(len(q), -1))
 
     def histories(self, q: Floats) -> tuple[Floats, Indices, Floats]:
         """Largest von Mises stress over time at every pair (p,), when (p,), and over all pairs at every time (t,)."""

@@ -120,7 +120,7 @@ def response_errors(
     every = tip, loads.force[:, 0], loads.moment[:, 0], loads.stress.max(axis=1)
     sizes = dict(zip(Quantities._fields, map(largest, every), strict=True))
     if structure.recovery is not None:
-        sizes["stress"] = structure.recovery.largest(solution.y[:, -structure.size :])
+        sizes["stress"] = largest(structure.recovery.felt(solution.y[:, -structure.size :])[:, None])
     sheared = 0.0 if loads.von_mises is None else float(np.nan_to_num(loads.von_mises).max())
     nothing = negligible(sizes | {"sheared": sheared}, structure.length)
     period = 2 * math.pi / float(structure.rest[0][0])

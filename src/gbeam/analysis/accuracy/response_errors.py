@@ -125,7 +125,7 @@ def lacking(
         Quantities(*(a - b for a, b in zip(truth, computed, strict=True))),
     )
     if exact.recovery is not None:
-        stress = np.array([exact.recovery.largest(total.value[:, first:])])
+        stress = np.linalg.norm(exact.recovery.felt(total.value[:, first:]), axis=1)
         parts = Parts(*(each._replace(stress=stress) for each in parts))
     return parts, _rings(exact, *vibration.shaken(of, residual, start))
 

@@ -126,8 +126,8 @@ class Posed:
         if forces.von_mises is not None and np.isfinite(forces.von_mises).all():
             sides.append(forces.von_mises)  # of what is only twisted the others are rounding
         stress = np.concatenate(sides, axis=1)[..., None]
-        if self.structure.recovery is not None:  # of a solid in the norm of energy
-            stress = q @ np.linalg.cholesky(self.structure.coefficients.stiffness)
+        if self.structure.recovery is not None:
+            stress = np.asarray(self.structure.recovery.felt(q))
         force, moment = forces.section_force[:, 0], forces.section_moment[:, 0]
         largest = np.abs(force).max() * self.structure.length, np.abs(moment).max()
         return [

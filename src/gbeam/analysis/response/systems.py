@@ -29,7 +29,7 @@ from gbeam.analysis.system.accuracy import doubts, system_errors, unmoved
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
 from gbeam.analysis.system.histories import Carried, beams_of, deflection, histories, loads_of, meshes_of
 from gbeam.analysis.system.point import Point, started, started_traced
-from gbeam.analysis.system.richer import PLACE, Answered, InputsOf, itself, judged_beams, pieces
+from gbeam.analysis.system.richer import PLACE, Answered, InputsOf, itself, judged_bodies, pieces
 from gbeam.arrays.namespace import holds_jax, namespace
 from gbeam.errors import InputError
 from gbeam.guards.limits import HISTORY_BYTES, STEPS, refuse_more
@@ -118,7 +118,7 @@ class Ran(Run):
 
     def loads(self, stride: int) -> list[Floats]:
         """Force and moment at the root and the stress of every beam that can be judged, at every so many steps."""
-        beams = judged_beams(self.posed.system)
+        beams = judged_bodies(self.posed.system)
         if not beams or not self.judged:
             return []
         values = Answered(itself(self.posed.system), *self.every(stride)).read(beams)
@@ -214,7 +214,7 @@ def simulate_system(
         return run(richer, richer.start(settings), chosen.step, "errors of shapes and models").every(stride)
 
     if settings.estimate and chosen.whole:
-        steps = {(name, each): math.nan for name in judged_beams(system) for each in LOADS}
+        steps = {(name, each): math.nan for name in judged_bodies(system) for each in LOADS}
         steps |= {PLACE: of_steps.displacement, **dict(zip(steps, of_steps.each, strict=False))}
         settled, closed = begin.state == "equilibrium", again if system.controllers else None
         errors = system_errors(system, *chosen.every(stride), closed, steps, settled=settled)

@@ -88,7 +88,9 @@ def static_errors(point: OperatingPoint, displacement: Floats, loads: Loads | No
     if not slender:
         stress = ErrorEstimate()
         if rich.recovery is not None:
-            away, size = (rich.recovery.largest(q) for q in (at.p - _lifted(rich, own, point).p, at.p))
+            away, size = (
+                float(np.linalg.norm(rich.recovery.felt(q))) for q in (at.p - _lifted(rich, own, point).p, at.p)
+            )
             stress = ErrorEstimate(0.0, away / size if size else 0.0, total=away / size if size else 0.0)
         errors = Errors(fractions("tip", NOTHING**2 * length), worst, stress, note=note)
         return errors, _doubtful(errors)

@@ -28,6 +28,7 @@ from gbeam.analysis.system.richer import (
     follower,
     itself,
     judged_beams,
+    judged_bodies,
     richer,
     theories_of,
     with_beams,
@@ -44,7 +45,8 @@ Floats = NDArray[np.float64]
 Reading = dict[Quantity, Floats]
 Again = Callable[[System], tuple[Trajectory, InputsOf]]
 FEWEST = 3  # times of a response that is judged
-NOT_ALL = "shapes and model are not judged of {}: not made of a beam"
+NOT_ALL = "shapes and model are not judged of {}: neither a beam, a mesh nor matrices"
+NO_MESH = "the mesh of {} is not judged"
 FAR = "shapes and models are not judged: a system with more shapes does not follow"
 
 UNKNOWN = "errors by the theory of slender beams are not known: "
@@ -84,9 +86,11 @@ def system_errors(
     (p, 3), and of the beams' root loads and stress, beside those of the steps; bodies begin `settled` or undeformed.
     Richer systems are run `again` if it is given: where controllers answer what is lacking, and at rest.
     """
-    judged = judged_beams(system)
+    judged = judged_bodies(system)
     others = [name for name, body in system.bodies.items() if isinstance(body, Structure) and name not in judged]
-    note = NOT_ALL.format(", ".join(others)) if others else ""
+    meshes = [name for name, body in judged.items() if body.source is None]
+    pairs = (NOT_ALL, others), (NO_MESH, meshes)
+    note = "; ".join(words.format(", ".join(names)) for words, names in pairs if names)
     step = steps.get(PLACE, math.nan)
     if not judged or (again is None and len(of.time) < FEWEST):
         none = math.nan if others or judged else 0.0
@@ -102,7 +106,10 @@ def system_errors(
     }
     if unmoved(sizes[PLACE], place):
         nothing.add(PLACE)
-    bases, every_exact = bases_of(system, of, inputs), all(body.kind == "exact" for body in judged.values())
+    bases, every_exact = (
+        bases_of(system, of, inputs),
+        all(body.richer or body.kind == "exact" for body in judged.values()),
+    )
     with np.errstate(all="ignore"):
         try:
             if again is None:
@@ -121,15 +128,18 @@ def system_errors(
             return SystemErrors(ErrorEstimate(step), note=FAR)
         # Without a loop, and at rest, what is computed is put into the equations: it may bend farther than they know.
         loop = again if len(of.time) > 1 else None
-        beyond = _beyond(system, of, inputs, loop, settled=settled)
-    if not beyond.sizes.get(PLACE, math.nan) <= LOST * max(sizes[PLACE], _extent(place)):
+        beams = judged_beams(system)
+        beyond = _beyond(system, of, inputs, loop, settled=settled) if beams else Lacking({}, {})
+    if beams and not beyond.sizes.get(PLACE, math.nan) <= LOST * max(sizes[PLACE], _extent(place)):
         beyond, note = Lacking({}, {}), "; ".join(filter(None, (note, LOOP_LOST if loop else BENT_FAR)))
 
     def apart(key: Quantity, a: Reading, b: Reading) -> float:
         size = 0.0 if key in nothing else sizes[key] or float(np.linalg.norm(truth[key], axis=-1).max())
-        return float(np.linalg.norm(a[key] - b[key], axis=-1).max()) / size if size > 0 else 0.0
+        return float(np.linalg.norm(a[key] - b[key], axis=-1).max()) / size if size else 0.0
 
     def estimate(key: Quantity) -> ErrorEstimate:
+        if math.isnan(sizes[key]):  # of the stress of matrices
+            return ErrorEstimate()
         total, step = apart(key, truth, computed), 0.0 if key in nothing else steps.get(key, math.nan)
         # Between a system with more shapes of the same models and the exact one there is what the models leave out.
         shapes, model = (total, 0.0) if every_exact else (apart(key, same, computed), apart(key, truth, same))
@@ -138,7 +148,9 @@ def system_errors(
         return away.with_theory(0.0 if key in nothing or size == 0 else theory / size)
 
     def worst(each: Iterable[ErrorEstimate]) -> ErrorEstimate:
-        return max(each, key=lambda one: one.total)
+        return max(
+            (one for one in each if not math.isnan(one.total)), key=lambda one: one.total, default=ErrorEstimate()
+        )
 
     loads = [worst(estimate((name, each)) for each in ("force", "moment")) for name in judged]
     stress = [estimate((name, "stress")) for name in judged]
@@ -168,7 +180,7 @@ def doubts(errors: SystemErrors, tolerance: float) -> tuple[str, ...]:
         which = int(np.argmax(by_beam))
         cause, cure = cause_and_cure(*parts, errors.theory[which])
         if parts[0] == max(parts):
-            cure = "raise its model.modes"  # which are given in a system
+            cure = "raise its model.modes, of a mesh its modes"  # which are given in a system
         share = percent(each.total)
         said.append(
             f"{what} are wrong by an estimated {share} of the largest {size}: {cause}, most of {errors.beams[which]}; "

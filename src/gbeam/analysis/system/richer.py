@@ -48,20 +48,21 @@ class Richer(NamedTuple):
         return out
 
 
+def judged_bodies(system: System) -> dict[str, Structure]:
+    """Beams and solids of which it is known what they lack, by name."""
+    return {name: body for name, body in system.bodies.items() if isinstance(body, Structure) and body.judged}
+
+
 def judged_beams(system: System) -> dict[str, Structure]:
-    """Bodies whose shapes and model can be judged, by name."""
-    return {
-        name: body
-        for name, body in system.bodies.items()
-        if isinstance(body, Structure) and body.source is not None and not body.traced
-    }
+    """Beams of which that is known, by name."""
+    return {name: body for name, body in judged_bodies(system).items() if body.source is not None}
 
 
 def richer(system: System, bases: Mapping[str, Base], *, exact: bool) -> Richer:
-    """More shapes in the beams that are named, whose roots move as bases do, of exact models or of their own."""
+    """More shapes in the bodies that are named, whose roots move as bases do, of exact models or of their own."""
     beams, original = dict[str, Structure](), dict[str, IntArray]()
     for name, base in bases.items():
-        body = judged_beams(system)[name]
+        body = judged_bodies(system)[name]
         rich, original[name] = enrichment(body, base).model("exact" if exact else body.kind)
         beams[name] = replace(rich, load_values=body.load_values)
     other = replace(system, bodies={**system.bodies, **beams})
@@ -131,8 +132,8 @@ class Answered(NamedTuple):
         return self.read(())[PLACE]
 
     def read(self, beams: Iterable[str]) -> dict[Quantity, Floats]:
-        """Places (t, p, 3) m of all points, and of some beams the force and moment (t, 3) at the root and the largest
-        size of the normal stress, and that of von Mises, over the sections (t, 1).
+        """Places (t, p, 3) m of all points, and of some bodies the force and moment (t, 3) at the root and the largest
+        size of the normal stress, and that of von Mises, over the sections (t, 1), or a solid's stress (t, c).
         """
         system, places, pieces_of = self.rich.system, [], {name: list[Carried]() for name in beams}
         for s in pieces(len(self.of.time), system.tree.size):
@@ -147,9 +148,12 @@ class Answered(NamedTuple):
         for name, each in pieces_of.items():
             loads = loads_of(system.bodies[name], each, self.of.time)  # type: ignore[arg-type]
             sheared = loads.stress if loads.von_mises is None else np.nan_to_num(loads.von_mises)
+            stress, recovery = loads.stress.max(axis=1)[:, None], system.bodies[name].recovery  # type: ignore[union-attr]
+            if recovery is not None:
+                stress = recovery.felt(np.concatenate([part.q for part in each]))
             out |= {(name, "force"): loads.root_force, (name, "moment"): loads.root_moment}
             out |= {
-                (name, "stress"): loads.stress.max(axis=1)[:, None],
+                (name, "stress"): stress,
                 (name, "sheared"): sheared.max(axis=1)[:, None],
             }
         return out
@@ -230,8 +234,8 @@ def _resting(at: Answered, k: Floats, m: Floats, *, settled: bool) -> tuple[Floa
 
 
 def bases_of(system: System, of: Trajectory, inputs: InputsOf) -> dict[str, Base]:
-    """Motions of the roots of the beams that can be judged, at some of the times (t, 3)."""
+    """Motions of the roots of the bodies that can be judged, at some of the times (t, 3)."""
     some = np.unique(np.linspace(0, len(of.time) - 1, min(len(of.time), LOOKED)).astype(int))
     state = system.tree.motion(of.q[some], of.qd[some], of.qdd[some], inputs(system, some))
     roots = {name: state.roots[k] for k, name in enumerate(system.order)}
-    return {name: Base(roots[name].a, roots[name].w, roots[name].alpha) for name in judged_beams(system)}
+    return {name: Base(roots[name].a, roots[name].w, roots[name].alpha) for name in judged_bodies(system)}
