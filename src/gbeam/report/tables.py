@@ -133,10 +133,6 @@ EPISODES, SHORTFALLS = 8, 8  # printed at most; a rough record has hundreds
 
 def machine_plan(plans: Sequence[MachinePlan]) -> RenderableType:
     """Plans as tables of limits, each with how well the load is followed."""
-    from rich.console import Group
-    from rich.padding import Padding
-    from rich.text import Text
-
     title, *_ = (plan.title for plan in plans)
     parts: list[RenderableType] = [Text(title, style="bold")] if title else []
     for plan in plans:
@@ -155,7 +151,7 @@ def machine_plan(plans: Sequence[MachinePlan]) -> RenderableType:
             lines.append(Text(f"and {len(axes.shortfalls) - SHORTFALLS} more: see --json"))
         lines += ["", Text(sentence(plan.verdict), style="bold red" if colour != "green" else "bold")]
         lines += map(Text, judged_lines(plan))
-        parts += [Padding(line, (0, 0, 0, 2), expand=False) for line in lines]
+        parts += map(_indented, lines)
     return Group(*parts)
 
 

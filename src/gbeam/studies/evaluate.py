@@ -26,7 +26,7 @@ from gbeam.results.cases import ANSWERED
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.study import Failure
-from gbeam.studies.figures import Facts, History, Keys, SystemHistory, answer_facts, answered, own_keys, value_at
+from gbeam.studies.figures import Facts, History, Keys, SystemHistory, answer_facts, own_keys, value_at
 from gbeam.studies.template import Template
 
 Function = Callable[[Any], float]
@@ -100,7 +100,10 @@ class Question:
 
     def facts(self, case: AnyCase) -> Facts:
         """Answer of the verb, as JSON."""
-        return answered(self.verb, case, self.motion, self.at, self.needs, self.options)
+        question = QUESTIONS[self.verb]
+        question.refuse(case)
+        answer = question.answer(case, self.motion, self.at, self.needs, **question.chosen(self.options))
+        return answer_facts(answer, case.title)
 
     def row(self, number: int, overrides: Sequence[str]) -> Row:
         """Compute one case. What goes wrong in it is part of the row: the other cases go on."""

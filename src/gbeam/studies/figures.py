@@ -6,35 +6,28 @@ import math
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import reduce
+from operator import getitem
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.printable import advise, closest
-from gbeam.questions import QUESTIONS, Needs
+from gbeam.questions import QUESTIONS
 from gbeam.results.result import Floats
 from gbeam.scenario.values import path_text
 from gbeam.structure.attachments import TIP
 from gbeam.studies.template import Template
 
 if TYPE_CHECKING:
-    from gbeam.analysis.case import AnyCase, SystemCase
+    from gbeam.analysis.case import SystemCase
     from gbeam.results.facts import Entry
     from gbeam.results.response import Response
     from gbeam.results.study import Study, SystemStudy
 
 Facts = Mapping[str, Any]
 KIND = ""  # key of the kind of answers in facts; no figure's path begins so
-
-
-def answered(
-    verb: str, case: AnyCase, motion: str | None, at: float | None, needs: Needs, options: Mapping[str, Any]
-) -> Facts:
-    """The facts of a question's answer."""
-    question = QUESTIONS[verb]
-    question.refuse(case)
-    return answer_facts(question.answer(case, motion, at, needs, **question.chosen(options)), case.title)
 
 
 def answer_facts(answer: Any, title: str = "") -> Facts:
@@ -173,21 +166,17 @@ def usual(template: Template, verb: str, *, judged: bool = False) -> tuple[str, 
 
 def value_at(facts: Facts, keys: Keys) -> float:
     """The figure there; NaN where this case has none."""
-    node: Any = facts
-    for key in keys:
-        try:
-            node = node[key]
-        except (KeyError, IndexError, TypeError):
-            return math.nan
+    try:
+        node = node_at(facts, keys)
+    except (KeyError, IndexError, TypeError):
+        return math.nan
     return float(node) if _is_figure(node) else math.nan
 
 
-def is_truth(facts: Facts, keys: Keys) -> bool:
-    """Whether the figure there is true or false."""
+def node_at(facts: Facts, keys: Keys) -> Any:
+    """The figure there as it stands, a truth among them."""
     node: Any = facts
-    for key in keys:
-        node = node[key]
-    return isinstance(node, bool)
+    return reduce(getitem, keys, node)
 
 
 def declared(facts: Facts, keys: Keys) -> str | None:

@@ -21,7 +21,7 @@ from gbeam.results.study import Study
 from gbeam.scenario.values import path_text
 from gbeam.studies.derivatives import Neighbourhood, Slopes
 from gbeam.studies.evaluate import Question
-from gbeam.studies.figures import Facts, Keys, answer_facts, find, offered, own_keys, unit_at, usual, value_at
+from gbeam.studies.figures import Facts, Keys, answer_facts, find, node_at, offered, own_keys, unit_at, usual, value_at
 from gbeam.studies.parameters import PhysicalValue, physical_values
 from gbeam.studies.template import template_of
 
@@ -158,10 +158,7 @@ def figure(facts: Facts, name: str, option: str = OPTION) -> Keys:
         keys = find(facts, name)
     except InputError as error:
         raise InputError(option, error.problem, error.fix) from None
-    node: Any = facts
-    for key in keys:
-        node = node[key]
-    if isinstance(node, (bool, int)) or _NOT_PHYSICAL.search(path_text(own_keys(keys))):
+    if isinstance(node_at(facts, keys), (bool, int)) or _NOT_PHYSICAL.search(path_text(own_keys(keys))):
         raise InputError(option, f"{name!r} is a count, a flag or an estimate, without a derivative", "name a figure")
     if not math.isfinite(value_at(facts, keys)):
         raise InputError(option, f"{name!r} has no value in this scenario", "name a figure that has one")

@@ -18,7 +18,7 @@ from gbeam.errors import GbeamError, InputError
 from gbeam.studies.cases import Cases
 from gbeam.studies.evaluate import NO_FACTS, Question, Row, ended, settled, width, without_figures
 from gbeam.studies.evaluate import rows as computed
-from gbeam.studies.figures import find, is_truth, read_history, read_system_history, unit_at
+from gbeam.studies.figures import find, node_at, read_history, read_system_history, unit_at
 from gbeam.studies.template import Template
 
 _FEW = 8  # cases that stand together in the computation that is timed
@@ -102,7 +102,7 @@ def start(
                 continue
             question = replace(question, keys=keys)
             units = tuple(unit_at(facts, each) for each in keys)
-            truths = tuple(is_truth(facts, each) for each in keys)
+            truths = tuple(isinstance(node_at(facts, each), bool) for each in keys)
         question = settled(histories.of(question, case), case, len(cases))
         task = (number, cases.overrides(number))
         rows += computed(question, [task]) if question.together else [question.measured(number, case, facts)]

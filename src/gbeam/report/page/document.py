@@ -167,7 +167,7 @@ def html(
     described = figures_in(kind, facts, variables or {}) if figures is None else figures
     plots = drawn((each() for each in described.values()), numbers, header)
     verb = PAGES[kind].verb if kind in PAGES else kind
-    header |= _viewer(kind, facts, variables or {}, numbers)
+    header |= viewer(kind, facts, variables or {}, numbers)
     body = _body(kind)(facts, '<div id="gbeam-viewer"></div>' if header.keys() & {"scene", "modes"} else "", plots)
     title = facts.get("title") or _title(origin) or f"gbeam {verb}"
     warnings = answers.warnings(facts) if "motions" in facts else facts.get("warnings", [])
@@ -183,10 +183,10 @@ def html(
     )
 
 
-def _viewer(
+def viewer(
     kind: str, facts: Mapping[str, Any], variables: Mapping[str, Any], numbers: Numbers
 ) -> dict[str, dict[str, Any]]:
-    """Viewer of a kind, if it has one."""
+    """Return the modes or the scene that the viewer shows of a result, by its JSON and variables; nothing of others."""
     if kind == "Modes" and facts["modes"]:
         return {"modes": shapes(modes_in(facts), variables, numbers)}
     if kind == "SystemModes" and facts["modes"] and "hangs_on" in variables:

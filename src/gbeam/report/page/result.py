@@ -17,9 +17,8 @@ from gbeam.guards.limits import parse_json, read_json
 from gbeam.io.netcdf import FACTS, groups_of
 from gbeam.io.stored import read_stored
 from gbeam.report.facts import facts, origin_json, whole
-from gbeam.report.page.document import html
+from gbeam.report.page.document import html, viewer
 from gbeam.report.page.parts import Numbers
-from gbeam.report.page.scene import scene, shapes, shapes_of_system
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.modal import Modes
 from gbeam.results.provenance import Provenance
@@ -59,24 +58,11 @@ def variables_of(result: Result) -> dict[str, Any]:
 
 def shown(result: Result) -> tuple[dict[str, Any], Numbers]:
     """Scene of a result in the viewer: its header, and the numbers."""
-    numbers = Numbers()
-    header: dict[str, Any] = {"plots": [], "maps": []}
-    if isinstance(result, Modes):
-        header["modes"] = shapes(result, variables_of(result), numbers)
-        return header, numbers
-    if isinstance(result, SystemModes) and result.assembly is not None and len(result.frequency):
-        header["modes"] = shapes_of_system(facts(result), variables_of(result), numbers)
-        return header, numbers
-    of = SystemStudy("", {result.name or "ground": result}) if isinstance(result, SystemResponse) else whole(result)
-    if isinstance(of, (Study, SystemStudy)):
-        environments = {name: each.environment for name, each in of.responses.items()}
-        header["scene"] = scene(environments, variables_of(of), numbers)
-    if isinstance(of, (Deflection, SystemRest)):
-        name = of.motion if isinstance(of, Deflection) else of.name
-        header["scene"] = scene({name: "rest"}, variables_of(of), numbers)
-    if header.get("scene") is None:
+    numbers, known = Numbers(), facts(result)
+    seen = viewer(known["form"]["kind"], known, variables_of(result) if isinstance(result, SHOWN) else {}, numbers)
+    if not seen:
         raise InputError("result", f"{type(result).__name__} has no motion to show", "print it, or plot it")
-    return header, numbers
+    return {"plots": [], "maps": [], **seen}, numbers
 
 
 def write_report(result: Result, path: str | os.PathLike[str]) -> None:
