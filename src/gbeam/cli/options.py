@@ -89,46 +89,6 @@ IgnoreLimits = Annotated[
 
 SmoothVerb = Annotated[_Smooth, Parameter(help="Whose figures.")]
 
-# Of critical-speed.
-Masses = Annotated[str | None, Parameter(name="--masses", help='A map instead, with one more mass: "0.1 kg, 0.5 kg".')]
-Positions = Annotated[
-    str | None, Parameter(name="--positions", help='Where that mass sits: "2 m, 5 m, 8 m"; by default all along.')
-]
-
-# Of linearize.
-Rate = Annotated[
-    str | None, Parameter(name="--rate", help='A hub\'s steady rate in place of a time, such as "2 rad/s".')
-]
-ModesKept = Annotated[
-    int | None,
-    Parameter(name="--modes", help='Keep so many of the slowest modes, "4", besides what has no frequency; else all.'),
-]
-Balanced = Annotated[
-    int | None,
-    Parameter(name="--balanced", help='Keep so many states by balanced truncation, "6", besides what does not decay.'),
-]
-StrainAt = Annotated[
-    tuple[str, ...],
-    option(
-        "--strain-at",
-        'Strain at a station, "10 mm", on the faces towards +z and +y, or at a point of a solid, "fillet", along its '
-        "axes; any number of times.",
-    ),
-]
-Inputs = Annotated[
-    str | None, Parameter(name="--inputs", help='Only these, "torque"; by default all. So with --outputs.')
-]
-Outputs = Annotated[str | None, Parameter(name="--outputs", help='Only these, "tip_y, hub_angle".')]
-
-AtLoop = Annotated[
-    str,
-    Parameter(
-        name="--loop",
-        help="Of a system with controllers: open; closed, from sample to sample, with margins; or cut at a drive, "
-        '"pointing: axis.angle".',
-    ),
-]
-
 # Of fit and optimize.
 SearchBounds = Annotated[
     tuple[str, ...],
@@ -143,38 +103,6 @@ WriteTo = Annotated[
 ]
 
 # Of place.
-Measure = Annotated[
-    str | None,
-    Parameter(
-        help='root-shear, root-moment, vibration, tip or load; or a weighted sum, "tip=1, root-moment=0.5". Without it '
-        "tip, and of a rigid specimen load."
-    ),
-]
-CentrifugeName = Annotated[str | None, Parameter(help="Which centrifuge, where the scenario has several.")]
-Widths = Annotated[
-    tuple[str, ...],
-    option(
-        "--smoothing",
-        'Width of the kernel to keep, "60 ms"; given twice, the search goes from the one to the other. Without it '
-        "from a quarter to four times the scenario's.",
-    ),
-]
-Along = Annotated[
-    str,
-    Parameter(
-        help="Directions in which the control point may be moved, such as xz. Without it x in a straight beam, and xyz "
-        "in another specimen."
-    ),
-]
-Way = Literal["own", "right-angles", "any"]
-WayRound = Annotated[
-    Way | None,
-    Parameter(
-        name="--turn",
-        help="Which way round it sits: own, as the scenario says; right-angles, with x, y and z along axis 3; any, "
-        "from the best of these and others on. Without it own of a beam, and right-angles of another specimen.",
-    ),
-]
 Check = Annotated[
     bool, Parameter(name="--proof", negative="--no-proof", help="Check the answer by simulation with the model.")
 ]

@@ -4,22 +4,17 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
 from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.options import (
-    Along,
-    CentrifugeName,
     Check,
     IgnoreLimits,
     Input,
-    Measure,
     Output,
     ScenarioFile,
-    WayRound,
-    Widths,
     naming,
     number,
     option,
@@ -106,11 +101,37 @@ def place(
     scenario: ScenarioFile,
     /,
     *,
-    measure: Measure = None,
-    motion: CentrifugeName = None,
-    along: Along = "",
-    turn: WayRound = None,
-    smoothing: Widths = (),
+    measure: Annotated[
+        str | None,
+        Parameter(
+            help='root-shear, root-moment, vibration, tip or load; or a weighted sum, "tip=1, root-moment=0.5". '
+            "Without it tip, and of a rigid specimen load."
+        ),
+    ] = None,
+    motion: Annotated[str | None, Parameter(help="Which centrifuge, where the scenario has several.")] = None,
+    along: Annotated[
+        str,
+        Parameter(
+            help="Directions in which the control point may be moved, such as xz. Without it x in a straight beam, and "
+            "xyz in another specimen."
+        ),
+    ] = "",
+    turn: Annotated[
+        Literal["own", "right-angles", "any"] | None,
+        Parameter(
+            name="--turn",
+            help="Which way round it sits: own, as the scenario says; right-angles, with x, y and z along axis 3; any, "
+            "from the best of these and others on. Without it own of a beam, and right-angles of another specimen.",
+        ),
+    ] = None,
+    smoothing: Annotated[
+        tuple[str, ...],
+        option(
+            "--smoothing",
+            'Width of the kernel to keep, "60 ms"; given twice, the search goes from the one to the other. Without it '
+            "from a quarter to four times the scenario's.",
+        ),
+    ] = (),
     check: Check = True,
     output: Output = Output(),
     ignore_limits: IgnoreLimits = False,

@@ -8,29 +8,23 @@ from collections.abc import Callable
 from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+from cyclopts import Parameter
 
 from gbeam.cli.options import (
     At,
-    AtLoop,
-    Balanced,
     CampbellOptions,
     CriticalOptions,
     Input,
-    Inputs,
-    Masses,
-    ModesKept,
     MotionName,
     Output,
-    Outputs,
-    Positions,
-    Rate,
     ScenarioFile,
-    StrainAt,
     asked,
     naming,
     number,
     numbers,
+    option,
     options_of,
     read,
 )
@@ -123,8 +117,10 @@ def critical_speed(
     motion: MotionName = None,
     at: At = None,
     options: CriticalOptions = CriticalOptions(),
-    masses: Masses = None,
-    positions: Positions = None,
+    masses: Annotated[str | None, Parameter(help='A map instead, with one more mass: "0.1 kg, 0.5 kg".')] = None,
+    positions: Annotated[
+        str | None, Parameter(help='Where that mass sits: "2 m, 5 m, 8 m"; by default all along.')
+    ] = None,
     output: Output = Output(),
 ) -> int:
     """The rate, load or acceleration at which the equilibrium of a beam or a system is lost.
@@ -193,13 +189,32 @@ def linearize(
     *,
     motion: MotionName = None,
     at: At = None,
-    rate: Rate = None,
-    modes: ModesKept = None,
-    balanced: Balanced = None,
-    strain_at: StrainAt = (),
-    inputs: Inputs = None,
-    outputs: Outputs = None,
-    loop: AtLoop = "open",
+    rate: Annotated[str | None, Parameter(help='A hub\'s steady rate in place of a time, such as "2 rad/s".')] = None,
+    modes: Annotated[
+        int | None,
+        Parameter(help='Keep so many of the slowest modes, "4", besides what has no frequency; else all.'),
+    ] = None,
+    balanced: Annotated[
+        int | None,
+        Parameter(help='Keep so many states by balanced truncation, "6", besides what does not decay.'),
+    ] = None,
+    strain_at: Annotated[
+        tuple[str, ...],
+        option(
+            "--strain-at",
+            'Strain at a station, "10 mm", on the faces towards +z and +y, or at a point of a solid, "fillet", along '
+            "its axes; any number of times.",
+        ),
+    ] = (),
+    inputs: Annotated[str | None, Parameter(help='Only these, "torque"; by default all. So with --outputs.')] = None,
+    outputs: Annotated[str | None, Parameter(help='Only these, "tip_y, hub_angle".')] = None,
+    loop: Annotated[
+        str,
+        Parameter(
+            help="Of a system with controllers: open; closed, from sample to sample, with margins; or cut at a drive, "
+            '"pointing: axis.angle".',
+        ),
+    ] = "open",
     output: Output = Output(),
 ) -> int:
     """State-space model A, B, C, D about the equilibrium at one time of a motion.
@@ -215,20 +230,20 @@ def linearize(
     from gbeam.analysis.case import SpecimenCase
 
     case = loaded.case
-    for option, wanted in (
+    for flag, wanted in (
         ("--strain-at", bool(strain_at) and not isinstance(case, SpecimenCase)),
         ("--rate", rate is not None),
     ):
         if wanted:
             with loaded.placing():
-                case.one_beam("bodies", option)
-    for option, beside, both in (
+                case.one_beam("bodies", flag)
+    for flag, beside, both in (
         ("--loop", "--balanced or --modes", loop != "open" and (modes is not None or balanced is not None)),
         ("--balanced", "--modes", modes is not None and balanced is not None),
         ("--rate", "--at", rate is not None and at is not None),
     ):
         if both:
-            raise InputError(option, f"stands beside {beside}", "give one of them")
+            raise InputError(flag, f"stands beside {beside}", "give one of them")
 
     from gbeam.analysis.control.linearization import linearize, surface_gauges
     from gbeam.guards.checks import index_of
