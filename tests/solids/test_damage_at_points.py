@@ -153,3 +153,12 @@ def test_every_section_has_its_fibre() -> None:
     )
     cyclic = cyclic_at(flight, "half")
     assert cyclic is not None and cyclic.exponent == 4.0
+
+
+def test_a_stress_that_ranges_by_rounding_only_has_a_plane_too() -> None:
+    """Its ranges on planes that follow one another went up and down for ever."""
+    for seed in (1, 16, 22):
+        generator = np.random.default_rng(seed)
+        steady = np.tile(1e4 * generator.normal(size=6), (101, 1))
+        sides = np.where(generator.random((101, 6)) < 0.5, -np.inf, np.inf)
+        assert np.ptp(ranging(np.nextafter(steady, sides))) < 1e-10

@@ -249,12 +249,12 @@ def turned(tensor: Floats, axes: Floats) -> Floats:
 def ranging(stress: Floats) -> Floats:
     """Normal stress (t,) of stresses (t, 6) on the plane where it ranges most."""
     normal = AROUND / np.linalg.norm(AROUND, axis=1, keepdims=True)
-    most = np.full(len(normal), -1.0)
+    most, rounding = np.full(len(normal), -np.inf), SETTLED * np.abs(stress).max()  # by which a plane may come to less
     while True:
         # Between the extremes on a plane the stress changes most on a principal plane of that change, or as much.
         over = np.einsum("tij,ki,kj->tk", stress[:, TENSOR], normal, normal, optimize=True)
         size = np.ptp(over, axis=0)
-        if not (size > (1 + SETTLED) * most).any():
+        if not (size > (1 + SETTLED) * most + rounding).any():
             return np.asarray(over[:, size.argmax()])
         most, change = size, stress[over.argmax(axis=0)] - stress[over.argmin(axis=0)]
         sizes, axes = np.linalg.eigh(change[:, TENSOR])
