@@ -54,12 +54,13 @@ check: .venv/dev-installed
 validate: .venv/dev-installed
 	OPENBLAS_NUM_THREADS=1 JAX_COMPILATION_CACHE_DIR=$(CACHE) $(BIN)/python -m validation
 
-# The pages made from the schemas, each put in its place at once, for tests that read it meanwhile; then the site;
+# The pages made from schemas and records, each put in its place at once, for tests that read it meanwhile; then the site;
 # warnings are errors, and nothing is fetched from a network.
 docs: .venv/dev-installed
 	mkdir -p out
 	$(BIN)/gbeam schema --markdown > out/scenario.md && mv out/scenario.md docs/
 	$(BIN)/gbeam schema --results --markdown > out/results.md && mv out/results.md docs/
+	$(BIN)/python benchmarks/reach.py --markdown > out/speed.md && mv out/speed.md docs/
 	$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going docs out/docs
 	@echo "out/docs/index.html"
 
