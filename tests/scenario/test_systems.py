@@ -232,5 +232,3 @@ def test_sweeps_and_sensitivities_read_the_same_paths() -> None:
         gb.sweep(file, over, ["points.right.tipp.displacement_maxx"], verb="run")
     with pytest.raises(gb.InputError, match="motion is missing"):
         gb.sweep(file, over, ["best"], verb="place")
-    with pytest.raises(gb.InputError, match="--measure is missing"):
-        gb.sweep(file, over)
