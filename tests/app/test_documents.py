@@ -14,6 +14,7 @@ from gbeam.app.verbs import arguments
 from gbeam.app.verbs import verbs as offered
 from gbeam.cli.program import parsed
 from gbeam.cli.program import verbs as program
+from gbeam.questions import QUESTIONS
 
 from ..calling import Answer
 from ..scenarios import FAST, RAMPS
@@ -357,7 +358,10 @@ def test_options_are_the_command_lines(verb: str) -> None:
     function, _ = parsed([verb, "x.toml", *([f"--{needed}"] if needed else [])])
     assert "output" in inspect.signature(function).parameters and "*" not in offered()[verb].options  # it has a report
     # None of the command line's is missing, but for those about where it writes and on which machines it runs.
-    assert {*inspect.signature(function).parameters} - reached <= {"scenario", "output", "scheduler", "resume", "yes"}
+    left = {"scenario", "output", "scheduler", "resume", "yes", "options"}
+    assert {*inspect.signature(function).parameters} - reached <= left
+    if verb in QUESTIONS:  # those of a question are one argument
+        assert {*QUESTIONS[verb].options} <= {each.name.removeprefix("no-") for each in offered()[verb].options}
 
 
 def test_every_verb_of_a_scenario_is_on_the_page() -> None:

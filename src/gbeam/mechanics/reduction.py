@@ -39,11 +39,11 @@ class Reduced:
     static: Floats
     size: int
 
-    def structure(self, made: Callable[[int, Any], Structure], damping_ratio: Any) -> Structure:
-        """The structure made in the model's coordinates, with that in all of them, which damp as the model's last."""
+    def structure(self, build: Callable[[int, Any], Structure], damping_ratio: Any) -> Structure:
+        """The structure built in the model's coordinates, with that in all of them, which damp as the model's last."""
         ratio, count = damping_ratio, len(self.stiffness)
         every = ratio if np.ndim(ratio) == 0 else [*ratio, *[ratio[-1]] * (count - self.size)]
-        return replace(made(self.size, ratio), richer=made(count, every))
+        return replace(build(self.size, ratio), richer=build(count, every))
 
 
 def linear_fields(points: Floats) -> Floats:

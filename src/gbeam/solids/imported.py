@@ -255,7 +255,7 @@ class ImportedModel(Value):
         every = np.zeros((len(free), len(reduction.stiffness)))
         every[free] = reduction.shapes
 
-        def made(n: int, damping_ratio: Any) -> Structure:
+        def build(n: int, damping_ratio: Any) -> Structure:
             """Structure in the first coordinates."""
             shapes = every[:, :n]
             products = (fields.T @ (self.mass @ shapes)).reshape(3, 4, -1)
@@ -276,7 +276,7 @@ class ImportedModel(Value):
                 mesh_error=(math.nan,) * modes,
             )
 
-        return reduction.structure(made, damping_ratio)
+        return reduction.structure(build, damping_ratio)
 
     def _node(self, where: str, number: int) -> int:
         numbers = np.asarray(self.numbers)
@@ -361,10 +361,10 @@ def _in_base_axes(matrix: Any, unknowns: Indices, axes: Floats) -> Any:
     return turn @ matrix @ turn.T
 
 
-def _geometric(given: Mapping[str, Any] | None, shapes: Floats) -> tuple[Geometric, list[str]]:
+def _geometric(geometric: Mapping[str, Any] | None, shapes: Floats) -> tuple[Geometric, list[str]]:
     """Geometric stiffness in coordinates, and which of it is missing."""
     n, matrices = shapes.shape[1], {}
-    for name, matrix in (given or {}).items():
+    for name, matrix in (geometric or {}).items():
         choice("geometric", name, LOADS)
         if matrix.shape != (len(shapes), len(shapes)):
             raise InputError(f"geometric.{name}", f"has the shape {matrix.shape}", f"give {(len(shapes),) * 2}")

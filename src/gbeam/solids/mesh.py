@@ -221,9 +221,9 @@ class SolidMesh(Value):
         clamped = np.zeros(len(at), dtype=bool)
         for name in [clamp] if isinstance(clamp, str) else clamp:
             clamped[group("clamp", name)] = True
-        given = {} if points is None else points
         named = {
-            name: _node(at, middles[numbers], name, getattr(place, "at", place), group) for name, place in given.items()
+            name: _node(at, middles[numbers], name, getattr(place, "at", place), group)
+            for name, place in (points or {}).items()
         }
         tip = named.pop(TIP, int(np.argmax(np.linalg.norm(middles[numbers], axis=1))))
         weights = np.zeros(len(at))
@@ -246,7 +246,7 @@ class SolidMesh(Value):
         if thickness is not None:
             read += THICKNESS
         about["links"] = tied
-        about["turns"] = {name: tuple(place.turn) for name, place in given.items() if isinstance(place, Place)}
+        about["turns"] = {name: tuple(place.turn) for name, place in (points or {}).items() if isinstance(place, Place)}
         solid = cls(at, blocks, clamped, numbers, weights, named | {TIP: tip}, **about)
         refuse_folded(solid)
         refuse_loose(solid)
@@ -332,7 +332,7 @@ class SolidMesh(Value):
         error, doubts = mesh_errors(frequency, coarser)
         nodal, length = NodalStress.of(self, shapes), float(np.linalg.norm(linked.points, axis=1).max())
 
-        def made(n: int, damping_ratio: Any) -> Structure:
+        def build(n: int, damping_ratio: Any) -> Structure:
             """Structure in the first coordinates."""
             masses, *paths = particles_of(linked.points, everywhere[..., :n], mass)
             stiffness = reduced.stiffness[:n, :n]
@@ -355,7 +355,7 @@ class SolidMesh(Value):
             )
             return replace(structure, recovery=replace(nodal, size=n))
 
-        return SolidModel(self, reduced.structure(made, damping_ratio), frequency, error)
+        return SolidModel(self, reduced.structure(build, damping_ratio), frequency, error)
 
     @property
     def named_points(self) -> tuple[str, ...]:

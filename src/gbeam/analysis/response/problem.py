@@ -208,7 +208,7 @@ def problem_of(structure: Structure, motion: Motion, start: float, initial: Init
         rest = None if any(map(is_jax, (c.mass, c.damping, c.stiffness))) else (c.damping, c.stiffness)
         equations = LinearEquations(c.mass, matrices, drive, lambda: c.terms, features, rest)
         return Problem(equations, q, qd, 0, stable)
-    return Problem(NonlinearEquations(OnBase(structure.equations), drive, vibrates=True), q, qd, 0, stable)
+    return Problem(NonlinearEquations(OnBase(structure.equations), drive), q, qd, 0, stable)
 
 
 def _on_free_hub(structure: Structure, hub: Any, start: float, initial: Initial) -> Problem:

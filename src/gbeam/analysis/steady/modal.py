@@ -31,8 +31,8 @@ def modes_at(
 ) -> Modes:
     """Modes about an operating point."""
     rigid = int(point.first and not np.abs(point.linear.stiffness[:, 0]).any())
-    own = slice(structure.resolved + point.first - rigid)  # with the hub's
-    moving = point.vibrations(gyroscopic=gyroscopic).oscillating(own)
+    deforming = slice(structure.resolved + point.first - rigid)  # with the hub's
+    moving = point.vibrations(gyroscopic=gyroscopic).oscillating(deforming)
     coordinates, direction = moving.modes[point.first :], point.directions(moving.modes)
     shape = np.moveaxis(structure.station_slopes(point.q) @ coordinates, -1, 0)
     # Turn each shape so that its largest component is 1.

@@ -49,7 +49,7 @@ def static_errors(point: OperatingPoint, displacement: Floats, loads: Loads | No
     computed = Quantities(displacement[-1:], loads.force[:, 0], loads.moment[:, 0], loads.stress.max(axis=1))
     more = enrichment(structure, point.base)
     which = driven(more, lambda rich, index: _lifted(rich, index, point))
-    rich, own = more.model("exact", directions=which)
+    rich, shared = more.model("exact", directions=which)
     at = _solved(rich, point)
     if at is None:
         return Errors(note=LOST), (LOST,)
@@ -57,8 +57,8 @@ def static_errors(point: OperatingPoint, displacement: Floats, loads: Loads | No
     same: Quantities | None = exact
     if structure.kind != rich.kind:
         alike = more.model(structure.kind, directions=which)[0]
-        there = _solved(alike, point)
-        same = None if there is None else quantities(alike, there)
+        rested = _solved(alike, point)
+        same = None if rested is None else quantities(alike, rested)
     length, slender = structure.length, structure.source is not None
     lacking = NO_THEORY
     if slender:
@@ -89,7 +89,7 @@ def static_errors(point: OperatingPoint, displacement: Floats, loads: Loads | No
         stress = ErrorEstimate()
         if rich.recovery is not None:
             away, size = (
-                float(np.linalg.norm(rich.recovery.felt(q))) for q in (at.p - _lifted(rich, own, point).p, at.p)
+                float(np.linalg.norm(rich.recovery.felt(q))) for q in (at.p - _lifted(rich, shared, point).p, at.p)
             )
             stress = ErrorEstimate(0.0, away / size if size else 0.0, total=away / size if size else 0.0)
         errors = Errors(fractions("tip", NOTHING**2 * length), worst, stress, note=note)

@@ -291,27 +291,27 @@ class Joint(Value):
             raise InputError(f"effort.{name}", f"is given beside rate.{name}", "keep one of them")
         return efforts
 
-    def _profiles(self, where: str, given: Any) -> dict[str, Profile]:
-        named = self._named(where, given, self._held)
+    def _profiles(self, where: str, values: Any) -> dict[str, Profile]:
+        named = self._named(where, values, self._held)
         return {name: as_profile(f"{where}.{name}", each) for name, each in named.items()}
 
-    def _numbers(self, where: str, given: Any, names: tuple[str, ...], every: tuple[str, ...] = ()) -> Floats:
+    def _numbers(self, where: str, named: Any, names: tuple[str, ...], every: tuple[str, ...] = ()) -> Floats:
         """Values by some names, of all of `every`: zero where they are not given."""
-        values = {name: finite(f"{where}.{name}", each) for name, each in self._named(where, given, names).items()}
+        values = {name: finite(f"{where}.{name}", each) for name, each in self._named(where, named, names).items()}
         return as_array([values.get(name, 0.0) for name in every or names])
 
-    def _named(self, where: str, given: Any, names: tuple[str, ...]) -> dict[str, Any]:
+    def _named(self, where: str, named: Any, names: tuple[str, ...]) -> dict[str, Any]:
         """Values by the names of coordinates; of a single coordinate the value alone will do."""
-        if given is None:
+        if named is None:
             return {}
-        if not isinstance(given, Mapping):
+        if not isinstance(named, Mapping):
             if len(names) != 1:
                 listed = ", ".join(names) or "none"
                 fix = f"say of which coordinate, by name; a {self.kind} joint has {listed}"
                 raise InputError(where, "is one value", fix)
-            return {names[0]: given}
-        for name in given:
+            return {names[0]: named}
+        for name in named:
             if name not in names:
                 listed = f"choose from {', '.join(names)}" if names else "leave it out"
                 raise InputError(f"{where}.{name}", f"is no coordinate of a {self.kind} joint", listed)
-        return dict(given)
+        return dict(named)
