@@ -108,7 +108,7 @@ class Trajectory:
         return replace(self, time=self.time[steps], q=self.q[steps], qd=self.qd[steps], qdd=self.qdd[steps])
 
 
-AT_ONCE = 5_000  # numbers of the states that are evaluated at once: of more, all sections of beams fill memory
+AT_ONCE, FEWEST = 5_000, 50  # numbers of the states that are evaluated at once, whose sections fill memory, and states
 
 
 def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> tuple[Array, Array, Array]:
@@ -136,7 +136,7 @@ def accelerations(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
 
 def _pieces(q: Array) -> list[slice]:
     count, n = q.shape
-    size = max(1, AT_ONCE // max(n, 1) ** 2)
+    size = max(FEWEST, AT_ONCE // max(n, 1) ** 2)
     return [slice(first, first + size) for first in range(0, count, size)]
 
 
