@@ -130,7 +130,7 @@ def options_of(*verbs: str) -> Any:
 if TYPE_CHECKING:
 
     class Options:
-        """Of all questions."""
+        """Options of all questions."""
 
     SmoothOptions = Options
     CampbellOptions = Options

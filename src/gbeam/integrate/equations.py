@@ -108,7 +108,8 @@ class Trajectory:
         return replace(self, time=self.time[steps], q=self.q[steps], qd=self.qd[steps], qdd=self.qdd[steps])
 
 
-AT_ONCE, FEWEST = 5_000, 50  # numbers of the states that are evaluated at once, whose sections fill memory, and states
+AT_ONCE = 5_000  # numbers of the states that are evaluated at once: of more, all sections of beams fill memory
+FEWEST = 50  # states evaluated at once: of fewer, each call costs more than its sums
 
 
 def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> tuple[Array, Array, Array]:

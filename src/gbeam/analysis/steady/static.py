@@ -91,7 +91,8 @@ def static_errors(point: OperatingPoint, displacement: Floats, loads: Loads | No
             away, size = (
                 float(np.linalg.norm(rich.recovery.felt(q))) for q in (at.p - _lifted(rich, shared, point).p, at.p)
             )
-            stress = ErrorEstimate(0.0, away / size if size else 0.0, total=away / size if size else 0.0)
+            share = away / size if size else 0.0
+            stress = ErrorEstimate(0.0, share, total=share)
         errors = Errors(fractions("tip", NOTHING**2 * length), worst, stress, note=note)
         return errors, _doubtful(errors)
     theory = described(structure, lacking.causes)
