@@ -153,6 +153,23 @@ def test_positions_at_the_tip_move_with_the_length(fast: Path) -> None:
         gb.sensitivity(fast, ["flight.tip.z"], ["beam.masses[0].at"], verb="static", overrides=massive)
     every = gb.sensitivity(fast, ["flight.tip.z"], verb="static", overrides=massive)
     assert "beam.masses[0].at" not in every.parameters and "beyond the tip" in every.not_varied[0]
+    pieces, line = [f"beam.line.pieces[{k}].length" for k in (0, 1)], '[{ length = "100 mm" }, { length = "0.2 m" }]'
+    found = gb.sensitivity(
+        fast, ["flight.tip.z"], pieces, verb="static", overrides=[*massive, f"beam.line={{ pieces = {line} }}"]
+    )
+    assert list(relative(found, "flight.tip.z").values()) == pytest.approx([1, 2], abs=1e-3)
+
+
+@pytest.mark.parametrize("made", [False, True], ids=["of a file", "made"])
+def test_positions_at_the_tip_of_a_body_move_with_its_length(made: bool) -> None:
+    """A strip of line density ρ with a mass m has √(E I / ρ L⁴) times a function of m / ρ L."""
+    arm: Any = "examples/robot_arm.toml"
+    still = ["system.gravity=[0, 0, 0]"]
+    if made:
+        arm, still = replace(gb.read_scenario(arm, still), title="made"), []
+    of, by = "modes[0].frequency", ["bodies.strip.length", "bodies.strip.material.density"]
+    by_length, by_density = relative(gb.sensitivity(arm, [of], by, verb="modes", overrides=still), of).values()
+    assert by_length - by_density == pytest.approx(-1.5, abs=1e-4) and -0.4 < by_density < -0.2
 
 
 @pytest.mark.parametrize(

@@ -25,7 +25,7 @@ from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.study import Study
 from gbeam.studies.evaluate import Question
-from gbeam.studies.parameters import PhysicalValue
+from gbeam.studies.parameters import PhysicalValue, changes_to
 
 # Of a case and its answer, a Study of run or another verb's facts: what is differentiated, (m,).
 Read = Callable[[Case, Any], Floats]
@@ -180,12 +180,7 @@ class Neighbourhood:
 
     def _changes(self, k: int | None, step: float) -> tuple[str, ...]:
         values = [value + (step if i == k else 0.0) for i, value in enumerate(self.values)]
-        return tuple(
-            change
-            for each, value in zip(self.parameters, values, strict=True)
-            if value != each.value
-            for change in each.overrides(value)
-        )
+        return changes_to(self.parameters, values)
 
     def _step(self, k: int, share: float) -> float:
         return share * abs(self.values[k]) or _AT_ZERO

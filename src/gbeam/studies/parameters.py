@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TypeVar
 
@@ -29,22 +30,19 @@ _FIXED = {
 }
 # Not among the default choice: lists of points, and limits, of which a motion may use none.
 _UNUSUAL = re.compile(r"\.(times|values|stations)\[|\.limits\.|\.record\.|fatigue_exponent")
-_AT_TIP = re.compile(r"(\.at|stations\[\d+\]|\.control_point)$")
-LENGTH = "beam.length"
+_LENGTH = re.compile(r"(beam|bodies\..+?)\.(?:line\.pieces\[\d+\]\.)?length")
+_AT_TIP = re.compile(r"(\.at|stations\[\d+\]|\.control_point|\.length)$")
+_NEAR_TIP = 1e-9  # of the length: written with as many digits
 
 
 @dataclass(frozen=True)
 class PhysicalValue:
-    """A number in a scenario, SI, by its path; `followers` are positions at the tip, which move with its length."""
+    """A number in a scenario, SI, by its path; `followers` are places by path at the tip, which move with a length."""
 
     path: str
     value: float
     kind: str
-    followers: tuple[str, ...] = ()
-
-    def overrides(self, value: float) -> tuple[str, ...]:
-        """Changes of the scenario that give it another value."""
-        return tuple(f"{path}={float(value)!r}" for path in (self.path, *self.followers))
+    followers: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def unit(self) -> str:
@@ -82,12 +80,36 @@ def physical_values(scenario: Template, names: Sequence[str] = ()) -> list[Physi
 
 def _made(path: str, every: dict[str, tuple[float, str]]) -> PhysicalValue:
     value, kind = every[path]
-    return PhysicalValue(path, value, kind, tuple(_at_tip(every)) if path == LENGTH else ())
+    return PhysicalValue(path, value, kind, dict(_at_tip(path, every)))
 
 
-def _at_tip(every: dict[str, tuple[float, str]]) -> Iterable[str]:
-    length, _ = every[LENGTH]
-    return (path for path, (value, _) in every.items() if value == length and _AT_TIP.search(path))
+def _at_tip(path: str, every: dict[str, tuple[float, str]]) -> Iterator[tuple[str, float]]:
+    """Places at the tip of the beam of which a length, or that of a piece of its line, is at a path."""
+    if (match := _LENGTH.fullmatch(path)) is None:
+        return
+    beam = match[1]
+    pieces = re.compile(rf"{re.escape(beam)}\.line\.pieces\[\d+\]\.length")
+    length = sum(value for each, (value, _) in every.items() if pieces.fullmatch(each)) or every[path][0]
+    for each, (value, _) in every.items():
+        along = each.startswith(f"{beam}.") or (beam == "beam" and each.startswith("motion."))
+        if along and each != path and _AT_TIP.search(each) and math.isclose(value, length, rel_tol=_NEAR_TIP):
+            yield each, value
+
+
+def changed(parameters: Sequence[PhysicalValue], values: Sequence[float]) -> dict[str, float]:
+    """Values of the scenario that differ, by their paths, where parameters have these values."""
+    others: dict[str, float] = {}
+    for each, value in zip(parameters, values, strict=True):
+        if value != each.value:
+            others[each.path] = float(value)
+            for path, at in each.followers.items():
+                others[path] = others.get(path, at) + float(value) - each.value
+    return others
+
+
+def changes_to(parameters: Sequence[PhysicalValue], values: Sequence[float]) -> tuple[str, ...]:
+    """Changes of the scenario, as text, that give parameters these values."""
+    return tuple(f"{path}={value!r}" for path, value in changed(parameters, values).items())
 
 
 def _why_fixed(path: str) -> str | None:
@@ -133,9 +155,9 @@ def with_values(
     if recorded and Path(folder).resolve() != base.source.folder.resolve():
         fix = f"write it beside {os.fspath(scenario)}"
         raise InputError(os.fspath(folder), "is not the folder that the scenario's records are named from", fix)
-    chosen = zip(physical_values(ScenarioTemplate(base), paths), values, strict=True)
-    changes = {path: (value, each.kind) for each, value in chosen for path in (each.path, *each.followers)}
-    return with_quantities(base.source, changes)
+    template = ScenarioTemplate(base)
+    others, every = changed(physical_values(template, paths), values), template.quantities()
+    return with_quantities(base.source, {path: (value, every[path][1]) for path, value in others.items()})
 
 
 def _quantity(each: PhysicalValue, text: float | str) -> float:

@@ -22,7 +22,7 @@ from gbeam.scenario.values import path_text
 from gbeam.studies.derivatives import Neighbourhood, Slopes
 from gbeam.studies.evaluate import Question
 from gbeam.studies.figures import Facts, Keys, answer_facts, find, node_at, offered, own_keys, unit_at, usual, value_at
-from gbeam.studies.parameters import PhysicalValue, physical_values
+from gbeam.studies.parameters import PhysicalValue, changes_to, physical_values
 from gbeam.studies.template import template_of
 
 OPTION = "--of"
@@ -197,7 +197,7 @@ def _possible(
     for each in values:
         try:
             for share in (-1e-3, 1e-3):
-                question.case(each.overrides(each.value * (1 + share) if each.value else share * 1e-3))
+                question.case(changes_to([each], [each.value * (1 + share) if each.value else share * 1e-3]))
         except GbeamError as error:
             reason = re.sub(r"^--set [^:]*: ", "", str(error).splitlines()[0])
             if strict:
