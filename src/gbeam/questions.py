@@ -177,8 +177,10 @@ def motion_of(motions: Mapping[str, Any], name: str | None, kind: str = "") -> s
 
 def prepared(case: AnyCase, name: str) -> Any:
     """A motion prepared for the response's times; None of a ground at rest."""
-    first, motion = case.response.start, case.environments[name]
-    return None if motion is None else motion.over(first, first + case.response.duration)
+    settings, motion = case.response, case.environments[name]
+    if motion is None or settings is None:
+        return motion
+    return motion.over(settings.start, settings.start + settings.duration)
 
 
 def reduced(case: AnyCase, needs: Needs) -> AnyCase:
@@ -190,7 +192,7 @@ def reduced(case: AnyCase, needs: Needs) -> AnyCase:
         return case
     from gbeam.analysis.case import SystemCase
 
-    response = replace(case.response, estimate=False)
+    response = replace(case.over_time, estimate=False)
     compared = isinstance(case, SystemCase) and case.tracks  # by what all of its beams carry
     if response.step is not None and not (needs.loads or compared):
         response = replace(response, loads=False)
@@ -209,7 +211,7 @@ def _structure(case: AnyCase, needs: Needs) -> Any:
 
 
 def _time(case: AnyCase, at: float | None) -> float:
-    return case.response.start if at is None else at
+    return case.start if at is None else at
 
 
 @question(
@@ -252,6 +254,8 @@ def static(
     from gbeam.analysis.steady.static import static
 
     structure, time = _structure(case, needs), _time(case, at)
+    if getattr(structure, "work", None) is None:  # else the loads of a beam bend it
+        case.require_motion()
     names = list(case.environments) if motion is None else [motion_of(case.environments, motion)]
     return tuple(static(structure, prepared(case, name), time, name=name) for name in names)
 
@@ -367,7 +371,7 @@ def place(case: AnyCase, motion: str | None = None, at: float | None = None, nee
     name, current = machine_of(case, motion)
     structure, names = case.assemble(), (case.tracks[name], name)
     choice = choice_of(current, turns=usual_turns(structure))
-    return place(structure, current.flight, choice, case.response, usual(structure), current=current, names=names)
+    return place(structure, current.flight, choice, case.over_time, usual(structure), current=current, names=names)
 
 
 @question(

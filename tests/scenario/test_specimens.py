@@ -11,6 +11,7 @@ from scipy.io import mmwrite
 
 import gbeam as gb
 from gbeam.errors import InputError
+from gbeam.questions import QUESTIONS
 from gbeam.report.page.result import shown
 from gbeam.scenario import ScenarioError
 from tests.solids.bodies import block
@@ -89,6 +90,15 @@ def test_a_solid_alone_is_what_python_makes_of_it(folder: Path) -> None:
     a = response.base.a_WO_B[middle]
     mass = case.structure.coefficients.rigid[0]
     assert response.loads.root_force[middle] == pytest.approx(mass * a, rel=1e-3, abs=1e-6)
+
+
+def test_a_solid_at_rest_needs_neither_motion_nor_duration(folder: Path) -> None:
+    case, moved = case_of(folder, BODY), case_of(folder, BODY + FLIGHT)
+    frequency = QUESTIONS["modes"].answer(case).frequency
+    np.testing.assert_allclose(frequency, gb.modes(moved.assemble()).frequency, rtol=1e-12)
+    np.testing.assert_allclose(gb.linearize(case.assemble()).a, gb.linearize(moved.assemble(), moved.motions["turn"]).a)
+    with pytest.raises(InputError, match="motion is missing; add what the base does"):
+        gb.study(case)
 
 
 def test_a_solid_on_a_fixed_joint_moves_as_on_the_base(folder: Path) -> None:

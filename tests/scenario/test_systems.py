@@ -10,7 +10,10 @@ import pytest
 
 import gbeam as gb
 from gbeam.mechanics.tree.joints import KINDS
+from gbeam.questions import QUESTIONS
 from gbeam.scenario import Diagnostic, ScenarioError, build, load, loads
+
+from ..scenarios import SLEW, SPECIMEN, model, response
 
 SATELLITE = (Path(__file__).parents[2] / "examples" / "satellite_two_panels.toml").read_text(encoding="utf-8")
 FLIGHT = """
@@ -198,10 +201,20 @@ def test_a_body_that_hangs_on_nothing() -> None:
     assert (diagnostic.path, diagnostic.message, diagnostic.line) == ("bodies.bus", "hangs on nothing", 5)
 
 
-def test_a_system_needs_no_motion_and_a_beam_does() -> None:
+def test_a_scenario_without_a_motion_rests_and_a_beam_is_not_run_there() -> None:
     assert not load("examples/robot_arm.toml").motion
-    with pytest.raises(ScenarioError, match="motion is missing"):
-        loads('[beam]\nlength = "1 m"\n')
+    text = SPECIMEN + model("FOAM", 1, 1, 1)
+    case, moved = build(loads(text)), build(loads(text + SLEW + response("4 s")))
+    assert case.response is None and list(case.environments) == ["ground"]
+    at_rest, on_hub = (gb.modes(each.assemble()).frequency for each in (case, moved))
+    assert QUESTIONS["modes"].answer(case).frequency == pytest.approx(at_rest, rel=1e-12)
+    assert at_rest == pytest.approx(on_hub, rel=1e-12)
+    assert gb.describe(case).duration is None and gb.describe(moved).duration == 4.0
+    for refused in (gb.study, QUESTIONS["static"].answer, gb.compare_models):
+        with pytest.raises(gb.InputError, match="motion is missing; add what the base does"):
+            refused(case)
+    with pytest.raises(gb.InputError, match="response duration is missing; no record gives one"):
+        gb.study(build(loads(text + SLEW)))
 
 
 def test_a_drive_beside_a_free_joint_changes_no_mode() -> None:

@@ -48,13 +48,14 @@ class _InEnvironments(Value):
 
     title: str
     motions: Mapping[str, Motion]
-    response: ResponseSettings
+    response: ResponseSettings | None
     no_beam: ClassVar[tuple[str, str]] = ("", "")  # why it is none, and what to ask in place of what is of one beam
 
     def __repr__(self) -> str:
         motions = ", ".join(f"{name}: {each.kind}" if each else name for name, each in self.environments.items())
         of = self.model.kind if isinstance(self, Case) else repr(self.assemble())  # type: ignore[attr-defined]
-        return f"{type(self).__name__}({self.title!r}, {of}, {{{motions}}}, {self.response.duration:g} s)"
+        lasting = "" if self.response is None else f", {self.response.duration:g} s"
+        return f"{type(self).__name__}({self.title!r}, {of}, {{{motions}}}{lasting})"
 
     @property
     def automatic(self) -> bool:
@@ -65,6 +66,25 @@ class _InEnvironments(Value):
     def environments(self) -> Mapping[str, Motion | None]:
         """Motions of the base, by name; the ground at rest where there is none."""
         return self.motions or {GROUND: None}
+
+    @property
+    def start(self) -> float:
+        """Time at which motions are frozen unless another is asked for, s."""
+        return 0.0 if self.response is None else self.response.start
+
+    @property
+    def over_time(self) -> ResponseSettings:
+        """Settings of the response; InputError where no duration is given, or nothing moves one structure's base."""
+        self.require_motion()
+        if self.response is None:
+            raise InputError("response", "duration is missing", 'no record gives one: add duration = "16 s"')
+        return self.response
+
+    def require_motion(self) -> None:
+        """Raise InputError where nothing moves the base of one structure."""
+        if not self.motions and not isinstance(self, SystemCase):
+            fix = 'add what the base does, each [motion.NAME], such as kind = "flight"; `gbeam new` shows how'
+            raise InputError("motion", "is missing", fix)
 
     def one_beam(self, where: str, what: str) -> Case:
         """Refuse an answer that is of one beam; return the case where it is of one.
@@ -91,8 +111,9 @@ class Case(_InEnvironments):
     beam : Beam
     model : Model
     motions : mapping of str to motion
-        By name, in the scenario's order.
-    response : ResponseSettings
+        By name, in the scenario's order; the base rests without any.
+    response : ResponseSettings or None
+        None where nothing is computed over time.
     tracks : mapping of str to str
         Name of the flight that each centrifuge tracks.
     stations : tuple of float
@@ -121,7 +142,7 @@ class Case(_InEnvironments):
     beam: Beam
     model: Model
     motions: Mapping[str, Motion]
-    response: ResponseSettings
+    response: ResponseSettings | None
     tracks: Mapping[str, str] = field(default_factory=dict)
     stations: tuple[float, ...] = ()
     accept: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
@@ -171,7 +192,8 @@ class SystemCase(_InEnvironments):
     system : System
     motions : mapping of str to motion
         Of the ground, by name; without any it rests.
-    response : ResponseSettings
+    response : ResponseSettings or None
+        None where nothing is computed over time.
     tracks : mapping of str to str
         Name of the flight that each centrifuge tracks.
     accept : mapping of str to mapping
@@ -200,7 +222,7 @@ class SystemCase(_InEnvironments):
     title: str
     system: System
     motions: Mapping[str, Motion]
-    response: ResponseSettings
+    response: ResponseSettings | None
     tracks: Mapping[str, str] = field(default_factory=dict)
     accept: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     provenance: Provenance | None = None
@@ -262,8 +284,9 @@ class SpecimenCase(_InEnvironments):
         Of the specimen.
     structure : Structure
     motions : mapping of str to motion
-        By name, in the scenario's order.
-    response : ResponseSettings
+        By name, in the scenario's order; the base rests without any.
+    response : ResponseSettings or None
+        None where nothing is computed over time.
     tracks : mapping of str to str
         Name of the flight that each centrifuge tracks.
     accept : mapping of str to mapping
@@ -292,7 +315,7 @@ class SpecimenCase(_InEnvironments):
     name: str
     structure: Structure
     motions: Mapping[str, Motion]
-    response: ResponseSettings
+    response: ResponseSettings | None
     tracks: Mapping[str, str] = field(default_factory=dict)
     accept: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     provenance: Provenance | None = None
@@ -385,7 +408,7 @@ def describe(case: Case | SpecimenCase | SystemCase) -> Description | SpecimenDe
             **_described(case, doubts),
         )
     structure, settings = case.assemble(), case.response
-    span = settings.start, settings.start + settings.duration
+    span = case.start, case.start + (0.0 if settings is None else settings.duration)
     doubts = [input_warnings(structure, motion, name=name, span=span) for name, motion in case.motions.items()]
     if isinstance(case, SpecimenCase):
         total, *moment = (float(each) for each in structure.coefficients.rigid[:4])
@@ -419,7 +442,11 @@ def describe(case: Case | SpecimenCase | SystemCase) -> Description | SpecimenDe
 def _described(case: AnyCase, doubts: Sequence[Sequence[str]]) -> dict[str, Any]:
     """Parts of a description that every case has."""
     free = isinstance(case, SystemCase) or any(motion.free for motion in case.motions.values())
-    settings = case.response.chosen(free=free)
+    settings = None if case.response is None else case.response.chosen(free=free)
+    over_time: dict[str, Any] = {}
+    if settings is not None:
+        over_time = {each: getattr(settings, each) for each in ("start", "duration", "step", "integrator")}
+        doubts = (*doubts, settings.warnings)
     return dict(
         title=case.title,
         motions={name: motion.kind for name, motion in case.motions.items()},
@@ -429,11 +456,8 @@ def _described(case: AnyCase, doubts: Sequence[Sequence[str]]) -> dict[str, Any]
             for name, motion in case.motions.items()
             if isinstance(motion, Flight) and motion.record is not None
         },
-        start=settings.start,
-        duration=settings.duration,
-        step=settings.step,
-        integrator=settings.integrator,
-        warnings=tuple(dict.fromkeys(warning for each in (*doubts, settings.warnings) for warning in each)),
+        **over_time,
+        warnings=tuple(dict.fromkeys(warning for each in doubts for warning in each)),
     )
 
 

@@ -57,11 +57,12 @@ def study(case: Case | SpecimenCase | SystemCase, progress: Progress = None) -> 
     >>> print(f"{answer.comparisons[0].relative[2]:.1%}")
     0.0%
     """
-    if case.automatic and not case.response.estimate:
+    settings = case.over_time
+    if case.automatic and not settings.estimate:
         fix = "give it, or leave response.estimate out"
         raise InputError("model.modes", "is left out, and estimate = false leaves nothing to choose it by", fix)
     responses, failures = _answers(case, progress)
-    while isinstance(case, Case) and case.automatic and _lacks_shapes(responses, case.response):
+    while isinstance(case, Case) and case.automatic and _lacks_shapes(responses, settings):
         richer = case.model.richer()
         if richer is None:
             break
@@ -101,7 +102,7 @@ def _answers(case: AnyCase, progress: Progress) -> tuple[dict[str, Any], dict[st
         def report(what: str, share: float) -> None:
             tell(progress, f"{name}: {what}", share)
 
-        response = simulate(structure, motion, case.response, name=name, progress=report)
+        response = simulate(structure, motion, case.over_time, name=name, progress=report)
         return replace(response, provenance=case.provenance)
 
     responses: dict[str, Any] = {}

@@ -110,7 +110,7 @@ def compare_models(
             def report(what: str, share: float, doing: str = f"{kind} on {name}", done: int = i) -> None:
                 tell(progress, f"{doing}: {what}", (done + share) / len(chosen))
 
-            run = partial(_answer, structure, motion, case.response, name, point, report)
+            run = partial(_answer, structure, motion, case.over_time, name, point, report)
             answers[kind, name] = _timed(run)
             answer = answers[kind, name][0]
             point = point or (answer.point if isinstance(answer, _Tip) and isinstance(structure, System) else point)

@@ -215,9 +215,9 @@ def _skin(file: Path, _changed: int) -> dict[str, Any]:
 def load_curves(text: str, folder: Path) -> dict[str, Any]:
     """The acceleration (or specific force) of every flight over the response's time, in g, base axes."""
     case = build(loads(text, folder=folder))
-    start, duration = case.response.start, case.response.duration
-    time = np.linspace(start, start + duration, SAMPLES)
     flights = {name: motion for name, motion in case.motions.items() if isinstance(motion, Flight)}
+    start, duration = case.start, 0.0 if case.response is None else case.response.duration
+    time = np.linspace(start, start + duration, SAMPLES)
     return {
         "time": time.tolist(),
         "flights": {

@@ -191,7 +191,7 @@ class Input:
 
     def time(self, text: str | None) -> float:
         """Time of ``--at``, s; the response's start where it is not given."""
-        return self.case.response.start if text is None else number("--at", text, "time")
+        return self.case.start if text is None else number("--at", text, "time")
 
 
 def signed(facts: dict[str, Any], provenance: Provenance | None) -> dict[str, Any]:

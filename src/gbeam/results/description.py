@@ -68,10 +68,12 @@ class Described(Part):
 
     title: str = fact("title of the scenario")
     motions: Mapping[str, str] = fact("kind of each motion, by name", key=None)
-    start: float = fact("start of the response", "s", key="response.start")
-    duration: float = fact("duration of the response", "s", key="response.duration")
-    step: float | None = fact("time step; None for an automatic one", "s", key=None)
-    integrator: str = fact("integrator", key="response.integrator")
+    start: float | None = fact(
+        "start of the response; None where none is asked for", "s", key="response.start", optional=True, default=None
+    )
+    duration: float | None = fact("duration of the response", "s", key="response.duration", optional=True, default=None)
+    step: float | None = fact("time step; None for an automatic one", "s", key=None, default=None)
+    integrator: str | None = fact("integrator", key="response.integrator", optional=True, default=None)
     tracks: Mapping[str, str] = fact("name of the flight that each centrifuge tracks", key=None, default_factory=dict)
     records: Mapping[str, RecordSummary] = rows("records of flights, by name", "motion", default_factory=dict)
     warnings: tuple[str, ...] = fact("what is implausible", default=())
@@ -81,9 +83,9 @@ class Described(Part):
     def kinds(self) -> Mapping[str, Kind]:
         return {name: Kind(kind, self.tracks.get(name, "")) for name, kind in self.motions.items()}
 
-    @declared("s", "time step, or auto", role="fact", key="response.step")
-    def step_or_auto(self) -> float | str:
-        return "auto" if self.step is None else self.step
+    @declared("s", "time step, or auto", role="fact", key="response.step", optional=True)
+    def step_or_auto(self) -> float | str | None:
+        return None if self.duration is None else self.step or "auto"
 
 
 @dataclass(frozen=True, repr=False, eq=False, kw_only=True)

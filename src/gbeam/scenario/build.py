@@ -79,7 +79,7 @@ def build(scenario: AnyScenario, *, ahead: bool = False) -> AnyCase:
         span = (response.start, response.start + response.duration)
         motions |= centrifuges(parts, scenario, motions, span, ahead=ahead)
     accept = _acceptance(parts, scenario, _points(structure))
-    if parts.errors or None in structure.values() or response is None:
+    if parts.errors or None in structure.values():
         raise placed(scenario, parts.errors)
     case = parts.attempt(
         "",
@@ -122,7 +122,7 @@ def build_machines(scenario: schema.Environments) -> dict[str, Centrifuge]:
         span = (response.start, response.start + response.duration)
         motions |= centrifuges(parts, scenario, motions, span, ahead=True)
     _acceptance(parts, scenario)
-    if parts.errors or response is None:
+    if parts.errors:
         raise placed(scenario, parts.errors)
     return {name: machine for name in scenario.motion if isinstance(machine := motions[name], Centrifuge)}
 
@@ -181,7 +181,7 @@ def _acceptance(
 
 
 def _response(parts: Collector, table: schema.Response, motions: Mapping[str, Motion]) -> ResponseSettings | None:
-    """Settings and, where no duration is written, the time that the records cover."""
+    """Settings and, where no duration is written, the time that the records cover; None where there is neither."""
     from gbeam import integrate
     from gbeam.analysis.response.problem import Initial
     from gbeam.analysis.response.settings import ResponseSettings
@@ -201,7 +201,7 @@ def _response(parts: Collector, table: schema.Response, motions: Mapping[str, Mo
     duration = table.duration
     if duration is None:
         if not covered:
-            return None  # the record could not be read, which is among the errors
+            return None
         duration = min(last for _, last in covered) - start
         if duration <= 0:
             parts.errors.append(InputError("response", "has no time that all records cover", "add a duration"))

@@ -113,10 +113,10 @@ class Neighbourhood:
 
     def grid(self, name: str) -> Grid:
         """Steps of the run of a motion."""
-        return Grid.of(self.case.assemble(), self.case.motions[name], self.case.response, self.done(name))
+        return Grid.of(self.case.assemble(), self.case.motions[name], self.case.over_time, self.done(name))
 
     def _differentiated(self, structure: Structure, name: str, grid: Grid) -> Differentiated:
-        motion, settings = self.case.motions[name], self.case.response
+        motion, settings = self.case.motions[name], self.case.over_time
         self._about[name] = Differentiated(structure, motion, settings, grid, name, **self.parts)
         return self._about[name]
 
@@ -269,7 +269,7 @@ def _runs(case: Case, steps: Mapping[str, float]) -> Study:
     """The responses in some environments by steps that are given, without an estimate of their errors."""
     structure, responses = case.assemble(), {}
     for name, step in steps.items():
-        settings = replace(case.response, step=step, estimate=False)
+        settings = replace(case.over_time, step=step, estimate=False)
         responses[name] = simulate(structure, case.motions[name], settings, name=name)
     return study_of(case, responses)
 

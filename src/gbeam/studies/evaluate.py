@@ -196,9 +196,11 @@ def settled(question: Question, case: AnyCase, cases: int) -> Question:
     An automatic step takes several runs, whose programs a few cases do not repay; so do automatic numbers of shapes.
     """
     settings = reduced(case, question.needs).response
+    if settings is None or not question.together:
+        return question
     enough = settings.step is not None or cases >= TOGETHER
     able = isinstance(case, Case) and not settings.estimate and not case.automatic
-    return replace(question, together=question.together and enough and able)
+    return replace(question, together=enough and able)
 
 
 def rows(question: Question, tasks: Sequence[Task]) -> list[Row]:

@@ -165,7 +165,7 @@ def _check_clock(at: Floats, path: str, modal: bool, case: AnyCase) -> None:
         if (at < 1).any() or (at % 1 != 0).any() or len(set(at)) < len(at):
             raise InputError(OPTION, f"{path} has modes that are no numbers 1, 2, …", "number each mode once")
         return
-    start, end = case.response.start, case.response.start + case.response.duration
+    start, end = case.over_time.start, case.over_time.start + case.over_time.duration
     if len(at) < 2:
         raise InputError(OPTION, f"{path} has one time", "give two or more, which increase")
     if (np.diff(at) <= 0).any():

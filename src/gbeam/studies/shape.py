@@ -181,7 +181,8 @@ def _grounded(case: SystemCase, name: str | None) -> System:
     if not case.motions:
         return case.system
     chosen = motion_of(case.motions, name)
-    times = np.linspace(case.response.start, case.response.start + case.response.duration, _POINTS)
+    settings = case.over_time
+    times = np.linspace(settings.start, settings.start + settings.duration, _POINTS)
     base = case.motions[chosen].base(times)
     load = np.asarray(base.a_WO_B)
     turning = max(float(np.abs(each).max()) for each in (base.w_WB_B, base.alpha_WB_B))

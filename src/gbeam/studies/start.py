@@ -40,8 +40,8 @@ class OverTime:
         """The question with these histories."""
         if not self.names:
             return question
-        first = case.response.start
-        times = np.linspace(first, first + case.response.duration, self.count)
+        settings = case.over_time
+        times = np.linspace(settings.start, settings.start + settings.duration, self.count)
         histories: tuple[Any, ...]
         if isinstance(case, SystemCase):
             histories = tuple(read_system_history(each, case) for each in self.names)

@@ -35,6 +35,7 @@ from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import sections
 from gbeam.mechanics.structure import Sections, Structure
 from gbeam.mechanics.tree.system import System
+from gbeam.motion import Flight
 from gbeam.motion.bases.base import mapped
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.series import complex_step
@@ -265,7 +266,7 @@ def linearize(
     ----------
     structure : Structure or System
     motion : Flight, Centrifuge or Hub
-        Of the root of a structure, or of the ground of a system, which rests without one. A free hub has the torque as
+        Of the root of a structure, or of the ground of a system; either rests without one. A free hub has the torque as
         input; on any other base the root's acceleration (specific force where gravity acts, and then called so) and the
         angular acceleration are, in base axes. The components of each load on the beam are inputs too.
     time : float
@@ -327,8 +328,7 @@ def linearize(
         frequency, errors, doubts = _poles(state, structure)
         return replace(plant, frequency=frequency, errors=errors, warnings=plant.warnings + doubts)
     choice("loop", loop, ("open",))
-    if motion is None:
-        raise InputError("motion", "is missing", "give a Flight, a Hub or a Centrifuge")
+    motion = Flight(z=0.0) if motion is None else motion
     structure.require_coordinates()
     structure.require_damping("the state-space model")
     if rate is None:

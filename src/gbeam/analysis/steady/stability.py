@@ -145,7 +145,8 @@ def turned(
     if turning is not None:
         raise InputError("turning", "is given of one beam", "leave it out: its hub turns")
     if motion is None:
-        raise InputError("motion", f"is missing: {what} needs a hub", "give gb.Hub(radius=...)")
+        fix = 'give gb.Hub(radius=...), or [motion.NAME] with kind = "hub"'
+        raise InputError("motion", f"is missing: {what} needs a hub", fix)
     hub, values = hub_of(motion, what, instead, name), structure.load_values
 
     def path(of: Structure, rate: float) -> OperatingPoint:

@@ -168,7 +168,7 @@ def place(
             structure,
             current.flight,
             choice,
-            loaded.case.response,
+            loaded.case.over_time,
             weights,
             current=current,
             names=(loaded.case.tracks[name], name),

@@ -78,7 +78,8 @@ class Response(Table):
     """Response over time."""
 
     duration: Duration | None = optional(
-        "length of the computation; left out beside a record, of which `to` asks for a part"
+        "length of what is computed over time; left out beside a record, of which `to` asks for a part, and where "
+        "answers of one time are asked for, such as modes"
     )
     step: Step = Field(default="auto", description="time step, or auto")
     integrator: Literal["newmark", "hht", "generalized-alpha", "gauss"] | None = optional(

@@ -118,7 +118,8 @@ class Environments(Titled):
     """A scenario without a beam: the motions and how long they last. Enough to plan a machine's."""
 
     motion: dict[Annotated[str, AfterValidator(motion_name)], Motion] = Field(
-        min_length=1, description="what the base does: one environment or more, each [motion.NAME]"
+        default_factory=dict,
+        description="what the base does, each [motion.NAME]; without any it rests, which run of one structure refuses",
     )
     response: Response = Field(default_factory=Response, description="response over time")
     sweep: Sweep | None = optional("many cases, for gbeam sweep")
@@ -149,7 +150,8 @@ class Environments(Titled):
             if isinstance(motion, Centrifuge):
                 yield from self._tracking(name, motion)
         recorded = any(isinstance(motion, Flight) and motion.record for motion in self.motion.values())
-        if self.response.duration is None and not recorded:
+        machines = any(isinstance(motion, Centrifuge) for motion in self.motion.values())  # which plan for these times
+        if machines and self.response.duration is None and not recorded:
             yield (
                 ("response",),
                 wrong("duration is missing", 'no record gives one: add duration = "16 s"', mark="key"),

@@ -35,9 +35,8 @@ from gbeam.scenario.schema.fields import (
     refuse,
     wrong,
 )
-from gbeam.scenario.schema.motion import Motion
 from gbeam.scenario.schema.profile import ForceOverTime, MomentOverTime, SpeedOverTime, TurnOverTime
-from gbeam.scenario.schema.scenario import Environments, Model, Titled, motion_name
+from gbeam.scenario.schema.scenario import Environments, Model, Titled
 from gbeam.scenario.schema.specimen import (
     Direction,
     MatricesBody,
@@ -270,10 +269,6 @@ _BESIDE = {
 
 class SystemScenario(Environments, Tree):
     """A validated scenario of a system of bodies: SI floats throughout, frozen."""
-
-    motion: dict[Annotated[str, AfterValidator(motion_name)], Motion] = Field(
-        default_factory=dict, description="what the ground does, which rests without: each [motion.NAME]"
-    )
 
     @model_validator(mode="before")
     @classmethod
