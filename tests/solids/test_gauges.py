@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -16,7 +16,7 @@ from gbeam.cli import main
 from gbeam.scenario import ScenarioError
 from gbeam.structure.beam import fibre_strain
 
-from .bodies import STEEL, block, solid
+from .bodies import STEEL, STIFF, block, solid
 from .test_damage_at_points import HALF, B, H, L, beam, runs
 
 TURN = (0.0, 0.0, np.pi / 6)
@@ -90,6 +90,47 @@ def test_gauges_of_a_linear_model_are_those_of_the_beam() -> None:
     assert gains[0] == pytest.approx(gains[1], rel=5e-3)
     rest = model().stress(gb.static(model().structure, acceleration=(0.0, 0.0, 1.0)))
     assert rest.strain_at("half")[0] == pytest.approx(gains[0], rel=1e-4)
+
+
+def gain(plant: gb.StateSpace, name: str, rate: float) -> complex:
+    """From the acceleration of the base along z, at an angular frequency in rad/s."""
+    one = plant.select(inputs=["base_acceleration_z"], outputs=[name])
+    return complex((one.c @ np.linalg.solve(1j * rate * np.eye(len(one.a)) - one.a, one.b) + one.d)[0, 0])
+
+
+def test_gauges_in_a_system_are_those_of_the_structure_alone() -> None:
+    """A solid on a fixed joint, and a bent beam with a mass that hangs on its tip in place of one that is its own."""
+    section, lump = gb.Section.rectangle(width=B, thickness=H), gb.RigidBody(0.1, (2e-6, 3e-6, 4e-6))
+    kept = gb.Model("exact", axial=1, y=2, z=3, shapes="clamped-free")
+    bare, laden = (
+        gb.assemble(gb.Beam(L, section, STIFF, damping_ratio=0.0, masses=masses), kept)
+        for masses in ([], [gb.PointMass(L, lump.mass, inertia=(2e-6, 3e-6, 4e-6))])
+    )
+    hung = {"lump": lump}, {"end": gb.Joint("fixed", "lump", on="bar.tip")}
+    solid_gauges = [gb.Gauge("half"), gb.Gauge("askew")]
+    fibres = [gb.Gauge(x, y=0.3 * B, z=0.5 * H) for x in (0.1, 0.0, HALF)]
+    for one, bar, gauges, (bodies, joints) in (
+        (model().structure, model().structure, solid_gauges, ({}, {})),
+        (laden, bare, fibres, hung),
+    ):
+        base = gb.Flight(x=-2.0, y=10.0, z=30.0)
+        alone = gb.linearize(one, base, gauges=gauges)
+        system = gb.System({"bar": bar, **bodies}, {"wall": gb.Joint("fixed", "bar"), **joints})
+        tree = gb.linearize(system, base, gauges=[replace(each, body="bar") for each in gauges])
+        for k, _ in enumerate(gauges):
+            name = f"strain_{k + 1}"
+            read = (each.output[[signal.name for signal in each.outputs].index(name)] for each in (alone, tree))
+            assert next(read) == pytest.approx(next(read), rel=1e-9) and gain(alone, name, 0.0) != 0
+            assert gain(tree, name, 200.0) == pytest.approx(gain(alone, name, 200.0), rel=1e-9)
+        first = gb.linearize(
+            system, base, gauges=[replace(gauges[0], body="bar")], outputs=["bar.tip.place_z", "strain_1"]
+        )
+        assert [each.name for each in first.outputs] == ["bar.tip.place_z", "strain_1"]
+        assert gain(first, "strain_1", 200.0) == gain(tree, "strain_1", 200.0)
+        with pytest.raises(gb.InputError, match=r"gauges\[0\].body is 'lump'; choose one of bar"):
+            gb.linearize(system, gauges=[replace(gauges[0], body="lump")])
+        with pytest.raises(gb.InputError, match=r"gauges\[0\].body is 'bar', and there is one structure; leave it out"):
+            gb.linearize(one, base, gauges=[replace(gauges[0], body="bar")])
 
 
 @pytest.mark.parametrize(
@@ -171,7 +212,7 @@ def test_the_stiffness_of_a_solid_is_fitted_to_a_gauge(scenario: Path) -> None:
 
 def test_a_gauge_says_where_it_is() -> None:
     gauge = gb.Gauge("half", along=(0.0, 1.0, 0.0))
-    assert asdict(gauge) == {"at": "half", "y": 0.0, "z": 0.0, "along": (0.0, 1.0, 0.0)}
+    assert asdict(gauge) == {"at": "half", "y": 0.0, "z": 0.0, "along": (0.0, 1.0, 0.0), "body": ""}
     with pytest.raises(gb.InputError, match="along is zero"):
         gb.Gauge("half", along=(0.0, 0.0, 0.0))
     assert all(a <= b for a, b in pairwise(flown()[0].time))
@@ -183,6 +224,14 @@ def test_gauges_of_a_scenario_from_the_command_line(scenario: Path, capsys: pyte
     assert "strain_2 at gauge, along (0, 1, 0)" in capsys.readouterr().out
     assert main(["linearize", str(scenario), "--strain-at", "nose"]) == 2
     assert "--strain-at is 'nose'; choose from gauge, tip" in capsys.readouterr().err
+    text = scenario.read_text(encoding="utf-8").replace(
+        "[motion", '[joints.wall]\nkind = "fixed"\nbody = "bar"\n[motion'
+    )
+    scenario.write_text(text, encoding="utf-8")
+    assert main(["linearize", str(scenario), "--strain-at", "bar.gauge"]) == 0
+    assert "strain_2 at bar, gauge, along (0, 1, 0)" in capsys.readouterr().out
+    assert main(["linearize", str(scenario), "--strain-at", "gauge"]) == 2
+    assert "--strain-at is 'gauge'; choose one of bar" in capsys.readouterr().err
 
 
 def test_a_bad_place_of_a_gauge_is_read_aloud(scenario: Path) -> None:

@@ -160,7 +160,7 @@ def state_space(system: StateSpace, gauges: Iterable[Gauge] = ()) -> str:
             fibre = f"fibre y {1e3 * gauge.y:g} mm, z {1e3 * gauge.z:g} mm"
             x, y, z = gauge.along
             at = f"{gauge.at}, along ({x:g}, {y:g}, {z:g})" if isinstance(gauge.at, str) else f"{gauge.at:g} m, {fibre}"
-            lines.append(f"  strain_{k} at {at}")
+            lines.append(f"  strain_{k} at {gauge.body and f'{gauge.body}, '}{at}")
     lines += _accuracy(system) + _in_steps(system)
     if system.truncation is not None:
         lines += _left_out(system, system.truncation)

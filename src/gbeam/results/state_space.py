@@ -32,7 +32,7 @@ class Signal(Part):
 @typed
 @dataclass(frozen=True)
 class Gauge:
-    """A strain gauge on a beam or a solid.
+    """A strain gauge on a beam or a solid, alone or in a system.
 
     Along a beam it measures the normal strain of what its section carries, on a solid that of a direction.
 
@@ -44,6 +44,8 @@ class Gauge:
         Where it sits in the section of a beam, m from the axis.
     along : (3,)
         Direction of its grid on a solid, in axes of the point.
+    body : str
+        Of a system the name of the body that it is on.
 
     Raises
     ------
@@ -53,13 +55,14 @@ class Gauge:
     Examples
     --------
     >>> gb.Gauge(at=0.01, z=0.002)
-    Gauge(at=0.01, y=0.0, z=0.002, along=(1.0, 0.0, 0.0))
+    Gauge(at=0.01, y=0.0, z=0.002, along=(1.0, 0.0, 0.0), body='')
     """
 
     at: float | str
     y: float = 0.0
     z: float = 0.0
     along: Sequence[float] = (1.0, 0.0, 0.0)
+    body: str = ""
 
     def __post_init__(self) -> None:
         if not np.any(vector("along", self.along)):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -20,7 +20,7 @@ from gbeam.analysis.steady.operating_point import (
     steady_base,
 )
 from gbeam.analysis.steady.stability import hub_of
-from gbeam.analysis.system.linear import frozen, instabilities, linearize_system, named_acceleration
+from gbeam.analysis.system.linear import Strained, frozen, instabilities, linearize_system, named_acceleration
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import each_leaf, record
 from gbeam.constants import BY_STRAINS
@@ -65,8 +65,8 @@ def surface_gauges(beam: Beam, stations: Iterable[float]) -> list[Gauge]:
     --------
     >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
     >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
-    >>> gb.surface_gauges(beam, [0.01])
-    [Gauge(at=0.01, y=0.0, z=0.002, along=(1.0, 0.0, 0.0)), Gauge(at=0.01, y=0.01, z=0.0, along=(1.0, 0.0, 0.0))]
+    >>> [(each.at, each.y, each.z) for each in gb.surface_gauges(beam, [0.01])]
+    [(0.01, 0.0, 0.002), (0.01, 0.01, 0.0)]
     """
     gauges: list[Gauge] = []
     for i, at in enumerate(stations):
@@ -206,14 +206,11 @@ def outputs_of(structure: Structure, point: OperatingPoint, gauges: Sequence[Gau
         outboard_mass = np.concatenate([mass[None], np.zeros((count, len(mass)))])
         every = Sections(None, outboard_mass, np.zeros((count + 1, 0)), np.eye(3))
     if gauges:
-        assert structure.source is not None
-        beam, unit = structure.source.beam, np.eye(6)[:, None]
-        where, y, z = np.array([[_of_beam(beam, i, gauge), gauge.y, gauge.z] for i, gauge in enumerate(gauges)]).T
+        where, strains = _of_beam(structure, dict(enumerate(gauges)))
         structure = at_stations(structure, where)
         every = structure.sections
         assert every is not None
-        strains = fibre_strain(beam, where, unit[..., :3], unit[..., 3:], y, z).T
-        which = np.abs(np.append(0.0, structure.stations) - where[:, None]).argmin(axis=1)
+        which = _nearest(structure, where)
     points = np.array(list(points_of(structure).values()), dtype=int)
     if gauges or points.size:
         rows = list(range(len(structure.stations) + 1))
@@ -223,14 +220,43 @@ def outputs_of(structure: Structure, point: OperatingPoint, gauges: Sequence[Gau
     return Outputs(structure, point.residual, outboard, which, strains, shares, points)
 
 
-def _of_beam(beam: Beam, i: int, gauge: Gauge) -> float:
-    """Position of a gauge on a beam, m."""
-    at = gauge.at
-    if isinstance(at, str):
-        raise InputError(f"gauges[{i}].at", f"is {at!r}, on a beam", "give the position along it, m")
-    if not 0 <= at <= beam.length:
-        raise InputError(f"gauges[{i}].at", f"is {at:g} m, off the beam", f"give 0 to {beam.length:g} m")
-    return float(at)
+def _gauged(system: System, gauges: Sequence[Gauge]) -> tuple[System, dict[str, Strained]]:
+    """A system whose beams have stations where their gauges are, and these by the names of their signals."""
+    strained, bodies, named = dict[str, Strained](), dict(system.bodies), dict[str, dict[int, Gauge]]()
+    for i, gauge in enumerate(gauges):
+        flexible = {name: body for name, body in bodies.items() if isinstance(body, Structure)}
+        choice(f"gauges[{i}].body", gauge.body, flexible)
+        named.setdefault(gauge.body, {})[i] = gauge
+    for name, some in named.items():
+        body = bodies[name]
+        assert isinstance(body, Structure)
+        if body.sections is None:
+            strained |= {f"strain_{i + 1}": Strained(name, _of_solid(body, i, gauge)) for i, gauge in some.items()}
+            continue
+        where, shares = _of_beam(body, some)
+        bodies[name] = body = at_stations(body, np.union1d(body.stations, where))
+        at = zip(some, shares, _nearest(body, where), strict=True)
+        strained |= {f"strain_{i + 1}": Strained(name, share, int(section)) for i, share, section in at}
+    return replace(system, bodies=bodies), {f"strain_{i + 1}": strained[f"strain_{i + 1}"] for i in range(len(gauges))}
+
+
+def _nearest(structure: Structure, where: Floats) -> Any:
+    """Numbers of the sections, root and stations, at positions (g,), m."""
+    return np.abs(np.append(0.0, structure.stations) - where[:, None]).argmin(axis=1)
+
+
+def _of_beam(structure: Structure, gauges: Mapping[int, Gauge]) -> tuple[Floats, Floats]:
+    """Positions (g,), m, of gauges on a beam by their numbers, and strains (g, 6) by unit forces and moments there."""
+    assert structure.source is not None
+    beam, unit = structure.source.beam, np.eye(6)[:, None]
+    for i, gauge in gauges.items():
+        where, at = f"gauges[{i}].at", gauge.at
+        if isinstance(at, str):
+            raise InputError(where, f"is {at!r}, on a beam", "give the position along it, m")
+        if not 0 <= at <= beam.length:
+            raise InputError(where, f"is {at:g} m, off the beam", f"give 0 to {beam.length:g} m")
+    at, y, z = np.array([[gauge.at, gauge.y, gauge.z] for gauge in gauges.values()], dtype=float).T
+    return at, fibre_strain(beam, at, unit[..., :3], unit[..., 3:], y, z).T
 
 
 def _of_solid(structure: Structure, i: int, gauge: Gauge) -> Floats:
@@ -277,13 +303,13 @@ def linearize(
         Coordinates and rates to linearise at; by default the relative equilibrium. Elsewhere the beam accelerates, and
         the model is one of small departures from the motion that goes through this state.
     gauges : sequence of Gauge
-        Where strain is measured.
+        Where strain is measured: ``strain_1`` and so on.
     inputs, outputs : sequence of str, optional
         Those that are kept, by name. Of a system: efforts on coordinates (``hinge.angle``) and components of its forces
         (``thrust.force_x``); what is measured, ``joint.angle``, ``joint.angle_rate``, ``body.point.place_x``,
         ``velocity_x``, ``acceleration_x``, ``spin_x``. By default the driven coordinates, all forces, and accelerations
         of the base and of prescribed coordinates (``base_acceleration_x``, ``axis.angle_acceleration``); coordinates,
-        rates and places.
+        rates, places and strains.
     at : str
         Of a system: ``rest``, where it rests, or ``start``, the motion at its start.
     loop : str
@@ -321,8 +347,9 @@ def linearize(
     [  36.56  183.55  229.04 1139.77 4243.13]
     """
     if isinstance(structure, System):
+        structure, strained = _gauged(structure, gauges)
         state = frozen(structure, motion, time, at)
-        plant = linearize_system(state, inputs=inputs, outputs=outputs, loop=loop, name=name)
+        plant = linearize_system(state, inputs=inputs, outputs=outputs, strained=strained, loop=loop, name=name)
         if at != "rest" or loop != "open":
             return plant
         frequency, errors, doubts = _poles(state, structure)
@@ -339,6 +366,9 @@ def linearize(
             point = on_hub(structure, hub, rate, q=q, qd=qd)
         else:
             point = on_base(structure, steady_base(hub, rate), q, qd)
+    for i, gauge in enumerate(gauges):
+        if gauge.body:
+            raise InputError(f"gauges[{i}].body", f"is {gauge.body!r}, and there is one structure", "leave it out")
     linear = point.linear
     n = len(linear.mass)
     measured = outputs_of(structure, point, gauges)

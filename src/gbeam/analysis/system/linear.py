@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,18 +15,22 @@ from numpy.typing import NDArray
 from gbeam.analysis.accuracy.estimate import LIMIT
 from gbeam.analysis.outline import assembly_of, outline_of
 from gbeam.analysis.system.accuracy import doubts, system_errors
-from gbeam.analysis.system.histories import beams_of, histories, loads_of, meshes_of
+from gbeam.analysis.system.histories import beams_of, carried, histories, loads_of, meshes_of
 from gbeam.analysis.system.point import Point, started
 from gbeam.analysis.system.steady import Drive, SteadySystem, steady
+from gbeam.arrays.tree import each_leaf
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.checks import choice
 from gbeam.integrate.equations import Trajectory
+from gbeam.mechanics.section_forces import sections
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.bodies import Acting
 from gbeam.mechanics.tree.control import signal_names
-from gbeam.mechanics.tree.equations import Inputs
+from gbeam.mechanics.tree.equations import Inputs, State, Tree
 from gbeam.mechanics.tree.signals import Driven, deforming, drives_of, measurements, signals_of
 from gbeam.mechanics.tree.steps import parameters_of_all
 from gbeam.mechanics.tree.system import System
+from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.eigen import Vibrations
 from gbeam.numerics.series import STEP
@@ -159,8 +165,35 @@ def frozen(system: System, motion: Motion | None, time: float, at: str) -> Stead
     return SteadySystem(system, drive, started(system, motion, time, "equilibrium"))
 
 
+class Strained(NamedTuple):
+    """A gauge on a body: its strain by unit coordinates of a solid (n,), or by unit forces and moments (6,) that a
+    `section` of a beam carries.
+    """
+
+    body: str
+    share: Floats
+    section: int | None = None
+
+    def read(self, system: System, state: State, acting: list[list[Acting]], inputs: Inputs) -> Array:
+        """Strain (t,) in a motion (t,) of a tree."""
+        k, body = system.order.index(self.body), system.bodies[self.body]
+        if self.section is None:
+            return state.q[k][-1] @ self.share
+        assert isinstance(body, Structure) and body.sections is not None
+        q, qd, qdd, a, w, alpha, hung = carried(system, state, self.body, acting)
+        loads = sections(body, body.sections, Base(a, w, alpha), q, qd, qdd, inputs.loads[k], hung)
+        there = [each[:, self.section] for each in (loads.section_force, loads.section_moment)]
+        return np.concatenate(there, axis=-1) @ self.share
+
+
 def linearize_system(
-    state: SteadySystem, *, inputs: Sequence[str] | None, outputs: Sequence[str] | None, loop: str, name: str
+    state: SteadySystem,
+    *,
+    inputs: Sequence[str] | None,
+    outputs: Sequence[str] | None,
+    strained: Mapping[str, Strained] = MappingProxyType({}),
+    loop: str,
+    name: str,
 ) -> StateSpace:
     """State-space model of small departures of a system, with its controllers in the `loop` unless it is open.
 
@@ -178,8 +211,9 @@ def linearize_system(
         commanded = [each for one in system.controllers.values() for each in one.drive]
         measured = [each for one in system.controllers.values() for each in one.measure]
         free = _default_inputs(system, state.drive.motion) if inputs is None else list(inputs)
-        wanted = _default_outputs(system) if outputs is None else list(outputs)
-        plant = linearize_system(state, inputs=commanded + free, outputs=measured + wanted, loop="open", name=name)
+        wanted = [*_default_outputs(system), *strained] if outputs is None else list(outputs)
+        options: Any = {"inputs": commanded + free, "outputs": measured + wanted, "strained": strained}
+        plant = linearize_system(state, **options, loop="open", name=name)
         chosen = range(len(measured), len(measured) + len(wanted))
         return closed_loop(plant, dict(system.controllers), chosen, None if loop == "closed" else loop)
     local = state.local
@@ -187,11 +221,16 @@ def linearize_system(
     driven = _default_inputs(system, state.drive.motion) if inputs is None else inputs
     for each in driven:
         choice("inputs", each, every)
-    signals, values, out = _outputs(system, local, outputs)
-    b, direct = _inputs(system, local, state.names, [every[each] for each in driven], [each.name for each in signals])
+    units = signals_of(system) | dict.fromkeys(strained, "1")
+    wanted = [*_default_outputs(system), *strained] if outputs is None else outputs
+    for each in wanted:
+        choice("outputs", each, units)
+    read = partial(_measured, system, local.tree, wanted, strained)
+    values, out = _outputs(local, read)
+    b, direct = _inputs(system, local, state.names, [every[each] for each in driven], read)
     driving = tuple(Signal(each, every[each].unit) for each in driven)
     a, b, c, d = state.linear._replace(inputs=b).state_space(*out, direct)
-    names, units = state.names, signals_of(system)
+    names = state.names
     states = [Signal(f"{name}{end}", units.get(f"{name}{end}", "")) for end in ("", "_rate") for name in names]
     return StateSpace(
         a=a,
@@ -200,7 +239,7 @@ def linearize_system(
         d=d,
         states=tuple(states),
         inputs=driving,
-        outputs=signals,
+        outputs=tuple(Signal(each, units[each]) for each in wanted),
         state=np.concatenate([local.y, local.yd]),
         input=np.zeros(len(driving)),
         output=values,
@@ -246,18 +285,19 @@ def _default_outputs(system: System) -> list[str]:
 
 
 def _inputs(
-    system: System, local: Point, names: Sequence[str], chosen: Sequence[Driven], outputs: Sequence[str]
+    system: System, local: Point, names: Sequence[str], chosen: Sequence[Driven], read: Callable[..., Any]
 ) -> tuple[Floats, Floats]:
     """Forces (n, m) of unit inputs on the coordinates, and what they add to the outputs (k, m) at once."""
     at = local.y + 0j, local.yd + 0j, local.ydd + 0j
-    columns, direct = np.zeros((len(names), len(chosen))), np.zeros((len(outputs), len(chosen)))
+    now = tuple(each[None] for each in at)
+    columns, direct = np.zeros((len(names), len(chosen))), np.zeros((read(*now, local.inputs).shape[-1], len(chosen)))
     for k, each in enumerate(chosen):
         if each.way == "effort":
             columns[names.index(system.coordinates[each.at]), k] = 1.0
             continue
         moved = _moved(local.inputs, each)
         columns[:, k] = -local.tree(*at, moved).imag / STEP
-        direct[:, k] = measurements(system, local.tree, *at, moved, outputs).imag / STEP
+        direct[:, k] = read(*now, moved)[0].imag / STEP
     return columns, direct
 
 
@@ -272,17 +312,35 @@ def _moved(inputs: Inputs, by: Driven) -> Inputs:
     return replace(inputs, **{by.way: values})
 
 
-def _outputs(
-    system: System, local: Point, wanted: Sequence[str] | None
-) -> tuple[tuple[Signal, ...], Floats, tuple[Floats, Floats, Floats]]:
-    """Signals of outputs, their values, and their derivatives with respect to y, ẏ and ÿ."""
-    every = signals_of(system)
-    wanted = _default_outputs(system) if wanted is None else wanted
-    for each in wanted:
-        choice("outputs", each, every)
+def _measured(
+    system: System,
+    tree: Tree,
+    wanted: Sequence[str],
+    strained: Mapping[str, Strained],
+    y: Array,
+    yd: Array,
+    ydd: Array,
+    inputs: Inputs,
+) -> Array:
+    """Values (t, k) of outputs, gauges among them, at unknown coordinates (t, n)."""
+    signals = [each for each in wanted if each not in strained]
+    values = np.zeros((len(y), len(wanted)), dtype=complex)
+    values[:, [each not in strained for each in wanted]] = measurements(system, tree, y, yd, ydd, inputs, signals)
+    if len(signals) < len(wanted):
+        inputs = each_leaf(lambda leaf: np.broadcast_to(leaf, (len(y), *leaf.shape)), inputs)
+        state = tree.motion(y, yd, ydd, inputs)
+        *_, acting = tree.demanded(state, inputs)
+        for k, each in enumerate(wanted):
+            if each in strained:
+                values[:, k] = strained[each].read(system, state, acting, inputs)
+    return values
+
+
+def _outputs(local: Point, read: Callable[..., Any]) -> tuple[Floats, tuple[Floats, Floats, Floats]]:
+    """Values of outputs, and their derivatives with respect to y, ẏ and ÿ."""
     n = len(local.y)
     state = np.concatenate([local.y, local.yd, local.ydd])
     moved = np.concatenate([state[None] + 0j, state + 1j * STEP * np.eye(3 * n)]).reshape(3 * n + 1, 3, n)
-    measured = measurements(system, local.tree, moved[:, 0], moved[:, 1], moved[:, 2], local.inputs, wanted)
-    slopes = (measured[1:].imag / STEP).reshape(3, n, len(wanted)).transpose(0, 2, 1)
-    return tuple(Signal(each, every[each]) for each in wanted), measured[0].real, (slopes[0], slopes[1], slopes[2])
+    measured = read(moved[:, 0], moved[:, 1], moved[:, 2], local.inputs)
+    slopes = (measured[1:].imag / STEP).reshape(3, n, -1).transpose(0, 2, 1)
+    return measured[0].real, (slopes[0], slopes[1], slopes[2])

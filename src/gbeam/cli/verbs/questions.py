@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
@@ -32,6 +32,11 @@ from gbeam.cli.outputs import deliver
 from gbeam.cli.process import Watch
 from gbeam.errors import InputError
 from gbeam.questions import QUESTIONS, Needs, Question
+
+if TYPE_CHECKING:
+    from gbeam.mechanics.structure import Structure
+    from gbeam.mechanics.tree.system import System
+    from gbeam.results.state_space import Gauge
 
 _STATUS = "Exit status: 0 done, 1 there is no answer, 2 the input is wrong."
 
@@ -203,7 +208,7 @@ def linearize(
         option(
             "--strain-at",
             'Strain at a station, "10 mm", on the faces towards +z and +y, or at a point of a solid, "fillet", along '
-            "its axes; any number of times.",
+            'its axes; in a system "arm.10 mm", "bracket.fillet"; any number of times.',
         ),
     ] = (),
     inputs: Annotated[str | None, Parameter(help='Only these, "torque"; by default all. So with --outputs.')] = None,
@@ -227,16 +232,9 @@ def linearize(
     name, chosen = loaded.motion(motion, kind="" if rate is None else "hub")
     time = loaded.time(at)
     steady = None if rate is None else number("--rate", rate, "angular rate")
-    from gbeam.analysis.case import SpecimenCase
-
-    case = loaded.case
-    for flag, wanted in (
-        ("--strain-at", bool(strain_at) and not isinstance(case, SpecimenCase)),
-        ("--rate", rate is not None),
-    ):
-        if wanted:
-            with loaded.placing():
-                case.one_beam("bodies", flag)
+    if rate is not None:
+        with loaded.placing():
+            loaded.case.one_beam("bodies", "--rate")
     for flag, beside, both in (
         ("--loop", "--balanced or --modes", loop != "open" and (modes is not None or balanced is not None)),
         ("--balanced", "--modes", modes is not None and balanced is not None),
@@ -245,22 +243,11 @@ def linearize(
         if both:
             raise InputError(flag, f"stands beside {beside}", "give one of them")
 
-    from gbeam.analysis.control.linearization import linearize, surface_gauges
-    from gbeam.guards.checks import index_of
-    from gbeam.results.state_space import Gauge
+    from gbeam.analysis.control.linearization import linearize
 
-    gauges: Any = ()
-    if isinstance(case, SpecimenCase):
-        names = case.structure.points
-        for text in strain_at:
-            index_of("--strain-at", text, names)
-        gauges = [Gauge(text, along=way) for text in strain_at for way in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
-    elif strain_at:
-        beam = loaded.beam.beam
-        points = beam.named_points
-        stations = [points[text] if text in points else number("--strain-at", text, "length") for text in strain_at]
-        with naming("--strain-at"):
-            gauges = surface_gauges(beam, stations)
+    with loaded.placing():
+        structure = loaded.case.assemble()
+    gauges = [gauge for text in strain_at for gauge in _gauges_at(structure, text)]
     options = {
         "order": "--balanced",
         "modes": "--modes",
@@ -270,7 +257,7 @@ def linearize(
     }
     with Watch(), loaded.placing(**options):
         system = linearize(
-            loaded.case.assemble(), chosen, time,
+            structure, chosen, time,
             rate=steady, gauges=gauges, inputs=_names(inputs), outputs=_names(outputs), loop=loop, name=name,
         )  # fmt: skip
         if modes is not None or balanced is not None:
@@ -286,6 +273,28 @@ def linearize(
         more=lambda hidden: system.to_mat(hidden / "linear.mat"), gauges=gauges,
     )  # fmt: skip
     return 0
+
+
+def _gauges_at(structure: Structure | System, text: str) -> list[Gauge]:
+    """Gauges of one --strain-at: on two faces of a beam, or along the three axes of a point."""
+    from gbeam.analysis.control.linearization import surface_gauges
+    from gbeam.guards.checks import choice, index_of
+    from gbeam.mechanics.structure import Structure
+    from gbeam.results.state_space import Gauge
+
+    body, at = "", text
+    if not isinstance(structure, Structure):
+        body, _, at = text.partition(".")
+        flexible = {name: each for name, each in structure.bodies.items() if isinstance(each, Structure)}
+        choice("--strain-at", body, flexible)
+        structure = flexible[body]
+    if structure.source is None:
+        index_of("--strain-at", at, structure.points)
+        return [Gauge(at, along=way, body=body) for way in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
+    beam = structure.source.beam
+    with naming("--strain-at"):
+        place = beam.named_points[at] if at in beam.named_points else number("--strain-at", at, "length")
+        return [replace(each, body=body) for each in surface_gauges(beam, [place])]
 
 
 def _names(text: str | None) -> tuple[str, ...] | None:
