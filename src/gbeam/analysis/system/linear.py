@@ -222,7 +222,7 @@ def linearize_system(
     for each in driven:
         choice("inputs", each, every)
     units = signals_of(system) | dict.fromkeys(strained, "1")
-    wanted = [*_default_outputs(system), *strained] if outputs is None else outputs
+    wanted = [*_default_outputs(system), *strained] if outputs is None else [*outputs]
     for each in wanted:
         choice("outputs", each, units)
     read = partial(_measured, system, local.tree, wanted, strained)
