@@ -45,6 +45,7 @@ QUICKEST, STALLED = 0.01, 0.9  # factors of corrections: none is thought to be s
 TOLERANCE, ROUNDING = 1e-12, 1e-6  # of the largest acceleration: error left by the last correction, and where it stalls
 TINY = float(np.finfo(float).tiny)
 CANCELLED = 100 * float(np.finfo(float).eps)  # of the forces at a coordinate, each a sum of many: their rounding
+SUMMED = 1e-10  # of the largest acceleration: rounding, which adds up over steps, where corrections cease to be quick
 GROWN = 10.0  # times the rounding of steps that have converged, which is known, unlike that of iterates that diverge
 EARLIER = 0.01  # of the largest acceleration before a step, whose own may all vanish: to be told from none
 
@@ -86,9 +87,9 @@ def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, 
 
 class _Window:
     """Steps under way, from the `first` on: their states z (t + 1, m, n) and accelerations x (t, s, n), corrected in
-    place, and the `slope` of the equations, K, C and M (1 or t, s, n, n), from stages so far `apart`. Rows (4, t) of
-    `corrections` are their last size, absolute and of the accelerations, how many there were, and how far all since
-    its derivatives were found have moved a step.
+    place, and the `slope` of the equations, K, C and M (1 or t, s, n, n), from stages so far `apart`. Rows (5, t) of
+    `corrections` are their last size, absolute and of the accelerations, how many there were, how far all since its
+    derivatives were found have moved a step, and the least factor by which one shrank.
     """
 
     z: Array
@@ -108,7 +109,7 @@ class _Window:
     def begin(self, z: Array, x: Array) -> None:
         """Begin with no step, from a state z (m, n) and accelerations (n,)."""
         self.z, self.x, self.start, self.slope = z[None], np.zeros((0, len(self.scheme.offsets), len(x))), x, None
-        self.corrections, self.most, self.maps = np.zeros((4, 0)), np.inf, None
+        self.corrections, self.most, self.maps = np.zeros((5, 0)), np.inf, None
 
     @property
     def even(self) -> bool:
@@ -122,7 +123,7 @@ class _Window:
             self._differentiate()
             if self.maps is None:
                 self.maps = self._maps()
-            size, moved, count, since = self.corrections
+            size, moved, count, since, least = self.corrections
             fresh, before, far, alone = since == 0, size.copy(), not moved[-1] <= MOVED, len(size) == 1
             size[:] = self._correct(*self.maps)
             count += 1
@@ -132,7 +133,9 @@ class _Window:
             if far and moved[-1] <= MOVED and count[-1] <= QUICK:
                 self.more = min(self.more + self.more // 2 + 1, LONGEST)
             # By derivatives of another state corrections may shrink slowly without being rounding.
-            good = _converged(size, before, self.x, self.noise, stalls=fresh & (count > 1))
+            quick = least <= FAST
+            good = _converged(size, before, self.x, self.noise, stalls=fresh & (count > 1), quick=quick)
+            least[:] = np.fmin(least, size / np.where(np.isfinite(before), before, np.nan))
             slow = ~good & (count > 1) & ~(size <= SLOW * before)
             since[:] = np.where(slow, np.inf, since + moved)
             if slow.any():
@@ -171,7 +174,7 @@ class _Window:
             )
         elif self.slope is not None:
             self.slope = tuple(each[-1:, -1:] for each in self.slope)
-        begun = np.repeat([[np.inf], [np.inf], [0.0], [0.0]], more, axis=1)
+        begun = np.repeat([[np.inf], [np.inf], [0.0], [0.0], [np.inf]], more, axis=1)
         self.corrections = np.concatenate([self.corrections, begun], axis=1)
         self._place()
 
@@ -248,7 +251,7 @@ class _Window:
             change = _products(inverse, residual(q, qd, qdd, inputs))
             qdd = qdd - change
             before, size = size, _largest(change)
-            if _converged(size, before, qdd, 0.0, stalls=True).all():
+            if _converged(size, before, qdd, 0.0, stalls=True, quick=False).all():
                 return q, qd, qdd
             if not (size < CLOSE * before).all():
                 break
@@ -394,11 +397,15 @@ def _reach(x: Array) -> Array:
     return largest + EARLIER * np.maximum.accumulate(largest) + TINY
 
 
-def _converged(size: Array, before: Array, x: Array, noise: Array | float, *, stalls: bool) -> Array:
+def _converged(
+    size: Array, before: Array, x: Array, noise: Array | float, *, stalls: bool, quick: Array | bool
+) -> Array:
     """Whether the last two sizes (t,) of corrections, which shrink by a constant factor, leave no more than a tolerance
     and rounding. The first one moves states of which it does not know what acts there: it leaves any. Where they
-    stall at less than a part of the accelerations x (t, ..., n), all that is left is rounding.
+    stall at less than a part of the accelerations x (t, ..., n), all that is left is rounding; as where they have been
+    quick and no longer are, for the rounding of earlier steps adds to a step's own.
     """
     reach, shrunk = _reach(x), size / np.maximum(before, 1e-300)
     left = np.where(np.isfinite(before), size * np.clip(shrunk, QUICKEST, 1.0), np.inf)
-    return (left <= TOLERANCE * reach + noise) | (stalls & (shrunk > STALLED) & (size <= ROUNDING * reach))
+    ended = stalls & (shrunk > STALLED) | quick & (shrunk > SLOW) & (size <= SUMMED * reach)
+    return (left <= TOLERANCE * reach + noise) | (ended & (size <= ROUNDING * reach))
