@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Any
 
 HERE = Path(sys.path.pop(0))
-import exudyn  # noqa: F401  # the package, before this folder is searched again
+import exudyn  # the package, before this folder is searched again
 
 sys.path.insert(0, str(HERE))
 import closed_loop  # takes this folder out of those that are searched
@@ -115,18 +115,22 @@ def seconds(call: Call) -> float:
     return time.process_time() - began
 
 
-def quickest(settings: Settings, error: Callable[[Any], float], within: float) -> tuple[str, float]:
-    """Words and error of the quickest setting within an error; of the most accurate one where none is."""
-    rows = []
+def quickest(settings: Settings, error: Callable[[Any], float], within: float) -> tuple[str, float, list[str]]:
+    """Words and error of the quickest setting within an error, of the most accurate one where none is; what failed."""
+    rows, failed = [], []
     for words, call in settings.items():
-        reached = error(call())
+        try:
+            reached = error(call())
+        except exudyn.SolverError:
+            failed.append(words)
+            continue
         rows.append((not reached <= within, seconds(call) if reached <= within else reached, words, reached))
-    return min(rows)[2:]
+    return *min(rows)[2:], failed
 
 
 def compared(ours: Settings, theirs: Settings, errors: tuple[Any, Any], within: float) -> dict[str, Any]:
     """Both codes' quickest settings within an error, their times in turn, and gbeam's profile."""
-    (mine, reached), (other, away) = (
+    (mine, reached, _), (other, away, failed) = (
         quickest(settings, error, within) for settings, error in zip((ours, theirs), errors, strict=True)
     )
     turns = [(seconds(ours[mine]), seconds(theirs[other])) for _ in range(TURNS)]
@@ -140,7 +144,7 @@ def compared(ours: Settings, theirs: Settings, errors: tuple[Any, Any], within: 
     whole = max(times.values())
     shares = {part: round(times[name] / whole, 2) for part, name in PARTS.items() if name in times}
     rows = {"gbeam": [mine, quick, reached], "Exudyn": [other, slow, away]}
-    return {"measured": round(slow / quick, 2), "unit": "times Exudyn", **rows, "profile": shares}
+    return {"measured": round(slow / quick, 2), "unit": "times Exudyn", **rows, "failed": failed, "profile": shares}
 
 
 def in_space(name: str) -> dict[str, Any]:
@@ -224,6 +228,8 @@ def page(record: dict[str, Any]) -> Iterator[str]:
         for code in ("gbeam", "Exudyn"):
             words, took, error = row.get(code, ("", 0.0, 0.0))
             codes.append(f"{words}: {took:.3g} s, error {error:.1e}" if words else "–")
+        if row.get("failed"):
+            codes[-1] += f"; failed at {', '.join(row['failed'])}"
         parts = row.get("profile") or row["models"]
         where = ", ".join(
             f"{k} {100 * v:.0f} %" if isinstance(v, float) else f"{k} {words_of(v)} s" for k, v in parts.items()
