@@ -232,7 +232,10 @@ class Given:
             "describe": ((self.case,), {}),
             "fit": (
                 (self.fast, self.data, ["beam.material.youngs_modulus"]),
-                {"bounds": None, "motion": "flight", "at": 0.0, "starts": 1, "overrides": (), "progress": None},
+                {
+                    "bounds": None, "motion": "flight", "at": 0.0, "options": None, "starts": 1, "overrides": (),
+                    "progress": None,
+                },  # fmt: skip
             ),
             "linearize": (
                 (self.structure, self.hub, 0.0),

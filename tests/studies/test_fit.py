@@ -107,6 +107,22 @@ def test_frequencies_and_damping_give_the_values_and_their_errors(released: Path
     assert found.modal and found.at.tolist() == [1, 2]
 
 
+def test_modes_are_fitted_with_the_options_of_their_question(released: Path, gbeam: Call) -> None:
+    """Modes without Coriolis forces, of a hub in the middle of its slew, give the values by the same modes only."""
+    hub = Path(__file__).parents[2] / "examples" / "hubbeam2009_slew_3.toml"
+    case, plain = gb.read_scenario(hub), {"gyroscopic": False}
+    modes = gb.modes(case.assemble(), case.motions["slew"], 15.0, **plain)
+    data = written("still.csv", "mode,frequency", np.arange(1, 4), modes.frequency[:3])
+    with_options, without = (gb.fit(hub, data, [E], at=15.0, options=each).values[0] for each in (plain, None))
+    true = case.beam.metal.youngs_modulus
+    assert with_options == pytest.approx(true, rel=1e-8) and abs(without - true) > 1e-6 * true
+    words = "fit", hub, "--data", data, "--free", E, "--at", "15 s", "--no-gyroscopic", "--json"
+    assert json.loads(gbeam(*words).out)["parameters"][E]["value"] == with_options
+    data = written("tip.csv", "time,tip.z", TIME, TIME)
+    with pytest.raises(gb.InputError, match="--gyroscopic is no option of run; leave it out"):
+        gb.fit(released, data, [E], options=plain)
+
+
 def test_errors_and_intervals_of_few_data_are_those_of_linear_least_squares(released: Path) -> None:
     """Every frequency goes as the root of the stiffness: by hand, with n − 1 in the variance and Student's quantile."""
     own = gb.modes(gb.read_scenario(released).assemble(), gb.read_scenario(released).motions["flight"]).frequency

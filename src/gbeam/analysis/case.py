@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, ClassVar, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gbeam.analysis.outline import undeformed
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
@@ -269,7 +268,7 @@ class SystemCase(_InEnvironments):
     @property
     def extent(self) -> dict[str, Any]:
         """Argument of :func:`gbeam.plan` that says where the specimen is: its points, undeformed."""
-        return {"envelope": undeformed(self.system)}
+        return {"envelope": self.system.undeformed}
 
 
 @typed

@@ -7,8 +7,6 @@ from typing import Any
 import numpy as np
 
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.equations import State
-from gbeam.mechanics.tree.frames import Frame
 from gbeam.mechanics.tree.joints import GROUND
 from gbeam.mechanics.tree.system import RigidBody, System
 from gbeam.motion.bases.flight import Flight
@@ -29,7 +27,7 @@ def assembly_of(system: System) -> Assembly:
         hangs_on=tuple(holding[name].on for name in system.order),
         joint=tuple(holding[name].kind for name in system.order),
         place_at_rest=np.stack([_place_at_rest(system, holding[name].on) for name in system.order]),
-        undeformed=undeformed(system),
+        undeformed=system.undeformed,
         box=size,
         box_centre=centre,
         box_rotation=rotation,
@@ -45,13 +43,6 @@ def _place_at_rest(system: System, on: str) -> Floats:
     none = np.zeros(link.body.size)
     places = [each.r for each in link.body.relative(none, none, none)]
     return np.asarray(places[point]) if point < len(places) else np.zeros(3)
-
-
-def undeformed(system: System) -> Floats:
-    """Places of all points with the joints at the start, bodies undeformed."""
-    q, zero, still = system.start[0], np.zeros(3), np.zeros(system.tree.size)
-    ground = Frame(np.eye(3), zero, zero, zero, zero, zero)
-    return np.stack([frame.p for frame in State(system.tree, q, still, still, ground).every_point])
 
 
 def _box(body: object) -> tuple[Floats, Floats, Floats]:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, make_dataclass, replace
 from inspect import signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
 
 from cyclopts import Parameter
 
@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 else:
     Verb = Literal[tuple(QUESTIONS)]
     _Smooth = Literal[differentiable()]
+
+
+_Function = TypeVar("_Function", bound=Callable[..., int])
 
 
 def option(name: str, words: str) -> Parameter:
@@ -108,8 +111,8 @@ Check = Annotated[
 ]
 
 
-def options_of(*verbs: str) -> Any:
-    """Options of some questions as arguments of a verb: a record of them as the command line has them, like Output.
+def with_options(*verbs: str) -> Callable[[_Function], _Function]:
+    """Give a function of the command line, as its argument `options`, a record of the options of some questions.
 
     Of several questions those that a user gives are of one of them, which refuses the others.
     """
@@ -119,25 +122,19 @@ def options_of(*verbs: str) -> Any:
         for name, each in QUESTIONS[verb].options.items():
             known.setdefault(name, each)
             words.setdefault(name, {}).setdefault(each.words, []).append(verb)
-    fields: list[tuple[str, Any, Any]] = []
+    every: list[tuple[str, Any, Any]] = []
     for name, each in known.items():
         said = [text if len(verbs) == 1 else f"Of {' and '.join(of)}: {text}" for text, of in words[name].items()]
         kind = str | None if each.kind else each.type
-        fields.append((each.argument, Annotated[kind, Parameter(name=each.flag, help=" ".join(said))], each.default))
-    return Parameter(name="*")(make_dataclass("Options", fields, frozen=True, namespace={"__module__": __name__}))
+        every.append((each.argument, Annotated[kind, Parameter(name=each.flag, help=" ".join(said))], each.default))
+    record = Parameter(name="*")(make_dataclass("Options", every, frozen=True, namespace={"__module__": __name__}))
 
+    def declare(function: _Function) -> _Function:
+        function.__annotations__["options"] = record
+        function.__kwdefaults__ = (function.__kwdefaults__ or {}) | {"options": record()}
+        return function
 
-if TYPE_CHECKING:
-
-    class Options:
-        """Options of all questions."""
-
-    SmoothOptions = Options
-    CampbellOptions = Options
-    CriticalOptions = Options
-else:
-    Options, SmoothOptions = options_of(*QUESTIONS), options_of(*differentiable())
-    CampbellOptions, CriticalOptions = options_of("campbell"), options_of("critical-speed")
+    return declare
 
 
 def asked(options: Any) -> dict[str, Any]:

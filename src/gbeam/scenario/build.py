@@ -143,10 +143,8 @@ def build_extent(scenario: schema.Environments) -> dict[str, Any]:
             recovery = None if structure is None else structure.recovery
             extent = {} if recovery is None else {"envelope": recovery.envelope}
         else:
-            from gbeam.analysis.outline import undeformed
-
             system = system_of(parts, scenario)  # type: ignore[arg-type]
-            extent = {} if system is None else {"envelope": undeformed(system)}
+            extent = {} if system is None else {"envelope": system.undeformed}
     if parts.errors:
         raise placed(scenario, parts.errors)
     return extent

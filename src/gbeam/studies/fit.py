@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -36,6 +36,7 @@ def fit(
     bounds: Bounds | None = None,
     motion: str | None = None,
     at: float | None = None,
+    options: Mapping[str, Any] | None = None,
     starts: int = 1,
     overrides: Sequence[str] = (),
     progress: Progress = None,
@@ -63,6 +64,8 @@ def fit(
         Of columns that name none, and of modes.
     at : float, optional
         Time at which that motion is frozen for modes, s; the start of the response by default.
+    options : mapping of str to values, optional
+        Options of ``modes`` by their names on its command line, such as ``{"gyroscopic": False}``.
     starts : int
         Searches: one from the scenario's values, the others from values spread over the bounds. The likeliest is given,
         with how many of them agree.
@@ -99,14 +102,13 @@ def fit(
     if not free:
         raise InputError(OPTION, "is missing", 'name values: --free "beam.material.youngs_modulus"')
     parameters = named(template, free, OPTION)
-    question = Question(template, "run", motion, at)
-    case = question.case(())
+    case = template.built()
     measurement = read_measurement(data, case, motion)
+    question = Question(template, "modes" if measurement.modal else "run", motion, at, options or {})
     if len(measurement.values) <= len(parameters):
         problem = f"names {len(parameters)} values for {len(measurement.values)} data"
         raise InputError(OPTION, problem, "measure more, or free fewer")
     limits = np.array([bounds_of(each, bounds or {}, OPTION) for each in parameters])
-    question = replace(question, verb="modes") if measurement.modal else question
     start = (
         None
         if measurement.modal or not isinstance(case, Case)

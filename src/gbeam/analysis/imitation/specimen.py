@@ -14,7 +14,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gbeam.analysis.imitation.accounting import points_of
-from gbeam.analysis.outline import undeformed
 from gbeam.analysis.system.point import Point
 from gbeam.analysis.system.steady import Drive, steady
 from gbeam.arrays.tree import each_leaf
@@ -231,7 +230,7 @@ def of_system(system: System, times: Floats) -> Specimen:
         displacement = {name: forces.onto(by_load[:, k]) for k, name in enumerate(system.points)}
         mass, damping, stiffness = (symmetric(each) for each in state.linear[:3])
         modes = _modes(mass, damping, stiffness, forces, moved)
-    ends = dict(zip(system.points, undeformed(system), strict=True))
+    ends = dict(zip(system.points, system.undeformed, strict=True))
     for name, root in zip(
         system.order, local.tree.motion(local.y, local.yd, local.ydd, local.inputs).roots, strict=True
     ):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from cyclopts import Parameter
 
@@ -12,22 +12,23 @@ from gbeam.cli.failures import FAILED, complain
 from gbeam.cli.options import (
     At,
     MotionName,
-    Options,
     Output,
     ScenarioFile,
-    SmoothOptions,
     SmoothVerb,
     Verb,
     asked,
     names,
     number,
     option,
+    with_options,
 )
 from gbeam.cli.outputs import LIST, deliver, list_figures
 from gbeam.cli.process import Watch, command
 from gbeam.cli.publication import refuse_unwritable
+from gbeam.questions import QUESTIONS, differentiable
 
 
+@with_options(*QUESTIONS)
 def sweep(
     scenario: ScenarioFile,
     /,
@@ -61,7 +62,7 @@ def sweep(
     verb: Annotated[Verb | None, Parameter(help="Whose figures; run by default.")] = None,
     motion: MotionName = None,
     at: At = None,
-    options: Options = Options(),
+    options: Any = None,
     samples: Annotated[int | None, Parameter(help='How many are drawn of distributions, "200"; 64 by default.')] = None,
     sampler: Annotated[
         Literal["sobol", "latin", "random", "saltelli"] | None,
@@ -130,6 +131,7 @@ def sweep(
     return FAILED if answer.lost else 0
 
 
+@with_options(*differentiable())
 def sensitivity(
     scenario: ScenarioFile,
     /,
@@ -151,7 +153,7 @@ def sensitivity(
     verb: SmoothVerb = "run",
     motion: MotionName = None,
     at: At = None,
-    options: SmoothOptions = SmoothOptions(),
+    options: Any = None,
     output: Output = Output(),
 ) -> int:
     """Rank the values of a scenario by how much a figure depends on them: a table and a tornado plot.

@@ -14,8 +14,6 @@ from cyclopts import Parameter
 
 from gbeam.cli.options import (
     At,
-    CampbellOptions,
-    CriticalOptions,
     Input,
     MotionName,
     Output,
@@ -25,8 +23,8 @@ from gbeam.cli.options import (
     number,
     numbers,
     option,
-    options_of,
     read,
+    with_options,
 )
 from gbeam.cli.outputs import deliver
 from gbeam.cli.process import Watch
@@ -51,16 +49,16 @@ def __getattr__(name: str) -> Callable[..., int]:
 
 def verb_of(question: Question) -> Callable[..., int]:
     """The function of a question's verb."""
-    name, options_type = question.name.replace("-", "_"), options_of(question.name)
-    unset = options_type()
+    name = question.name.replace("-", "_")
 
+    @with_options(question.name)
     def verb(
         scenario: ScenarioFile,
         /,
         *,
         motion: MotionName = None,
         at: At = None,
-        options: Any = unset,
+        options: Any = None,
         output: Output = Output(),
     ) -> int:
         folder = output.folder(scenario)
@@ -79,16 +77,16 @@ def verb_of(question: Question) -> Callable[..., int]:
     several = "Without --motion for all of them. " if question.motion is None else ""
     files = f"With --out also writes {name}.json and plots, with --report {name}.html."
     verb.__doc__ = f"{question.about}\n\n{several}{files} {_STATUS}"
-    verb.__annotations__["options"] = options_type
     return verb
 
 
+@with_options("campbell")
 def campbell(
     scenario: ScenarioFile,
     /,
     *,
     motion: MotionName = None,
-    options: CampbellOptions = CampbellOptions(),
+    options: Any = None,
     output: Output = Output(),
 ) -> int:
     """Frequencies against the speed of a hub or a joint, in the unit of --to or --from, and where multiples meet them.
@@ -115,13 +113,14 @@ def campbell(
     return 0
 
 
+@with_options("critical-speed")
 def critical_speed(
     scenario: ScenarioFile,
     /,
     *,
     motion: MotionName = None,
     at: At = None,
-    options: CriticalOptions = CriticalOptions(),
+    options: Any = None,
     masses: Annotated[str | None, Parameter(help='A map instead, with one more mass: "0.1 kg, 0.5 kg".')] = None,
     positions: Annotated[
         str | None, Parameter(help='Where that mass sits: "2 m, 5 m, 8 m"; by default all along.')

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from cyclopts import Parameter
 
@@ -14,7 +14,6 @@ from gbeam.cli.options import (
     Output,
     ScenarioFile,
     SearchBounds,
-    SmoothOptions,
     SmoothVerb,
     Starts,
     WriteTo,
@@ -23,11 +22,14 @@ from gbeam.cli.options import (
     number,
     option,
     search_bounds,
+    with_options,
 )
 from gbeam.cli.outputs import LIST, deliver, list_figures, refuse_changes, write_found
 from gbeam.cli.process import Watch
+from gbeam.questions import differentiable
 
 
+@with_options("run", "modes")
 def fit(
     scenario: ScenarioFile,
     /,
@@ -46,6 +48,7 @@ def fit(
     bounds: SearchBounds = (),
     motion: MotionName = None,
     at: At = None,
+    options: Any = None,
     starts: Starts = 1,
     write: WriteTo = None,
     output: Output = Output(),
@@ -71,6 +74,7 @@ def fit(
             bounds=limits,
             motion=motion,
             at=time,
+            options=asked(options),
             starts=starts,
             overrides=output.overrides,
             progress=watch,
@@ -81,6 +85,7 @@ def fit(
     return 0
 
 
+@with_options(*differentiable())
 def optimize(
     scenario: ScenarioFile,
     /,
@@ -107,7 +112,7 @@ def optimize(
     verb: SmoothVerb = "run",
     motion: MotionName = None,
     at: At = None,
-    options: SmoothOptions = SmoothOptions(),
+    options: Any = None,
     starts: Starts = 1,
     write: WriteTo = None,
     output: Output = Output(),

@@ -28,7 +28,7 @@ from gbeam.mechanics.tree.bodies import (
     polynomial_points,
 )
 from gbeam.mechanics.tree.control import Feedback
-from gbeam.mechanics.tree.equations import Force, Inputs, Link, Tree
+from gbeam.mechanics.tree.equations import Force, Inputs, Link, State, Tree
 from gbeam.mechanics.tree.frames import Frame
 from gbeam.mechanics.tree.joints import GROUND, Joint
 from gbeam.mechanics.tree.signals import drives_of, signals_of
@@ -388,6 +388,13 @@ class System(Value):
             qd += [joint.start_rate, still]
         xp = namespace(*q, *qd)
         return xp.concatenate(q), xp.concatenate(qd)
+
+    @property
+    def undeformed(self) -> Floats:
+        """Places of all points, (points, 3) m, with the joints at the start and bodies undeformed."""
+        q, zero, still = self.start[0], np.zeros(3), np.zeros(self.tree.size)
+        ground = Frame(np.eye(3), zero, zero, zero, zero, zero)
+        return np.stack([frame.p for frame in State(self.tree, q, still, still, ground).every_point])
 
     def corners(self, step: float) -> Floats:
         """Return the times that steps should not pass unseen, s.
