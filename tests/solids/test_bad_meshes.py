@@ -196,6 +196,17 @@ GRIDS = [f"GRID,{i},,{x}.,{y}.+0,{z}.0D0" for i, (x, y, z) in enumerate(CUBE, 11
 BDF = lines("BEGIN BULK", *GRIDS, "CHEXA,5,1,11,12,13,14,15,16,+", "+,17,18", "CQUAD4,6,7,11,12,13,14", "ENDDATA")
 
 
+@pytest.mark.parametrize(("name", "text", "clamp"), [("a.inp", INP, "wall"), ("a.bdf", BDF, "7")])
+def test_a_node_has_its_number_in_the_file(tmp_path: Path, name: str, text: str, clamp: str) -> None:
+    """Where the stress is largest."""
+    (tmp_path / name).write_text(text)
+    cube = gb.SolidMesh.read(tmp_path / name, materials=STEEL, clamp=clamp, unit="m").reduced(
+        modes=1, damping_ratio=0.0
+    )
+    worst = cube.stress(gb.static(cube.structure, acceleration=(3.0, 2.0, 1.0))).worst
+    assert worst.place == pytest.approx(CUBE[worst.node - 11])
+
+
 @pytest.mark.parametrize(
     ("name", "old", "new", "words"),
     [

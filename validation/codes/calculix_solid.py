@@ -194,12 +194,13 @@ def written(mesh: gb.SolidMesh, shell: bool) -> tuple[np.ndarray, list[np.ndarra
     """
     if not shell:
         return mesh.points, [block.nodes for block in mesh.blocks], np.flatnonzero(mesh.clamped)
-    count, elements = np.bincount(mesh.numbers), []
+    _, node = np.unique(mesh.numbers, return_inverse=True)
+    count, elements = np.bincount(node), []
     for block in mesh.blocks:
-        corners, both = KINDS[block.kind].shell, mesh.numbers[block.nodes]
+        corners, both = KINDS[block.kind].shell, node[block.nodes]
         elements.append(both[:, np.r_[:corners, 2 * corners : corners + both.shape[1] // 2]])
-    places = np.stack([np.bincount(mesh.numbers, at) / count for at in mesh.points.T], axis=1)
-    return places, elements, np.unique(mesh.numbers[mesh.clamped])
+    places = np.stack([np.bincount(node, at) / count for at in mesh.points.T], axis=1)
+    return places, elements, np.unique(node[mesh.clamped])
 
 
 def deck(steps: str, specimen: Specimen = BRACKET) -> str:

@@ -25,7 +25,7 @@ class StressAt(Part):
     principal: Floats = quantity("Pa", "principal stresses, the largest first", "principal")
     time: float = quantity("s", "its time")
     place: Floats = quantity("m", "place of the node from the root, undeformed", "axis")
-    node: int = quantity("", "number of the node in the mesh's file, from 1")
+    node: int = quantity("", "number of the node in the mesh's file, or from 1 in its order where it has none")
     material: str = quantity("", "name of the material")
     spread: float = quantity("", "how much the elements that share the node differ, as a fraction",
                              note="an indication of the mesh's error there")  # fmt: skip

@@ -162,6 +162,11 @@ def numbers_of(mesh: Any) -> list[Indices]:
     return [getattr(block, "numbers", each) for block, each in zip(mesh.cells, counted, strict=True)]
 
 
+def node_numbers_of(mesh: Any) -> Indices:
+    """Numbers of the nodes, by which a text file names them, or from 1."""
+    return np.array(list(getattr(mesh, "nodes", range(1, len(mesh.points) + 1))))
+
+
 def refuse_missing(mesh: Any, elements: Iterable[Elements]) -> None:
     """Refuse elements on nodes that are not in the mesh."""
     numbers = numbers_of(mesh)

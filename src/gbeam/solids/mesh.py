@@ -36,6 +36,7 @@ from gbeam.solids.foreign import (
     assigned,
     elements_of,
     left_out,
+    node_numbers_of,
     nodes_in,
     numbers_of,
     refuse_missing,
@@ -67,7 +68,7 @@ class SolidMesh(Value):
     clamped : (k,) bool
         Nodes that follow the base.
     numbers : (k,) int
-        Places of the nodes in the file, from 0.
+        Of the nodes in the file, or from 1 in its order where it has none.
     point_masses : (k,) masses on the nodes, kg
     stations : dict of int
         Nodes that are put out, by their names; the last is the tip.
@@ -247,7 +248,7 @@ class SolidMesh(Value):
             read += THICKNESS
         about["links"] = tied
         about["turns"] = {name: tuple(place.turn) for name, place in (points or {}).items() if isinstance(place, Place)}
-        solid = cls(at, blocks, clamped, numbers, weights, named | {TIP: tip}, **about)
+        solid = cls(at, blocks, clamped, node_numbers_of(mesh)[numbers], weights, named | {TIP: tip}, **about)
         refuse_folded(solid)
         refuse_loose(solid)
         doubts = (*doubts_of(solid, unit or "that of the file"), *left_out(source, mesh, read))

@@ -278,7 +278,7 @@ def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> S
             principal=principal(nodal.table[pair] @ q[t]),
             time=float(time[t]),
             place=mesh.points[node],
-            node=int(mesh.numbers[node]) + 1,
+            node=int(mesh.numbers[node]),
             material=materials[pair],
             spread=nodal.spread(pair, q[t]),
             yield_strength=strength if np.isfinite(strength) else None,
