@@ -400,12 +400,15 @@ class Response(Driven, Figured):
         main = int(np.argmax(self.peaks.max_abs))
         unknown = math.isnan(self.error_estimate)
         error = "no error estimate" if unknown else f"estimated error {self.error_estimate:.2g} of the peak"
-        lines = [
-            f"Response{of} ({self.environment}, {self.model}): {self.outcome}",
-            *([self.message] if self.message else []),
+        moved = [
             f"tip up to {1e3 * self.peaks.max_abs[main]:.4g} mm along {'xyz'[main]}, "
             f"at {self.peaks.time_of_max[main]:.4g} s of {self.time[0]:.4g} to {self.time[-1]:.4g} s",
             f"{self.integrator}, {self.steps} steps of {1e3 * self.step:.4g} ms; {error}",
+        ]
+        lines = [
+            f"Response{of} ({self.environment}, {self.model}): {self.outcome}",
+            *([self.message] if self.message else []),
+            *(moved if self.specimen is None else self.specimen.lines),
             *(f"warning: {each}" for each in self.warnings),
         ]
         return "\n  ".join(lines)

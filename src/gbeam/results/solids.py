@@ -226,8 +226,9 @@ class SpecimenLoads(Figured):
 
     @declared("", "whether the spread is within its limit", role="fact", name=None, optional=True)
     def within_limit(self) -> bool | None:
-        """Whether the spread is within its limit; None without one."""
-        return None if self.spread_limit is None else bool(self.spread_max <= self.spread_limit)
+        """Whether the spread is within its limit; None without one, or where nothing accelerates."""
+        judged = self.spread_limit is not None and np.isfinite(self.spread_max)
+        return bool(self.spread_max <= self.spread_limit) if judged else None
 
     @property
     def refusal(self) -> str:
@@ -293,7 +294,8 @@ class SpecimenLoads(Figured):
         """The largest loads in words."""
         worst = self.largest
         x, y, z = (1e3 * float(each) for each in worst.place)
-        limit = "" if self.spread_limit is None else f" (limit {100 * self.spread_limit:.3g} %)"
+        held = {None: "", True: ", accepted", False: ", not accepted"}[self.within_limit]
+        limit = "" if self.spread_limit is None else f"{held} (limit {100 * self.spread_limit:.3g} %)"
         lines = [
             f"up to {worst.g:.4g} g at ({x:.4g}, {y:.4g}, {z:.4g}) mm, at {worst.time:.4g} s; spread over the specimen "
             f"{100 * self.spread_max:.3g} %{limit}",

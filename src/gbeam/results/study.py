@@ -10,9 +10,10 @@ from typing import Any
 
 from gbeam.results.declared import declared, fact, quantity, rows
 from gbeam.results.imitation.comparison import Comparison
-from gbeam.results.imitation.criteria import NOT_ACCEPTED, state_of
+from gbeam.results.imitation.criteria import state_of
 from gbeam.results.response import Response
 from gbeam.results.result import Figured, Floats, Part
+from gbeam.results.solids import SpecimenLoads
 from gbeam.results.system import SystemResponse
 
 
@@ -33,6 +34,12 @@ class Answers(Figured):
     failures: Mapping[str, Failure]
 
     @property
+    def _specimens(self) -> dict[str, SpecimenLoads]:
+        """Loads of a rigid specimen by the motion's name."""
+        alone = {name: each.specimen for name, each in self.responses.items() if isinstance(each, Response)}
+        return {name: specimen for name, specimen in alone.items() if specimen is not None}
+
+    @property
     def exceeding(self) -> Mapping[str, str]:
         """Limits of machines that are exceeded, by the motion's name."""
         axes = {name: each.axes for name, each in self.responses.items() if each.axes is not None}
@@ -41,8 +48,7 @@ class Answers(Figured):
     @property
     def not_accepted(self) -> Mapping[str, str]:
         """Limits of acceptance that are not kept, of imitations and of rigid specimens, by the motion's name."""
-        alone = {name: each.specimen for name, each in self.responses.items() if isinstance(each, Response)}
-        words = {name: specimen.refusal for name, specimen in alone.items() if specimen is not None}
+        words = {name: specimen.refusal for name, specimen in self._specimens.items()}
         for each in self.comparisons:
             words[each.centrifuge] = ", ".join(filter(None, (each.refusal, words.get(each.centrifuge, ""))))
         return {name: each for name, each in words.items() if each}
@@ -55,9 +61,8 @@ class Answers(Figured):
     @declared("", "the outcome, with what limits make of it", role="fact")
     def state(self) -> str:
         exceeded = any(each.axes is not None and not each.axes.within_limits for each in self.responses.values())
-        if self.outcome == "done" and self.not_accepted:
-            return NOT_ACCEPTED
-        return state_of(self.outcome, self.comparisons, exceeded=exceeded)
+        kept = [each.within_limit for each in self._specimens.values()]
+        return state_of(self.outcome, self.comparisons, exceeded=exceeded, kept=kept)
 
     def __repr__(self) -> str:
         parts = [repr(response) for response in self.responses.values()]

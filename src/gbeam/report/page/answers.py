@@ -250,7 +250,8 @@ def specimen_tables(rigid: Facts) -> str:
     def row(name: str, each: Facts) -> list[Value]:
         worst, limit = each["largest_load"], known(each.get("spread_limit"))
         place = [1e3 * worst["place"][axis] for axis in "xyz"]
-        return [name, worst["g"], *place, worst["time"], percent(each["spread"]), percent(limit)]
+        held = {None: "", True: "good", False: "bad"}[each.get("within_limit")]
+        return [name, worst["g"], *place, worst["time"], Cell(percent(each["spread"]), held), percent(limit)]
 
     head = ("motion", "largest, g", "x, mm", "y, mm", "z, mm", "at, s", "spread over the specimen", "limit")
     corners = table(head, (row(*each) for each in rigid.items()), "Load at the corners")

@@ -92,17 +92,21 @@ class Judged:
         return ", ".join(str(each) for each in self.criteria if not each.passed)
 
 
-def state_of(outcome: str, imitations: Sequence[Judged], *, exceeded: bool = False) -> str:
-    """Say how an answer with imitations ended, in a few words, of which only :data:`GOOD` are to be shown as good."""
+def state_of(
+    outcome: str, imitations: Sequence[Judged], *, exceeded: bool = False, kept: Sequence[bool | None] = ()
+) -> str:
+    """Say how an answer with imitations ended, and whether it `kept` other limits, in a few words, of which only
+    :data:`GOOD` are to be shown as good.
+    """
     if outcome != "done":
         return outcome
-    if any(each.accepted is False for each in imitations):
+    if False in kept or any(each.accepted is False for each in imitations):
         return NOT_ACCEPTED
     if exceeded:
         return EXCEEDED
     whole = [each for each in imitations if each.accepted and not each.not_judged and not each.part]
     missed = any(main is not None and main.reason for main in (each.accounting.main for each in imitations))
-    return ("accepted" if whole else "done") + (", largest load peak missed" if missed else "")
+    return ("accepted" if whole or True in kept else "done") + (", largest load peak missed" if missed else "")
 
 
 @dataclass(frozen=True)
