@@ -227,8 +227,8 @@ class SpecimenLoads(Figured):
     @declared("", "whether the spread is within its limit", role="fact", name=None, optional=True)
     def within_limit(self) -> bool | None:
         """Whether the spread is within its limit; None without one, or where nothing accelerates."""
-        judged = self.spread_limit is not None and np.isfinite(self.spread_max)
-        return bool(self.spread_max <= self.spread_limit) if judged else None
+        spread, limit = self.spread_max, self.spread_limit
+        return None if limit is None or np.isnan(spread) else bool(spread <= limit)
 
     @property
     def refusal(self) -> str:
