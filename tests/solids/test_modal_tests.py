@@ -55,36 +55,72 @@ def test_measured_modes_move_as_the_beam() -> None:
     assert moved(structure).shape[1] == 3
 
 
-@pytest.mark.parametrize("kind", ["normal", "complex"])
+def written(path: Path, kind: str, system: int = 1) -> np.ndarray:
+    """Write the modes as a laboratory does that measures `kind`; returns the numbers of the nodes."""
+    each, numbers = measured(), np.arange(101, 101 + 3 * len(measured()["nodes"]), 3)
+    ends = [slice(None, None, -1)] if kind != "in two sets" else [slice(9), slice(6, None)]
+    length = 1000.0 if kind == "in mm, t and N" else 1.0
+    units = {"type": 164, "units_code": 9, "length": length, "force": 1.0, "temp": 1.0, "temp_offset": 273.15}
+    sets: list[dict[str, Any]] = [units] if length > 1 else []
+    for some in ends:
+        none = 0 * numbers[some]
+        grid = {"type": 2411, "node_nums": numbers[some], "def_cs": none, "disp_cs": none + system, "color": none}
+        sets.append(grid | dict(zip("xyz", length * each["nodes"][some].T, strict=True)))
+    for i, frequency in enumerate(each["frequency"]):
+        w, shape = 2 * np.pi * frequency, each["shapes"][:, :, i]
+        common = {"type": 55, "model_type": 1, "node_nums": numbers, "data_ch": 2, "load_case": 0, "mode_n": i + 1,
+                  "spec_data_type": 12 if kind == "accelerations" else 8, "n_data_per_node": 3,
+                  **{f"id{k}": "strip" for k in range(1, 6)}}  # fmt: skip
+        if not kind.startswith("complex"):
+            shape = -(w**2) * shape if kind == "accelerations" else shape
+            r = dict(zip(("r1", "r2", "r3"), shape.T, strict=True))
+            sets.append(common | r | {"analysis_type": 2, "data_type": 2, "freq": frequency, "modal_m": 1 / length,
+                                      "modal_damp_vis": 0.01, "modal_damp_his": 0.0})  # fmt: skip
+            continue
+        root, turned = w * complex(-0.01, np.sqrt(1 - 1e-4)), shape * np.exp(0.7j)
+        pair = [(root, turned, 2j * root.imag * np.exp(1.4j))]
+        pair += [tuple(np.conj(value) for value in pair[0])] if kind == "complex, in pairs" else []
+        for value, part, a in pair:
+            r = dict(zip(("r1", "r2", "r3"), part.T, strict=True))
+            sets.append(common | r | {"analysis_type": 3, "data_type": 5, "eig": value, "modal_a": a, "modal_b": 0j})
+    pyuff.UFF(str(path)).write_sets(sets, "overwrite")
+    return numbers
+
+
+KINDS = ("normal", "in mm, t and N", "in two sets", "accelerations", "complex", "complex, in pairs")
+
+
+@pytest.mark.parametrize("kind", KINDS)
 def test_modes_come_from_universal_files(tmp_path: Path, kind: str) -> None:
     each, path = measured(), tmp_path / "test.uff"
-    numbers = np.arange(1, len(each["nodes"]) + 1)
-    file = pyuff.UFF(str(path))
-    grid = {"type": 15, "node_nums": numbers, "def_cs": 0 * numbers, "disp_cs": 0 * numbers, "color": 0 * numbers}
-    sets = [grid | dict(zip("xyz", each["nodes"].T, strict=True))]
-    for i, frequency in enumerate(each["frequency"]):
-        w = 2 * np.pi * frequency
-        common = {"type": 55, "model_type": 1, "node_nums": numbers, "data_ch": 2, "spec_data_type": 8, "load_case": 0,
-                  "mode_n": i + 1, "n_data_per_node": 3, **{f"id{k}": "strip" for k in range(1, 6)}}  # fmt: skip
-        if kind == "normal":
-            r = dict(zip(("r1", "r2", "r3"), each["shapes"][:, :, i].T, strict=True))
-            sets.append(common | r | {"analysis_type": 2, "data_type": 2, "freq": frequency, "modal_m": 1.0,
-                                      "modal_damp_vis": 0.01, "modal_damp_his": 0.0})  # fmt: skip
-        else:
-            turned = each["shapes"][:, :, i] * np.exp(0.7j)
-            root = w * complex(-0.01, np.sqrt(1 - 1e-4))
-            r = dict(zip(("r1", "r2", "r3"), turned.T, strict=True))
-            sets.append(common | r | {"analysis_type": 3, "data_type": 5, "eig": root,
-                                      "modal_a": 2j * root.imag * np.exp(1.4j), "modal_b": 0j})  # fmt: skip
-    file.write_sets(sets, "overwrite")
+    numbers = written(path, kind)
     read = gb.ModalTest.read(path)
+    assert list(read.numbers) == list(numbers)
+    np.testing.assert_allclose(read.nodes, each["nodes"], atol=1e-12)
     for name in ("frequency", "damping_ratio", "modal_mass"):
         np.testing.assert_allclose(getattr(read, name), each[name], rtol=2e-5)  # six digits
     sign = np.sign((read.shapes * each["shapes"]).sum(axis=(0, 1)))
     np.testing.assert_allclose(read.shapes * sign, each["shapes"], atol=1e-4 * np.abs(each["shapes"]).max())
-    structure = read.structure(beam().mass, points={"first": 1})
+    structure = read.structure(beam().mass, points={"first": 101})
     assert structure.points == ("first", "tip")
     np.testing.assert_allclose(structure.rest[0], beam().rest[0], rtol=2e-5)
+
+
+def test_a_universal_file_of_something_else_is_refused(tmp_path: Path) -> None:
+    """Cut off, in local coordinates, and of strains."""
+    path = tmp_path / "test.uff"
+    written(path, "normal", system=7)
+    with pytest.raises(gb.InputError, match=r"has nodes in coordinate system 7; export them in the global one"):
+        gb.ModalTest.read(path)
+    written(path, "normal")
+    text = path.read_text(encoding="ascii")
+    for other, words in (
+        (text[: len(text) // 2], "ends within a data set; export it again: it was cut off"),
+        (text.replace(f"{2:10d}{8:10d}{2:10d}{3:10d}", f"{2:10d}{3:10d}{2:10d}{3:10d}"), "mode 1 in data of type 3"),
+    ):
+        path.write_text(other, encoding="ascii")
+        with pytest.raises(gb.InputError, match=words):
+            gb.ModalTest.read(path)
 
 
 def test_what_cannot_be_measured_so_is_refused(tmp_path: Path) -> None:

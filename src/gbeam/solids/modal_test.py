@@ -91,7 +91,7 @@ class ModalTest(Value):
     @classmethod
     @typed
     def read(cls, path: str | os.PathLike[str], *, modal_mass: ArrayLike | None = None) -> ModalTest:
-        """Read the modes of a universal file (.uff, .unv), data sets 55 beside 15 or 2411, in SI.
+        """Read the modes of a universal file (.uff, .unv), data sets 55 beside 15 or 2411, in its units (164), or SI.
 
         Parameters
         ----------

@@ -15,29 +15,45 @@ import numpy as np
 from gbeam.errors import InputError
 from gbeam.io.models.arrays import Contents
 
-NODES, MODES = (15, 2411), 55
+NODES, MODES, UNITS = (15, 2411), 55, 164
 NORMAL, COMPLEX = 2, (3, 7)  # analysis types
+GLOBAL = (0, 1)  # coordinate systems
+MOVES = (2, 3)  # data of three translations, and with rotations
+DERIVATIVES = {0: 0, 1: 0, 8: 0, 11: 1, 12: 2}  # of displacements by time: data that are unknown, general, and motions
 
 
 def read_universal(path: str) -> Contents:
-    """Read the nodes, and the modes that are normal or complex ones."""
+    """Read the nodes, and the modes that are normal or complex ones, in SI by the units of the file."""
     import pyuff  # 0.2 s to import
 
+    with open(path, "rb") as opened:
+        if sum(line.strip() == b"-1" for line in opened) % 2:
+            raise InputError("path", f"{path} ends within a data set", "export it again: it was cut off")
     file = pyuff.UFF(path)
     kinds = [int(kind) for kind in file.get_set_types()]
-    sets = {i: file.read_sets(i) for i, kind in enumerate(kinds) if kind in (*NODES, MODES)}
+    sets = {i: file.read_sets(i) for i, kind in enumerate(kinds) if kind in (*NODES, MODES, UNITS)}
     contents: Contents = {}
-    for i, kind in enumerate(kinds):
-        if kind in NODES:
-            places = np.column_stack([sets[i][axis] for axis in "xyz"]).astype(float)
-            contents |= {"numbers": np.asarray(sets[i]["node_nums"], dtype=int), "places": places}
+    length = mass = 1.0  # units of the file
+    for each in (sets[i] for i, kind in enumerate(kinds) if kind == UNITS):
+        length, mass = 1 / each["length"], each["length"] / each["force"]
+    for i, each in sets.items():
+        if kinds[i] in NODES:
+            part = _nodes(path, each, length)
+            if contents:
+                new = ~np.isin(part["numbers"], contents["numbers"])
+                part = {key: np.concatenate([contents[key], value[new]]) for key, value in part.items()}
+            contents = part
     modes = [sets[i] for i, kind in enumerate(kinds) if kind == MODES]
     modes = [each for each in modes if each["analysis_type"] in (NORMAL, *COMPLEX)]
+    # Of pairs that are conjugate one tells all.
+    modes = [each for each in modes if each["analysis_type"] == NORMAL or complex(each["eig"]).imag >= 0]
     if modes:
         numbers = np.asarray(modes[0]["node_nums"], dtype=int)
         if any(not np.array_equal(numbers, np.asarray(each["node_nums"], dtype=int)) for each in modes):
             raise InputError("path", f"{path} has modes at different nodes", "export them at the same ones")
-        parts = [_mode(each) for each in modes]
+        parts = [_mode(path, each) for each in modes]
+        for each in parts:
+            each["modal_mass"] *= mass
         keys = ("frequency", "damping_ratio", "modal_mass", "shape")
         contents["modes"] = {"numbers": numbers} | {
             key: np.stack([each[key] for each in parts], axis=-1) for key in keys
@@ -45,14 +61,31 @@ def read_universal(path: str) -> Contents:
     return contents
 
 
-def _mode(each: dict[str, Any]) -> dict[str, Any]:
+def _nodes(path: str, each: dict[str, Any], length: float) -> Contents:
+    """Numbers and places of the nodes of a data set."""
+    for system in np.unique([each["def_cs"], each["disp_cs"]]).astype(int):
+        if system not in GLOBAL:
+            raise InputError(
+                "path", f"{path} has nodes in coordinate system {system}", "export them in the global one, 0 or 1"
+            )
+    places = length * np.column_stack([each[axis] for axis in "xyz"]).astype(float)
+    return {"numbers": np.asarray(each["node_nums"], dtype=int), "places": places}
+
+
+def _mode(path: str, each: dict[str, Any]) -> dict[str, Any]:
     """Frequency, Hz, damping ratio, modal mass and shape (k, 3); not a number what is not given."""
+    kind = int(each["spec_data_type"])
+    if kind not in DERIVATIVES or each["data_ch"] not in MOVES:
+        problem = f"{path} has mode {each['mode_n']} in data of type {kind}, characteristic {each['data_ch']}"
+        raise InputError("path", problem, "export displacements along x, y and z: type 8, characteristic 2")
     shape = np.column_stack([each[f"r{i}"] for i in (1, 2, 3)])
+    root = 2j * np.pi * float(each["freq"]) if each["analysis_type"] == NORMAL else complex(each["eig"])
+    if DERIVATIVES[kind] and root:
+        shape = shape / root ** DERIVATIVES[kind]
     if each["analysis_type"] == NORMAL:
         mass = float(each["modal_m"]) or np.nan
         ratio = float(each["modal_damp_vis"]) or float(each["modal_damp_his"]) / 2
         return {"frequency": float(each["freq"]), "damping_ratio": ratio, "modal_mass": mass, "shape": shape}
-    root = complex(each["eig"])
     size = abs(root)
     modal = complex(each["modal_a"]) / (2j * root.imag) if root.imag else 0j
     known = {"frequency": size / (2 * np.pi), "damping_ratio": -root.real / size, "modal_mass": modal or np.nan}

@@ -144,7 +144,7 @@ class Model:
         if lacking.size:
             some = ", ".join(map(str, lacking[:3])) + (", ..." if lacking.size > 3 else "")
             raise InputError(
-                "nodes", f"lack {lacking.size} of those of the matrices: {some}", "give the file that has them"
+                "nodes", f"lack {lacking.size} that matrices or shapes are of: {some}", "give the file that has them"
             )
         order = np.argsort(known, kind="stable")
         chosen = order[np.searchsorted(known[order], used)]
