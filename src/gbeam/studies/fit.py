@@ -104,7 +104,8 @@ def fit(
     parameters = named(template, free, OPTION)
     case = template.built()
     measurement = read_measurement(data, case, motion)
-    question = Question(template, "modes" if measurement.modal else "run", motion, at, options or {})
+    verb, read = ("modes", "modes") if measurement.modal else ("run", "motions")
+    question = Question(template, verb, motion, at, options or {}, keys=((read,),))  # of errors nothing is read
     if len(measurement.values) <= len(parameters):
         problem = f"names {len(parameters)} values for {len(measurement.values)} data"
         raise InputError(OPTION, problem, "measure more, or free fewer")
