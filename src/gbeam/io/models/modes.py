@@ -33,16 +33,16 @@ def read_universal(path: str) -> Contents:
     kinds = [int(kind) for kind in file.get_set_types()]
     sets = {i: file.read_sets(i) for i, kind in enumerate(kinds) if kind in (*NODES, MODES, UNITS)}
     contents: Contents = {}
+    numbers, places = np.empty(0, dtype=int), np.empty((0, 3))
     length = mass = 1.0  # units of the file
     for each in (sets[i] for i, kind in enumerate(kinds) if kind == UNITS):
         length, mass = 1 / each["length"], each["length"] / each["force"]
     for i, each in sets.items():
         if kinds[i] in NODES:
-            part = _nodes(path, each, length)
-            if contents:
-                new = ~np.isin(part["numbers"], contents["numbers"])
-                part = {key: np.concatenate([contents[key], value[new]]) for key, value in part.items()}
-            contents = part
+            more, at = _nodes(path, each, length)
+            new = ~np.isin(more, numbers)
+            numbers, places = np.append(numbers, more[new]), np.concatenate([places, at[new]])
+            contents |= {"numbers": numbers, "places": places}
     modes = [sets[i] for i, kind in enumerate(kinds) if kind == MODES]
     modes = [each for each in modes if each["analysis_type"] in (NORMAL, *COMPLEX)]
     # Of pairs that are conjugate one tells all.
@@ -61,7 +61,7 @@ def read_universal(path: str) -> Contents:
     return contents
 
 
-def _nodes(path: str, each: dict[str, Any], length: float) -> Contents:
+def _nodes(path: str, each: dict[str, Any], length: float) -> tuple[Any, Any]:
     """Numbers and places of the nodes of a data set."""
     for system in np.unique([each["def_cs"], each["disp_cs"]]).astype(int):
         if system not in GLOBAL:
@@ -69,7 +69,7 @@ def _nodes(path: str, each: dict[str, Any], length: float) -> Contents:
                 "path", f"{path} has nodes in coordinate system {system}", "export them in the global one, 0 or 1"
             )
     places = length * np.column_stack([each[axis] for axis in "xyz"]).astype(float)
-    return {"numbers": np.asarray(each["node_nums"], dtype=int), "places": places}
+    return np.asarray(each["node_nums"], dtype=int), places
 
 
 def _mode(path: str, each: dict[str, Any]) -> dict[str, Any]:
