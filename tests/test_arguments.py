@@ -235,7 +235,7 @@ class Given:
                 {
                     "bounds": None, "motion": "flight", "at": 0.0, "options": None, "starts": 1, "overrides": (),
                     "progress": None,
-                },  # fmt: skip
+                },
             ),
             "linearize": (
                 (self.structure, self.hub, 0.0),
