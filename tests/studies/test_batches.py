@@ -12,7 +12,7 @@ import pytest
 import gbeam as gb
 from gbeam.analysis.response.batch import simulate_batch
 from gbeam.scenario.load import load
-from gbeam.studies.evaluate import Question, may_share, rows, settled
+from gbeam.studies.evaluate import Inquiry, may_share, rows, settled
 from gbeam.studies.template import ScenarioTemplate
 
 LEVEL = "motion.flight.acceleration.z.level"
@@ -61,7 +61,7 @@ def test_a_case_that_fails_leaves_its_batch_as_it_is(fast: Path) -> None:
 def test_each_case_of_a_batch_that_fails_is_computed_once(fast: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The batch of a case that raises is halved until that one is alone; every other has its own figures."""
     computed: list[int] = []
-    whole = Question(
+    whole = Inquiry(
         ScenarioTemplate(load(fast)), "run", None, keys=(("motions", "flight", "tip", "z", "max_abs"),), together=True
     )
     tasks = [(k, (*FIXED, f"{LEVEL}={2 + k / 2} g", f"beam.length={200 + k} mm")) for k in range(11)]
@@ -87,7 +87,7 @@ def test_each_case_of_a_batch_that_fails_is_computed_once(fast: Path, monkeypatc
 
 def test_what_no_measure_needs_changes_no_digit(fast: Path) -> None:
     tip, error = ("motions", "flight", "tip", "z", "max_abs"), ("motions", "flight", "error_estimate")
-    plain = Question(ScenarioTemplate(load(fast)), "run", None, keys=(tip,))
+    plain = Inquiry(ScenarioTemplate(load(fast)), "run", None, keys=(tip,))
     judged = replace(plain, keys=(tip, error))
     (bare,), (whole,) = (rows(each, [(0, ())]) for each in (plain, judged))
     assert bare.values[0] == whole.values[0] and whole.values[1] > 0
@@ -113,21 +113,21 @@ def test_loads_that_are_not_measured_change_no_digit(fast: Path) -> None:
     ],
 )
 def test_loads_are_computed_where_a_figure_is_one_of_them(fast: Path, keys: str, loads: bool) -> None:
-    assert Question(ScenarioTemplate(load(fast)), "run", None, keys=(tuple(keys.split(".")),)).needs.loads == loads
+    assert Inquiry(ScenarioTemplate(load(fast)), "run", None, keys=(tuple(keys.split(".")),)).needs.loads == loads
 
 
 def test_few_cases_of_an_automatic_step_are_computed_one_by_one(fast: Path) -> None:
     for given, cases, together in (((), 31, False), ((), 32, True), (FIXED, 2, True)):
-        question = Question(
+        inquiry = Inquiry(
             ScenarioTemplate(load(fast, given)),
             "run",
             None,
             keys=(("motions", "flight", "tip", "z", "max_abs"),),
             together=True,
         )
-        case = question.case(())
-        assert settled(question, case, cases).together == together
-        assert not settled(question, replace(case, model=replace(case.model, automatic=True)), cases).together
+        case = inquiry.case(())
+        assert settled(inquiry, case, cases).together == together
+        assert not settled(inquiry, replace(case, model=replace(case.model, automatic=True)), cases).together
 
 
 def test_many_cases_of_an_automatic_step_have_the_figures_of_their_own_runs(fast: Path) -> None:

@@ -46,7 +46,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Whole:
 def test_a_killed_sweep_is_resumed(fast: Path, whole: Whole, gbeam: Call) -> None:
     slow = "import time, gbeam.studies.evaluate as e, gbeam.studies.sweep as s\n"
     slow += "from gbeam.cli import main\ns._LONGEST = 1\n"
-    slow += "row = e.Question.row\ndef later(*a):\n    time.sleep(0.05)\n    return row(*a)\ne.Question.row = later\n"
+    slow += "row = e.Inquiry.row\ndef later(*a):\n    time.sleep(0.05)\n    return row(*a)\ne.Inquiry.row = later\n"
     slow += f"main(['sweep', {str(fast)!r}, *{ARGUMENTS!r}])"
     process = subprocess.Popen([sys.executable, "-c", slow], stdout=subprocess.DEVNULL)
     journal = Path("there/cases.jsonl")

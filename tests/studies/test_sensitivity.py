@@ -14,7 +14,7 @@ import pytest
 import gbeam as gb
 from gbeam.scenario.load import loads
 from gbeam.studies.derivatives import Neighbourhood
-from gbeam.studies.evaluate import Question
+from gbeam.studies.evaluate import Inquiry
 from gbeam.studies.template import ScenarioTemplate
 
 from ..scenarios import FLIGHT, FREE_HUB, SLEWING, SPECIMEN, model, response
@@ -72,11 +72,11 @@ def _figures(file: Path, overrides: list[str]) -> list[float]:
 def test_derivatives_are_of_as_many_shapes_as_their_run_needs(tolerance: str) -> None:
     text = f'title = "shapes"\n{SPECIMEN}[model]\nkind = "SFOAM"\n{FLIGHT}{response("0.1 s", tolerance=tolerance)}'
     base = loads(text, "scenario.toml")
-    question = Question(ScenarioTemplate(base), "run", None, None)
-    about = Neighbourhood(question, [])
+    inquiry = Inquiry(ScenarioTemplate(base), "run", None, None)
+    about = Neighbourhood(inquiry, [])
     shapes = about.answer.responses["flight"].q.shape[1]
     assert about.case.assemble().size == shapes
-    assert (shapes > question.case(()).assemble().size) == (tolerance == "0.01 %")
+    assert (shapes > inquiry.case(()).assemble().size) == (tolerance == "0.01 %")
 
 
 def test_what_tracks_another_motion_feels_its_values_and_only_that(fast: Path) -> None:
@@ -208,12 +208,12 @@ def test_the_command_prints_a_table_and_writes_a_file_and_plots(fast: Path, gbea
 
 def test_values_may_be_others_than_the_scenarios(fast: Path) -> None:
     from gbeam.scenario.load import load
-    from gbeam.studies.evaluate import Question
+    from gbeam.studies.evaluate import Inquiry
     from gbeam.studies.parameters import physical_values
 
     base = load(fast)
     about = Neighbourhood(
-        Question(ScenarioTemplate(base), "static", "flight"), physical_values(ScenarioTemplate(base), [LENGTH]), [0.2]
+        Inquiry(ScenarioTemplate(base), "static", "flight"), physical_values(ScenarioTemplate(base), [LENGTH]), [0.2]
     )
     found = about.slopes(lambda _, facts: np.array([facts["motions"]["flight"]["tip"]["z"]]))
     assert found.slopes[0, 0] * 0.2 / found.values[0] == pytest.approx(4, abs=1e-9)

@@ -13,7 +13,7 @@ import pytest
 import xarray as xr
 
 import gbeam as gb
-from gbeam.studies.evaluate import Question
+from gbeam.studies.evaluate import Inquiry
 from gbeam.studies.figures import Facts, find, value_at
 
 Call = Callable[..., Any]
@@ -269,13 +269,13 @@ def test_a_first_case_that_is_not_done_is_none_of_what_the_figures_are_called(
     fast: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     answers: list[Any] = []
-    facts = Question.facts
+    facts = Inquiry.facts
 
-    def answered(question: Question, case: gb.Case) -> Facts:
+    def answered(inquiry: Inquiry, case: gb.Case) -> Facts:
         answers.append(case)
-        return {"outcome": "diverged"} if len(answers) == 1 else facts(question, case)
+        return {"outcome": "diverged"} if len(answers) == 1 else facts(inquiry, case)
 
-    monkeypatch.setattr(Question, "facts", answered)
+    monkeypatch.setattr(Inquiry, "facts", answered)
     found = gb.sweep(fast, {LEVEL: ["2 g", "4 g"]}, ["flight.tip.z"], verb="static")
     assert found.outcome.tolist() == ["diverged", "done"]
     answers[:] = [None]  # the next is no first one

@@ -7,7 +7,7 @@ from functools import cache
 import pytest
 
 from gbeam.scenario.load import loads
-from gbeam.studies.evaluate import Question
+from gbeam.studies.evaluate import Inquiry
 from gbeam.studies.figures import Facts, _figures, declared, find, own_keys, unit_at
 from gbeam.studies.template import ScenarioTemplate
 
@@ -43,8 +43,8 @@ ASKED = [
 @cache
 def facts_of(text: str, verb: str, motion: str | None) -> Facts:
     base = loads(text, "scenario.toml")
-    question = Question(ScenarioTemplate(base), verb, motion, at=34.0 if verb == "modes" and text != LOADED else None)
-    return question.facts(question.case(()))
+    inquiry = Inquiry(ScenarioTemplate(base), verb, motion, at=34.0 if verb == "modes" and text != LOADED else None)
+    return inquiry.facts(inquiry.case(()))
 
 
 @pytest.mark.parametrize(("text", "verb", "motion"), ASKED)

@@ -24,7 +24,7 @@ from gbeam.progress import Progress, tell
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.study import Study
-from gbeam.studies.evaluate import Question
+from gbeam.studies.evaluate import Inquiry
 from gbeam.studies.parameters import PhysicalValue, changes_to
 
 # Of a case and its answer, a Study of run or another verb's facts: what is differentiated, (m,).
@@ -58,7 +58,7 @@ class Neighbourhood:
 
     def __init__(
         self,
-        question: Question,
+        inquiry: Inquiry,
         parameters: Sequence[PhysicalValue],
         values: Sequence[float] | None = None,
         *,
@@ -67,13 +67,13 @@ class Neighbourhood:
         adapt: Callable[[Any], Any] | None = None,
         progress: Progress = None,
     ) -> None:
-        self.question, self.parameters, self.parts = question, parameters, parts
+        self.inquiry, self.parameters, self.parts = inquiry, parameters, parts
         self._about: dict[str, Differentiated] = {}
         self.progress, self.adapt = progress, adapt or (lambda case: case)
         self.values = [each.value for each in parameters] if values is None else [float(value) for value in values]
-        self.case: Any = self.adapt(question.case(self._changes(None, 0.0)))
+        self.case: Any = self.adapt(inquiry.case(self._changes(None, 0.0)))
         # Runs of one beam are differentiated themselves, all other answers by differences.
-        self.runs = question.verb == "run" and isinstance(self.case, Case)
+        self.runs = inquiry.verb == "run" and isinstance(self.case, Case)
         self.answer: Any
         if self.runs:
             if grids is None:
@@ -84,7 +84,7 @@ class Neighbourhood:
                 runs = {name: self._differentiated(structure, name, grid).unvaried() for name, grid in grids.items()}
                 self.answer = study_of(self.case, {name: _possible(structure, each) for name, each in runs.items()})
         else:
-            self.answer = question.facts(self.case)
+            self.answer = inquiry.facts(self.case)
 
     def slopes(self, read: Read, motions: Sequence[str] = ()) -> Slopes:
         """Derivatives of what is read from the answer; other motions than those named are not differentiated."""
@@ -98,7 +98,7 @@ class Neighbourhood:
 
             def at(steps: float, k: int = k, step: float = step) -> Floats:
                 case = self._case(k, steps * step)
-                return read(case, self.question.facts(case))
+                return read(case, self.inquiry.facts(case))
 
             rows.append(_differences(at, values, step))
         return _gathered(values, rows, [DIFFERENCE] * len(rows))
@@ -169,7 +169,7 @@ class Neighbourhood:
     def _case(self, k: int, step: float) -> Case:
         each = self.parameters[k]
         try:
-            case = self.adapt(self.question.case(self._changes(k, step)))
+            case = self.adapt(self.inquiry.case(self._changes(k, step)))
         except GbeamError as error:
             value, word = self.values[k], "less" if step < 0 else "more"
             problem = f"{each.path} = {value:.6g} {each.unit}".rstrip() + f" may not be a little {word}"
@@ -213,7 +213,7 @@ class Quantities:
 
     def __init__(
         self,
-        question: Question,
+        inquiry: Inquiry,
         parameters: Sequence[PhysicalValue],
         read: Read,
         start: Neighbourhood | None,
@@ -222,7 +222,7 @@ class Quantities:
         adapt: Callable[[Any], Any] = lambda case: case,
         progress: Progress = None,
     ) -> None:
-        self._question, self._parameters, self._read = question, parameters, read
+        self._inquiry, self._parameters, self._read = inquiry, parameters, read
         self._motions, self._parts, self._adapt, self._progress = motions, parts, adapt, progress
         self._start = start if start is not None and start.runs else None
         self._grids = None if self._start is None else {name: self._start.grid(name) for name in motions}
@@ -241,7 +241,7 @@ class Quantities:
         if self._last is None or not np.array_equal(self._last[0], values):
             self.evaluations += 1
             about = Neighbourhood(
-                self._question, self._parameters, values.tolist(), grids=self._grids, parts=self._parts,
+                self._inquiry, self._parameters, values.tolist(), grids=self._grids, parts=self._parts,
                 adapt=self._shaped, progress=self._progress,
             )  # fmt: skip
             for name in self._motions if self._grids is not None else ():

@@ -52,7 +52,7 @@ class Row:
 
 
 @dataclass(frozen=True)
-class Question:
+class Inquiry:
     """The computation of every case: a question at time `at`, s, and the figures that are taken from its answer.
 
     Figures are `keys` of its facts, `functions` of the case, and `histories` at `times` (t,), s; cases that can be
@@ -86,7 +86,7 @@ class Question:
         if not self.keys and not self.histories:
             return Needs()
         errors = any("error" in str(key) for keys in self.keys for key in own_keys(keys))
-        loads = any(map(_of_loads, self.keys)) or any(each.quantity != "tip" for each in self.histories)
+        loads = any(map(of_loads, self.keys)) or any(each.quantity != "tip" for each in self.histories)
         return Needs(errors, loads)
 
     @property
@@ -143,7 +143,7 @@ def _measured(functions: Sequence[Function], case: AnyCase) -> tuple[list[float]
     return values, "; ".join(problems)
 
 
-def _of_loads(keys: Keys) -> bool:
+def of_loads(keys: Keys) -> bool:
     """Whether a figure may be one of loads."""
     match keys[0]:
         case "motions":
@@ -180,9 +180,9 @@ Posed = tuple[int, Case, Structure]
 _ALONE = ("response", "model")  # tables: cases in which they differ have few steps or sizes in common
 
 
-def width(question: Question) -> int:
+def width(inquiry: Inquiry) -> int:
     """Number of cases that are best computed at once."""
-    return TOGETHER if question.together else 1
+    return TOGETHER if inquiry.together else 1
 
 
 def may_share(verb: str, paths: Sequence[str]) -> bool:
@@ -190,60 +190,58 @@ def may_share(verb: str, paths: Sequence[str]) -> bool:
     return verb == "run" and not any(path.partition(".")[0] in _ALONE for path in paths)
 
 
-def settled(question: Question, case: AnyCase, cases: int) -> Question:
-    """The question, its figures known, with whether a case, and so every one of so many, is integrated with others.
+def settled(inquiry: Inquiry, case: AnyCase, cases: int) -> Inquiry:
+    """The inquiry, its figures known, with whether a case, and so every one of so many, is integrated with others.
 
     An automatic step takes several runs, whose programs a few cases do not repay; so do automatic numbers of shapes.
     """
-    settings = reduced(case, question.needs).response
-    if settings is None or not question.together:
-        return question
+    settings = reduced(case, inquiry.needs).response
+    if settings is None or not inquiry.together:
+        return inquiry
     enough = settings.step is not None or cases >= TOGETHER
     able = isinstance(case, Case) and not settings.estimate and not case.automatic
-    return replace(question, together=enough and able)
+    return replace(inquiry, together=enough and able)
 
 
-def rows(question: Question, tasks: Sequence[Task]) -> list[Row]:
+def rows(inquiry: Inquiry, tasks: Sequence[Task]) -> list[Row]:
     """Compute some cases."""
-    if not question.together:
-        return [question.row(*task) for task in tasks]
+    if not inquiry.together:
+        return [inquiry.row(*task) for task in tasks]
     left = iter(tasks)
     computed: list[Row] = []
     while some := list(islice(left, TOGETHER)):  # no more responses at once
-        computed += _together(question, some)
+        computed += _together(inquiry, some)
     return computed
 
 
-def _together(question: Question, tasks: Sequence[Task]) -> list[Row]:
+def _together(inquiry: Inquiry, tasks: Sequence[Task]) -> list[Row]:
     computed: list[Row] = []
     posed: list[Posed] = []
     structures: dict[tuple[str, ...], Structure] = {}
     for number, overrides in tasks:
         try:
-            case = question.case(overrides).one_beam("bodies", "a batch")
+            case = inquiry.case(overrides).one_beam("bodies", "a batch")
             of_beam = tuple(each for each in overrides if not each.startswith("motion."))
             structure = structures[of_beam] = structures.get(of_beam) or case.assemble()
             posed.append((number, case, structure))
         except Exception as error:
-            computed.append(without_figures(number, question.width, error))
+            computed.append(without_figures(number, inquiry.width, error))
     # What varies in a motion may end a record elsewhere.
     for _, alike in groupby(posed, key=lambda each: each[1].response):
-        computed += _integrated(question, list(alike), set(structures) == {()})
+        computed += _integrated(inquiry, list(alike), set(structures) == {()})
     return computed
 
 
-def _integrated(question: Question, posed: Sequence[Posed], one_structure: bool) -> Iterator[Row]:
+def _integrated(inquiry: Inquiry, posed: Sequence[Posed], one_structure: bool) -> Iterator[Row]:
     """Rows of cases with the same settings."""
-    answers = {name: _responses(question, posed, name, one_structure) for name in posed[0][1].motions}
+    answers = {name: _responses(inquiry, posed, name, one_structure) for name in posed[0][1].motions}
     for k, (number, case, _) in enumerate(posed):
-        yield _row(question, number, case, {name: each[k] for name, each in answers.items()})
+        yield _row(inquiry, number, case, {name: each[k] for name, each in answers.items()})
 
 
-def _responses(
-    question: Question, posed: Sequence[Posed], name: str, one_structure: bool
-) -> list[Response | Exception]:
+def _responses(inquiry: Inquiry, posed: Sequence[Posed], name: str, one_structure: bool) -> list[Response | Exception]:
     """Responses in one environment, or why there is none."""
-    settings = reduced(posed[0][1], question.needs).response
+    settings = reduced(posed[0][1], inquiry.needs).response
     try:
         cases = ((structure, case.motions[name]) for _, case, structure in posed)
         batch = dict(simulate_batch(cases, settings, one_structure=one_structure))
@@ -252,12 +250,12 @@ def _responses(
             return [error]
         half = len(posed) // 2  # one that fails ends its batch
         return [
-            each for part in (posed[:half], posed[half:]) for each in _responses(question, part, name, one_structure)
+            each for part in (posed[:half], posed[half:]) for each in _responses(inquiry, part, name, one_structure)
         ]
     return [replace(batch[k], name=name, provenance=case.provenance) for k, (_, case, _) in enumerate(posed)]
 
 
-def _row(question: Question, number: int, case: Case, answers: Mapping[str, Response | Exception]) -> Row:
+def _row(inquiry: Inquiry, number: int, case: Case, answers: Mapping[str, Response | Exception]) -> Row:
     responses: dict[str, Response] = {}
     failures: dict[str, Failure] = {}
     try:
@@ -270,5 +268,5 @@ def _row(question: Question, number: int, case: Case, answers: Mapping[str, Resp
                 responses[name] = answer
         facts = answer_facts(study_of(case, responses, failures))
     except Exception as error:
-        return without_figures(number, question.width, error)
-    return question.measured(number, case, facts)
+        return without_figures(number, inquiry.width, error)
+    return inquiry.measured(number, case, facts)

@@ -16,7 +16,7 @@ from gbeam.progress import Progress
 from gbeam.results.result import Floats
 from gbeam.results.searches import Fit, FittedColumn
 from gbeam.studies.derivatives import Neighbourhood, Quantities
-from gbeam.studies.evaluate import Question
+from gbeam.studies.evaluate import Inquiry
 from gbeam.studies.measurement import Measurement, read_measurement
 from gbeam.studies.parameters import Bounds, PhysicalValue, agreeing, bounds_of, named, on_bound, searched
 from gbeam.studies.template import template_of
@@ -105,7 +105,7 @@ def fit(
     case = template.built()
     measurement = read_measurement(data, case, motion)
     verb, read = ("modes", "modes") if measurement.modal else ("run", "motions")
-    question = Question(template, verb, motion, at, options or {}, keys=((read,),))  # of errors nothing is read
+    inquiry = Inquiry(template, verb, motion, at, options or {}, keys=((read,),))  # of errors nothing is read
     if len(measurement.values) <= len(parameters):
         problem = f"names {len(parameters)} values for {len(measurement.values)} data"
         raise InputError(OPTION, problem, "measure more, or free fewer")
@@ -113,10 +113,10 @@ def fit(
     start = (
         None
         if measurement.modal or not isinstance(case, Case)
-        else Neighbourhood(question, parameters, progress=progress)
+        else Neighbourhood(inquiry, parameters, progress=progress)
     )
     model = Quantities(
-        question, parameters, measurement.read, start, measurement.motions, measurement.parts,
+        inquiry, parameters, measurement.read, start, measurement.motions, measurement.parts,
         measurement.instrumented, progress,
     )  # fmt: skip
     solutions = searched(parameters, limits, starts, lambda x: _search(model, measurement, parameters, x, limits))

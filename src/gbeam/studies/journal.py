@@ -23,7 +23,7 @@ import gbeam
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.processes import alone
 from gbeam.studies.cases import Cases
-from gbeam.studies.evaluate import Question, Row
+from gbeam.studies.evaluate import Inquiry, Row
 
 NAME = "cases.jsonl"
 LOCK = ".lock"
@@ -186,7 +186,7 @@ def _row(line: Mapping[str, Any]) -> Row:
     return Row(int(line["case"]), values, str(line["outcome"]), str(line["message"]))
 
 
-def identity(question: Question, cases: Cases, measures: Sequence[str], histories: Sequence[Any]) -> dict[str, Any]:
+def identity(inquiry: Inquiry, cases: Cases, measures: Sequence[str], histories: Sequence[Any]) -> dict[str, Any]:
     """Identity of a sweep: version, scenario, what varies, and what is measured."""
     digest = hashlib.sha256()
     for each in cases.variations:
@@ -194,8 +194,8 @@ def identity(question: Question, cases: Cases, measures: Sequence[str], historie
             digest.update(text.encode() + b"\n")
     return {
         "version": gbeam.__version__,
-        **question.template.identity,
-        "question": [question.verb, question.motion, question.at, dict(question.options)],
+        **inquiry.template.identity,
+        "question": [inquiry.verb, inquiry.motion, inquiry.at, dict(inquiry.options)],
         "parameters": [each.path for each in cases.variations],
         "values": digest.hexdigest(),
         "measures": list(measures),

@@ -22,7 +22,7 @@ from gbeam.results.result import Floats
 from gbeam.results.searches import Optimum, Requirement
 from gbeam.results.study import Study
 from gbeam.studies.derivatives import Neighbourhood, Quantities
-from gbeam.studies.evaluate import Question
+from gbeam.studies.evaluate import Inquiry
 from gbeam.studies.figures import Facts, Keys, offered, unit_at
 from gbeam.studies.parameters import Bounds, agreeing, bounds_of, named, on_bound, searched
 from gbeam.studies.sensitivity import facts_of, figure, needed, values_at
@@ -104,18 +104,18 @@ def optimise(
     parameters = named(template, over, "--over")
     offered(verb, [minimise], OPTION)
     limits = np.array([bounds_of(each, bounds or {}, "--over") for each in parameters])
-    question = Question(template, verb, motion, at, options or {})
-    first = Neighbourhood(question, parameters, progress=progress)
+    inquiry = Inquiry(template, verb, motion, at, options or {})
+    first = Neighbourhood(inquiry, parameters, progress=progress)
     goal = _goal(facts_of(first.answer), first.case, minimise, subject_to)
     # On the way no more is computed than is read; the last answer is whole.
     motions, parts = needed(goal.keys, first.case.tracks)
     model = Quantities(
-        replace(question, keys=goal.keys), parameters, goal.read, first, motions, parts, progress=progress
+        replace(inquiry, keys=goal.keys), parameters, goal.read, first, motions, parts, progress=progress
     )
     search = Search(model, goal, limits)
     ends = searched(parameters, limits, starts, search)
     values = search.tried[-1][0]
-    last = Neighbourhood(question, parameters, values.tolist(), progress=progress)
+    last = Neighbourhood(inquiry, parameters, values.tolist(), progress=progress)
     before, after = (values_at(facts_of(each.answer), goal.keys) for each in (first, last))
     if last.runs:
         for name in needed(goal.keys, last.case.tracks)[0]:

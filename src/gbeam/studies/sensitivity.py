@@ -20,7 +20,7 @@ from gbeam.results.result import Flags, Floats
 from gbeam.results.study import Study
 from gbeam.scenario.values import path_text
 from gbeam.studies.derivatives import Neighbourhood, Slopes
-from gbeam.studies.evaluate import Question
+from gbeam.studies.evaluate import Inquiry, of_loads
 from gbeam.studies.figures import Facts, Keys, answer_facts, find, node_at, offered, own_keys, unit_at, usual, value_at
 from gbeam.studies.parameters import PhysicalValue, changes_to, physical_values
 from gbeam.studies.template import template_of
@@ -97,15 +97,15 @@ def sensitivity(
     if not of:
         raise InputError(OPTION, "is missing", 'name figures: --of "tip.z.max_abs, verdict.tip"; list prints all')
     offered(verb, of, OPTION)
-    question = Question(template, verb, motion, at, options or {})
-    chosen, refused = _possible(question, physical_values(template, parameters), strict=bool(parameters))
+    inquiry = Inquiry(template, verb, motion, at, options or {})
+    chosen, refused = _possible(inquiry, physical_values(template, parameters), strict=bool(parameters))
     if not chosen:
         raise InputError("--with", "has no value that may be a little more and a little less", "name some")
-    about = Neighbourhood(question, chosen, progress=progress)
+    about = Neighbourhood(inquiry, chosen, progress=progress)
     facts = facts_of(about.answer)
     keys = tuple(figure(facts, name) for name in of)
     motions, about.parts = needed(keys, about.case.tracks)
-    about.question = replace(question, keys=keys)  # of other answers no more is computed than is read
+    about.inquiry = replace(inquiry, keys=keys)  # of other answers no more is computed than is read
     slopes = about.slopes(lambda _, answer: values_at(facts_of(answer), keys), motions)
     units = tuple(unit_at(facts, each) for each in keys)
     kinks = _kinks(slopes, [each.value for each in chosen], units)
@@ -168,17 +168,15 @@ def figure(facts: Facts, name: str, option: str = OPTION) -> Keys:
 def needed(keys: Sequence[Keys], tracks: Mapping[str, str]) -> tuple[list[str], dict[str, bool]]:
     """Motions whose responses figures of ``run`` come from, and which parts of these."""
     motions: dict[str, None] = {}
-    loads = axes = False
+    axes = False
     for first, *rest in keys:
         if first == "comparisons":
             motions |= dict.fromkeys((tracks[str(rest[0])], str(rest[0])))
-            loads = axes = True
+            axes = True
         elif first == "motions":
             motions[str(rest[0])] = None
-            # The torque of a hub's drive is among its loads.
-            loads |= rest[1] not in ("tip", "stations")
             axes |= rest[1] not in ("tip", "stations", "loads", "hub")
-    return list(motions), {"loads": loads, "axes": axes}
+    return list(motions), {"loads": any(map(of_loads, keys)), "axes": axes}
 
 
 def facts_of(answer: Any) -> Facts:
@@ -190,14 +188,14 @@ def values_at(facts: Facts, keys: Sequence[Keys]) -> Floats:
 
 
 def _possible(
-    question: Question, values: Sequence[PhysicalValue], *, strict: bool
+    inquiry: Inquiry, values: Sequence[PhysicalValue], *, strict: bool
 ) -> tuple[list[PhysicalValue], list[str]]:
     """Values that may be a little more and a little less; those that may not, with the reason, unless named."""
     kept, refused = [], []
     for each in values:
         try:
             for share in (-1e-3, 1e-3):
-                question.case(changes_to([each], [each.value * (1 + share) if each.value else share * 1e-3]))
+                inquiry.case(changes_to([each], [each.value * (1 + share) if each.value else share * 1e-3]))
         except GbeamError as error:
             reason = re.sub(r"^--set [^:]*: ", "", str(error).splitlines()[0])
             if strict:

@@ -16,7 +16,7 @@ import numpy as np
 from gbeam.analysis.case import AnyCase, SystemCase
 from gbeam.errors import GbeamError, InputError
 from gbeam.studies.cases import Cases
-from gbeam.studies.evaluate import NO_FACTS, Question, Row, ended, settled, width, without_figures
+from gbeam.studies.evaluate import NO_FACTS, Inquiry, Row, ended, settled, width, without_figures
 from gbeam.studies.evaluate import rows as computed
 from gbeam.studies.figures import find, node_at, read_history, read_system_history, unit_at
 from gbeam.studies.template import Template
@@ -36,10 +36,10 @@ class OverTime:
     names: tuple[str, ...] = ()
     count: int = 0
 
-    def of(self, question: Question, case: AnyCase) -> Question:
-        """The question with these histories."""
+    def of(self, inquiry: Inquiry, case: AnyCase) -> Inquiry:
+        """The inquiry with these histories."""
         if not self.names:
-            return question
+            return inquiry
         settings = case.over_time
         times = np.linspace(settings.start, settings.start + settings.duration, self.count)
         histories: tuple[Any, ...]
@@ -48,7 +48,7 @@ class OverTime:
         else:
             points = list(case.one_beam("bodies", "a history").beam.named_points)
             histories = tuple(read_history(each, case.motions, points) for each in self.names)
-        return replace(question, histories=histories, times=times)
+        return replace(inquiry, histories=histories, times=times)
 
 
 NO_HISTORIES = OverTime()
@@ -58,7 +58,7 @@ NO_HISTORIES = OverTime()
 class Start:
     """The first cases' rows, their figures' units and kinds, a possible example, and seconds that a case takes."""
 
-    question: Question
+    inquiry: Inquiry
     units: tuple[str, ...]
     truths: tuple[bool, ...]
     example: Template
@@ -68,12 +68,12 @@ class Start:
     @property
     def figures(self) -> Figures:
         """Keys, unit and kind of each figure; a function has no keys."""
-        keys = self.question.keys or ((),) * len(self.units)
+        keys = self.inquiry.keys or ((),) * len(self.units)
         return list(zip(keys, self.units, self.truths, strict=True))
 
 
 def start(
-    question: Question, cases: Cases, missing: Sequence[int], names: Sequence[str], histories: OverTime = NO_HISTORIES
+    inquiry: Inquiry, cases: Cases, missing: Sequence[int], names: Sequence[str], histories: OverTime = NO_HISTORIES
 ) -> Start:
     """Compute first cases until one is possible; the first's error where none of 20 all over the sweep is."""
     reason: GbeamError | None = None
@@ -82,16 +82,16 @@ def start(
     for index in np.unique(np.linspace(0, len(missing) - 1, TRIED).astype(int)):
         number, begin = missing[index], time.perf_counter()
         try:
-            example = question.template.changed(cases.overrides(number))
+            example = inquiry.template.changed(cases.overrides(number))
             case = example.built()
-            needed = histories.names or not question.functions
-            facts = question.facts(case) if needed else NO_FACTS
+            needed = histories.names or not inquiry.functions
+            facts = inquiry.facts(case) if needed else NO_FACTS
         except GbeamError as error:
             reason = reason or error
             rows.append(without_figures(number, figures, error))
             continue
         units, truths = ("",) * len(names), (False,) * len(names)
-        if not question.functions:
+        if not inquiry.functions:
             try:
                 keys = tuple(find(facts, name) for name in names)
             except InputError as error:
@@ -100,25 +100,25 @@ def start(
                 reason = reason or error
                 rows.append(Row(number, (math.nan,) * figures, *ended(facts)))
                 continue
-            question = replace(question, keys=keys)
+            inquiry = replace(inquiry, keys=keys)
             units = tuple(unit_at(facts, each) for each in keys)
             truths = tuple(isinstance(node_at(facts, each), bool) for each in keys)
-        question = settled(histories.of(question, case), case, len(cases))
+        inquiry = settled(histories.of(inquiry, case), case, len(cases))
         task = (number, cases.overrides(number))
-        rows += computed(question, [task]) if question.together else [question.measured(number, case, facts)]
+        rows += computed(inquiry, [task]) if inquiry.together else [inquiry.measured(number, case, facts)]
         seconds = time.perf_counter() - begin
-        after = missing[index + 1 : index + 1 + min(_FEW, width(question))] or missing[:1]
+        after = missing[index + 1 : index + 1 + min(_FEW, width(inquiry))] or missing[:1]
         after = [each for each in after if all(each != row.case for row in rows)]
-        if after and (seconds < _IMPORTS or question.together):
-            more, seconds = _timed(question, cases, after)
+        if after and (seconds < _IMPORTS or inquiry.together):
+            more, seconds = _timed(inquiry, cases, after)
             rows += more
-        return Start(question, units, truths, example, tuple(rows), seconds)
+        return Start(inquiry, units, truths, example, tuple(rows), seconds)
     assert reason is not None
     raise reason
 
 
 def go_on(
-    question: Question,
+    inquiry: Inquiry,
     cases: Cases,
     missing: Sequence[int],
     done: Sequence[Row],
@@ -126,27 +126,27 @@ def go_on(
     histories: OverTime = NO_HISTORIES,
 ) -> Start:
     """Start of a sweep some of whose cases are done, by which its figures are known; nothing may be missing."""
-    question = replace(question, keys=tuple(tuple(keys) for keys, *_ in figures if keys))
+    inquiry = replace(inquiry, keys=tuple(tuple(keys) for keys, *_ in figures if keys))
     possible = [row for row in done if row.outcome != "refused"] or done
-    example = question.template.changed(cases.overrides(possible[0].case))
-    if histories.names or question.together:
+    example = inquiry.template.changed(cases.overrides(possible[0].case))
+    if histories.names or inquiry.together:
         case = example.built()
-        question = settled(histories.of(question, case), case, len(cases))
+        inquiry = settled(histories.of(inquiry, case), case, len(cases))
     rows: list[Row] = []
     seconds = 0.0
-    few = min(_FEW, width(question))
+    few = min(_FEW, width(inquiry))
     for first in (0, few):  # what is imported and compiled once comes with the first
         if chosen := missing[first : first + few]:
-            more, seconds = _timed(question, cases, chosen)
+            more, seconds = _timed(inquiry, cases, chosen)
             rows += more
         if seconds >= _IMPORTS:
             break
     units, truths = tuple(unit for _, unit, _ in figures), tuple(truth for *_, truth in figures)
-    return Start(question, units, truths, example, tuple(rows), seconds)
+    return Start(inquiry, units, truths, example, tuple(rows), seconds)
 
 
-def _timed(question: Question, cases: Cases, numbers: Sequence[int]) -> tuple[list[Row], float]:
+def _timed(inquiry: Inquiry, cases: Cases, numbers: Sequence[int]) -> tuple[list[Row], float]:
     """Rows of some cases, and the time that one of them takes, s."""
     begin = time.perf_counter()
-    rows = computed(question, [(number, cases.overrides(number)) for number in numbers])
+    rows = computed(inquiry, [(number, cases.overrides(number)) for number in numbers])
     return rows, (time.perf_counter() - begin) / len(numbers)

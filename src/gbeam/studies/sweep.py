@@ -19,7 +19,7 @@ from gbeam.guards.limits import HISTORY_BYTES, WORKERS, refuse_more
 from gbeam.progress import tell
 from gbeam.results.cases import Sweep
 from gbeam.studies.cases import Cases, read_cases
-from gbeam.studies.evaluate import Function, Question, Row, Task, may_share, width
+from gbeam.studies.evaluate import Function, Inquiry, Row, Task, may_share, width
 from gbeam.studies.figures import HISTORY, TIMES, offered, usual
 from gbeam.studies.journal import Journal, identity, opened
 from gbeam.studies.start import NO_HISTORIES, OverTime, Start, go_on, start
@@ -151,28 +151,28 @@ def sweep(
         offered(verb, names)
     functions = tuple(measure.values()) if isinstance(measure, Mapping) else ()
     share = not functions and may_share(verb, [each.path for each in cases.variations])
-    question = Question(template, verb, motion, at, options or {}, functions=functions, together=share)
-    known = {} if store is None else identity(question, cases, names, [over_time.names, over_time.count])
+    inquiry = Inquiry(template, verb, motion, at, options or {}, functions=functions, together=share)
+    known = {} if store is None else identity(inquiry, cases, names, [over_time.names, over_time.count])
     journal, done = opened(store, resume, known)
     kept = {row.case for row in done}
     missing = [number for number in range(len(cases)) if number not in kept] if kept else range(len(cases))
     several = workers > 1 and scheduler is None and len(missing) > 1
     with processes(workers, functions) if several else nullcontext() as pool:
         if journal is not None and done:
-            begun = go_on(question, cases, missing, done, journal.figures, over_time)
+            begun = go_on(inquiry, cases, missing, done, journal.figures, over_time)
         else:
-            begun = start(question, cases, missing, names, over_time)
-        question = begun.question
+            begun = start(inquiry, cases, missing, names, over_time)
+        inquiry = begun.inquiry
         _confirm(len(missing), begun.seconds / workers, confirmed)
         tried = {row.case for row in begun.rows}
         left = len(missing) - len(tried)
         size = int(min(_LONGEST, _BATCH / max(begun.seconds, 1e-4), left / (4 * workers)))
         tasks = ((number, cases.overrides(number)) for number in missing if number not in tried)
-        batches = _batches(tasks, max(1, size // width(question)) * width(question))
+        batches = _batches(tasks, max(1, size // width(inquiry)) * width(inquiry))
         if scheduler is not None:
-            computed = on_scheduler(question, batches, scheduler)
+            computed = on_scheduler(inquiry, batches, scheduler)
         else:
-            computed = serially(question, batches) if pool is None else pool.rows(question, batches)
+            computed = serially(inquiry, batches) if pool is None else pool.rows(inquiry, batches)
         rows = [*done, *begun.rows]
         if journal is None:
             rows += _collected(computed, rows, len(cases), progress)
@@ -255,27 +255,27 @@ def _collected(
 
 def assembled(title: str, cases: Cases, names: Sequence[str], begun: Start, rows: Iterable[Row], seed: int) -> Sweep:
     """Return the result of rows in any order; the cases without one are pending."""
-    question = begun.question
-    values = np.full((question.width, len(cases)), math.nan)
+    inquiry = begun.inquiry
+    values = np.full((inquiry.width, len(cases)), math.nan)
     outcome = np.full(len(cases), "pending", dtype=object)
     message = np.full(len(cases), "", dtype=object)
     for row in rows:
         values[:, row.case] = row.values
         outcome[row.case], message[row.case] = row.outcome, row.message
-    shape, times = cases.shape, len(question.times)
+    shape, times = cases.shape, len(inquiry.times)
     measures = {name: values[k].reshape(shape) for k, name in enumerate(names)}
-    over_time = values[len(names) :].reshape(len(question.histories), times, *shape)
-    histories = {each.name: np.moveaxis(over_time[k], 0, -1) for k, each in enumerate(question.histories)}
+    over_time = values[len(names) :].reshape(len(inquiry.histories), times, *shape)
+    histories = {each.name: np.moveaxis(over_time[k], 0, -1) for k, each in enumerate(inquiry.histories)}
     answer = Sweep(
         title=title,
-        verb=question.verb,
+        verb=inquiry.verb,
         parameters=tuple(each.parameter(begun.example.unit(each.path)) for each in cases.variations),
         measures=measures,
-        units=dict(zip(names, begun.units, strict=True)) | {each.name: each.unit for each in question.histories},
+        units=dict(zip(names, begun.units, strict=True)) | {each.name: each.unit for each in inquiry.histories},
         outcome=outcome.reshape(shape),
         message=message.reshape(shape),
         histories=histories,
-        time=question.times,
+        time=inquiry.times,
     )
     return with_statistics(answer, cases, dict(zip(names, begun.truths, strict=True)), seed) if cases.drawn else answer
 

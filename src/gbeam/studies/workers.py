@@ -30,17 +30,17 @@ from typing import Any
 
 import gbeam
 from gbeam.errors import ComputationError, InputError
-from gbeam.studies.evaluate import Function, Question, Row, Task, rows
+from gbeam.studies.evaluate import Function, Inquiry, Row, Task, rows
 
 _THREADS = "OPENBLAS_NUM_THREADS"  # of each worker one: those of several wait for one another
 _FUNCTIONS, _WORKERS = "measure", "--workers"
 _ELSEWHERE = "define it at the top level of a module that you import, or leave the workers out"
 
 
-def serially(question: Question, batches: Iterable[Sequence[Task]]) -> Iterator[list[Row]]:
+def serially(inquiry: Inquiry, batches: Iterable[Sequence[Task]]) -> Iterator[list[Row]]:
     """Compute the batches in this process."""
     for batch in batches:
-        yield rows(question, batch)
+        yield rows(inquiry, batch)
 
 
 @dataclass
@@ -50,16 +50,16 @@ class _Worker:
     process: Any
     pipe: Any
     ready: bool = False
-    question: Question | None = None
+    inquiry: Inquiry | None = None
     batch: Sequence[Task] | None = None
 
-    def send(self, question: Question, batch: Sequence[Task]) -> None:
+    def send(self, inquiry: Inquiry, batch: Sequence[Task]) -> None:
         """Give it a batch."""
         with suppress(OSError):  # it has died, as its pipe will say
-            if self.question is not question:
-                self.pipe.send(question)
+            if self.inquiry is not inquiry:
+                self.pipe.send(inquiry)
             self.pipe.send(batch)
-        self.question, self.batch = question, batch
+        self.inquiry, self.batch = inquiry, batch
 
     def end(self) -> None:
         """End it, whatever it is doing."""
@@ -92,7 +92,7 @@ class Workers:
             self.close()
             raise
 
-    def rows(self, question: Question, batches: Iterable[Sequence[Task]]) -> Iterator[list[Row]]:
+    def rows(self, inquiry: Inquiry, batches: Iterable[Sequence[Task]]) -> Iterator[list[Row]]:
         """Compute the batches.
 
         A batch whose process dies is divided until one case is left, which has failed if its process dies once more.
@@ -101,7 +101,7 @@ class Workers:
         while True:
             for worker in self._workers:
                 if worker.batch is None and (batch := again.popleft() if again else next(left, None)):
-                    worker.send(question, batch)
+                    worker.send(inquiry, batch)
             busy = {worker.pipe: k for k, worker in enumerate(self._workers) if worker.batch}
             if not busy:
                 return
@@ -120,7 +120,7 @@ class Workers:
                     if half:
                         again += [batch[:half], batch[half:]]
                     elif number in suspects:
-                        yield [died(question, batch[0])]
+                        yield [died(inquiry, batch[0])]
                     else:
                         suspects.add(number)
                         again.append(batch)
@@ -129,7 +129,7 @@ class Workers:
                 if isinstance(answer, str):
                     raise RuntimeError(f"a worker failed:\n{answer}")
                 if following := again.popleft() if again else next(left, None):
-                    worker.send(question, following)  # while this process keeps the rows
+                    worker.send(inquiry, following)  # while this process keeps the rows
                 yield answer
 
     def close(self) -> None:
@@ -193,7 +193,7 @@ def _main_hidden(hidden: bool) -> Iterator[None]:
 
 
 def _work(pipe: Connection, functions: bytes) -> None:
-    """Say whether the functions can be loaded, take a question, and answer batches until the other end is closed."""
+    """Say whether the functions can be loaded, take an inquiry, and answer batches until the other end is closed."""
     _begin()
     with suppress(EOFError, OSError):
         try:
@@ -203,14 +203,14 @@ def _work(pipe: Connection, functions: bytes) -> None:
             return
         pipe.send("")
         _import()
-        question: Any = None
+        inquiry: Any = None
         while True:
             message = pipe.recv()
-            if isinstance(message, Question):
-                question = message
+            if isinstance(message, Inquiry):
+                inquiry = message
                 continue
             try:
-                answer: Any = rows(question, message)
+                answer: Any = rows(inquiry, message)
             except Exception:
                 answer = traceback.format_exc()
             pipe.send(answer)
@@ -235,9 +235,9 @@ def _begin() -> None:
     threading.Thread(target=wait_for_end, daemon=True).start()
 
 
-def died(question: Question, task: Task) -> Row:
+def died(inquiry: Inquiry, task: Task) -> Row:
     """Row of a case whose process ends whenever it is computed."""
-    return Row(task[0], (math.nan,) * question.width, "failed", "the process that computed it died")
+    return Row(task[0], (math.nan,) * inquiry.width, "failed", "the process that computed it died")
 
 
 CONNECTION = 10.0  # s that a scheduler may take to answer, and its first worker to appear
@@ -252,19 +252,19 @@ class OtherVersion(Exception):
     """Raised by a worker that has another version of gbeam."""
 
 
-def compute(version: str, question: Question, batch: Sequence[Task]) -> list[Row]:
+def compute(version: str, inquiry: Inquiry, batch: Sequence[Task]) -> list[Row]:
     """Compute a batch on a worker; one with another version than `version` refuses."""
     if gbeam.__version__ != version:
         from distributed import get_worker
 
         raise OtherVersion(get_worker().address, gbeam.__version__)
-    return rows(question, batch)
+    return rows(inquiry, batch)
 
 
-def on_scheduler(question: Question, batches: Iterable[Sequence[Task]], address: str) -> Iterator[list[Row]]:
+def on_scheduler(inquiry: Inquiry, batches: Iterable[Sequence[Task]], address: str) -> Iterator[list[Row]]:
     """Compute the batches on the workers of a Dask scheduler."""
     with _connected(address) as client:
-        yield from _Dispatch(client, address, question, iter(batches)).rows()
+        yield from _Dispatch(client, address, inquiry, iter(batches)).rows()
 
 
 @contextmanager
@@ -318,7 +318,7 @@ class _Dispatch:
 
     client: Any
     address: str
-    question: Question
+    inquiry: Inquiry
     left: Iterator[Sequence[Task]]
     again: deque[Task] = field(default_factory=deque)  # of batches that ended their workers
     under_way: dict[Any, Sequence[Task]] = field(default_factory=dict)
@@ -349,7 +349,7 @@ class _Dispatch:
             batch = [self.again.popleft()] if alone else next(self.left, None)
             if batch is None:
                 return
-            future = self.client.submit(compute, gbeam.__version__, self.question, batch, pure=False)
+            future = self.client.submit(compute, gbeam.__version__, self.inquiry, batch, pure=False)
             self.under_way[future] = batch
             if alone:
                 self.alone.add(future)
@@ -363,7 +363,7 @@ class _Dispatch:
             return list(future.result())
         except KilledWorker:
             if future in self.alone:
-                return [died(self.question, batch[0])]
+                return [died(self.inquiry, batch[0])]
             self.again.extend(batch)
             return []
         except OtherVersion as error:
