@@ -1,4 +1,4 @@
-"""Whether versions in locks have known vulnerabilities: pip-audit asks PyPI's database of advisories.
+"""Audit versions in locks for known vulnerabilities: pip-audit asks PyPI's database of advisories.
 
 Every line is looked at, whatever platform or Python it is for. Exit status: 0 none known, 1 some, 2 no answer.
 """

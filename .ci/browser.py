@@ -38,8 +38,8 @@ FONTS = """<?xml version="1.0"?>
 
 
 def main() -> int:
-    found = find()
-    if found is not None:
+    browser = find()
+    if browser is not None:
         return 0
     if (platform.system(), platform.machine()) != ("Linux", "x86_64"):
         print("browser tests are skipped: no Chromium is there, and npm has one for Linux on x86-64 only")

@@ -90,7 +90,7 @@ def attempt(wheel: Path, python: str, resolution: str, tests: Sequence[str], *, 
 
 
 def use(interpreter: Path, folder: Path) -> None:
-    """What a user does first: the version, a new scenario, the demo, in a folder from which no tree is importable."""
+    """Do as a user does first: version, a new scenario, the demo, in a folder from which no tree is importable."""
     gbeam = (interpreter, "-m", "gbeam")
     with tempfile.TemporaryDirectory() as elsewhere:
         run(*gbeam, "--version", cwd=elsewhere)

@@ -118,22 +118,22 @@ def steps_of(choice: Choice, problem: Problem) -> None:
     seen: list[Any] = []
     original = lanes.steps
 
-    def watched(*given: Any, **how: Any) -> Any:
-        seen.append((given, how))
-        return original(*given, **how)
+    def watched(*values: Any, **how: Any) -> Any:
+        seen.append((values, how))
+        return original(*values, **how)
 
     lanes.steps = watched  # type: ignore[assignment]
     seconds(problem, choice, TOGETHER)
     lanes.steps = original
-    given, how = seen[0]
-    steps, together = given[-1], given[0].shape[-1]
+    values, how = seen[0]
+    steps, together = values[-1], values[0].shape[-1]
     times = []
     for _ in range(10):
         began = time.process_time()
-        jax.block_until_ready(original(*given, **how))
+        jax.block_until_ready(original(*values, **how))
         times.append(time.process_time() - began)
     each = min(times) / steps / together
-    cost = original.lower(*given, **how).compile().cost_analysis()
+    cost = original.lower(*values, **how).compile().cost_analysis()
     # The compiler counts the body of a loop once.
     flops = cost["flops"] / together
     peak = peak_flops()

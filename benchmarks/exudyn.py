@@ -41,14 +41,14 @@ PEAK, RESIDUAL = 1e-4, 1e-2
 
 @dataclass(frozen=True)
 class Errors:
-    """Of the peak, of the residual amplitude, and at any time over the peak."""
+    """Errors of the peak, of the residual amplitude, and at any time over the peak."""
 
     peak: float
     residual: float
     history: float
 
     def reach(self, measure: str) -> bool:
-        """Whether the error asked for is reached; never where the solution failed."""
+        """True if the error asked for is reached; never where the solution failed."""
         error = self.peak if measure == "peak" else self.history
         return abs(error) <= PEAK and abs(self.residual) <= RESIDUAL
 
@@ -71,7 +71,7 @@ class Reference:
         return float(np.abs(curve(np.append(turns, end))).max()), float(np.ptp(curve(late)) / 2)
 
     def errors(self, answer: tuple[np.ndarray, np.ndarray]) -> Errors:
-        """Of an answer's samples; NaN where there are none."""
+        """Errors of an answer's samples; NaN where there are none."""
         if answer[0].size < 4 or not np.isfinite(answer[1]).all():
             return Errors(np.nan, np.nan, np.nan)
         curve = CubicSpline(*answer)
@@ -130,7 +130,7 @@ def first_call(name: str, choice: Choice | Setting, cache: str) -> float:
 
 
 def print_first_call(name: str, kind: str, fields: str) -> None:
-    """What the new process of :func:`first_call` does."""
+    """Print the time of a first call, in the new process of :func:`first_call`."""
     problem, choice = PROBLEMS[name], {"Choice": Choice, "Setting": Setting}[kind](**json.loads(fields))
     began = time.process_time()
     later_calls(problem, choice, 0)

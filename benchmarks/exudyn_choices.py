@@ -13,7 +13,7 @@ TORQUE = Drive(duration=10.0, end=20.0, torque=200.0, mass=0.5)
 
 @dataclass(frozen=True)
 class Choice:
-    """How gbeam computes it: numbers of axial and bending shapes, which, scheme, step, s."""
+    """Settings of gbeam: numbers of axial and bending shapes, which, scheme, step, s."""
 
     axial: int
     bending: int

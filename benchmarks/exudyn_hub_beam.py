@@ -43,7 +43,7 @@ class Drive:
 
 @dataclass(frozen=True)
 class Setting:
-    """How Exudyn computes it.
+    """Settings of Exudyn.
 
     `hub`: rigid, a body and a joint; element, a stiff element of the hub's inertia; node, the root's node prescribed.
     `points`: Exudyn's useReducedOrderIntegration, 0 most points and 2 fewest. `method`: of its dynamic solvers.
@@ -132,9 +132,9 @@ class HubBeam:
         self.system.Assemble()
 
     def _function(self, name: str, item: object, function: object) -> object:
-        made = CreateSymbolicUserFunction(self.system, function, name, item)
-        self._functions.append(made)
-        return made
+        built = CreateSymbolicUserFunction(self.system, function, name, item)
+        self._functions.append(built)
+        return built
 
     def _fix(self, node: object, coordinate: int, offset: object = None, rate: object = None) -> None:
         """Hold a coordinate of a node, or let it follow a function of time."""
@@ -238,7 +238,7 @@ class HubBeam:
 
 
 def _of_time(function):  # type: ignore[no-untyped-def]
-    """The same function with the arguments that Exudyn checks by name."""
+    """A function of time with the arguments that Exudyn checks by name."""
 
     def follow(mbs, t, itemNumber, lOffset):  # type: ignore[no-untyped-def]
         return function(t)

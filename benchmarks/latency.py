@@ -1,4 +1,4 @@
-"""How long each command takes, in units of `import jax` on the same machine in the same run.
+"""Time of each command, in units of `import jax` on the same machine in the same run.
 
     python benchmarks/latency.py [--runs 5] [--only run]
 

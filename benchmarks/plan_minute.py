@@ -1,4 +1,4 @@
-"""How long `gbeam plan` takes over a minute at 100 Hz with inverse = "planned", and how well the load is followed.
+"""Time of `gbeam plan` over a minute at 100 Hz with inverse = "planned", and how well the load is followed.
 
 From standstill to standstill, two records, each with seven sets of limits; every run is a fresh process:
 
@@ -97,7 +97,7 @@ def run(scenario: Path, limits: dict[str, float]) -> tuple[float, float, dict[st
 
 
 def processor_time() -> float:
-    """Of all runs so far, s."""
+    """Processor time of all runs so far, s."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 

@@ -78,7 +78,7 @@ def ipopt(cost: Any, limits: Any, x: Any) -> tuple[Any, float]:
     along = radial * ca.cos(yaw) + tangential * ca.sin(yaw)
     across = tangential * ca.cos(yaw) - radial * ca.sin(yaw)
     load = along, across * ca.cos(roll) + gravity * ca.sin(roll), gravity * ca.cos(roll) - across * ca.sin(roll)
-    error = [cost.weight * (made - flown) for made, flown in zip(load, cost.flight.T, strict=True)]
+    error = [cost.weight * (imitated - flown) for imitated, flown in zip(load, cost.flight.T, strict=True)]
     value = (ca.sumsqr(ca.vertcat(*error)) + ca.dot(unknown, ca.mtimes(constant(cost.ease), unknown))) / 2
     kept = ca.vertcat(ca.mtimes(constant(limits.rows), unknown), rate * acceleration / limits.power)
     problem = {"x": unknown, "f": value, "g": kept}
@@ -86,8 +86,8 @@ def ipopt(cost: Any, limits: Any, x: Any) -> tuple[Any, float]:
     solved = ca.nlpsol("plan", "ipopt", problem, quiet)(
         x0=x, lbg=np.append(limits.lower, -np.ones(count)), ubg=np.append(limits.upper, np.ones(count))
     )
-    found = np.array(solved["x"]).ravel()
-    return found, cost.cost(found)
+    commands = np.array(solved["x"]).ravel()
+    return commands, cost.cost(commands)
 
 
 def measure(load: Any, minimise: Callable[..., Any]) -> str:

@@ -245,7 +245,7 @@ def page(record: dict[str, Any]) -> Iterator[str]:
 
 
 def misses(row: dict[str, Any]) -> bool:
-    """Whether a figure misses its goal: a ratio that is less, or one of two times that is more."""
+    """True if a figure misses its goal: a ratio that is less, or one of two times that is more."""
     if isinstance(row["goal"], list):
         return any(took > goal for took, goal in zip(row["measured"], row["goal"], strict=True))
     return bool(row["measured"] < row["goal"])

@@ -62,7 +62,7 @@ def driven_ours(shapes: int, step: float) -> Answer:
 
 
 def free_theirs(elements: int, step: float) -> Answer:
-    """The same by Exudyn."""
+    """Answer of Exudyn."""
 
     def torque(t: float) -> float:
         return TORQUE * np.sin(2 * np.pi * t / DURATION) if t < DURATION else 0.0
@@ -103,7 +103,7 @@ def satellite_ours(shapes: int, step: float) -> Answer:
 
 
 def satellite_theirs(elements: int, step: float) -> Answer:
-    """The same by Exudyn."""
+    """Answer of Exudyn."""
     system = exudyn.SystemContainer().AddSystem()
     area, shear = WIDTH * THICKNESS, MODULUS / (2 * (1 + RATIO))
     wide, thin = THICKNESS * WIDTH**3 / 12, WIDTH * THICKNESS**3 / 12

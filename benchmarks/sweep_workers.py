@@ -1,4 +1,4 @@
-"""How much faster two workers compute a sweep than one: processes of this machine, and a Dask cluster on it.
+"""Speed of two workers at a sweep beside one: processes of this machine, and a Dask cluster on it.
 
     python benchmarks/sweep_workers.py [CASES [waiting]]
 
@@ -36,13 +36,13 @@ def seconds(cases: int, measure: Any, **options: Any) -> float:
     """Wall time of a sweep over so many cases."""
     begin = time.perf_counter()
     over = {"motion.slew.rate.level": f"2:3:{cases} rad/s"}
-    found = gb.sweep(SCENARIO, over, measure, **options)
-    assert found.counts == {"done": cases}
+    swept = gb.sweep(SCENARIO, over, measure, **options)
+    assert swept.counts == {"done": cases}
     return time.perf_counter() - begin
 
 
 def ceiling(cases: int) -> float:
-    """How many times one process's cases per second two independent ones make."""
+    """Cases per second of two independent processes over those of one."""
     command = [sys.executable, __file__, str(cases), "copy"]
 
     def together(copies: int) -> float:

@@ -97,7 +97,7 @@ def escape_bars(
 def records_only(
     app: Sphinx, what: str, name: str, value: Any, skip: bool, options: Any
 ) -> bool:
-    """Of the modules of results, the records are described and not their helpers."""
+    """Describe the records of the modules of results, and not their helpers."""
     return skip or (what == "module" and not isinstance(value, type))
 
 

@@ -1,4 +1,4 @@
-"""How much a corner of the load makes a specimen vibrate on a centrifuge: 2020, example 4, over jerk and arm radius.
+"""Vibration that a corner of the load leaves in a specimen on a centrifuge: 2020, example 4, over jerk and arm radius.
 
 The arm's angular acceleration at a corner is a linear load along the beam, about the control point at mid-span; its
 lever on the first mode is κ = g₁/f₁ − x_c, with f₁ = ∫mφ₁, g₁ = ∫m x φ₁; a step of the load by one unit swings the tip

@@ -88,7 +88,7 @@ class FromRest:
         return Base(a, np.stack([o, w, o], axis=-1), np.stack([o, al, o], axis=-1))
 
     def corners(self, step: float) -> Floats:
-        """Those of the rate that steps of a length should not pass unseen."""
+        """Corners of the rate that steps of a length should not pass unseen."""
         return np.asarray(self.rate.corners(step))
 
     def over(self, start: float, end: float) -> Self:

@@ -35,16 +35,16 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=None, help="by default another one each time")
     parser.add_argument("--only", choices=KINDS, help="one kind of input")
     parser.add_argument("--repeat", type=Path, help="a file of fuzz/findings")
-    given = parser.parse_args()
+    options = parser.parse_args()
     warm_up()
-    if given.repeat:
-        answer = _called(_loaded(given.repeat))
+    if options.repeat:
+        answer = _called(_loaded(options.repeat))
         print(answer.out, answer.err, answer.traceback, f"status {answer.status}, {answer.seconds:.1f} s", sep="\n")
         return 0
-    seed = random.SystemRandom().randrange(10**6) if given.seed is None else given.seed
-    kinds = KINDS if given.only is None else {given.only: KINDS[given.only]}
+    seed = random.SystemRandom().randrange(10**6) if options.seed is None else options.seed
+    kinds = KINDS if options.only is None else {options.only: KINDS[options.only]}
     print(f"seed {seed}: python -m fuzz --seed {seed} repeats it", flush=True)
-    faults = run(seed, range(given.first, given.first + given.count), kinds)
+    faults = run(seed, range(options.first, options.first + options.count), kinds)
     return 1 if faults else 0
 
 

@@ -72,7 +72,7 @@ def ended(process: subprocess.Popen[str]) -> tuple[int, str]:
 
 
 def handles_signals(process: int) -> bool:
-    """Whether a process has come so far as to handle SIGTERM; False also where it has ended."""
+    """True if a process has come so far as to handle SIGTERM; False also where it has ended."""
     try:
         lines = Path(f"/proc/{process}/status").read_text(encoding="utf-8").splitlines()
     except OSError:
@@ -103,7 +103,7 @@ def disturbed(folder: Path, number: int, delay: float) -> tuple[int, str]:
 
 
 def unsound(folder: Path, *, hidden: bool = False) -> Iterator[str]:
-    """What is wrong with what is in a folder after a fault."""
+    """List what is wrong with a folder after a fault."""
     from gbeam.io.stored import read_stored
 
     out = folder / "out"

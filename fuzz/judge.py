@@ -1,4 +1,4 @@
-"""What is wrong with an answer, if anything."""
+"""Judge an answer: what is wrong with it, if anything."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def _first_line(text: str) -> str:
 
 
 def _last_line(answer: Answer) -> str:
-    """Where it happened, without what differs from case to case."""
+    """Place of a failure, without what differs from case to case."""
     lines = [line for line in (answer.traceback or answer.err).splitlines() if line.strip()]
     frames = [line.strip() for line in lines if re.match(r'\s+File ".*gbeam/', line)]
     place = re.sub(r'File ".*?(gbeam/[^"]*)"', r"\1", frames[-1]) if frames else ""

@@ -1,4 +1,4 @@
-"""What gbeam itself has written, damaged: results and answers for ``report`` and ``rerun``, stores for ``--resume``."""
+"""Files written by gbeam, damaged: results and answers for ``report`` and ``rerun``, stores for ``--resume``."""
 
 from __future__ import annotations
 
@@ -42,9 +42,9 @@ def result(chosen: Random) -> Case:
         data = chosen.choice((b"", b"CDF\x01", b"\x89HDF\r\n\x1a\n", SCENARIO.encode()))
     for _ in range(chosen.choice((1, 1, 2, 5, 50))):
         data = damaged(chosen, data)
-    given = "out" if name == "out/result.nc" and chosen.random() < 0.5 else name
+    target = "out" if name == "out/result.nc" and chosen.random() < 0.5 else name
     return Case(
-        "result", [verb, given, *(["--json"] if verb == "rerun" and chosen.random() < 0.2 else [])], {name: data}
+        "result", [verb, target, *(["--json"] if verb == "rerun" and chosen.random() < 0.2 else [])], {name: data}
     )
 
 

@@ -139,10 +139,10 @@ def change(chosen: Random, data: dict[str, Any]) -> None:
 
 def _places(node: Any) -> list[tuple[Any, Any]]:
     steps = node.items() if isinstance(node, dict) else enumerate(node) if isinstance(node, list) else ()
-    found = []
+    places = []
     for key, value in steps:
-        found += [(node, key), *_places(value)]
-    return found
+        places += [(node, key), *_places(value)]
+    return places
 
 
 def _misspelt(chosen: Random, key: str) -> str:

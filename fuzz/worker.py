@@ -24,7 +24,7 @@ MEMORY = 2 * 2**30
 
 @dataclass(frozen=True)
 class Answer:
-    """What a case gave: exit status (negative: the signal that ended it), streams, seconds, bytes, files made."""
+    """Answer to a case: exit status (negative: the signal that ended it), streams, seconds, bytes, files made."""
 
     status: int
     out: str
@@ -68,11 +68,11 @@ def call(case: Case, folder: Path, seconds: int = SECONDS, patience: int = PATIE
         if child == 0:
             _child(case.arguments, folder, aside, out, err, (seconds, patience, memory))
         _, status, usage = os.wait4(child, 0)
-        made = tuple(sorted(str(each.relative_to(folder)) for each in set(folder.rglob("*")) - before))
+        files = tuple(sorted(str(each.relative_to(folder)) for each in set(folder.rglob("*")) - before))
         defects = [each.read_text() for each in Path(aside).glob("gbeam-defect-*")]
         return Answer(
             os.waitstatus_to_exitcode(status), _text(out), _text(err),
-            time.monotonic() - start, 1024 * usage.ru_maxrss, made, "\n".join(defects),
+            time.monotonic() - start, 1024 * usage.ru_maxrss, files, "\n".join(defects),
         )  # fmt: skip
 
 

@@ -34,7 +34,7 @@ def main() -> int:
 
 
 def sound(chosen: list[Mutant]) -> bool:
-    """Whether the tests pass where nothing is wrong."""
+    """True if the tests pass where nothing is wrong."""
     tests = tuple(sorted({test for each in chosen for test in each.tests}))
     status, output = run_tests(tests, SOURCE.parent) if tests else (1, "no mutant has such a name")
     if status:

@@ -57,7 +57,7 @@ class Mutant:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What became of a mutant: its outcome, the first test that failed or why it is broken, and the seconds it took."""
+    """Verdict on a mutant: its outcome, the first test that failed or why it is broken, and the seconds it took."""
 
     mutant: Mutant
     outcome: str
@@ -66,7 +66,7 @@ class Verdict:
 
 
 def mutants() -> list[Mutant]:
-    """Those of all lists, in their order."""
+    """Mutants of all lists, in their order."""
     tables = [table for path in LISTS for table in tomllib.loads(path.read_text(encoding="utf-8"))["mutant"]]
     return [Mutant(**{**table, "tests": tuple(table["tests"])}) for table in tables]
 

@@ -38,13 +38,13 @@ def run(name: str) -> bool:
         print(f"  not run: needs {', '.join(missing)}" + (f"; results of {before.date} kept" if before else ""))
         return True
     try:
-        found = record.run(name)
+        done = record.run(name)
     except Exception:
         traceback.print_exc()
         return False
-    found.save()
-    print(f"  {len(found.rows)} rows in {found.seconds:.0f} s", flush=True)
-    return not found.unexplained
+    done.save()
+    print(f"  {len(done.rows)} rows in {done.seconds:.0f} s", flush=True)
+    return not done.unexplained
 
 
 if __name__ == "__main__":

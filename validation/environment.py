@@ -21,8 +21,8 @@ def need_version(need: str) -> str | None:
         if shutil.which(program) is None:
             return None
         text = subprocess.run([program, flag], capture_output=True, text=True, check=False).stdout
-        found = re.search(r"\d+(\.\d+)+", text)
-        return found.group() if found else "unknown"
+        match = re.search(r"\d+(\.\d+)+", text)
+        return match.group() if match else "unknown"
     try:
         return version(need)
     except PackageNotFoundError:

@@ -45,7 +45,7 @@ def page() -> str:
 
 
 def summary(records: list[Record]) -> str:
-    """How many rows of each chapter agree."""
+    """Count the rows of each chapter that agree."""
     lines = ["| chapter | agree | differ, reason given | differ, without | not compared |", "|---|---|---|---|---|"]
     for record in records:
         slug = re.sub(r"[^\w\- ]", "", record.title.lower()).replace(" ", "-")

@@ -1,4 +1,4 @@
-"""What one module found: kept as JSON, so that the page can be made again after any one of them ran."""
+"""Record of what one module found: kept as JSON, so that the page can be made again after any one of them ran."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def heading(name: str) -> tuple[str, tuple[str, ...]]:
 
 
 def missing(name: str) -> list[str]:
-    """What a module needs and this machine lacks."""
+    """Packages that a module needs and this machine lacks."""
     return [need for need in heading(name)[1] if need_version(need) is None]
 
 
@@ -97,7 +97,7 @@ def rounded(row: Row) -> Row:
 
 
 def kept(name: str) -> Record | None:
-    """What the module found when it last ran."""
+    """Rows of the module when it last ran."""
     path = path_of(name)
     if not path.exists():
         return None

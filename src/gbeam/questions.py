@@ -119,7 +119,7 @@ class Question:
 
     @property
     def of_systems(self) -> bool:
-        """Whether systems of bodies have an answer too."""
+        """True if systems of bodies have an answer too."""
         return bool(self.answer.__annotations__.get("case") == "AnyCase")
 
     def refuse(self, case: AnyCase, before: str = "") -> None:

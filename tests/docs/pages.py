@@ -162,7 +162,7 @@ def _called(words: list[str]) -> tuple[int, str]:
 
 
 def _exists(words: list[str], where: str) -> None:
-    """Whether a command that is not gbeam's is one that a reader has."""
+    """True if a command that is not gbeam's is one that a reader has."""
     if words[0] == "make":
         targets = re.findall(r"^(\w[\w-]*):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)
         assert set(words[1:]) <= set(targets), where

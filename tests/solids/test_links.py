@@ -200,7 +200,7 @@ def test_what_springs_do_not_hold_is_refused() -> None:
 
 
 def test_a_body_that_outweighs_the_solid_beyond_all_digits_is_refused_as_that() -> None:
-    """Whether the modes that are asked for have mass beside it, or the static answers to inertia; the clamp holds."""
+    """True if the modes that are asked for have mass beside it, or the static answers to inertia; the clamp holds."""
     body = {"end": gb.RigidBody(1e9, 1e5 * np.eye(3))}
     for modes, words in (
         (12, "modes is 12, and only . motions move mass; give at most"),

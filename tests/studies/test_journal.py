@@ -188,7 +188,7 @@ def test_what_is_kept_is_never_rewritten_in_place(fast: Path, whole: Whole, monk
 def test_a_sweep_that_was_begun_in_the_meantime_is_not_lost(
     fast: Path, whole: Whole, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Whether another's cases would be lost is asked again when the lock is held."""
+    """True if another's cases would be lost is asked again when the lock is held."""
     journal, lines = _stored(whole)
     begun = b"".join(lines[:10])
     journal.unlink()

@@ -109,7 +109,7 @@ def _words(run: Judged) -> str:
 
 
 def _outside(run: Judged) -> str:
-    """What of a run that advises gauss is wrong by more than three times what it states."""
+    """Quantities of a run that advises gauss that are wrong by more than three times what it states."""
     pairs = ((name, stated, true) for name, (stated, true) in run.errors.items() if true > 3 * stated)
     words = [f"{name}, stated {stated:.1g}, true {true:.1g}" for name, stated, true in pairs]
     return f"{run.case}: {', '.join(words)}, and the run advises gauss" if words else ""

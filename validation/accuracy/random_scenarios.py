@@ -38,15 +38,15 @@ def judge(seed: int, scenario: Scenario) -> Judged | None:
     counts = scenario.model
     structure = gb.assemble(scenario.beam, counts)
     try:
-        found = gb.simulate(structure, scenario.motion, scenario.settings)
-        interval = float(found.time[1] - found.time[0])
+        response = gb.simulate(structure, scenario.motion, scenario.settings)
+        interval = float(response.time[1] - response.time[0])
         finer = math.ceil(interval / scenario.period * PER_PERIOD)
         exact = gb.assemble(scenario.beam, "exact", axial=2, y=8, shapes="adapted")
         small = {"step": interval / finer, "integrator": "gauss", "estimate": False}
         truth = gb.simulate(exact, scenario.motion, duration=scenario.settings.duration, **small)
     except GbeamError:
         return None
-    if found.outcome != "done" or truth.outcome != "done" or found.loads is None or truth.loads is None:
+    if response.outcome != "done" or truth.outcome != "done" or response.loads is None or truth.loads is None:
         return None
 
     def error(ours: np.ndarray, theirs: np.ndarray) -> float:
@@ -54,9 +54,9 @@ def judge(seed: int, scenario: Scenario) -> Judged | None:
         return float(np.linalg.norm(theirs[::finer][: len(ours)] - ours, axis=1).max() / sizes.max())
 
     pairs = ("root_force", "root_moment")
-    loads = max(error(getattr(found.loads, name), getattr(truth.loads, name)) for name in pairs)
-    tip = error(found.tip, truth.tip)
-    return Judged(seed, scenario, (found.errors.displacement.slender, tip), (found.errors.loads.slender, loads))
+    loads = max(error(getattr(response.loads, name), getattr(truth.loads, name)) for name in pairs)
+    tip = error(response.tip, truth.tip)
+    return Judged(seed, scenario, (response.errors.displacement.slender, tip), (response.errors.loads.slender, loads))
 
 
 def ratios(pairs: list[tuple[float, float]]) -> np.ndarray:

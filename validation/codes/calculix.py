@@ -104,16 +104,16 @@ def case(words: str, strip: Strip, rate: float, degrees: float) -> Iterator[Row]
         yield Row(words, "stretch of the tip", 1e6 * theirs.stretch, 1e6 * tip, "µm", CLOSE, SOURCE, reason)
     for direction, name, count in (("z", "flap", 3), ("y", "chord", 2)):
         for n in range(count):
-            reference, mesh, found, other = (of_direction(e, direction)[n] for e in (theirs, coarser, ours, others))
+            reference, mesh, computed, other = (of_direction(e, direction)[n] for e in (theirs, coarser, ours, others))
             remark = f"mesh {100 * (mesh / reference - 1):+.1g} %"
             if rate:
-                stretched, cowpers = found / other - 1, other / reference - 1
+                stretched, cowpers = computed / other - 1, other / reference - 1
                 what = f"{100 * stretched:+.1g} % as stretched" if strip.gripped else f"Cowper's {100 * cowpers:+.1g} %"
                 remark = f"{what}; {remark}"
             if strip.poisson and strip.gripped and others.errors is not None:
                 stated = 100 * others.errors.total[list(others.frequency).index(other)]
                 remark = f"{GRIPPED}{f': {stated:.1g} % stated' if direction == 'z' else ''}; {remark}"
-            yield Row(words, f"{name} {n + 1}", reference, found, "Hz", CLOSE, SOURCE, remark)
+            yield Row(words, f"{name} {n + 1}", reference, computed, "Hz", CLOSE, SOURCE, remark)
 
 
 def of_direction(modes: Answer | Modes, direction: str) -> list[float]:

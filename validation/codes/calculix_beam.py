@@ -96,7 +96,7 @@ def _run(strip: Strip, steps: list[str]) -> str:
 
 
 def _number(strip: Strip, i: int, j: int, k: int) -> int:
-    """Of a node, by half elements along x, y and z."""
+    """Number of a node, by half elements along x, y and z."""
     nx, ny, _ = strip.elements
     return 1 + i + (2 * nx + 1) * (j + (2 * ny + 1) * k)
 

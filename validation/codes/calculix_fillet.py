@@ -98,13 +98,13 @@ def rows() -> Iterator[Row]:
             if large and cells == COARSE:
                 continue
             theirs = von_mises(nodal(f"EALL, {load}", specimen, large=large))[fillet]
-            own, same = (
+            ours_alone, same = (
                 von_mises(each)[fillet] / share for each in (recovery.table @ rest.q, fitted(ours, np.asarray(rest.q)))
             )
             largest = "largest von Mises stress in the fillets"
             unit, scale = ("Pa", 1.0) if theirs.max() < 1e5 else ("MPa", 1e-6)
             rough, close = ROUGH if cells == COARSE else "", STRAINED if large else SAME
-            yield Row(case, largest, scale * theirs.max(), scale * own.max(), unit, NODES, source, rough)
+            yield Row(case, largest, scale * theirs.max(), scale * ours_alone.max(), unit, NODES, source, rough)
             yield Row(case, f"{largest}, fitted as CalculiX does", scale * theirs.max(), scale * same.max(), unit,
                       close, source)  # fmt: skip
             away = 100 * np.abs(same - theirs).max() / theirs.max()

@@ -184,8 +184,8 @@ def printed_frequencies(text: str) -> np.ndarray:
     """Natural frequencies of a .dat file, Hz."""
     value = r"([-+]?\d\.\d+E[-+]\d+)"
     table = re.split(r"E I G E N V A L U E   O U T P U T", text)[1]
-    found = re.findall(rf"^ +\d+ +{value} +{value} +{value} +{value}$", table, re.MULTILINE)
-    return np.array([row[2] for row in found], dtype=float)
+    matches = re.findall(rf"^ +\d+ +{value} +{value} +{value} +{value}$", table, re.MULTILINE)
+    return np.array([row[2] for row in matches], dtype=float)
 
 
 def written(mesh: gb.SolidMesh, shell: bool) -> tuple[np.ndarray, list[np.ndarray], np.ndarray]:

@@ -77,10 +77,10 @@ def rows() -> Iterator[Row]:
         for words, (name, unit, tolerance) in quantities.items():
             if name == "angle" and drive.rate is not None:
                 continue
-            reference, found = getattr(theirs, name), getattr(ours, name)
+            reference, computed = getattr(theirs, name), getattr(ours, name)
             change = getattr(coarse, name) / reference - 1
-            near = abs(found / reference - 1) < 2 * abs(change)
-            yield Row(case, words, reference, found, unit, tolerance, source,
+            near = abs(computed / reference - 1) < 2 * abs(change)
+            yield Row(case, words, reference, computed, unit, tolerance, source,
                       f"mesh and step {100 * change:+.1g} %" if near else "")  # fmt: skip
         for kind, count in (("FOAM", 7), ("exact", 1), ("exact", 2)):
             coarser = gbeam(drive, kind, count)
@@ -105,7 +105,7 @@ def gbeam(drive: Drive, kind: str, shapes: int) -> Answer:
         hub = gb.Hub(radius=0.5, rate=gb.SmoothStep(drive.rate, drive.duration))
     else:
         hub = gb.Hub(radius=0.5, inertia=200.0, torque=gb.Sine(drive.torque, drive.duration))
-    found = gb.simulate(structure, hub, duration=drive.end, integrator="gauss", step=0.02)
-    tip = CubicSpline(found.time, found.tip[:, 1])
-    stated = found.errors.displacement.slender  # Exudyn's cable is slender too
-    return Answer(drive, tip, float(found.hub.angle[-1]), stated)
+    response = gb.simulate(structure, hub, duration=drive.end, integrator="gauss", step=0.02)
+    tip = CubicSpline(response.time, response.tip[:, 1])
+    stated = response.errors.displacement.slender  # Exudyn's cable is slender too
+    return Answer(drive, tip, float(response.hub.angle[-1]), stated)

@@ -69,13 +69,13 @@ def flying(case: str, bending: float, size: Callable[[float], float], aside: flo
     )
     free = gb.Joint("free", "rod", at=(6.0, 0.0, 0.0), turn=(0.0, -UP, 0.0))
     system = gb.System({"rod": rod}, {"free": free}, {"push": gb.PointForce("rod.root", force, moment)})
-    found = gb.simulate(system, duration=end, step=SAMPLE, estimate=False, initial="undeformed")
+    response = gb.simulate(system, duration=end, step=SAMPLE, estimate=False, initial="undeformed")
     push = [lambda t, u=u: list(size(t) * u) for u in unit]
     meshes = [_flying_in_exudyn(bending, *push, end, elements) for elements in (20, 40)]
-    yield from _compared(case, found.at("rod.tip"), meshes, found.time)
-    assert found.invariants is not None
-    late = found.time > 5.01
-    held = found.invariants.angular_momentum[late]
+    yield from _compared(case, response.at("rod.tip"), meshes, response.time)
+    assert response.invariants is not None
+    late = response.time > 5.01
+    held = response.invariants.angular_momentum[late]
     drift = float(np.ptp(held, axis=0).max() / np.abs(held).max())
     words = "drift of the angular momentum once pushed, over itself"
     yield Row(case, words, 0.0, drift, "", 1e-3, "closed form; steps of 20 ms")
@@ -119,17 +119,17 @@ def right_angle() -> Iterator[Row]:
     joints = {"clamp": gb.Joint("fixed", "first"), "corner": corner}
     push = {"push": gb.PointForce("first.tip", gb.vector(z=gb.tabulated(np.array(times), np.array(sizes))))}
     system = gb.System({"first": leg, "second": leg}, joints, push)
-    found = gb.simulate(system, duration=end, step=2 * SAMPLE, estimate=False, initial="undeformed")
+    response = gb.simulate(system, duration=end, step=2 * SAMPLE, estimate=False, initial="undeformed")
     coarse, fine = (_right_angle_in_exudyn(end, elements) for elements in (20, 40))
     for k, (name, point) in enumerate((("elbow", "first.tip"), ("tip", "second.tip"))):
-        yield from _compared(case, found.at(point), [coarse[k][::2], fine[k][::2]], found.time, name)
-    energy = found.invariants.energy[found.time > 2.01].sum(axis=1)
+        yield from _compared(case, response.at(point), [coarse[k][::2], fine[k][::2]], response.time, name)
+    energy = response.invariants.energy[response.time > 2.01].sum(axis=1)
     drift = float(np.ptp(energy) / energy.max())
     yield Row(case, "drift of the energy once pushed, over itself", 0.0, drift, "", 1e-3, "closed form; steps of 40 ms")
     for name, point, extremes in PRINTED:
-        moved = found.at(point)[:, 2]
+        moved = response.at(point)[:, 2]
         for time, theirs in extremes.items():
-            near = moved[np.abs(found.time - time) < 1.0]
+            near = moved[np.abs(response.time - time) < 1.0]
             ours = float(near.max() if theirs > 0 else near.min())
             words = f"{name} out of the plane, extreme near {time:.1f} s"
             yield Row(case, words, theirs, ours, "", 0.01, CURVES, "not explained" if theirs == -3.8714 else "")

@@ -64,18 +64,18 @@ def unit_blades() -> Iterator[Row]:
 
 
 def fast_blade() -> Iterator[Row]:
-    """Where tension outweighs bending the modes at rest are a slow basis."""
+    """Blade whose tension outweighs its bending: the modes at rest are a slow basis."""
     elements, beam = unit_blade(1e3, 0.0, 80)
     reference = elements.frequencies(*hub_base(50.0, 0.0), 2)
     for count in (3, 10, 30):
         structure = gb.assemble(beam, "FOAM", axial=8, y=count, z=count)
-        found = gb.modes(structure, gb.Hub(radius=0.0, rate=50.0))
+        vibration = gb.modes(structure, gb.Hub(radius=0.0, rate=50.0))
         for i, direction in enumerate(("chord", "flap")):
             case, words = "blade, slenderness 1000, rate 50", f"first {direction}, {count} shapes"
-            ours = 2 * np.pi * found.frequency[i]
+            ours = 2 * np.pi * vibration.frequency[i]
             yield Row(case, words, reference[i], ours, "", CLOSE, "80 cubic elements",
                       "too few shapes: converging from above")  # fmt: skip
-            true, stated = 100 * (ours / reference[i] - 1), 100 * found.errors.shapes[i]
+            true, stated = 100 * (ours / reference[i] - 1), 100 * vibration.errors.shapes[i]
             yield Row(case, f"{words}: its error, true and as stated", true, stated, "%", STATED, "80 cubic elements")
 
 
@@ -121,9 +121,9 @@ def strip_in_space() -> Iterator[Row]:
     for i, axis in enumerate("yz", 1):
         yield Row(case, f"tip, {axis}", 1e3 * tip[i], 1e3 * ours[i], "mm", CLOSE, SOURCE)
     reference = elements.frequencies(a, w, 4) / (2 * np.pi)
-    found = gb.modes(structure, flight).frequency
+    frequency = gb.modes(structure, flight).frequency
     for i in range(4):
-        yield Row(case, f"frequency {i + 1}", reference[i], found[i], "Hz", CLOSE, SOURCE)
+        yield Row(case, f"frequency {i + 1}", reference[i], frequency[i], "Hz", CLOSE, SOURCE)
 
 
 def slew() -> Iterator[Row]:

@@ -60,7 +60,7 @@ def shapes() -> tuple[np.ndarray, ...]:
 
 
 def stiffnesses(kind: str) -> tuple[float, float]:
-    """Of the axial and of the bending coordinate: ∫EA f₁'² and ∫EI f₂''²; of the exact model EAL and EI/L."""
+    """Stiffnesses of the axial and the bending coordinate: ∫EA f₁'² and ∫EI f₂''²; of the exact model EAL and EI/L."""
     if kind == "exact":
         return YOUNG * AREA * LENGTH, YOUNG * INERTIA / LENGTH
     return YOUNG * AREA * (np.pi / 2) ** 2 / LENGTH, YOUNG * INERTIA * 1.875104068711961**4 / LENGTH**3
@@ -96,12 +96,14 @@ def particle_on_hub(kind: str) -> Callable[..., list[float]]:
     rates = {v.diff(): rate for v, rate in zip(q, u, strict=True)}
     udot = sp.symbols("alpha sdd qdd")
     plain = sp.symbols("theta_ s_ q_ omega_ sd_ qd_")
-    given = dict(zip([*q, *u], plain, strict=True))
-    found = [-row.subs(rates).subs(dict(zip([v.diff() for v in u], udot, strict=True))).subs(given) for row in inertial]
+    instant = dict(zip([*q, *u], plain, strict=True))
+    forces = [
+        -row.subs(rates).subs(dict(zip([v.diff() for v in u], udot, strict=True))).subs(instant) for row in inertial
+    ]
     if kind in {"TLAM", "FOAM"}:
         small = [plain[1], plain[2], plain[4], plain[5], udot[1], udot[2]]
-        found = [cut(row, small, order) for row, order in zip(found, (2, 1, 1), strict=True)]
-    return sp.lambdify([*plain, *udot, x, m, f1, f2, shortening], found, "numpy", cse=True)
+        forces = [cut(row, small, order) for row, order in zip(forces, (2, 1, 1), strict=True)]
+    return sp.lambdify([*plain, *udot, x, m, f1, f2, shortening], forces, "numpy", cse=True)
 
 
 def by_kane_on_hub(kind: str, y: np.ndarray, yd: np.ndarray, ydd: np.ndarray) -> np.ndarray:
@@ -158,9 +160,9 @@ def particle_in_space() -> Callable[..., list[float]]:
     plain = sp.symbols("s_ v_ w_ sd_ vd_ wd_ om1:4")
     now = dict(zip([*q, *u, *turning], plain, strict=True)) | dict.fromkeys(velocity, 0)
     small = [*plain[:6], *sp.symbols("sdd vdd wdd")]
-    found = [cut(-row.subs(rates).subs(instant).subs(now), small, 1) for row in inertial]
+    forces = [cut(-row.subs(rates).subs(instant).subs(now), small, 1) for row in inertial]
     names = [*plain[:6], *sp.symbols("sdd vdd wdd a1:4"), *plain[6:], *sp.symbols("al1:4"), x, m, f1, f2, shortening]
-    return sp.lambdify(names, found, "numpy", cse=True)
+    return sp.lambdify(names, forces, "numpy", cse=True)
 
 
 def in_space() -> Iterator[Row]:

@@ -84,7 +84,7 @@ class Joint:
 
     @property
     def ball(self) -> bool:
-        """Whether it turns by Euler parameters."""
+        """True if it turns by Euler parameters."""
         return self.kind in ("spherical", "free")
 
     def law(self, name: str, k: int) -> float:

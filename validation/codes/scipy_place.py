@@ -1,4 +1,4 @@
-"""Where a solid is placed on the centrifuge, beside a minimum that SciPy finds from the axes' angles alone.
+"""Place of a solid on the centrifuge, beside a minimum that SciPy finds from the axes' angles alone.
 
 The machine's angles over time are gbeam's; all else is not. The specimen's axes are SciPy's rotations by these angles,
 every millisecond, differentiated twice as splines: RᵀR̈ is how the load grows from the control point, and Rᵀ(p̈ + g) of
@@ -64,21 +64,21 @@ def found_for(structure: gb.Structure, measure: str) -> Placement:
 
 def placed(case: str, structure: gb.Structure, ends: np.ndarray) -> Iterator[Row]:
     """The least difference, as gbeam states it and as it is at gbeam's place, and that with what the machine misses."""
-    found = found_for(structure, "load")
+    placement = found_for(structure, "load")
     growth, missed, peak = felt(spun())
     least = least_difference(growth / peak, ends)
-    apart = np.einsum("tij,ej->tei", growth, ends - np.asarray(found.best.place))
+    apart = np.einsum("tij,ej->tei", growth, ends - np.asarray(placement.best.place))
     at_place, whole = (float(np.linalg.norm(each, axis=-1).max() / peak) for each in (apart, apart + missed[:, None]))
     yield Row(
-        case, "largest difference of the load, over its peak: least", least, found.best.mismatch, "", 2e-3, SOURCE
+        case, "largest difference of the load, over its peak: least", least, placement.best.mismatch, "", 2e-3, SOURCE
     )
     yield Row(case, "and at gbeam's place", least, at_place, "", 2e-3, SOURCE)
-    stated = found.totals["best"]["load"]
+    stated = placement.totals["best"]["load"]
     yield Row(case, "there, with what tracking misses", whole, stated, "", 2e-3, "from the axes' angles")
 
 
 def felt(machine: gb.Centrifuge) -> tuple[np.ndarray, np.ndarray, float]:
-    """How the load grows from the control point, (t, 3, 3) 1/s², its difference there, (t, 3) m/s², and its peak."""
+    """Growth of the load from the control point, (t, 3, 3) 1/s², its difference there, (t, 3) m/s², and its peak."""
     commands = gb.axis_commands(machine, 1e-3)
     first, second, third = commands.angle.T
     axes = Rotation.from_euler("ZX", np.stack([first + second, third], axis=1)).as_matrix()

@@ -1,1 +1,1 @@
-"""What is in print beside what gbeam answers: both papers number by number, and cases of the literature."""
+"""Printed values beside gbeam's answers: both papers number by number, and cases of the literature."""

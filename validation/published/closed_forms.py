@@ -112,11 +112,11 @@ def hinged_rigid_blade() -> Iterator[Row]:
     section = Section.general(1.0, 1.0, 1.0)
     hinge = Root(rotation_y=spring, rotation_z=spring)
     beam = Beam(length, section, Material(1.0, 1e9), root=hinge, rotary_inertia=False)
-    found = modes(assemble(beam, Model("FOAM", 0, 1, 1)), Hub(radius=radius, rate=constant(rate)))
+    vibration = modes(assemble(beam, Model("FOAM", 0, 1, 1)), Hub(radius=radius, rate=constant(rate)))
     inertia = length**3 / 3
     stiff = spring / inertia + rate**2 * 1.5 * radius / length
     for way, square, name in (("z", stiff + rate**2, "flap"), ("y", stiff, "lag")):
-        ours = 2 * np.pi * found.frequency[[d == way for d in found.direction]][0]
+        ours = 2 * np.pi * vibration.frequency[[d == way for d in vibration.direction]][0]
         plus = "Ω²(1 + 3R/2L)" if name == "flap" else "Ω² 3R/2L"
         yield Row("rigid blade on a root spring", name, np.sqrt(square), float(ours), "rad/s", 1e-6,
                   f"derived: ω² = k/J + {plus}, J = ρAL³/3")  # fmt: skip
@@ -152,9 +152,9 @@ def free_hub() -> Iterator[Row]:
         values = [determinant(b) for b in grid]
         betas = [brentq(determinant, grid[k], grid[k + 1]) for k in range(3999) if values[k] * values[k + 1] < 0][:3]
         structure = assemble(unit_beam(1e4), Model("FOAM", 0, 30, 0))
-        found = 2 * np.pi * modes(structure, Hub(radius=0.0, inertia=ratio)).frequency
+        frequency = 2 * np.pi * modes(structure, Hub(radius=0.0, inertia=ratio)).frequency
         for mode, beta in enumerate(betas):
-            yield Row("beam on a free hub", f"mode {mode + 1}, J = {ratio} mL³", float(beta**2), float(found[mode]),
+            yield Row("beam on a free hub", f"mode {mode + 1}, J = {ratio} mL³", float(beta**2), float(frequency[mode]),
                       "√(EI/mL⁴)", 1e-4, "derived: w = w'' + (J/mL³) β⁴ w' = 0 at the root, free tip",
                       "30 clamped-free shapes, which know nothing of a root that turns")  # fmt: skip
 
@@ -237,17 +237,17 @@ def section_forces() -> Iterator[Row]:
     """The strip of 2020 in steady flight and on a hub."""
     beam, g = strip_beam(masses=(PointMass(0.3, 0.02),)), 60.0
     line, tip, length = zhang2020.LINE, 0.02, zhang2020.LENGTH
-    found = static(assemble(beam, Model("FOAM", 1, 0, 12)), acceleration=(0.0, 0.0, g))
-    assert found.loads is not None
+    rest = static(assemble(beam, Model("FOAM", 1, 0, 12)), acceleration=(0.0, 0.0, g))
+    assert rest.loads is not None
     moment = line * g * length**2 / 2 + tip * g * length
     force, source = (line * length + tip) * g, "derived: statics of the straight beam"
     stress = 6 * moment / (zhang2020.WIDTH * zhang2020.THICKNESS**2)
     deflection = (line * length**4 / 8 + tip * length**3 / 3) * g / (zhang2020.YOUNG * zhang2020.INERTIA_Y)
     for quantity, theirs, ours, unit, allowed in (
-        ("root force", force, np.linalg.norm(found.loads.force[0, 0]), "N", 1e-9),
-        ("root moment", moment, np.linalg.norm(found.loads.moment[0, 0]), "N m", 1e-4),
-        ("stress at the root", stress / 1e6, float(np.nanmax(found.loads.stress_tension[0, 0])) / 1e6, "MPa", 1e-4),
-        ("tip deflection", deflection * 1e3, abs(found.tip[2]) * 1e3, "mm", 1e-4),
+        ("root force", force, np.linalg.norm(rest.loads.force[0, 0]), "N", 1e-9),
+        ("root moment", moment, np.linalg.norm(rest.loads.moment[0, 0]), "N m", 1e-4),
+        ("stress at the root", stress / 1e6, float(np.nanmax(rest.loads.stress_tension[0, 0])) / 1e6, "MPa", 1e-4),
+        ("tip deflection", deflection * 1e3, abs(rest.tip[2]) * 1e3, "mm", 1e-4),
     ):
         lever = "the bent beam's lever is shorter" if "moment" in quantity or "stress" in quantity else ""
         yield Row("strip with 20 g at its tip, 60 m/s²", quantity, float(theirs), float(ours), unit, allowed, source,

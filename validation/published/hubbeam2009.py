@@ -132,7 +132,7 @@ class Paper:
         return M, self.total(Jx * ax[:, None] + Jy * ay[:, None]) + np.concatenate([[0], K1 @ q1, K2 @ q2])
 
     def higher_order(self, y: Array, yd: Array) -> tuple[Array, Array]:
-        """What CFOAM adds to FOAM: (35)–(39), corrected and with the tip mass."""
+        """Terms that CFOAM adds to FOAM: (35)–(39), corrected and with the tip mass."""
         (_, q1, q2), (w, q1d, q2d) = self.parts(y), self.parts(yd)
         Sq, Sqd = self.S @ q2, self.S @ q2d
         sg, sd, sdd = Sq @ q2, Sq @ q2d, Sqd @ q2d

@@ -215,8 +215,10 @@ def tip_force() -> Iterator[Row]:
         angle = 2 * (np.pi / 4 - np.arccos(k))
         shorter = np.sqrt(2 * np.sin(angle) / load) - 1
         across = 1 - 2 / np.sqrt(load) * (ellipeinc(np.pi / 2, k**2) - ellipeinc(delta, k**2))
-        found = bent(rod(1.0, 1.0, 1e9, Load(1.0, force=(0, 0, load))))
-        for quantity, theirs, ours in zip(("along", "across", "angle"), (shorter, across, angle), found, strict=True):
+        deflection = bent(rod(1.0, 1.0, 1e9, Load(1.0, force=(0, 0, load))))
+        for quantity, theirs, ours in zip(
+            ("along", "across", "angle"), (shorter, across, angle), deflection, strict=True
+        ):
             yield Row("cantilever, dead tip force", f"tip {quantity}, FL²/EI = {load:g}", float(theirs), ours,
                       "rad" if quantity == "angle" else "L", 2e-6, source)  # fmt: skip
 
@@ -240,9 +242,9 @@ def following_spread_force() -> Iterator[Row]:
     across = {20.921: 0.63846, 41.396: 0.84946, 57.551: 0.77837, 79.815: 0.56245}
     for which, curve in ((0, along), (1, across)):
         for q, theirs in curve.items():
-            found = bent(rod(1.0, 3.5, 4.2e5, Load(None, force=(0, 0, q), follower=True)))[which]
+            deflection = bent(rod(1.0, 3.5, 4.2e5, Load(None, force=(0, 0, q), follower=True)))[which]
             quantity = f"{('shortening', 'deflection')[which]}, {q:g} N/m"
-            yield Row(case, quantity, theirs, -found if which == 0 else found, "m", 0.02, source, "digitised")
+            yield Row(case, quantity, theirs, -deflection if which == 0 else deflection, "m", 0.02, source, "digitised")
 
 
 def following_tip_force() -> Iterator[Row]:
@@ -254,9 +256,11 @@ def following_tip_force() -> Iterator[Row]:
     for which, curve in ((0, along), (1, across)):
         for force, theirs in curve.items():
             load = Load(100.0, force=(0, 0, 1e3 * force), follower=True)
-            found = bent(rod(100.0, 3.5e7, 4.2e8, load))[which]
+            deflection = bent(rod(100.0, 3.5e7, 4.2e8, load))[which]
             quantity = f"{('shortening', 'deflection')[which]}, {force:g} klbf"
-            yield Row(case, quantity, theirs, -found if which == 0 else found, "in", 0.02, source, "digitised")
+            yield Row(
+                case, quantity, theirs, -deflection if which == 0 else deflection, "in", 0.02, source, "digitised"
+            )
 
 
 def composite_cantilever() -> Iterator[Row]:

@@ -105,7 +105,7 @@ def table_1() -> Iterator[Row]:
 
 
 def bare_mass() -> float:
-    """Of the beam without a tip mass, kg."""
+    """Mass of the beam without a tip mass, kg."""
     return float(hub_beam("FOAM", *FIVE, mass=0.0).coefficients.rigid[0])
 
 
@@ -182,8 +182,8 @@ def table_2() -> Iterator[Row]:
     """Frequencies of bending along y on the hub at a steady rate."""
     for (kind, rate), (printed, _) in TABLE_2.items():
         structure = hub_beam(kind, *FIVE, mass=0.0)
-        found = modes(structure, Hub(radius=HUB_RADIUS, rate=constant(rate)), gyroscopic=False)
-        ours = found.frequency[[d == "y" for d in found.direction]]
+        vibration = modes(structure, Hub(radius=HUB_RADIUS, rate=constant(rate)), gyroscopic=False)
+        ours = vibration.frequency[[d == "y" for d in vibration.direction]]
         name = "natural frequency" if rate == 0 else f"{kind} at {rate:g} rad/s"
         for mode, (theirs, mine) in enumerate(zip_longest(printed, ours[:5]), start=1):
             so = round(mine * 2 * np.pi / (2 * PRINTED_PI), 4)

@@ -144,8 +144,8 @@ def chord_and_flap() -> Iterator[Row]:
     c = assemble(unit_beam(70.0), Model("exact", 8, 20, 0)).coefficients
     why = "p-elements not converged there: more shapes lower a frequency, and ours stands from 20 to 32 of them"
     for speed, published in SLENDERNESS_70.items():
-        found = [float(frequencies(c, spinning(speed, axis=axis), 1)[0]) for axis in (1, 2)]
-        for way, theirs, ours in zip(("flap", "chord"), published, found, strict=True):
+        computed = [float(frequencies(c, spinning(speed, axis=axis), 1)[0]) for axis in (1, 2)]
+        for way, theirs, ours in zip(("flap", "chord"), published, computed, strict=True):
             yield Row("slenderness 70", f"{way} 1, γ = {speed}", theirs, ours, "√(EI/mL⁴)", 1e-4, source,
                       why if (way, speed) == ("chord", 50) else "")  # fmt: skip
     for speed, theirs in ((2, 3.6186), (10, 4.9484)):
@@ -273,12 +273,12 @@ def hub_beam_2009() -> Iterator[Row]:
     code = "Exudyn 1.13.6, 16 ANCFCable2D elements, 5 ms"
     other = "elastica in tangent angles, Galerkin"
     for (rate, mass), (peak, residual) in EXUDYN_SLEWS.items():
-        found = slew("exact", EXACT_2009, rate, mass, step=1e-2).peaks
+        peaks = slew("exact", EXACT_2009, rate, mass, step=1e-2).peaks
         case = f"2009 slew to {rate:g} rad/s, {mass:g} kg, exact"
-        yield Row(case, "largest |v|", peak, found.max_abs[1], "m", 2e-4, code)
-        yield Row(case, "largest |v|", SLEWS[rate, mass][0], found.max_abs[1], "m", 3e-4, other)
-        yield Row(case, "vibration left", residual, found.residual_amplitude[1], "m", 1e-2, code)
-        yield Row(case, "vibration left", SLEWS[rate, mass][1], found.residual_amplitude[1], "m", 1e-2, other)
+        yield Row(case, "largest |v|", peak, peaks.max_abs[1], "m", 2e-4, code)
+        yield Row(case, "largest |v|", SLEWS[rate, mass][0], peaks.max_abs[1], "m", 3e-4, other)
+        yield Row(case, "vibration left", residual, peaks.residual_amplitude[1], "m", 1e-2, code)
+        yield Row(case, "vibration left", SLEWS[rate, mass][1], peaks.residual_amplitude[1], "m", 1e-2, other)
     for (torque, mass), (peak, residual, angle) in EXUDYN_TORQUES.items():
         result = pulse("exact", EXACT_2009, torque, mass)
         case = f"2009 torque {torque:g} N m, {mass:g} kg, exact"
@@ -358,7 +358,7 @@ SCHEMES = {
 
 
 def schemes() -> Iterator[Row]:
-    """Of an undamped oscillator, by what each scheme makes of it."""
+    """Rows of an undamped oscillator, by each scheme."""
     source = "theory: Newmark 1959; Hilber, Hughes and Taylor 1977; Chung and Hulbert 1993"
     for name, (theory, at_infinity) in SCHEMES_THEORY.items():
         for h, (elongation, damping) in theory.items():

@@ -62,7 +62,7 @@ def hub_beam(
     damping_ratio: float = 0.0,
     shapes: str = "clamped-free",
 ) -> Structure:
-    """That beam with one point mass, zero or not, in a model."""
+    """Hub beam with one point mass, zero or not, in a model."""
     return assemble(appendage(PointMass(at, mass), damping_ratio=damping_ratio), Model(kind, axial, y, z, shapes))
 
 
@@ -145,7 +145,7 @@ def frequencies(c: Coefficients, base: Base, count: int) -> np.ndarray:
 
 
 def vibration_about_equilibrium(s: Structure, base: Base, count: int) -> np.ndarray:
-    """The same about the relative equilibrium of a complete model."""
+    """Vibration about the relative equilibrium of a complete model."""
     at = linear_matrices(on_base(s, base))
     return gyroscopic_frequencies(at.mass, at.velocity, at.stiffness, count)
 

@@ -58,7 +58,7 @@ class _InEnvironments(Value):
 
     @property
     def automatic(self) -> bool:
-        """Whether the numbers of shapes are chosen by the errors."""
+        """True if the numbers of shapes are chosen by the errors."""
         return False
 
     @property

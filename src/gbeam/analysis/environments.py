@@ -116,6 +116,6 @@ def _answers(case: AnyCase, progress: Progress) -> tuple[dict[str, Any], dict[st
 
 
 def _lacks_shapes(responses: Mapping[str, Response], settings: ResponseSettings) -> bool:
-    """Whether more shapes would change a response by more than a third of the tolerance, or by 1e-3."""
+    """True if more shapes would change a response by more than a third of the tolerance, or by 1e-3."""
     limit = min(settings.tolerance / 3, ENOUGH)
     return any(max(e.displacement.shapes, e.loads.shapes) > limit for e in (r.errors for r in responses.values()))

@@ -348,7 +348,7 @@ def _files(place: Path) -> dict[str, Path]:
 
 
 def _holds(file: Path) -> bool:
-    """Whether there is a file that is not empty."""
+    """True if there is a file that is not empty."""
     return file.is_file() and file.stat().st_size > 0
 
 

@@ -10,7 +10,7 @@ _PLAIN = frozenset({"numpy", "builtins"})  # modules whose types JAX has no part
 
 
 def is_jax(value: Any) -> bool:
-    """Whether a value is a JAX array or a tracer; never imports JAX."""
+    """True if a value is a JAX array or a tracer; never imports JAX."""
     if type(value).__module__ in _PLAIN:
         return False
     jax = sys.modules.get("jax")
@@ -42,7 +42,7 @@ def concatenated(parts: Sequence[Any]) -> Any:
 
 
 def has_unit(value: Any) -> bool:
-    """Whether a value is a quantity of pint, astropy or unyt, whose unit NumPy would drop."""
+    """True if a value is a quantity of pint, astropy or unyt, whose unit NumPy would drop."""
     if type(value).__module__ in _PLAIN:
         return False
     of_pint = hasattr(value, "dimensionality")  # a unit alone as well
@@ -59,18 +59,18 @@ def as_array(value: Any) -> Any:
 
 
 def is_traced(*values: Any) -> bool:
-    """Whether one of the values is a JAX tracer, which has no numbers to look at."""
+    """True if one of the values is a JAX tracer, which has no numbers to look at."""
     jax = sys.modules.get("jax")
     return jax is not None and any(isinstance(value, jax.core.Tracer) for value in values)
 
 
 def holds_jax(*records: Any) -> bool:
-    """Whether an array anywhere in some records is JAX's, or traced by it."""
+    """True if an array anywhere in some records is JAX's, or traced by it."""
     jax = sys.modules.get("jax")
     return jax is not None and any(is_jax(leaf) for leaf in jax.tree.leaves(records))
 
 
 def holds_tracer(*records: Any) -> bool:
-    """Whether an array anywhere in some records is traced by JAX."""
+    """True if an array anywhere in some records is traced by JAX."""
     jax = sys.modules.get("jax")
     return jax is not None and any(isinstance(leaf, jax.core.Tracer) for leaf in jax.tree.leaves(records))

@@ -59,7 +59,7 @@ def __hash__(self: Any) -> int:
 
 
 def _same(one: Any, other: Any) -> bool:
-    """Whether two values are alike; NaN is like NaN, and what JAX traces only like itself."""
+    """True if two values are alike; NaN is like NaN, and what JAX traces only like itself."""
     if one is other:
         return True
     if isinstance(one, tuple | list):

@@ -45,7 +45,7 @@ def report_syntax(message: str, as_json: bool) -> int:
 
 
 def lacks_memory(error: BaseException | None) -> bool:
-    """Whether memory did not suffice, for a library that is then not loaded, a thread, or the error's own words."""
+    """True if memory did not suffice, for a library that is then not loaded, a thread, or the error's own words."""
     while error is not None:
         if isinstance(error, MemoryError) or (
             isinstance(error, (ImportError, RuntimeError)) and _NO_ROOM.search(str(error))
@@ -58,7 +58,7 @@ def lacks_memory(error: BaseException | None) -> bool:
 
 
 def _limited() -> bool:
-    """Whether this process has a limit of memory."""
+    """True if this process has a limit of memory."""
     if sys.platform == "win32":
         return False
     return resource.getrlimit(resource.RLIMIT_AS)[0] != resource.RLIM_INFINITY

@@ -106,7 +106,7 @@ def end_at_once(status: int) -> None:
 
 
 def figures_wanted() -> bool:
-    """Whether files of figures are written, which takes most of the time of a short run."""
+    """True if files of figures are written, which takes most of the time of a short run."""
     return os.environ.get(FIGURES) != "none"
 
 

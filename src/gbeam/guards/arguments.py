@@ -198,7 +198,7 @@ def _are_numbers(value: Any, texts: bool) -> bool:
 
 
 def _has_elements(value: Any, origin: Any) -> bool:
-    """Whether a value has elements, in order but where any iterable will do."""
+    """True if a value has elements, in order but where any iterable will do."""
     if isinstance(value, (str, bytes, Mapping, type)):
         return False
     return isinstance(value, Iterable) if origin is Iterable else hasattr(value, "__getitem__")

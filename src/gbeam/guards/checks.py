@@ -59,7 +59,7 @@ def vector(where: str, value: Any) -> Any:
 
 
 def _holds_text(value: Any) -> bool:
-    """Whether a value is a text, or a list of some: NumPy would read them."""
+    """True if a value is a text, or a list of some: NumPy would read them."""
     return isinstance(value, str) or (isinstance(value, (list, tuple)) and any(map(_holds_text, value)))
 
 

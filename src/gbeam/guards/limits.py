@@ -80,7 +80,7 @@ def in_bytes(count: float) -> str:
 
 
 def existing(path: Path) -> bool:
-    """Whether there is anything at a path; False for one that no file can have."""
+    """True if there is anything at a path; False for one that no file can have."""
     try:
         return path.exists()
     except (OSError, ValueError):  # too long, or with a null character

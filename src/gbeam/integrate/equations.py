@@ -100,7 +100,7 @@ class Trajectory:
 
     @property
     def whole(self) -> bool:
-        """Whether it came to its end."""
+        """True if it came to its end."""
         return self.converged and not self.stopped
 
     def at(self, steps: Any) -> Trajectory:

@@ -70,7 +70,7 @@ class Scheme:
 
     @property
     def ends(self) -> bool:
-        """Whether the last stage is the end of the step, so that the equations hold there with its acceleration."""
+        """True if the last stage is the end of the step, so that the equations hold there with its acceleration."""
         return self.offsets[-1] == 1.0
 
     def tableau(self, step: Any) -> Tableau:

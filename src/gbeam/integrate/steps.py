@@ -93,7 +93,7 @@ class Steps:
 
     @property
     def equal(self) -> bool:
-        """Whether all have one length, and the scheme starts anew after none."""
+        """True if all have one length, and the scheme starts anew after none."""
         return bool((self.length == self.length[0]).all() and not self.anew.any())
 
 

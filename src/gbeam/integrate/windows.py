@@ -113,7 +113,7 @@ class _Window:
 
     @property
     def even(self) -> bool:
-        """Whether the derivatives at its first state serve a whole window."""
+        """True if the derivatives at its first state serve a whole window."""
         return self.apart > FAR
 
     def solve(self, end: int, enough: int) -> bool:
@@ -400,7 +400,7 @@ def _reach(x: Array) -> Array:
 def _converged(
     size: Array, before: Array, x: Array, noise: Array | float, *, stalls: bool, quick: Array | bool
 ) -> Array:
-    """Whether the last two sizes (t,) of corrections, which shrink by a constant factor, leave no more than a tolerance
+    """True if the last two sizes (t,) of corrections, which shrink by a constant factor, leave no more than a tolerance
     and rounding. The first one moves states of which it does not know what acts there: it leaves any. Where they
     stall at less than a part of the accelerations x (t, ..., n), all that is left is rounding; as where they have been
     quick and no longer are, for the rounding of earlier steps adds to a step's own.

@@ -138,7 +138,7 @@ def _alone(of: Space) -> Array:
 
 
 def bends(of: Space, force: Array) -> bool:
-    """Whether an axial force (g,) is large enough beside the stiffness to change the shapes."""
+    """True if an axial force (g,) is large enough beside the stiffness to change the shapes."""
     size = np.abs(force).max() * of.length**2 / np.min(of.stiffness[: len(force)] / of.rule.weight)
     return of.bends and bool(size >= TENSION)
 

@@ -221,7 +221,7 @@ def _frequency(structure: Structure) -> Iterator[str]:
 
 
 def _unstiffened(structure: Structure, base: Any, where: str) -> Iterator[str]:
-    """How large in a motion the stiffness is that a structure by matrices lacks.
+    """Stiffness in a motion that a structure by matrices lacks, over that which it has.
 
     A load a over its mass bends a cantilever by about a/ω², and bends it by its own angle more or less: the square of
     its lowest frequency changes by about a/(ω² L), and by about Ω²/ω² in a rotation.

@@ -42,7 +42,7 @@ class Hung(NamedTuple):
     moment: Array
 
     def during(self, part: slice) -> Hung:
-        """The same at some of the times."""
+        """Forces and moments at some of the times."""
         return self._replace(force=self.force[part], moment=self.moment[part])
 
 

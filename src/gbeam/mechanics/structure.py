@@ -280,13 +280,13 @@ class Structure:
 
     @property
     def traced(self) -> bool:
-        """Whether JAX traces its values, which then have no numbers to decide anything by."""
+        """True if JAX traces its values, which then have no numbers to decide anything by."""
         c = self.coefficients
         return is_jax(c.mass) or is_jax(c.damping) or is_jax(c.stiffness)
 
     @property
     def holds_jax(self) -> bool:
-        """Whether any array of it is JAX's, or traced by it."""
+        """True if any array of it is JAX's, or traced by it."""
         return holds_jax(self)
 
     @property
@@ -326,7 +326,7 @@ class Structure:
 
     @property
     def judged(self) -> bool:
-        """Whether the errors of shapes that it lacks can be known."""
+        """True if the errors of shapes that it lacks can be known."""
         return (self.source is not None or self.richer is not None) and not self.traced
 
     @property

@@ -27,7 +27,7 @@ class Motion(Protocol):
 
     @property
     def free(self) -> bool:
-        """Whether the base's motion is an unknown of the equations of motion."""
+        """True if the base's motion is an unknown of the equations of motion."""
         ...
 
     def base(self, t: Any) -> Base:

@@ -21,7 +21,7 @@ def symmetric_modes(stiffness: Array, mass: Array) -> tuple[Array, Array]:
 
 
 def positive_definite(matrices: Array) -> bool:
-    """Whether the symmetric parts of all matrices (..., n, n) are, by factors: a tenth of what eigenvalues cost."""
+    """True if the symmetric parts of all matrices (..., n, n) are, by factors: a tenth of what eigenvalues cost."""
     try:
         np.linalg.cholesky(matrices + np.swapaxes(matrices, -1, -2))
     except np.linalg.LinAlgError:
@@ -111,7 +111,7 @@ class Vibrations(NamedTuple):
 
     @property
     def flutter(self) -> NDArray[np.bool_]:
-        """Which of those that oscillate grow."""
+        """Flags of those that oscillate and grow."""
         return np.asarray(self.value.real > growth_limit(self.value, self.largest))
 
     @property
@@ -153,7 +153,7 @@ def _told_apart(value: Complex, modes: Complex, mass: Floats) -> Complex:
 
 
 def unsymmetric(stiffness: Floats) -> bool:
-    """Whether a stiffness (n, n) is that of loads that follow the beam, and feed it or take from it."""
+    """True if a stiffness (n, n) is that of loads that follow the beam, and feed it or take from it."""
     return bool(np.abs(stiffness - stiffness.T).max() > UNSYMMETRIC * np.abs(stiffness).max())
 
 

@@ -168,7 +168,7 @@ def state_space(system: StateSpace, gauges: Iterable[Gauge] = ()) -> str:
 
 
 def _in_steps(system: StateSpace) -> list[str]:
-    """Of a loop in steps what decays slowest, and the margins."""
+    """Slowest decay of a loop in steps, and its margins."""
     if not system.step:
         return []
     slowest = [each for each in system.eigenvalue if each.imag >= 0 and each.real > -math.pi / system.step][:SLOWEST]

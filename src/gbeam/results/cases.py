@@ -71,7 +71,7 @@ class Parameter(Part):
 
     @property
     def numeric(self) -> bool:
-        """Whether the values are numbers."""
+        """True if the values are numbers."""
         return bool(np.issubdtype(self.values.dtype, np.number))
 
     @property

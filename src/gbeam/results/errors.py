@@ -193,7 +193,7 @@ class Oscillating:
 
     @declared("", "whether nothing grows", role="fact")
     def stable(self) -> bool:
-        """Whether nothing grows."""
+        """True if nothing grows."""
         return not self.instabilities
 
     @declared("Hz", "natural frequency", "mode")

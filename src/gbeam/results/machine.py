@@ -31,7 +31,7 @@ class LimitUse:
 
     @declared("", "whether more is used than allowed")
     def exceeded(self) -> bool:
-        """Whether more is used than allowed, beyond rounding."""
+        """True if more is used than allowed, beyond rounding."""
         return self.share > 1 + 1e-9
 
     def __str__(self) -> str:
@@ -153,7 +153,7 @@ class AxesResult(Part):
 
     @property
     def within_limits(self) -> bool:
-        """Whether no limit of the machine is exceeded."""
+        """True if no limit of the machine is exceeded."""
         return not any(use.exceeded for use in self.limits)
 
     @property

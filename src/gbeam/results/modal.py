@@ -207,6 +207,6 @@ class Campbell(Figured):
 
 
 def near_multiples(frequency: Floats, speed: Floats, orders: Sequence[int]) -> list[int]:
-    """Which modes a Campbell diagram draws, of (k, v) Hz over (v,) rad/s: all but those far above every multiple."""
+    """Modes that a Campbell diagram draws, of (k, v) Hz over (v,) rad/s: all but those far above every multiple."""
     far = FAR * max(orders, default=0) * speed[-1] / (2 * np.pi) if len(orders) else np.inf
     return [k for k, each in enumerate(frequency) if k < FEW or not np.nanmin(each, initial=np.inf) > far]

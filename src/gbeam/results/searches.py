@@ -139,13 +139,13 @@ class Requirement(Part):
 
     @declared("", "whether the value lies within", name=None)
     def kept(self) -> bool:
-        """Whether the value lies within, but for a thousandth of the bound."""
+        """True if the value lies within, but for a thousandth of the bound."""
         slack = _TIGHT * abs(self.bound)
         return self.low - slack <= self.value <= self.high + slack
 
     @declared("", "whether the value lies on the bound", name=None)
     def active(self) -> bool:
-        """Whether it decides: the value lies on the bound."""
+        """True if it decides: the value lies on the bound."""
         return math.isfinite(self.bound) and abs(self.value - self.bound) <= _TIGHT * max(abs(self.bound), 1e-300)
 
 

@@ -226,7 +226,7 @@ class SpecimenLoads(Figured):
 
     @declared("", "whether the spread is within its limit", role="fact", name=None, optional=True)
     def within_limit(self) -> bool | None:
-        """Whether the spread is within its limit; None without one, or where nothing accelerates."""
+        """True if the spread is within its limit; None without one, or where nothing accelerates."""
         spread, limit = self.spread_max, self.spread_limit
         return None if limit is None or np.isnan(spread) else bool(spread <= limit)
 

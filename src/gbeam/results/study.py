@@ -202,7 +202,7 @@ class ModelStudy(Figured):
 
     @property
     def compared(self) -> bool:
-        """Whether there is a reference in every environment."""
+        """True if there is a reference in every environment."""
         return all(row.outcome == "done" for row in self.rows if row.model == self.reference)
 
     def __repr__(self) -> str:
@@ -243,7 +243,7 @@ class Reproduction(Part):
 
     @property
     def reproduced(self) -> bool:
-        """Whether no difference is larger."""
+        """True if no difference is larger."""
         return all(each.size <= self.tolerance for each in self.differences)
 
     def __repr__(self) -> str:

@@ -128,7 +128,7 @@ def build_machines(scenario: schema.Environments) -> dict[str, Centrifuge]:
 
 
 def build_extent(scenario: schema.Environments) -> dict[str, Any]:
-    """Where the specimen of a scenario is, as an argument of :func:`gbeam.plan`; none where it has none."""
+    """Place of the specimen of a scenario, as an argument of :func:`gbeam.plan`; none where it has none."""
     if type(scenario) is schema.Environments:
         return {}
     parts = Collector()

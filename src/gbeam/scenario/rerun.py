@@ -85,7 +85,7 @@ def facts_of(stored: Stored) -> dict[str, Any]:
 
 
 def is_run(facts: Mapping[str, Any]) -> bool:
-    """Whether facts are of responses, or do not say."""
+    """True if facts are of responses, or do not say."""
     form = facts.get("form")
     return not isinstance(form, dict) or form.get("kind") in ("Study", "SystemStudy")
 

@@ -168,7 +168,7 @@ def find_distributions(data: Mapping[str, Any]) -> Iterator[tuple[Path, str, Any
 
 
 def _is_distribution(node: Any) -> bool:
-    """Whether a table stands for a distribution, whose name may be misspelt."""
+    """True if a table stands for a distribution, whose name may be misspelt."""
     name, numbers = next(iter(node.items())) if isinstance(node, dict) and len(node) == 1 else ("", None)
     return name in FAMILIES or (isinstance(numbers, list) and bool(closest(name, FAMILIES)))
 

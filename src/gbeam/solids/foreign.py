@@ -250,7 +250,7 @@ def _tags(mesh: Any) -> list[list[Any]]:
 
 
 def is_mesh(name: str) -> bool:
-    """Whether a file holds a mesh, by the end of its name."""
+    """True if a file holds a mesh, by the end of its name."""
     return Path(name).suffix.lower() in MESHES
 
 

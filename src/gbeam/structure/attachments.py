@@ -150,7 +150,7 @@ class PointMass(Value):
 
     @property
     def _traced(self) -> bool:
-        """Whether a value is JAX's, which has nothing to check."""
+        """True if a value is JAX's, which has nothing to check."""
         return any(is_jax(value) for value in (self.mass, *self.inertia))
 
 

@@ -161,7 +161,7 @@ class Beam(Value):
 
     @property
     def coupled(self) -> bool:
-        """Whether it moves in several directions at once: by its line, or by a section's matrices."""
+        """True if it moves in several directions at once: by its line, or by a section's matrices."""
         return self.line is not None or self.material is None
 
     @property

@@ -186,7 +186,7 @@ class Neighbourhood:
         return share * abs(self.values[k]) or _AT_ZERO
 
     def _felt(self, k: int, name: str) -> bool:
-        """Whether a parameter has anything to do with a motion."""
+        """True if a parameter has anything to do with a motion."""
         of = self.parameters[k].of_motion
         return not of or of == name or self.case.tracks.get(name) == of
 

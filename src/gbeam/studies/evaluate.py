@@ -47,7 +47,7 @@ class Row:
 
     @property
     def failed(self) -> bool:
-        """Whether it has come to nothing, or was cut off."""
+        """True if it has come to nothing, or was cut off."""
         return self.outcome not in ("done", *ANSWERED)
 
 
@@ -91,7 +91,7 @@ class Inquiry:
 
     @property
     def needs_facts(self) -> bool:
-        """Whether the verb has to answer."""
+        """True if the verb has to answer."""
         return bool(self.keys or self.histories)
 
     def case(self, overrides: Sequence[str]) -> AnyCase:
@@ -144,7 +144,7 @@ def _measured(functions: Sequence[Function], case: AnyCase) -> tuple[list[float]
 
 
 def of_loads(keys: Keys) -> bool:
-    """Whether a figure may be one of loads."""
+    """True if a figure may be one of loads."""
     match keys[0]:
         case "motions":
             return len(keys) < 3 or keys[2] not in _WITHOUT_LOADS
@@ -186,7 +186,7 @@ def width(inquiry: Inquiry) -> int:
 
 
 def may_share(verb: str, paths: Sequence[str]) -> bool:
-    """Whether cases that differ at these paths are worth integrating together."""
+    """True if cases that differ at these paths are worth integrating together."""
     return verb == "run" and not any(path.partition(".")[0] in _ALONE for path in paths)
 
 

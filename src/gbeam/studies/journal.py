@@ -46,7 +46,7 @@ class Journal:
 
     @property
     def finished(self) -> bool:
-        """Whether all the cases of the one in the folder, whichever sweep it is, are done; or there is none."""
+        """True if all the cases of the one in the folder, whichever sweep it is, are done; or there is none."""
         first, rows = self._known()
         return not first or len({row["case"] for row in rows if row}) >= first["cases"]
 
@@ -104,7 +104,7 @@ class Journal:
             raise ComputationError("interrupted", message)
 
     def _still_there(self, handle: int) -> bool:
-        """Whether the file of the store's name is the open one: not removed, and no other."""
+        """True if the file of the store's name is the open one: not removed, and no other."""
         try:
             return os.path.samestat(os.stat(self._file), os.fstat(handle))
         except OSError:

@@ -186,7 +186,7 @@ def searched(
 
 
 def on_bound(values: Floats, limits: Floats) -> Flags:
-    """Whether values lie on one of their bounds (p, 2)."""
+    """True if values lie on one of their bounds (p, 2)."""
     low, high = limits.T
     return np.asarray(np.minimum(values - low, high - values) < _ON * (high - low))
 

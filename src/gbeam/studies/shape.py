@@ -172,7 +172,7 @@ def driven_joint(case: SystemCase, name: str | None) -> tuple[str, Hub]:
 
 
 def slides(coordinate: str) -> bool:
-    """Whether a coordinate is a displacement."""
+    """True if a coordinate is a displacement."""
     return coordinate.rpartition(".")[2] in SLIDES
 
 
@@ -198,7 +198,7 @@ def _at_rest(hub: Hub) -> Hub:
 
 
 def _end(hub: Hub, name: str) -> float:
-    """When the scenario's own command has its last corner, s."""
+    """Time of the last corner of the scenario's own command, s."""
     last = float(np.max(hub.corners(np.inf), initial=0.0))
     if not last > 0:
         raise InputError("--duration", f"is missing, and {name} has no end of its own", "give it, in s")

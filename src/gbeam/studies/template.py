@@ -56,7 +56,7 @@ class ScenarioTemplate:
 
     @property
     def of_system(self) -> bool:
-        """Whether the cases are systems of bodies."""
+        """True if the cases are systems of bodies."""
         return "joints" in type(self.scenario).model_fields
 
     @property

@@ -152,7 +152,7 @@ def quantities(structure: Structure, at: Sampled) -> Quantities:
 
 
 def driven(more: Enrichment | Twin, lifted: Callable[[Structure, IntArray], Sampled]) -> tuple[bool, bool, bool]:
-    """Whether new shapes along x, y and z would be moved by a solution, lifted into a structure that has them."""
+    """True if new shapes along x, y and z would be moved by a solution, lifted into a structure that has them."""
     structure = more.structure
     if isinstance(more, Twin) or all(structure.counts[:3]):
         return True, True, True

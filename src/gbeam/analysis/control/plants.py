@@ -114,7 +114,7 @@ class OnHub:
 
     @property
     def free(self) -> bool:
-        """Whether the drive is a torque."""
+        """True if the drive is a torque."""
         return self.hub.free
 
     @property
@@ -201,12 +201,12 @@ class OnJoint:
 
     @property
     def slides(self) -> bool:
-        """Whether what is driven is a displacement."""
+        """True if what is driven is a displacement."""
         return self.coordinate.rpartition(".")[2] in SLIDES
 
     @property
     def free(self) -> bool:
-        """Whether the drive is an effort."""
+        """True if the drive is an effort."""
         return self.coordinate not in self._rates
 
     @property

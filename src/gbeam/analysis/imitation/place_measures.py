@@ -186,7 +186,7 @@ class Histories:
         return self.steepest(at, total)[0]
 
     def steepest(self, at: Floats, total: bool) -> tuple[float, Floats]:
-        """That size, and its slope (3,) in the place of the control point, 1/m."""
+        """Size as `size` gives, and its slope (3,) in the place of the control point, 1/m."""
         values = self.growing - np.tensordot(at, self.uniform, 1) + (self.at_control_point if total else 0.0)
         sizes = np.linalg.norm(values, axis=-1)
         worst = np.unravel_index(int(np.argmax(sizes)), sizes.shape)

@@ -228,7 +228,7 @@ class Differentiated:
         return self._posed(less), self._posed(more)
 
     def jumps_move(self, pair: Pair) -> bool:
-        """Whether something jumps at another time where a parameter is another: steps that stand still miss that."""
+        """True if something jumps at another time where a parameter is another: steps that stand still miss that."""
         for posed in pair:
             jumps = self._jumps(posed)
             if len(jumps) != len(self.jumps):

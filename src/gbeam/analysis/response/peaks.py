@@ -291,7 +291,7 @@ def _table(loads: Loads) -> Floats:
 
 
 def _sheared(loads: Loads) -> bool:
-    """Whether von Mises' stress is known."""
+    """True if von Mises' stress is known."""
     return loads.von_mises is not None and bool(np.isfinite(loads.von_mises).all())
 
 

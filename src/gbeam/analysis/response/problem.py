@@ -86,7 +86,7 @@ class Initial(Value):
 
     @property
     def settled(self) -> bool:
-        """Whether it is the relative equilibrium at rest."""
+        """True if it is the relative equilibrium at rest."""
         return self == Initial()
 
     def __str__(self) -> str:

@@ -45,7 +45,7 @@ class Run:
 
     @property
     def bends(self) -> bool:
-        """Whether a law bends within steps, whose error then depends on where."""
+        """True if a law bends within steps, whose error then depends on where."""
         return False
 
     @property
@@ -55,12 +55,12 @@ class Run:
 
     @property
     def followed(self) -> bool:
-        """Whether steps are refined for the loads, too."""
+        """True if steps are refined for the loads, too."""
         return True
 
     @property
     def whole(self) -> bool:
-        """Whether it came to its end."""
+        """True if it came to its end."""
         return self.trajectory.whole
 
     @cached_property

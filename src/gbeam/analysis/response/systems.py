@@ -113,7 +113,7 @@ class Ran(Run):
 
     @cached_property
     def bends(self) -> bool:
-        """Whether the law of a joint bends."""
+        """True if the law of a joint bends."""
         return any(joint.holder.bends for joint in self.posed.system.joints.values())
 
     def loads(self, stride: int) -> list[Floats]:

@@ -136,7 +136,7 @@ def _near(structure: Structure, q: Array, other: Array) -> bool:
 
 
 def keeps(c: Coefficients, base: Base, values: Array | None) -> bool:
-    """Whether a beam keeps an equilibrium, by the coefficients about it: where loads follow it, by what may grow."""
+    """True if a beam keeps an equilibrium, by the coefficients about it: where loads follow it, by what may grow."""
     if not c.size:
         return True  # nothing deforms
     mass, velocity, stiffness = map(np.asarray, (c.mass, *c.frozen(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, values)))

@@ -211,7 +211,7 @@ def pole_errors(state: Any) -> tuple[Floats, FrequencyErrors]:
 
 
 def judgeable(of: Structure | System) -> bool:
-    """Whether frequencies of a beam, or of a system with beams, have estimated errors."""
+    """True if frequencies of a beam, or of a system with beams, have estimated errors."""
     return bool(judged_beams(of)) if isinstance(of, System) else of.source is not None and not of.traced
 
 

@@ -61,7 +61,7 @@ def _extent(place: Floats) -> float:
 
 
 def unmoved(size: float, place: Floats) -> bool:
-    """Whether a displacement is rounding of places (t, p, 3), as where a system rests."""
+    """True if a displacement is rounding of places (t, p, 3), as where a system rests."""
     return size <= UNMOVED * np.abs(place).max(initial=0.0)
 
 

@@ -182,8 +182,8 @@ class Strained(NamedTuple):
         assert isinstance(body, Structure) and body.sections is not None
         q, qd, qdd, a, w, alpha, hung = carried(system, state, self.body, acting)
         loads = sections(body, body.sections, Base(a, w, alpha), q, qd, qdd, inputs.loads[k], hung)
-        there = [each[:, self.section] for each in (loads.section_force, loads.section_moment)]
-        return np.concatenate(there, axis=-1) @ self.share
+        of_section = [each[:, self.section] for each in (loads.section_force, loads.section_moment)]
+        return np.concatenate(of_section, axis=-1) @ self.share
 
 
 def linearize_system(

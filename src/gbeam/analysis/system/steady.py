@@ -191,12 +191,12 @@ class SteadySystem:
         return tuple(names)
 
     def richer(self, system: System) -> SteadySystem:
-        """The same steady state of a system with other bodies in it."""
+        """Steady state of the system with other bodies in it."""
         return steady(system, self.drive)
 
     @property
     def changing(self) -> bool:
-        """Whether the equations change as what turns goes on turning."""
+        """True if the equations change as what turns goes on turning."""
         prescribed = self.local.inputs.prescribed
         if not self.drive.rate and (prescribed is None or not prescribed[1].any()):
             return False

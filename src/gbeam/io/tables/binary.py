@@ -234,7 +234,7 @@ _READERS: dict[str, Callable[[str, Sequence[str]], Table]] = {
 
 
 def is_binary(path: str | os.PathLike[str]) -> bool:
-    """Whether a library reads the file, by the end of its name; everything else is text."""
+    """True if a library reads the file, by the end of its name; everything else is text."""
     return Path(path).suffix.lower() in _READERS
 
 

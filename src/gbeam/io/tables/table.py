@@ -40,7 +40,7 @@ class Clock:
 
 
 def is_clock(text: str) -> bool:
-    """Whether a text is a time of day."""
+    """True if a text is a time of day."""
     return _CLOCK.fullmatch(text) is not None
 
 

@@ -63,7 +63,7 @@ class Space(NamedTuple):
 
     @property
     def bends(self) -> bool:
-        """Whether curvatures are among the strains."""
+        """True if curvatures are among the strains."""
         return self.families[0] in (1, 2)
 
     def block(self, family: int) -> slice:

@@ -172,7 +172,7 @@ def root_rule(move: Array, turn: Array) -> tuple[Array, Array, Array]:
 
 
 def beyond(corners: Sequence[float], x: Array) -> Array:
-    """Which points (p,) m lie beyond which corners, (p, c); one at a corner does not, but at the root."""
+    """Flags (p, c) of points (p,) m that lie beyond corners; one at a corner does not, but at the root."""
     at = np.array(corners, dtype=float)
     return np.asarray((x[:, None] > at * (1 + NEAR)) | (at == 0), dtype=float)
 

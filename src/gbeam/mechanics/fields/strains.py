@@ -270,7 +270,7 @@ class StrainField:
         return Columns(added_rates(swung, strain), angle, turn)
 
     def columns_of_points(self, tangents: Tangents, columns: Columns) -> Columns:
-        """How the points move and turn, likewise."""
+        """Motions and turns of the points, likewise."""
         place, angle = (mapped_rates(each, self.cumulative) for each in (columns.place, columns.turn))
         if self.offset is None:
             return Columns(place, angle, columns.turn)

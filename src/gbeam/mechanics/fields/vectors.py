@@ -21,7 +21,7 @@ UNTURNED: Rotation = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 
 
 def absent(value: Scalar) -> bool:
-    """Whether a component is zero by construction."""
+    """True if a component is zero by construction."""
     return type(value) is int and value == 0
 
 

@@ -39,7 +39,7 @@ class Holder:
 
     @property
     def bends(self) -> bool:
-        """Whether a force bends within less than a step, as friction does near rest and a stop where it is met."""
+        """True if a force bends within less than a step, as friction does near rest and a stop where it is met."""
         return bool((self.friction > 0).any() or (self.stop > 0).any())
 
     def forces(self, q: Array, qd: Array) -> Array:

@@ -321,7 +321,7 @@ class System(Value):
 
     @property
     def holds_jax(self) -> bool:
-        """Whether some of its values live in JAX, or are traced by it."""
+        """True if some of its values live in JAX, or are traced by it."""
         driven = [(joint.rates, joint.efforts) for joint in self.joints.values()]
         histories = [force.history for force in self.forces.values()]
         loads = [body.history for body in self.bodies.values() if isinstance(body, Structure)]

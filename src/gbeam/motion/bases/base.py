@@ -44,7 +44,7 @@ def gradient(w_WB_B: Any, alpha_WB_B: Any) -> Any:
 
 
 def gradients(w_WB_B: Any, alpha_WB_B: Any) -> Any:
-    """The same along x, y and z, in columns, (..., 3, 3) 1/s²: the acceleration at a place is that of the root and
+    """Gradients along x, y and z, in columns, (..., 3, 3) 1/s²: the acceleration at a place is that of the root and
     their product with it.
     """
     xp = namespace(w_WB_B, alpha_WB_B)

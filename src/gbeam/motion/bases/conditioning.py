@@ -80,7 +80,7 @@ def _windows(values: Floats, beside: int, reflected: Literal["odd", "even"]) -> 
 
 
 def _far(off: Floats, around: Floats) -> NDArray[np.bool_]:
-    """Whether samples are six deviations off, of the windows `around` them and of the median window."""
+    """True if samples are six deviations off, of the windows `around` them and of the median window."""
     spread = 1.4826 * np.median(around, axis=-1)
     spread = np.maximum(spread, np.median(spread, axis=0))
     return np.asarray(np.abs(off) > np.maximum(_OUTLIER * spread, _LEAST_JUMP))

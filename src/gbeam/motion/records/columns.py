@@ -65,7 +65,7 @@ def unit_in_name(name: str) -> str:
 
 
 def is_unit(text: str) -> bool:
-    """Whether a cell of a file is a unit of time, acceleration or rate, perhaps in brackets."""
+    """True if a cell of a file is a unit of time, acceleration or rate, perhaps in brackets."""
     return any(spelled(text, quantity) is not None for quantity in _SPELLINGS)
 
 

@@ -83,7 +83,7 @@ class Judged:
 
     @declared("", "whether every limit that can be judged is kept", role="fact", name=None)
     def accepted(self) -> bool | None:
-        """Whether every limit that can be judged is kept; None where there is none."""
+        """True if every limit that can be judged is kept; None where there is none."""
         return all(each.passed for each in self.criteria) if self.criteria else None
 
     @property
@@ -127,7 +127,7 @@ class Rule:
 
     @property
     def band(self) -> bool:
-        """Whether a limit is one of the ratio of machine to flight, either way."""
+        """True if a limit is one of the ratio of machine to flight, either way."""
         return self.kind in ("level", "ratio")
 
     def checked(self, limit: object) -> Limit:

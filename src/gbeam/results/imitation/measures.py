@@ -168,7 +168,7 @@ class Mismatch(Part):
 
     @property
     def placed(self) -> bool:
-        """Whether the control point is among the best, within a hundredth of the length."""
+        """True if the control point is among the best, within a hundredth of the length."""
         slack = 0.01 * self.length
         return self.best[0] - slack <= self.control_point <= self.best[1] + slack
 

@@ -171,7 +171,7 @@ def _put(data: Any, path: Path, value: Any, style: Callable[[Any, Any], Any] = l
 
 
 def _braced(data: Any) -> bool:
-    """Whether a table of a document stands in braces."""
+    """True if a table of a document stands in braces."""
     if type(data) in (dict, list):
         return False
     from tomlkit.items import InlineTable
