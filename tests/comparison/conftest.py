@@ -19,7 +19,7 @@ from gbeam import (
     tabulated,
     vector,
 )
-from gbeam.motion import Profile
+from gbeam.motion import MachineLimits, Profile
 
 G = 9.80665
 STRIP, METAL = Section.rectangle(0.02, 0.004), Material(2700.0, 70e9)
@@ -43,10 +43,12 @@ def settings() -> ResponseSettings:
 
 @pytest.fixture(scope="session")
 def spin(flight: Flight) -> Callable[..., Centrifuge]:
-    def make(smoothing: float = 0.0596, control_point: float = 0.15, sign: int = 1) -> Centrifuge:
+    def make(
+        smoothing: float = 0.0596, control_point: float = 0.15, sign: int = 1, limits: MachineLimits | None = None
+    ) -> Centrifuge:
         return Centrifuge(
-            flight, arm=3.3, control_point=control_point, inverse="flat", gravity=False, smoothing=smoothing,
-            mounting="upright" if sign == 1 else "inverted", span=(0.2, 2.3),
+            flight, arm=3.3, control_point=control_point, inverse="flat", gravity=False, limits=limits,
+            smoothing=smoothing, mounting="upright" if sign == 1 else "inverted", span=(0.2, 2.3),
         )  # fmt: skip
 
     return make
