@@ -45,5 +45,5 @@ def test_the_judge_sees_faults(status: int, out: str, err: str, fault: str) -> N
     from fuzz.judge import judge
     from fuzz.worker import Answer
 
-    found = judge(Case("scenario", ["check", "s.toml"]), Answer(status, out, err, 0.1, 1, (), ""))
-    assert found.startswith(fault) and bool(found) == bool(fault)
+    answer = judge(Case("scenario", ["check", "s.toml"]), Answer(status, out, err, 0.1, 1, (), ""))
+    assert answer.startswith(fault) and bool(answer) == bool(fault)

@@ -22,8 +22,8 @@ def test_notebook_runs(file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPat
             answer = shell.run_cell("".join(cell["source"]))
             answer.raise_error()
             if answer.result is not None:
-                made, _ = shell.display_formatter.format(answer.result)
-                for kind in made:
+                built, _ = shell.display_formatter.format(answer.result)
+                for kind in built:
                     shown[kind] = shown.get(kind, 0) + 1
     assert shown["text/html"] >= 2 and shown["image/png"] >= 1
     assert shown["application/vnd.jupyter.widget-view+json"] >= 1

@@ -90,8 +90,8 @@ SLIPS = {
 
 @pytest.mark.parametrize("slip", SLIPS)
 def test_a_slip_is_named(slip: str) -> None:
-    made, advice = SLIPS[slip]
-    (warning,) = doubts(gb.static(gb.assemble(made, "FOAM", y=1, z=1), FLIGHT))
+    built, advice = SLIPS[slip]
+    (warning,) = doubts(gb.static(gb.assemble(built, "FOAM", y=1, z=1), FLIGHT))
     assert warning.startswith(slip) and advice in warning
 
 

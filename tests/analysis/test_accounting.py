@@ -93,8 +93,8 @@ def test_every_peak_above_idle(compared: Comparison) -> None:
 def test_stretches_and_share(compared: Comparison) -> None:
     accounting, start = compared.accounting, np.append(0.0, ENDS)
     missed = [k for k, piece in enumerate(PIECES) if piece[3]]
-    found = [(each.reason, each.flight_peak / G) for each in accounting.not_followed]
-    assert found == [(PIECES[k][3], pytest.approx(PIECES[k][1])) for k in missed]
+    answer = [(each.reason, each.flight_peak / G) for each in accounting.not_followed]
+    assert answer == [(PIECES[k][3], pytest.approx(PIECES[k][1])) for k in missed]
     edges = [(each.start, each.end) for each in accounting.not_followed]
     expected = np.clip([(start[k], ENDS[k]) for k in missed], *accounting.span)
     np.testing.assert_allclose(edges, expected, atol=1e-12)

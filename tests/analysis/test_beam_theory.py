@@ -69,11 +69,13 @@ def timoshenko(slenderness: float, count: int) -> np.ndarray:
 def test_frequencies_state_timoshenkos_differences(slenderness: float) -> None:
     """At L/h = 10 the second frequency is 5.3 % high; 3.5e-6 was stated."""
     square = gb.Section.rectangle(LENGTH / slenderness, LENGTH / slenderness)
-    found = gb.modes(gb.assemble(gb.Beam(LENGTH, square, METAL, rotary_inertia=False), "FOAM", z=3, shapes="adapted"))
+    vibration = gb.modes(
+        gb.assemble(gb.Beam(LENGTH, square, METAL, rotary_inertia=False), "FOAM", z=3, shapes="adapted")
+    )
     true = 1 / timoshenko(slenderness, 3) - 1
-    np.testing.assert_allclose(found.errors.beam_theory, true, rtol=2e-3)
-    assert (found.errors.total < 3 * true).all() and (true < 3 * found.errors.total).all()
-    assert any("without" not in each and "slender beams (shear and rotary" in each for each in found.warnings) == (
+    np.testing.assert_allclose(vibration.errors.beam_theory, true, rtol=2e-3)
+    assert (vibration.errors.total < 3 * true).all() and (true < 3 * vibration.errors.total).all()
+    assert any("without" not in each and "slender beams (shear and rotary" in each for each in vibration.warnings) == (
         true.max() > 0.01
     )
 
@@ -88,11 +90,11 @@ def test_timoshenkos_equation_and_the_frame_agree() -> None:
 def test_a_deflection_states_shear(kind: str) -> None:
     """4 E I/(k G A L²) of the bending under an even load."""
     square = gb.Section.rectangle(0.03, 0.03)
-    found = gb.static(gb.assemble(gb.Beam(LENGTH, square, METAL), kind), acceleration=(0.0, 0.0, 9.81))
+    rest = gb.static(gb.assemble(gb.Beam(LENGTH, square, METAL), kind), acceleration=(0.0, 0.0, 9.81))
     expected = 4 * MODULUS * 0.03**2 / 12 / (COWPER * SHEAR * LENGTH**2)
-    assert found.errors.displacement.beam_theory == pytest.approx(expected, rel=2e-3)
-    assert found.errors.loads.beam_theory < 1e-9 and found.errors.stress.beam_theory < 1e-9
-    (warning,) = found.warnings
+    assert rest.errors.displacement.beam_theory == pytest.approx(expected, rel=2e-3)
+    assert rest.errors.loads.beam_theory < 1e-9 and rest.errors.stress.beam_theory < 1e-9
+    (warning,) = rest.warnings
     assert warning.endswith("mostly from the theory of slender beams (shear); " + BEYOND)
 
 
@@ -107,13 +109,13 @@ def test_a_beam_that_is_bent_far_states_shear(bent: float) -> None:
     tip = gb.Load(at=LENGTH, force=(0, 0, force))
     beam = gb.Beam(LENGTH, square, soft, loads=[tip], damping_ratio=0.01)
     slender, thick = (gb.assemble(beam, "exact", axial=2, y=0, z=6, shear_z=count) for count in (0, 4))
-    found, true = (gb.static(each, gb.Flight(z=0.0)) for each in (slender, thick))
-    size = np.linalg.norm(found.tip)
-    assert size == pytest.approx({0.3: 0.28, 3.0: 0.96}[bent] * LENGTH, rel=0.01) and found.loads is not None
-    away, other = np.linalg.norm(true.tip - found.tip) / size, true.loads
-    moment = np.linalg.norm(other.root_moment - found.loads.root_moment) / np.linalg.norm(found.loads.root_moment)
+    answer, true = (gb.static(each, gb.Flight(z=0.0)) for each in (slender, thick))
+    size = np.linalg.norm(answer.tip)
+    assert size == pytest.approx({0.3: 0.28, 3.0: 0.96}[bent] * LENGTH, rel=0.01) and answer.loads is not None
+    away, other = np.linalg.norm(true.tip - answer.tip) / size, true.loads
+    moment = np.linalg.norm(other.root_moment - answer.loads.root_moment) / np.linalg.norm(answer.loads.root_moment)
     inside = gb.static(gb.System({"beam": slender}, {"clamp": gb.Joint("fixed", "beam")}))
-    for errors in (found.errors, inside.errors):
+    for errors in (answer.errors, inside.errors):
         assert errors.displacement.beam_theory == pytest.approx(away, rel=5e-3)
         assert errors.loads.beam_theory == pytest.approx(moment, rel=1e-2)
 
@@ -121,12 +123,12 @@ def test_a_beam_that_is_bent_far_states_shear(bent: float) -> None:
 def test_a_body_off_the_axis_twists_the_beam() -> None:
     """0.1 kg 100 mm off the axis: the third frequency is 80.8 Hz for 166, the body's deflection 17 % more; unsaid."""
     structure, truth = gb.assemble(LADEN, "FOAM"), frame(STRIP, body=True)
-    found, true = gb.modes(structure), truth.frequencies(5)
-    assert true[2] == pytest.approx(80.78, abs=0.01) and found.frequency[2] == pytest.approx(166.2, abs=0.1)
-    expected = [found.frequency[k] / true[j] - 1 for k, j in ((0, 0), (2, 2))]
-    np.testing.assert_allclose(found.errors.beam_theory[[0, 2]], expected, rtol=0.05)
-    assert found.errors.unseen[0] == pytest.approx(true[3], rel=2e-3)  # that of 166 Hz splits into two
-    said = " ".join(found.warnings)
+    answer, true = gb.modes(structure), truth.frequencies(5)
+    assert true[2] == pytest.approx(80.78, abs=0.01) and answer.frequency[2] == pytest.approx(166.2, abs=0.1)
+    expected = [answer.frequency[k] / true[j] - 1 for k, j in ((0, 0), (2, 2))]
+    np.testing.assert_allclose(answer.errors.beam_theory[[0, 2]], expected, rtol=0.05)
+    assert answer.errors.unseen[0] == pytest.approx(true[3], rel=2e-3)  # that of 166 Hz splits into two
+    said = " ".join(answer.warnings)
     assert "(twist)" in said and "there are modes of bending and twist at 240" in said
     rest = gb.static(structure, acceleration=(0.0, 0.0, 9.81))
     tip = truth.deflection((0.0, 0.0, 9.81))[-1]
@@ -143,7 +145,7 @@ def test_a_run_states_what_shear_does_to_its_vibration(slenderness: float) -> No
     beam = gb.Beam(LENGTH, square, METAL, damping_ratio=0.01)
     period = 1 / gb.modes(gb.assemble(beam, "FOAM", z=1)).frequency[0]
     load = gb.trapezoid(100.0, jerk=400.0 / period, start=0.5 * period, hold=2 * period)
-    found = gb.simulate(gb.assemble(beam, "FOAM"), gb.Flight(z=load), duration=8 * period)
+    response = gb.simulate(gb.assemble(beam, "FOAM"), gb.Flight(z=load), duration=8 * period)
     thick = frame(square, shear=True)
     across = slice(2, None, 6)
     square_rate, modes = np.linalg.eigh(
@@ -152,15 +154,15 @@ def test_a_run_states_what_shear_does_to_its_vibration(slenderness: float) -> No
     modes = np.linalg.solve(root.T, modes)
     rigid = np.zeros(len(thick.mass))
     rigid[across] = 1.0
-    tip = np.zeros(len(found.time))
+    tip = np.zeros(len(response.time))
     for k in np.flatnonzero(np.abs(modes.T @ thick.mass @ rigid) > 1e-9)[:6]:
         rate, mode = np.sqrt(square_rate[k]), modes[:, k]
         system = scipy.signal.lti([-(mode @ thick.mass @ rigid) * mode[-4]], [1, 0.02 * rate, rate**2])
-        fine = np.linspace(0, found.time[-1], 40 * (len(found.time) - 1) + 1)
+        fine = np.linspace(0, response.time[-1], 40 * (len(response.time) - 1) + 1)
         tip += scipy.signal.lsim(system, np.asarray(load(fine)), fine)[1][::40]
-    true = np.abs(found.tip[:, 2] - tip).max() / np.abs(found.tip[:, 2]).max()
-    assert found.errors.displacement.total == pytest.approx(true, rel=0.05)
-    assert found.errors.displacement.beam_theory > 0.9 * found.errors.displacement.total
+    true = np.abs(response.tip[:, 2] - tip).max() / np.abs(response.tip[:, 2]).max()
+    assert response.errors.displacement.total == pytest.approx(true, rel=0.05)
+    assert response.errors.displacement.beam_theory > 0.9 * response.errors.displacement.total
 
 
 def plate_gain(width: float, terms: int = 4) -> float:
@@ -195,25 +197,25 @@ def _gauss(low: float, high: float, count: int) -> tuple[np.ndarray, np.ndarray]
 def test_a_strip_states_what_its_clamp_does(width: float) -> None:
     """A clamp keeps the section flat: 0.9 % of the deflection of a strip 300 mm by 20 mm, 4.8 % of one by 150 mm."""
     thin = gb.Section.rectangle(width, 1e-3)
-    found = gb.static(gb.assemble(gb.Beam(LENGTH, thin, METAL), "exact"), acceleration=(0.0, 0.0, 1e-3))
+    rest = gb.static(gb.assemble(gb.Beam(LENGTH, thin, METAL), "exact"), acceleration=(0.0, 0.0, 1e-3))
     gain = plate_gain(width)
-    assert found.errors.displacement.beam_theory == pytest.approx(gain, rel=0.1)
-    assert found.errors.theory == "plate action"
+    assert rest.errors.displacement.beam_theory == pytest.approx(gain, rel=0.1)
+    assert rest.errors.theory == "plate action"
 
 
 def test_a_strip_bent_far_is_a_plate() -> None:
     """Bending across would stretch its edges: Searle's b² κ/h is 40 here, and EI rises by ν²/(1 − ν²)."""
     tape = gb.Section.rectangle(0.2, 1e-3)
     pulled = gb.Beam(2.0, tape, METAL, loads=[gb.Load(2.0, moment=(0.0, -MODULUS * 0.2 * 1e-9 / 12, 0.0))])
-    found = gb.static(gb.assemble(pulled, "exact"), gb.Flight(z=0.0))
-    assert found.errors.displacement.beam_theory == pytest.approx(RATIO**2, rel=0.3)
-    assert found.errors.theory.startswith("plate action")
+    rest = gb.static(gb.assemble(pulled, "exact"), gb.Flight(z=0.0))
+    assert rest.errors.displacement.beam_theory == pytest.approx(RATIO**2, rel=0.3)
+    assert rest.errors.theory.startswith("plate action")
 
 
 def test_without_poissons_ratio_there_is_no_plate() -> None:
     cork = gb.Material(DENSITY, MODULUS, poissons_ratio=0.0)
-    found = gb.static(gb.assemble(gb.Beam(LENGTH, STRIP, cork), "FOAM"), acceleration=(0.0, 0.0, 9.81))
-    assert found.errors.theory == "shear" and found.errors.displacement.beam_theory < 5e-4
+    rest = gb.static(gb.assemble(gb.Beam(LENGTH, STRIP, cork), "FOAM"), acceleration=(0.0, 0.0, 9.81))
+    assert rest.errors.theory == "shear" and rest.errors.displacement.beam_theory < 5e-4
 
 
 def test_a_plate_bends_by_its_ratio_and_only_through_its_thickness() -> None:
@@ -280,16 +282,16 @@ def test_a_strip_on_edge_buckles_sideways() -> None:
     for force, stays in ((0.9 * true, True), (1.1 * true, False)):
         rest = gb.static(loaded(force))
         assert rest.stable and any("buckle sideways" in each for each in rest.warnings) != stays
-    found = gb.critical_load(loaded(1.0))
-    assert found.value is None and "with shear and twist, which this model has not" in found.warnings[-1]
-    assert float(found.warnings[-1].split("estimated ")[1].split()[0]) == pytest.approx(true, rel=0.02)
+    critical = gb.critical_load(loaded(1.0))
+    assert critical.value is None and "with shear and twist, which this model has not" in critical.warnings[-1]
+    assert float(critical.warnings[-1].split("estimated ")[1].split()[0]) == pytest.approx(true, rel=0.02)
 
 
 def test_what_is_assumed_is_named() -> None:
     bare = gb.Material(DENSITY, MODULUS)
     square = gb.Section.rectangle(0.03, 0.03)
-    found = gb.static(gb.assemble(gb.Beam(LENGTH, square, bare), "FOAM"), acceleration=(0.0, 0.0, 9.81))
-    assert found.errors.theory == "shear; assumed: Poisson's ratio 0.3" and "assumed" in found.warnings[0]
+    rest = gb.static(gb.assemble(gb.Beam(LENGTH, square, bare), "FOAM"), acceleration=(0.0, 0.0, 9.81))
+    assert rest.errors.theory == "shear; assumed: Poisson's ratio 0.3" and "assumed" in rest.warnings[0]
     box = gb.Section.general(9e-4, 6.75e-8, 6.75e-8)
     of_properties = gb.static(gb.assemble(gb.Beam(LENGTH, box, METAL), "FOAM"), acceleration=(0.0, 0.0, 9.81))
     assert of_properties.errors.theory == (
@@ -298,9 +300,9 @@ def test_what_is_assumed_is_named() -> None:
     known = gb.Section.general(
         9e-4, 6.75e-8, 6.75e-8, torsion_constant=1e-7, shear_coefficient_y=COWPER, shear_coefficient_z=COWPER
     )
-    given = gb.static(gb.assemble(gb.Beam(LENGTH, known, METAL), "FOAM"), acceleration=(0.0, 0.0, 9.81))
-    assert given.errors.theory == "shear"
-    assert given.errors.displacement.beam_theory == pytest.approx(found.errors.displacement.beam_theory, rel=1e-6)
+    at_rest = gb.static(gb.assemble(gb.Beam(LENGTH, known, METAL), "FOAM"), acceleration=(0.0, 0.0, 9.81))
+    assert at_rest.errors.theory == "shear"
+    assert at_rest.errors.displacement.beam_theory == pytest.approx(rest.errors.displacement.beam_theory, rel=1e-6)
 
 
 def test_a_shear_modulus_counts() -> None:
@@ -320,8 +322,8 @@ TORSION = {1.0: 0.1406, 1.2: 0.166, 1.5: 0.196, 2.0: 0.229, 2.5: 0.249, 3.0: 0.2
 @pytest.mark.parametrize("aspect", TORSION)
 def test_torsion_constants_of_rectangles(aspect: float) -> None:
     for width, thickness in ((aspect, 1.0), (1.0, aspect)):
-        found = float(gb.Section.rectangle(width, thickness).torsion_constant(0.0))
-        assert found / aspect == pytest.approx(TORSION[aspect], abs=6e-4)
+        answer = float(gb.Section.rectangle(width, thickness).torsion_constant(0.0))
+        assert answer / aspect == pytest.approx(TORSION[aspect], abs=6e-4)
 
 
 def test_torsion_and_shear_of_round_sections() -> None:
@@ -342,13 +344,13 @@ def test_a_free_hub_and_a_given_start_state_it_too() -> None:
     released = gb.Initial(tip_displacement={"y": 1e-4})
     for motion, initial in ((hub, "equilibrium"), (gb.Flight(y=0.0), released)):
         how = {"duration": 0.02, "step": 2e-6, "integrator": "gauss", "initial": initial}
-        found, truth = gb.simulate(structure, motion, **how), gb.simulate(thick, motion, estimate=False, **how)
-        true = np.linalg.norm(found.tip - truth.tip, axis=1).max() / np.linalg.norm(found.tip, axis=1).max()
-        assert found.errors.displacement.beam_theory == pytest.approx(true, rel=0.1)
+        answer, truth = gb.simulate(structure, motion, **how), gb.simulate(thick, motion, estimate=False, **how)
+        true = np.linalg.norm(answer.tip - truth.tip, axis=1).max() / np.linalg.norm(answer.tip, axis=1).max()
+        assert answer.errors.displacement.beam_theory == pytest.approx(true, rel=0.1)
 
 
 def test_a_stiff_direction_is_not_lost_in_rounding() -> None:
     """Ten thousand radii of gyration: the section's own modes are 1e16 times as high, squared."""
     wire = gb.Beam(1.0, gb.Section.general(1.0, 1e-8, 1e-8), gb.Material(1.0, 1e8, poissons_ratio=RATIO))
-    found = gb.modes(gb.assemble(wire, "FOAM", y=12, z=12), gb.Hub(radius=0.0, rate=50.0))
-    assert found.errors.beam_theory[:10].max() < 1e-5
+    vibration = gb.modes(gb.assemble(wire, "FOAM", y=12, z=12), gb.Hub(radius=0.0, rate=50.0))
+    assert vibration.errors.beam_theory[:10].max() < 1e-5

@@ -53,8 +53,8 @@ def at_rest(structure: Any, time: np.ndarray) -> np.ndarray:
 def test_tlam_softens_by_the_square_of_the_rate() -> None:
     """TLAM without foreshortening has K − Ω²M in the plane of rotation: lost at Ω = ω₁."""
     rate = np.array([0.0, 0.5, 1.0]) * OMEGA
-    found = lowest_over_time(TLAM.coefficients, Drive(*base_of(spin(rate))))
-    np.testing.assert_allclose(found, OMEGA**2 - rate**2, atol=1e-8 * OMEGA**2)
+    answer = lowest_over_time(TLAM.coefficients, Drive(*base_of(spin(rate))))
+    np.testing.assert_allclose(answer, OMEGA**2 - rate**2, atol=1e-8 * OMEGA**2)
 
 
 @pytest.mark.parametrize("count", [9, 100])
@@ -128,34 +128,34 @@ def test_a_straight_column_that_is_pressed_too_far_is_lost(kind: str, name: str)
     for most, lost in ((0.98, False), (1.25, True)):
         ramp = SmoothStep(sign * most * critical, 2.0)
         structure = column(kind, *(loads(ramp) if loads else ()), counts=(1, 0, 4))
-        found = ran(structure, None if loads else Flight(x=ramp, z=constant(0.0)))
-        assert unstable(found) == lost
+        answer = ran(structure, None if loads else Flight(x=ramp, z=constant(0.0)))
+        assert unstable(answer) == lost
         if lost:
-            assert found.outcome == "diverged" and "stiffness is not positive definite from t = " in found.message
-            at = float(found.message.partition("t = ")[2].partition(" s")[0])
+            assert answer.outcome == "diverged" and "stiffness is not positive definite from t = " in answer.message
+            at = float(answer.message.partition("t = ")[2].partition(" s")[0])
             assert abs(float(ramp(at))) == pytest.approx(critical, rel=AGREES)
-            assert ("beam.loads[0] acts with" if loads else "the root is pushed with") in found.message
-            assert ("use exact" in found.message) == (
+            assert ("beam.loads[0] acts with" if loads else "the root is pushed with") in answer.message
+            assert ("use exact" in answer.message) == (
                 kind == "FOAM"
-            ) and "a small load across the beam" in found.message
+            ) and "a small load across the beam" in answer.message
 
 
 def test_an_exact_column_that_gives_way_is_followed() -> None:
     """A small load across decides where it goes: it bends far and rests where it is stable."""
     ramp = SmoothStep(-1.2 * EULER * EI / LENGTH**2, 1.0)
-    found = ran(column("exact", Load(LENGTH, force=vector(x=ramp, z=constant(1e-3))), damping=0.05, counts=(1, 0, 4)))
-    assert found.outcome == "done" and not unstable(found)
-    assert np.abs(found.tip[:, 2]).max() > 0.3 * LENGTH
+    answer = ran(column("exact", Load(LENGTH, force=vector(x=ramp, z=constant(1e-3))), damping=0.05, counts=(1, 0, 4)))
+    assert answer.outcome == "done" and not unstable(answer)
+    assert np.abs(answer.tip[:, 2]).max() > 0.3 * LENGTH
 
 
 @pytest.mark.parametrize(("load", "lost"), [(0.95, False), (1.1, True)])
 def test_a_follower_force_has_no_divergence_but_flutter(load: float, lost: bool) -> None:
     """Eight times Euler's load is nothing to a load that follows; Beck's is its limit."""
     push = Load(LENGTH, force=(-load * BECK * EI / LENGTH**2, 0.0, 0.0), follower=True)
-    found = ran(column("FOAM", push, damping=1e-6))
-    assert unstable(found) == lost
+    answer = ran(column("FOAM", push, damping=1e-6))
+    assert unstable(answer) == lost
     if lost:
-        assert found.outcome == "diverged" and "equilibrium is not stable from t = 0 s" in found.message
+        assert answer.outcome == "diverged" and "equilibrium is not stable from t = 0 s" in answer.message
 
 
 @pytest.mark.parametrize(("share", "words"), [(0.005, ""), (0.15, "-fold meanwhile")])
@@ -163,9 +163,9 @@ def test_a_load_that_acts_briefly_is_no_loss(share: float, words: str) -> None:
     """Ten times Euler's load for shares of the first period: nothing has the time to grow a thousandfold."""
     period = 2 * np.pi / OMEGA
     knock = Sine(-10 * EULER * EI / LENGTH**2, 2 * share * period, start=0.02)  # pushes, then pulls
-    found = ran(column("FOAM", Load(LENGTH, force=axial(knock)), damping=0.01), duration=0.2)
-    assert found.outcome == "done" and unstable(found) == bool(words)
-    assert all(words in each for each in found.warnings if "definite" in each)
+    answer = ran(column("FOAM", Load(LENGTH, force=axial(knock)), damping=0.01), duration=0.2)
+    assert answer.outcome == "done" and unstable(answer) == bool(words)
+    assert all(words in each for each in answer.warnings if "definite" in each)
 
 
 def test_a_shaft_above_its_critical_speed_is_held_by_its_spin() -> None:

@@ -114,9 +114,9 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
 
 @pytest.mark.parametrize("case", REFUSED)
 def test_impossible_states_are_refused(case: str) -> None:
-    given, words = REFUSED[case]
+    arguments, words = REFUSED[case]
     with pytest.raises(InputError, match=words) as caught:
-        Initial(**given)
+        Initial(**arguments)
     assert caught.value.where == case.split()[0]
 
 

@@ -47,8 +47,8 @@ MOTIONS: dict[str, tuple[Structure, Any, float]] = {
 def found_and_finer(name: str) -> tuple[Response, Response]:
     """A response, and one of a quarter of its step."""
     structure, motion, duration = MOTIONS[name]
-    found = simulate(structure, motion, duration=duration, tolerance=TOLERANCE)
-    return found, simulate(structure, motion, duration=duration, step=found.step / 4, estimate=False)
+    response = simulate(structure, motion, duration=duration, tolerance=TOLERANCE)
+    return response, simulate(structure, motion, duration=duration, step=response.step / 4, estimate=False)
 
 
 def every(peaks: VectorPeaks, place: int = -1) -> np.ndarray:
@@ -59,12 +59,12 @@ def every(peaks: VectorPeaks, place: int = -1) -> np.ndarray:
 @pytest.mark.parametrize("name", MOTIONS)
 def test_peaks_are_those_of_a_quarter_of_the_step(name: str) -> None:
     """To a tenth of the tolerance; the samples of torques and slews are not."""
-    found, finer = found_and_finer(name)
-    one, two = found.peaks, finer.peaks
+    answer, finer = found_and_finer(name)
+    one, two = answer.peaks, finer.peaks
     assert one.displacement is not None and two.displacement is not None
     np.testing.assert_allclose(every(one.displacement), every(two.displacement), atol=0.1 * TOLERANCE * two.max_size)
     assert one.max_size == pytest.approx(two.max_size, rel=0.1 * TOLERANCE)
-    assert one.time_of_max_size == pytest.approx(two.time_of_max_size, abs=found.time[1] - found.time[0])
+    assert one.time_of_max_size == pytest.approx(two.time_of_max_size, abs=answer.time[1] - answer.time[0])
     assert one.loads is not None and two.loads is not None
     moment = every(two.loads.moment, 0)
     np.testing.assert_allclose(every(one.loads.moment, 0), moment, atol=0.1 * TOLERANCE * moment.max())
@@ -74,9 +74,9 @@ def test_peaks_are_those_of_a_quarter_of_the_step(name: str) -> None:
 
 def test_a_step_found_by_a_large_jump_is_checked() -> None:
     """Coarse steps do not resolve the higher modes: by the order alone the peak was promised three times too well."""
-    found, finer = found_and_finer("free hub")
-    assert found.peaks.loads is not None and finer.peaks.loads is not None
-    one, two = (every(each.peaks.loads.moment, 0) for each in (found, finer))
+    answer, finer = found_and_finer("free hub")
+    assert answer.peaks.loads is not None and finer.peaks.loads is not None
+    one, two = (every(each.peaks.loads.moment, 0) for each in (answer, finer))
     np.testing.assert_allclose(one, two, atol=1e-5 * two.max())
 
 
@@ -104,20 +104,20 @@ def test_a_peak_between_samples_is_the_oscillators() -> None:
     rest = static(structure, acceleration=(0, 0, 1.0)).tip[2]
     step = 2 * np.pi / structure.rest[0][0] / 13
     shove = Flight(z=trapezoid(1.0, jerk=1e7, start=0.0, hold=10.0))
-    found = simulate(structure, shove, duration=20 * step, step=step, integrator="gauss")
-    assert np.abs(found.tip[:, 2]).max() < 0.99 * 2 * abs(rest)
-    assert found.peaks.max_abs[2] == pytest.approx(2 * abs(rest), rel=2e-4)
-    assert found.peaks.time_of_max[2] / step % 13 == pytest.approx(6.5, rel=2e-3)  # of one of two like peaks
+    response = simulate(structure, shove, duration=20 * step, step=step, integrator="gauss")
+    assert np.abs(response.tip[:, 2]).max() < 0.99 * 2 * abs(rest)
+    assert response.peaks.max_abs[2] == pytest.approx(2 * abs(rest), rel=2e-4)
+    assert response.peaks.time_of_max[2] / step % 13 == pytest.approx(6.5, rel=2e-3)  # of one of two like peaks
 
 
 def test_residual_vibration_is_measured_between_samples() -> None:
     structure = strip("FOAM", (0, 0, 1))
     rest, step = abs(static(structure, acceleration=(0, 0, 1.0)).tip[2]), 2 * np.pi / structure.rest[0][0] / 13
     shove = Flight(z=trapezoid(1.0, jerk=1e7, start=0.0, hold=10.0))
-    found = simulate(structure, shove, duration=40 * step, step=step, integrator="gauss", residual_from=10.2 * step)
-    late = found.time >= 10.2 * step
-    assert np.ptp(found.tip[late, 2]) < 0.997 * 2 * rest
-    assert found.peaks.residual_amplitude[2] == pytest.approx(rest, rel=5e-4)
+    response = simulate(structure, shove, duration=40 * step, step=step, integrator="gauss", residual_from=10.2 * step)
+    late = response.time >= 10.2 * step
+    assert np.ptp(response.tip[late, 2]) < 0.997 * 2 * rest
+    assert response.peaks.residual_amplitude[2] == pytest.approx(rest, rel=5e-4)
 
 
 def test_the_models_error_is_the_vectors() -> None:

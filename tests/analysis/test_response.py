@@ -131,12 +131,12 @@ def test_free_hub_turns_as_a_rigid_body_would() -> None:
 def test_error_estimate_brackets_the_error(integrator: str, how: dict[str, Any]) -> None:
     """The largest error of the tip over its largest size, against a step far below."""
     load = flight(smoothed(trapezoid(50.0, jerk=1000.0, start=0.03, hold=0.1), 0.02))
-    found = run(strip(), load, 0.4, integrator=integrator, **how)
-    truth = run(strip(), load, 0.4, integrator="gauss", step=found.time[1] / 8)
-    error = np.abs(found.tip - truth.tip[::8]).max() / np.abs(truth.tip).max()
+    done = run(strip(), load, 0.4, integrator=integrator, **how)
+    truth = run(strip(), load, 0.4, integrator="gauss", step=done.time[1] / 8)
+    error = np.abs(done.tip - truth.tip[::8]).max() / np.abs(truth.tip).max()
     # An order that has not been observed is not believed: of Gauss's method two runs differ by 15 times the error.
-    assert error / HONEST < found.errors.displacement.step < error * (20 if integrator == "gauss" else HONEST)
-    assert found.errors.displacement.step <= how["tolerance"]
+    assert error / HONEST < done.errors.displacement.step < error * (20 if integrator == "gauss" else HONEST)
+    assert done.errors.displacement.step <= how["tolerance"]
 
 
 def test_automatic_steps_come_back_to_the_common_grid() -> None:
@@ -159,11 +159,11 @@ def test_residual_vibration_is_half_of_peak_to_peak() -> None:
     """Rest in one, 2·(kick's share) in the other; not a number where not asked for."""
     structure = strip("FOAM", (0, 0, 1))
     settings = dict(integrator="gauss", step=PERIOD / 200)
-    found = run(structure, flight(RAMP), 5 * PERIOD, residual_from=2 * PERIOD, **settings)
-    after = found.tip[found.time >= 2 * PERIOD, 2]
-    assert found.peaks.residual_amplitude[2] == pytest.approx(np.ptp(after) / 2, rel=1e-4)
+    done = run(structure, flight(RAMP), 5 * PERIOD, residual_from=2 * PERIOD, **settings)
+    after = done.tip[done.time >= 2 * PERIOD, 2]
+    assert done.peaks.residual_amplitude[2] == pytest.approx(np.ptp(after) / 2, rel=1e-4)
     share = np.sin(OMEGA * 0.001) / (OMEGA * 0.001)  # of a step, by a ramp of 2 ms
-    assert found.peaks.residual_amplitude[2] == pytest.approx(abs(found.tip[:, 2].mean()) * share, rel=2e-2)
+    assert done.peaks.residual_amplitude[2] == pytest.approx(abs(done.tip[:, 2].mean()) * share, rel=2e-2)
     assert np.isnan(run(structure, flight(RAMP), PERIOD, **settings).peaks.residual_amplitude).all()
 
 
@@ -261,9 +261,9 @@ def test_a_short_pulse_in_a_long_run_is_not_missed(kind: str) -> None:
     if kind == "load":
         kick = Load(at=LENGTH, force=vector(z=tabulated(*PULSE)))
         structure = assemble(Beam(LENGTH, SECTION, ALUMINIUM, damping_ratio=0.0, loads=[kick]), "FOAM", z=2)
-    found = run(structure, motion, 6.0, integrator="gauss", tolerance=1e-3)
+    done = run(structure, motion, 6.0, integrator="gauss", tolerance=1e-3)
     near = run(structure, motion, 0.2, start=2.95, step=2e-5, integrator="gauss")
-    assert found.peaks.max_size == pytest.approx(near.peaks.max_size, rel=2e-3) and near.peaks.max_size > 1e-5
+    assert done.peaks.max_size == pytest.approx(near.peaks.max_size, rel=2e-3) and near.peaks.max_size > 1e-5
 
 
 @pytest.mark.parametrize(

@@ -21,8 +21,8 @@ DURATION = 2.0
 
 
 def machine(**options: Any) -> Centrifuge:
-    given = {"arm": 3.3, "control_point": 0.2, "inverse": "flat", "gravity": True, "smoothing": 0.2, **options}
-    return Centrifuge(FLIGHT, **given)
+    arguments = {"arm": 3.3, "control_point": 0.2, "inverse": "flat", "gravity": True, "smoothing": 0.2, **options}
+    return Centrifuge(FLIGHT, **arguments)
 
 
 @pytest.mark.parametrize(

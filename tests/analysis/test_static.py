@@ -56,8 +56,8 @@ def test_linear_models_are_linear() -> None:
 
 
 def test_small_loads_do_not_tell_the_models_apart() -> None:
-    found = [tip(strip(kind, (1, 0, 5)), translating(x=0.3, z=1.0))[2] for kind in ("FOAM", "exact")]
-    np.testing.assert_allclose(found, found[0], rtol=2e-5)
+    answer = [tip(strip(kind, (1, 0, 5)), translating(x=0.3, z=1.0))[2] for kind in ("FOAM", "exact")]
+    np.testing.assert_allclose(answer, answer[0], rtol=2e-5)
 
 
 @cache
@@ -79,9 +79,9 @@ def heavy_elastica(load: float, inwards: float = 0.0) -> np.ndarray:
 
     s = np.linspace(0, 1, 201)
     guess = np.stack([np.tanh(load * s / 4), 0 * s, s, 0 * s])
-    found = solve_bvp(right, ends, s, guess, tol=1e-10, max_nodes=100_000)
-    assert found.success
-    return found.y[2:, -1]
+    answer = solve_bvp(right, ends, s, guess, tol=1e-10, max_nodes=100_000)
+    assert answer.success
+    return answer.y[2:, -1]
 
 
 @pytest.mark.parametrize("load", [1.0, 10.0, 40.0])
@@ -101,8 +101,8 @@ def test_a_beam_that_is_pressed_and_bent_over_rests_where_it_is_stable() -> None
 
 
 def test_beam_hangs_straight_and_stretched() -> None:
-    found = tip(heavy_beam((1, 10, 0)), translating(x=-40.0))
-    np.testing.assert_allclose(found, [40.0 / 2e8, 0, 0], atol=1e-11)
+    answer = tip(heavy_beam((1, 10, 0)), translating(x=-40.0))
+    np.testing.assert_allclose(answer, [40.0 / 2e8, 0, 0], atol=1e-11)
 
 
 def test_first_order_model_stiffens_in_tension_and_softens_in_compression() -> None:
@@ -134,20 +134,20 @@ def test_an_equilibrium_states_its_error(seed: int) -> None:
     size = 10 ** random.uniform(1, 3)
     base = Base(size * random.normal(size=3), 10 * random.normal(size=3), 30 * random.normal(size=3))
     few = assemble(beam, Model(kind, axial, along_y, along_z))
-    found = deflection_at(few, on_base(few, base), None, 0.0)
+    answer = deflection_at(few, on_base(few, base), None, 0.0)
     exact = assemble(beam, Model("exact", 6, 12, 12))
     true = deflection_at(exact, on_base(exact, base), None, 0.0)
     for name, ours, theirs in (
-        ("displacement", found.tip, true.tip),
-        ("loads", found.loads.root_moment[0], true.loads.root_moment[0]),
+        ("displacement", answer.tip, true.tip),
+        ("loads", answer.loads.root_moment[0], true.loads.root_moment[0]),
     ):
         error = np.linalg.norm(theirs - ours) / max(np.linalg.norm(theirs), np.linalg.norm(ours))
-        stated = getattr(found.errors, name).total
+        stated = getattr(answer.errors, name).total
         assert error <= 1.2 * stated + 1e-6 and stated >= (error if name == "displacement" else 0) / 1.2
-    assert bool([each for each in found.warnings if "wrong" in each]) == (
-        max(found.errors.displacement.total, found.errors.loads.total) > 0.01
+    assert bool([each for each in answer.warnings if "wrong" in each]) == (
+        max(answer.errors.displacement.total, answer.errors.loads.total) > 0.01
     )
-    assert f"estimated error {100 * found.errors.displacement.total:.2g} %" in repr(found)
+    assert f"estimated error {100 * answer.errors.displacement.total:.2g} %" in repr(answer)
 
 
 def test_an_equilibrium_that_the_exact_model_does_not_reach_is_doubted() -> None:
@@ -163,8 +163,8 @@ def test_a_moment_that_twists_is_warned_of() -> None:
     """Torsion is in no model: the moment about x moves nothing, and the load is named."""
     loads = [Load(LENGTH, force=(0.0, 0.0, 1.0)), Load(LENGTH, moment=(0.4, 0.0, 0.1))]
     beam = Beam(LENGTH, Section.rectangle(0.02, 0.004), Material(2700.0, 7e10), loads=loads)
-    found = static(assemble(beam, Model("FOAM", 1, 1, 1)))
-    (warning,) = (each for each in found.warnings if "twists" in each)
+    rest = static(assemble(beam, Model("FOAM", 1, 1, 1)))
+    (warning,) = (each for each in rest.warnings if "twists" in each)
     assert "beam.loads[1].moment" in warning and "0.4 N m" in warning
     bent = replace(beam, loads=[loads[0], Load(LENGTH, moment=(0.0, 0.0, 0.1))])
     assert not any("twists" in each for each in static(assemble(bent, Model("FOAM", 1, 1, 1))).warnings)

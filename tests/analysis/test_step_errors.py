@@ -83,18 +83,18 @@ def states(name: str) -> tuple[np.ndarray, np.ndarray]:
     widths, n = np.diff(ends), len(problem.q)
     time = (ends[:-1, None] + widths[:, None] * POINTS).ravel()
     c, k, f = equations.matrices(equations.drive(time))
-    rates, given = np.zeros((len(time), 2 * n, 2 * n)), np.zeros((len(time), 2 * n))
+    rates, arguments = np.zeros((len(time), 2 * n, 2 * n)), np.zeros((len(time), 2 * n))
     rates[:, :n, n:] = np.eye(n)
     rates[:, n:] = -np.linalg.solve(equations.mass, np.concatenate([k, c], axis=2))
-    given[:, n:] = np.linalg.solve(equations.mass, f.T).T
+    arguments[:, n:] = np.linalg.solve(equations.mass, f.T).T
     panels, m, size = len(widths), len(POINTS), 2 * n
-    rates, given = rates.reshape(panels, m, size, size), given.reshape(panels, m, size)
+    rates, arguments = rates.reshape(panels, m, size, size), arguments.reshape(panels, m, size)
     scaled = widths[:, None, None] * INTEGRALS
     coupling = np.einsum("pij,pjab->piajb", scaled[:, :-1], rates).reshape(panels, m * size, m * size)
     right = np.concatenate(
         [
             np.broadcast_to(np.tile(np.eye(size), (m, 1)), (panels, m * size, size)),
-            (scaled[:, :-1] @ given).reshape(panels, -1, 1),
+            (scaled[:, :-1] @ arguments).reshape(panels, -1, 1),
         ],
         axis=2,
     )
@@ -102,7 +102,7 @@ def states(name: str) -> tuple[np.ndarray, np.ndarray]:
     state, values = np.concatenate([problem.q, problem.qd]), np.empty((panels, m + 1, size))
     for p in range(panels):
         values[p, 0], values[p, 1:] = state, at_points[p] @ np.append(state, 1.0)
-        state = state + scaled[p, -1] @ (np.einsum("iab,ib->ia", rates[p], values[p, 1:]) + given[p])
+        state = state + scaled[p, -1] @ (np.einsum("iab,ib->ia", rates[p], values[p, 1:]) + arguments[p])
     return ends, values
 
 
@@ -150,11 +150,11 @@ def judge(found: Response, name: str) -> None:
 @pytest.mark.parametrize("name", CASES)
 def test_an_automatic_step_keeps_its_tolerance(name: str, integrator: str) -> None:
     structure, motion, duration, _ = CASES[name]
-    found = simulate(structure, motion, duration=duration, integrator=integrator, tolerance=1e-3)
-    judge(found, name)
-    assert found.errors.displacement.step <= 1e-4
-    assert apart(found.tip, truth(name, found.time)[0]) <= 2e-4
-    assert found.steps < 200_000
+    response = simulate(structure, motion, duration=duration, integrator=integrator, tolerance=1e-3)
+    judge(response, name)
+    assert response.errors.displacement.step <= 1e-4
+    assert apart(response.tip, truth(name, response.time)[0]) <= 2e-4
+    assert response.steps < 200_000
 
 
 @pytest.mark.parametrize("integrator", ["newmark", "gauss"])
@@ -172,8 +172,8 @@ def test_steps_that_end_at_corners_keep_the_order_of_gauss(name: str) -> None:
     structure, motion, duration, _ = CASES[name]
     errors = []
     for count in (1600, 3200):
-        found = simulate(structure, motion, duration=duration, integrator="gauss", step=duration / count)
-        errors.append(apart(found.tip, truth(name, found.time)[0]))
+        response = simulate(structure, motion, duration=duration, integrator="gauss", step=duration / count)
+        errors.append(apart(response.tip, truth(name, response.time)[0]))
     order = np.log2(errors[0] / errors[1])
     assert order > 3.8 and (order < 4.2 or name == "sine of a hub's rate")
 
@@ -181,15 +181,15 @@ def test_steps_that_end_at_corners_keep_the_order_of_gauss(name: str) -> None:
 def test_loads_that_a_jump_excites_are_followed_or_the_run_says_what_follows_them() -> None:
     """The axial mode is nothing in the tip's displacement, and a quarter of the root's force."""
     structure, motion = integrators.strip("FOAM", 0.0), integrators.JERK
-    found, rough = (
+    answer, rough = (
         simulate(structure, motion, duration=0.12, integrator=integrator) for integrator in ("gauss", "newmark")
     )
-    truth = simulate(structure, motion, duration=0.12, integrator="gauss", step=found.step / 2, estimate=False)
-    assert found.loads is not None and truth.loads is not None
-    stride = round(found.time[1] / truth.step)
-    error = apart(found.loads.root_force, truth.loads.root_force[::stride])
-    assert error <= BOUND * found.errors.loads.step <= BOUND * 1e-2 / 3
-    assert not any("integrator" in each for each in found.warnings)
+    truth = simulate(structure, motion, duration=0.12, integrator="gauss", step=answer.step / 2, estimate=False)
+    assert answer.loads is not None and truth.loads is not None
+    stride = round(answer.time[1] / truth.step)
+    error = apart(answer.loads.root_force, truth.loads.root_force[::stride])
+    assert error <= BOUND * answer.errors.loads.step <= BOUND * 1e-2 / 3
+    assert not any("integrator" in each for each in answer.warnings)
     assert rough.errors.loads.step > 1e-2 / 3
     assert any('integrator = "gauss" follows it in fewer' in each for each in rough.warnings)
 
@@ -221,8 +221,8 @@ def test_a_step_found_by_a_large_jump_is_checked() -> None:
         return np.asarray(q * np.array([0.0, 0.0, 1.0]))
 
     assert error(0.0025) > 1.5 * settings.aim  # the step that the order promises to be enough
-    found, errors = answered(refine(0.02, 2, settings), run)
-    assert error(found.step) <= min(settings.aim, BOUND * errors.displacement)
+    answer, errors = answered(refine(0.02, 2, settings), run)
+    assert error(answer.step) <= min(settings.aim, BOUND * errors.displacement)
 
 
 @pytest.mark.parametrize(("ratios", "order"), [((2, 2), 2.0), ((2, 16), 1.3), ((4, 4), 4.0), ((2, 8), 1.0)])

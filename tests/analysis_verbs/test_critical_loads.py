@@ -48,20 +48,20 @@ def column(model: Model, *loads: Load, damping: float = 0.0):
 
 @pytest.mark.parametrize("kind", MODELS)
 def test_euler(kind):
-    found = critical_load(column(MODELS[kind], Load(1.0, force=(-0.5, 0.0, 0.0))))
+    critical = critical_load(column(MODELS[kind], Load(1.0, force=(-0.5, 0.0, 0.0))))
     # Clamped-free shapes know nothing of the load and converge slowly; polynomials at once.
-    assert found.value == pytest.approx(2 * np.pi**2 / 4, rel=1e-5 if kind == "exact" else 6e-4)
-    assert (found.kind, found.direction, found.unit) == ("divergence", "z", "times the loads")
-    assert found.errors.slender == pytest.approx(abs(found.value / (np.pi**2 / 2) - 1), rel=0.1, abs=3e-6)
+    assert critical.value == pytest.approx(2 * np.pi**2 / 4, rel=1e-5 if kind == "exact" else 6e-4)
+    assert (critical.kind, critical.direction, critical.unit) == ("divergence", "z", "times the loads")
+    assert critical.errors.slender == pytest.approx(abs(critical.value / (np.pi**2 / 2) - 1), rel=0.1, abs=3e-6)
 
 
 @pytest.mark.parametrize("kind", MODELS)
 def test_beck(kind):
     structure = column(MODELS[kind], Load(1.0, force=(-1.0, 0.0, 0.0), follower=True))
-    found = critical_load(structure)
-    assert found.value == pytest.approx(BECK, rel=3e-5 if kind == "exact" else 4e-4)
-    assert (found.kind, found.direction) == ("flutter", "z")
-    assert found.errors.slender == pytest.approx(abs(found.value / BECK - 1), rel=0.1, abs=3e-5)
+    critical = critical_load(structure)
+    assert critical.value == pytest.approx(BECK, rel=3e-5 if kind == "exact" else 4e-4)
+    assert (critical.kind, critical.direction) == ("flutter", "z")
+    assert critical.errors.slender == pytest.approx(abs(critical.value / BECK - 1), rel=0.1, abs=3e-5)
 
 
 def test_becks_two_modes_meet():
@@ -80,21 +80,21 @@ def test_becks_two_modes_meet():
 
 def test_leipholz():
     structure = column(MODELS["exact"], Load(None, force=(-1.0, 0.0, 0.0), follower=True))
-    found = critical_load(structure)
-    assert found.value == pytest.approx(LEIPHOLZ, rel=1e-4) and found.kind == "flutter"
+    critical = critical_load(structure)
+    assert critical.value == pytest.approx(LEIPHOLZ, rel=1e-4) and critical.kind == "flutter"
 
 
 def test_a_dead_load_along_the_beam_is_greenhills():
-    found = critical_load(column(MODELS["FOAM"], Load(None, force=(-1.0, 0.0, 0.0))))
-    assert found.value == pytest.approx(GREENHILL, rel=2e-5)
+    critical = critical_load(column(MODELS["FOAM"], Load(None, force=(-1.0, 0.0, 0.0))))
+    assert critical.value == pytest.approx(GREENHILL, rel=2e-5)
     assert pytest.approx(7.8373, abs=1e-4) == GREENHILL
 
 
 @pytest.mark.parametrize("kind", ["FOAM", "exact"])
 def test_buckling_under_its_own_inertia(kind):
     """a_x pushes the root: 7.8373 EI/(m L³)."""
-    found = buckling_acceleration(column(MODELS[kind]))
-    assert found.value == pytest.approx(GREENHILL, rel=4e-5)
+    answer = buckling_acceleration(column(MODELS[kind]))
+    assert answer.value == pytest.approx(GREENHILL, rel=4e-5)
 
 
 def test_loads_of_another_time_and_none():
@@ -108,8 +108,8 @@ def test_loads_of_another_time_and_none():
 
 
 def test_pulling_never_buckles():
-    found = critical_load(column(MODELS["FOAM"], Load(1.0, force=(1.0, 0.0, 0.0))))
-    assert found.value is None and found.kind == "none" and found.searched_to == pytest.approx(24.7, abs=0.1)
+    critical = critical_load(column(MODELS["FOAM"], Load(1.0, force=(1.0, 0.0, 0.0))))
+    assert critical.value is None and critical.kind == "none" and critical.searched_to == pytest.approx(24.7, abs=0.1)
 
 
 def test_dead_load_lowers_the_frequency():
@@ -137,11 +137,11 @@ def test_a_beam_pointing_inward_diverges(kind, counts):
     for row, condition in ((0, (d @ d)[0]), (1, (d @ d @ d)[0]), (n, np.eye(n + 1)[n]), (n - 1, d[n])):
         stiff[row], spin[row] = condition, 0.0
     square = 1 / np.linalg.eigvals(np.linalg.solve(stiff, spin)).real.max()
-    found = critical_speed(
+    critical = critical_speed(
         assemble(slender(1e4), Model(kind, *counts)), Hub(radius=radius, rate=constant(1.0), pointing="inward")
     )
-    assert found.value == pytest.approx(np.sqrt(square), rel=2e-5)
-    assert (found.kind, found.direction) == ("divergence", "y")
+    assert critical.value == pytest.approx(np.sqrt(square), rel=2e-5)
+    assert (critical.kind, critical.direction) == ("divergence", "y")
 
 
 @pytest.mark.parametrize(("load", "kept"), [(15.0, True), (21.0, False)])
@@ -158,8 +158,8 @@ def test_a_column_under_a_follower_force_is_stable_up_to_becks_load(kind, load, 
 
 def test_a_run_under_a_follower_force_below_becks_load_is_not_warned_of():
     structure = column(MODELS["FOAM"], Load(1.0, force=(-15.0, 0.0, 0.0), follower=True))
-    found = simulate(structure, Flight(z=constant(1e-3)), duration=0.1, step=1e-3, estimate=False)
-    assert not any("not stable" in each for each in found.warnings)
+    response = simulate(structure, Flight(z=constant(1e-3)), duration=0.1, step=1e-3, estimate=False)
+    assert not any("not stable" in each for each in response.warnings)
     beyond = column(MODELS["FOAM"], Load(1.0, force=(-21.0, 0.0, 0.0), follower=True))
-    found = simulate(beyond, Flight(z=constant(1e-3)), duration=0.1, step=1e-3, estimate=False)
-    assert any("equilibrium that is not stable" in each for each in found.warnings)
+    response = simulate(beyond, Flight(z=constant(1e-3)), duration=0.1, step=1e-3, estimate=False)
+    assert any("equilibrium that is not stable" in each for each in response.warnings)

@@ -176,9 +176,9 @@ def test_exports(tmp_path):
 def test_nonlinear_system_has_the_same_linearisation():
     pytest.importorskip("control")
     system, theirs = linearize(SOFT, FREE_2009), nonlinear_system(SOFT, FREE_2009)
-    found = theirs.linearize(np.zeros(8), np.zeros(1), eps=1e-8)
-    assert pytest.approx(system.a, rel=1e-5, abs=1e-5) == found.A
-    assert pytest.approx(system.c, rel=1e-4, abs=1e-3) == found.C
+    linear = theirs.linearize(np.zeros(8), np.zeros(1), eps=1e-8)
+    assert pytest.approx(system.a, rel=1e-5, abs=1e-5) == linear.A
+    assert pytest.approx(system.c, rel=1e-4, abs=1e-3) == linear.C
 
 
 def test_a_gauge_off_the_beam():
@@ -191,8 +191,8 @@ def test_a_hub_on_a_spring_rests_where_it_balances_the_torque():
     structure = structure_2009("FOAM", 1, 3)
     point = operating_point(structure, hub, 2.0)
     assert float(point.y[0]) == pytest.approx(0.05) and float(point.yd[0]) == 0
-    found = modes(structure, hub, 2.0)
-    assert found.rigid == 0 and found.damping_ratio[0] > 0 and found.stable
+    vibration = modes(structure, hub, 2.0)
+    assert vibration.rigid == 0 and vibration.damping_ratio[0] > 0 and vibration.stable
 
 
 def test_a_state_space_model_states_the_errors_of_its_frequencies(tmp_path):

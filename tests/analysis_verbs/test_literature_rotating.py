@@ -24,8 +24,8 @@ def spin(rate: float) -> Hub:
 
 def along(structure, motion, direction):
     """Circular frequencies of the modes in one direction, rad/s."""
-    found = modes(structure, motion, 0.0)
-    return 2 * np.pi * found.frequency[[d == direction for d in found.direction]]
+    vibration = modes(structure, motion, 0.0)
+    return 2 * np.pi * vibration.frequency[[d == direction for d in vibration.direction]]
 
 
 def test_wright_1982_flap():
@@ -59,9 +59,9 @@ def test_hamza_cherif_2004_chord_and_flap(gamma: float, chord: float) -> None:
 def test_the_exact_chord_is_pre_stretched():
     """The exact beam is longer as it spins: its chord frequencies must not be the table's."""
     structure = assemble(slender(70.0), Model("exact", 3, 8, 0))
-    found = [along(structure, spin(gamma), "y")[0] for gamma in (2, 10)]
+    answer = [along(structure, spin(gamma), "y")[0] for gamma in (2, 10)]
     # Converged to nine digits with more shapes; 4.9484 has been quoted for the second.
-    assert found == pytest.approx([3.618592, 4.948718], abs=5e-6)
+    assert answer == pytest.approx([3.618592, 4.948718], abs=5e-6)
 
 
 def test_2009_table_2():
@@ -72,15 +72,15 @@ def test_2009_table_2():
         ("FOAM", 1.0): ([0.47111, 2.92933, 8.15767, 15.96005, 26.36425], [0.4714, 2.9308, 8.1618, 15.9682, 26.3776]),
     }
     for (kind, rate), (true, printed) in tables.items():
-        found = along(structure_2009(kind, 5, 5), Hub(radius=0.5, rate=constant(rate)), "y")[:5]
-        assert found / (2 * np.pi) == pytest.approx(true, abs=2e-5)
-        assert found / (2 * 3.14) == pytest.approx(printed, abs=1.01e-4)  # FOAM's fourth is one digit off in print
+        answer = along(structure_2009(kind, 5, 5), Hub(radius=0.5, rate=constant(rate)), "y")[:5]
+        assert answer / (2 * np.pi) == pytest.approx(true, abs=2e-5)
+        assert answer / (2 * 3.14) == pytest.approx(printed, abs=1.01e-4)  # FOAM's fourth is one digit off in print
 
 
 def test_free_hub_2009():
-    found = modes(structure_2009("FOAM", 2, 5), FREE_2009, 0.0)
-    assert found.rigid == 1
-    assert 2 * np.pi * found.frequency[0] == pytest.approx(3.18239, abs=1e-5)
+    vibration = modes(structure_2009("FOAM", 2, 5), FREE_2009, 0.0)
+    assert vibration.rigid == 1
+    assert 2 * np.pi * vibration.frequency[0] == pytest.approx(3.18239, abs=1e-5)
     heavy = modes(structure_2009("FOAM", 2, 5, mass=0.5), FREE_2009, 0.0)
     assert 2 * np.pi * heavy.frequency[0] == pytest.approx(2.26615, abs=1e-5)
 
@@ -88,9 +88,9 @@ def test_free_hub_2009():
 @pytest.mark.parametrize(("mass", "wanted"), [(0.0, 2.9107), (0.1, 2.6043), (0.5, 1.9365)])
 def test_critical_speeds_of_tlam(mass: float, wanted: float) -> None:
     """2009 prints 2.91, 2.60 and 1.91; the last would need 0.525 kg."""
-    found = critical_speed(structure_2009("TLAM", 5, 5, mass=mass), HUB_2009)
-    assert found.value == pytest.approx(wanted, abs=1e-4 if mass == 0.5 else 5e-5)
-    assert (found.kind, found.direction) == ("divergence", "y")
+    critical = critical_speed(structure_2009("TLAM", 5, 5, mass=mass), HUB_2009)
+    assert critical.value == pytest.approx(wanted, abs=1e-4 if mass == 0.5 else 5e-5)
+    assert (critical.kind, critical.direction) == ("divergence", "y")
 
 
 def test_critical_speed_exact():

@@ -60,9 +60,9 @@ def test_rotating_bar():
 
 def test_heavy_column():
     """Greenhill 1881: 7.8373 EI/(m L³). TLAM has no geometric stiffness and never buckles."""
-    found = buckling_acceleration(assemble(slender(1e4), Model("FOAM", 1, 0, 8)))
-    assert found.value == pytest.approx(7.83735, rel=1e-5)
-    assert (found.kind, found.direction) == ("divergence", "z")
+    answer = buckling_acceleration(assemble(slender(1e4), Model("FOAM", 1, 0, 8)))
+    assert answer.value == pytest.approx(7.83735, rel=1e-5)
+    assert (answer.kind, answer.direction) == ("divergence", "z")
     none = buckling_acceleration(assemble(slender(1e4), Model("TLAM", 1, 0, 8)))
     assert none.value is None and none.kind == "none" and "keeps" in none.reason
 
@@ -70,8 +70,8 @@ def test_heavy_column():
 def test_foam_has_no_critical_speed():
     from .beams import HUB_2009
 
-    found = critical_speed(structure_2009("FOAM", 2, 5), HUB_2009, upper=20.0)
-    assert found.value is None and found.searched_to == 20.0
+    critical = critical_speed(structure_2009("FOAM", 2, 5), HUB_2009, upper=20.0)
+    assert critical.value is None and critical.searched_to == 20.0
 
 
 def test_a_beam_pointing_inward_diverges():

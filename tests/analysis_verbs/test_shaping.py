@@ -17,35 +17,37 @@ PRESCRIBED, FREE = gb.Hub(radius=HUB_RADIUS), gb.Hub(radius=HUB_RADIUS, inertia=
 
 
 def test_a_rate_turns_by_the_angle_and_leaves_a_hundredth_of_a_zvd_shaper() -> None:
-    found = gb.shape_command(MODEL, PRESCRIBED, angle=1.0, duration=6.0)
-    profile = gb.SplineProfile(found.duration, found.coefficients)
+    command = gb.shape_command(MODEL, PRESCRIBED, angle=1.0, duration=6.0)
+    profile = gb.SplineProfile(command.duration, command.coefficients)
     assert gb.Hub(radius=HUB_RADIUS, rate=profile).angle(8.0) == pytest.approx(1.0, abs=1e-9)
     assert profile(6.0) == pytest.approx(0, abs=1e-12) and profile(7.0) == pytest.approx(0, abs=1e-12)
-    shaped, zvd, smooth = found.runs
+    shaped, zvd, smooth = command.runs
     assert (shaped.name, zvd.name, smooth.name) == ("shaped", "ZVD", "smooth-step")
     assert shaped.residual < 0.1 * zvd.residual < 0.01 * smooth.residual
     # What the modes leave is what a run of the linear model leaves: of a small angle FOAM is one.
     small = gb.shape_command(MODEL, PRESCRIBED, angle=1e-4, duration=6.0)
     for run in small.runs[1:]:
-        assert run.residual == pytest.approx(run.by_ratio[found.ratio == 1][0], rel=0.1)
-    assert {each.outcome for each in found.runs} == {"done"} and found.kind == "rate"
+        assert run.residual == pytest.approx(run.by_ratio[command.ratio == 1][0], rel=0.1)
+    assert {each.outcome for each in command.runs} == {"done"} and command.kind == "rate"
 
 
 def test_a_rate_is_reached() -> None:
-    found = gb.shape_command(MODEL, PRESCRIBED, rate=3.0, duration=10.0)
-    assert gb.SplineProfile(10.0, found.coefficients)(np.array([0.0, 10.0, 12.0])) == pytest.approx([0, 3, 3], abs=1e-9)
-    assert found.residual < 1e-3 * found.runs[2].residual
+    shaped = gb.shape_command(MODEL, PRESCRIBED, rate=3.0, duration=10.0)
+    assert gb.SplineProfile(10.0, shaped.coefficients)(np.array([0.0, 10.0, 12.0])) == pytest.approx(
+        [0, 3, 3], abs=1e-9
+    )
+    assert shaped.residual < 1e-3 * shaped.runs[2].residual
 
 
 def test_a_torque_within_a_limit_turns_a_free_hub_from_rest_to_rest() -> None:
-    found = gb.shape_command(MODEL, FREE, angle=1.0, duration=6.0, limit=45.0)
-    assert np.abs(found.runs[0].command).max() < 45.0 * 1.001 < found.runs[1].largest
-    torque = gb.SplineProfile(found.duration, found.coefficients)
+    shaped = gb.shape_command(MODEL, FREE, angle=1.0, duration=6.0, limit=45.0)
+    assert np.abs(shaped.runs[0].command).max() < 45.0 * 1.001 < shaped.runs[1].largest
+    torque = gb.SplineProfile(shaped.duration, shaped.coefficients)
     hub = gb.Hub(radius=HUB_RADIUS, inertia=HUB_INERTIA, torque=torque)
     run = gb.simulate(MODEL, hub, duration=8.0, integrator="gauss", estimate=False)
     assert run.hub is not None
     assert run.hub.angle[-1] == pytest.approx(1.0, abs=1e-2) and abs(run.hub.rate[-1]) < 1e-3
-    assert found.residual < 0.1 * found.runs[1].residual and found.kind == "torque"
+    assert shaped.residual < 0.1 * shaped.runs[1].residual and shaped.kind == "torque"
     with pytest.raises(gb.ComputationError, match="no command of torque 20 or less does it in 6 s"):
         gb.shape_command(MODEL, FREE, angle=1.0, duration=6.0, limit=20.0)
 
@@ -67,10 +69,10 @@ def test_a_beam_that_the_hub_does_not_bend_is_refused() -> None:
 
 
 def test_its_results_are_drawn_and_saved() -> None:
-    found = gb.shape_command(MODEL, PRESCRIBED, angle=0.1, duration=6.0)
-    assert len(found.plot()) == 2 and len(found.plot("robustness")) == 1
-    ds = found.to_xarray()
-    assert ds["residual"].sel(run="ZVD").item() == found.runs[1].residual and "Shaped rate by 0.1 rad" in repr(found)
+    shaped = gb.shape_command(MODEL, PRESCRIBED, angle=0.1, duration=6.0)
+    assert len(shaped.plot()) == 2 and len(shaped.plot("robustness")) == 1
+    ds = shaped.to_xarray()
+    assert ds["residual"].sel(run="ZVD").item() == shaped.runs[1].residual and "Shaped rate by 0.1 rad" in repr(shaped)
 
 
 @pytest.mark.parametrize(
@@ -139,7 +141,7 @@ def test_a_crane_moves_its_load_by_the_equation_of_its_pendulum() -> None:
     # Whatever its own rate is.
     slewed = crane(rate=gb.SmoothStep(0.5, 8.0))
     said = list[tuple[str, float]]()
-    found = gb.shape_command(
+    shaped = gb.shape_command(
         slewed,
         "rail.displacement",
         distance=5.0,
@@ -150,26 +152,26 @@ def test_a_crane_moves_its_load_by_the_equation_of_its_pendulum() -> None:
     rounds = [share for words, share in said if words == "system: refining, round 1 of at most 4"]
     assert len(rounds) > 3 and rounds == sorted(rounds) and 0.3 < rounds[-1] <= 1
     assert {words.partition(", ")[0] for words, _ in said[-6:]} <= {"system: ZVD", "system: smooth-step"}
-    profile, inertia = gb.SplineProfile(found.duration, found.coefficients), 50.0 * 2.0**2 + 1.0
-    assert found.frequency[0] == pytest.approx(np.sqrt(50.0 * 2.0 * 9.81 / inertia) / 2 / np.pi, rel=1e-9)
+    profile, inertia = gb.SplineProfile(shaped.duration, shaped.coefficients), 50.0 * 2.0**2 + 1.0
+    assert shaped.frequency[0] == pytest.approx(np.sqrt(50.0 * 2.0 * 9.81 / inertia) / 2 / np.pi, rel=1e-9)
 
     def pendulum(t: float, y: np.ndarray) -> list[float]:
         pull = float(profile.derivatives(t)[1])
         return [y[1], -50.0 * 2.0 / inertia * (9.81 * np.sin(y[0]) + pull * np.cos(y[0])), float(profile(t))]
 
-    end = float(found.runs[0].time[-1])
+    end = float(shaped.runs[0].time[-1])
     swung = solve_ivp(pendulum, (0.0, end), [0.0, 0.0, 0.0], rtol=1e-10, atol=1e-12, max_step=0.05)
     after = swung.t >= 8.0
     assert swung.y[2, -1] == pytest.approx(5.0, rel=1e-6) and np.abs(swung.y[0]).max() > 0.05
-    assert np.ptp(2.0 * swung.y[0, after]) / 2 < 2e-5 and found.residual < 2e-5 < 1e-3 * found.runs[2].residual
-    assert (found.kind, found.unit, found.aim) == ("speed", "m/s", {"distance": 5.0})
+    assert np.ptp(2.0 * swung.y[0, after]) / 2 < 2e-5 and shaped.residual < 2e-5 < 1e-3 * shaped.runs[2].residual
+    assert (shaped.kind, shaped.unit, shaped.aim) == ("speed", "m/s", {"distance": 5.0})
 
 
 def test_a_force_moves_it_too_and_an_inertia_that_changes_is_said() -> None:
-    found = gb.shape_command(crane(effort=0.0), "rail.displacement", distance=5.0, duration=8.0, point="load.hook")
+    shaped = gb.shape_command(crane(effort=0.0), "rail.displacement", distance=5.0, duration=8.0, point="load.hook")
     heavier = np.sqrt(50.0 * 2.0 * 9.81 / (201.0 - (50.0 * 2.0) ** 2 / 150.0)) / 2 / np.pi
-    assert found.frequency[0] == pytest.approx(heavier, rel=1e-6) and found.residual < 1e-2 * found.runs[1].residual
-    assert "Shaped force by 5 m in 8 s" in repr(found) and found.warnings == ()
+    assert shaped.frequency[0] == pytest.approx(heavier, rel=1e-6) and shaped.residual < 1e-2 * shaped.runs[1].residual
+    assert "Shaped force by 5 m in 8 s" in repr(shaped) and shaped.warnings == ()
     # The panel on the elbow of an arm that a spring holds: its inertia depends on the elbow's angle.
     arm = gb.RigidBody(10.0, (0.1, 3.0, 3.0), (0.5, 0, 0), points={"elbow": gb.Place((1, 0, 0), (np.pi / 2, 0, 0))})
     joints = {"shoulder": gb.Joint("revolute", "arm", axes=[(0, 0, 1)], stiffness=100.0)}

@@ -36,8 +36,8 @@ def test_names_say_what_they_hold(columns: str, expected: str) -> None:
 def test_units_that_a_file_states_decide() -> None:
     axes = [(f"Acceleration {axis} [g]", "g") for axis in "XYZ"]
     named = dict(zip("xyz", (name for name, _ in axes), strict=True))
-    found = suggested([("Time [ms]", "ms"), *axes])
-    assert found == {"time": "Time [ms]", "time_unit": "ms", "unit": "g", **named}
+    answer = suggested([("Time [ms]", "ms"), *axes])
+    assert answer == {"time": "Time [ms]", "time_unit": "ms", "unit": "g", **named}
     assert suggested([("p", "Pa"), ("q", "°/s"), ("r", "°/s"), ("az", "N")]) == {}
     assert suggested([("p", "°/s"), ("q", "°/s"), ("r", "deg/s")]) == {
         "p": "p",

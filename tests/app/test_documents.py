@@ -36,12 +36,12 @@ def test_messages_are_the_command_lines(site: Site, gbeam: Callable[..., Answer]
 
 
 def test_the_form_has_every_key_of_the_schema(site: Site) -> None:
-    made = site.call("POST", "/api/document", site.opened, json={"text": FAST}).json()
-    entries = {each["path"]: each for each in _entries(made["form"])}
+    built = site.call("POST", "/api/document", site.opened, json={"text": FAST}).json()
+    entries = {each["path"]: each for each in _entries(built["form"])}
     assert entries["beam.length"]["value"] == "300 mm" and entries["beam.length"]["unit"] == "m"
     assert entries["beam.damping_ratio"]["value"] == "0.01" and entries["motion.spin.gravity"]["value"] == "false"
     assert "main axis" in entries["motion.spin.arm"]["help"]
-    assert made["errors"] == [] and "Scenario valid." in made["meaning"]
+    assert built["errors"] == [] and "Scenario valid." in built["meaning"]
     # What the page of the scenario file lists for a table is what the form offers, written or not.
     tables = {"beam": "[beam]", "motion.spin": '[motion.NAME], kind = "centrifuge"', "response": "[response]"}
     for path, heading in tables.items():
@@ -61,41 +61,41 @@ def _entries(form: list[dict[str, Any]]) -> Iterator[dict[str, Any]]:
 
 
 def _added(site: Site, text: str, path: str, choice: str = "") -> dict[str, Any]:
-    made: dict[str, Any] = site.call(
+    built: dict[str, Any] = site.call(
         "POST", "/api/add", site.opened, json={"text": text, "path": path, "choice": choice}
     ).json()
-    return made
+    return built
 
 
 def test_tables_are_added_filled_and_removed(site: Site) -> None:
     before = FAST.replace("[beam]", "[beam]  # a comment")
-    made = _added(site, before, "beam.masses[0]")
+    built = _added(site, before, "beam.masses[0]")
     # What is missing is said at its field, in the words of the command line.
-    fields = {each["field"]: each["message"] for each in made["errors"]}
+    fields = {each["field"]: each["message"] for each in built["errors"]}
     assert fields == {"beam.masses[0].at": "at is missing", "beam.masses[0].mass": "mass is missing"}
     for path, value in (("beam.masses[0].at", "300 mm"), ("beam.masses[0].mass", "0.1 kg")):
-        body = {"text": made["text"], "path": path, "value": value}
-        made = site.call("POST", "/api/edit", site.opened, json=body).json()
-    assert made["errors"] == [] and tomllib.loads(made["text"])["beam"]["masses"] == [
+        body = {"text": built["text"], "path": path, "value": value}
+        built = site.call("POST", "/api/edit", site.opened, json=body).json()
+    assert built["errors"] == [] and tomllib.loads(built["text"])["beam"]["masses"] == [
         {"at": "300 mm", "mass": "0.1 kg"}
     ]
-    made = site.call("POST", "/api/remove", site.opened, json={"text": made["text"], "path": "beam.masses"}).json()
-    assert made["text"] == before
+    built = site.call("POST", "/api/remove", site.opened, json={"text": built["text"], "path": "beam.masses"}).json()
+    assert built["text"] == before
 
-    made = _added(site, before, "motion.slew", "hub")
-    assert {"motion.slew.radius"} <= {each["field"] for each in made["errors"]}
-    made = _added(site, made["text"], "motion.slew.rate", "trapezoid")
-    missing = {each["field"] for each in made["errors"] if each["field"].startswith("motion.slew.rate")}
+    built = _added(site, before, "motion.slew", "hub")
+    assert {"motion.slew.radius"} <= {each["field"] for each in built["errors"]}
+    built = _added(site, built["text"], "motion.slew.rate", "trapezoid")
+    missing = {each["field"] for each in built["errors"] if each["field"].startswith("motion.slew.rate")}
     assert missing == {f"motion.slew.rate.{key}" for key in ("level", "jerk", "start", "hold")}
 
 
 def test_another_kind_keeps_what_both_have(site: Site) -> None:
-    made = _added(site, FAST, "motion.flight.acceleration.z", "smooth-step")
-    after = tomllib.loads(made["text"])["motion"]["flight"]["acceleration"]["z"]
+    built = _added(site, FAST, "motion.flight.acceleration.z", "smooth-step")
+    after = tomllib.loads(built["text"])["motion"]["flight"]["acceleration"]["z"]
     assert after == {"profile": "smooth-step", "level": "6 g"}
-    made = _added(site, FAST, "beam.section", "circle")
-    assert tomllib.loads(made["text"])["beam"]["section"] == {"shape": "circle"}
-    assert [each["field"] for each in made["errors"]] == ["beam.section.diameter"]
+    built = _added(site, FAST, "beam.section", "circle")
+    assert tomllib.loads(built["text"])["beam"]["section"] == {"shape": "circle"}
+    assert [each["field"] for each in built["errors"]] == ["beam.section.diameter"]
 
 
 @pytest.mark.parametrize(
@@ -109,8 +109,8 @@ def test_what_the_schema_has_not_is_not_added(site: Site, path: str, choice: str
 
 def test_an_emptied_field_is_left_out(site: Site) -> None:
     body = {"text": FAST, "path": "beam.damping_ratio", "value": " "}
-    made = site.call("POST", "/api/edit", site.opened, json=body).json()
-    assert made["text"] == FAST.replace("damping_ratio = 0.01\n", "")
+    built = site.call("POST", "/api/edit", site.opened, json=body).json()
+    assert built["text"] == FAST.replace("damping_ratio = 0.01\n", "")
 
 
 @pytest.mark.parametrize(
@@ -129,16 +129,16 @@ def test_an_emptied_field_is_left_out(site: Site) -> None:
 )
 def test_an_edit_changes_one_value_and_keeps_comments(site: Site, path: str, value: str, expected: object) -> None:
     text = FAST.replace("[beam]", "[beam]  # a comment\n# and another")
-    made = site.call("POST", "/api/edit", site.opened, json={"text": text, "path": path, "value": value}).json()
-    before, after = tomllib.loads(text), tomllib.loads(made["text"])
+    built = site.call("POST", "/api/edit", site.opened, json={"text": text, "path": path, "value": value}).json()
+    before, after = tomllib.loads(text), tomllib.loads(built["text"])
     *tables, key = path.split(".")
     for data in (before, after):
         node = data
         for step in tables:
             node = node[step]
-        found = node.pop(key, None)
-    assert found == expected and before == after
-    assert "# a comment\n# and another" in made["text"]
+        answer = node.pop(key, None)
+    assert answer == expected and before == after
+    assert "# a comment\n# and another" in built["text"]
 
 
 @pytest.mark.parametrize("path", ["beam", "beam.nothing", "", "beam..length", "a" * 999])
@@ -180,12 +180,12 @@ def test_a_record_of_which_nothing_is_taken_is_refused(site: Site, gbeam: Callab
     record = {"file": "a.csv", "time": "t", "x": "0", "y": "0", "z": "0", "unit": "g", "quantity": "acceleration"}
     text = FAST.partition("[motion.spin]")[0] + "[response]\nduration = '0.5 s'\n"
     body = {"text": text, "motion": "flight", "record": record}
-    made = site.call("POST", "/api/record", site.opened, json=body).json()
-    (problem,) = made["errors"]
+    built = site.call("POST", "/api/record", site.opened, json=body).json()
+    (problem,) = built["errors"]
     assert problem["path"] == "motion.flight.record" and 'x, y and z are "0"' in problem["message"]
-    assert site.call("POST", "/api/runs", site.opened, json={"text": made["text"]}).status_code == 422
+    assert site.call("POST", "/api/runs", site.opened, json={"text": built["text"]}).status_code == 422
     scenario = site.folder / "records" / "zeros.toml"
-    scenario.write_text(made["text"])
+    scenario.write_text(built["text"])
     answer = gbeam("check", scenario)
     assert answer.status == 2 and "motion.flight.record" in answer.err and "name a column" in answer.err
 
@@ -205,8 +205,8 @@ def test_examples_are_sound_and_come_with_their_records(site: Site) -> None:
     offered = site.call("GET", "/api/examples", site.opened).json()
 
     def taken(name: str) -> dict[str, Any]:
-        made: dict[str, Any] = site.call("POST", "/api/example", site.opened, json={"name": name}).json()
-        return made
+        built: dict[str, Any] = site.call("POST", "/api/example", site.opened, json={"name": name}).json()
+        return built
 
     for name in offered:
         assert taken(name)["errors"] == []
@@ -325,9 +325,9 @@ def test_refusals_are_answers_where_a_page_asks_for_that(site: Site) -> None:
 
 def test_values_that_are_distributions_are_swept_only(site: Site) -> None:
     text = FAST.replace('"70 GPa"', '{ normal = ["70 GPa", "2 GPa"] }')
-    made = site.call("POST", "/api/document", site.opened, json={"text": text}).json()
-    assert made["errors"] == []
-    field = next(each for each in _entries(made["form"]) if each["path"] == "beam.material.youngs_modulus")
+    built = site.call("POST", "/api/document", site.opened, json={"text": text}).json()
+    assert built["errors"] == []
+    field = next(each for each in _entries(built["form"]) if each["path"] == "beam.material.youngs_modulus")
     assert tomllib.loads(f"x = {field['value']}")["x"] == {"normal": ["70 GPa", "2 GPa"]}
     answer = site.call("POST", "/api/runs", site.opened, json={"text": text})
     assert answer.status_code == 422 and "this needs one value" in answer.json()["errors"][0]["message"]
@@ -350,8 +350,8 @@ def test_options_are_the_command_lines(verb: str) -> None:
     for option in offered()[verb].options:
         for value in option.choices or [option.example or "flight"]:
             other = [needed] if needed and not needed.startswith(f"{option.name}=") else []
-            given = arguments(verb, [option.name if option.ticked else f"{option.name}={value}", *other], data)
-            function, bound = parsed([verb, "x.toml", *given])
+            options = arguments(verb, [option.name if option.ticked else f"{option.name}={value}", *other], data)
+            function, bound = parsed([verb, "x.toml", *options])
             assert function.__name__ == verb.replace("-", "_")
             assert value in repr(bound.arguments) or option.ticked
             reached |= {*bound.arguments}

@@ -368,6 +368,6 @@ def test_a_run_has_so_much_memory_only(tmp_path: Path) -> None:
 
 def _processes(group: int) -> list[str]:
     """The processes of a group that are left, zombies apart."""
-    found = subprocess.run(["ps", "-eo", "pgid=,stat=,args="], capture_output=True, text=True, check=True).stdout
-    rows = (line.split(None, 2) for line in found.splitlines())
+    done = subprocess.run(["ps", "-eo", "pgid=,stat=,args="], capture_output=True, text=True, check=True).stdout
+    rows = (line.split(None, 2) for line in done.splitlines())
     return [row[2] for row in rows if len(row) == 3 and int(row[0]) == group and not row[1].startswith("Z")]

@@ -27,8 +27,8 @@ def _dropped(site: Site, name: str, content: bytes) -> Any:
 
 def _used(site: Site, text: str, mesh: dict[str, Any], body: str = "bracket") -> dict[str, Any]:
     answer = site.call("POST", "/api/mesh", site.opened, json={"text": text, "body": body, "mesh": mesh})
-    made: dict[str, Any] = answer.json()
-    return made
+    built: dict[str, Any] = answer.json()
+    return built
 
 
 def test_a_mesh_shows_its_skin_and_its_groups(site: Site) -> None:
@@ -51,17 +51,17 @@ def test_a_mesh_shows_its_skin_and_its_groups(site: Site) -> None:
 
 def test_a_mesh_becomes_the_specimen_of_a_new_scenario(site: Site) -> None:
     _dropped(site, "bracket.msh", BRACKET.read_bytes())
-    made = _used(site, FAST, CLAMPED)
-    data, before = tomllib.loads(made["text"]), tomllib.loads(FAST)
+    built = _used(site, FAST, CLAMPED)
+    data, before = tomllib.loads(built["text"]), tomllib.loads(FAST)
     assert data["bodies"] == {"bracket": CLAMPED} and "beam" not in data and data["motion"] == before["motion"]
     # What is still missing is said at its field.
-    assert [each["field"] for each in made["errors"]] == ["bodies.bracket.damping_ratio"]
-    body = {"text": made["text"], "path": "bodies.bracket.damping_ratio", "value": "2 %"}
-    made = site.call("POST", "/api/edit", site.opened, json=body).json()
-    assert [each["path"] for each in made["errors"]] == ["bodies.bracket"]
-    assert "material is missing" in made["errors"][0]["message"]
+    assert [each["field"] for each in built["errors"]] == ["bodies.bracket.damping_ratio"]
+    body = {"text": built["text"], "path": "bodies.bracket.damping_ratio", "value": "2 %"}
+    built = site.call("POST", "/api/edit", site.opened, json=body).json()
+    assert [each["path"] for each in built["errors"]] == ["bodies.bracket"]
+    assert "material is missing" in built["errors"][0]["message"]
     metal = 'material = { density = "2700 kg/m^3", youngs_modulus = "70 GPa", poissons_ratio = 0.33 }  # a comment\n'
-    text = made["text"].replace("[bodies.bracket]\n", f"[bodies.bracket]\n{metal}")
+    text = built["text"].replace("[bodies.bracket]\n", f"[bodies.bracket]\n{metal}")
     whole = site.call("POST", "/api/document", site.opened, json={"text": text}).json()
     assert whole["errors"] == [] and "bracket   solid" in whole["meaning"]
     # Another clamp changes that alone.
@@ -74,8 +74,8 @@ def test_a_mesh_becomes_the_specimen_of_a_new_scenario(site: Site) -> None:
 def test_a_mesh_is_another_body_of_a_system(site: Site) -> None:
     _dropped(site, "bracket.msh", BRACKET.read_bytes())
     before = template("system")
-    made = _used(site, before, CLAMPED | {"damping_ratio": "1 %"})
-    data = tomllib.loads(made["text"])
+    built = _used(site, before, CLAMPED | {"damping_ratio": "1 %"})
+    data = tomllib.loads(built["text"])
     assert data["bodies"].pop("bracket")["clamp"] == "screwed" and data == tomllib.loads(before)
 
 
@@ -125,13 +125,13 @@ def test_a_group_that_only_a_number_names_and_a_set_of_nodes(site: Site, tmp_pat
 @pytest.mark.parametrize("name", ["/etc/hostname", "../bracket.msh", "other.msh"])
 def test_files_of_bodies_are_those_of_the_folder(site: Site, key: str, name: str) -> None:
     _dropped(site, "bracket.msh", BRACKET.read_bytes())
-    made = _used(site, FAST, {**CLAMPED, "damping_ratio": "1 %", key: name})
-    assert [each["path"] for each in made["errors"]] == [f"bodies.bracket.{key}"]
+    built = _used(site, FAST, {**CLAMPED, "damping_ratio": "1 %", key: name})
+    assert [each["path"] for each in built["errors"]] == [f"bodies.bracket.{key}"]
     text = f'[bodies.b]\nmatrices = ["bracket.msh", "{name}"]\n'
     said = site.call("POST", "/api/document", site.opened, json={"text": text}).json()["errors"]
     assert [each["path"] for each in said] == ["bodies.b.matrices"]
     options = [f"over=bodies.bracket.{key}={name}", "measure=flight.tip.size.max_abs"]
-    body = {"text": made["text"], "verb": "sweep", "options": options}
+    body = {"text": built["text"], "verb": "sweep", "options": options}
     assert site.call("POST", "/api/runs", site.opened, json=body).status_code == 422
 
 
@@ -139,8 +139,8 @@ def test_the_example_of_a_bracket_has_a_form(site: Site) -> None:
     text = BRACKET.parents[1].joinpath("bracket.toml").read_text(encoding="utf-8").replace("data/", "")
     for file in ("bracket.msh", "f16_8g_turn.csv"):
         _dropped(site, file, BRACKET.with_name(file).read_bytes())
-    made = site.call("POST", "/api/document", site.opened, json={"text": text}).json()
-    assert made["errors"] == []
-    bodies = next(each for each in made["form"] if each["path"] == "bodies")["inside"]
+    built = site.call("POST", "/api/document", site.opened, json={"text": text}).json()
+    assert built["errors"] == []
+    bodies = next(each for each in built["form"] if each["path"] == "bodies")["inside"]
     keys = {each["key"]: each.get("value") for each in bodies[0]["inside"]}
     assert bodies[0]["choice"] == "solid" and keys["clamp"] == "screwed" and keys["mesh"] == "bracket.msh"

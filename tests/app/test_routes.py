@@ -21,10 +21,10 @@ def test_no_request_is_a_defect(tmp_path: Path) -> None:
     schema = schemathesis.openapi.from_asgi("/openapi.json", create_app(tmp_path))
     tried = 0
     for operation in schema.get_all_operations():
-        made = operation.ok()
+        built = operation.ok()
 
         @hypothesis.settings(max_examples=12, derandomize=True, database=None)
-        @hypothesis.given(case=made.as_strategy())
+        @hypothesis.given(case=built.as_strategy())
         def answered(case: Any) -> None:
             nonlocal tried
             tried += 1

@@ -11,11 +11,11 @@ import pytest
 
 def violations(page: Any) -> list[str]:
     """Rules of axe that a page breaks, each with the first element that does; skipped where axe is not installed."""
-    found = find_spec("axe_playwright_python")
-    if found is None or found.origin is None:
+    answer = find_spec("axe_playwright_python")
+    if answer is None or answer.origin is None:
         pytest.skip("axe-playwright-python is not installed")
     if not page.evaluate("() => 'axe' in window"):
-        script = Path(found.origin).with_name("axe.min.js").read_text(encoding="utf-8")
+        script = Path(answer.origin).with_name("axe.min.js").read_text(encoding="utf-8")
         page.evaluate(f"() => {{ {script}\n }}")
     # A page answers to a new size in the frame after.
     page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")

@@ -350,11 +350,11 @@ def _picture(page: Any) -> bytes:
 
 def _violations(page: Any) -> list[str]:
     """What axe finds wrong in light and in dark."""
-    found = []
+    answer = []
     for scheme in ("dark", "light"):
         page.emulate_media(color_scheme=scheme)
-        found += [f"{scheme}: {each}" for each in violations(page)]
-    return found
+        answer += [f"{scheme}: {each}" for each in violations(page)]
+    return answer
 
 
 CONTROLS = """() => [...document.querySelectorAll(

@@ -92,7 +92,7 @@ def test_next_order_against_a_quadrature_of_the_lag_itself() -> None:
     ],
 )
 def test_refusals(structure: Any, options: dict[str, Any], where: str, words: str) -> None:
-    given = {"jerks": [4 * G], "arms": [3.3], "law": "flat", "level": 10 * G, "smoothing": WIDTH, **options}
+    arguments = {"jerks": [4 * G], "arms": [3.3], "law": "flat", "level": 10 * G, "smoothing": WIDTH, **options}
     with pytest.raises(InputError, match=words) as caught:
-        jerk_study(structure, given.pop("jerks"), given.pop("arms"), **given)
+        jerk_study(structure, arguments.pop("jerks"), arguments.pop("arms"), **arguments)
     assert caught.value.where == where

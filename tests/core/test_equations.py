@@ -131,10 +131,10 @@ def test_only_the_roots_acceleration_matters_not_the_place_of_the_axis() -> None
     structure, (q, qd, qdd) = laden("CFOAM"), states(7, 3, 0.3, seed=4)
     turn, spin = 1.3, 0.7
     root, o = np.array([-HUB_RADIUS * turn**2, HUB_RADIUS * spin, 0]), np.zeros(2)
-    given = on_base(structure, q, qd, qdd, Base(root, np.append(o, turn), np.append(o, spin)))
+    arguments = on_base(structure, q, qd, qdd, Base(root, np.append(o, turn), np.append(o, spin)))
     y, yd, ydd = (np.append(a, b) for a, b in ((0.4, q), (turn, qd), (spin, qdd)))
     on_the_hub, _ = on_hub(structure, y, yd, ydd, 5.0)
-    np.testing.assert_allclose(on_the_hub[1:], given, atol=IDENTITY * np.abs(given).max())
+    np.testing.assert_allclose(on_the_hub[1:], arguments, atol=IDENTITY * np.abs(arguments).max())
 
 
 def test_damping_is_a_force_against_the_rates() -> None:
@@ -225,8 +225,8 @@ def trajectory(equations: OnHub, start: Any, step: Any, amplitude: Any) -> Any:
 
     def rates(t: Any, s: Any) -> Any:
         torque = amplitude * jnp.sin(2 * jnp.pi * t / (10 * STEPS * step))
-        found = accelerations(equations, s[None, :n], s[None, n:], (jnp.atleast_1d(torque), None))[0]
-        return jnp.concatenate([s[n:], found])
+        answer = accelerations(equations, s[None, :n], s[None, n:], (jnp.atleast_1d(torque), None))[0]
+        return jnp.concatenate([s[n:], answer])
 
     def one(s: Any, k: Any) -> Any:
         def stage(i: Any, rate: Any) -> Any:

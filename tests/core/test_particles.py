@@ -74,10 +74,10 @@ def test_particles_of_a_beam_are_the_beam(by_stress: bool) -> None:
         theirs = getattr(whole.coefficients, name)
         np.testing.assert_allclose(getattr(ours.coefficients, name), theirs, atol=1e-12 * max(np.abs(theirs).max(), 1))
     spinning = Hub(radius=HUB_RADIUS, rate=constant(2.0))
-    found, wanted = modes(ours, spinning), modes(whole, spinning)
-    np.testing.assert_allclose(found.frequency, wanted.frequency, rtol=SAME)
-    np.testing.assert_allclose(found.damping_ratio, wanted.damping_ratio, rtol=1e-8)
-    assert found.direction == wanted.direction
+    answer, wanted = modes(ours, spinning), modes(whole, spinning)
+    np.testing.assert_allclose(answer.frequency, wanted.frequency, rtol=SAME)
+    np.testing.assert_allclose(answer.damping_ratio, wanted.damping_ratio, rtol=1e-8)
+    assert answer.direction == wanted.direction
     rests = [static(s, acceleration=(1.0, 2.0, 3.0)) for s in (ours, whole)]
     np.testing.assert_allclose(rests[0].q, rests[1].q, rtol=SAME)
     np.testing.assert_allclose(rests[0].strain_energy, rests[1].strain_energy, rtol=SAME)
@@ -119,10 +119,10 @@ def test_particles_on_a_free_hub() -> None:
 
 def test_one_of_second_derivatives_and_geometric_stiffness() -> None:
     whole = beam()
-    given = whole.mass, whole.places.r0, whole.places.first, whole.coefficients.stiffness
+    arguments = whole.mass, whole.places.r0, whole.places.first, whole.coefficients.stiffness
     for both in ({}, {"second": whole.places.second, "geometric": geometric(whole)}):
         with pytest.raises(InputError, match="exactly one"):
-            Structure.of_particles(*given, **both)  # type: ignore[arg-type]
+            Structure.of_particles(*arguments, **both)  # type: ignore[arg-type]
 
 
 # --- a blade of cubic finite elements, without dimensions: ρA = EI = L = 1
@@ -176,15 +176,15 @@ def spin(rate: float) -> Hub:
 
 @pytest.mark.parametrize("rate", FLAP)
 def test_rotating_blade_of_finite_elements(rate: float) -> None:
-    found = modes(blade(), spin(rate))
-    np.testing.assert_allclose(2 * np.pi * found.frequency[:3], FLAP[rate], rtol=1e-5)
-    assert found.model == "finite elements" and set(found.direction) == {"z"}
+    vibration = modes(blade(), spin(rate))
+    np.testing.assert_allclose(2 * np.pi * vibration.frequency[:3], FLAP[rate], rtol=1e-5)
+    assert vibration.model == "finite elements" and set(vibration.direction) == {"z"}
 
 
 @pytest.mark.parametrize("rate", TIP_MASS)
 def test_rotating_blade_of_finite_elements_with_a_tip_mass(rate: float) -> None:
-    found = 2 * np.pi * modes(blade(1.0), spin(rate)).frequency[:2]
-    np.testing.assert_allclose(found, TIP_MASS[rate], rtol=1e-4)
+    vibration = 2 * np.pi * modes(blade(1.0), spin(rate)).frequency[:2]
+    np.testing.assert_allclose(vibration, TIP_MASS[rate], rtol=1e-4)
 
 
 def test_blade_of_finite_elements_under_steady_loads() -> None:
@@ -214,8 +214,8 @@ def pendulum(mass: float = 2.0, arm: float = 0.4, spring: float = 12.0) -> Struc
 @pytest.mark.parametrize("rate", [0.0, 5.0, 10.0])
 def test_pendulum_on_a_rotor(rate: float) -> None:
     """ω² = k/(mL²) + Ω² r/L, the law of centrifugal pendulums."""
-    found = modes(pendulum(), Hub(radius=0.5, rate=rate)).frequency
-    assert 2 * np.pi * found == pytest.approx([np.sqrt(12 / (2 * 0.4**2) + rate**2 * 0.5 / 0.4)], rel=1e-12)
+    vibration = modes(pendulum(), Hub(radius=0.5, rate=rate)).frequency
+    assert 2 * np.pi * vibration == pytest.approx([np.sqrt(12 / (2 * 0.4**2) + rate**2 * 0.5 / 0.4)], rel=1e-12)
 
 
 def test_pendulum_that_points_inward_falls_over() -> None:

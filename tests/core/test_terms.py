@@ -19,7 +19,7 @@ def test_terms_times_coefficients_are_the_residual_in_three_dimensions_under_a_l
     q, qd, qdd = random.standard_normal((3, count, structure.size))
     base = Base(*random.standard_normal((3, count, 3)))
     loads = random.standard_normal((count, 1, 6))
-    found = terms(q, qd, qdd, base, loads) @ coefficient_matrix(c, loaded=True)
+    answer = terms(q, qd, qdd, base, loads) @ coefficient_matrix(c, loaded=True)
     for k in range(count):
         one = c.residual(q[k], qd[k], qdd[k], base.a_WO_B[k], base.w_WB_B[k], base.alpha_WB_B[k], loads[k])
-        np.testing.assert_allclose(found[k], one, rtol=1e-12, atol=1e-12 * np.abs(one).max())
+        np.testing.assert_allclose(answer[k], one, rtol=1e-12, atol=1e-12 * np.abs(one).max())

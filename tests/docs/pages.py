@@ -52,8 +52,8 @@ class Block:
 def blocks(page: Path) -> list[Block]:
     """All fenced blocks of a page."""
     text = page.read_text(encoding="utf-8")
-    found = re.finditer(r"^```([^\n]*)\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
-    return [Block(each[1], each[2], text.count("\n", 0, each.start()) + 1) for each in found]
+    answer = re.finditer(r"^```([^\n]*)\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
+    return [Block(each[1], each[2], text.count("\n", 0, each.start()) + 1) for each in answer]
 
 
 @dataclass

@@ -59,9 +59,9 @@ def test_coordinates_that_nothing_couples_move_as_they_would_alone(scheme: Any) 
     """Two systems as one, the second's coordinate between those of the first."""
 
     def joined(outer: Any, inner: Any) -> Any:
-        made = np.zeros((*outer.shape[:-2], 3, 3))
-        made[..., ::2, ::2], made[..., 1:2, 1:2] = outer, inner
-        return made
+        built = np.zeros((*outer.shape[:-2], 3, 3))
+        built[..., ::2, ::2], built[..., 1:2, 1:2] = outer, inner
+        return built
 
     def matrices(t: Any) -> Any:
         (c, k, f), (c1, k1, f1) = VARYING.matrices(t), OSCILLATOR.matrices(undriven(t))
@@ -72,9 +72,9 @@ def test_coordinates_that_nothing_couples_move_as_they_would_alone(scheme: Any) 
     run = integrate(both, scheme, np.array([0.1, 1.0, -0.2]), np.array([0.5, 0.0, 0.3]), **options)
     outer = integrate(VARYING, scheme, np.array([0.1, -0.2]), np.array([0.5, 0.3]), **options)
     inner = integrate(OSCILLATOR, scheme, one(1.0), one(0.0), **options)
-    for made, first, second in zip(*((x.q, x.qd, x.qdd) for x in (run, outer, inner)), strict=True):
-        np.testing.assert_allclose(made[:, ::2], first, atol=ROUNDING)
-        np.testing.assert_allclose(made[:, 1:2], second, atol=ROUNDING)
+    for built, first, second in zip(*((x.q, x.qd, x.qdd) for x in (run, outer, inner)), strict=True):
+        np.testing.assert_allclose(built[:, ::2], first, atol=ROUNDING)
+        np.testing.assert_allclose(built[:, 1:2], second, atol=ROUNDING)
 
 
 def test_inputs_are_taken_at_the_right_times() -> None:

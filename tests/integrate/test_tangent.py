@@ -54,9 +54,9 @@ def test_tangent_is_the_derivative_of_the_discrete_solution(make: Callable[[], S
         forces[:, 0, 2] = np.sin(3 * t)
         return np.broadcast_to(MASS, k.shape), c, k, forces
 
-    found = tangent(system, scheme, steps, run(p), np.zeros((2, 3)), np.zeros((2, 3)))
+    answer = tangent(system, scheme, steps, run(p), np.zeros((2, 3)), np.zeros((2, 3)))
     for j, h in enumerate(1e-4 * p):
         ends = [run(p + s * h * np.eye(3)[j]) for s in (1, -1)]
-        for name, values in zip(("q", "qd", "qdd"), found, strict=True):
+        for name, values in zip(("q", "qd", "qdd"), answer, strict=True):
             difference = (getattr(ends[0], name) - getattr(ends[1], name)) / (2 * h)
             np.testing.assert_allclose(values[..., j], difference, atol=2e-8 * np.abs(difference).max())

@@ -50,12 +50,12 @@ def test_windows_find_what_the_compiled_steps_find(make: Any) -> None:
     driven = NonlinearEquations(Swing(), load if not scheme.ends else lambda t: load(t + PUSH))
 
     def run(q: Any, qd: Any) -> Any:
-        made = integrate(driven, scheme, q, qd, **KNOWN if not scheme.ends else {"step": 0.01, "count": 300})
-        return made.q, made.qd, made.qdd
+        built = integrate(driven, scheme, q, qd, **KNOWN if not scheme.ends else {"step": 0.01, "count": 300})
+        return built.q, built.qd, built.qdd
 
-    for made, expected in zip(run(*START), jax.jit(run)(*START), strict=True):
-        assert isinstance(made, np.ndarray) and len(made) == 301
-        np.testing.assert_allclose(made, expected, atol=1e-8 * np.abs(expected).max())
+    for built, expected in zip(run(*START), jax.jit(run)(*START), strict=True):
+        assert isinstance(built, np.ndarray) and len(built) == 301
+        np.testing.assert_allclose(built, expected, atol=1e-8 * np.abs(expected).max())
 
 
 @pytest.mark.parametrize("make", [newmark, gauss])
@@ -65,8 +65,8 @@ def test_no_digit_that_counts_depends_on_the_windows(make: Any, monkeypatch: pyt
         with monkeypatch.context() as patch:
             for name, value in sizes.items():
                 patch.setattr(windows, name, value)
-            made = integrate(SWING, make(), *START, **KNOWN)
-        np.testing.assert_allclose(made.q, expected.q, atol=1e-8)
+            built = integrate(SWING, make(), *START, **KNOWN)
+        np.testing.assert_allclose(built.q, expected.q, atol=1e-8)
 
 
 @pytest.mark.parametrize("second", [1e3, 1e-5, 1e5])
@@ -145,9 +145,9 @@ def test_stop_ends_the_run_where_it_says() -> None:
 def test_derivatives_are_those_of_automatic_differentiation() -> None:
     state = np.random.default_rng(1).normal(size=(3, 5, 2))
     force = load(np.linspace(0.0, 3.0, 5))
-    made = slopes(Swing(), *state, force)
+    built = slopes(Swing(), *state, force)
     expected = quickly_compiled(jax.vmap(jax.jacfwd(Swing(), argnums=(0, 1, 2))))(*state, force)
-    for one, other in zip(made, expected, strict=True):
+    for one, other in zip(built, expected, strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-12, atol=1e-12)
     qdd = accelerations(Swing(), *state[:2], force)
     np.testing.assert_allclose(Swing()(*state[:2], qdd, force), 0.0, atol=1e-12)

@@ -202,15 +202,15 @@ def test_what_is_called_a_rate_is_one(tmp_path: Path) -> None:
     path = tmp_path / "slew.nc"
     simulate(hub_beam("FOAM", 0, 2), slew, duration=2.0, step=2e-3).save(path)
     file = opened(path)
-    (found,) = [node.to_dataset() for node in file.subtree if "hub_rate" in node]
-    time = found["time"].values
+    (answer,) = [node.to_dataset() for node in file.subtree if "hub_rate" in node]
+    time = answer["time"].values
     for rate, whole in (
         ("hub_rate", "hub_angle"),
         ("hub_acceleration", "hub_rate"),
         ("angular_acceleration", "angular_velocity"),
         ("coordinate_rates", "coordinates"),
     ):
-        values, wanted = found[rate].values, found[whole].values
+        values, wanted = answer[rate].values, answer[whole].values
         sums = cumulative_trapezoid(values, time, axis=0, initial=0.0)
         size = np.abs(wanted).max()
         assert size > 0
@@ -238,17 +238,17 @@ def test_stress_cycles(tree: xr.DataTree) -> None:
 def test_one_name_for_the_torque_of_a_drive(study: Study) -> None:
     """It is given on a free hub, and follows from the loads where the rate is prescribed."""
     slew = study.responses["slew"]
-    given = _random(T)
-    free = replace(slew, hub=replace(slew.hub, drive_torque=given)).to_xarray()
-    np.testing.assert_array_equal(free["drive_torque"], given)
+    arguments = _random(T)
+    free = replace(slew, hub=replace(slew.hub, drive_torque=arguments)).to_xarray()
+    np.testing.assert_array_equal(free["drive_torque"], arguments)
     np.testing.assert_array_equal(slew.to_xarray()["drive_torque"], slew.loads.drive_torque)
     assert "hub_torque" not in free
 
 
 def test_what_is_written_is_what_xarray_gets(study: Study, tree: xr.DataTree, tmp_path: Path) -> None:
-    made = study.to_xarray()
-    assert [node.path for node in made.subtree] == [node.path for node in tree.subtree]
-    for node in made.subtree:
+    built = study.to_xarray()
+    assert [node.path for node in built.subtree] == [node.path for node in tree.subtree]
+    for node in built.subtree:
         if node.path != "/":  # which says when it was made and from what
             xr.testing.assert_identical(node.to_dataset(), tree[node.path].to_dataset())
     study.responses["spin"].save(tmp_path / "spin.nc")

@@ -195,14 +195,14 @@ def test_critical_speed(mt: float, printed: float, independent: float) -> None:
     assert abs(speed - printed) < 5e-3
     # Five clamped-free shapes end at 1.93655 with 0.5 kg; shapes that know of the mass at the transcendental 1.93645.
     adapted = assemble(appendage(PointMass(LENGTH, mt)), Model("TLAM", 0, 5, 0, "adapted"))
-    found = critical_speed(adapted, Hub(radius=HUB_RADIUS, rate=constant(1.0)))
-    assert found.value == pytest.approx(independent, abs=6e-5)
+    critical = critical_speed(adapted, Hub(radius=HUB_RADIUS, rate=constant(1.0)))
+    assert critical.value == pytest.approx(independent, abs=6e-5)
 
 
 def test_end_mass_lowers_foams_frequency() -> None:
     """Erratum 12: at 5 rad/s 3.860, 3.598 and 3.038 rad/s for 0, 0.1 and 0.5 kg (independent)."""
-    found = [bending_frequencies("FOAM", 5.0, mt)[0] for mt in (0.0, 0.1, 0.5)]
-    np.testing.assert_allclose(found, [3.860, 3.598, 3.038], atol=6e-4)
+    answer = [bending_frequencies("FOAM", 5.0, mt)[0] for mt in (0.0, 0.1, 0.5)]
+    np.testing.assert_allclose(answer, [3.860, 3.598, 3.038], atol=6e-4)
 
 
 # --- slews, (43): peak and residual amplitude of the tip along y

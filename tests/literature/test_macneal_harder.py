@@ -36,18 +36,18 @@ def quarter() -> gb.Beam:
 def test_the_curved_beam_in_its_plane() -> None:
     axial, shear, _, _, _, bending = quarter().stiffnesses(0.0)
     expected = np.pi / 4 * RADIUS * (RADIUS**2 / bending + 1 / axial + 1 / shear)
-    found = tip(quarter(), (1.0, 0.0, 0.0))[0]
-    assert found == pytest.approx(expected, rel=1e-6)
-    assert found == pytest.approx(0.08734, rel=0.015)
+    answer = tip(quarter(), (1.0, 0.0, 0.0))[0]
+    assert answer == pytest.approx(expected, rel=1e-6)
+    assert answer == pytest.approx(0.08734, rel=0.015)
 
 
 def test_the_curved_beam_out_of_its_plane() -> None:
     _, _, shear, torsion, bending, _ = quarter().stiffnesses(0.0)
     turned = np.pi / 4 / bending + (3 * np.pi / 4 - 2) / torsion
     expected = RADIUS**3 * turned + np.pi / 2 * RADIUS / shear
-    found = tip(quarter(), (0.0, 0.0, 1.0))[2]
-    assert found == pytest.approx(expected, rel=1e-6)
-    assert found == pytest.approx(0.5022, rel=0.004)
+    answer = tip(quarter(), (0.0, 0.0, 1.0))[2]
+    assert answer == pytest.approx(expected, rel=1e-6)
+    assert answer == pytest.approx(0.5022, rel=0.004)
 
 
 @pytest.mark.parametrize(("axis", "published"), [(1, 0.005424), (2, 0.001754)])

@@ -42,9 +42,9 @@ def tip(kind: str, counts: tuple[int, int], drive: str, level: float, mt: float)
     problem = problem_of(beam, motion, 0.0)
     end = 50.0 if drive == "slew" else 20.0
     still = np.zeros_like(problem.q)
-    found = integrate(problem.equations, newmark(), problem.q, still, step=STEP, count=round(end / STEP))
-    assert found.converged
-    return beam.displacement(found.q[:, problem.first :])[:, -1, 1]
+    answer = integrate(problem.equations, newmark(), problem.q, still, step=STEP, count=round(end / STEP))
+    assert answer.converged
+    return beam.displacement(answer.q[:, problem.first :])[:, -1, 1]
 
 
 def sizes(drive: str, history: np.ndarray) -> tuple[float, float]:

@@ -51,9 +51,9 @@ MODES = 15  # the clamped-free modes converge slowly at high speed
 @pytest.mark.parametrize("speed", UNIFORM_FLAP)
 def test_uniform_blade_flap(speed: float) -> None:
     published, independent = UNIFORM_FLAP[speed]
-    found = frequencies(unit_coefficients((0, MODES, 0)), spinning(speed, axis=1), 3)
-    np.testing.assert_allclose(found, published, atol=ROUNDED)
-    np.testing.assert_allclose(found, independent, rtol=6e-6)
+    computed = frequencies(unit_coefficients((0, MODES, 0)), spinning(speed, axis=1), 3)
+    np.testing.assert_allclose(computed, published, atol=ROUNDED)
+    np.testing.assert_allclose(computed, independent, rtol=6e-6)
     # The exact field to second order is the same theory, and its polynomials converge faster.
     np.testing.assert_allclose(frequencies(polynomial_shapes(), spinning(speed, axis=1), 3), independent, atol=6e-7)
 
@@ -67,9 +67,9 @@ def polynomial_shapes() -> Coefficients:
 def test_blade_with_tip_mass_flap(speed: float) -> None:
     """Clamped-free shapes know nothing of the tip mass and converge slowly: 15 of them."""
     published, independent = TIP_MASS_FLAP[speed]
-    found = frequencies(unit_coefficients((0, MODES, 0), tip=1.0), spinning(speed, axis=1), 2)
-    np.testing.assert_allclose(found, published, rtol=5e-4)
-    np.testing.assert_allclose(found, independent, rtol=5e-5)
+    computed = frequencies(unit_coefficients((0, MODES, 0), tip=1.0), spinning(speed, axis=1), 2)
+    np.testing.assert_allclose(computed, published, rtol=5e-4)
+    np.testing.assert_allclose(computed, independent, rtol=5e-5)
 
 
 def test_southwell_coefficients() -> None:
@@ -178,9 +178,9 @@ def test_straight_blade_flap(rpm: float) -> None:
     measured, independent = BLADE[rpm]
     blade = Beam(37.5, Section.rectangle(1.0, 0.063), Material(2.51e-4, 1.06e7))
     c = assemble(blade, Model("FOAM", 0, 0, 26)).coefficients
-    found = frequencies(c, spinning(rpm * np.pi / 30, axis=2, radius=2.5), 4) / (2 * np.pi)
-    np.testing.assert_allclose(found, independent, atol=6e-3)
-    np.testing.assert_allclose(found[:3], measured, rtol=0.1)
+    computed = frequencies(c, spinning(rpm * np.pi / 30, axis=2, radius=2.5), 4) / (2 * np.pi)
+    np.testing.assert_allclose(computed, independent, atol=6e-3)
+    np.testing.assert_allclose(computed[:3], measured, rtol=0.1)
 
 
 # --- spin-up, Simo and Vu-Quoc (1988) CMAME 66:125-161, example 5.1; Kane, Ryan and Banerjee (1987)

@@ -114,12 +114,12 @@ def rounded(load: Profile, corner: float, control_point: float) -> Centrifuge:
 @pytest.mark.parametrize(("g", "independent", "printed"), [(10.0, 2.873818e-3, 2.875e-3), (6.0, 1.724291e-3, None)])
 def test_static_tip_in_flight(g: float, independent: float, printed: float | None) -> None:
     """Printed 2.875 mm at 10 g, −0.04 % unexplained; Euler-Bernoulli 2.8734 mm."""
-    found = -tip(in_flight(g))
-    np.testing.assert_allclose(found, independent, atol=1e-9)
+    answer = -tip(in_flight(g))
+    np.testing.assert_allclose(answer, independent, atol=1e-9)
     if printed is not None:
-        assert found == pytest.approx(printed, rel=5e-4)
+        assert answer == pytest.approx(printed, rel=5e-4)
     exact = LINE * g * G0 * LENGTH**4 / (8 * YOUNG * WIDTH * THICKNESS**3 / 12)
-    assert found == pytest.approx(exact, rel=2e-4)  # three modes
+    assert answer == pytest.approx(exact, rel=2e-4)  # three modes
 
 
 @pytest.mark.parametrize(("g", "independent"), [(6.0, 0.02015e-2), (10.0, 0.0336e-2)])
@@ -203,10 +203,10 @@ def test_centrifuge_corner(jerk: float, independent: float, printed: float) -> N
     """The flat inverse, the corner rounded by the Hann kernel: the yaw's lag jumps; 16 times the flight's vibration."""
     load, corner = ramp_to_plateau(jerk)
     time, q = vibration(rounded(load, corner, MIDDLE), corner + 0.4)
-    found = amplitude(at_tip(q[time > corner + KERNEL / 2]))
-    assert found == pytest.approx(independent, rel=5e-3)
-    assert found == pytest.approx(printed, rel=1e-2)
-    assert amplitude(at_tip(q[time < corner - 2 * KERNEL])) < 1e-3 * found
+    answer = amplitude(at_tip(q[time > corner + KERNEL / 2]))
+    assert answer == pytest.approx(independent, rel=5e-3)
+    assert answer == pytest.approx(printed, rel=1e-2)
+    assert amplitude(at_tip(q[time < corner - 2 * KERNEL])) < 1e-3 * answer
 
 
 def test_control_point_at_the_lever_of_the_first_mode() -> None:
@@ -235,5 +235,5 @@ class FromRest:
 def test_quasi_static_arm_from_rest_vibrates_with_the_root_of_the_jerk(jerk: float) -> None:
     """c₁ κ ½ √(π j ω₁/R): .0934 mm at 4 g/s (independent .0951 simulated), not proportional to j as printed."""
     time, q = vibration(FromRest(jerk * G0), 0.6, start=1e-6, moving=False, step=2e-4)
-    found = 2 * amplitude(q[time > 0.4, 0])
-    assert found == pytest.approx(9.34e-5 * np.sqrt(jerk / 4), rel=0.05)
+    answer = 2 * amplitude(q[time > 0.4, 0])
+    assert answer == pytest.approx(9.34e-5 * np.sqrt(jerk / 4), rel=0.05)

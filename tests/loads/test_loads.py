@@ -147,12 +147,12 @@ def test_uniform_load(kind: str) -> None:
     # Outer fibre: both bendings, 6M/(bh²) and 6M/(hb²), beside the compression of the forward acceleration.
     bending = 6 * arm / (0.02 * 0.004**2) + 6 * arm / (0.004 * 0.02**2)
     axial = 3 * beyond / (0.02 * 0.004)
-    for found, stress in (
+    for answer, stress in (
         (loads.stress, bending + axial),
         (loads.stress_tension, bending - axial),
         (loads.stress_compression, -bending - axial),
     ):
-        np.testing.assert_allclose(found[0], stress, rtol=1e-5, atol=1e-5 * bending[0])
+        np.testing.assert_allclose(answer[0], stress, rtol=1e-5, atol=1e-5 * bending[0])
 
 
 def test_bending_moment_is_what_the_section_bends_for() -> None:
@@ -192,20 +192,20 @@ def test_loads_on_the_beam_are_carried_to_the_root() -> None:
     beam = Beam(L, Section.rectangle(0.02, 0.004), MATERIAL, loads=loads)
     structure = assemble(beam, Model("FOAM", 0, 2, 3), [0.2])
     q = np.zeros(5)
-    found = carried(structure, STILL, q, q, q)
-    np.testing.assert_allclose(found.root_force[0], [0, -2 * L, -5], atol=1e-12)
-    np.testing.assert_allclose(found.root_moment[0], [0, 5 * L - 0.3, -2 * L**2 / 2], atol=1e-12)
-    np.testing.assert_allclose(found.section_force[0, 1], [0, 2 * (L - 0.2), 5], atol=1e-12)
-    np.testing.assert_allclose(found.section_moment[0, 1], [0, -5 * (L - 0.2), 2 * (L - 0.2) ** 2 / 2], atol=1e-12)
+    answer = carried(structure, STILL, q, q, q)
+    np.testing.assert_allclose(answer.root_force[0], [0, -2 * L, -5], atol=1e-12)
+    np.testing.assert_allclose(answer.root_moment[0], [0, 5 * L - 0.3, -2 * L**2 / 2], atol=1e-12)
+    np.testing.assert_allclose(answer.section_force[0, 1], [0, 2 * (L - 0.2), 5], atol=1e-12)
+    np.testing.assert_allclose(answer.section_moment[0, 1], [0, -5 * (L - 0.2), 2 * (L - 0.2) ** 2 / 2], atol=1e-12)
 
 
 def test_sprung_root_carries_the_same() -> None:
     beam = Beam(L, Section.rectangle(0.02, 0.004), MATERIAL, root=Root(rotation_y=200.0, translation_z=1e5))
     structure = assemble(beam, Model("FOAM", 0, 0, 3))
     zero, q = np.zeros(3), np.zeros(5)
-    found = carried(structure, Base(np.array([0, 0, 2.0]), zero, zero), q, q, q)
-    np.testing.assert_allclose(found.root_force[0], [0, 0, 2 * M * L], rtol=1e-12)
-    np.testing.assert_allclose(found.root_moment[0], [0, -(M * L**2), 0], rtol=1e-12, atol=1e-18)
+    answer = carried(structure, Base(np.array([0, 0, 2.0]), zero, zero), q, q, q)
+    np.testing.assert_allclose(answer.root_force[0], [0, 0, 2 * M * L], rtol=1e-12)
+    np.testing.assert_allclose(answer.root_moment[0], [0, -(M * L**2), 0], rtol=1e-12, atol=1e-18)
 
 
 def test_unknown_fibres_leave_the_stress_open() -> None:
@@ -216,12 +216,12 @@ def test_unknown_fibres_leave_the_stress_open() -> None:
 
 
 def test_static_influence_of_a_uniform_cantilever() -> None:
-    found = influence(assemble(SPECIMEN, Model("FOAM", 4, 8, 8)))
+    answer = influence(assemble(SPECIMEN, Model("FOAM", 4, 8, 8)))
     ei = 70e9 * np.array([0.004 * 0.02**3, 0.02 * 0.004**3]) / 12
-    np.testing.assert_allclose(found.tip_uniform[1:], -M * L**4 / 8 / ei, rtol=1e-5)
-    np.testing.assert_allclose(found.tip_linear[1:], -M * L**5 * 11 / 120 / ei, rtol=1e-5)
-    np.testing.assert_allclose(found.moment_linear[1:], -M * L**3 / 3, rtol=1e-12)
-    np.testing.assert_allclose(found.force_linear, -M * L**2 / 2, rtol=1e-12)
+    np.testing.assert_allclose(answer.tip_uniform[1:], -M * L**4 / 8 / ei, rtol=1e-5)
+    np.testing.assert_allclose(answer.tip_linear[1:], -M * L**5 * 11 / 120 / ei, rtol=1e-5)
+    np.testing.assert_allclose(answer.moment_linear[1:], -M * L**3 / 3, rtol=1e-12)
+    np.testing.assert_allclose(answer.force_linear, -M * L**2 / 2, rtol=1e-12)
 
 
 @pytest.mark.parametrize(("pointing", "angle"), [("outward", 0.0), ("inward", 0.6)])
@@ -250,11 +250,11 @@ def test_torque_for_the_beam_and_the_hub_is_what_drives_them(pointing: str, angl
 def test_static_loads_are_those_of_the_frozen_slew() -> None:
     """At rest on a steadily turning hub: the centripetal force of the beam, and no torque for it."""
     structure = assemble(SPECIMEN, Model("FOAM", 2, 2, 0), [0.0, 0.15])
-    found = static(structure, Hub(radius=0.4, rate=constant(5.0)), 0.0)
-    assert found.loads is not None and found.loads.beam_torque is not None
-    np.testing.assert_allclose(found.loads.root_force[0], [-M * 25 * (0.4 * L + L**2 / 2), 0, 0], rtol=1e-5)
+    rest = static(structure, Hub(radius=0.4, rate=constant(5.0)), 0.0)
+    assert rest.loads is not None and rest.loads.beam_torque is not None
+    np.testing.assert_allclose(rest.loads.root_force[0], [-M * 25 * (0.4 * L + L**2 / 2), 0, 0], rtol=1e-5)
     np.testing.assert_allclose(
-        found.loads.section_force[0, -2, 0], M * 25 * (0.4 * 0.15 + (L**2 - 0.15**2) / 2), rtol=1e-5
+        rest.loads.section_force[0, -2, 0], M * 25 * (0.4 * 0.15 + (L**2 - 0.15**2) / 2), rtol=1e-5
     )
-    assert abs(found.loads.beam_torque[0]) < 1e-12
-    assert found.loads.stress[0, 0] == pytest.approx(-found.loads.root_force[0, 0] / 8e-5)
+    assert abs(rest.loads.beam_torque[0]) < 1e-12
+    assert rest.loads.stress[0, 0] == pytest.approx(-rest.loads.root_force[0, 0] / 8e-5)

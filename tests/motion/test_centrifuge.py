@@ -26,8 +26,8 @@ SPAN = (0.0, 12.0)
 
 
 def machine(**options: Any) -> Centrifuge:
-    given = {"arm": R, "control_point": XC, "inverse": "flat", "gravity": True, "idle": 1.4 * G, "smoothing": 0.06}
-    return Centrifuge(TRAPEZOID, **{**given, "span": SPAN, **options})
+    arguments = {"arm": R, "control_point": XC, "inverse": "flat", "gravity": True, "idle": 1.4 * G, "smoothing": 0.06}
+    return Centrifuge(TRAPEZOID, **{**arguments, "span": SPAN, **options})
 
 
 @pytest.fixture(scope="module")

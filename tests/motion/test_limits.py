@@ -101,8 +101,8 @@ def test_loads_below_idle_are_followed_with_the_idle_that_is_named_and_not_above
     (low,) = (each for each in shortfalls(dip(1.25), idle=1.4 * G) if each.reason == "below idle")
     assert (low.reference, low.possible) == (pytest.approx(1.25), pytest.approx(1.4))
     assert low.start == pytest.approx(2.968, abs=3e-3) and low.end == pytest.approx(5.032, abs=3e-3)
-    made = build_target(dip(1.25), span=(0.0, 8.0), idle=quoted(low) * G, smoothing=0.06, gravity=True, arm=R)
-    assert made.episodes() == [] and 'idle = "1.13 g" or less' in low.remedy
+    built = build_target(dip(1.25), span=(0.0, 8.0), idle=quoted(low) * G, smoothing=0.06, gravity=True, arm=R)
+    assert built.episodes() == [] and 'idle = "1.13 g" or less' in low.remedy
     assert any(each.reason == "below idle" for each in shortfalls(dip(1.25), idle=quoted(low) * G / 0.9))
 
 
@@ -111,8 +111,8 @@ def test_what_no_idle_lets_is_said() -> None:
     for level, words in ((1.12, "without idle it would be followed"), (0.9, "no machine follows a load below 1.05 g")):
         (low,) = (each for each in shortfalls(dip(level), idle=1.4 * G) if each.reason == "below idle")
         assert words in low.remedy
-    made = build_target(dip(1.12), span=(0.0, 8.0), idle=None, smoothing=0.06, gravity=True, arm=R)
-    assert made.episodes() == []
+    built = build_target(dip(1.12), span=(0.0, 8.0), idle=None, smoothing=0.06, gravity=True, arm=R)
+    assert built.episodes() == []
 
 
 @pytest.mark.parametrize(

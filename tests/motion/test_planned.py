@@ -43,9 +43,9 @@ def record(name: str) -> Profile:
 
 @cache
 def spin(name: str, limits: MachineLimits | None = SPECIMEN, **options: Any) -> Centrifuge:
-    given = {"inverse": "planned", "arm": R, "control_point": 0.15, "gravity": True, "idle": IDLE}
-    given |= {"smoothing": 0.06, **options}
-    return Centrifuge(Flight(acceleration=record(name)), limits=limits, span=(0.0, LAST[name]), **given)
+    arguments = {"inverse": "planned", "arm": R, "control_point": 0.15, "gravity": True, "idle": IDLE}
+    arguments |= {"smoothing": 0.06, **options}
+    return Centrifuge(Flight(acceleration=record(name)), limits=limits, span=(0.0, LAST[name]), **arguments)
 
 
 def times(machine: Centrifuge, step: float) -> np.ndarray:
@@ -100,11 +100,11 @@ def test_the_load_is_that_of_a_point_at_the_end_of_the_arm(name: str) -> None:
 def test_every_peak_above_idle_is_made() -> None:
     machine = spin("f16_pulls_and_push")
     t = np.linspace(0, LAST["f16_pulls_and_push"], 36001)
-    flight, made = np.asarray(record("f16_pulls_and_push")(t)), machine.actual(t)
+    flight, built = np.asarray(record("f16_pulls_and_push")(t)), machine.actual(t)
     peaks, _ = find_peaks(size(flight), height=IDLE, prominence=0.05 * G)
     assert len(peaks) == 7 and size(flight)[peaks].max() > 9.7 * G
-    np.testing.assert_allclose(size(made)[peaks], size(flight)[peaks], rtol=0.025)
-    assert size(made - flight)[size(flight) >= IDLE].max() < 0.07 * G
+    np.testing.assert_allclose(size(built)[peaks], size(flight)[peaks], rtol=0.025)
+    assert size(built - flight)[size(flight) >= IDLE].max() < 0.07 * G
 
 
 def test_below_idle_the_arm_keeps_idle_and_the_specimen_is_not_preloaded() -> None:

@@ -31,8 +31,8 @@ CASES = {
 
 @pytest.mark.parametrize("name", CASES)
 def test_coefficients_are_the_symbolic_derivatives(name: str) -> None:
-    made, expression = CASES[name][0](), CASES[name][1]
-    for value in made.derivatives():
+    built, expression = CASES[name][0](), CASES[name][1]
+    for value in built.derivatives():
         exact = np.array([float(expression.subs(s, sympy.Float(x, 30))) for x in T])
         expression = sympy.diff(expression, s)
         np.testing.assert_allclose(value, exact, rtol=1e-11, atol=1e-11 * (1 + np.abs(exact).max()))
@@ -52,9 +52,9 @@ def test_vectors() -> None:
 
 
 def test_where_takes_constants() -> None:
-    made = where(T > 0, p, 7.0)
-    np.testing.assert_allclose(made.value, np.where(T > 0, p.value, 7.0))
-    np.testing.assert_allclose(made.derivatives()[1], np.where(T > 0, p.derivatives()[1], 0.0))
+    built = where(T > 0, p, 7.0)
+    np.testing.assert_allclose(built.value, np.where(T > 0, p.value, 7.0))
+    np.testing.assert_allclose(built.derivatives()[1], np.where(T > 0, p.derivatives()[1], 0.0))
 
 
 def test_runs_of_true_flags() -> None:

@@ -97,13 +97,13 @@ def test_commands_integrate_from_standstill_to_standstill(start: str, inverse: s
         pairs = [(jerk[..., axis - 1], acceleration), (getattr(inside, acceleration), rate)]
         pairs += [(getattr(inside, rate), f"angle{axis}")] if axis > 1 else []
         for slope, name in pairs:
-            made, commanded = np.append(0.0, np.cumsum(h * slope.mean(axis=1))), np.asarray(getattr(at_edges, name))
+            built, commanded = np.append(0.0, np.cumsum(h * slope.mean(axis=1))), np.asarray(getattr(at_edges, name))
             if name.startswith("angle"):
                 commanded = np.unwrap(commanded) - commanded[0]
             else:
                 assert commanded[0] == commanded[-1] == 0
             slack = rough if name.startswith("acceleration") else 1e-6
-            np.testing.assert_allclose(made, commanded, atol=slack)
+            np.testing.assert_allclose(built, commanded, atol=slack)
 
 
 def test_no_sample_of_the_record_is_replaced() -> None:

@@ -62,11 +62,11 @@ def target(
 def of_record(name: str, **options: object) -> tuple[Target, np.ndarray, np.ndarray, np.ndarray]:
     """Target, times, the flight's load with its corners rounded, and the target's."""
     raw, end = RECORDS[name]
-    given = {"span": (0.0, end), "idle": IDLE, "smoothing": W, "gravity": True, "arm": R, **options}
-    made = build_target(raw, **given)  # type: ignore[arg-type]
+    arguments = {"span": (0.0, end), "idle": IDLE, "smoothing": W, "gravity": True, "arm": R, **options}
+    built = build_target(raw, **arguments)  # type: ignore[arg-type]
     t = np.linspace(0, end, int(1000 * end) + 1)
     inside = t[(t > W / 2) & (t < end - W / 2)]
-    return made, inside, np.asarray(smoothed(raw, W)(inside)), np.asarray(made.load(inside))
+    return built, inside, np.asarray(smoothed(raw, W)(inside)), np.asarray(built.load(inside))
 
 
 def size(load: np.ndarray) -> np.ndarray:
@@ -104,8 +104,8 @@ def test_the_target_is_the_nearest_load_that_the_machine_can_make(name: str) -> 
 @pytest.mark.parametrize("name", RECORDS)
 def test_what_is_not_followed_is_said_and_every_return_above_idle_is_in(name: str) -> None:
     """Faults 1 and 2 of issue 9: short returns were left out, and held stretches overshot to three times the load."""
-    made, t, flight, load = of_record(name)
-    held = np.asarray(made.not_followed(t))
+    built, t, flight, load = of_record(name)
+    held = np.asarray(built.not_followed(t))
     lacks = (size(flight) < IDLE) | (across(flight) < MIN_TRANSVERSE_LOAD)
     differs = np.flatnonzero(held != lacks)
     # A change of reason lies between two knots, which are five milliseconds apart.
@@ -115,22 +115,22 @@ def test_what_is_not_followed_is_said_and_every_return_above_idle_is_in(name: st
         run = above & (returns(above) == number)
         assert not held[run].any()
         assert size(load)[run].max() == pytest.approx(size(flight)[run].max(), rel=0.015)
-    for episode in made.episodes():
+    for episode in built.episodes():
         inside = (t > episode.start) & (t < episode.end)
         assert held[inside].all()
         if np.count_nonzero(inside) > 20:
             fine = np.linspace(episode.start, episode.end, 20001)
-            assert size(np.asarray(made.flight(fine))).max() == pytest.approx(episode.flight_peak, rel=2e-3)
+            assert size(np.asarray(built.flight(fine))).max() == pytest.approx(episode.flight_peak, rel=2e-3)
             middle = size(flight)[inside][6:-6]
             assert (middle.max() < IDLE) if episode.reason == "below idle" else (middle.min() > IDLE)
 
 
 def test_the_second_pull_and_the_push_are_in() -> None:
-    made, t, flight, load = of_record("pulls")
+    built, t, flight, load = of_record("pulls")
     for start, end, peak in ((13.3, 14.8, 4.07), (19.1, 20.7, 2.27), (2.9, 3.3, 1.65), (25.5, 32.8, 9.81)):
         part = (t > start) & (t < end)
         assert size(load)[part].max() / G == pytest.approx(peak, rel=0.01)
-        assert not np.asarray(made.not_followed(t[part]))[size(flight)[part] > IDLE].any()
+        assert not np.asarray(built.not_followed(t[part]))[size(flight)[part] > IDLE].any()
     # Between push and pulls the specimen rolls by half a turn at idle, gently, instead of passing through no load.
     rolling = (t > 15.2) & (t < 18.6)
     roll = np.unwrap(np.arctan2(load[rolling, 2], load[rolling, 1]))
@@ -140,43 +140,43 @@ def test_the_second_pull_and_the_push_are_in() -> None:
 
 @pytest.mark.parametrize("name", ["turn", "pulls", "0", "1"])
 def test_the_target_stands_still_beyond_the_span_and_is_smooth_within(name: str) -> None:
-    made, t, _, _ = of_record(name)
+    built, t, _, _ = of_record(name)
     raw, end = RECORDS[name]
     for edge, outward in ((0.0, -1), (end, 1)):
         beyond = edge + outward * (W / 2 + np.array([0.0, 0.01, 3.0, 100.0]))
-        value, *slopes = made.load.derivatives(beyond, 3)
+        value, *slopes = built.load.derivatives(beyond, 3)
         np.testing.assert_allclose(value, np.broadcast_to(value[0], value.shape), rtol=1e-9, atol=1e-9)
         assert max(np.abs(slope).max() for slope in slopes[:2]) < 1e-6
         kept = size(np.asarray(raw(edge))) > 1.2 * IDLE and across(np.asarray(raw(edge))) > 1.6 * G
         if kept:
             np.testing.assert_allclose(value[-1], raw(edge), rtol=1e-9)
     h = 2e-5
-    values = [made.load.derivatives(t + shift, 2) for shift in (-h, 0.0, h)]
+    values = [built.load.derivatives(t + shift, 2) for shift in (-h, 0.0, h)]
     for k in (1, 2):
         finite = (values[2][k - 1] - values[0][k - 1]) / (2 * h)
         error = np.abs(finite - values[1][k]).max() / np.abs(values[1][k]).max()
         assert error < (1e-4, 2e-2)[k - 1]
-    assert np.isfinite(made.load.derivatives(t, 3)[3]).all()
+    assert np.isfinite(built.load.derivatives(t, 3)[3]).all()
 
 
 @pytest.mark.parametrize("gravity", [False, True])
 def test_a_load_above_idle_is_smoothed_and_nothing_else(gravity: bool) -> None:
     raw = PiecewiseLinear([0.0, 3.0, 5.0, 12.0], [[0, 2, 3], [-1, 4, 3], [1, 1, 6], [0, 1, 3]] * np.array(G))
-    made, inside = target(raw, idle=IDLE, gravity=gravity), T[(T > W / 2) & (T < 12 - W / 2)]
-    np.testing.assert_allclose(made.load(inside), smoothed(raw, W)(inside), rtol=1e-14)
-    assert made.episodes() == [] and not np.any(made.not_followed(T))
+    built, inside = target(raw, idle=IDLE, gravity=gravity), T[(T > W / 2) & (T < 12 - W / 2)]
+    np.testing.assert_allclose(built.load(inside), smoothed(raw, W)(inside), rtol=1e-14)
+    assert built.episodes() == [] and not np.any(built.not_followed(T))
     # Cut out of it, a span begins and ends with what the flight has there: no sample of it is another.
     cut = build_target(raw, span=(1.0, 11.0), idle=IDLE, smoothing=W, gravity=gravity)
     np.testing.assert_allclose(cut.load(np.array([-5.0, 20.0])), raw(np.array([1.0, 11.0])), rtol=1e-12)
-    np.testing.assert_allclose(cut.load(T[105:1096]), made.load(T[105:1096]), rtol=1e-12)
+    np.testing.assert_allclose(cut.load(T[105:1096]), built.load(T[105:1096]), rtol=1e-12)
 
 
 def test_a_trapezoid_leaves_and_meets_idle() -> None:
-    made = target(TRAPEZOID, idle=IDLE, gravity=True)
-    load = np.asarray(made.load(T))
+    built = target(TRAPEZOID, idle=IDLE, gravity=True)
+    load = np.asarray(built.load(T))
     np.testing.assert_allclose(size(load)[T < 1.2], IDLE, rtol=1e-12)
     np.testing.assert_allclose(load[:, :2], 0, atol=1e-9)
-    first, last = made.episodes()
+    first, last = built.episodes()
     assert first.reason == last.reason == "below idle"
     assert (first.start, first.end) == pytest.approx((0, 1.35), abs=1e-6)
     assert (last.start, last.end) == pytest.approx((1 + 2.5 + 4 + 2.5 - 0.35, 12), abs=1e-6)
@@ -201,12 +201,12 @@ def test_a_hold_keeps_the_direction_and_smooths_what_an_arm_at_idle_could_not_fo
 def test_a_load_that_reverses_through_zero_is_a_roll_at_idle(gravity: bool, side: float) -> None:
     for raw in (REVERSING, JUMPING):
         beside = vector(y=constant(side * G), z=raw.parts[2])
-        made = build_target(beside, span=(0.0, 12.0), idle=IDLE, smoothing=W, gravity=gravity, arm=R)
+        built = build_target(beside, span=(0.0, 12.0), idle=IDLE, smoothing=W, gravity=gravity, arm=R)
         t = np.linspace(4.5, 7.5, 6001)
-        load = np.asarray(made.load(t))
+        load = np.asarray(built.load(t))
         roll = np.unwrap(np.arctan2(load[:, 2], load[:, 1]))
         assert abs(roll[-1] - roll[0]) == pytest.approx(np.pi - 2 * np.arctan(side / 5), abs=1e-6)
-        assert np.isfinite(made.load.derivatives(t, 3)).all() and size(load).min() > IDLE * (1 - 1e-12)
+        assert np.isfinite(built.load.derivatives(t, 3)).all() and size(load).min() > IDLE * (1 - 1e-12)
     # At 5 g/s through zero there is half a second.
     assert np.abs(np.gradient(np.unwrap(np.arctan2(load[:, 2], load[:, 1])), t)).max() > 100  # a jump stays one
     slow = build_target(REVERSING, span=(0.0, 12.0), idle=IDLE, smoothing=W, gravity=gravity, arm=R).load(t)
@@ -222,23 +222,23 @@ def test_loads_gravity_exceeds_are_raised_across_the_beam_and_the_axial_one_is_k
     with pytest.raises(InputError, match=r"0\.212 g only at 5\.000 s.*clip = true"):
         target(raw, gravity=True)  # another load only if asked for: by idle, or by clip
     for idle in (None, IDLE):
-        made = target(raw, idle=idle, gravity=True, clip=True)
-        load, kept = np.asarray(made.load(T)), np.asarray(smoothed(raw, W)(T))
+        built = target(raw, idle=idle, gravity=True, clip=True)
+        load, kept = np.asarray(built.load(T)), np.asarray(smoothed(raw, W)(T))
         assert across(load).min() > MIN_TRANSVERSE_LOAD * (1 - 1e-12)
         np.testing.assert_allclose(load[:, 0], 2 * G, rtol=1e-7 if idle is None else 2e-3)
         clear = across(kept) > 1.5 * MIN_TRANSVERSE_LOAD
         np.testing.assert_allclose(load[clear], kept[clear], atol=1e-10)
         near = (across(kept) > MIN_TRANSVERSE_LOAD) & ~clear
         assert (size(load - kept)[near] / size(kept)[near]).max() < 0.01
-        (episode,) = made.episodes()
+        (episode,) = built.episodes()
         assert episode.reason == "gimbals" and 4.5 < episode.start < 5 < episode.end < 5.5
         assert episode.flight_peak == pytest.approx(size(np.asarray(raw(episode.start))), rel=0.01)
 
 
 def test_a_load_along_the_beam_only_is_raised_upwards_of_gravity() -> None:
-    made = target(vector(x=constant(3 * G)), idle=IDLE, gravity=True)
-    np.testing.assert_allclose(made.load(T), np.broadcast_to([3 * G, 0, MIN_TRANSVERSE_LOAD], (T.size, 3)), atol=1e-9)
-    assert [episode.reason for episode in made.episodes()] == ["gimbals"]
+    built = target(vector(x=constant(3 * G)), idle=IDLE, gravity=True)
+    np.testing.assert_allclose(built.load(T), np.broadcast_to([3 * G, 0, MIN_TRANSVERSE_LOAD], (T.size, 3)), atol=1e-9)
+    assert [episode.reason for episode in built.episodes()] == ["gimbals"]
 
 
 @pytest.mark.parametrize("idle", [1.1 * G, 1.12 * G, 5 * G])
@@ -253,14 +253,14 @@ def test_the_least_idle_is_in_reach_in_every_direction(idle: float) -> None:
 @pytest.mark.parametrize("stretch", [(14.0, 14.01), (13.0, 15.0)])
 def test_a_return_is_left_out_where_the_inverse_cannot_follow_it(stretch: tuple[float, float]) -> None:
     full, t, _, whole = of_record("pulls")
-    made, _, _, load = of_record("pulls", leave_out=[stretch])
+    built, _, _, load = of_record("pulls", leave_out=[stretch])
     out = (t > 13.0) & (t < 15.0)
     np.testing.assert_allclose(size(load)[out], IDLE, rtol=1e-12)
     np.testing.assert_allclose(load[(t < 11) | (t > 19)], whole[(t < 11) | (t > 19)], atol=1e-6 * G)
-    (left,) = (episode for episode in made.episodes() if episode.reason == "left out")
+    (left,) = (episode for episode in built.episodes() if episode.reason == "left out")
     assert left.flight_peak == pytest.approx(4.07 * G, rel=0.02) and 13.0 < left.start < 13.2 < 14.8 < left.end < 15.1
-    assert np.asarray(made.not_followed(t))[out].all()
-    assert len(made.episodes()) == len(full.episodes()) + 1 and np.isfinite(made.load.derivatives(t, 3)).all()
+    assert np.asarray(built.not_followed(t))[out].all()
+    assert len(built.episodes()) == len(full.episodes()) + 1 and np.isfinite(built.load.derivatives(t, 3)).all()
 
 
 def test_a_path_leaves_and_meets_what_is_fixed_without_a_corner() -> None:
@@ -304,12 +304,12 @@ def test_a_path_of_close_and_uneven_knots_is_that_of_the_continuous_load() -> No
 def test_curved_profiles_are_kept_exactly_or_sampled_finely() -> None:
     raw = vector(z=Sum((constant(3 * G), Sine(2 * G, 10.0, start=1.0))))
     np.testing.assert_allclose(target(raw).load(T), smoothed(raw, W)(T), rtol=1e-14)
-    made, kept = target(raw, idle=2 * G), np.asarray(smoothed(raw, W)(T))
-    held = np.asarray(made.not_followed(T))
+    built, kept = target(raw, idle=2 * G), np.asarray(smoothed(raw, W)(T))
+    held = np.asarray(built.not_followed(T))
     assert held.any() and not held.all()
     clear = size(kept) > 2.2 * G
-    np.testing.assert_allclose(made.load(T)[clear], kept[clear], atol=1e-10)
-    (episode,) = made.episodes()  # while the sine is below −1/2
+    np.testing.assert_allclose(built.load(T)[clear], kept[clear], atol=1e-10)
+    (episode,) = built.episodes()  # while the sine is below −1/2
     assert (episode.start, episode.end) == pytest.approx((1 + 10 * 7 / 12, 1 + 10 * 11 / 12), abs=2e-3)
 
 

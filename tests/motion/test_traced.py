@@ -56,8 +56,8 @@ def test_closed_derivatives_are_those_of_forward_differentiation(name: str) -> N
 
 def centrifuge(level: Any, arm: Any = 3.3, control_point: Any = 0.2, **options: Any) -> Centrifuge:
     flight = Flight(z=Sum((tabulated([0.0], [5 * G]), trapezoid(level, jerk=2 * G, start=0.5, hold=1.0))))
-    given = {"inverse": "flat", "gravity": False, "smoothing": 0.06, **options}
-    return Centrifuge(flight, arm=arm, control_point=control_point, span=(0.0, 4.0), **given)
+    arguments = {"inverse": "flat", "gravity": False, "smoothing": 0.06, **options}
+    return Centrifuge(flight, arm=arm, control_point=control_point, span=(0.0, 4.0), **arguments)
 
 
 MADE_OF: dict[str, tuple[Callable[[Any], Any], float]] = {

@@ -16,11 +16,11 @@ def matrices(quaternions: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def test_a_constant_rate_turns_about_its_axis() -> None:
     time, rate = np.sort(np.random.default_rng(1).uniform(2, 30, 777)), np.array([0.3, -1.1, 0.7])
-    made = attitude(time, np.tile(rate, (777, 1)))
+    built = attitude(time, np.tile(rate, (777, 1)))
     expected = Rotation.from_rotvec(rate * (time - time[0])[:, None]).as_matrix()
-    np.testing.assert_allclose(matrices(made), expected, atol=1e-12)
-    assert made[0].tolist() == [1, 0, 0, 0] and np.abs(np.linalg.norm(made, axis=1) - 1).max() < 1e-14
-    assert np.abs(np.diff(made, axis=0)).max() < 0.5  # no jump of sign: what is drawn lies between neighbours
+    np.testing.assert_allclose(matrices(built), expected, atol=1e-12)
+    assert built[0].tolist() == [1, 0, 0, 0] and np.abs(np.linalg.norm(built, axis=1) - 1).max() < 1e-14
+    assert np.abs(np.diff(built, axis=0)).max() < 0.5  # no jump of sign: what is drawn lies between neighbours
 
 
 def test_coning_converges_with_the_square_of_the_interval() -> None:

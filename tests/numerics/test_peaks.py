@@ -53,10 +53,10 @@ def test_a_polynomial_is_its_own_interpolation() -> None:
     for degree in (5, 4):
         p = np.polynomial.Polynomial(rng.normal(size=degree + 1), domain=[t[0], t[-1]])
         if degree == 5:
-            times, found = quintic_hermite(t, *(d(t)[:, None] for d in (p, p.deriv(), p.deriv(2))), at)
+            times, answer = quintic_hermite(t, *(d(t)[:, None] for d in (p, p.deriv(), p.deriv(2))), at)
         else:
-            times, found = seven_point(t, p(t)[:, None], at)
-        np.testing.assert_allclose(found[..., 0], p(times), atol=1e-9 * np.abs(p(t)).max())
+            times, answer = seven_point(t, p(t)[:, None], at)
+        np.testing.assert_allclose(answer[..., 0], p(times), atol=1e-9 * np.abs(p(t)).max())
         np.testing.assert_allclose(times[:, [0, 8, 16]], around)
 
 
@@ -81,9 +81,9 @@ def test_too_few_samples_are_what_they_are(count: int) -> None:
 
 def test_turning_points_lie_between_samples() -> None:
     t = np.arange(0, 60, 0.35)
-    found = turning_points(t, np.sin(t) + 2)
-    np.testing.assert_allclose(found[1:-1], 2 + (-1.0) ** np.arange(len(found) - 2), atol=1e-4)
-    assert found[0] == 2.0 and found[-1] == np.sin(t[-1]) + 2
+    answer = turning_points(t, np.sin(t) + 2)
+    np.testing.assert_allclose(answer[1:-1], 2 + (-1.0) ** np.arange(len(answer) - 2), atol=1e-4)
+    assert answer[0] == 2.0 and answer[-1] == np.sin(t[-1]) + 2
     assert turning_points(t, np.ones_like(t)).tolist() == [1.0, 1.0]
 
 

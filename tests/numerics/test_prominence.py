@@ -28,15 +28,15 @@ def test_every_value_belongs_to_a_peak_and_peaks_are_apart(seed: int) -> None:
     generator = np.random.default_rng(seed)
     walk = np.abs(np.cumsum(generator.integers(-3, 4, 400))).astype(float)
     floor, dip = float(generator.uniform(0, 3)), 0.9
-    found = separate_peaks(walk, floor, dip)
-    tops = [top for top, _ in found]
+    answer = separate_peaks(walk, floor, dip)
+    tops = [top for top, _ in answer]
     assert tops == sorted(tops)
-    for (one, first), (two, second) in pairwise(found):
+    for (one, first), (two, second) in pairwise(answer):
         lowest = walk[one:two].min()
         assert lowest < dip * min(walk[one], walk[two]) or lowest <= floor
         assert first.stop <= second.start
     for i in np.flatnonzero(walk > floor):
-        (own,) = (top for top, part in found if part.start <= i < part.stop)
+        (own,) = (top for top, part in answer if part.start <= i < part.stop)
         assert walk[own] >= walk[i]
         between = (walk[min(i, p) : max(i, p) + 1].min() for p in tops if walk[p] >= walk[i])
         assert any(lowest > floor and lowest >= dip * walk[i] for lowest in between)

@@ -69,10 +69,10 @@ def test_mirror_images_keep_the_scenario_and_the_width_is_searched_for(
     # The jerk of axis 2 at the corner goes with the width's inverse square: at 59.6 ms it is 470 rad/s³.
     jerk = max(use.used for use in spin(0.0596).usage() if (use.axis, use.quantity) == ("axis 2", "jerk"))
     limits = MachineLimits(axis2=AxisLimit(jerk=jerk))
-    made = []
+    built = []
 
     def make(mounting: str, width: float) -> Any:
-        made.append(width)
+        built.append(width)
         return spin(width, sign=1 if mounting == "upright" else -1, limits=limits)
 
     choice = Choice(make, ("upright", "inverted"), coarse(0.02, 0.32))
@@ -80,7 +80,7 @@ def test_mirror_images_keep_the_scenario_and_the_width_is_searched_for(
     # With no lever left, rounding the corners less changes the load less: down to what the machine can do.
     assert placement.best.mounting == "upright"
     assert placement.best.smoothing == pytest.approx(0.0596, rel=0.05) and 0.9 < placement.best.share <= 1
-    assert len(made) <= 25
+    assert len(built) <= 25
     broken = [each for each in placement.options if each.exceeded]
     assert broken and all(each.smoothing < 0.0596 and each.exceeded[0].quantity == "jerk" for each in broken)
     assert placement.options[-1] in broken and not placement.options[0].exceeded

@@ -75,10 +75,10 @@ def test_the_force_of_a_rigid_body_is_the_flights_where_its_centre_of_mass_is_th
     flight: Any, spin: Any, settings: Any
 ) -> None:
     box = gb.RigidSpecimen.box(3.0, (0.3, 0.2, 0.1), (0.18, 0.0, 0.0))
-    found = placed(box.structure, flight, spin, settings, "root-shear")
-    assert found.best.control_point == pytest.approx(0.18, abs=1e-6)
-    assert found.values["best"]["root-shear"] < 1e-5 and found.values["current"]["root-shear"] > 1e-2
-    assert found.values["best"].keys() == {"root-shear", "root-moment", "load"}
+    answer = placed(box.structure, flight, spin, settings, "root-shear")
+    assert answer.best.control_point == pytest.approx(0.18, abs=1e-6)
+    assert answer.values["best"]["root-shear"] < 1e-5 and answer.values["current"]["root-shear"] > 1e-2
+    assert answer.values["best"].keys() == {"root-shear", "root-moment", "load"}
     # Two equal halves of the box, joined rigidly, are the box.
     half = gb.RigidBody(1.5, np.diag([0.0] * 3), (0.1, 0, 0))
     far = gb.RigidBody(1.5, np.diag([0.0] * 3), (0.26, 0, 0), points={"end": (0.3, 0, 0)})
@@ -179,8 +179,8 @@ def spun(flight: gb.Flight = ROUND, **more: Any) -> gb.Centrifuge:
 
 def test_a_rigid_bodys_force_is_the_flights_at_its_centre_of_mass_whichever_way_round() -> None:
     machine = spun()
-    found = place(CASE.structure, ROUND, choice_of(machine, [0.1]), SPELL, {"root-shear": 1.0}, current=machine)
-    np.testing.assert_allclose(found.best.place, CASE.centre, atol=1e-5)
+    placement = place(CASE.structure, ROUND, choice_of(machine, [0.1]), SPELL, {"root-shear": 1.0}, current=machine)
+    np.testing.assert_allclose(placement.best.place, CASE.centre, atol=1e-5)
     turned = replace(choice_of(machine, [0.1]), turns=((0.3, -0.5, 0.8),))
     for each in place(CASE.structure, ROUND, turned, SPELL, {"root-shear": 1.0}, current=machine).options:
         np.testing.assert_allclose(each.place, CASE.centre, atol=1e-5)
@@ -188,7 +188,7 @@ def test_a_rigid_bodys_force_is_the_flights_at_its_centre_of_mass_whichever_way_
     along = place(
         CASE.structure, ROUND, choice_of(machine, [0.1]), SPELL, {"root-shear": 1.0}, current=machine, along="x"
     )
-    assert along.best.place[1:] == (0.0, 0.0) and along.best.mismatch > 100 * found.best.mismatch
+    assert along.best.place[1:] == (0.0, 0.0) and along.best.mismatch > 100 * placement.best.mismatch
     with pytest.raises(gb.InputError, match="along is 'q'"):
         place(CASE.structure, ROUND, choice_of(machine), SPELL, {"load": 1.0}, current=machine, along="q")
 
@@ -199,11 +199,11 @@ def test_the_loads_difference_is_that_of_running(turning: bool) -> None:
     rates = gb.smoothed(gb.vector(x=gb.trapezoid(0.8, jerk=2.0, start=0.4, hold=0.8), y=gb.constant(0.5)), 0.4)
     flight = gb.Flight(acceleration=ROUND.acceleration, rates=rates if turning else None)
     machine = spun(flight)
-    found = place(CASE.structure, flight, choice_of(machine, [0.1]), SPELL, {"load": 1.0}, current=machine)
-    best = spun(flight, control_point=found.best.place, mounting=found.best.mounting)
+    placement = place(CASE.structure, flight, choice_of(machine, [0.1]), SPELL, {"load": 1.0}, current=machine)
+    best = spun(flight, control_point=placement.best.place, mounting=placement.best.mounting)
     for each, of in ((machine, "current"), (best, "best")):
         apart = largest_difference(each, np.linspace(0.1, 3.4, 1651))
-        assert found.totals[of]["load"] == pytest.approx(apart, rel=5e-3)
+        assert placement.totals[of]["load"] == pytest.approx(apart, rel=5e-3)
 
 
 def largest_difference(machine: gb.Centrifuge, times: np.ndarray) -> float:
@@ -222,7 +222,7 @@ def test_where_and_which_way_round_beats_a_grid_of_both() -> None:
     machine, weights = spun(), {"load": 1.0}
     choice = choice_of(machine, [0.1], turns="any")
     assert len(choice.turns) == 13
-    found = place(CASE.structure, ROUND, choice, SPELL, weights, current=machine)
+    placement = place(CASE.structure, ROUND, choice, SPELL, weights, current=machine)
     rng = np.random.default_rng(26)
     times = np.linspace(0.1, 3.4, 331)
     grid = [np.linspace(0, edge, 4) for edge in (0.32, 0.2, 0.12)]
@@ -240,11 +240,11 @@ def test_where_and_which_way_round_beats_a_grid_of_both() -> None:
             away = np.asarray(CASE.corners)[None] - places[:, None]
             apart = np.einsum("tij,pcj->tpci", growth, away)
             least = min(least, float(np.linalg.norm(apart, axis=-1).max(axis=(0, 2)).min() / in_flight))
-    assert found.best.mismatch < least
-    best = spun(control_point=found.best.place, turn=found.best.turn, mounting=found.best.mounting)
-    assert largest_difference(best, times) == pytest.approx(found.totals["best"]["load"], rel=0.05)
+    assert placement.best.mismatch < least
+    best = spun(control_point=placement.best.place, turn=placement.best.turn, mounting=placement.best.mounting)
+    assert largest_difference(best, times) == pytest.approx(placement.totals["best"]["load"], rel=0.05)
     assert largest_difference(best, times) < 0.6 * largest_difference(machine, times)
-    assert found.changes.keys() >= {"control_point", "turn"}
+    assert placement.changes.keys() >= {"control_point", "turn"}
 
 
 SLANTED = """\
@@ -290,12 +290,12 @@ def test_a_camera_beside_a_boom_bends_it_less_where_it_is_placed() -> None:
     system = gb.System({"strip": boom, "camera": camera}, joints)
     machine, weights = spun(control_point=0.15), {"tip": 1.0}
     choice = choice_of(machine, [0.1], turns="right-angles")
-    found = place(system, ROUND, choice, SPELL, weights, current=machine, check=True)
-    run = {each.name: each for each in found.verifications}
-    assert found.best.place[2] > 0.01 and found.point.startswith(("strip", "camera"))
+    placement = place(system, ROUND, choice, SPELL, weights, current=machine, check=True)
+    run = {each.name: each for each in placement.verifications}
+    assert placement.best.place[2] > 0.01 and placement.point.startswith(("strip", "camera"))
     assert run["best"].tip_difference < 0.2 * run["current"].tip_difference
     assert run["best"].tip_difference < run["middle"].tip_difference
-    words = str(describe(found))
+    words = str(describe(placement))
     assert "in the middle of the specimen" in words and "mid-way" in words and "root force" in words
 
 

@@ -25,8 +25,8 @@ TURN = 3.2, 11.2  # s: the 8 g turn, between the steps of the aileron
 
 @cache
 def planned(*overrides: str) -> MachinePlan:
-    given = loads(WITHOUT_LIMITS, overrides=[f"{MACHINE}.{each}" for each in overrides], folder=EXAMPLE.parent)
-    return plan("centrifuge", build_machines(given)["centrifuge"])
+    loaded = loads(WITHOUT_LIMITS, overrides=[f"{MACHINE}.{each}" for each in overrides], folder=EXAMPLE.parent)
+    return plan("centrifuge", build_machines(loaded)["centrifuge"])
 
 
 def error(made: MachinePlan) -> tuple[float, float]:
@@ -48,22 +48,22 @@ def used(made: MachinePlan, axis: str, quantity: str) -> float:
     ],
 )
 def test_the_table(inverse: str, largest: float, rms: float, rate: float, acceleration: float) -> None:
-    made = planned(f"inverse={inverse}")
+    built = planned(f"inverse={inverse}")
     # What is left of an error of 1e-8 of the load depends on the platform's rounding.
     slack = 1.0 if inverse == "exact" else 0.05
-    assert error(made) == (pytest.approx(largest, rel=slack), pytest.approx(rms, rel=slack))
-    assert used(made, "axis 2", "rate") == pytest.approx(rate, rel=0.02)
-    assert used(made, "axis 2", "acceleration") == pytest.approx(acceleration, rel=0.02)
-    assert made.axes.warnings == () and made.outcome == "done"
+    assert error(built) == (pytest.approx(largest, rel=slack), pytest.approx(rms, rel=slack))
+    assert used(built, "axis 2", "rate") == pytest.approx(rate, rel=0.02)
+    assert used(built, "axis 2", "acceleration") == pytest.approx(acceleration, rel=0.02)
+    assert built.axes.warnings == () and built.outcome == "done"
 
 
 def test_the_plan_follows_the_flights_own_corners_which_the_reference_rounds() -> None:
-    made = planned("inverse=planned")
-    assert error(made) == (pytest.approx(0.135, rel=0.1), pytest.approx(0.012, rel=0.1))
-    assert used(made, "axis 2", "acceleration") == pytest.approx(905, rel=0.1)
+    built = planned("inverse=planned")
+    assert error(built) == (pytest.approx(0.135, rel=0.1), pytest.approx(0.012, rel=0.1))
+    assert used(built, "axis 2", "acceleration") == pytest.approx(905, rel=0.1)
     # No motion follows the steps of the aileron, 1 g in one sample across the beam.
-    (warning,) = made.axes.warnings
-    assert "no motion near by does better" in warning and made.outcome == "done"
+    (warning,) = built.axes.warnings
+    assert "no motion near by does better" in warning and built.outcome == "done"
 
 
 def test_on_an_example_machine_only_the_plan_is_within_limits_and_it_beats_flat() -> None:
@@ -100,18 +100,18 @@ def test_the_reference_never_exceeds_the_record_itself_or_idle_by_more_than_2_pe
     text = EXAMPLE.read_text(encoding="utf-8").replace("f16_8g_turn.csv", f"{record}.csv")
     machine = build_machines(loads(text, folder=EXAMPLE.parent))["centrifuge"].over(0.0, last, ahead=False)
     time = np.linspace(0.0, last, 40_000)
-    load, made = np.asarray(machine.flight.acceleration(time)), np.asarray(machine.reference(time))
+    load, built = np.asarray(machine.flight.acceleration(time)), np.asarray(machine.reference(time))
     reach = np.linalg.norm(load[:, 1:], axis=1) >= 1.05 * 9.80665
     most = np.maximum(np.linalg.norm(load, axis=1), float(machine.idle))
     assert reach.mean() > 0.6
-    assert np.linalg.norm(made, axis=1)[reach].max() > 70
-    assert (np.linalg.norm(made, axis=1) / most)[reach].max() < 1.02
+    assert np.linalg.norm(built, axis=1)[reach].max() > 70
+    assert (np.linalg.norm(built, axis=1) / most)[reach].max() < 1.02
 
 
 def test_what_is_held_is_a_share_of_the_flights_time() -> None:
     """Spin-up and spin-down, half of the run, are no part of it."""
-    made = planned("start=rest")
-    flown = (made.time >= made.axes.span[0]) & (made.time <= made.axes.span[1])
+    built = planned("start=rest")
+    flown = (built.time >= built.axes.span[0]) & (built.time <= built.axes.span[1])
     assert flown.mean() < 0.9
-    held = made.axes.not_followed[flown].mean()
-    assert f"held {held:.0%} of the flight's time" in repr(made) and held < made.axes.not_followed.mean()
+    held = built.axes.not_followed[flown].mean()
+    assert f"held {held:.0%} of the flight's time" in repr(built) and held < built.axes.not_followed.mean()

@@ -214,20 +214,20 @@ def test_limits_that_need_no_response_are_judged(scenario: Path, capsys: pytest.
 def test_plan_run_and_place_agree_on_the_largest_load(scenario: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Between their own times: of the plan and the place every 2 ms, of the run its steps."""
     scenario.write_text(PLAN + BEAM, encoding="utf-8")
-    found = []
+    answer = []
     for verb, *more in (("plan",), ("run", *STEP, "--ignore-limits"), ("place", "--no-proof", *STEP)):
         assert main([verb, str(scenario), "--json", *more]) in (0, 1)
         facts = json.loads(capsys.readouterr().out)
         if verb == "place":
-            found.append(facts["before"]["largest_load"])
+            answer.append(facts["before"]["largest_load"])
             assert all(each["largest_load"]["machine"] > 0 for each in facts["options"])
         else:
-            found.append(
+            answer.append(
                 (facts["motions"]["spin"] if verb == "plan" else facts["comparisons"][0])["peaks"]["largest_load"]
             )
     for name, accuracy in {"flight": 1e-9, "machine": 5e-4, "time_flight": 0.01, "time_machine": 0.01}.items():
-        assert [each[name] for each in found] == pytest.approx([found[0][name]] * 3, rel=accuracy)
-    assert {each["place_machine"] for each in found} == {"the tip"} and found[0]["ratio"] > 1.03
+        assert [each[name] for each in answer] == pytest.approx([answer[0][name]] * 3, rel=accuracy)
+    assert {each["place_machine"] for each in answer} == {"the tip"} and answer[0]["ratio"] > 1.03
 
 
 def test_the_load_is_compared_with_the_flight_and_not_only_with_the_rounded_target(
@@ -300,8 +300,10 @@ def test_what_is_lacking_across_the_beam_is_enough_when_added(
 def test_spin_up_and_spin_down_are_told_and_commanded(
     scenario: Path, tmp_path: Path, start: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    given = f'inverse = "flat"\nstart = "{start}"\nspin_up = "2 s"\nspin_down = "3 s"'
-    text = PLAN.replace('inverse = "flat"', given).replace('acceleration = "5 rad/s^2"', 'acceleration = "2 rad/s^2"')
+    arguments = f'inverse = "flat"\nstart = "{start}"\nspin_up = "2 s"\nspin_down = "3 s"'
+    text = PLAN.replace('inverse = "flat"', arguments).replace(
+        'acceleration = "5 rad/s^2"', 'acceleration = "2 rad/s^2"'
+    )
     scenario.write_text(text, encoding="utf-8")
     assert main(["plan", str(scenario), "--ignore-limits", "--json", "--out", str(tmp_path)]) == 0
     spin = json.loads(capsys.readouterr().out)["motions"]["spin"]

@@ -216,8 +216,8 @@ def test_tracking(study: Study) -> None:
 def test_hub_without_a_torque(study: Study) -> None:
     slew = study.responses["slew"]
     assert len(plot_hub(slew, slew.hub, "").axes) == 3
-    given = replace(slew.hub, drive_torque=None)
-    assert len(plot_hub(slew, given, "").axes) == 2
+    arguments = replace(slew.hub, drive_torque=None)
+    assert len(plot_hub(slew, arguments, "").axes) == 2
 
 
 def test_what_diverged_says_so(study: Study) -> None:

@@ -40,10 +40,10 @@ NASTY = "</script><script>alert(1)</script> <b>&\" '\u202e\x1b[31m"
 
 
 def header_of(page: str) -> dict[str, object]:
-    found = re.search(r'<script type="application/json" id="gbeam-header">(.*?)</script>', page, re.DOTALL)
-    assert found is not None
-    made: dict[str, object] = json.loads(found[1])
-    return made
+    match = re.search(r'<script type="application/json" id="gbeam-header">(.*?)</script>', page, re.DOTALL)
+    assert match is not None
+    built: dict[str, object] = json.loads(match[1])
+    return built
 
 
 def test_page_says_what_the_run_says(study: Study) -> None:
@@ -123,9 +123,9 @@ def test_page_of_a_file_is_that_of_the_result(study: Study, tmp_path: Path) -> N
 
 def test_page_of_json_is_that_of_the_result(tmp_path: Path) -> None:
     modes = gb.modes(gb.assemble(BEAM, "FOAM", z=3))
-    found = facts(modes)
-    assert found is not None
-    (tmp_path / "modes.json").write_text(as_json(found))
+    answer = facts(modes)
+    assert answer is not None
+    (tmp_path / "modes.json").write_text(as_json(answer))
     page = report_of_file(tmp_path / "modes.json")
     assert all(f"{frequency:#.4g}" in page for frequency in modes.frequency)
     header = header_of(page)
@@ -213,9 +213,9 @@ def test_scene_has_the_motions_with_an_outline(study: Study) -> None:
 
 
 def test_shown_numbers_are_those_of_the_result(study: Study) -> None:
-    found = facts(study)
-    assert found is not None
-    page = page_of(found, {})
+    answer = facts(study)
+    assert answer is not None
+    page = page_of(answer, {})
     assert header_of(page)["plots"] == []  # no variables, no histories
     text = re.sub(r"<[^>]+>", " ", page)
     for pair in study.comparisons[0].peaks.values():

@@ -44,12 +44,12 @@ def test_what_does_not_move_is_not_viewed(every: dict[str, Any]) -> None:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_goes_to_xarray_and_to_a_file(every: dict[str, Any], kind: str, tmp_path: Path) -> None:
-    made = every[kind].to_xarray()
+    built = every[kind].to_xarray()
     every[kind].save(tmp_path / "x.nc")
     # The file also has its figures as JSON, for a report.
     read = xr.load_dataset(tmp_path / "x.nc", engine="h5netcdf").drop_vars("facts", errors="ignore")
-    xr.testing.assert_identical(read, made)
-    for name, variable in made.variables.items():
+    xr.testing.assert_identical(read, built)
+    for name, variable in built.variables.items():
         if variable.dtype.kind == "f":
             assert variable.attrs["units"] and variable.attrs["long_name"], name
 

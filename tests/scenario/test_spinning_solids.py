@@ -52,9 +52,9 @@ def test_a_solid_has_the_campbell_diagram_of_its_beam(tmp_path: Path, capsys: py
     facts = answer(tmp_path, capsys, "campbell", "--to", "60 rad/s", "--modes", "2", "--report", "--out", str(tmp_path))
     hub = gb.Hub(radius=1.0, rate=gb.constant(20.0), setting_angle=np.pi / 2)
     same = gb.campbell(beam(), hub, end=60.0, modes=2)
-    found = np.array([each["frequency"] for each in facts["tracks"]])
-    np.testing.assert_allclose(found, same.frequency.T, rtol=3e-3)
-    assert found[0, -1] > 1.1 * found[0, 0]
+    result = np.array([each["frequency"] for each in facts["tracks"]])
+    np.testing.assert_allclose(result, same.frequency.T, rtol=3e-3)
+    assert result[0, -1] > 1.1 * result[0, 0]
     assert "arm" in (tmp_path / "campbell.html").read_text(encoding="utf-8")
 
 

@@ -230,14 +230,14 @@ def test_a_node_has_its_number_in_the_file(tmp_path: Path, name: str, text: str,
 def test_what_a_text_file_says_otherwise_is_refused(tmp_path: Path, name: str, old: str, new: str, words: str) -> None:
     """Of a cube that is read: places that are elsewhere, numbers that are twice, elements that lack nodes."""
     (tmp_path / name).write_text(BDF if name == "a.bdf" else INP)
-    given = {"materials": STEEL, "clamp": "7" if name == "a.bdf" else "wall", "unit": "m"}
-    whole = gb.SolidMesh.read(tmp_path / name, **given)
+    arguments = {"materials": STEEL, "clamp": "7" if name == "a.bdf" else "wall", "unit": "m"}
+    whole = gb.SolidMesh.read(tmp_path / name, **arguments)
     assert (whole.mass, list(whole.blocks[0].numbers)) == (pytest.approx(7850.0), [5 if name == "a.bdf" else 1])
     text = (tmp_path / name).read_text()
     assert old in text
     (tmp_path / name).write_text(text.replace(old, new, 1))
     with pytest.raises(gb.InputError, match=rf"^mesh .*{words}"):
-        gb.SolidMesh.read(tmp_path / name, **given)
+        gb.SolidMesh.read(tmp_path / name, **arguments)
 
 
 # A cube in two groups, of which version 2 has its element twice, and a wall.

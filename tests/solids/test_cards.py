@@ -101,9 +101,9 @@ def test_a_mass_on_springs_has_its_frequencies(tmp_path: Path) -> None:
     """On no node of the solid: √(k/m) along three axes, beside the modes of the block."""
     k = [SPRING, 2 * SPRING, 3 * SPRING, 0.0, 0.0, 0.0]
     cards = f"CBUSH,5,6,902,,,,,0\nPBUSH,6,K,{','.join(map(str, k))}", f"CONM2,7,902,,{LUMP}"
-    found = frequencies(read(nastran(tmp_path, *cards), mass_unit="Mg"), 9)
+    computed = frequencies(read(nastran(tmp_path, *cards), mass_unit="Mg"), 9)
     for each in np.sqrt(np.array(k[:3]) * 1e3 / (1e3 * LUMP)) / (2 * np.pi):
-        assert np.abs(found / each - 1).min() < 1e-6
+        assert np.abs(computed / each - 1).min() < 1e-6
     with pytest.raises(gb.InputError, match=r"node 902, which is on no node of the solid, and its springs leave it"):
         read(nastran(tmp_path, f"CONM2,7,902,,{LUMP}"), mass_unit="Mg")
 
@@ -172,17 +172,17 @@ def test_an_rbe3_moves_as_its_nodes_do_on_average(tmp_path: Path) -> None:
     """Beside a body on an interface of a system, whose reduction has modes and answers to forces there."""
     mesh = averaged(tmp_path)
     assert mesh.warnings == ()
-    found = frequencies(mesh)
-    np.testing.assert_allclose(frequencies(averaged(tmp_path, (2.0, 2.0, 2.0, 2.0))), found, rtol=1e-10)
+    computed = frequencies(mesh)
+    np.testing.assert_allclose(frequencies(averaged(tmp_path, (2.0, 2.0, 2.0, 2.0))), computed, rtol=1e-10)
     plain, _ = written(tmp_path, ".bdf")
     bar = read(plain, interfaces={"end": "8"}).reduced(modes=30, damping_ratio=0)
     centre = 1e-3 * (np.array(PLACES[900]) + OFFSET - (200.0, 0.0, 0.0))
     body = gb.RigidBody(1e3 * MASS, 1e-3 * INERTIA, centre=tuple(centre))
     joints = {"wall": gb.Joint("fixed", "bar"), "mount": gb.Joint("fixed", "body", on="bar.end")}
     system = gb.System({"bar": bar.structure, "body": body}, joints)
-    np.testing.assert_allclose(found[:4], gb.modes(system).frequency[:4], rtol=1e-4)
+    np.testing.assert_allclose(computed[:4], gb.modes(system).frequency[:4], rtol=1e-4)
     rigid = frequencies(read(nastran(tmp_path, conm2(900)), mass_unit="Mg"))
-    assert (found < rigid).all() and found[3] < 0.997 * rigid[3]
+    assert (computed < rigid).all() and computed[3] < 0.997 * rigid[3]
 
 
 @pytest.mark.parametrize("words", ["*KINEMATIC\n1, 3\n", "*DISTRIBUTING\n"])
@@ -242,12 +242,12 @@ def test_a_kinematic_coupling_is_a_rigid_link(tmp_path: Path, surface: str) -> N
     rest = "*NODE\n900, 205., 4., 0.\n" + BODY.format(node=900) + "*ELSET, ELSET=last\n2\n"
     coupled = f"*SURFACE, NAME=seat, TYPE={surface}\n*COUPLING, REF NODE=900, SURFACE=seat, CONSTRAINT NAME=c\n"
     file.write_text(f"{plain}{rest}{coupled}*KINEMATIC\n1, 3\n")
-    found = read(file, mass_unit="Mg")
-    assert found.warnings == () and list(found.links.nodes) == ["*COUPLING c"]
+    read_back = read(file, mass_unit="Mg")
+    assert read_back.warnings == () and list(read_back.links.nodes) == ["*COUPLING c"]
     nodes = f"*NSET, NSET=face\n{', '.join(map(str, face))}\n*RIGID BODY, NSET=face, REF NODE=900\n"
     (tmp_path / "rigid.inp").write_text(plain + rest + nodes)
     wanted = read(tmp_path / "rigid.inp", mass_unit="Mg")
-    np.testing.assert_allclose(frequencies(found), frequencies(wanted), rtol=1e-9)
+    np.testing.assert_allclose(frequencies(read_back), frequencies(wanted), rtol=1e-9)
     file.write_text(f"{plain}{rest}{coupled}*KINEMATIC\n1, 2\n")
     with pytest.raises(gb.InputError, match="COUPLING c, which holds the components 1, 2 alone"):
         read(file, mass_unit="Mg")
@@ -360,9 +360,9 @@ def test_a_body_on_shells(tmp_path: Path) -> None:
     stiffness = bent * np.array([[12 / length**3, -6 / length**2], [-6 / length**2, 4 / length]])
     closed = np.sqrt(eigh(stiffness, np.diag([1.0, 2e-3]), eigvals_only=True)) / 2 / np.pi
     for mesh, close in ((rigid, 2e-3), (tipped(tmp_path, BODY.replace("node", "tip")), 0.015)):
-        found = frequencies(mesh, 3)
+        computed = frequencies(mesh, 3)
         for each in closed:
-            assert np.abs(found / each - 1).min() < close
+            assert np.abs(computed / each - 1).min() < close
 
 
 @pytest.mark.parametrize(

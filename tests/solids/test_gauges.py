@@ -200,8 +200,8 @@ def test_the_stiffness_of_a_solid_is_fitted_to_a_gauge(scenario: Path) -> None:
         comments="", encoding="utf-8",
     )  # fmt: skip
     path = "bodies.bar.material.youngs_modulus"
-    found = gb.fit(scenario, data, [path], overrides=[f'{path}="60 GPa"'])
-    assert found.values[0] == pytest.approx(70e9, rel=1e-4) and found.before[0] == 60e9
+    fitted = gb.fit(scenario, data, [path], overrides=[f'{path}="60 GPa"'])
+    assert fitted.values[0] == pytest.approx(70e9, rel=1e-4) and fitted.before[0] == 60e9
     wrong = scenario.parent / "wrong.csv"
     np.savetxt(
         wrong, np.stack([response.time, strain], axis=1), delimiter=",", header="time,strain.x@nose", comments=""

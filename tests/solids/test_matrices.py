@@ -154,8 +154,8 @@ WRITERS: dict[str, Callable[[Path], Any]] = {
 def test_matrices_come_from_files(tmp_path: Path, name: str) -> None:
     WRITERS[name](tmp_path / name)
     which = "K" if name.startswith("both") else ""
-    found = gb.read_matrix(tmp_path / name, which)
-    np.testing.assert_array_equal(found.toarray() if sparse.issparse(found) else found, SPRINGS)
+    answer = gb.read_matrix(tmp_path / name, which)
+    np.testing.assert_array_equal(answer.toarray() if sparse.issparse(answer) else answer, SPRINGS)
     if which:
         with pytest.raises(gb.InputError, match="name is missing; choose from"):
             gb.read_matrix(tmp_path / name)

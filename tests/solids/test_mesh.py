@@ -102,14 +102,14 @@ def test_nothing_depends_on_the_axes() -> None:
     board = gb.Orthotropic(1900, (22e9, 18e9, 9e9), (0.15, 0.3, 0.28), (5e9, 3e9, 2.5e9), ((1, 0, 0), (0, 1, 0)))
     turned = replace(board, axes=tuple(map(tuple, turn.T[:2])))
     at, rates = np.array([3.0, -40.0, 60.0]), np.array([9.0, -14.0, 21.0])
-    found = []
+    answer = []
     for R, material in ((np.eye(3), board), (turn, turned)):
         bent = block("tetra10", (3, 1, 1), (0.2, 0.05, 0.02), lambda x, R=R: x @ R.T)
         model = solid(bent, material, point_masses={"tip": 0.2}).reduced(modes=4, damping_ratio=0.02)
         flight = gb.Flight(acceleration=constant(R @ at), rates=constant(R @ rates))
-        found.append((gb.modes(model.structure, flight), gb.static(model.structure, flight).tip @ R))
-    np.testing.assert_allclose(found[1][0].eigenvalue, found[0][0].eigenvalue, rtol=1e-7)
-    np.testing.assert_allclose(found[1][1], found[0][1], rtol=1e-7, atol=1e-12)
+        answer.append((gb.modes(model.structure, flight), gb.static(model.structure, flight).tip @ R))
+    np.testing.assert_allclose(answer[1][0].eigenvalue, answer[0][0].eigenvalue, rtol=1e-7)
+    np.testing.assert_allclose(answer[1][1], answer[0][1], rtol=1e-7, atol=1e-12)
 
 
 def test_an_isotropic_material_is_an_orthotropic_one() -> None:
@@ -164,10 +164,10 @@ def test_nafems_fv52_square_plate() -> None:
     x, y, z = mesh.points.T
     held = np.zeros(3 * len(x), dtype=bool)
     held[2::3] = (z < -0.49) & ((np.abs(x - 5) > 4.99) | (np.abs(y) > 4.99))
-    found = frequencies(mesh, held, 10, shift=-1.0)
-    assert (found[:3] < 0.1).all()
-    np.testing.assert_allclose(found[3:], FV52_ELEMENTS, rtol=4e-3)
-    np.testing.assert_allclose(found[3:], FV52, rtol=3e-2)
+    computed = frequencies(mesh, held, 10, shift=-1.0)
+    assert (computed[:3] < 0.1).all()
+    np.testing.assert_allclose(computed[3:], FV52_ELEMENTS, rtol=4e-3)
+    np.testing.assert_allclose(computed[3:], FV52, rtol=3e-2)
 
 
 def test_the_mesh_converges_and_says_by_how_much() -> None:

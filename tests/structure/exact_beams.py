@@ -17,15 +17,15 @@ EI, RHO_A = MODULUS * INERTIA, DENSITY * AREA
 
 def roots(determinant: Callable[[float], float], count: int, start: float, stride: float) -> Array:
     """First roots of a function, found by its changes of sign."""
-    found: list[float] = []
+    answer: list[float] = []
     low, before = start, determinant(start)
-    while len(found) < count:
+    while len(answer) < count:
         high = low + stride
         after = determinant(high)
         if before * after < 0:
-            found.append(float(brentq(determinant, low, high, xtol=1e-14, rtol=1e-14)))
+            answer.append(float(brentq(determinant, low, high, xtol=1e-14, rtol=1e-14)))
         low, before = high, after
-    return np.array(found)
+    return np.array(answer)
 
 
 def waves(x: float, beta: float, length: float) -> Array:

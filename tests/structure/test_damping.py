@@ -34,8 +34,8 @@ def test_what_depends_on_damping_needs_it(answer: str, compute: Callable[[], obj
 
 def test_what_does_not_has_none() -> None:
     assert static(UNDAMPED, FLIGHT).tip[2] < 0
-    found = modes(UNDAMPED)
-    assert not found.damping_given and np.abs(found.damping_ratio).max() < 1e-12
+    vibration = modes(UNDAMPED)
+    assert not vibration.damping_given and np.abs(vibration.damping_ratio).max() < 1e-12
 
 
 def test_files_have_the_same_rule(gbeam: Callable[..., Answer], tmp_path: Path) -> None:

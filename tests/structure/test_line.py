@@ -21,8 +21,8 @@ MACHINE = gb.Centrifuge(FLIGHT, arm=3.3, control_point=0.1, gravity=True, smooth
 
 def beam(line: gb.Line | None = None, **changes: Any) -> gb.Beam:
     length = LENGTH if line is None else line.length
-    made = gb.Beam(length, SECTION, ALUMINIUM, damping_ratio=0.01, rotary_inertia=True, line=line)
-    return replace(made, **changes)
+    built = gb.Beam(length, SECTION, ALUMINIUM, damping_ratio=0.01, rotary_inertia=True, line=line)
+    return replace(built, **changes)
 
 
 def straight(x: np.ndarray) -> np.ndarray:
@@ -138,11 +138,11 @@ def test_a_root_that_is_turned_is_a_base_that_is_turned(kind: str) -> None:
     load = np.array([30.0, 20.0, -80.0])
     one, two = (gb.assemble(each, kind, axial=1, y=2, z=3, twist=1, shear_z=1) for each in (straight, turned))
     expected = gb.static(one, acceleration=tuple(load))
-    found = gb.static(two, acceleration=tuple(turn.apply(load)))
-    np.testing.assert_allclose(found.q, expected.q, rtol=1e-9, atol=1e-12)
-    np.testing.assert_allclose(found.tip, turn.apply(expected.tip), rtol=1e-9, atol=1e-12)
-    assert found.loads is not None and expected.loads is not None
-    np.testing.assert_allclose(found.loads.section_moment, expected.loads.section_moment, rtol=1e-9, atol=1e-12)
+    rest = gb.static(two, acceleration=tuple(turn.apply(load)))
+    np.testing.assert_allclose(rest.q, expected.q, rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(rest.tip, turn.apply(expected.tip), rtol=1e-9, atol=1e-12)
+    assert rest.loads is not None and expected.loads is not None
+    np.testing.assert_allclose(rest.loads.section_moment, expected.loads.section_moment, rtol=1e-9, atol=1e-12)
     np.testing.assert_allclose(gb.modes(two).frequency, gb.modes(one).frequency, rtol=1e-9)
 
 
@@ -229,10 +229,10 @@ duration = "1 s"
     from gbeam.scenario.load import loads
 
     def line(written: str, length: bool = False) -> gb.Line:
-        given = text.replace("LINE", written)
+        arguments = text.replace("LINE", written)
         if not length:
-            given = given.replace('length = "500 mm"\n', "")
-        case = build(loads(given))
+            arguments = arguments.replace('length = "500 mm"\n', "")
+        case = build(loads(arguments))
         assert case.beam.line is not None
         case.assemble()
         return case.beam.line

@@ -97,10 +97,10 @@ def _unit_thrust(k: int) -> np.ndarray:
 def stiffness() -> tuple[np.ndarray, ...]:
     """M, K and what K loses under a dead and under a following unit thrust, of FOAM."""
     thrusts = [Load(1.0, force=(-1.0, 0.0, 0.0), follower=follower) for follower in (False, True)]
-    found = assemble(beam(1.0, 1.0, *thrusts), Model("FOAM", 0, 0, 8)).coefficients
-    o, free = np.zeros(3), found.stiffness
-    under = [found.at(o, o, o, _unit_thrust(k))[1] for k in (0, 1)]
-    return tuple(np.asarray(m) for m in (found.mass, free, free - under[0], free - under[1]))
+    structure = assemble(beam(1.0, 1.0, *thrusts), Model("FOAM", 0, 0, 8)).coefficients
+    o, free = np.zeros(3), structure.stiffness
+    under = [structure.at(o, o, o, _unit_thrust(k))[1] for k in (0, 1)]
+    return tuple(np.asarray(m) for m in (structure.mass, free, free - under[0], free - under[1]))
 
 
 def test_a_dead_thrust_buckles_at_eulers_load() -> None:

@@ -64,8 +64,8 @@ def test_the_worst_fibre_ranges_as_far_as_any(shape: str) -> None:
     force, moment = rng.normal(size=(40, 2, 3)) * 100, rng.normal(size=(40, 2, 3))
     bent = moment[:, 1, 1, None] * z * c_z / values.inertia_y[1] - moment[:, 1, 2, None] * y * c_y / values.inertia_z[1]
     ranges = np.ptp(force[:, 1, 0, None] / values.area[1] + bent, axis=0)
-    found = np.ptp(worst_fibres(values, force, moment)[:, 1])
-    assert 0.99 * ranges.max() <= found <= ranges.max() * (1 + 1e-9)
+    answer = np.ptp(worst_fibres(values, force, moment)[:, 1])
+    assert 0.99 * ranges.max() <= answer <= ranges.max() * (1 + 1e-9)
 
 
 def test_a_specimen_pushed_along_x_says_so_everywhere(gbeam: Callable[..., Answer], tmp_path: Path) -> None:

@@ -21,7 +21,7 @@ FIXED = ("response.step=5 ms",)
 
 
 def test_a_case_has_the_figures_of_its_own_run(fast: Path) -> None:
-    found = gb.sweep(fast, {LEVEL: ["3 g", "6 g", "8 g"]}, MEASURES, overrides=FIXED)
+    swept = gb.sweep(fast, {LEVEL: ["3 g", "6 g", "8 g"]}, MEASURES, overrides=FIXED)
     for k, level in enumerate(("3 g", "6 g", "8 g")):
         study = gb.study(gb.read_scenario(fast, [*FIXED, f"{LEVEL}={level}"]))
         flight, spin = study.responses["flight"], study.responses["spin"]
@@ -32,7 +32,7 @@ def test_a_case_has_the_figures_of_its_own_run(fast: Path) -> None:
             study.comparisons[0].peaks["tip"].ratio - 1,
             flight.peaks.loads.moment[0].components.value[1],
         ]
-        assert [found.measures[name][k] for name in MEASURES] == pytest.approx(alone, rel=1e-9)
+        assert [swept.measures[name][k] for name in MEASURES] == pytest.approx(alone, rel=1e-9)
 
 
 def test_bytes_depend_neither_on_the_company_nor_on_the_workers_nor_on_the_store(fast: Path) -> None:
@@ -52,10 +52,10 @@ def test_bytes_depend_neither_on_the_company_nor_on_the_workers_nor_on_the_store
 
 def test_a_case_that_fails_leaves_its_batch_as_it_is(fast: Path) -> None:
     over = {"motion.spin.control_point": ["100 mm", "400 mm", "200 mm"], LEVEL: ["4 g", "600 g"]}
-    found = gb.sweep(fast, over, MEASURES, overrides=FIXED)
+    swept = gb.sweep(fast, over, MEASURES, overrides=FIXED)
     fine = gb.sweep(fast, {**over, "motion.spin.control_point": ["100 mm"]}, MEASURES, overrides=FIXED)
-    assert found.outcome[:, 0].tolist() == ["done", "refused", "done"] and set(found.outcome[:, 1]) != {"done"}
-    assert all(found.measures[name][0, 0] == fine.measures[name][0, 0] for name in MEASURES)
+    assert swept.outcome[:, 0].tolist() == ["done", "refused", "done"] and set(swept.outcome[:, 1]) != {"done"}
+    assert all(swept.measures[name][0, 0] == fine.measures[name][0, 0] for name in MEASURES)
 
 
 def test_each_case_of_a_batch_that_fails_is_computed_once(fast: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -76,9 +76,9 @@ def test_each_case_of_a_batch_that_fails_is_computed_once(fast: Path, monkeypatc
         return real(iter(some), *args, **more)
 
     monkeypatch.setattr("gbeam.studies.evaluate.simulate_batch", failing)
-    found = rows(whole, tasks)
-    assert [row.case for row in found] == list(range(11)) and sorted(computed) == [*range(200, 206), *range(207, 211)]
-    for row, own in zip(found, alone, strict=True):
+    answer = rows(whole, tasks)
+    assert [row.case for row in answer] == list(range(11)) and sorted(computed) == [*range(200, 206), *range(207, 211)]
+    for row, own in zip(answer, alone, strict=True):
         if row.case == 6:
             assert row.outcome == "failed" and row.message == "RuntimeError: case 6 fails"
         else:
@@ -117,9 +117,9 @@ def test_loads_are_computed_where_a_figure_is_one_of_them(fast: Path, keys: str,
 
 
 def test_few_cases_of_an_automatic_step_are_computed_one_by_one(fast: Path) -> None:
-    for given, cases, together in (((), 31, False), ((), 32, True), (FIXED, 2, True)):
+    for arguments, cases, together in (((), 31, False), ((), 32, True), (FIXED, 2, True)):
         inquiry = Inquiry(
-            ScenarioTemplate(load(fast, given)),
+            ScenarioTemplate(load(fast, arguments)),
             "run",
             None,
             keys=(("motions", "flight", "tip", "z", "max_abs"),),
@@ -132,15 +132,15 @@ def test_few_cases_of_an_automatic_step_are_computed_one_by_one(fast: Path) -> N
 
 def test_many_cases_of_an_automatic_step_have_the_figures_of_their_own_runs(fast: Path) -> None:
     """The machine's runs, which spin up, are integrated alone."""
-    found = gb.sweep(fast, {LEVEL: "3 g:8 g:32"}, MEASURES, overrides=["response.duration=0.6 s"])
+    swept = gb.sweep(fast, {LEVEL: "3 g:8 g:32"}, MEASURES, overrides=["response.duration=0.6 s"])
     levels = np.linspace(3, 8, 32).tolist()
     for k in (0, 17):
-        given = [f"{LEVEL}={levels[k]!r} g", "response.duration=0.6 s", "response.estimate=false"]
-        study = gb.study(gb.read_scenario(fast, given))
+        arguments = [f"{LEVEL}={levels[k]!r} g", "response.duration=0.6 s", "response.estimate=false"]
+        study = gb.study(gb.read_scenario(fast, arguments))
         peaks = study.responses["flight"].peaks
         assert peaks.loads is not None
         alone = [peaks.max_abs[2], peaks.loads.moment[0].components.value[1]]
-        assert [found.measures[MEASURES[i]][k] for i in (0, 3)] == pytest.approx(alone, rel=1e-9)
+        assert [swept.measures[MEASURES[i]][k] for i in (0, 3)] == pytest.approx(alone, rel=1e-9)
 
 
 def test_cases_with_other_steps_stay_apart() -> None:

@@ -129,12 +129,12 @@ def test_a_local_cluster_gives_the_same_bytes_and_records_what_ends_its_workers(
         address = cluster.scheduler_address
         theirs = gb.sweep(fast, LEVELS, TIP, verb="static", scheduler=address)
         over = {"beam.length": ["0.2 m", "0.22 m", "0.25 m", "0.27 m"]}
-        found = gb.sweep(fast, over, {"length": measures.deadly}, scheduler=address)
+        swept = gb.sweep(fast, over, {"length": measures.deadly}, scheduler=address)
     ours = gb.sweep(fast, LEVELS, TIP, verb="static")
     assert ours.measures["flight.tip.z"].tobytes() == theirs.measures["flight.tip.z"].tobytes()
     assert data(ours).identical(data(theirs))
-    assert found.outcome.tolist() == ["done", "done", "failed", "done"]
-    assert found.message[2] == "the process that computed it died"
+    assert swept.outcome.tolist() == ["done", "done", "failed", "done"]
+    assert swept.message[2] == "the process that computed it died"
 
 
 def test_workers_started_by_hand_lose_no_case_when_one_is_killed(
@@ -148,9 +148,9 @@ def test_workers_started_by_hand_lose_no_case_when_one_is_killed(
     by_hand.two()
     whole = gb.sweep(fast, LENGTHS, {"length": measures.slow})
     kill = after(6, by_hand.workers[0].kill)
-    found = gb.sweep(fast, LENGTHS, {"length": measures.slow}, scheduler=by_hand.address, progress=kill)
+    swept = gb.sweep(fast, LENGTHS, {"length": measures.slow}, scheduler=by_hand.address, progress=kill)
     assert by_hand.workers[0].wait() == -signal.SIGKILL
-    assert data(found).identical(data(whole))
+    assert data(swept).identical(data(whole))
     # A worker with another version, among those with the right one.
     Path("other.py").write_text("import gbeam\ngbeam.__version__ = '0.0.1'\n", encoding="utf-8")
     by_hand.worker("--preload", str(Path("other.py").resolve()), "--name", "stranger")
@@ -186,5 +186,5 @@ def test_a_driver_and_a_scheduler_that_are_killed_are_resumed(
     with pytest.raises(InputError, match="does not answer"):
         monkeypatch.setattr("gbeam.studies.workers.CONNECTION", 0.5)
         gb.sweep(fast, LENGTHS, {"length": measures.slow}, **arguments)
-    found = gb.sweep(fast, LENGTHS, {"length": measures.slow}, store="there", resume=True)
-    assert data(found).identical(data(whole))
+    swept = gb.sweep(fast, LENGTHS, {"length": measures.slow}, store="there", resume=True)
+    assert data(swept).identical(data(whole))

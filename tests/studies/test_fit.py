@@ -73,13 +73,13 @@ def test_exact_data_of_three_kinds_give_the_true_values(released: Path) -> None:
         moment,
         -1e6 * strain,
     )
-    found = gb.fit(released, data, [E, DAMPING])
-    assert found.values == pytest.approx(list(TRUE.values()), rel=1e-6)
-    assert (found.errors < 1e-5 * found.values).all() and found.condition < 10 and not found.warnings
-    assert [each.unit for each in found.columns] == ["m", "N m", ""]
-    assert found.before.tolist() == [70e9, 0.01]
-    ds = found.to_xarray()
-    assert ds["fitted"].shape == (3, len(TIME)) and float(ds["value"].sel(parameter=E)) == found.values[0]
+    fitted = gb.fit(released, data, [E, DAMPING])
+    assert fitted.values == pytest.approx(list(TRUE.values()), rel=1e-6)
+    assert (fitted.errors < 1e-5 * fitted.values).all() and fitted.condition < 10 and not fitted.warnings
+    assert [each.unit for each in fitted.columns] == ["m", "N m", ""]
+    assert fitted.before.tolist() == [70e9, 0.01]
+    ds = fitted.to_xarray()
+    assert ds["fitted"].shape == (3, len(TIME)) and float(ds["value"].sel(parameter=E)) == fitted.values[0]
 
 
 @pytest.mark.slow
@@ -89,9 +89,9 @@ def test_true_values_lie_within_two_sigma_in_trials(released: Path) -> None:
     near = [f"{E}=66.5 GPa", f"{DAMPING}=0.0125"]  # searches from afar are tested above
     for _ in range(20):  # of 100, 96 and 94 were inside
         noisy = tip + 0.02 * np.abs(tip).max() * random.standard_normal(len(tip))
-        found = gb.fit(released, written("data.csv", "time,tip.z", TIME, noisy), [E, DAMPING], overrides=near)
-        assert np.abs(found.values / list(TRUE.values()) - 1).max() < 0.2
-        inside += np.abs(found.values - list(TRUE.values())) <= 2 * found.errors
+        fitted = gb.fit(released, written("data.csv", "time,tip.z", TIME, noisy), [E, DAMPING], overrides=near)
+        assert np.abs(fitted.values / list(TRUE.values()) - 1).max() < 0.2
+        inside += np.abs(fitted.values - list(TRUE.values())) <= 2 * fitted.errors
     # Of 20 that are inside with a probability of 95.4 %, 16 or fewer are so once in a hundred times.
     assert (inside > 16).all(), inside
 
@@ -101,10 +101,10 @@ def test_frequencies_and_damping_give_the_values_and_their_errors(released: Path
     data = written(
         "modes.csv", "mode,frequency [Hz],damping_ratio", [1, 2], 1.001 * modes.frequency, modes.damping_ratio
     )
-    found = gb.fit(released, data, [E, DAMPING])
+    fitted = gb.fit(released, data, [E, DAMPING])
     # Both frequencies a thousandth too high: a stiffness that is two thousandths.
-    assert found.values == pytest.approx([1.002001 * TRUE[E], TRUE[DAMPING]], rel=1e-6)
-    assert found.modal and found.at.tolist() == [1, 2]
+    assert fitted.values == pytest.approx([1.002001 * TRUE[E], TRUE[DAMPING]], rel=1e-6)
+    assert fitted.modal and fitted.at.tolist() == [1, 2]
 
 
 def test_modes_are_fitted_with_the_options_of_their_question(released: Path, gbeam: Call) -> None:
@@ -127,14 +127,14 @@ def test_errors_and_intervals_of_few_data_are_those_of_linear_least_squares(rele
     """Every frequency goes as the root of the stiffness: by hand, with n − 1 in the variance and Student's quantile."""
     own = gb.modes(gb.read_scenario(released).assemble(), gb.read_scenario(released).motions["flight"]).frequency
     measured = own * [1.004, 0.999]
-    found = gb.fit(released, written("modes.csv", "mode,frequency [Hz]", [1, 2], measured), [E])
+    fitted = gb.fit(released, written("modes.csv", "mode,frequency [Hz]", [1, 2], measured), [E])
     weights = 1 / measured  # a frequency's noise is a share of it
     root = (weights**2 * own * measured).sum() / (weights**2 * own**2).sum()
     variance = (((measured - root * own) * weights) ** 2).sum() / (2 - 1)
     error = np.sqrt(variance / (weights**2 * own**2).sum()) * 2 * root * 70e9
-    assert found.values[0] == pytest.approx(70e9 * root**2, rel=1e-7)
-    assert found.errors[0] == pytest.approx(error, rel=1e-4)
-    assert found.intervals[0] - found.values[0] == pytest.approx(12.7062 * error * np.array([-1, 1]), rel=1e-4)
+    assert fitted.values[0] == pytest.approx(70e9 * root**2, rel=1e-7)
+    assert fitted.errors[0] == pytest.approx(error, rel=1e-4)
+    assert fitted.intervals[0] - fitted.values[0] == pytest.approx(12.7062 * error * np.array([-1, 1]), rel=1e-4)
 
 
 def test_what_the_data_cannot_tell_is_named(released: Path) -> None:
@@ -152,16 +152,16 @@ def test_what_the_data_cannot_tell_is_named(released: Path) -> None:
 
 def test_residuals_that_are_no_noise_are_warned_of(released: Path) -> None:
     tip, _, _ = histories(released)
-    found = gb.fit(released, written("data.csv", "time,tip.z", TIME, tip + 1e-4 * np.sin(20 * TIME)), [E, DAMPING])
-    assert "the residuals of tip.z are no noise" in found.warnings[0]
+    fitted = gb.fit(released, written("data.csv", "time,tip.z", TIME, tip + 1e-4 * np.sin(20 * TIME)), [E, DAMPING])
+    assert "the residuals of tip.z are no noise" in fitted.warnings[0]
 
 
 def test_a_value_on_its_bound_has_no_error(released: Path) -> None:
     tip, _, _ = histories(released)
     data = written("data.csv", "time,tip.z", TIME, tip)
-    found = gb.fit(released, data, [E, DAMPING], bounds={DAMPING: ("0.5 %", "1.2 %")})
-    assert found.at_bound.tolist() == [False, True] and np.isnan(found.errors[1])
-    assert found.values[1] == pytest.approx(0.012) and "lies on its bound" in found.warnings[0]
+    fitted = gb.fit(released, data, [E, DAMPING], bounds={DAMPING: ("0.5 %", "1.2 %")})
+    assert fitted.at_bound.tolist() == [False, True] and np.isnan(fitted.errors[1])
+    assert fitted.values[1] == pytest.approx(0.012) and "lies on its bound" in fitted.warnings[0]
 
 
 def test_two_times_of_a_gauge_are_a_history_and_feel_what_pulls_the_beam(released: Path) -> None:
@@ -174,8 +174,8 @@ def test_two_times_of_a_gauge_are_a_history_and_feel_what_pulls_the_beam(release
     for times in ([0.0, 0.25], [0.1]):
         data = written("data.csv", "time,strain.z@10 mm,strain.-y@10 mm", times, *2 * [[strain] * len(times)])
         if len(times) > 1:
-            found = gb.fit(released, data, [DENSITY])
-            assert found.values == pytest.approx([2800.0]) and found.correlation == pytest.approx(1.0)
+            fitted = gb.fit(released, data, [DENSITY])
+            assert fitted.values == pytest.approx([2800.0]) and fitted.correlation == pytest.approx(1.0)
         else:
             with pytest.raises(gb.InputError, match=r"data\.csv has one time; give two or more"):
                 gb.fit(released, data, [DENSITY])
@@ -233,8 +233,8 @@ def test_the_values_of_a_loads_profile_are_found(released: Path) -> None:
     case = gb.read_scenario(released, [f"{level}=2.3 N", f"{duration}=42 ms"])
     run = gb.simulate(case.assemble(), case.motions["flight"], case.response)
     data = written("data.csv", "time,tip.z", TIME, CubicSpline(run.time, run.tip[:, 2])(TIME))
-    found = gb.fit(released, data, [level, duration])
-    assert found.values == pytest.approx([2.3, 0.042], rel=1e-5) and found.units == ("N", "s")
+    fitted = gb.fit(released, data, [level, duration])
+    assert fitted.values == pytest.approx([2.3, 0.042], rel=1e-5) and fitted.units == ("N", "s")
 
 
 def test_several_starts_find_a_valley_that_one_does_not(released: Path) -> None:

@@ -61,8 +61,8 @@ def test_a_killed_sweep_is_resumed(fast: Path, whole: Whole, gbeam: Call) -> Non
     assert "add --resume" in gbeam("sweep", fast, *ARGUMENTS).err
     assert gbeam("sweep", fast, *ARGUMENTS, "--resume").status == 0
     assert lines[: lines.rfind(b"\n")] in journal.read_bytes()  # what was done is not computed again
-    found = gb.sweep(fast, OVER, MEASURE, **STATIC, store="there", resume=True)
-    assert np.array_equal(found.measures["flight.tip.z"], whole[0])
+    swept = gb.sweep(fast, OVER, MEASURE, **STATIC, store="there", resume=True)
+    assert np.array_equal(swept.measures["flight.tip.z"], whole[0])
 
 
 def test_a_full_disk_keeps_what_is_done(fast: Path, gbeam: Call, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -160,8 +160,8 @@ def test_damaged_lines_are_named_and_the_others_kept(fast: Path, whole: Whole, g
     assert "the other 17 are as they were" in " ".join(answer.out.split())
     kept = journal.read_bytes().splitlines(keepends=True)
     assert kept[:7] == [*lines[:4], *lines[5:8]] and len(kept) == 41  # and no damaged one
-    found = gb.sweep(fast, OVER, MEASURE, **STATIC, store="there", resume=True)
-    assert np.array_equal(found.measures["flight.tip.z"], whole[0]) and not found.warnings
+    swept = gb.sweep(fast, OVER, MEASURE, **STATIC, store="there", resume=True)
+    assert np.array_equal(swept.measures["flight.tip.z"], whole[0]) and not swept.warnings
 
 
 def test_what_is_kept_is_never_rewritten_in_place(fast: Path, whole: Whole, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -255,11 +255,11 @@ def test_no_damage_of_a_store_changes_a_figure(fast: Path, whole: Whole, draw: D
     inside = draw.draw(one_of(binary(max_size=4), just(text[at : at + 2 * size]), just(b"\n")))
     journal.write_bytes(text[:at] + inside + text[at + size :])
     try:
-        found = gb.sweep(fast, OVER, MEASURE, **STATIC, store="there", resume=True)
+        swept = gb.sweep(fast, OVER, MEASURE, **STATIC, store="there", resume=True)
     except InputError as error:
         assert error.where == "--out"
         return
-    assert np.array_equal(found.measures["flight.tip.z"], whole[0]) and found.counts == {"done": 40}
+    assert np.array_equal(swept.measures["flight.tip.z"], whole[0]) and swept.counts == {"done": 40}
 
 
 def test_a_figure_that_a_case_does_not_have_is_kept_as_none(fast: Path) -> None:

@@ -21,23 +21,23 @@ THICKNESS, POINT = "beam.section.thickness", "motion.spin.control_point"
 def test_a_requirement_that_decides_gives_the_closed_form(fast: Path) -> None:
     # The load grows as the thickness, the deflection falls as its square: the thinnest beam that is stiff enough.
     before = gb.sensitivity(fast, ["flight.tip.z"], [THICKNESS], verb="static").figures[0]
-    found = gb.optimise(
+    optimum = gb.optimise(
         fast, "flight.loads.root_force.z", [THICKNESS], subject_to=["flight.tip.z >= -2 mm"], verb="static",
         motion="flight", bounds={THICKNESS: ("2 mm", "8 mm")},
     )  # fmt: skip
-    assert found.values[0] == pytest.approx(0.004 * np.sqrt(before / -0.002), rel=1e-5)
-    (required,) = found.requirements
-    assert required.active and required.kept and found.outcome == "done" and not found.at_bound.any()
-    assert found.figure == pytest.approx(found.figure_before * found.values[0] / 0.004, rel=1e-6)
+    assert optimum.values[0] == pytest.approx(0.004 * np.sqrt(before / -0.002), rel=1e-5)
+    (required,) = optimum.requirements
+    assert required.active and required.kept and optimum.outcome == "done" and not optimum.at_bound.any()
+    assert optimum.figure == pytest.approx(optimum.figure_before * optimum.values[0] / 0.004, rel=1e-6)
 
 
 def test_of_a_verdict_the_size_is_minimised(fast: Path) -> None:
-    found = gb.optimise(fast, "verdict.tip", [POINT], bounds={POINT: (0.05, 0.3)})
+    optimum = gb.optimise(fast, "verdict.tip", [POINT], bounds={POINT: (0.05, 0.3)})
     # The nearer to the root, the less.
-    assert found.at_bound.all() and abs(found.figure) < 0.2 * abs(found.figure_before)
-    again = gb.study(gb.read_scenario(fast, [f"{POINT}={float(found.values[0])!r}"])).comparisons[0]
-    assert found.figure == pytest.approx(again.figures["tip"], abs=1e-12)  # of a run with its own steps
-    assert (np.diff(np.abs(found.history)) < 0).all() and found.path.shape == (len(found.history), 1)
+    assert optimum.at_bound.all() and abs(optimum.figure) < 0.2 * abs(optimum.figure_before)
+    again = gb.study(gb.read_scenario(fast, [f"{POINT}={float(optimum.values[0])!r}"])).comparisons[0]
+    assert optimum.figure == pytest.approx(again.figures["tip"], abs=1e-12)  # of a run with its own steps
+    assert (np.diff(np.abs(optimum.history)) < 0).all() and optimum.path.shape == (len(optimum.history), 1)
 
 
 def test_the_name_of_a_motion_decides_nothing(fast: Path) -> None:
@@ -49,7 +49,7 @@ def test_the_name_of_a_motion_decides_nothing(fast: Path) -> None:
         file = fast.with_name(f"{name}.toml")
         file.write_text(text.replace("[motion.flight]", f"[motion.{name}]").replace('"flight"\narm', f'"{name}"\narm'))
         required = [f"{name}.{each}" for each in subject]
-        found = gb.optimise(
+        optimum = gb.optimise(
             file,
             f"{name}.loads.root_force.z",
             [THICKNESS],
@@ -58,8 +58,8 @@ def test_the_name_of_a_motion_decides_nothing(fast: Path) -> None:
             motion=name,
             bounds=bounds,
         )
-        assert (found.unit, found.requirements[0].unit) == ("N", "m")
-        least[name] = found.values
+        assert (optimum.unit, optimum.requirements[0].unit) == ("N", "m")
+        least[name] = optimum.values
         assert gb.sensitivity(file, [f"{name}.tip.z.max_abs"], [THICKNESS]).units == ("m",)
     assert least["torque"] == least["step"]
 

@@ -47,15 +47,15 @@ def test_exact_derivatives_are_those_of_runs_by_the_same_steps(fast: Path, integ
     measures = ["flight.tip.z.max_abs", "spin.tip.z.max_abs", "spin.loads.root_moment.y.max_abs", "verdict.tip"]
     parameters = [E, LENGTH, "beam.damping_ratio", LEVEL, ARM, "motion.spin.control_point"]
     ends = ["response.initial.state=undeformed", f"response.integrator={integrator}", "response.step=1 ms"]
-    found = gb.sensitivity(fast, measures, parameters, overrides=ends)
-    assert set(found.methods) == {"exact"} and not found.kinks.any() and np.isnan(found.errors).all()
+    slopes = gb.sensitivity(fast, measures, parameters, overrides=ends)
+    assert set(slopes.methods) == {"exact"} and not slopes.kinks.any() and np.isnan(slopes.errors).all()
     for j, path in enumerate(parameters):
-        h = 1e-5 * found.values[j]
-        figures = np.array([_figures(fast, [*ends, f"{path}={float(found.values[j] + s * h)!r}"]) for s in (1, -1)])
+        h = 1e-5 * slopes.values[j]
+        figures = np.array([_figures(fast, [*ends, f"{path}={float(slopes.values[j] + s * h)!r}"]) for s in (1, -1)])
         difference = (figures[0] - figures[1]) / (2 * h)
-        scale = [*np.abs(found.figures[:3]), 1.0]  # a verdict is a ratio less one
-        error = np.abs(found.derivatives[:, j] - difference) * found.values[j] / scale
-        assert (error <= AGREES * np.maximum(1e-2, np.abs(difference * found.values[j] / scale))).all(), path
+        scale = [*np.abs(slopes.figures[:3]), 1.0]  # a verdict is a ratio less one
+        error = np.abs(slopes.derivatives[:, j] - difference) * slopes.values[j] / scale
+        assert (error <= AGREES * np.maximum(1e-2, np.abs(difference * slopes.values[j] / scale))).all(), path
 
 
 def _figures(file: Path, overrides: list[str]) -> list[float]:
@@ -80,27 +80,27 @@ def test_derivatives_are_of_as_many_shapes_as_their_run_needs(tolerance: str) ->
 
 
 def test_what_tracks_another_motion_feels_its_values_and_only_that(fast: Path) -> None:
-    found = gb.sensitivity(fast, ["flight.tip.z.max_abs", "spin.tip.z.max_abs"], [LEVEL, ARM])
-    assert found.derivatives[0, 1] == 0 and (found.derivatives[[0, 1, 1], [0, 0, 1]] != 0).all()
+    slopes = gb.sensitivity(fast, ["flight.tip.z.max_abs", "spin.tip.z.max_abs"], [LEVEL, ARM])
+    assert slopes.derivatives[0, 1] == 0 and (slopes.derivatives[[0, 1, 1], [0, 0, 1]] != 0).all()
 
 
 def test_a_free_hub_is_differentiated_through_its_nonlinear_equations(tmp_path: Path) -> None:
     file = tmp_path / "hub.toml"
     file.write_text(FREE_HUB, encoding="utf-8")
     step = ["response.step=20 ms"]
-    found = gb.sensitivity(
+    slopes = gb.sensitivity(
         file, ["hub.angle_end"], ["motion.slew.inertia", "motion.slew.torque.amplitude"], overrides=step
     )
-    assert set(found.methods) == {"exact"}
-    for j, path in enumerate(found.parameters):
-        h = 1e-4 * found.values[j]
-        cases = [gb.read_scenario(file, [*step, f"{path}={float(found.values[j] + s * h)!r}"]) for s in (1, -1)]
+    assert set(slopes.methods) == {"exact"}
+    for j, path in enumerate(slopes.parameters):
+        h = 1e-4 * slopes.values[j]
+        cases = [gb.read_scenario(file, [*step, f"{path}={float(slopes.values[j] + s * h)!r}"]) for s in (1, -1)]
         angles = []
         for case in cases:
             hub = gb.simulate(case.assemble(), case.motions["slew"], case.response).hub
             assert hub is not None
             angles.append(float(hub.angle[-1]))
-        assert found.derivatives[0, j] == pytest.approx((angles[0] - angles[1]) / (2 * h), rel=AGREES)
+        assert slopes.derivatives[0, j] == pytest.approx((angles[0] - angles[1]) / (2 * h), rel=AGREES)
 
 
 def test_where_a_jump_moves_the_derivative_is_a_difference(tmp_path: Path) -> None:
@@ -111,11 +111,11 @@ def test_where_a_jump_moves_the_derivative_is_a_difference(tmp_path: Path) -> No
         encoding="utf-8",
     )
     start, radius = "motion.slew.rate.start", "motion.slew.radius"
-    found = gb.sensitivity(file, ["tip.y.time_of_max", "tip.y.max_abs"], [start, radius])
-    assert found.methods == ("difference", "exact")
+    slopes = gb.sensitivity(file, ["tip.y.time_of_max", "tip.y.max_abs"], [start, radius])
+    assert slopes.methods == ("difference", "exact")
     # A hub that stands still until it starts moves the whole response with its start.
-    assert found.derivatives[0, 0] == pytest.approx(1, abs=1e-3)
-    assert abs(found.derivatives[1, 0]) < 1e-4 * found.figures[1]
+    assert slopes.derivatives[0, 0] == pytest.approx(1, abs=1e-3)
+    assert abs(slopes.derivatives[1, 0]) < 1e-4 * slopes.figures[1]
 
 
 def test_values_of_a_loads_profile_are_values_like_others(tmp_path: Path) -> None:
@@ -126,38 +126,38 @@ def test_values_of_a_loads_profile_are_values_like_others(tmp_path: Path) -> Non
     file = tmp_path / "loaded.toml"
     file.write_text(SPECIMEN + loads + model("FOAM", 0, 1, 1) + FLIGHT + response("0.5 s"), encoding="utf-8")
     step = ["response.integrator=gauss", "response.step=1 ms"]
-    found = gb.sensitivity(file, ["tip.z.max_abs", "tip.z.time_of_max"], overrides=step)
+    slopes = gb.sensitivity(file, ["tip.z.max_abs", "tip.z.time_of_max"], overrides=step)
     paths = [f"beam.loads[0].force.z.{key}" for key in ("level", "jerk", "start", "hold")]
     paths += [f"beam.loads[0].moment.y.terms[0].{key}" for key in ("amplitude", "duration")]
-    assert [each for each in found.parameters if each.startswith("beam.loads[0].")] == paths
-    assert dict(zip(found.parameters, found.parameter_units, strict=True))[paths[1]] == "N/s"
+    assert [each for each in slopes.parameters if each.startswith("beam.loads[0].")] == paths
+    assert dict(zip(slopes.parameters, slopes.parameter_units, strict=True))[paths[1]] == "N/s"
     for path in paths:
-        j = found.parameters.index(path)
-        h = 1e-4 * abs(found.values[j])
+        j = slopes.parameters.index(path)
+        h = 1e-4 * abs(slopes.values[j])
         ends = []
         for sign in (1, -1):
-            case = gb.read_scenario(file, [*step, f"{path}={float(found.values[j] + sign * h)!r}"])
+            case = gb.read_scenario(file, [*step, f"{path}={float(slopes.values[j] + sign * h)!r}"])
             peaks = gb.simulate(case.assemble(), case.motions["flight"], case.response).peaks
             ends.append(np.array([peaks.max_abs[2], peaks.time_of_max[2]]))
         difference = (ends[0] - ends[1]) / (2 * h)
-        assert found.methods[j] == "exact"
-        assert found.derivatives[:, j] == pytest.approx(difference, rel=1e-4, abs=1e-6 * found.figures.max())
+        assert slopes.methods[j] == "exact"
+        assert slopes.derivatives[:, j] == pytest.approx(difference, rel=1e-4, abs=1e-6 * slopes.figures.max())
 
 
 def test_positions_at_the_tip_move_with_the_length(fast: Path) -> None:
     massive = ['beam.masses=[{ at = "300 mm", mass = "0.1 kg" }]', f"{DENSITY}=1e-5"]
-    found = gb.sensitivity(fast, ["flight.tip.z"], [LENGTH, E], verb="static", overrides=[*massive, "model.modes.z=6"])
+    slopes = gb.sensitivity(fast, ["flight.tip.z"], [LENGTH, E], verb="static", overrides=[*massive, "model.modes.z=6"])
     # m a L³ / 3 E I, of a beam that weighs nothing.
-    assert list(relative(found, "flight.tip.z").values()) == pytest.approx([3, -1], abs=1e-6)
+    assert list(relative(slopes, "flight.tip.z").values()) == pytest.approx([3, -1], abs=1e-6)
     with pytest.raises(gb.InputError, match=r"may not be a little less and a little more .*beyond the tip"):
         gb.sensitivity(fast, ["flight.tip.z"], ["beam.masses[0].at"], verb="static", overrides=massive)
     every = gb.sensitivity(fast, ["flight.tip.z"], verb="static", overrides=massive)
     assert "beam.masses[0].at" not in every.parameters and "beyond the tip" in every.not_varied[0]
     pieces, line = [f"beam.line.pieces[{k}].length" for k in (0, 1)], '[{ length = "100 mm" }, { length = "0.2 m" }]'
-    found = gb.sensitivity(
+    slopes = gb.sensitivity(
         fast, ["flight.tip.z"], pieces, verb="static", overrides=[*massive, f"beam.line={{ pieces = {line} }}"]
     )
-    assert list(relative(found, "flight.tip.z").values()) == pytest.approx([1, 2], abs=1e-3)
+    assert list(relative(slopes, "flight.tip.z").values()) == pytest.approx([1, 2], abs=1e-3)
 
 
 @pytest.mark.parametrize("made", [False, True], ids=["of a file", "made"])
@@ -215,8 +215,8 @@ def test_values_may_be_others_than_the_scenarios(fast: Path) -> None:
     about = Neighbourhood(
         Inquiry(ScenarioTemplate(base), "static", "flight"), physical_values(ScenarioTemplate(base), [LENGTH]), [0.2]
     )
-    found = about.slopes(lambda _, facts: np.array([facts["motions"]["flight"]["tip"]["z"]]))
-    assert found.slopes[0, 0] * 0.2 / found.values[0] == pytest.approx(4, abs=1e-9)
+    answer = about.slopes(lambda _, facts: np.array([facts["motions"]["flight"]["tip"]["z"]]))
+    assert answer.slopes[0, 0] * 0.2 / answer.values[0] == pytest.approx(4, abs=1e-9)
 
 
 def test_a_case_stands_for_its_file_until_it_is_changed(fast: Path) -> None:
@@ -234,9 +234,9 @@ def test_a_case_stands_for_its_file_until_it_is_changed(fast: Path) -> None:
 
 
 def test_exact_derivatives_come_with_the_error_of_their_run(fast: Path) -> None:
-    found = gb.sensitivity(fast, ["flight.tip.z.max_abs"], [E])
+    slopes = gb.sensitivity(fast, ["flight.tip.z.max_abs"], [E])
     errors = gb.study(gb.read_scenario(fast)).responses["flight"].errors
-    assert found.methods == ("exact",) and found.run_error == max(errors.displacement.total, errors.loads.total) > 0
+    assert slopes.methods == ("exact",) and slopes.run_error == max(errors.displacement.total, errors.loads.total) > 0
     assert np.isnan(gb.sensitivity(fast, ["flight.tip.z"], [E], verb="static").run_error)
 
 

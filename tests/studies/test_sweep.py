@@ -25,33 +25,33 @@ G = 9.80665
 
 def test_static_deflection_over_load_and_stiffness_is_the_closed_form(fast: Path) -> None:
     grid = {LEVEL: "2 g:8 g:4", STIFFNESS: ["60 GPa", "80 GPa"]}
-    found = gb.sweep(
+    swept = gb.sweep(
         fast, grid, ["flight.tip.z", "flight.loads.root_moment.y"], verb="static", overrides=["model.modes.z=4"]
     )
     level, stiffness = np.array([2.0, 4.0, 6.0, 8.0])[:, None] * G, np.array([60e9, 80e9])
     mass, inertia, length = 2700 * 0.02 * 0.004, 0.02 * 0.004**3 / 12, 0.3
     tip = -mass * level * length**4 / (8 * stiffness * inertia)
     # Four clamped-free shapes give the tip to 1e-4 (sum of their quasi-static parts).
-    assert found.measures["flight.tip.z"] == pytest.approx(tip, rel=3e-4)
-    assert np.abs(found.measures["flight.loads.root_moment.y"]) == pytest.approx(
+    assert swept.measures["flight.tip.z"] == pytest.approx(tip, rel=3e-4)
+    assert np.abs(swept.measures["flight.loads.root_moment.y"]) == pytest.approx(
         np.broadcast_to(mass * level * length**2 / 2, (4, 2)), rel=1e-4
     )
-    assert found.units == {"flight.tip.z": "m", "flight.loads.root_moment.y": "N m"}
-    assert found.dimensions == (LEVEL, STIFFNESS) and set(found.outcome.ravel()) == {"done"}
-    ds = found.to_xarray()
+    assert swept.units == {"flight.tip.z": "m", "flight.loads.root_moment.y": "N m"}
+    assert swept.dimensions == (LEVEL, STIFFNESS) and set(swept.outcome.ravel()) == {"done"}
+    ds = swept.to_xarray()
     assert ds[LEVEL].attrs["units"] == "g" and ds.sizes == {LEVEL: 4, STIFFNESS: 2}
     at = ds["flight.tip.z"].sel({LEVEL: 6, STIFFNESS: 80})
-    assert float(at) == found.measures["flight.tip.z"][2, 1]
+    assert float(at) == swept.measures["flight.tip.z"][2, 1]
 
 
 def test_frequencies_of_drawn_stiffnesses_are_its_root(fast: Path) -> None:
     over = [f"{STIFFNESS}=lognormal(70 GPa, 0.05)"]
-    found = gb.sweep(fast, over, ["modes[0].frequency"], verb="modes", motion="flight", samples=8)
-    (stiffness,) = found.parameters
+    swept = gb.sweep(fast, over, ["modes[0].frequency"], verb="modes", motion="flight", samples=8)
+    (stiffness,) = swept.parameters
     assert stiffness.drawn == "lognormal(70 GPa, 0.05)" and stiffness.unit == "GPa"
-    ratio = found.measures["modes[0].frequency"] / np.sqrt(stiffness.values)
+    ratio = swept.measures["modes[0].frequency"] / np.sqrt(stiffness.values)
     assert ratio == pytest.approx(ratio[0], rel=1e-9)
-    assert found.units == {"modes[0].frequency": "Hz"}
+    assert swept.units == {"modes[0].frequency": "Hz"}
 
 
 def test_frequencies_of_twist_are_measured(fast: Path) -> None:
@@ -62,22 +62,22 @@ def test_frequencies_of_twist_are_measured(fast: Path) -> None:
         "beam.material.poissons_ratio=0.3",
         "beam.rotary_inertia=true",
     ]
-    found = gb.sweep(
+    swept = gb.sweep(
         fast, {"beam.length": [0.15, 0.3]}, ["modes[3].frequency"], verb="modes", motion="flight", overrides=twisting
     )
     case = gb.read_scenario(fast, twisting)
     alone = gb.modes(case.assemble(), case.motions["flight"])
-    assert alone.direction[3] == "twist" and found.measures["modes[3].frequency"][1] == alone.frequency[3]
+    assert alone.direction[3] == "twist" and swept.measures["modes[3].frequency"][1] == alone.frequency[3]
     # GJ/(ρ I_p) is that of the section: a frequency is as one over the length.
-    assert found.measures["modes[3].frequency"][0] == pytest.approx(2 * alone.frequency[3], rel=1e-2)
+    assert swept.measures["modes[3].frequency"][0] == pytest.approx(2 * alone.frequency[3], rel=1e-2)
 
 
 def test_the_verdict_is_a_measure(fast: Path) -> None:
-    found = gb.sweep(fast, {"motion.spin.control_point": [0.0, 0.15]}, ["verdict.tip", "flight.tip.z.max_abs"])
+    swept = gb.sweep(fast, {"motion.spin.control_point": [0.0, 0.15]}, ["verdict.tip", "flight.tip.z.max_abs"])
     compared = gb.study(gb.read_scenario(fast)).comparisons[0]
-    assert found.measures["verdict.tip"][1] == compared.peaks["tip"].ratio - 1
-    assert found.parameters[0].unit == "m"  # the schema's, where none was written
-    assert found.units == {"verdict.tip": "", "flight.tip.z.max_abs": "m"}
+    assert swept.measures["verdict.tip"][1] == compared.peaks["tip"].ratio - 1
+    assert swept.parameters[0].unit == "m"  # the schema's, where none was written
+    assert swept.units == {"verdict.tip": "", "flight.tip.z.max_abs": "m"}
 
 
 def test_the_best_control_point_is_the_same_share_of_every_length(fast: Path) -> None:
@@ -85,10 +85,10 @@ def test_the_best_control_point_is_the_same_share_of_every_length(fast: Path) ->
     names = ["control_point", "mismatch.best.tip"]
     # A ramp: a load that stands still has no mismatch along the beam.
     ramp = LEVEL.removesuffix(".level") + '={ profile = "table", times = [0, 0.5], values = ["4 g", "6 g"] }'
-    found = gb.sweep(fast, over, names, verb="place", overrides=[ramp, "model.modes.z=4"])
+    swept = gb.sweep(fast, over, names, verb="place", overrides=[ramp, "model.modes.z=4"])
     # The lever of a linear load on the static tip: docs/theory.md, 9.
-    assert found.measures["control_point"] == pytest.approx(0.7333 * np.array([0.25, 0.3]), rel=1e-3)
-    assert found.units == {"control_point": "m", "mismatch.best.tip": ""}
+    assert swept.measures["control_point"] == pytest.approx(0.7333 * np.array([0.25, 0.3]), rel=1e-3)
+    assert swept.units == {"control_point": "m", "mismatch.best.tip": ""}
 
 
 def test_every_case_is_computed_once(fast: Path) -> None:
@@ -101,8 +101,8 @@ def test_every_case_is_computed_once(fast: Path) -> None:
     over = {"beam.length": "0.2 m:0.3 m:24"}
     gb.sweep(fast, over, {"length": length}, store="there")
     assert sorted(lengths) == pytest.approx(np.linspace(0.2, 0.3, 24))
-    found = gb.sweep(fast, over, {"length": length}, store="there", resume=True)
-    assert len(lengths) == 24 and found.counts == {"done": 24} and found.parameters[0].unit == "m"
+    swept = gb.sweep(fast, over, {"length": length}, store="there", resume=True)
+    assert len(lengths) == 24 and swept.counts == {"done": 24} and swept.parameters[0].unit == "m"
 
 
 def test_cases_that_are_not_accepted_say_so_and_are_counted(fast: Path, gbeam: Call) -> None:
@@ -148,35 +148,35 @@ def test_a_case_beyond_the_machines_limits_has_an_answer_too(fast: Path, gbeam: 
 
 
 def test_a_function_of_the_case_is_a_measure(fast: Path) -> None:
-    found = gb.sweep(fast, {"beam.length": ["250 mm", "300 mm"]}, {"length": attrgetter("beam.length")})
-    assert found.measures["length"] == pytest.approx([0.25, 0.3])
+    swept = gb.sweep(fast, {"beam.length": ["250 mm", "300 mm"]}, {"length": attrgetter("beam.length")})
+    assert swept.measures["length"] == pytest.approx([0.25, 0.3])
 
 
 def test_a_case_that_fails_is_recorded_and_the_rest_goes_on(fast: Path) -> None:
     over = {"motion.spin.control_point": ["100 mm", "400 mm", "200 mm"]}
-    found = gb.sweep(fast, over, {"inverse": _fussy})
-    assert found.outcome.tolist() == ["done", "refused", "failed"]
-    assert "beyond the tip" in found.message[1] and "ZeroDivisionError" in found.message[2]
-    assert np.isnan(found.measures["inverse"]).tolist() == [False, True, True]
-    assert found.counts == {"done": 1, "failed": 1, "refused": 1}
+    swept = gb.sweep(fast, over, {"inverse": _fussy})
+    assert swept.outcome.tolist() == ["done", "refused", "failed"]
+    assert "beyond the tip" in swept.message[1] and "ZeroDivisionError" in swept.message[2]
+    assert np.isnan(swept.measures["inverse"]).tolist() == [False, True, True]
+    assert swept.counts == {"done": 1, "failed": 1, "refused": 1}
 
 
 def test_a_measure_that_fails_fails_itself_only(fast: Path) -> None:
     measures = {"inverse": _fussy, "length": _length}
-    found = gb.sweep(fast, {"motion.spin.control_point": ["100 mm", "200 mm"]}, measures)
-    assert found.outcome.tolist() == ["done", "done"] and "ZeroDivisionError" in found.message[1]
-    assert np.isnan(found.measures["inverse"]).tolist() == [False, True]
-    assert found.measures["length"] == pytest.approx([0.3, 0.3])
+    swept = gb.sweep(fast, {"motion.spin.control_point": ["100 mm", "200 mm"]}, measures)
+    assert swept.outcome.tolist() == ["done", "done"] and "ZeroDivisionError" in swept.message[1]
+    assert np.isnan(swept.measures["inverse"]).tolist() == [False, True]
+    assert swept.measures["length"] == pytest.approx([0.3, 0.3])
 
 
 def test_tip_root_moment_followed_and_accepted_are_measured_by_default(fast: Path) -> None:
     fast.write_text(fast.read_text(encoding="utf-8") + '[motion.spin.accept]\nfollowed = "50 %"\n', encoding="utf-8")
-    found = gb.sweep(fast, ["motion.spin.arm=3.3 m"])
+    swept = gb.sweep(fast, ["motion.spin.arm=3.3 m"])
     ends = ("tip.size.max_abs", "loads.root_moment.size.max_abs")
     moved = [f"motions.{name}.{end}" for name in ("flight", "spin") for end in ends]
-    assert list(found.measures) == [*moved, *(f"comparisons.spin.verdict.{end}" for end in ("followed", "accepted"))]
-    assert [found.units[name] for name in found.measures] == ["m", "N m", "m", "N m", "", ""]
-    assert all(np.isfinite(each).all() for each in found.measures.values())
+    assert list(swept.measures) == [*moved, *(f"comparisons.spin.verdict.{end}" for end in ("followed", "accepted"))]
+    assert [swept.units[name] for name in swept.measures] == ["m", "N m", "m", "N m", "", ""]
+    assert all(np.isfinite(each).all() for each in swept.measures.values())
     slopes = gb.sensitivity(fast, parameters=["beam.length"])
     assert list(slopes.measures) == moved
 
@@ -276,8 +276,8 @@ def test_a_first_case_that_is_not_done_is_none_of_what_the_figures_are_called(
         return {"outcome": "diverged"} if len(answers) == 1 else facts(inquiry, case)
 
     monkeypatch.setattr(Inquiry, "facts", answered)
-    found = gb.sweep(fast, {LEVEL: ["2 g", "4 g"]}, ["flight.tip.z"], verb="static")
-    assert found.outcome.tolist() == ["diverged", "done"]
+    swept = gb.sweep(fast, {LEVEL: ["2 g", "4 g"]}, ["flight.tip.z"], verb="static")
+    assert swept.outcome.tolist() == ["diverged", "done"]
     answers[:] = [None]  # the next is no first one
     with pytest.raises(gb.InputError, match=r"'flight\.tip\.w' is no figure"):
         gb.sweep(fast, {LEVEL: ["2 g", "4 g"]}, ["flight.tip.w"], verb="static")

@@ -50,10 +50,10 @@ def test_both_templates_say_the_same_of_a_case(fast: Path) -> None:
     of_file, of_case = template_of(fast), template_of(by_hand(fast))
     assert isinstance(of_file, ScenarioTemplate) and isinstance(of_case, CaseTemplate)
     assert (of_file.title, of_file.motions, of_file.imitations) == (of_case.title, of_case.motions, of_case.imitations)
-    read, made = of_file.quantities(), of_case.quantities()
-    shared = {path for path in read.keys() & made.keys() if path.startswith(("beam.", "motion."))}
+    read, built = of_file.quantities(), of_case.quantities()
+    shared = {path for path in read.keys() & built.keys() if path.startswith(("beam.", "motion."))}
     assert {"beam.length", "beam.section.thickness", "beam.material.youngs_modulus", "motion.spin.arm"} <= shared
-    assert {path: read[path] for path in shared} == {path: made[path] for path in shared}
+    assert {path: read[path] for path in shared} == {path: built[path] for path in shared}
     assert {path: of_file.unit(path) for path in shared} == {path: of_case.unit(path) for path in shared}
 
 
@@ -76,10 +76,10 @@ def test_a_sweep_of_a_case_is_that_of_its_file(fast: Path, tmp_path: Path) -> No
     over = {"beam.section.thickness": ["2 mm", "2.5 mm"], "motion.spin.arm": [3.0, 3.3, -1.0]}
     read = gb.sweep(fast, over, overrides=FIXED)
     case = by_hand(fast, *FIXED)
-    made = gb.sweep(case, over)
+    swept = gb.sweep(case, over)
     several = gb.sweep(case, over, workers=2, store=tmp_path / "store")
     again = gb.sweep(case, over, store=tmp_path / "store", resume=True)
-    for other in (made, several, again):
+    for other in (swept, several, again):
         assert list(other.measures) == list(read.measures) and other.units == read.units
         assert (other.outcome == read.outcome).all() and set(read.outcome[:, 2]) == {"refused"}
         for name in read.measures:
@@ -90,8 +90,8 @@ def test_a_sweep_of_a_case_is_that_of_its_file(fast: Path, tmp_path: Path) -> No
 def test_searches_of_a_case_are_those_of_its_file(fast: Path, tmp_path: Path) -> None:
     case = by_hand(fast, *FIXED)
     of, values = ["spin.tip.z.max_abs", "flight.loads.root_moment.size.max_abs"], ["beam.length", "motion.spin.arm"]
-    read, made = (gb.sensitivity(each, of, values) for each in (gb.read_scenario(fast, FIXED), case))
-    np.testing.assert_array_equal(made.derivatives, read.derivatives)
+    read, built = (gb.sensitivity(each, of, values) for each in (gb.read_scenario(fast, FIXED), case))
+    np.testing.assert_array_equal(built.derivatives, read.derivatives)
     over, fewer = ["motion.spin.control_point"], {"bounds": {"motion.spin.control_point": ("50 mm", "200 mm")}}
     best = [gb.optimise(each, "verdict.tip", over, **fewer) for each in (gb.read_scenario(fast, FIXED), case)]
     assert best[0].values == best[1].values and best[0].figure == best[1].figure

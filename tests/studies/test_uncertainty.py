@@ -32,9 +32,9 @@ def test_every_bound_holds_in_95_of_100_trials() -> None:
     draws = np.random.default_rng(3).normal(2.0, 0.5, (3000, 96))
     normal = stats.norm(2.0, 0.5)
     truth = [2.0, 0.5, *normal.ppf([0.05, 0.5, 0.95])]
-    found = statistics(draws)
-    for name, value in zip(found.names, truth, strict=True):
-        low, high = np.nan_to_num(found[name][:, 1], nan=-np.inf), np.nan_to_num(found[name][:, 2], nan=np.inf)
+    answer = statistics(draws)
+    for name, value in zip(answer.names, truth, strict=True):
+        low, high = np.nan_to_num(answer[name][:, 1], nan=-np.inf), np.nan_to_num(answer[name][:, 2], nan=np.inf)
         # Order statistics come in whole numbers, so a quantile's interval covers more; a deviation's is asymptotic.
         least, most = (0.925, 0.965) if name in ("mean", "standard deviation") else (0.94, 0.99)
         assert least < np.mean((low <= value) & (value <= high)) < most, name
@@ -65,26 +65,26 @@ def test_sobol_indices_of_ishigamis_function() -> None:
     cases = read_cases([f"x{i}=uniform(-3.141592653589793, 3.141592653589793)" for i in range(3)], 1024, "saltelli")
     assert cases.shape == (5 * 1024,) and cases.independent == 2048
     x, y, z = (np.asarray(each.values) for each in cases.drawn)
-    found = indices(np.sin(x) + a * np.sin(y) ** 2 + b * z**4 * np.sin(x), ["x", "y", "z"], 0)
+    answer = indices(np.sin(x) + a * np.sin(y) ** 2 + b * z**4 * np.sin(x), ["x", "y", "z"], 0)
     first = 0.5 * (1 + b * np.pi**4 / 5) ** 2, a**2 / 8, 0.0
     both = b**2 * np.pi**8 * (1 / 18 - 1 / 50)
     total = first[0] + both, a**2 / 8, both
     variance = sum(first) + both
-    assert found.values[:, 0, 0] == pytest.approx(np.array(first) / variance, abs=0.02)
-    assert found.values[:, 1, 0] == pytest.approx(np.array(total) / variance, abs=0.02)
+    assert answer.values[:, 0, 0] == pytest.approx(np.array(first) / variance, abs=0.02)
+    assert answer.values[:, 1, 0] == pytest.approx(np.array(total) / variance, abs=0.02)
     truth = np.stack([first, total], axis=1) / variance
-    assert np.all((found.values[..., 1] <= truth) & (truth <= found.values[..., 2]))
+    assert np.all((answer.values[..., 1] <= truth) & (truth <= answer.values[..., 2]))
 
 
 def test_quantiles_of_a_frequency_are_those_of_the_root_of_the_stiffness(unsure: Path) -> None:
     measure = ["modes[0].frequency"]
-    found = gb.sweep(unsure, measure=measure, verb="modes", motion="flight", samples=48)
-    (stiffness,) = found.parameters
+    swept = gb.sweep(unsure, measure=measure, verb="modes", motion="flight", samples=48)
+    (stiffness,) = swept.parameters
     assert (stiffness.path, stiffness.drawn, stiffness.unit) == (STIFFNESS, "lognormal(70 GPa, 0.06)", "GPa")
     one = gb.sweep(unsure, [f"{STIFFNESS}=70 GPa"], measure, verb="modes", motion="flight")
     assert one.parameters[0].drawn == "" and not one.statistics  # what is given takes the distribution's place
     centre = float(one.measures[measure[0]][0])
-    known = found.statistics[measure[0]]
+    known = swept.statistics[measure[0]]
     truth = stats.lognorm(0.03, scale=centre)
     for name, value in {"mean": truth.mean(), "standard deviation": truth.std(), "median": centre}.items():
         assert known[name][1] <= value <= known[name][2] and known[name][0] == pytest.approx(value, rel=0.03)
@@ -96,38 +96,38 @@ def test_sobol_indices_of_a_static_deflection(unsure: Path) -> None:
     """Deflection goes with load over stiffness: the indices of a product of two lognormal numbers."""
     over = [f"{LEVEL}=lognormal(6 g, 0.1)"]
     of_flight = {"verb": "static", "motion": "flight"}
-    found = gb.sweep(unsure, over, ["flight.tip.z"], **of_flight, sampler="saltelli", samples=64)
-    assert found.outcome.shape == (4 * 64,)
+    swept = gb.sweep(unsure, over, ["flight.tip.z"], **of_flight, sampler="saltelli", samples=64)
+    assert swept.outcome.shape == (4 * 64,)
     alone = np.expm1(np.array([0.1, 0.06]) ** 2)
     variance = np.prod(1 + alone) - 1
     truth = np.stack([alone, variance - alone[::-1]], axis=1) / variance
-    shares = found.indices["flight.tip.z"]
+    shares = swept.indices["flight.tip.z"]
     assert shares.parameters == (LEVEL, STIFFNESS) and shares.count == 64
     assert np.all((shares.values[..., 1] <= truth) & (truth <= shares.values[..., 2]))
-    assert found.statistics["flight.tip.z"].count == 128  # of the two halves that are independent
+    assert swept.statistics["flight.tip.z"].count == 128  # of the two halves that are independent
 
 
 def test_histories_stay_in_their_bands(unsure: Path) -> None:
     # Under a load that stands still the beam rests, and the deflection goes with 1/E.
     names = ["flight.tip.z", "flight.root_moment.y"]
-    found = gb.sweep(unsure, histories=names, samples=8, times=5, store="there")
-    stiffness = found.parameters[0].values
-    assert found.histories["flight.tip.z"].shape == (8, 5) and found.time == pytest.approx(np.linspace(0, 0.5, 5))
-    product = found.histories["flight.tip.z"] * stiffness[:, None]
+    swept = gb.sweep(unsure, histories=names, samples=8, times=5, store="there")
+    stiffness = swept.parameters[0].values
+    assert swept.histories["flight.tip.z"].shape == (8, 5) and swept.time == pytest.approx(np.linspace(0, 0.5, 5))
+    product = swept.histories["flight.tip.z"] * stiffness[:, None]
     assert product == pytest.approx(np.full((8, 5), product[0, 0]), rel=1e-5)
     moment = 2700 * 0.02 * 0.004 * 6 * 9.80665 * 0.3**2 / 2
-    assert np.abs(found.histories["flight.root_moment.y"]) == pytest.approx(np.full((8, 5), moment), rel=0.05)
-    assert found.units == {"flight.tip.z": "m", "flight.root_moment.y": "N m"}
-    band = found.statistics["flight.tip.z"]
+    assert np.abs(swept.histories["flight.root_moment.y"]) == pytest.approx(np.full((8, 5), moment), rel=0.05)
+    assert swept.units == {"flight.tip.z": "m", "flight.root_moment.y": "N m"}
+    band = swept.statistics["flight.tip.z"]
     assert band["median"].shape == (5, 3)
-    assert band["median"][:, 0] == pytest.approx(np.median(found.histories["flight.tip.z"], axis=0))
+    assert band["median"][:, 0] == pytest.approx(np.median(swept.histories["flight.tip.z"], axis=0))
     resumed = gb.sweep(unsure, histories=names, samples=8, times=5, store="there", resume=True)
-    assert np.array_equal(resumed.histories["flight.tip.z"], found.histories["flight.tip.z"])
+    assert np.array_equal(resumed.histories["flight.tip.z"], swept.histories["flight.tip.z"])
     response = gb.study(gb.read_scenario(unsure, [f"{STIFFNESS}={float(stiffness[3])!r} GPa"])).responses["flight"]
-    assert found.histories["flight.tip.z"][3, -1] == pytest.approx(response.tip[-1, 2], rel=1e-9)
+    assert swept.histories["flight.tip.z"][3, -1] == pytest.approx(response.tip[-1, 2], rel=1e-9)
     assert response.loads is not None  # whose sign is that of the base on the beam
     root = response.loads.root_moment[-1, 1]
-    assert found.histories["flight.root_moment.y"][3, -1] == pytest.approx(root, rel=1e-9)
+    assert swept.histories["flight.root_moment.y"][3, -1] == pytest.approx(root, rel=1e-9)
 
 
 def test_a_case_that_is_not_done_is_left_out_of_the_estimates(unsure: Path, gbeam: Call) -> None:

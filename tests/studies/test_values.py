@@ -25,8 +25,8 @@ from gbeam.studies.cases import read_cases, read_variation
     ],
 )
 def test_a_range_or_a_list(text: str, texts: tuple[str, ...], unit: str) -> None:
-    found = read_variation(text)
-    assert (found.texts, found.unit) == (texts, unit)
+    answer = read_variation(text)
+    assert (answer.texts, answer.unit) == (texts, unit)
 
 
 @pytest.mark.parametrize(

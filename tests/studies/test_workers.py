@@ -87,11 +87,11 @@ def test_a_worker_that_is_killed_loses_no_case(fast: Path, monkeypatch: pytest.M
     import deadly  # type: ignore[import-not-found]
 
     over = {"beam.length": "0.2 m:0.3 m:5"}
-    found = gb.sweep(fast, over, {"once": deadly.once, "always": deadly.always}, workers=2, store="there")
-    assert found.outcome.tolist() == ["done", "done", "failed", "done", "done"]
-    assert found.message[2] == "the process that computed it died"
-    found = gb.sweep(fast, over, {"once": deadly.once}, workers=2)
-    assert np.array_equal(found.measures["once"], np.linspace(0.2, 0.3, 5)) and found.counts == {"done": 5}
+    swept = gb.sweep(fast, over, {"once": deadly.once, "always": deadly.always}, workers=2, store="there")
+    assert swept.outcome.tolist() == ["done", "done", "failed", "done", "done"]
+    assert swept.message[2] == "the process that computed it died"
+    swept = gb.sweep(fast, over, {"once": deadly.once}, workers=2)
+    assert np.array_equal(swept.measures["once"], np.linspace(0.2, 0.3, 5)) and swept.counts == {"done": 5}
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no SIGKILL")
@@ -102,8 +102,8 @@ def test_a_worker_that_dies_takes_no_other_along(fast: Path, monkeypatch: pytest
     monkeypatch.delitem(sys.modules, "deadly", raising=False)
     import deadly
 
-    found = gb.sweep(fast, {"beam.length": "0.2 m:0.3 m:301"}, {"always": deadly.always}, workers=2)
-    assert found.counts == {"done": 300, "failed": 1} and found.outcome[150] == "failed"
+    swept = gb.sweep(fast, {"beam.length": "0.2 m:0.3 m:301"}, {"always": deadly.always}, workers=2)
+    assert swept.counts == {"done": 300, "failed": 1} and swept.outcome[150] == "failed"
     computed = Path("processes").read_text(encoding="utf-8").split()
     assert len(set(computed)) <= 14 and len(computed) < 450  # there were hundreds
 

@@ -106,9 +106,9 @@ def test_a_stop_that_is_met_between_two_times_is_not_overlooked() -> None:
     held = {"stiffness": rate**2, "stops": (-2.0, end), "stop_stiffness": stop}
     slide = gb.Joint("prismatic", "block", axes=[(1, 0, 0)], initial_rate=rate, **held)
     system = gb.System({"block": gb.RigidBody(1.0)}, {"slide": slide})
-    given = gb.simulate(system, duration=0.6, step=5e-3)
-    assert any("meets a stop and leaves it within one step, at 0.2" in each for each in given.warnings)
-    assert np.isnan(given.errors.displacement.step)
+    response = gb.simulate(system, duration=0.6, step=5e-3)
+    assert any("meets a stop and leaves it within one step, at 0.2" in each for each in response.warnings)
+    assert np.isnan(response.errors.displacement.step)
     automatic = gb.simulate(system, duration=0.6)
     assert not any("stop" in each for each in automatic.warnings)
     # Before and behind the contact it is that oscillator; in it, one about another place, as stiff as both springs.
@@ -120,7 +120,7 @@ def test_a_stop_that_is_met_between_two_times_is_not_overlooked() -> None:
     expected = np.sin(rate * (automatic.time[behind] - late))
     away = np.abs(automatic.q[behind, 0] - expected).max()
     assert away < max(automatic.errors.displacement.step, 1e-5) < 1e-3
-    assert np.abs(given.q[-1, 0] - expected[-1]) > 5e-4  # what the steps overlook
+    assert np.abs(response.q[-1, 0] - expected[-1]) > 5e-4  # what the steps overlook
 
 
 @pytest.mark.parametrize("law", [lambda t, y: "a", lambda t, y: 1j * y, lambda t, y: np.zeros(3), lambda t, y: None])

@@ -105,19 +105,19 @@ def reference(tmp_path_factory: pytest.TempPathFactory) -> np.ndarray:
 @few
 @given(units=st.fixed_dictionaries({key: st.sampled_from(sorted(SIZES[kind])) for key, (kind, _) in VALUES.items()}))
 def test_other_units(reference: np.ndarray, tmp_path_factory: pytest.TempPathFactory, units: dict[str, str]) -> None:
-    found = tip(tmp_path_factory.mktemp("units"), scenario(units, ORDER))
-    np.testing.assert_allclose(found, reference, atol=1e-9 * np.abs(reference).max())
+    answer = tip(tmp_path_factory.mktemp("units"), scenario(units, ORDER))
+    np.testing.assert_allclose(answer, reference, atol=1e-9 * np.abs(reference).max())
 
 
 @few
 @given(order=st.permutations(ORDER))
 def test_another_order(reference: np.ndarray, tmp_path_factory: pytest.TempPathFactory, order: list[int]) -> None:
-    found = tip(tmp_path_factory.mktemp("order"), scenario(PLAIN, order))
-    np.testing.assert_array_equal(found, reference)
+    answer = tip(tmp_path_factory.mktemp("order"), scenario(PLAIN, order))
+    np.testing.assert_array_equal(answer, reference)
 
 
 def test_mirrored(reference: np.ndarray, tmp_path: Path) -> None:
     """y → −y of the offset, the force, and the moment about z."""
-    found = tip(tmp_path, scenario(PLAIN, ORDER, mirror=-1.0))
+    answer = tip(tmp_path, scenario(PLAIN, ORDER, mirror=-1.0))
     assert np.abs(reference[:, 1]).max() > 1e-5
-    np.testing.assert_allclose(found, reference * [1, -1, 1], atol=1e-12 * np.abs(reference).max())
+    np.testing.assert_allclose(answer, reference * [1, -1, 1], atol=1e-12 * np.abs(reference).max())

@@ -90,5 +90,5 @@ def test_an_orthotropic_material_turns_with_its_mesh(turn: tuple[float, float, f
 
 def test_scale_is_a_mesh_of_that_size() -> None:
     scaled = solid(block("hexahedron20", (2, 1, 1), SIZE), STEEL, scale=(2.0, 1.0, 0.5))
-    made = solid(block("hexahedron20", (2, 1, 1), (2 * SIZE[0], SIZE[1], SIZE[2] / 2)), STEEL)
-    assert scaled.points == pytest.approx(made.points, abs=1e-15)
+    built = solid(block("hexahedron20", (2, 1, 1), (2 * SIZE[0], SIZE[1], SIZE[2] / 2)), STEEL)
+    assert scaled.points == pytest.approx(built.points, abs=1e-15)

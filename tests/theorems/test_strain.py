@@ -101,9 +101,9 @@ def test_strain_of_a_linear_model_is_that_of_statics(
     gauges = gauges_of(beam, places)
     structure = gb.assemble(beam, kind, axial=1, y=2, z=2, shapes="adapted")
     flight = gb.Flight(x=gb.constant(a[0]), y=gb.constant(a[1]), z=gb.constant(a[2]))
-    found = strains(gb.linearize(structure, flight, gauges=gauges)).output
+    answer = strains(gb.linearize(structure, flight, gauges=gauges)).output
     wanted = np.array([by_statics(beam, gauge, a) for gauge in gauges])
-    np.testing.assert_allclose(found, wanted, atol=AGREES * np.abs(wanted).max(), rtol=0)
+    np.testing.assert_allclose(answer, wanted, atol=AGREES * np.abs(wanted).max(), rtol=0)
 
 
 def strains(system: gb.StateSpace) -> gb.StateSpace:
@@ -161,5 +161,5 @@ def test_strain_of_the_exact_model_is_that_of_its_loads(beam: gb.Beam, a: np.nda
     which = [int(np.abs(loads.stations - gauge.at).argmin()) for gauge in gauges]
     carried = loads.section_force[0, which], loads.section_moment[0, which]
     wanted = [by_hand(beam, gauge, *(x[k] for x in carried)) for k, gauge in enumerate(gauges)]
-    found = strains(gb.linearize(gb.assemble(beam, model), flight, gauges=gauges)).output
-    np.testing.assert_allclose(found, wanted, atol=AGREES * np.abs(wanted).max(), rtol=0)
+    answer = strains(gb.linearize(gb.assemble(beam, model), flight, gauges=gauges)).output
+    np.testing.assert_allclose(answer, wanted, atol=AGREES * np.abs(wanted).max(), rtol=0)

@@ -155,8 +155,8 @@ def test_time_reversal(scheme: object, beam: Beam, a: np.ndarray, w: np.ndarray,
             return c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
 
         equations = LinearEquations(c.mass, matrices, lambda t: drive(t, way))
-        found = integrate(equations, scheme, q, qd, step=end / count, count=count)  # type: ignore[arg-type]
-        return found.q[-1], found.qd[-1]
+        answer = integrate(equations, scheme, q, qd, step=end / count, count=count)  # type: ignore[arg-type]
+        return answer.q[-1], answer.qd[-1]
 
     small = beam.length * np.array([1e-5, 0.02, 0.01, 0.02, 0.01])
     q, qd = start[:5] * small, start[5:] * small * scale

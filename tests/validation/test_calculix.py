@@ -32,13 +32,13 @@ def test_what_solids_differ_by_is_stated(case: str) -> None:
     metal = gb.Material(STRIP.density, STRIP.modulus, poissons_ratio=ratio)
     beam = gb.Beam(STRIP.length, gb.Section.rectangle(STRIP.width, STRIP.thickness), metal, rotary_inertia=False)
     structure = gb.assemble(beam, "FOAM", axial=20, y=6, z=8)
-    found = gb.modes(structure, motion, gyroscopic=motion is SPINNING)
-    assert found.errors is not None
+    vibration = gb.modes(structure, motion, gyroscopic=motion is SPINNING)
+    assert vibration.errors is not None
     judged = 0
     for row in ROWS:
         if row["case"] == case and row["unit"] == "Hz":
-            mode = int(np.abs(found.frequency - row["reference"]).argmin())
-            true, stated = abs(found.frequency[mode] / row["reference"] - 1), found.errors.total[mode]
+            mode = int(np.abs(vibration.frequency - row["reference"]).argmin())
+            true, stated = abs(vibration.frequency[mode] / row["reference"] - 1), vibration.errors.total[mode]
             if true > MESH:
                 assert true / 2 < stated < 2 * true, row["quantity"]
                 judged += 1

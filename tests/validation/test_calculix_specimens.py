@@ -22,9 +22,9 @@ def test_a_solid_is_that_of_calculix(name: str) -> None:
     _, rate, radius = module.CASES[name]
     structure = module.structure(name)
     for spin, words in ((0.0, "at rest"), (rate, f"{rate:g} rad/s")):
-        found = gb.modes(structure, gb.Hub(radius=radius, rate=spin), gyroscopic=False).frequency
+        vibration = gb.modes(structure, gb.Hub(radius=radius, rate=spin), gyroscopic=False).frequency
         printed = [wanted[f"{name}, {words}", f"mode {n + 1}"] for n in range(module.COUNT)]
-        np.testing.assert_allclose(found[: module.COUNT], printed, rtol=module.SPUN)
+        np.testing.assert_allclose(vibration[: module.COUNT], printed, rtol=module.SPUN)
     for i, way in enumerate("xyz"):
         moved = gb.static(structure, acceleration=tuple(-SMALL * module.G * np.eye(3)[i])).tip / SMALL
         for k, axis in enumerate("xyz"):

@@ -61,8 +61,8 @@ def test_page_is_made_from_what_is_kept() -> None:
 
 @pytest.mark.parametrize("name", MODULES)
 def test_kept_results_are_explained(name: str) -> None:
-    found = record.kept(name)
-    assert found is None or (found.rows and not found.unexplained)
+    answer = record.kept(name)
+    assert answer is None or (answer.rows and not answer.unexplained)
 
 
 def test_every_module_is_listed() -> None:
@@ -89,8 +89,8 @@ def test_a_difference_without_a_reason_is_reported(monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(module, "TITLE", "Title", raising=False)
     monkeypatch.setattr(module, "NEEDS", ("numpy",), raising=False)
     monkeypatch.setattr(module, "rows", lambda: iter([row(2.0, 2.1, 1e-3), row(2.0, 2.0, 1e-3)]), raising=False)
-    found = record.run("table")
-    assert found.unexplained == [row(2.0, 2.1, 1e-3)]
-    text = page.chapter(found, [found.environment])
-    assert page.summary([found]).endswith("| [Title](#title) | 1 | 0 | 1 | 0 |\n")
+    done = record.run("table")
+    assert done.unexplained == [row(2.0, 2.1, 1e-3)]
+    text = page.chapter(done, [done.environment])
+    assert page.summary([done]).endswith("| [Title](#title) | 1 | 0 | 1 | 0 |\n")
     assert "| case | tip, m | 2.000 | 2.100 | +5 % | 0.1 % | DIFFERS |" in text
