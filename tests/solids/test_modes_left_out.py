@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 import gbeam as gb
+from gbeam.report.steady import campbell, critical, modes, state_space
+from validation.codes.calculix_specimens import BORE, sector
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 METAL = gb.Material(density=2700, youngs_modulus=70e9, poissons_ratio=0.33)
@@ -107,3 +109,125 @@ def test_damping_by_coordinates_reaches_the_modes_besides(bracket: dict[int, gb.
     assert even is not None
     np.testing.assert_allclose(listed.richer.coefficients.damping, even.coefficients.damping, atol=1e-6)
     assert replace(listed, richer=None).judged is False
+
+
+def hub(**more: Any) -> gb.Hub:
+    return gb.Hub(radius=0.3, **more)
+
+
+def judged(few: gb.Modes, many: gb.Modes) -> tuple[np.ndarray, np.ndarray]:
+    """True errors of frequencies, beside those of many modes, and stated ones."""
+    nearest = np.abs(many.frequency - few.frequency[:, None]).argmin(axis=1)
+    assert few.errors is not None
+    return np.abs(few.frequency / many.frequency[nearest] - 1), few.errors.shapes
+
+
+@pytest.mark.parametrize(("modes", "largest"), [(2, 3e-3), (8, 1e-3)])
+def test_frequencies_under_spin(bracket: dict[int, gb.Structure], modes: int, largest: float) -> None:
+    """At rest they are exact; at 200 rad/s errors above 1e-3 are stated within a factor of 2.5, and none is overstated.
+
+    Its stress couples the modes to those up to the fortieth, of which six more have the larger part.
+    """
+    few = gb.modes(bracket[modes], hub(rate=200.0))
+    true, stated = judged(few, gb.modes(bracket[40], hub(rate=200.0), errors=False))
+    assert (stated[true > 1e-3] > 0.4 * true[true > 1e-3]).all() and (stated < 1.1 * true).all()
+    errors = few.errors
+    assert errors is not None and true.max() > largest
+    np.testing.assert_array_equal(errors.total, stated)
+    assert np.isnan(errors.model).all() and np.isnan(errors.beam_theory).all()
+    assert few.error_note == "the mesh is not judged"
+    still = gb.modes(bracket[modes], hub(rate=0.0)).errors
+    assert still is not None and still.shapes.max() < 1e-10
+
+
+def test_frequencies_of_a_spinning_sector_of_a_disc() -> None:
+    """So fast that they are wrong by 1e-4 to 7e-3, stated within a factor of 2."""
+    spun = gb.Hub(radius=1e-3 * BORE, rate=4000.0)
+    many = gb.modes(sector().reduced(modes=40, damping_ratio=0.01).structure, spun, errors=False)
+    for count in (2, 4):
+        true, stated = judged(gb.modes(sector().reduced(modes=count, damping_ratio=0.01).structure, spun), many)
+        assert true.max() > 6e-3 and (stated > true / 2).all() and (stated < true).all()
+
+
+@pytest.mark.parametrize(("modes", "pointing"), [(2, "outward"), (2, "inward"), (8, "inward")])
+def test_speeds_at_which_a_bracket_buckles(bracket: dict[int, gb.Structure], modes: int, pointing: str) -> None:
+    """With two modes 9 % too slow, with eight 3e-4 too fast, and said."""
+    few, many = (gb.critical_speed(bracket[n], hub(pointing=pointing)) for n in (modes, 40))
+    assert few.value is not None and many.value is not None
+    true = abs(few.value / many.value - 1)
+    assert 0.7 * true < few.errors.shapes < 1.2 * true and few.errors.total == few.errors.shapes
+    assert np.isnan(few.errors.model) and few.error_note == "the mesh is not judged"
+    assert any("9.2 %: too few modes; raise modes" in each for each in few.warnings) == (true > 0.01)
+    assert "; the mesh is not judged" in critical(few, "spin")
+
+
+def test_an_acceleration_that_buckles_a_bracket(bracket: dict[int, gb.Structure]) -> None:
+    few, many = (gb.buckling_acceleration(bracket[n]).value for n in (2, 40))
+    assert few is not None and many is not None
+    stated = gb.buckling_acceleration(bracket[2]).errors.shapes
+    assert stated == pytest.approx(abs(few / many - 1), rel=0.1)
+
+
+def test_what_more_modes_alone_lose_is_said(bracket: dict[int, gb.Structure]) -> None:
+    """With eight modes it keeps its equilibrium to 252.18 rad/s, with more to 252.15, with forty to 252.13."""
+    kept = gb.critical_speed(bracket[8], hub(pointing="inward"), upper=252.18)
+    assert kept.value is None and kept.error_note == "the mesh is not judged"
+    said = "with more modes, which this model has not, the equilibrium is lost at an estimated 252.1 rad/s"
+    assert said in kept.warnings
+
+
+def test_a_campbell_diagram_and_its_crossings(bracket: dict[int, gb.Structure]) -> None:
+    few, many = (gb.campbell(bracket[n], hub(), end=160.0, count=8, modes=4) for n in (2, 40))
+    assert few.errors is not None and few.error_note == "the mesh is not judged"
+    true = np.abs(few.frequency[-1] / many.frequency[-1, :2] - 1)
+    assert (0.4 * true < few.errors.shapes).all() and (few.errors.shapes < 1.1 * true).all() and true.max() > 3e-4
+    for ours, theirs in zip(few.crossings, many.crossings, strict=False):
+        assert (ours.track, ours.order) == (theirs.track, theirs.order)
+        true_speed = abs(ours.speed / theirs.speed - 1)
+        assert 0.4 * true_speed < ours.errors.total < 1.1 * true_speed and np.isnan(ours.errors.model)
+    assert len(few.crossings) == 2 and "errors are of modes left out: the mesh is not judged" in campbell(few)
+
+
+def test_a_bracket_in_a_system_errs_as_alone(bracket: dict[int, gb.Structure]) -> None:
+    """On a hub, and on a joint that turns; beside a beam the theory of slender beams is the beam's."""
+    system = gb.System({"bracket": bracket[2]}, {"foot": gb.Joint("fixed", "bracket")})
+    turning = hub(rate=150.0)
+    alone, held = gb.modes(bracket[2], turning), gb.modes(system, turning)
+    assert alone.errors is not None and held.errors is not None
+    np.testing.assert_allclose(held.errors.shapes[:2], alone.errors.shapes, rtol=1e-3)
+    assert np.isnan(held.errors.model).all() and held.error_note == "the mesh of bracket is not judged"
+    assert held.reached == pytest.approx(190.2, abs=0.1) and held.errors.shapes[2:].max() > 0.1
+    assert not any("wrong" in each for each in held.warnings)  # of those above what is reached it is said
+    lost = gb.critical_speed(system, hub())
+    assert lost.errors.shapes == pytest.approx(gb.critical_speed(bracket[2], hub()).errors.shapes, rel=1e-3)
+
+
+def test_poles_of_a_linear_model(bracket: dict[int, gb.Structure]) -> None:
+    """The frequencies of its modes are those of the mesh, and not all of those of its static shapes."""
+    space = gb.linearize(bracket[2], hub(rate=50.0))
+    assert space.errors is not None and len(space.frequency) == bracket[2].size
+    true = gb.modes(bracket[40], hub(rate=50.0), errors=False).frequency
+    count = int((space.frequency <= space.accurate_to).sum())
+    assert 2 < count < bracket[2].size
+    np.testing.assert_allclose(space.frequency[:count], true[:count], rtol=0.01)
+    assert "by the model with more modes; the mesh is not judged" in state_space(space)
+
+
+def test_why_there_are_no_errors_is_said() -> None:
+    """Of particles, alone and in a system, of which nothing more is known."""
+    points, k = np.array([(0.1, 0.0, 0.0), (0.2, 0.0, 0.0)]), np.diag([400.0, 900.0])
+    first = np.zeros((2, 3, 2))
+    first[0, 2, 0] = first[1, 2, 1] = 1.0
+    particles = gb.Structure.of_particles(np.ones(2), points, first, k, second=np.zeros((2, 3, 2, 2)))
+    system = gb.System({"rod": particles}, {"foot": gb.Joint("fixed", "rod")})
+    spun = hub(rate=1.0)
+    alone = "shapes and model are not judged: it is neither a beam, a mesh nor matrices"
+    for of, note in (
+        (particles, alone),
+        (system, "shapes and model are not judged of rod: neither a beam, a mesh nor matrices"),
+    ):
+        for answer in (gb.modes(of, spun), gb.campbell(of, spun, end=2.0, count=4, modes=1), gb.linearize(of, spun)):
+            assert answer.error_note == note and answer.errors is not None and np.isnan(answer.errors.total).all()
+        assert gb.critical_speed(of, spun).error_note == note
+    assert f"no error estimate: {alone}" in modes(gb.modes(particles, spun))
+    assert f"no error estimate: {alone}" in state_space(gb.linearize(particles, spun))

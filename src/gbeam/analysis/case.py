@@ -319,7 +319,10 @@ class SpecimenCase(_InEnvironments):
     accept: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     provenance: Provenance | None = None
     scenario: SpecimenScenario | None = field(default=None, init=False, repr=False, compare=False)
-    no_beam = ("is no beam", "ask for run, static, modes, plan, linearize or fit, or sweep these; or give a [beam]")
+    no_beam = (
+        "is no beam",
+        "ask for run, static, modes, campbell, critical-speed, linearize, plan or fit, or sweep these; or give a beam",
+    )
 
     def __post_init__(self) -> None:
         for name, motion in self.motions.items():

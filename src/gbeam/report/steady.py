@@ -10,7 +10,7 @@ import numpy as np
 
 from gbeam.report.words import by_beam, columns, error_words, number, percent, resting_loads, tidy, warning_lines
 from gbeam.results.equilibrium import Critical, CriticalMap, Deflection
-from gbeam.results.errors import Errors, along
+from gbeam.results.errors import Errors, Noted, along
 from gbeam.results.modal import Campbell, Modes
 from gbeam.results.solids import SpecimenLoads
 from gbeam.results.state_space import ACCURATE, Gauge, StateSpace, Truncation
@@ -69,13 +69,19 @@ def modes(modes: Modes) -> str:
         damping, way = ratio if abs(ratio) > ROUNDING else 0.0, f"{along(direction):<{width}}"
         stated = f"  error {percent(error):>10}" if known else ""
         lines.append(f"  {i:>3}  {frequency:12.6g} Hz  damping {damping:8.4g}  {way}{stated}".rstrip())
-    lines += [] if known or modes.surface is None else ["  the mesh's error is not known: give a coarser one"]
+    lines += _noted(modes, known=bool(known))
     if not modes.damping_given:
         lines.append("  undamped: beam.damping_ratio is not given")
     if modes.rigid:
         lines.append("  and the free rotation of hub and beam, of zero frequency")
     lines += [f"  {each}" for each in modes.instabilities]
     return "\n".join([*lines, *warning_lines(modes)])
+
+
+def _noted(result: Noted, *, known: bool) -> list[str]:
+    """Line on what the errors of frequencies leave out, or why there are none."""
+    note = result.error_note
+    return [f"  {'errors are of modes left out' if known else 'no error estimate'}: {note}"] if note else []
 
 
 def campbell(diagram: Campbell, unit: str = "rad/s", size: float = 1.0) -> str:
@@ -94,6 +100,7 @@ def campbell(diagram: Campbell, unit: str = "rad/s", size: float = 1.0) -> str:
         f"{each.frequency:.6g} Hz; error {percent(each.errors.total)}"
         for each in diagram.crossings
     ]
+    lines += _noted(diagram, known=bool(np.isfinite(diagram.error_estimate).any()))
     if diagram.critical is not None:
         lines.append(f"  {answer(diagram.critical)}")
     return "\n".join([*lines, *warning_lines(diagram)])
@@ -111,7 +118,8 @@ def answer(critical: Critical) -> str:
         error = f"; estimated error {error_words(errors)}"
     elif math.isfinite(errors.shapes):
         error = f"; estimated error from too few shapes {percent(errors.shapes)}"
-    return f"{critical.reason}{error}"
+    note = f"; {critical.error_note}" if critical.error_note else ""
+    return f"{critical.reason}{error}{note}"
 
 
 def critical_map(critical: CriticalMap) -> str:
@@ -209,7 +217,7 @@ def _accuracy(system: StateSpace) -> list[str]:
     """Up to which frequency its poles are those of the exact model, and how far off the others are."""
     errors, count = system.errors, len(system.frequency)
     if errors is None or not count:
-        return []
+        return _noted(system, known=False)
     good = errors.within(ACCURATE)
     worst = percent(float(np.max(errors.total[:good]))) if good else ""
     words = f"frequencies within {worst} up to {system.accurate_to:.5g} Hz ({good} of {count})" if good else ""
@@ -217,7 +225,9 @@ def _accuracy(system: StateSpace) -> list[str]:
         known = errors.total[good:][np.isfinite(errors.total[good:])]
         beyond = f"up to {percent(float(known.max()))} off" if len(known) else "not judged"
         words += f"{'; ' if good else 'frequencies '}{'higher ones ' if good else ''}{beyond}"
-    return [f"  {words}, by the exact model with more shapes and the theory of thick beams"]
+    modes = np.isnan(errors.model).all()
+    by = "the model with more modes" if modes else "the exact model with more shapes and the theory of thick beams"
+    return [f"  {words}, by {by}{f'; {errors.note}' if errors.note else ''}"]
 
 
 def system_rest(rests: Iterable[SystemRest]) -> str:
@@ -256,6 +266,7 @@ def system_modes(modes: SystemModes) -> str:
         damping = ratio if abs(ratio) > 1e-10 else 0.0
         known = f"  error {percent(error):>7}" if math.isfinite(error) else ""
         lines.append(f"  {k + 1:>3}  {frequency:12.6g} Hz  damping {damping:8.4g}{known}  {listed}")
+    lines += _noted(modes, known=bool(np.isfinite(modes.error_estimate).any()))
     if (modes.frequency > modes.reached).any():
         lines.append(f"  above {modes.reached:.4g} Hz, to which the modes of meshes and matrices reach, upper bounds")
     if modes.rigid:

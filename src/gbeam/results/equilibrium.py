@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from gbeam.constants import BY_STRAINS
 from gbeam.results.declared import INSIDE, declared, fact, part, quantity
 from gbeam.results.declared import quantity as entry  # a critical value has a field of that name
-from gbeam.results.errors import MODEL, SHAPES, THEORY, TOTAL, ErrorEstimate, Errors
+from gbeam.results.errors import MODEL, SHAPES, THEORY, TOTAL, UNKNOWN, ErrorEstimate, Errors
 from gbeam.results.facts import at_place
 from gbeam.results.parts import Loads
 from gbeam.results.response import BaseMotion
@@ -95,6 +95,7 @@ class Critical(Result):
         default_factory=ErrorEstimate,
         note="that of the model is infinite where the exact one keeps its equilibrium to three times the value",
     )
+    error_note: str = fact(UNKNOWN, optional=True, default="")
 
     @declared(LOST, "critical value by what is raised", role="fact", name=None, key=INSIDE)
     def by_name(self) -> dict[str, float | None]:

@@ -14,6 +14,7 @@ from gbeam.results.result import Complex, Floats, Part
 PARTS = ("shapes", "model", "beam_theory", "total")
 SHAPES, MODEL = "estimated error from too few shapes", "estimated error of the model against exact"
 THEORY, TOTAL = "estimated error of the theory of slender beams", "estimated error in all"
+UNKNOWN = "what is not estimated, and why"
 SLENDER = "against one with shear, rotary inertia and twist, and by plate action"
 
 
@@ -101,7 +102,7 @@ class SystemErrors(Part):
         note="such as plate action; assumed: Poisson's ratio 0.3",
         default=(),
     )
-    note: str = fact("what is not estimated, and why", default="")
+    note: str = fact(UNKNOWN, default="")
 
     def __repr__(self) -> str:
         alone = (f"{name} {100 * each:.2g} %" for name, each in zip(self.beams, self.by_beam, strict=True))
@@ -130,6 +131,7 @@ class FrequencyErrors(Part):
         key=None,
         default=(),
     )
+    note: str = fact(UNKNOWN, name=None, key=None, default="")
 
     @property
     def slender(self) -> Floats:
@@ -143,7 +145,7 @@ class FrequencyErrors(Part):
 
     def __getitem__(self, chosen: Any) -> FrequencyErrors:
         shapes, model, beam_theory, total = (each[chosen] for each in self.parts.values())
-        return FrequencyErrors(shapes, model, beam_theory, total, self.theory, self.unseen)
+        return FrequencyErrors(shapes, model, beam_theory, total, self.theory, self.unseen, self.note)
 
     def within(self, share: float) -> int:
         """Number of the first frequencies whose every total is within a share; zero where there is no estimate."""
@@ -159,6 +161,17 @@ class FrequencyErrors(Part):
 def totals(errors: FrequencyErrors | None, count: int) -> Floats:
     """Return total errors of frequencies, (k,); NaN where there is no estimate."""
     return np.full(count, np.nan) if errors is None else errors.total
+
+
+class Noted:
+    """A result with errors of frequencies, which may leave something out."""
+
+    errors: FrequencyErrors | None
+
+    @declared("", UNKNOWN, role="fact", optional=True)
+    def error_note(self) -> str:
+        """Part of the errors of frequencies that is not estimated, and why; empty where all is."""
+        return "" if self.errors is None else self.errors.note
 
 
 def along(direction: str) -> str:
@@ -184,11 +197,10 @@ class Instability(Part):
         return f"{self.kind} {along(self.direction)}, growing with {self.growth_rate:.4g} 1/s"
 
 
-class Oscillating:
+class Oscillating(Noted):
     """A result with eigenvalues that oscillate and errors of their frequencies, and what grows."""
 
     eigenvalue: Complex
-    errors: FrequencyErrors | None
     instabilities: tuple[Instability, ...]
 
     @declared("", "whether nothing grows", role="fact")

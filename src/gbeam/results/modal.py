@@ -10,7 +10,7 @@ import numpy as np
 
 from gbeam.results.declared import declared, fact, part, quantity, rows
 from gbeam.results.equilibrium import Critical
-from gbeam.results.errors import ErrorEstimate, FrequencyErrors, Instability, Oscillating, totals
+from gbeam.results.errors import ErrorEstimate, FrequencyErrors, Instability, Noted, Oscillating, totals
 from gbeam.results.response import BaseMotion
 from gbeam.results.result import Complex, Figured, Floats, Part
 from gbeam.results.solids import SurfaceModes
@@ -158,7 +158,7 @@ class Crossing(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Campbell(Figured):
+class Campbell(Noted, Figured):
     """Frequencies against speed, each column one mode followed through crossings and veering."""
 
     json_rows: ClassVar[dict[str, str]] = {"mode": "tracks"}

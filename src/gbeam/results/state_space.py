@@ -15,7 +15,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import vector
 from gbeam.results.declared import INSIDE, declared, fact, labels, part, quantity, rows
-from gbeam.results.errors import FrequencyErrors
+from gbeam.results.errors import FrequencyErrors, Noted
 from gbeam.results.result import Complex, Floats, Part, Result
 
 ACCURATE = 0.01  # error of a frequency that is within what a design takes for accurate
@@ -122,7 +122,7 @@ class Margin(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class StateSpace(Result):
+class StateSpace(Noted, Result):
     """ẋ = Ax + Bu, y = Cx + Du; with a `step` x⁺ = Ax + Bu. All are departures from the operating point.
 
     Examples
@@ -195,7 +195,7 @@ class StateSpace(Result):
 
         Zero where the first is not.
         """
-        if self.errors is None or not len(self.frequency):
+        if self.errors is None or not np.isfinite(self.errors.total).any():
             return math.nan
         count = self.errors.within(ACCURATE)
         return float(self.frequency[count - 1]) if count else 0.0

@@ -38,6 +38,11 @@ def cause_and_cure(shapes: float, model: float, beam_theory: float, theory: str)
     return "too few shapes", "raise model.modes, which one [beam] may leave out"
 
 
+def fuller(model: float) -> str:
+    """The model that tells an error, of which that of a model is a part, or not known."""
+    return "the model with more modes" if math.isnan(model) else "the exact model"
+
+
 def wrong_by(what: str, size: str, errors: ErrorEstimate, theory: str) -> str:
     """Say by how much a quantity of a steady state is wrong, mostly from what, and what helps."""
     cause, cure = cause_and_cure(errors.shapes, errors.model, errors.beam_theory, theory)
@@ -71,7 +76,7 @@ MOST = 20_000  # samples where fast modes may ring
 LARGEST = 2.0  # times (v/L)²: error of a second-order model, up to what a beam that points inward on a hub has
 TOO_FAR = "the solution is too far from the exact model's for an estimate; it is the bound 2 (v/L)² of its class"
 FEW_MODES = "too few modes", "raise modes"
-UNKNOWN = "shapes and model are not judged: the structure was not made of a beam"
+UNKNOWN = "shapes and model are not judged: it is neither a beam, a mesh nor matrices"
 
 
 def negligible(sizes: Mapping[str, float], length: float) -> set[str]:

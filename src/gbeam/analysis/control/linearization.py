@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gbeam.analysis.steady.frequency_errors import doubtful, judgeable, pole_errors
+from gbeam.analysis.steady.frequency_errors import doubtful, judgeable, pole_errors, unknown_errors
 from gbeam.analysis.steady.operating_point import (
     REST,
     OperatingPoint,
@@ -414,7 +414,7 @@ def linearize(
 
 def _poles(state: Any, of: Structure | System) -> tuple[Floats, FrequencyErrors | None, tuple[str, ...]]:
     """Frequencies (k,) Hz of the poles about a steady state, their errors, and doubts about it."""
-    frequency, errors, doubts = np.zeros(0), None, tuple[str, ...]()
+    frequency, errors, doubts = np.zeros(0), unknown_errors(of, 0), tuple[str, ...]()
     if judgeable(of):
         frequency, errors = pole_errors(state)
         doubts = doubtful(errors) if errors.within(ACCURATE) == 0 else ()

@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.analysis.accuracy.estimate import LIMIT, apart, percent, wrong_by
-from gbeam.analysis.steady.frequency_errors import Richer, doubtful, judgeable
+from gbeam.analysis.accuracy.estimate import LIMIT, apart, fuller, percent, wrong_by
+from gbeam.analysis.steady.frequency_errors import Richer, doubtful, judgeable, unknown_errors
 from gbeam.analysis.steady.stability import critical_speed, turned
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
@@ -181,7 +181,7 @@ def campbell(
         for order in orders
         for each in _crossings(at, followed, index, rates, frequency[:, k], k, order)
     ]
-    crossings, errors = [crossing for crossing, _, _ in met], None
+    crossings, errors = [crossing for crossing, _, _ in met], unknown_errors(structure, kept)
     if judgeable(structure):
         until = len(rates) - 1 if lost.value is None else int(np.searchsorted(rates, SURE * last, "right")) - 1
         fastest = point_at(float(rates[until]))
@@ -190,7 +190,7 @@ def campbell(
             _errors(richer, point_at(followed[i].rate), followed[i], index[i]) for i in sorted({0, until // 2, until})
         ]
         shapes, model, theory, total = (np.fmax.reduce([e.parts[part] for e in looked]) for part in PARTS)
-        errors = FrequencyErrors(shapes, model, theory, total, looked[-1].theory, looked[0].unseen)
+        errors = FrequencyErrors(shapes, model, theory, total, looked[-1].theory, looked[0].unseen, looked[0].note)
         crossings = [
             replace(crossing, errors=crossing_errors(crossing, mode, slope, richer, point_at))
             for crossing, mode, slope in met
@@ -229,7 +229,7 @@ def _errors(richer: Richer, point: Any, speed: _Speed, track: np.ndarray) -> Fre
     every = np.full((len(PARTS), len(track)), np.nan)
     every[:, oscillating] = [*errors.parts.values()]
     shapes, model, theory, total = every
-    return FrequencyErrors(shapes, model, theory, total, errors.theory, errors.unseen)
+    return FrequencyErrors(shapes, model, theory, total, errors.theory, errors.unseen, errors.note)
 
 
 def _crossings(
@@ -294,7 +294,8 @@ def crossing_errors(
 
     exact = root(1)
     same = exact if richer.same is richer.exact else root(0)
-    away = ErrorEstimate(0.0, apart(speed, same), apart(same, exact), total=apart(speed, exact))
+    model = richer.of_model(apart(same, exact))
+    away = ErrorEstimate(0.0, apart(speed, same), model, total=apart(speed, exact))
     share = float(richer.by_theory(point_at(speed), mode[None]).shares[0])
     return away.with_theory(share * order / abs(slope - order))
 
@@ -309,9 +310,8 @@ def doubtful_crossings(crossings: Sequence[Crossing], theory: str) -> tuple[str,
     if len(above) > 1:
         where += f", and {len(above) - 1} more where modes meet multiples,"
     if math.isinf(worst.errors.total):
-        return (
-            f"the speed at which {where} is {'not' if len(above) == 1 else 'in part not'} one of the exact model's",
-        )
+        whose = fuller(worst.errors.model)
+        return (f"the speed at which {where} is {'not' if len(above) == 1 else 'in part not'} one of {whose}'s",)
     size = percent(worst.errors.total) + (" at most" if len(above) > 1 else "")
     return (wrong_by(f"the speed at which {where}", size, worst.errors, theory),)
 

@@ -1,6 +1,7 @@
 """Errors of frequencies: from too few shapes, of the model, and of the theory of slender beams.
 
-They are compared with those of the same model with more shapes, of the exact one, and of a thick beam beside a slender.
+They are compared with those of the same model with more shapes, of the exact one, and of a thick beam beside a slender;
+of meshes and matrices, which are all that is known of what they are made of, with those of the same with more modes.
 """
 
 from __future__ import annotations
@@ -11,9 +12,17 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gbeam.analysis.accuracy.beam_theory import WORDS, causes, described, mode_causes
-from gbeam.analysis.accuracy.estimate import LIMIT, percent, wrong_by
+from gbeam.analysis.accuracy.estimate import LIMIT, percent, unjudged, wrong_by
 from gbeam.analysis.steady.operating_point import OperatingPoint, Steady
-from gbeam.analysis.system.richer import bases_of, judged_beams, richer, theories_of, with_beams
+from gbeam.analysis.system.richer import (
+    bases_of,
+    judged_beams,
+    judged_bodies,
+    left_unjudged,
+    richer,
+    theories_of,
+    with_beams,
+)
 from gbeam.analysis.system.steady import SteadySystem
 from gbeam.arrays.tree import each_leaf
 from gbeam.errors import ComputationError
@@ -34,12 +43,13 @@ SHOWN = 3  # frequencies that no model has, named at once
 def doubtful(errors: FrequencyErrors) -> tuple[str, ...]:
     """Warn of frequencies that are wrong by more than one in a hundred, and of those that are left out."""
     said = []
-    above = np.flatnonzero(errors.total > LIMIT)
+    total = np.where(np.isnan(errors.model), errors.shapes, errors.total)  # a rough mesh has a warning of its own
+    above = np.flatnonzero(total > LIMIT)
     if above.size:
-        worst = int(above[errors.total[above].argmax()])
+        worst = int(above[total[above].argmax()])
         which = f"mode {above[0] + 1}" if len(above) == 1 else f"{len(above)} modes, from mode {above[0] + 1} on,"
         parts = ErrorEstimate(**{part: float(getattr(errors, part)[worst]) for part in PARTS})
-        size = percent(parts.total) + " at most" * (len(above) > 1)
+        size = percent(float(total[worst])) + " at most" * (len(above) > 1)
         said.append(wrong_by(f"the frequency of {which}", size, parts, errors.theory))
     if errors.unseen:
         named = ", ".join(f"{each:.4g}" for each in errors.unseen[:SHOWN])
@@ -48,11 +58,12 @@ def doubtful(errors: FrequencyErrors) -> tuple[str, ...]:
     return tuple(said)
 
 
-def of_mesh(structure: Structure, count: int) -> FrequencyErrors | None:
-    """Errors of the first frequencies of a solid by its mesh; None where a coarser one did not tell."""
-    total = np.array(structure.mesh_error or ())[:count]
-    unknown = np.full(count, np.nan)
-    return FrequencyErrors(unknown, unknown, unknown, total) if np.isfinite(total).any() else None
+def by_mesh(of: Structure | System, coordinates: Complex) -> Floats:
+    """Errors of modes (k, n) by a solid's mesh: those of the modes at rest that they are most like; NaN if unknown."""
+    known = np.full(coordinates.shape[1], np.nan)
+    if isinstance(of, Structure) and of.mesh_error is not None:
+        known[: len(of.mesh_error)] = of.mesh_error
+    return np.asarray(known[np.abs(coordinates).argmax(axis=1)]) if known.size else np.full(len(coordinates), np.nan)
 
 
 class ByTheory(NamedTuple):
@@ -75,11 +86,12 @@ class Richer:
 
     def __init__(self, state: OperatingPoint | SteadySystem) -> None:
         if isinstance(state, SteadySystem):
-            self.theories, bodies = theories_of(state.system), [*judged_beams(state.system).values()]
+            self.theories, bodies = theories_of(state.system), [*judged_bodies(state.system).values()]
         else:
-            self.theories, bodies = {"": theory_of(state.structure)}, [state.structure]
+            bodies = [state.structure]
+            self.theories = {} if state.structure.source is None else {"": theory_of(state.structure)}
         self.exact = _with_more(state, exact=True)
-        only_exact = all(body.kind == "exact" for body in bodies)
+        only_exact = all(body.richer is not None or body.kind == "exact" for body in bodies)
         self.same = self.exact if only_exact else _with_more(state, exact=False)
 
     def errors(
@@ -90,8 +102,15 @@ class Richer:
         same, exact = self.references(state, coordinates, gyroscopic=gyroscopic)
         by_theory = self.by_theory(state, coordinates, gyroscopic=gyroscopic)
         shapes, model, total = (np.abs(a / b - 1) for a, b in ((frequency, same), (same, exact), (frequency, exact)))
-        shares = by_theory.shares
-        return FrequencyErrors(shapes, model, shares, total + np.nan_to_num(shares), by_theory.words, by_theory.unseen)
+        of = _of(state)
+        mesh = by_mesh(of, coordinates)
+        total = total + np.nan_to_num(by_theory.shares) + np.nan_to_num(mesh)
+        note = "" if len(mesh) and np.isfinite(mesh).all() else unknown_part(of)
+        return FrequencyErrors(shapes, self.of_model(model), by_theory.shares, total, *by_theory[1:], note)
+
+    def of_model(self, share: Any) -> Any:
+        """A model's share of an error, which is not known where no beam has a model."""
+        return share if self.theories else np.nan * share
 
     def references(self, state: Any, coordinates: Complex, *, gyroscopic: bool = True) -> tuple[Floats, Floats]:
         """Circular frequencies (k,) by models with more shapes and by exact ones; NaN where these do not rest."""
@@ -127,7 +146,9 @@ class Richer:
     def by_theory(self, point: Any, coordinates: Complex, *, gyroscopic: bool = True) -> ByTheory:
         """Errors of these modes' frequencies by the theory of slender beams."""
         k, of_system = len(coordinates), isinstance(point, SteadySystem)
-        models, plates = self.by_theories(point.system if of_system else point.structure, point)
+        if not self.theories:
+            return ByTheory(np.full(k, np.nan), "", ())
+        models, plates = self.by_theories(_of(point), point)
         try:
             others = [point.richer(each) for each in models]
             (slender, shape), (thick, deep), (plated, flat) = (
@@ -211,8 +232,24 @@ def pole_errors(state: Any) -> tuple[Floats, FrequencyErrors]:
 
 
 def judgeable(of: Structure | System) -> bool:
-    """True if frequencies of a beam, or of a system with beams, have estimated errors."""
-    return bool(judged_beams(of)) if isinstance(of, System) else of.source is not None and not of.traced
+    """True if frequencies of a structure, or of a system with some, have estimated errors."""
+    return bool(judged_bodies(of)) if isinstance(of, System) else of.judged
+
+
+def unknown_part(of: Structure | System) -> str:
+    """The errors of a structure or a system that are not judged, in words."""
+    return left_unjudged(of) if isinstance(of, System) else unjudged(of)
+
+
+def unknown_errors(of: Structure | System, count: int) -> FrequencyErrors | None:
+    """No errors of so many frequencies, and why; None where there is nothing to judge."""
+    note, unknown = unknown_part(of), np.full(count, np.nan)
+    return FrequencyErrors(unknown, unknown, unknown, unknown, note=note) if note else None
+
+
+def _of(state: OperatingPoint | SteadySystem) -> Structure | System:
+    """The system or the structure of a steady state."""
+    return state.system if isinstance(state, SteadySystem) else state.structure
 
 
 def _with_more(state: OperatingPoint | SteadySystem, *, exact: bool) -> More:

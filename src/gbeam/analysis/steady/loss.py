@@ -11,15 +11,13 @@ from typing import Any, Protocol
 import numpy as np
 
 from gbeam.analysis.accuracy.beam_theory import described, mode_causes
-from gbeam.analysis.accuracy.estimate import LIMIT, apart, percent, wrong_by
-from gbeam.analysis.steady.frequency_errors import Richer, among, judgeable
+from gbeam.analysis.accuracy.estimate import LIMIT, apart, fuller, percent, wrong_by
+from gbeam.analysis.steady.frequency_errors import Richer, among, judgeable, unknown_part
 from gbeam.analysis.steady.operating_point import Steady
 from gbeam.analysis.system.linear import instabilities
-from gbeam.analysis.system.richer import theories_of, with_beams
 from gbeam.errors import ComputationError
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.theory import theory_of
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.bases.base import Base
 from gbeam.numerics.eigen import symmetric, symmetric_modes
@@ -103,6 +101,7 @@ CLOSE = 1e-6  # of the critical value: how closely a root is found
 
 def judged(critical: Critical, path: Path, structure: Structure | System, progress: Progress = None) -> Critical:
     """A critical value with its estimated errors, and warnings where they are above one in a hundred."""
+    critical = replace(critical, error_note=unknown_part(structure))
     if critical.value == 0 or not judgeable(structure):
         return critical
     if critical.value is None:
@@ -114,6 +113,10 @@ def judged(critical: Critical, path: Path, structure: Structure | System, progre
     exact = _lost(richer.exact.model, path, at, progress)
     same = exact if richer.same is richer.exact else _lost(richer.same.model, path, at, progress)
     errors = _errors(at, same, exact)
+    if not richer.theories:
+        errors = replace(errors, model=math.nan)
+        doubts = doubtful_loss(critical.quantity, critical.model, errors)
+        return replace(critical, errors=errors, warnings=critical.warnings + doubts)
     models, plates = richer.by_theories(structure)
     slender, *thick = (_lost(each, path, at, progress) for each in models)
     beam_theory = max(apart(at if math.isinf(slender) else slender, each) for each in thick)
@@ -155,19 +158,20 @@ def _in_words(richer: Richer, point: Any, models: Sequence[Any], plates: Mapping
 
 
 def _unseen(critical: Critical, path: Path, structure: Structure | System, progress: Progress) -> tuple[str, ...]:
-    """Warn where a beam that twists loses what a model without torsion keeps, at halves of the search's end."""
+    """Warn where a fuller model loses what this one keeps, at halves of the search's end: a beam that twists, or more
+    modes.
+    """
     shares = tuple(2.0**-k for k in range(HALVINGS, -1, -1))
-    thick: Any
-    if isinstance(structure, System):
-        thick = with_beams(structure, {name: each.thick for name, each in theories_of(structure).items()})
-    else:
-        thick = theory_of(structure).thick
-    lost = _lost(thick, path, critical.searched_to, progress, shares)
+    still: Any = path(structure, 0.0)
+    richer, lacked = Richer(still), "more modes"
+    rich = richer.exact.model
+    if richer.theories:
+        (_, rich, *_), lacked = richer.by_theories(structure)[0], "shear and twist"
+    lost = _lost(rich, path, critical.searched_to, progress, shares)
     if math.isinf(lost):
         return ()
     return (
-        f"with shear and twist, which this model has not, the equilibrium is lost at an estimated {lost:.4g} "
-        f"{critical.unit}",
+        f"with {lacked}, which this model has not, the equilibrium is lost at an estimated {lost:.4g} {critical.unit}",
     )
 
 
@@ -194,8 +198,8 @@ def doubtful_loss(quantity: str, model: str, errors: ErrorEstimate, theory: str 
     """Warn of a critical value with errors above one in a hundred, or that the exact model does not have."""
     if math.isinf(errors.total):
         return (
-            f"the critical {quantity} is {model}'s own: the exact model keeps its equilibrium to {SHARES[-1]:g} times "
-            "that at least",
+            f"the critical {quantity} is {model}'s own: {fuller(errors.model)} keeps its equilibrium to "
+            f"{SHARES[-1]:g} times that at least",
         )
     if not errors.total > LIMIT:
         return ()

@@ -7,7 +7,7 @@ from typing import overload
 
 import numpy as np
 
-from gbeam.analysis.steady.frequency_errors import Richer, doubtful, judgeable, of_mesh
+from gbeam.analysis.steady.frequency_errors import Richer, doubtful, judgeable, unknown_errors
 from gbeam.analysis.steady.operating_point import OperatingPoint, drawn, extent, operating_point
 from gbeam.analysis.system.linear import instabilities, system_modes
 from gbeam.analysis.system.steady import Drive, steady
@@ -139,10 +139,13 @@ def modes(
         state = steady(structure, Drive(motion, time))
         moving = state.vibrations(gyroscopic=gyroscopic)
         of_system = system_modes(state, moving, time, name)
-        if not (errors and judgeable(structure)):
+        if not errors:
             return of_system
+        if not judgeable(structure):
+            return replace(of_system, errors=unknown_errors(structure, len(moving.value)))
         judged = Richer(state).errors(state, moving.value, moving.modes.T, gyroscopic=gyroscopic)
-        return replace(of_system, errors=judged, warnings=of_system.warnings + doubtful(judged))
+        said = doubtful(judged[~(of_system.frequency > of_system.reached)])  # of those above all is said
+        return replace(of_system, errors=judged, warnings=of_system.warnings + said)
     structure.require_coordinates()
     point = operating_point(structure, motion, time)
     warnings = input_warnings(structure, motion, name=name, span=(time, time), base=point.base)
@@ -151,6 +154,6 @@ def modes(
     if errors and judgeable(structure):
         stated = Richer(point).errors(point, computed.eigenvalue, computed.coordinates, gyroscopic=gyroscopic)
         warnings += doubtful(stated)
-    elif errors and not point.first:
-        stated = of_mesh(structure, len(computed.eigenvalue))
+    elif errors:
+        stated = unknown_errors(structure, len(computed.eigenvalue))
     return replace(computed, errors=stated, warnings=warnings, **drawn(structure))

@@ -31,7 +31,6 @@ from gbeam.motion.bases.base import Base, mapped
 from gbeam.motion.protocol import Motion
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.errors import ErrorEstimate, Errors
-from gbeam.results.parts import Loads
 from gbeam.results.response import BaseMotion
 from gbeam.results.result import Floats
 from gbeam.results.system import SystemRest
@@ -40,29 +39,26 @@ NOTHING = 1e-6  # of the other load, over a length of the beam: a force or momen
 LOST = "shapes and model are not judged: the exact model with more shapes comes to no equilibrium there"
 
 
-def static_errors(point: OperatingPoint, displacement: Floats, loads: Loads | None) -> tuple[Errors, tuple[str, ...]]:
-    """Estimated errors of an equilibrium, as fractions of displacement (s, 3), root load and stress, and warnings."""
-    structure = point.structure
-    note = unjudged(structure)
-    if not structure.judged or loads is None:
+def static_errors(point: OperatingPoint) -> tuple[Errors, tuple[str, ...]]:
+    """Estimated errors of an equilibrium, as fractions of displacement, root load and stress, and warnings."""
+    structure, note = point.structure, unjudged(point.structure)
+    if not structure.judged:
         return Errors(note=note), ()
-    computed = Quantities(displacement[-1:], loads.force[:, 0], loads.moment[:, 0], loads.stress.max(axis=1))
+    mine = np.arange(structure.size)
     more = enrichment(structure, point.base)
     which = driven(more, lambda rich, index: _lifted(rich, index, point))
-    rich, shared = more.model("exact", directions=which)
+    rich = more.model("exact", directions=which)[0]
     at = _solved(rich, point)
     if at is None:
         return Errors(note=LOST), (LOST,)
-    exact = quantities(rich, at)
+    computed, exact = _read(structure, _lifted(structure, mine, point)), _read(rich, at)
     same: Quantities | None = exact
     if structure.kind != rich.kind:
         alike = more.model(structure.kind, directions=which)[0]
         rested = _solved(alike, point)
-        same = None if rested is None else quantities(alike, rested)
+        same = None if rested is None else _read(alike, rested)
     length, slender = structure.length, structure.source is not None
-    lacking = NO_THEORY
-    if slender:
-        lacking = static_theory(structure, lambda rich: _lifted(rich, np.arange(structure.size), point))
+    lacking = static_theory(structure, lambda rich: _lifted(rich, mine, point)) if slender else NO_THEORY
 
     def fractions(name: str, least: float) -> ErrorEstimate:
         def apart(a: Quantities | None, b: Quantities | None) -> float:
@@ -72,12 +68,10 @@ def static_errors(point: OperatingPoint, displacement: Floats, loads: Loads | No
             return away / size if size > least else 0.0
 
         size = max(float(np.linalg.norm(getattr(each, name))) for each in (computed, exact))
-        if not slender:
-            total = apart(computed, exact)
-            return ErrorEstimate(0.0, total, total=total)
-        away = ErrorEstimate(0.0, apart(computed, same), apart(same, exact), total=apart(computed, exact))
+        model = apart(same, exact) if slender else math.nan
+        away = ErrorEstimate(0.0, apart(computed, same), model, total=apart(computed, exact))
         theory = lacking.sizes[name]
-        return away.with_theory(theory / size if theory and size > least else 0.0)
+        return away.with_theory(theory / size if theory and size > least else 0.0 * theory)
 
     force, moment = (float(np.linalg.norm(each)) for each in (exact.force, exact.moment))
     worst = max(
@@ -85,20 +79,20 @@ def static_errors(point: OperatingPoint, displacement: Floats, loads: Loads | No
         fractions("moment", NOTHING * force * length),
         key=lambda each: each.total,
     )
-    if not slender:
-        stress = ErrorEstimate()
-        if rich.recovery is not None:
-            away, size = (
-                float(np.linalg.norm(rich.recovery.felt(q))) for q in (at.p - _lifted(rich, shared, point).p, at.p)
-            )
-            share = away / size if size else 0.0
-            stress = ErrorEstimate(0.0, share, total=share)
-        errors = Errors(fractions("tip", NOTHING**2 * length), worst, stress, note=note)
-        return errors, _doubtful(errors)
-    theory = described(structure, lacking.causes)
-    errors = Errors(fractions("tip", NOTHING**2 * length), worst, fractions("stress", 0.0), theory=theory)
-    bodies = of_bodies(structure, lacking, float(np.linalg.norm(computed.tip)), LIMIT)
-    return errors, (*_doubtful(errors), *bodies, *_sideways(point))
+    felt = structure.sections is not None or structure.recovery is not None  # matrices know no stress
+    stress = fractions("stress", 0.0) if felt else ErrorEstimate()
+    theory = described(structure, lacking.causes) if slender else ""
+    errors = Errors(fractions("tip", NOTHING**2 * length), worst, stress, note, theory)
+    doubts = _doubtful(errors)
+    if slender:
+        doubts += (*of_bodies(structure, lacking, float(np.linalg.norm(computed.tip)), LIMIT), *_sideways(point))
+    return errors, doubts
+
+
+def _read(structure: Structure, at: Sampled) -> Quantities:
+    """Tip, root loads and stress at an equilibrium."""
+    read, recovery = quantities(structure, at), structure.recovery
+    return read if recovery is None else read._replace(stress=recovery.felt(at.p))
 
 
 def _sideways(point: OperatingPoint) -> tuple[str, ...]:
@@ -232,7 +226,7 @@ def deflection_at(
     still = np.zeros((1, structure.size))
     displacement = np.asarray(structure.displacement(q))
     loads = section_forces(structure, over_time, q[None], still, still, np.array([time]), motion=motion)
-    errors, doubts = static_errors(point, displacement, loads)
+    errors, doubts = static_errors(point)
     warnings = input_warnings(structure, motion, name=name, span=(time, time), base=base) + doubts
     names = {"motion": name, "model": structure.kind, "environment": "" if motion is None else motion.kind}
     recovery, times = structure.recovery, np.array([time])

@@ -29,13 +29,13 @@ from gbeam.analysis.system.richer import (
     itself,
     judged_beams,
     judged_bodies,
+    left_unjudged,
     richer,
     theories_of,
     with_beams,
 )
 from gbeam.errors import ComputationError
 from gbeam.integrate.equations import Trajectory
-from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.signals import deforming
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.bases.base import Base
@@ -45,8 +45,6 @@ Floats = NDArray[np.float64]
 Reading = dict[Quantity, Floats]
 Again = Callable[[System], tuple[Trajectory, InputsOf]]
 FEWEST = 3  # times of a response that is judged
-NOT_ALL = "shapes and model are not judged of {}: neither a beam, a mesh nor matrices"
-NO_MESH = "the mesh of {} is not judged"
 FAR = "shapes and models are not judged: a system with more shapes does not follow"
 
 UNKNOWN = "errors by the theory of slender beams are not known: "
@@ -87,13 +85,10 @@ def system_errors(
     Richer systems are run `again` if it is given: where controllers answer what is lacking, and at rest.
     """
     judged = judged_bodies(system)
-    others = [name for name, body in system.bodies.items() if isinstance(body, Structure) and name not in judged]
-    meshes = [name for name, body in judged.items() if body.source is None]
-    pairs = (NOT_ALL, others), (NO_MESH, meshes)
-    note = "; ".join(words.format(", ".join(names)) for words, names in pairs if names)
+    note = left_unjudged(system)
     step = steps.get(PLACE, math.nan)
     if not judged or (again is None and len(of.time) < FEWEST):
-        none = math.nan if others or judged else 0.0
+        none = math.nan if note or judged else 0.0
         return SystemErrors(ErrorEstimate(step, none, none, total=step + none), note=note)
     computed = answered(itself(system), of, inputs).read(judged)
     place = computed[PLACE]

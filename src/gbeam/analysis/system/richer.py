@@ -27,6 +27,8 @@ Floats = NDArray[np.float64]
 IntArray = NDArray[np.int_]
 LOOKED = 61  # times at which M, C and K are found; between them they are straight lines
 AT_ONCE = 20_000  # numbers of a state's frames computed together, times coordinates
+NOT_ALL = "shapes and model are not judged of {}: neither a beam, a mesh nor matrices"
+NO_MESH = "the mesh of {} is not judged"
 
 InputsOf = Callable[[System, Any], Inputs]  # of a system with the same joints, at some (index) of the times
 Quantity = tuple[str, str]  # a beam, or none, and what is read of it
@@ -56,6 +58,15 @@ def judged_bodies(system: System) -> dict[str, Structure]:
 def judged_beams(system: System) -> dict[str, Structure]:
     """Beams of which that is known, by name."""
     return {name: body for name, body in judged_bodies(system).items() if body.source is not None}
+
+
+def left_unjudged(system: System) -> str:
+    """The bodies of which nothing, or not the mesh, is judged, in words."""
+    judged = judged_bodies(system)
+    others = [name for name, body in system.bodies.items() if isinstance(body, Structure) and name not in judged]
+    meshes = [name for name, body in judged.items() if body.source is None]
+    pairs = (NOT_ALL, others), (NO_MESH, meshes)
+    return "; ".join(words.format(", ".join(names)) for words, names in pairs if names)
 
 
 def richer(system: System, bases: Mapping[str, Base], *, exact: bool) -> Richer:

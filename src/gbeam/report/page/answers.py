@@ -118,7 +118,7 @@ def modes_body(facts: Facts, viewer: str, drawn: str) -> str:
         f"{each['kind']} {along(each['direction'])}: grows by {number(each['growth_rate'])} per second"
         for each in facts["instabilities"]
     ]
-    parts += [listed(growing, "bad"), heading("Modes"), modes_table(facts)]
+    parts += [listed(growing, "bad"), heading("Modes"), modes_table(facts), noted(facts)]
     if not facts["damping_given"]:
         parts.append(paragraph("undamped: beam.damping_ratio is not given", "faint"))
     if facts["modes"]:
@@ -133,7 +133,7 @@ def campbell_body(facts: Facts, viewer: str, drawn: str) -> str:
     parts = [section("Campbell diagram", drawn)]
     if facts["critical_speed"] is not None:
         parts.append(paragraph(f"the equilibrium is lost at {number(facts['critical_speed'])} rad/s", "bad"))
-    parts += [heading("Modes"), tracks_table(facts), heading("Crossings")]
+    parts += [heading("Modes"), tracks_table(facts), noted(facts), heading("Crossings")]
     return "".join([*parts, crossings_table(facts) or paragraph("none in this range", "faint")])
 
 
@@ -179,6 +179,12 @@ def crossings_table(facts: Facts) -> str:
     ]
     heads = "mode", "multiple", "speed, rad/s", "speed, rpm", "frequency, Hz", "estimated error"
     return table(heads, rows)
+
+
+def noted(facts: Facts) -> str:
+    """Paragraph on what estimated errors of frequencies leave out, or why there are none."""
+    note = facts.get("error_note")
+    return paragraph(f"estimated errors: {note}", "faint") if note else ""
 
 
 def _error(facts: Facts) -> str:
@@ -278,7 +284,7 @@ def critical_body(facts: Facts, viewer: str, drawn: str) -> str:
         ["estimated error", Cell(percent(known(facts["error_estimate"])))],
     ]
     motion = f"motion {facts['motion']}: " if facts["motion"] else ""
-    return paragraph(f"{motion}{facts['reason']}", "verdict") + table(("", ""), rows)
+    return paragraph(f"{motion}{facts['reason']}", "verdict") + table(("", ""), rows) + noted(facts)
 
 
 def critical_map_body(facts: Facts, viewer: str, drawn: str) -> str:
