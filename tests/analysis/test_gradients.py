@@ -86,10 +86,10 @@ def tip_of(kind: str, base: str, *, step: float = 0.02, integrator: str | None =
     return tip
 
 
-def agree(function: Callable[[Values], Any], at: Values) -> None:
+def agree(function: Callable[[Values], Any], at: Values, slopes: Values | None = None) -> None:
     """The derivative along a change of every value is a central difference of fourth order, of runs without JAX."""
     shares = {name: value * (0.5 + k) for k, (name, value) in enumerate(sorted(at.items()))}
-    slopes, h = quickly_compiled(jax.grad(function))(at), 1e-3
+    slopes, h = slopes or quickly_compiled(jax.grad(function))(at), 1e-3
 
     def apart(steps: int) -> float:
         """Difference of the function over twice so many steps."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import jax
@@ -40,17 +41,30 @@ def places(at: dict[str, Any], step: float = 0.005) -> Any:
     return np.array([1.0, 2.0, 3.0]) @ (run.at("exact.tip") + run.at("FOAM.tip")).T
 
 
+def moved(at: dict[str, Any]) -> Any:
+    return (places(at)[-8:] ** 2).sum()
+
+
+SPRINGS = np.array([AT["spring"], 4.0, 6.0, np.nan])
+
+
+@cache
+def batch() -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Values and derivatives with several springs: one program, which takes long to compile."""
+    every = {name: np.full(len(SPRINGS), value) for name, value in AT.items()} | {"spring": SPRINGS}
+    values, slopes = quickly_compiled(jax.vmap(jax.value_and_grad(moved)))(every)
+    return np.asarray(values), {name: np.asarray(each) for name, each in slopes.items()}
+
+
 def test_derivatives_with_respect_to_what_bodies_joints_and_drives_are_made_of() -> None:
-    agree(lambda at: (places(at)[-8:] ** 2).sum(), AT)
+    agree(moved, AT, {name: each[0] for name, each in batch()[1].items()})
 
 
 def test_a_batch_is_as_many_runs_and_no_number_has_no_derivative() -> None:
-    springs = np.array([4.0, 6.0, np.nan])
-    last = quickly_compiled(jax.vmap(jax.value_and_grad(lambda spring: places({"spring": spring})[-1])))
-    values, slopes = last(springs)
-    for value, spring in zip(values[:2], springs[:2], strict=True):
-        assert value == pytest.approx(places({"spring": float(spring)})[-1], rel=1e-12)
-    assert (slopes[:2] != 0).all() and np.isnan(values[2]) and np.isnan(slopes[2])
+    values, slopes = batch()[0], batch()[1]["spring"]
+    for value, spring in zip(values[:3], SPRINGS[:3], strict=True):
+        assert value == pytest.approx(moved({"spring": float(spring)}), rel=1e-12)
+    assert (slopes[:3] != 0).all() and np.isnan(values[3]) and np.isnan(slopes[3])
 
 
 def test_what_a_traced_system_cannot_have_is_said() -> None:
