@@ -128,3 +128,43 @@ def test_a_size_is_for_shapes_and_a_unit_for_meshes() -> None:
     ):
         with pytest.raises(gb.InputError, match=words):
             gb.SolidMesh.read(mesh, materials=STEEL, clamp="wall", **options)
+
+
+def test_a_mesh_of_med_is_that_of_gmsh(tmp_path: Path) -> None:
+    """Its elements are numbered as in a mirror, and its groups are names of families."""
+    gmsh.initialize(readConfigFiles=False, interruptible=False)
+    gmsh.option.setNumber("General.Terminal", 0)
+    box = gmsh.model.occ.addBox(0, 0, 0, LENGTH, WIDTH, THICKNESS)
+    gmsh.model.occ.synchronize()
+    (foot,) = (tag for dim, tag in gmsh.model.getEntities(2) if gmsh.model.occ.getCenterOfMass(dim, tag)[0] < 1e-9)
+    gmsh.model.addPhysicalGroup(3, [box], name="a bar")
+    gmsh.model.addPhysicalGroup(2, [foot], name="wall")
+    gmsh.option.setNumber("Mesh.MeshSizeMax", 10.0)
+    gmsh.model.mesh.generate(3)
+    files = []
+    for order in (1, 2):
+        gmsh.model.mesh.setOrder(order)
+        files += [(tmp_path / f"{order}.med", tmp_path / f"{order}.msh")]
+        for file in files[-1]:
+            gmsh.write(str(file))
+    gmsh.finalize()
+    for pair in files:
+        bars = [gb.SolidMesh.read(file, materials={"a bar": STEEL}, clamp="wall", unit="mm") for file in pair]
+        med, msh = (bar.reduced(modes=2, damping_ratio=0.0).frequency for bar in bars)
+        assert med == pytest.approx(msh, rel=1e-9)
+
+
+def test_what_meshio_reads_in_part_is_refused(tmp_path: Path) -> None:
+    """XDMF, whose numbers stand in another file unless it is asked for one, and CGNS."""
+    import meshio
+
+    mesh = block("hexahedron", (2, 1, 1), (0.2, 0.02, 0.01))
+    whole = meshio.Mesh(mesh.points, mesh.cells, cell_data={"part": [np.array([1, 2])]})
+    options: dict[str, Any] = {"element_size": None, "clamp": "1", "unit": "m"}
+    meshio.write(tmp_path / "one.xdmf", whole, data_format="XML")
+    assert read(tmp_path / "one.xdmf", **options).mass == pytest.approx(STEEL.density * 4e-5)
+    meshio.write(tmp_path / "two.xdmf", whole)
+    with pytest.raises(gb.InputError, match=r"two.xdmf keeps its numbers in two.h5; write one file: VTU, or XDMF"):
+        read(tmp_path / "two.xdmf", **options)
+    with pytest.raises(gb.InputError, match=r"a.cgns is CGNS, of which meshio reads no groups; write it for Gmsh"):
+        read(tmp_path / "a.cgns", **options)

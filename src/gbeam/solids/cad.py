@@ -33,8 +33,6 @@ def mesh_of(source: Any, unit: str | None, element_size: float | None) -> tuple[
         return meshed(path, positive("element_size", element_size, "m")), 1.0
     if element_size is not None:
         raise InputError("element_size", "is given beside a mesh", "leave it out: it is for STEP files")
-    if path is not None and path.suffix.lower() in (".igs", ".iges"):
-        raise InputError("mesh", f"{path} is IGES, which holds surfaces and not the solid", "export the part as STEP")
     mesh = read_mesh(source)
     if unit is None:
         raise InputError("unit", "is missing", 'give the one that the coordinates are in, such as "mm"')

@@ -20,7 +20,7 @@ from gbeam.guards.limits import BINARY_BYTES, refuse_large_file
 from gbeam.guards.units import UnitError, quantity
 from gbeam.printable import shortened
 from gbeam.results.result import Floats
-from gbeam.solids.shape_functions import KINDS, Indices
+from gbeam.solids.shape_functions import KINDS, MED_ORDER, Indices
 from gbeam.solids.shells import points_of
 from gbeam.solids.stress import surface_of
 from gbeam.solids.texts import AGAIN, TEXTS, TextMesh, ending_of, text_mesh
@@ -37,9 +37,15 @@ _CARRYING = re.compile(
 THICKNESS = ("PSHELL", "SHELL SECTION")
 # Ends of the names of files that hold meshes, also of surfaces and of geometry, of which the reader says what lacks.
 MESHES = {
-    ".avs", ".bdf", ".cgns", ".e", ".ex2", ".exo", ".fem", ".inp", ".mdpa", ".med", ".mesh", ".meshb", ".msh", ".nas",
-    ".su2", ".ugrid", ".vtk", ".vtu", ".iges", ".igs", ".obj", ".ply", ".step", ".stl", ".stp",
+    ".avs", ".bdf", ".e", ".ex2", ".exo", ".fem", ".inp", ".mdpa", ".med", ".mesh", ".meshb", ".msh", ".nas",
+    ".su2", ".ugrid", ".vtk", ".vtu", ".xdmf", ".cgns", ".iges", ".igs", ".obj", ".ply", ".step", ".stl", ".stp",
 }  # fmt: skip
+_IGES = "IGES, which holds surfaces and not the solid", "export the part as STEP"
+_UNREAD = {
+    ".iges": _IGES,
+    ".igs": _IGES,
+    ".cgns": ("CGNS, of which meshio reads no groups", "write it for Gmsh, Nastran, Abaqus, CalculiX or MED"),
+}
 VERTICES = 20_000  # about: at which groups are still told apart
 GROUPS = 200
 SHEET = 1e-3  # thickness of a shell that is shown, of the size of the mesh
@@ -49,6 +55,8 @@ def read_mesh(source: str | os.PathLike[str] | Any) -> Any:
     """Return a mesh as of meshio in a file, or the mesh itself."""
     if not isinstance(source, (str, os.PathLike)):
         return source
+    if ending := _UNREAD.get(ending_of(source)):
+        raise InputError("mesh", f"{os.fspath(source)} is {ending[0]}", ending[1])
     refuse_large_file("mesh", source, BINARY_BYTES, "mesh it more coarsely")
     said = io.StringIO()
     try:
@@ -57,9 +65,11 @@ def read_mesh(source: str | os.PathLike[str] | Any) -> Any:
         import meshio
 
         _refuse_node_0(Path(source))
+        _refuse_in_parts(Path(source))
         # It prints what fails and exits.
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-            return meshio.read(source)
+            mesh = meshio.read(source)
+        return _of_med(mesh) if ending_of(source) == ".med" else mesh
     except InputError:
         raise
     except ModuleNotFoundError as error:  # meshio, or what it reads some formats by
@@ -82,6 +92,35 @@ def _refuse_node_0(path: Path) -> None:
         numbers = np.frombuffer(content, [("", "<i4"), ("", "<f8", 3)], int(head[1]), head.end())["f0"]
         if numbers.min() < 1:
             raise InputError("mesh", f"has node {numbers.min()}", "write it as text, or number its nodes from 1")
+
+
+def _refuse_in_parts(path: Path) -> None:
+    """Refuse a file of XDMF whose numbers are in another one, which a result would not hold."""
+    content = path.read_bytes() if path.suffix.lower() == ".xdmf" else b""
+    if match := re.search(rb'Format="HDF"[^>]*>\s*([^:<]*):', content):
+        other = match[1].decode(errors="replace").strip()
+        fix = 'write one file: VTU, or XDMF with data_format="XML" of meshio'
+        raise InputError("mesh", f"{path} keeps its numbers in {other}", fix)
+
+
+def _of_med(mesh: Any) -> Any:
+    """A mesh of MED with groups by their names, which families of elements and of nodes have, and the nodes of elements
+    in the order of VTK, in which meshio writes them there.
+    """
+    for block in mesh.cells:
+        if block.type in MED_ORDER and len(block.data):
+            first, *along = mesh.points[block.data[0, [0, 1, 3, 4] if "hexa" in block.type else [0, 1, 2, 3]]]
+            if np.linalg.det(along - first) < 0:
+                block.data = block.data[:, MED_ORDER[block.type]]
+    for tags, values, sets in (
+        (getattr(mesh, "cell_tags", {}), mesh.cell_data.get("cell_tags"), mesh.cell_sets),
+        (getattr(mesh, "point_tags", {}), [mesh.point_data.get("point_tags")], mesh.point_sets),
+    ):
+        for name in dict.fromkeys(name for names in tags.values() for name in names):
+            numbers = [number for number, names in tags.items() if name in names]
+            chosen = [np.flatnonzero(np.isin(each, numbers)) for each in values]
+            sets[name] = chosen if sets is mesh.cell_sets else chosen[0]
+    return mesh
 
 
 def unit_size(where: str, unit: str, kind: str) -> float:

@@ -81,6 +81,10 @@ NASTRAN_ORDER |= {"wedge15": [*range(9), 12, 13, 14, 9, 10, 11]}
 _OF_GMSH = [*range(8), 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15]
 GMSH_ORDER = {"hexahedron20": _OF_GMSH, "hexahedron27": [*_OF_GMSH, 22, 23, 21, 24, 20, 25, 26]}
 GMSH_ORDER |= {"tetra10": [*range(8), 9, 8], "wedge15": [*range(7), 9, 7, 12, 14, 13, 8, 10, 11]}
+# Of MED, whose elements are those of VTK seen in a mirror.
+MED_ORDER = {"tetra": [0, 2, 1, 3], "tetra10": [0, 2, 1, 3, 6, 5, 4, 7, 9, 8], "wedge": [0, 2, 1, 3, 5, 4]}
+MED_ORDER |= {"hexahedron": [0, 3, 2, 1, 4, 7, 6, 5]}
+MED_ORDER |= {"hexahedron20": [*MED_ORDER["hexahedron"], 11, 10, 9, 8, 15, 14, 13, 12, 16, 19, 18, 17]}
 
 
 def import_skfem() -> Any:
