@@ -7,14 +7,16 @@ import math
 import shutil
 import sys
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gbeam.printable import json_printable
-from gbeam.results.errors import ErrorEstimate, SystemErrors
-from gbeam.results.parts import LoadPeaks, Loads, yield_margin
-from gbeam.results.result import Result
+
+if TYPE_CHECKING:
+    from gbeam.results.errors import ErrorEstimate, SystemErrors
+    from gbeam.results.parts import LoadPeaks, Loads
+    from gbeam.results.result import Result
 
 
 def as_json(value: Any) -> str:
@@ -94,6 +96,8 @@ def stress_words(stations: Any, tension: Any, compression: Any, yield_strength: 
     words = f"stress {low} to {high} MPa, largest in {sign} at {number(float(stations[worst]))} m"
     if yield_strength is None or stress == 0:
         return words
+    from gbeam.results.parts import yield_margin
+
     margin = float(yield_margin(yield_strength, np.array(stress)))
     return f"{words}, {'margin on yield' if margin >= 0 else 'ABOVE YIELD: margin'} {margin:.3g}"
 
