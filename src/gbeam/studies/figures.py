@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import reduce
+from functools import cache, reduce
 from operator import getitem
 from typing import TYPE_CHECKING, Any
 
@@ -52,6 +52,7 @@ def answer_facts(answer: Any, title: str = "") -> Facts:
     return {**facts, KIND: kind, "message": _message(answer) or facts.get("message", "")}
 
 
+@cache  # by kind, whose declarations do not change; nobody writes into it
 def tree_of_figures(kind: type) -> dict[str, Any]:
     """The figures of answers of a kind, each at its place in the facts."""
     from gbeam.results.facts import ANY, Entry
