@@ -16,7 +16,7 @@ from gbeam.progress import INTERVAL
 
 @dataclass(frozen=True)
 class Answer:
-    """What a call of the command line gave."""
+    """Answer of a call of the command line."""
 
     status: int
     out: str

@@ -63,7 +63,7 @@ STRIP_LENGTH, STRIP_DENSITY, STRIP_YOUNG = zhang2020.LENGTH, zhang2020.DENSITY, 
 
 @cache
 def laden(kind: str) -> Structure:
-    """The same with all there is: a tip mass, a body off its axis, root springs, loads, both directions of bending; as
+    """Appendage with all there is: a tip mass, a body off its axis, root springs, loads, both directions of bending; as
     a thick beam with every strain and rotary inertia, straight or curved (`bow`, and its Taylor polynomial),
     or with a composite section.
     """

@@ -48,7 +48,7 @@ def _nulls(value: Any, place: str = "") -> Iterator[str]:
 
 
 def test_the_bracket_is_accepted() -> None:
-    """What docs/tutorials/bracket.md says of it."""
+    """The verdict that docs/tutorials/bracket.md states."""
     answer = run("bracket")
     (compared,) = answer.comparisons
     flight, machine = (answer.responses[name].solid for name in ("flight", "centrifuge"))

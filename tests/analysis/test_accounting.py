@@ -46,7 +46,7 @@ def along_z(sizes: np.ndarray) -> np.ndarray:
 
 
 def alike(load: np.ndarray) -> History:
-    """The same load all over a specimen."""
+    """One load all over a specimen."""
     return History(load, load, np.zeros((*load.shape, 3)), np.array([[0.3, 0.0, 0.0]]))
 
 

@@ -51,7 +51,7 @@ def timoshenko(slenderness: float, count: int) -> np.ndarray:
     s2 = MODULUS / (COWPER * SHEAR) * r2
 
     def equation(b: float) -> float:
-        """Of b² = ω² ρA L⁴/EI; the second root turns imaginary beyond the cut-off, which is above these."""
+        """Equation of b² = ω² ρA L⁴/EI; the second root turns imaginary beyond the cut-off, which is above these."""
         root = np.sqrt((r2 - s2) ** 2 + 4 / b**2)
         alpha, beta = (np.sqrt((sign * (r2 + s2) + root) / 2) for sign in (-1, 1))
         c, s = np.cosh(b * alpha) * np.cos(b * beta), np.sinh(b * alpha) * np.sin(b * beta)

@@ -1,4 +1,4 @@
-"""When a run stops being stable, by how much a disturbance grows meanwhile, and what a run says of it.
+"""Loss of stability of a run: by how much a disturbance grows meanwhile, and what a run says of it.
 
 Critical values in closed form: Euler, Greenhill, Beck; see tests/analysis_verbs/test_critical_loads.py.
 """

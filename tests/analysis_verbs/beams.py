@@ -29,5 +29,5 @@ def beam_2009(mass: float = 0.0, at: float = 8.0, damping_ratio: float = 0.0) ->
 
 @cache
 def structure_2009(kind: str, axial: int, y: int, z: int = 0, mass: float = 0.0, damping: float = 0.0) -> Structure:
-    """That beam in a model."""
+    """The hub beam of 2009 in a model."""
     return assemble(beam_2009(mass, damping_ratio=damping), Model(kind, axial, y, z))

@@ -196,7 +196,7 @@ def test_a_hub_on_a_spring_rests_where_it_balances_the_torque():
 
 
 def test_a_state_space_model_states_the_errors_of_its_frequencies(tmp_path):
-    """Those of a beam with a tip mass and five clamped-free shapes, of which the fifth is 1.8 % too high."""
+    """Errors of a beam with a tip mass and five clamped-free shapes, of which the fifth is 1.8 % too high."""
     beam = beam_2009(0.5)
     few, many = (assemble(beam, Model("FOAM", 1, n, 0, how)) for n, how in ((5, "clamped-free"), (9, "adapted")))
     plant = linearize(few, Hub(radius=0.5), rate=0.0)

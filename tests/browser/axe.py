@@ -1,4 +1,4 @@
-"""What axe finds wrong with a page for those who cannot see, or not well, or use no mouse."""
+"""Faults that axe finds in a page for those who cannot see, or not well, or use no mouse."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the browser tests find a Chromium."""
+"""The Chromium of the browser tests."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def find() -> Path | None:
 
 
 def arguments(program: Path) -> list[str]:
-    """Of the command line; the one from npm starts its processes without a zygote."""
+    """Arguments of the command line; the one from npm starts its processes without a zygote."""
     return [*QUIET, "--no-zygote"] if program == INSTALLED else [*QUIET]
 
 

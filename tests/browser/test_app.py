@@ -349,7 +349,7 @@ def _picture(page: Any) -> bytes:
 
 
 def _violations(page: Any) -> list[str]:
-    """What axe finds wrong in light and in dark."""
+    """Faults that axe finds in light and in dark."""
     answer = []
     for scheme in ("dark", "light"):
         page.emulate_media(color_scheme=scheme)

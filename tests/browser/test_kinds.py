@@ -26,7 +26,7 @@ HEADS = "h2, h3, figcaption, caption, summary"
 
 @dataclass
 class Printed:
-    """What is wrong with a page on screens of several widths, what it says there, and what is printed of it."""
+    """Faults of a page on screens of several widths, what it says there, and what is printed of it."""
 
     wrong: list[str]
     words: list[str]
@@ -38,7 +38,7 @@ class Printed:
 
 @pytest.fixture(scope="module")
 def known() -> dict[Path, Printed]:
-    """What has been printed, each once."""
+    """Pages that have been printed, each once."""
     return {}
 
 

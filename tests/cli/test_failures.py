@@ -1,4 +1,4 @@
-"""What is wrong with the input is said once, on stderr, with its place; status 2, and JSON with --json."""
+"""Wrong input is named once, on stderr, with its place; status 2, and JSON with --json."""
 
 from __future__ import annotations
 

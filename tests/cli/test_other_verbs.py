@@ -77,7 +77,7 @@ def spent() -> float:
 
 
 def imported(heavy: tuple[str, ...], *calls: tuple[object, ...]) -> tuple[list[str], list[str]]:
-    """Which of some modules calls of the command line import in a process of their own; and what each call prints."""
+    """Modules, of some, that calls of the command line import in a process of their own; and what each call prints."""
     code = (
         "import json, sys; from gbeam.cli import main;"
         "status = max((main(call), print('\\0', end=''))[0] for call in json.loads(sys.argv[1]));"

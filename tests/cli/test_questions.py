@@ -44,7 +44,7 @@ TIP = 0.3**3 / (3 * STIFFNESS)  # m of 1 N
 
 
 def python(code: str, *words: object) -> str:
-    """What a Python prints that knows the question."""
+    """Output of a Python that knows the question."""
     answer = subprocess.run(
         [sys.executable, "-c", code, *map(str, words)], capture_output=True, text=True,
         env=os.environ | {"PYTHONPATH": os.pathsep.join([".", *sys.path])},

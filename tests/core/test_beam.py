@@ -1,4 +1,4 @@
-"""What the structure is: every shape of section, tapers, bodies as particles, and all that is refused."""
+"""The structure: every shape of section, tapers, bodies as particles, and all that is refused."""
 
 from __future__ import annotations
 

@@ -100,7 +100,7 @@ def test_coefficients_are_the_whole_truth_for_a_truncated_energy() -> None:
 
 @pytest.mark.parametrize("name", COMPLETE)
 def test_coefficients_of_a_complete_model_are_its_linearisation(name: str) -> None:
-    """What they leave is of second order: a quarter at half the state."""
+    """Their rest is of second order: a quarter at half the state."""
     structure, (q, qd, qdd, base) = laden(name), spatial_state(name, 5)
     c = structure.coefficients
     velocity, stiffness, load = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)

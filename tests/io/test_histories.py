@@ -1,4 +1,4 @@
-"""How much of long histories a file keeps: one of so many samples, by a rule or by choice, and it is said."""
+"""Samples of long histories that a file keeps: one of so many samples, by a rule or by choice, and it is said."""
 
 from __future__ import annotations
 

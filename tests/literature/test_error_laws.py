@@ -1,4 +1,4 @@
-"""How wrong a linear bending model is, over the deflection: docs/theory.md, section 10."""
+"""Error of a linear bending model over the deflection: docs/theory.md, section 10."""
 
 from __future__ import annotations
 

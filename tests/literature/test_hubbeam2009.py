@@ -52,7 +52,7 @@ def structure(kind: str, axial: int, bending: int, mt: float = 0.0, at: float = 
 
 
 def residual(s: Structure, y: Any, yd: Any, ydd: Any) -> Any:
-    """Of the library, without torque."""
+    """Residual of the library, without torque."""
     return OnHub(s.on_free_hub(FREE_HUB), FREE_HUB.mount)(y, yd, ydd, (np.zeros(()), None))
 
 

@@ -65,7 +65,7 @@ def test_foam_is_nearer_to_exact_than_cfoam(drive: str, level: float, mt: float)
     peak, residual = sizes(drive, exact)
 
     def error(kind: str, counts: tuple[int, int]) -> tuple[float, float, float]:
-        """Of the peak, of the residual, and the largest at any time, %."""
+        """Errors of the peak, of the residual, and the largest at any time, %."""
         history = tip(kind, counts, drive, level, mt)
         p, r = sizes(drive, history)
         return 100 * (p / peak - 1), 100 * (r / residual - 1), float(100 * np.abs(history - exact).max() / peak)

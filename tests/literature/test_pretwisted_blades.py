@@ -28,7 +28,7 @@ def cross(vector: np.ndarray) -> np.ndarray:
 
 
 def determinant(frequency: float) -> float:
-    """Of force and moment at the tip, by those at the root, at a frequency, Hz; scaled by the blade's own bending."""
+    """Determinant of force and moment at the tip, by those at the root, at a frequency, Hz; over its bending's."""
     section, square = SECTION.at(0.0), (2 * np.pi * frequency) ** 2
     stiffness = np.array([float(each) for each in STRAIGHT.stiffnesses(np.zeros(()))])
     along, turn = cross([1.0, 0.0, 0.0]), cross([TURN / LENGTH, 0.0, 0.0])

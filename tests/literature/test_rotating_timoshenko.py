@@ -32,7 +32,7 @@ BEAM = gb.Beam(
 
 
 def determinant(frequency: float, rate: float) -> float:
-    """Of force and moment at the tip, by those at the root."""
+    """Determinant of force and moment at the tip, by those at the root."""
 
     def slopes(x: float, y: np.ndarray) -> np.ndarray:
         w, angle, force, moment = y.reshape(4, 2)

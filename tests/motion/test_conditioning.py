@@ -1,4 +1,4 @@
-"""What is done to a record, and what is refused: each refusal tested on the F-16 record, spoilt in one way."""
+"""Conditioning of a record, and refusals: each refusal tested on the F-16 record, spoilt in one way."""
 
 from __future__ import annotations
 

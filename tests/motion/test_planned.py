@@ -194,7 +194,7 @@ def test_an_idle_beyond_what_the_arm_can_do_is_refused() -> None:
 
 
 def a_plan(standstill: bool, limits: Limits) -> tuple[AxisSplines, Tracking, KeptLimits]:
-    """Of a flight of 3 s that falls below idle, on knots 0.2 s apart."""
+    """Plan of a flight of 3 s that falls below idle, on knots 0.2 s apart."""
     flight = trapezoid(6 * G, jerk=8 * G, start=1.0, hold=0.5)
     target = build_target(
         Flight(z=flight, x=0.5 * G).acceleration, span=(0.0, 3.0), idle=IDLE, smoothing=0.1, gravity=True, arm=R

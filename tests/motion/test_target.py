@@ -1,4 +1,4 @@
-"""What a target follows, holds, raises and refuses: at every time the load nearest to the flight's."""
+"""Targets that follow, hold, raise and refuse: at every time the load nearest to the flight's."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""The same lines on NumPy and on JAX: derivatives in time, gradients with respect to what a motion is made of, maps."""
+"""Motions on NumPy and on JAX alike: derivatives in time, gradients with respect to what a motion is made of, maps."""
 
 import subprocess
 import sys

@@ -207,7 +207,7 @@ def test_the_loads_difference_is_that_of_running(turning: bool) -> None:
 
 
 def largest_difference(machine: gb.Centrifuge, times: np.ndarray) -> float:
-    """Of the loads at the box's corners from those in flight, over the largest of these, as run."""
+    """Largest difference of the loads at the box's corners from those in flight, over the largest of these, as run."""
     loads = [CASE.loads(each, 3.5, sample=2e-3) for each in (machine.flight, machine)]
     felt = [
         np.stack([np.interp(times, each.time, column) for column in each.acceleration.reshape(len(each.time), -1).T])

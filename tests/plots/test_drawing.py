@@ -1,4 +1,4 @@
-"""What all figures share: lines and envelopes, units, limits, the files and their signatures."""
+"""Parts of all figures: lines and envelopes, units, limits, the files and their signatures."""
 
 from __future__ import annotations
 

@@ -115,7 +115,7 @@ def _lines(panel: Axes) -> dict[str, np.ndarray]:
 
 
 def _shaded(panel: Axes) -> dict[str, list[tuple[float, float]]]:
-    """What is shaded, by its reason; those that the legend does not name begin with an underscore."""
+    """Shaded stretches by their reason; those that the legend does not name begin with an underscore."""
     return {
         each.get_label(): [(path.vertices[:, 0].min(), path.vertices[:, 0].max()) for path in each.get_paths()]
         for each in panel.collections

@@ -23,7 +23,7 @@ def cycle(size: float) -> StressCycles:
 
 
 class Imitation(Judged):
-    """Of two peaks, one missed; spectra that differ by a factor; twice the stress in one cycle."""
+    """Imitation of two peaks, one missed; spectra that differ by a factor; twice the stress in one cycle."""
 
     def __init__(self, accept: dict[str, object], *, response: bool = True) -> None:
         peaks = (LoadPeak(2.0, 80.0, 2.1, 79.0, 0.02, (-0.2, 0.1), (0.0, 0.0)), MISSED)

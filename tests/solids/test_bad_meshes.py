@@ -100,7 +100,7 @@ def test_materials_that_overlap_or_leave_out_are_refused() -> None:
 
 
 def test_nodes_that_no_element_uses_are_left_out() -> None:
-    """Those of a hexahedron of 27 nodes of which 20 are used; and a group that has only such nodes is refused."""
+    """Nodes of a hexahedron of 27 nodes of which 20 are used; and a group that has only such nodes is refused."""
     each = mesh()
     assert len(solid(each).points) == 32 < len(each.points) == 45
     each.point_sets["middles"] = np.setdiff1d(np.arange(45), each.cells[0].data)
@@ -198,7 +198,7 @@ BDF = lines("BEGIN BULK", *GRIDS, "CHEXA,5,1,11,12,13,14,15,16,+", "+,17,18", "C
 
 @pytest.mark.parametrize(("name", "text", "clamp"), [("a.inp", INP, "wall"), ("a.bdf", BDF, "7")])
 def test_a_node_has_its_number_in_the_file(tmp_path: Path, name: str, text: str, clamp: str) -> None:
-    """Where the stress is largest."""
+    """The node at which the stress is largest."""
     (tmp_path / name).write_text(text)
     cube = gb.SolidMesh.read(tmp_path / name, materials=STEEL, clamp=clamp, unit="m").reduced(
         modes=1, damping_ratio=0.0
@@ -264,7 +264,7 @@ def test_nodes_of_gmsh_may_have_any_numbers_and_elements_two_groups(tmp_path: Pa
 
 
 def test_a_binary_file_of_gmsh_with_a_node_0_is_refused(tmp_path: Path) -> None:
-    """Which meshio takes for the last one."""
+    """Meshio takes it for the last one."""
     meshio.write(tmp_path / "a.msh", meshio.Mesh(CUBE, {"hexahedron": [range(8)]}), file_format="gmsh22")
     content = (tmp_path / "a.msh").read_bytes()
     (tmp_path / "a.msh").write_bytes(content.replace(b"8\n\x01", b"8\n\x00"))

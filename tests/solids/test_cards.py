@@ -109,7 +109,7 @@ def test_a_mass_on_springs_has_its_frequencies(tmp_path: Path) -> None:
 
 
 def test_masses_of_nastran_need_no_pyyeti(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Which changed how NumPy prints when it was imported; nor does the mesh need meshio."""
+    """Pyyeti changed how NumPy prints when it was imported; nor does the mesh need meshio."""
     file = nastran(tmp_path, conm2(900))
     for name in ("pyyeti", "meshio"):
         monkeypatch.setitem(sys.modules, name, None)

@@ -142,7 +142,7 @@ def test_the_plane_where_a_stress_ranges_most() -> None:
 
 
 def test_every_section_has_its_fibre() -> None:
-    """Which lies within tension and compression, and reaches them where the bending keeps its direction."""
+    """The fibre lies within tension and compression, and reaches them where the bending keeps its direction."""
     flight, _ = of_beam()
     assert flight.loads is not None and flight.loads.fibre is not None
     loads, fibre = flight.loads, flight.loads.fibre

@@ -37,7 +37,7 @@ def reduced(modes: int) -> gb.Structure:
 
 @cache
 def beam() -> gb.Structure:
-    """The same as a beam."""
+    """The strip as a beam."""
     section = gb.Section.rectangle(WIDTH, HEIGHT)
     whole = gb.Beam(
         LENGTH, section, gb.Material(2700, 70e9, poissons_ratio=0.0), damping_ratio=0.0, rotary_inertia=True

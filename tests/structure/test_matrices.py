@@ -19,7 +19,7 @@ SHAPES = {"axial": 5, "y": 5, "z": 5, "twist": 5, "shear_y": 5, "shear_z": 5}
 
 
 def matrices(centre: tuple[float, float] = (0.0, 0.0), angle: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
-    """Of the rectangle, its centre beside the axis and its axes turned."""
+    """Matrices of the rectangle, its centre beside the axis and its axes turned."""
     about = SECTION.at(0.0)
     stiffness = np.diag([float(each) for each in PLAIN.stiffnesses(0.0)])
     line, jy, jz = (2700.0 * float(each) for each in (about.area, about.inertia_y, about.inertia_z))

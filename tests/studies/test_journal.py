@@ -1,4 +1,4 @@
-"""What is done stays done, whatever ends a sweep; a restart does what is missing and gives the same."""
+"""Computed cases stay, whatever ends a sweep; a restart does what is missing and gives the same."""
 
 from __future__ import annotations
 

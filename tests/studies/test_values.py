@@ -1,4 +1,4 @@
-"""What varies, as text: ranges, lists, distributions, and what is wrong with them."""
+"""Variations as text: ranges, lists, distributions, and what is wrong with them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a system of beams states of shear and twist that its models have not, beside the models that have them."""
+"""Errors that a system of beams states of shear and twist, beside the models that have them."""
 
 from __future__ import annotations
 

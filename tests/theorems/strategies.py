@@ -94,5 +94,5 @@ def first_frequency(beam: Beam) -> float:
 
 
 def frequencies(structure: Structure, motion: Motion, *, gyroscopic: bool = True) -> np.ndarray:
-    """Of `gbeam.modes`, without its estimate of their errors, which takes longer than all else; Hz."""
+    """Frequencies by `gbeam.modes`, without their errors, which take longer than all else; Hz."""
     return modes_at(structure, operating_point(structure, motion), gyroscopic=gyroscopic).frequency

@@ -31,7 +31,7 @@ def truncated(function: Any, q: Any, qd: Any) -> Any:
 
 
 def places(structure: Structure, hub: Hub, q: Any) -> Any:
-    """Of the particles, from the hub's centre, axes of the hub, m."""
+    """Places of the particles, from the hub's centre, axes of the hub, m."""
     return structure.places.positions(q) @ hub.mount.R_HB.T + np.array([float(hub.radius), 0.0, 0.0])
 
 

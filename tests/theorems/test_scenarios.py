@@ -85,7 +85,7 @@ def scenario(units: dict[str, str], order: list[int], mirror: float = 1.0) -> st
 
 
 def tip(folder: Path, text: str) -> np.ndarray:
-    """Of the flight, m."""
+    """Tip in flight, m."""
     path = folder / "s.toml"
     path.write_text(text, encoding="utf-8")
     case: Any = read_scenario(path)
