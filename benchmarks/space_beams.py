@@ -33,6 +33,7 @@ from validation.codes.exudyn_space_beams import HubAndBody, dynamic_settings, hu
 Answer = tuple[np.ndarray, np.ndarray]  # times (t,) s and the tip's place (t, 3) m
 CASE = HubAndBody(8.0, 7.2968e-5, 8.2189e-9, 2766.7, 6.8952e10, 0.5, 200.0, 0.5, (0.02, 0.03, 0.04), (0.05, -0.1, 0.3))
 TORQUE, DURATION, END, TORSION = 100.0, 10.0, 20.0, 436.0
+TOLERANCE = 1e-4  # N: of Exudyn's forces, which it takes a fifth longer to bring to 1e-6; of many elements it cannot
 RATE, COMMON = 0.9, 0.1  # rad/s, and the interval of times that all runs have, s
 LENGTH, WIDTH, THICKNESS, DENSITY, MODULUS, RATIO = 3.0, 0.1, 0.002, 2700.0, 70e9, 0.33
 HALF, MASS, MOMENTS, TORQUES, SLEW, AFTER = 0.5, 50.0, (8.0, 10.0, 12.0), (3.0, 5.0, 40.0), 2.0, 6.0
@@ -67,7 +68,7 @@ def free_theirs(elements: int, step: float) -> Answer:
     def torque(t: float) -> float:
         return TORQUE * np.sin(2 * np.pi * t / DURATION) if t < DURATION else 0.0
 
-    at, values = hub_with_body(CASE, torque, TORSION, END, step, elements)
+    at, values = hub_with_body(CASE, torque, TORSION, END, step, elements, tolerance=TOLERANCE)
     return at, values[:, :3]
 
 
@@ -78,15 +79,15 @@ def driven_theirs(elements: int, step: float) -> Answer:
         turn = DURATION / (2 * np.pi)
         return RATE * turn * (1 - np.cos(t / turn)) if t < DURATION else 0.0
 
-    at, values = hub_with_body(CASE, lambda _: 0.0, TORSION, END, step, elements, angle)
+    at, values = hub_with_body(CASE, lambda _: 0.0, TORSION, END, step, elements, angle, TOLERANCE)
     return at, values[:, :3]
 
 
 def satellite_ours(shapes: int, step: float) -> Answer:
-    """The satellite: shapes along z, half as many along y and of twist."""
+    """The satellite: shapes along z, half as many along y and two fewer of twist, a product of both curvatures."""
     section, material = gb.Section.rectangle(WIDTH, THICKNESS), gb.Material(DENSITY, MODULUS, poissons_ratio=RATIO)
     beam = gb.Beam(LENGTH, section, material, damping_ratio=0.0, rotary_inertia=True)
-    panel = gb.assemble(beam, "exact", y=shapes // 2, z=shapes, twist=shapes // 2)
+    panel = gb.assemble(beam, "exact", y=shapes // 2, z=shapes, twist=shapes - 2)
     points = {"left": gb.Place((-HALF, 0, 0), (0, 0, np.pi)), "right": (HALF, 0, 0)}
     moment = gb.vector(*(gb.Sine(each, SLEW) for each in TORQUES))
     system = gb.System(
@@ -143,7 +144,7 @@ def satellite_theirs(elements: int, step: float) -> Answer:
     kind = exudyn.OutputVariableType.Position
     sensor = system.AddSensor(items.SensorNode(nodeNumber=tips[0], outputVariableType=kind, **stored))
     system.Assemble()
-    system.SolveDynamic(dynamic_settings(step, round(AFTER / step), "EigenSparse"))
+    system.SolveDynamic(dynamic_settings(step, round(AFTER / step), "EigenSparse", TOLERANCE))
     data = system.GetSensorStoredData(sensor)
     return data[:, 0], data[:, 1:]
 
@@ -159,8 +160,8 @@ PROBLEMS: dict[str, tuple[tuple[str, Callable[[int, float], Answer], list[tuple[
         ("Exudyn", driven_theirs, [(16, 0.01), (32, 0.01), (64, 0.005), (128, 0.005)]),
     ),
     "satellite with two panels": (
-        ("gbeam", satellite_ours, [(6, 0.01), (4, 0.02)]),
-        ("Exudyn", satellite_theirs, [(8, 0.005), (16, 0.005), (32, 0.005)]),
+        ("gbeam", satellite_ours, [(8, 0.0025), (6, 0.01), (7, 0.01)]),
+        ("Exudyn", satellite_theirs, [(32, 0.005), (64, 0.0025), (128, 0.00125)]),
     ),
 }
 

@@ -108,6 +108,22 @@ def test_derivatives_at_one_state_serve_windows_of_small_motions() -> None:
     assert derivatives(1.0) > 60
 
 
+def test_a_step_is_factored_again_only_where_its_derivatives_are_new(monkeypatch: pytest.MonkeyPatch) -> None:
+    factored: list[int] = []
+    states: list[int] = []
+    solved = windows.solved
+
+    def counted(q: Any, qd: Any, qdd: Any, force: Any) -> Any:
+        if not np.iscomplexobj(q):
+            states.append(len(q))
+        return Swing()(q, qd, qdd, force)
+
+    monkeypatch.setattr(windows, "solved", lambda left, right: factored.append(len(left)) or solved(left, right))
+    run = integrate(NonlinearEquations(counted, load), gauss(), *START, **KNOWN)
+    assert run.whole
+    assert sum(factored) < 0.4 * sum(states) / 2  # two stages a step
+
+
 def test_a_window_too_long_for_newton_is_cut() -> None:
     """A pendulum that nearly stands on its head, in steps of a tenth of a second: 100 s, energy kept."""
 

@@ -115,12 +115,13 @@ def hub_with_body(
     step: float,
     elements: int,
     angle: Callable[[float], float] | None = None,
+    tolerance: float = 1e-6,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Times (t,) s; displacement of the tip m, force N and moment N m of the hub on the root in its axes, and its angle
     rad, (t, 10).
 
     `torsion` is the torsional stiffness, N m²; the stiffness in shear is that in tension. A hub whose `angle` is given,
-    rad, is driven by it, and by no torque.
+    rad, is driven by it, and by no torque. `tolerance` is that of Newton's method, of forces in N.
     """
     system = exudyn.SystemContainer().AddSystem()
     section = exudyn.BeamSection()
@@ -171,7 +172,7 @@ def hub_with_body(
         ),
     ]
     system.Assemble()
-    system.SolveDynamic(dynamic_settings(step, round(end / step), "EigenSparse"))
+    system.SolveDynamic(dynamic_settings(step, round(end / step), "EigenSparse", tolerance))
     time = system.GetSensorStoredData(sensors[0])[:, 0]
     tip, turned, force, multipliers = (system.GetSensorStoredData(sensor)[:, 1:] for sensor in sensors)
     axes = turned.reshape(-1, 3, 3)
@@ -199,11 +200,11 @@ def _sensor(system: exudyn.MainSystem, node: object, output: object) -> object:
     return system.AddSensor(items.SensorNode(nodeNumber=node, outputVariableType=output, **stored))
 
 
-def dynamic_settings(step: float, steps: int, linear: str) -> exudyn.SimulationSettings:
+def dynamic_settings(step: float, steps: int, linear: str, tolerance: float = 1e-6) -> exudyn.SimulationSettings:
     settings = exudyn.SimulationSettings()
     integration = settings.timeIntegration
     integration.endTime, integration.numberOfSteps, integration.adaptiveStep = step * steps, steps, False
-    integration.newton.relativeTolerance = integration.newton.absoluteTolerance = 1e-6
+    integration.newton.relativeTolerance, integration.newton.absoluteTolerance = 1e-6, tolerance
     integration.newton.useModifiedNewton = True
     integration.generalizedAlpha.spectralRadius = 0.8
     # In the static start rounding at 3 m from the axis leaves 1e-8 N.

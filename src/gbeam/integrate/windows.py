@@ -38,7 +38,7 @@ LATE, ALONE = 6, 25  # corrections of a step until it is near, and of a single o
 HALVINGS = 8  # of a correction of a single step
 MOVED, STALE = 0.3, 1.0  # sizes of a correction of steps that are far, and of several after which derivatives are old
 QUICK = 2  # corrections until the last step is near, up to which more steps follow it the next time
-SLOW, FAST = 0.3, 0.01  # of the last correction: where one is larger, derivatives are closer, where smaller farther
+SLOW, FAST = 0.5, 0.01  # of the last correction: where one is larger, derivatives are closer, where smaller farther
 CLOSE = 0.03  # of the last correction of accelerations at ends: where one is larger, the mass is found there
 CORRECTIONS = 10  # of accelerations at ends at most
 QUICKEST, STALLED = 0.01, 0.9  # factors of corrections: none is thought to be smaller, and where they do not shrink
@@ -121,10 +121,10 @@ class _Window:
         while self.first < enough:
             self._follow(end)
             self._differentiate()
-            if self.maps is None:
-                self.maps = self._maps()
+            self._factor()
             size, moved, count, since, least = self.corrections
             fresh, before, far, alone = since == 0, size.copy(), not moved[-1] <= MOVED, len(size) == 1
+            rounding = self._rounding(self.maps[0])
             size[:] = self._correct(*self.maps)
             count += 1
             if alone:
@@ -134,7 +134,8 @@ class _Window:
                 self.more = min(self.more + self.more // 2 + 1, LONGEST)
             # By derivatives of another state corrections may shrink slowly without being rounding.
             quick = least <= FAST
-            good = _converged(size, before, self.x, self.noise, stalls=fresh & (count > 1), quick=quick)
+            noise, stalls = np.minimum(rounding, self.most), fresh & (count > 1)
+            good = _converged(size, before, self.x, noise, stalls=stalls, quick=quick)
             least[:] = np.fmin(least, size / np.where(np.isfinite(before), before, np.nan))
             slow = ~good & (count > 1) & ~(size <= SLOW * before)
             since[:] = np.where(slow, np.inf, since + moved)
@@ -146,7 +147,7 @@ class _Window:
             lost[0] |= count[0] >= ALONE
             if self.sampling is None or good.all():
                 done = _first(good)
-                self._leave(done)
+                self._leave(done, rounding)
                 lost = lost[done:]
             if lost.any() and not self._withdraw(int(np.argmax(lost))):
                 return False
@@ -173,7 +174,7 @@ class _Window:
                 np.concatenate([each, np.broadcast_to(each[-1:, -1:], (more, *each.shape[1:]))]) for each in self.slope
             )
         elif self.slope is not None:
-            self.slope = tuple(each[-1:, -1:] for each in self.slope)
+            self.slope, self.maps = tuple(each[-1:, -1:] for each in self.slope), None
         begun = np.repeat([[np.inf], [np.inf], [0.0], [0.0], [np.inf]], more, axis=1)
         self.corrections = np.concatenate([self.corrections, begun], axis=1)
         self._place()
@@ -189,14 +190,14 @@ class _Window:
         self.t: Tableau = self.scheme.tableau(length[:1] if (length == length[0]).all() else length)
         at = slice(stages * begin, stages * (begin + len(length)))
         self.inputs = self.free = each_leaf(lambda leaf: leaf[at], self.driven)
-        self.maps = None
         if self.sampling is not None:
+            self.maps = None
             self.held = Held(self.sampling, self.first, len(length))
             self.held.begin(self.z[:-1])
             self.inputs = self.held.driven(self.free, stages)
 
-    def _leave(self, count: int) -> None:
-        """Take out the first steps, which have converged."""
+    def _leave(self, count: int, rounding: Array) -> None:
+        """Take out the first steps, which have converged to their rounding (t,)."""
         if not count:
             return
         z, x, t = self.z[:count], self.x[:count], self.t
@@ -204,7 +205,7 @@ class _Window:
         ends = weights[0] @ z + weights[1] @ x
         mass = np.broadcast_to(self.slope[2], (len(self.x), *x.shape[1:], x.shape[-1]))[:count]
         self.done.append((ends[:, 0], ends[:, 1], x, mass, *([] if self.held is None else [self.held.u[:count]])))
-        self.start, self.most = x[-1, -1], GROWN * float(self.rounding[:count].max())
+        self.start, self.most = x[-1, -1], GROWN * float(rounding[:count].max())
         self.first, self.again = self.first + count, LONGEST
         self._keep(slice(count, None))
 
@@ -215,6 +216,7 @@ class _Window:
         if len(self.slope[0]) == many > 1:
             last = tuple(each[-1:, -1:] for each in self.slope)
             self.slope = tuple(each[some] for each in self.slope) if len(self.x) else last
+        self.maps = self._known(some)
         if len(self.x):
             self._place()
 
@@ -281,7 +283,7 @@ class _Window:
         renewed = np.moveaxis(self._between(function, first).reshape(shape), 2, 0)
         held = (np.broadcast_to(each, (count, stages, n, n))[:first] for each in self.slope)
         self.slope = tuple(np.concatenate(pair) for pair in zip(held, renewed, strict=True))
-        since[first:], self.maps = 0.0, None
+        since[first:], self.maps = 0.0, self._known(slice(first))
 
     def _between(self, function: Any, first: int | None = 0) -> Array:
         """Values (t s, ...) of a function of states and inputs from a step on; of the first stage alone without one."""
@@ -294,25 +296,42 @@ class _Window:
         values = function(*(each[at] for each in self._stages()), each_leaf(lambda leaf: leaf[at], self.inputs))
         return _interpolated(at, values, np.arange(begin, begin + count)) if len(at) > 1 else values
 
-    def _maps(self) -> tuple[Array, Array, Array]:
-        """Inverse J⁻¹ (t, s n, s n) of steps, J⁻¹ L (t, s n, m n), and maps of δz over the steps, (t, m n, m n)."""
-        t, (_, stages, states), n = self.t, self.t.w_q.shape, self.x.shape[-1]
-        jacobian, onto = t.jacobians(*self.slope)
+    def _factor(self) -> None:
+        """Find what corrects steps that have none or new derivatives: inverse J⁻¹ (t, s n, s n), J⁻¹ L (t, s n, m n),
+        and maps of δz over the steps, (t, m n, m n); one of each where all steps are alike.
+        """
+        (*_, stages, states), (count, _, n) = self.t.w_q.shape, self.x.shape
+        done = 0 if self.maps is None else len(self.maps[0])
+        if done in (1, count):
+            return
+        t, slope = each_leaf(lambda leaf: leaf if len(leaf) == 1 else leaf[done:], (self.t, self.slope))
+        jacobian, onto = t.jacobians(*slope)
         unit = np.broadcast_to(np.eye(stages * n), jacobian.shape)
         both = solved(jacobian, np.concatenate([unit, onto], axis=-1))
         inverse, answer = both[..., : stages * n], both[..., stages * n :]
-        # Of forces that cancel something is left, which no correction of the accelerations takes away.
-        sizes = (np.abs(each).reshape(-1, stages, n, 1) for each in self._stages())
-        forces = sum(np.abs(by) @ each for by, each in zip(self.slope, sizes, strict=True))
-        self.rounding = _largest(CANCELLED * _products(np.abs(inverse), forces.reshape(-1, stages * n)))
-        if self.most == np.inf:
-            self.most = GROWN * float(self.rounding.max())
-        self.noise = np.minimum(self.rounding, self.most)
         step = (t.g[:, :, None, :, None] * np.eye(n)[:, None, :]).reshape(-1, states * n, states * n)
         if self.held is not None:
             self.held.push(inverse, t, self._between(self.held.sampling.onto))
         through = t.d @ answer.reshape(-1, stages, n * states * n)
-        return inverse, answer, step - through.reshape(-1, states * n, states * n)
+        maps = inverse, answer, step - through.reshape(-1, states * n, states * n)
+        self.maps = maps if not done else tuple(map(np.concatenate, zip(self.maps, maps, strict=True)))
+
+    def _rounding(self, inverse: Array) -> Array:
+        """Accelerations (t,) left of forces that cancel, which no correction takes away."""
+        _, stages, n = self.x.shape
+        sizes = (np.abs(each).reshape(-1, stages, n, 1) for each in self._stages())
+        forces = sum(np.abs(by) @ each for by, each in zip(self.slope, sizes, strict=True))
+        rounding = _largest(CANCELLED * _products(np.abs(inverse), forces.reshape(-1, stages * n)))
+        if self.most == np.inf:
+            self.most = GROWN * float(rounding.max())
+        return rounding
+
+    def _known(self, some: slice) -> Any:
+        """What corrects some of the steps, where it is that of each alone, and controllers do not change it."""
+        if self.maps is None or self.held is not None:
+            return None
+        maps = tuple(each[some] for each in self.maps)
+        return maps if len(maps[0]) > 1 else None
 
     def _correct(self, inverse: Array, answer: Array, step: Array) -> Array:
         """Correct every step; returns the sizes of the corrections, (t,)."""

@@ -262,13 +262,15 @@ def _with_ends(motion: Motion | None, settings: ResponseSettings, step: float) -
 
 def _missed_stop(system: System, run: Trajectory) -> tuple[str, ...]:
     """Warn of a stop that a coordinate meets and leaves between two times of a run, which steps may not know."""
-    from scipy.interpolate import CubicHermiteSpline  # which takes a while to import
-
     holders = [(link.holder, np.full(link.body.size, np.inf)) for link in system.tree.links]
     low, high = (
         np.concatenate([np.append(sign * getattr(of, side), off) for of, off in holders])[system.tree.free]
         for side, sign in (("low", -1.0), ("high", 1.0))
     )
+    if not np.isfinite([low, high]).any():
+        return ()
+    from scipy.interpolate import CubicHermiteSpline  # which takes a while to import
+
     for sign, ends in ((1.0, high), (-1.0, low)):
         for k in np.flatnonzero(np.isfinite(ends)):
             q = sign * run.q[:, k]
