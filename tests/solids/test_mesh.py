@@ -179,6 +179,10 @@ def test_the_mesh_converges_and_says_by_how_much() -> None:
     assert fine.mesh_error[0] == pytest.approx(apart[1] / fine.frequency[0]) and apart[1] < apart[0] / 2
     stated = gb.modes(fine.structure).error_estimate
     np.testing.assert_allclose(stated, fine.mesh_error)
+    for hub in (gb.Hub(radius=0.1, rate=200.0), gb.Hub(radius=0.1, inertia=1e3)):  # which keeps the mesh's share
+        spun = gb.modes(fine.structure, hub)
+        assert spun.errors is not None and spun.error_note == "" and spun.errors.shapes.max() > 0
+        np.testing.assert_allclose(spun.errors.total - spun.errors.shapes, fine.mesh_error)
     run = gb.simulate(fine.structure, gb.Flight(z=constant(1.0)), duration=0.01, name="push")
     assert run.errors.stress.total < 1e-4 and run.errors.displacement.total < 1e-4
     said = f"by a coarser one {percent(fine.mesh_error[0])} of the lowest frequency"

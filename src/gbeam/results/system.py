@@ -442,7 +442,7 @@ class SystemModes(Oscillating, Figured):
         "errors of the frequencies",
         "mode",
         name="frequency_error_",
-        note="None where there is no estimate; without the theory of slender beams",
+        note="None where there is no estimate",
         default=None,
     )
     instabilities: tuple[Instability, ...] = rows("eigenvalues that grow", "instability", name=None, default=())
