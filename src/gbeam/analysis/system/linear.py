@@ -342,5 +342,5 @@ def _outputs(local: Point, read: Callable[..., Any]) -> tuple[Floats, tuple[Floa
     state = np.concatenate([local.y, local.yd, local.ydd])
     moved = np.concatenate([state[None] + 0j, state + 1j * STEP * np.eye(3 * n)]).reshape(3 * n + 1, 3, n)
     measured = read(moved[:, 0], moved[:, 1], moved[:, 2], local.inputs)
-    slopes = (measured[1:].imag / STEP).reshape(3, n, -1).transpose(0, 2, 1)
+    slopes = (measured[1:].imag / STEP).reshape(3, n, measured.shape[-1]).transpose(0, 2, 1)
     return measured[0].real, (slopes[0], slopes[1], slopes[2])
