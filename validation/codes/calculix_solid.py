@@ -226,11 +226,23 @@ def deck(steps: str, specimen: Specimen = BRACKET) -> str:
         number += 1
     lines += ["*NSET, NSET=FOOT", *(f"{i}" for i in held + 1), "*BOUNDARY", f"FOOT, 1, {6 if shell else 3}"]
     for name, metal in kinds.items():
-        lines += [f"*MATERIAL, NAME={name}", "*ELASTIC", f"{metal.youngs_modulus}, {metal.poissons_ratio}"]
-        lines += ["*DENSITY", f"{metal.density}"]
-        lines.append(f"*{'SHELL' if shell else 'SOLID'} SECTION, ELSET={name}, MATERIAL={name}")
+        lines += [f"*MATERIAL, NAME={name}", *elastic(metal), "*DENSITY", f"{metal.density}"]
+        section = f"*{'SHELL' if shell else 'SOLID'} SECTION, ELSET={name}, MATERIAL={name}"
+        if isinstance(metal, gb.Orthotropic):
+            lines += [f"*ORIENTATION, NAME=O{name}", ", ".join(f"{each:.15g}" for each in np.ravel(metal.axes))]
+            section += f", ORIENTATION=O{name}"
+        lines.append(section)
         lines += [f"{specimen.thickness}"] * shell
     return "\n".join(lines) + "\n" + steps
+
+
+def elastic(metal: gb.Material | gb.Orthotropic) -> list[str]:
+    """Lines of a material's elasticity."""
+    if isinstance(metal, gb.Material):
+        return ["*ELASTIC", f"{metal.youngs_modulus}, {metal.poissons_ratio}"]
+    (v12, v23, v13), (g12, g23, g13) = metal.poissons_ratios, metal.shear_moduli
+    first = ", ".join(map(str, (*metal.youngs_moduli, v12, v13, v23, g12, g13)))
+    return ["*ELASTIC, TYPE=ENGINEERING CONSTANTS", first, f"{g23}"]
 
 
 def run(steps: str, kind: str, specimen: Specimen = BRACKET) -> str:
