@@ -196,6 +196,25 @@ GRIDS = [f"GRID,{i},,{x}.,{y}.+0,{z}.0D0" for i, (x, y, z) in enumerate(CUBE, 11
 BDF = lines("BEGIN BULK", *GRIDS, "CHEXA,5,1,11,12,13,14,15,16,+", "+,17,18", "CQUAD4,6,7,11,12,13,14", "ENDDATA")
 
 
+def test_what_is_no_mesh_no_clamp_and_no_metal_is_said(tmp_path: Path) -> None:
+    """An empty file, all nodes held, a coarser mesh that is the same, and 2.7 g/cm³ and 70 GPa without their units."""
+    (tmp_path / "empty.msh").touch()
+    with pytest.raises(gb.InputError, match=r"^mesh .*empty\.msh is empty; write it again"):
+        gb.SolidMesh.read(tmp_path / "empty.msh", materials=STEEL, clamp="wall", unit="m")
+    (tmp_path / "a.inp").write_text(INP + "*NSET, NSET=every\nwall\n15, 16, 17, 18\n")
+    given: dict[str, Any] = {"materials": STEEL, "clamp": "wall", "unit": "m"}
+    with pytest.raises(gb.InputError, match="clamp holds all 8 nodes; name the surface that is screwed on"):
+        gb.SolidMesh.read(tmp_path / "a.inp", **(given | {"clamp": "every"}))
+    cube = gb.SolidMesh.read(tmp_path / "a.inp", **given)
+    same = cube.reduced(modes=1, damping_ratio=0.0)
+    with pytest.raises(gb.InputError, match="coarser has 8 nodes, and the mesh 8; give one with larger elements"):
+        cube.reduced(modes=1, damping_ratio=0.0, coarser=same)
+    slips = gb.SolidMesh.read(tmp_path / "a.inp", **(given | {"materials": gb.Material(2.7, 70e3, poissons_ratio=0.3)}))
+    said = " ".join(slips.warnings)
+    assert "material.density is 2.7 kg/m^3, outside the plausible" in said and "did you mean 2.7 g/cm^3?" in said
+    assert "material.youngs_modulus is 70000 Pa" in said and not [each for each in cube.warnings if "material" in each]
+
+
 @pytest.mark.parametrize(("name", "text", "clamp"), [("a.inp", INP, "wall"), ("a.bdf", BDF, "7")])
 def test_a_node_has_its_number_in_the_file(tmp_path: Path, name: str, text: str, clamp: str) -> None:
     """The node at which the stress is largest."""

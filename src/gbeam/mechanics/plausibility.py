@@ -14,6 +14,7 @@ from gbeam.mechanics.models import TORSION
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion, implausible_values, times
 from gbeam.structure.beam import Beam
+from gbeam.structure.material import Material, Orthotropic
 from gbeam.structure.section import KINDS
 
 STOCKIEST, SLENDEREST = 5.0, 2e5  # length over radius of gyration; a rectangle's is 0.29 of its thickness
@@ -92,12 +93,20 @@ def _traced(beam: Beam) -> bool:
     return holds_jax(*values, bodies)
 
 
-def _material(beam: Beam) -> Iterator[str]:
-    material = beam.metal
-    yield from implausible("beam.material.density", "density", material.density)
-    yield from implausible("beam.material.youngs_modulus", "modulus", material.youngs_modulus)
+def implausible_material(where: str, material: Material | Orthotropic) -> Iterator[str]:
+    """Warn of values that no solid has."""
+    yield from implausible(f"{where}.density", "density", material.density)
+    if isinstance(material, Orthotropic):
+        for i, modulus in enumerate(material.youngs_moduli):
+            yield from implausible(f"{where}.youngs_moduli[{i}]", "modulus", modulus)
+        return
+    yield from implausible(f"{where}.youngs_modulus", "modulus", material.youngs_modulus)
     if material.yield_strength is not None:
-        yield from implausible("beam.material.yield_strength", "strength", material.yield_strength)
+        yield from implausible(f"{where}.yield_strength", "strength", material.yield_strength)
+
+
+def _material(beam: Beam) -> Iterator[str]:
+    yield from implausible_material("beam.material", beam.metal)
     if beam.damping_ratio is not None:
         yield from implausible("beam.damping_ratio", "damping", float(np.max(beam.damping_ratio)))
 

@@ -58,6 +58,8 @@ def read_mesh(source: str | os.PathLike[str] | Any) -> Any:
     if ending := _UNREAD.get(ending_of(source)):
         raise InputError("mesh", f"{os.fspath(source)} is {ending[0]}", ending[1])
     refuse_large_file("mesh", source, BINARY_BYTES, "mesh it more coarsely")
+    if not os.path.getsize(source):
+        raise InputError("mesh", f"{os.fspath(source)} is empty", "write it again")
     said = io.StringIO()
     try:
         if (mesh := text_mesh(source)) is not None:

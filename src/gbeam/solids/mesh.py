@@ -15,6 +15,7 @@ from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
 from gbeam.mechanics.equations.linear import coefficients, geometric_of
 from gbeam.mechanics.fields.taylor import Places
+from gbeam.mechanics.plausibility import implausible_material
 from gbeam.mechanics.reduction import inertial_loads, linear_fields, particles_of, reduce
 from gbeam.mechanics.structure import Structure, linear_structure
 from gbeam.mechanics.tree.system import Place, RigidBody
@@ -251,8 +252,10 @@ class SolidMesh(Value):
         solid = cls(at, blocks, clamped, node_numbers_of(mesh)[numbers], weights, named | {TIP: tip}, **about)
         refuse_folded(solid)
         refuse_loose(solid)
-        doubts = (*doubts_of(solid, unit or "that of the file"), *left_out(source, mesh, read))
-        return replace(solid, warnings=doubts)
+        doubts = [*doubts_of(solid, unit or "that of the file"), *left_out(source, mesh, read)]
+        for name, material in kinds.items():
+            doubts += implausible_material(f"materials.{name}" if name else "material", material)
+        return replace(solid, warnings=tuple(doubts))
 
     def __repr__(self) -> str:
         counts: dict[str, int] = {}
@@ -293,7 +296,7 @@ class SolidMesh(Value):
         Raises
         ------
         InputError
-            If more modes are asked for than there are unknowns.
+            If more modes are asked for than there are unknowns, or the coarser mesh is none.
 
         Examples
         --------
@@ -305,6 +308,9 @@ class SolidMesh(Value):
         """
         from scipy.sparse import diags_array, eye_array, kron
 
+        if coarser is not None and len(coarser.mesh.points) >= len(self.points):
+            problem = f"has {len(coarser.mesh.points)} nodes, and the mesh {len(self.points)}"
+            raise InputError("coarser", problem, "give one with larger elements")
         linked = Linked(self)
         count = len(self.points)
         mass = (linked.widened(mass_matrix(self.points, self.blocks), 1) + diags_array(linked.masses)).tocsr()

@@ -42,6 +42,8 @@ def refuse_loose(mesh: SolidMesh) -> None:
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
+    if mesh.clamped.all():
+        raise InputError("clamp", f"holds all {len(mesh.points)} nodes", "name the surface that is screwed on")
     pairs = [(np.repeat(b.nodes[:, 0], b.nodes.shape[1]), b.nodes.ravel()) for b in mesh.blocks]
     _, first, node = np.unique(mesh.numbers, return_index=True, return_inverse=True)
     pairs += [(first[node], np.arange(len(node)))]  # of shells the points that stand for a node
