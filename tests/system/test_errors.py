@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.analysis.system.accuracy import Richer, judged_beams, richer
+from gbeam.analysis.system.richer import Richer, judged_beams, richer
 from gbeam.motion.bases.base import Base
 
 STRIP = gb.Beam(1.0, gb.Section.rectangle(0.04, 0.004), gb.Material(2700.0, 70e9), damping_ratio=0.01)

@@ -1,34 +1,23 @@
 """Errors of the theory of slender beams: by shear, rotary inertia and twist, unless the model has them, and by plate
 action.
 
-The solution is put into the linear equations of the thick beam; what they leave of it beyond those of the slender one
-is answered by the thick beam, without plate action and with it: the larger counts.
+A solution is put into the equations of thick beams, bent as it is; what it leaves there beyond those of slender ones is
+answered by the thick beams, without plate action and with it: the larger counts.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.analysis.accuracy.correction import (
-    Correction,
-    Sampled,
-    Vibration,
-    complete_residual,
-    linear_residual,
-    operator,
-    responses,
-)
-from gbeam.analysis.accuracy.response_errors import Begin, Quantities, Solution, at_rest, lifted, quantities, settled
+from gbeam.analysis.accuracy.correction import Posed, Quantity, Reading, State, Within
 from gbeam.errors import ComputationError
+from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.theory import Theory, theory_of
+from gbeam.mechanics.theory import Theory
 from gbeam.motion.bases.base import Base
-from gbeam.motion.protocol import Motion
 from gbeam.results.result import Floats
 from gbeam.structure.beam import assumptions
 
@@ -37,106 +26,57 @@ WORDS = {"shear": "shear", "rotary": "rotary inertia", "twist": "twist", "plate"
 
 
 class Lacking(NamedTuple):
-    """Largest differences of quantities to the theory of thick beams, each cause's share of the energy, and bodies'
-    distances (b,) m.
+    """Largest differences of quantities to the theory of thick beams, each cause's share of the energy by beam, and by
+    beam the distances (b,) m of its bodies; empty where thick beams have no answer.
     """
 
-    sizes: dict[str, float]
-    causes: dict[str, float]
-    bodies: Floats
+    sizes: Mapping[Quantity, float] = {}
+    causes: Mapping[str, Mapping[str, float]] = {}
+    bodies: Mapping[str, Floats] = {}
 
 
-UNKNOWN = Lacking(dict.fromkeys(Quantities._fields, math.nan), {}, np.zeros(0))
-
-
-class _Gap(NamedTuple):
-    """Residuals (t, first + n) of a solution in the thick beam's equations: as a beam, and as a plate."""
-
-    beam: Floats
-    plate: Floats
-
-    @property
-    def both(self) -> tuple[Floats, Floats]:
-        """The residual of the thick beam, and that with plate action."""
-        return self.beam, self.beam + self.plate
-
-
-def response_theory(structure: Structure, motion: Motion, solution: Solution, begin: Begin | None = None) -> Lacking:
-    """Find what a response lacks; NaN where the thick beam has no answer; without `begin` it starts in equilibrium."""
-    theory, index = theory_of(structure), np.arange(structure.size)
-    full, thin = (lifted(each, index, motion, solution) for each in (theory.thick, theory.slender))
-    plate = theory.plate(full.p)
-    gap, rest = (_gap(theory, *pair, plate) for pair in ((full, thin), (at_rest(full), at_rest(thin))))
-
-    def answer(thick: Structure, residual: Floats, residual_at_rest: Floats) -> Correction:
-        of = operator(thick, full)
-        first = of.mass.shape[0] - thick.size
-        start = settled(of, residual_at_rest[0, first:])
-        if begin is not None:
-            slender, begun = begin(theory.slender), begin(thick)
-            q, qd = (b - np.pad(a, (0, thick.size - len(a))) for a, b in zip(slender, begun, strict=True))
-            start = np.pad(q, (first, 0)), np.pad(qd, (first, 0))
-        return responses(of, Vibration.of(of, solution.time), solution.time)(residual, start)
-
-    ways = 2 if plate.any() else 1
-    pairs = [*zip(theory.variants(plate), gap.both, rest.both, strict=True)][:ways]
+def beyond(
+    own: Posed,
+    of: Trajectory,
+    theories: Mapping[str, Theory],
+    pose: Callable[[Mapping[str, Structure]], Posed],
+    begun: Callable[[int], State | None],
+    again: Callable[[Mapping[str, Structure]], Reading] | None = None,
+) -> Lacking:
+    """Find what the beams of a solution lack by theory, posed with others in their places, by the state (of so many
+    unknowns) by which thick ones have `begun` elsewhere; or by running both `again`.
+    """
+    slender, thick = ({name: getattr(each, kind) for name, each in theories.items()} for kind in ("slender", "thick"))
+    thin = Within.lifted(pose(slender), own, of)
+    full = Within.lifted(pose(thick), thin.more, thin.of)
+    columns = {name: [k for k, each in enumerate(full.more.bodies) if each == name] for name in theories}
+    bent = {name: full.of.q[:, columns[name]] for name in theories}
+    plates = {name: each.plate(bent[name]) for name, each in theories.items()}
+    added = np.zeros((full.of.q.shape[1],) * 2)
+    for name, plate in plates.items():
+        added[np.ix_(columns[name], columns[name])] = plate
+    by, sizes, bodies = dict[str, Mapping[str, float]](), dict[Quantity, float](), dict[str, Floats]()
     try:
-        return _lacking(theory, full, thin, gap, [answer(*each) for each in pairs])
+        residual = full.residual()
+        for name, each in theories.items():
+            by[name] = causes(each, bent[name], residual[:, columns[name]], bent[name] @ plates[name])
+        departures, without = full.departures(), thin.more.read(thin.of) if again is None else again(slender)
+        for plate in (0 * added, added) if added.any() else (added,):
+            if again is None:
+                answer = departures.stiffer(plate).answer(residual + full.of.q @ plate, begun(len(plate)))
+                truth = full.moved(answer)
+                for name, each in theories.items():
+                    moved = np.einsum("bai,ti->tba", each.bodies, answer.value[:, columns[name]])
+                    far = np.linalg.norm(moved, axis=2).max(axis=0)
+                    bodies[name] = np.maximum(bodies.get(name, 0.0), far)
+            else:
+                stiff = {name: each.variants(plates[name])[1] for name, each in theories.items()}
+                truth = again(stiff if plate.any() else thick)
+            for key, values in without.items():
+                sizes[key] = max(sizes.get(key, 0.0), largest(truth[key] - values))
     except (ComputationError, np.linalg.LinAlgError):
-        return UNKNOWN
-
-
-def static_theory(structure: Structure, resting: Callable[[Structure], Sampled]) -> Lacking:
-    """Find what an equilibrium lacks, given a function that finds it for another structure; NaN where there is none."""
-    theory = theory_of(structure) if structure.linear else theory_of(structure).exact
-    full, thin = resting(theory.thick), resting(theory.slender)
-    plate, still = theory.plate(full.p), np.zeros_like(full.p)
-    left = linear_residual if structure.linear else complete_residual
-    beam = left(theory.thick, full)
-    beam[:, : theory.slender.size] -= left(theory.slender, thin)
-    gap = _Gap(beam, full.p @ plate)
-
-    def about(thick: Structure) -> Structure:
-        """The beam as small departures from the equilibrium see it."""
-        loaded = replace(thick, load_values=None if full.loads is None else full.loads[0])
-        return replace(thick, coefficients=loaded.about(full.p[0])[0])
-
-    pairs = zip(theory.variants(plate), gap.both, strict=True)
-    try:
-        moved = [np.linalg.solve(operator(about(thick), full).first(), -residual[0])[None] for thick, residual in pairs]
-    except np.linalg.LinAlgError:
-        return UNKNOWN
-    return _lacking(theory, full, thin, gap, [Correction(each, still, still) for each in moved])
-
-
-def _gap(theory: Theory, full: Sampled, thin: Sampled, plate: Floats) -> _Gap:
-    c, count = theory.thick.coefficients, theory.size
-    features = c.features(full.base.a_WO_B, full.base.w_WB_B, full.base.alpha_WB_B, full.loads)
-    mass, terms = theory.beyond
-    velocity, stiffness, force = terms.each
-    # Feature by feature: no matrix is made for every time.
-    p, pd, pdd = (each[:, :count] for each in (full.p, full.pd, full.pdd))
-    beam = pdd @ mass.T - features @ force
-    for feature, by_rate, by_place in zip(features.T, velocity, stiffness, strict=True):
-        beam += feature[:, None] * (pd @ by_rate.T + p @ by_place.T)
-    flat = full.p @ plate
-    if full.hub is None:
-        return _Gap(beam, flat)
-    thick, slender = (complete_residual(*each)[:, 0] for each in ((theory.thick, full), (theory.slender, thin)))
-    return _Gap(np.concatenate([(thick - slender)[:, None], beam], axis=1), np.pad(flat, ((0, 0), (1, 0))))
-
-
-def _lacking(theory: Theory, full: Sampled, thin: Sampled, gap: _Gap, answers: list[Correction]) -> Lacking:
-    """The larger of what is lacking without and with plate action: how far a clamp keeps a section flat is not sure."""
-    thick, slender = theory.thick, quantities(theory.slender, thin)
-    sizes, bodies = dict.fromkeys(Quantities._fields, 0.0), np.zeros(len(theory.bodies))
-    for answer in answers:
-        truth = quantities(thick, full.moved(*answer))
-        for name, size in sizes.items():
-            sizes[name] = max(size, largest(getattr(truth, name) - getattr(slender, name)))
-        moved = np.einsum("bai,ti->tba", theory.bodies, answer.value[:, -thick.size :])
-        bodies = np.maximum(bodies, np.linalg.norm(moved, axis=2).max(axis=0))
-    return Lacking(sizes, causes(theory, full.p, *(each[:, -thick.size :] for each in gap)), bodies)
+        return Lacking()
+    return Lacking(sizes, by, bodies)
 
 
 def causes(theory: Theory, p: Any, beam: Any, plate: Any) -> dict[str, float]:
@@ -170,7 +110,7 @@ def mode_causes(theory: Theory, base: Base, loads: Any, mode: Any, rate: Any, pl
 
 
 def largest(values: Floats) -> float:
-    """Largest size of numbers over time (t,), or of vectors (t, 3)."""
+    """Largest size of numbers over time (t,), or of vectors (t, ..., 3)."""
     return float(np.abs(values).max()) if values.ndim == 1 else float(np.sqrt((values**2).sum(axis=-1)).max())
 
 
@@ -183,6 +123,7 @@ def words(causes: Mapping[str, float]) -> str:
 
 def described(structure: Structure, causes: Mapping[str, float]) -> str:
     """The causes that matter, and what the estimate assumes: ``shear; assumed: Poisson's ratio 0.3``."""
-    assert structure.source is not None
+    if structure.source is None or not causes:
+        return ""
     named, assumed = words(causes), assumptions(structure.source.beam)
     return f"{named}; assumed: {', '.join(assumed)}" if named and assumed else named

@@ -1,23 +1,20 @@
-"""The error estimate of a response: the time step's, too few shapes', the model's, the beam theory's, and of all."""
+"""Estimated errors by their causes, steps, too few shapes, model and theory of slender beams, and in words."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from typing import NamedTuple
 
 import numpy as np
 
-from gbeam.analysis.accuracy.beam_theory import UNKNOWN as UNKNOWN_THEORY
-from gbeam.analysis.accuracy.beam_theory import Lacking, described, largest, response_theory
-from gbeam.analysis.accuracy.correction import RESOLVED
-from gbeam.analysis.accuracy.response_errors import Begin, Quantities, Rings, Solution, lacking
+from gbeam.analysis.accuracy.beam_theory import Lacking, largest
+from gbeam.analysis.accuracy.correction import Quantity, Reading
 from gbeam.mechanics.models import TORSION
 from gbeam.mechanics.structure import Structure
-from gbeam.motion.protocol import Motion
-from gbeam.results.errors import ErrorEstimate, Errors
-from gbeam.results.parts import Loads
-from gbeam.results.result import Floats
+from gbeam.results.errors import ErrorEstimate
 
+BEAM = "beam"  # name of a beam that is alone
 LIMIT = 0.01  # an error of a steady state above is warned of
 BEYOND = 'kind = "exact" with modes.twist, shear_y, shear_z has all but plate action'
 
@@ -58,10 +55,11 @@ def apart(value: float, reference: float) -> float:
 
 def of_bodies(structure: Structure, lacking: Lacking, tip: float, limit: float) -> Iterator[str]:
     """Warn of bodies, off the tip's axis, that are elsewhere by more than a share of its displacement, m."""
-    assert structure.source is not None
-    for i, (body, moved) in enumerate(zip(structure.source.beam.masses, lacking.bodies, strict=False)):
+    if structure.source is None or lacking.causes.get(BEAM, {}).get("twist", 0.0) <= 0:
+        return
+    for i, (body, moved) in enumerate(zip(structure.source.beam.masses, lacking.bodies[BEAM], strict=False)):
         arm = float((body.offset[1] ** 2 + body.offset[2] ** 2) ** 0.5)
-        if arm and moved > limit * tip and lacking.causes.get("twist", 0.0) > 0:
+        if arm and moved > limit * tip:
             share = f"{percent(moved / tip)} of the tip's displacement"
             yield (
                 f"beam.masses[{i}] lies {1e3 * arm:.4g} mm off the axis: the beam twists under it, and it moves by an "
@@ -71,23 +69,18 @@ def of_bodies(structure: Structure, lacking: Lacking, tip: float, limit: float) 
 
 NOTHING = 1e-7  # of what another load makes
 UNMOVED = 1e-14  # of the length
-FEWEST, PER_PERIOD = 500, 6  # samples looked at, in all and in a period of the lowest mode
-MOST = 20_000  # samples where fast modes may ring
-LARGEST = 2.0  # times (v/L)²: error of a second-order model, up to what a beam that points inward on a hub has
-TOO_FAR = "the solution is too far from the exact model's for an estimate; it is the bound 2 (v/L)² of its class"
 FEW_MODES = "too few modes", "raise modes"
 UNKNOWN = "shapes and model are not judged: it is neither a beam, a mesh nor matrices"
 
 
-def negligible(sizes: Mapping[str, float], length: float) -> set[str]:
-    """Quantities whose largest sizes are rounding, such as the normal stress under a torque alone."""
+def negligible(sizes: Mapping[Quantity, float], body: str, length: float) -> set[Quantity]:
+    """Quantities of a body whose largest sizes are rounding, such as the normal stress under a torque alone."""
     least = {
-        "tip": UNMOVED / NOTHING * length,
-        "force": sizes["moment"] / length,
-        "moment": sizes["force"] * length,
-        "stress": sizes["sheared"],
+        "force": sizes[body, "moment"] / length,
+        "moment": sizes[body, "force"] * length,
+        "stress": sizes.get((body, "sheared"), 0.0),
     }
-    return {name for name, each in least.items() if name in sizes and sizes[name] <= NOTHING * each}
+    return {(body, what) for what, each in least.items() if sizes[body, what] <= NOTHING * each}
 
 
 def unjudged(structure: Structure) -> str:
@@ -101,85 +94,41 @@ def unjudged(structure: Structure) -> str:
     return f"the mesh is not judged{mesh}"
 
 
-def response_errors(
-    structure: Structure,
-    motion: Motion,
-    solution: Solution,
-    tip: Floats,
-    loads: Loads | None,
-    steps: tuple[float, float, float],
-    *,
-    stride: int = 1,
-    begin: Begin | None = None,
-    tolerance: float = math.inf,
-) -> tuple[Errors, tuple[str, ...]]:
-    """Estimated errors of a response, as fractions of the largest tip displacement (t, 3), load and stress, and
-    warnings; `steps` are those of the time step, and the solution has `stride` steps to each of the results.
+class Judgement(NamedTuple):
+    """Readings that differ by too few shapes, and by the model, what the theory of slender beams lacks, errors of the
+    steps, the sizes to which all are relative, and what is `nothing` but rounding.
     """
-    note = unjudged(structure)
-    if not structure.judged or loads is None or len(tip) < 3:
-        alone = [ErrorEstimate(step=step, total=step) for step in steps]
-        if loads is None or not np.isfinite(loads.stress).any():  # such as that of particles, which is not known
-            alone[2] = ErrorEstimate()
-        return Errors(alone[0], alone[1], alone[2], note), ()
-    every = tip, loads.force[:, 0], loads.moment[:, 0], loads.stress.max(axis=1)
-    sizes = dict(zip(Quantities._fields, map(largest, every), strict=True))
-    if structure.recovery is not None:
-        sizes["stress"] = largest(structure.recovery.felt(solution.y[:, -structure.size :])[:, None])
-    sheared = 0.0 if loads.von_mises is None else float(np.nan_to_num(loads.von_mises).max())
-    nothing = negligible(sizes | {"sheared": sheared}, structure.length)
-    period = 2 * math.pi / float(structure.rest[0][0])
-    step, least = float(solution.time[1] - solution.time[0]), math.ceil(len(solution.time) / MOST)
-    few = max(1, min(int(period / PER_PERIOD / (stride * step)), len(tip) // FEWEST))
-    stride *= few
-    beyond, theory = UNKNOWN_THEORY, ""
-    if structure.source is not None:
-        with np.errstate(all="ignore"):
-            beyond = response_theory(structure, motion, solution.some(slice(None, None, stride)), begin)
-        theory = described(structure, beyond.causes)
 
-    def judged(stride: int, computed: Quantities | None = None) -> tuple[Errors, float]:
-        """Errors by every so many steps, and the rate of the fastest mode that these may have missed, rad/s."""
-        few = solution.some(slice(None, None, stride))
-        with np.errstate(all="ignore"):
-            parts, rings = lacking(structure, motion, few, computed, begin=begin)
-        if not np.isfinite(parts.total.tip).all():
-            bounded = structure.source is not None
-            return _bounded(structure, sizes["tip"], steps[0]) if bounded else Errors(ErrorEstimate(steps[0])), 0.0
+    shapes: tuple[Reading, Reading]
+    model: tuple[Reading, Reading]
+    theory: Mapping[Quantity, float]
+    steps: Mapping[Quantity, float]
+    sizes: Mapping[Quantity, float]
+    nothing: Collection[Quantity]
 
-        def fractions(name: str, step: float) -> ErrorEstimate:
-            size = 0.0 if name in nothing else sizes[name] or largest(getattr(parts.total, name))
-            if math.isnan(size):  # of the stress of imported matrices
-                return ErrorEstimate()
-            shares = (largest(getattr(part, name)) / size if size else 0.0 for part in parts)
-            shapes, model, total = shares
-            step = 0.0 if name in nothing else step
-            exact = 0.0 if structure.kind == "exact" else math.nan if structure.source is None else model
-            away = ErrorEstimate(step, shapes, exact, total=step + total)
-            return away.with_theory(beyond.sizes[name] / size if size else 0.0)
+    def apart(self, key: Quantity, *pairs: tuple[Reading, Reading]) -> float:
+        """Largest sum of differences of two readings, as a share of the size."""
+        away = largest(np.sum([more[key] - less[key] for less, more in pairs], axis=0))
+        size = 0.0 if key in self.nothing else self.sizes[key] or away
+        return away / size if size else 0.0
 
-        force, moment = fractions("force", steps[1]), fractions("moment", steps[1])
-        worst = max(force, moment, key=lambda each: each.total)
-        stress = fractions("stress", steps[2])
-        errors = Errors(fractions("tip", steps[0]), worst, stress, note=note, theory=theory)
-        return errors, _missed(rings, sizes, errors, RESOLVED / (least * step))
+    def error(self, key: Quantity) -> ErrorEstimate:
+        """The error of a quantity by its causes; unknown where its size is, as of the stress of matrices."""
+        if math.isnan(self.sizes[key]):
+            return ErrorEstimate()
+        causes = (self.shapes,), (self.model,), (self.shapes, self.model)
+        shapes, model, total = (self.apart(key, *each) for each in causes)
+        step = 0.0 if key in self.nothing else self.steps.get(key, math.nan)
+        away = ErrorEstimate(step, shapes, model, total=total + (0.0 if math.isnan(step) else step))
+        theory, size = self.theory.get(key, math.nan), self.sizes[key]
+        return away.with_theory(0.0 if key in self.nothing or size == 0 else theory / size)
 
-    errors, rate = judged(stride, Quantities(*(each[::few] for each in every)))
-    finer = max(least, int(RESOLVED / (rate * step))) if rate else stride
-    if finer < stride:
-        errors, _ = judged(finer)
-    return errors, tuple(of_bodies(structure, beyond, sizes["tip"], tolerance)) if structure.source else ()
+    def loads(self, body: str) -> ErrorEstimate:
+        """The larger error of the force and the moment at a body's root."""
+        return worst(self.error((body, each)) for each in ("force", "moment"))
 
 
-def _missed(rings: Rings, sizes: dict[str, float], errors: Errors, fastest: float) -> float:
-    """Circular frequency, rad/s, of the fastest mode up to the `fastest` resolved that may ring too much, or zero."""
-    limits = zip(("tip", "force", "moment"), (errors.displacement, errors.loads, errors.loads), strict=True)
-    visible = np.zeros(len(rings.rate), dtype=bool)
-    for name, stated in limits:
-        visible |= getattr(rings, name) > stated.slender * sizes[name]
-    return float(rings.rate[visible & (rings.rate < fastest)].max(initial=0.0))
-
-
-def _bounded(structure: Structure, size: float, step: float) -> Errors:
-    model = LARGEST * (size / structure.length) ** 2
-    return Errors(ErrorEstimate(step, math.nan, model, total=step + model), note=TOO_FAR)
+def worst(errors: Iterable[ErrorEstimate]) -> ErrorEstimate:
+    """The largest in all of those that are known."""
+    known = (each for each in errors if not math.isnan(each.total))
+    return max(known, key=lambda each: each.total, default=ErrorEstimate())

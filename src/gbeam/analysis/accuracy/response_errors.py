@@ -1,133 +1,184 @@
-"""Errors of a response from too few shapes and from its model, by the exact model with more shapes."""
+"""Errors of a beam's response from too few shapes and from its model, by the exact model with more shapes, and from the
+theory of slender beams.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gbeam.analysis.accuracy.correction import (
-    Operator,
-    Sampled,
-    State,
-    Vibration,
-    complete_residual,
-    linear_residual,
-    operator,
-    responses,
-)
+from gbeam.analysis.accuracy.beam_theory import Lacking, beyond, described, largest
+from gbeam.analysis.accuracy.correction import PLACE, RESOLVED, IntArray, Posed, Quantity, Reading, State, Within
+from gbeam.analysis.accuracy.estimate import BEAM, UNMOVED, Judgement, negligible, of_bodies, unjudged
+from gbeam.arrays.tree import each_leaf
 from gbeam.errors import ComputationError
+from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.enrichment import Enrichment, Twin, enrichment
+from gbeam.mechanics.equations.residuals import OnBase, OnHub
 from gbeam.mechanics.section_forces import section_forces, sections
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.theory import theory_of
 from gbeam.motion.bases.base import Base, mapped
 from gbeam.motion.protocol import Motion
+from gbeam.results.errors import ErrorEstimate, Errors
+from gbeam.results.parts import Loads
 from gbeam.results.response import BaseMotion
 from gbeam.results.result import Floats
 from gbeam.structure.section import extreme_stresses
 
-IntArray = NDArray[np.int_]
+FORCE, MOMENT, STRESS, SHEARED = ((BEAM, each) for each in ("force", "moment", "stress", "sheared"))
 Begin = Callable[[Structure], tuple[Floats, Floats]]
-SCAN = 200  # samples at which to look for that
+SCAN = 200  # samples at which to look for directions without shapes that are moved
+BENT = 0.1  # of the length: a tip that moves by less leaves the beam straight for small departures
 IDLE = 1e-9  # of the largest force: a direction that feels less stays out
+FEWEST, PER_PERIOD = 500, 6  # samples looked at, in all and in a period of the lowest mode
+MOST = 20_000  # samples where fast modes may ring
+LARGEST = 2.0  # times (v/L)²: error of a second-order model, up to what a beam that points inward on a hub has
+TOO_FAR = "the solution is too far from the exact model's for an estimate; it is the bound 2 (v/L)² of its class"
 
 
-class Quantities(NamedTuple):
-    """Tip (t, 3) m, the root's force and moment (t, 3), and the largest size of the stress over all sections (t,), of a
-    structure without sections none.
-    """
+@dataclass(frozen=True, eq=False)
+class Driven:
+    """The drive of a beam at the times of a solution: its base, or a free hub and the torque on it; and its loads."""
 
-    tip: Floats
-    force: Floats
-    moment: Floats
-    stress: Floats
+    base: Base | None
+    loads: Floats | None
+    hub: Any = None
+    torque: Floats | None = None
 
+    @classmethod
+    def by(cls, structure: Structure, motion: Any, time: Floats) -> Driven:
+        """The drive by a motion and the loads of a structure."""
+        loads = None if structure.history is None else np.asarray(structure.history(time))
+        if motion.free:
+            return cls(None, loads, motion, np.asarray(motion.torque(time)))
+        return cls(mapped(motion.base(time), np.asarray), loads)
 
-class Parts(NamedTuple):
-    """Errors over time, as differences from the truth."""
+    @property
+    def first(self) -> int:
+        """Index of the beam's first coordinate among the unknowns."""
+        return int(self.hub is not None)
 
-    shapes: Quantities
-    model: Quantities
-    total: Quantities
+    def at(self, some: Any) -> Driven:
+        """The drive at some of the times."""
+        base, loads, torque = each_leaf(lambda leaf: leaf[some], (self.base, self.loads, self.torque))
+        return Driven(base, loads, self.hub, torque)
+
+    def base_of(self, of: Trajectory) -> Base:
+        """Motion of the base in a solution."""
+        if self.hub is None:
+            assert self.base is not None
+            return self.base
+        return mapped(self.hub.mount.base(of.q[:, 0], of.qd[:, 0], of.qdd[:, 0]), np.asarray)
+
+    def posed(self, structure: Structure) -> Posed:
+        """The equations of a structure that is moved so."""
+        names = ["hub.angle"] * self.first + [f"{BEAM}.q{k + 1}" for k in range(structure.size)]
+        residual: Any = OnBase(structure.equations)
+        if self.hub is not None:
+            residual = OnHub(structure.on_free_hub(self.hub), self.hub.mount)
+        inputs = self.torque if self.base is None else self.base, self.loads
+        return Posed(
+            residual, lambda some: each_leaf(lambda leaf: leaf[some], inputs), names, partial(self.read, structure)
+        )
+
+    def read(self, structure: Structure, of: Trajectory) -> Reading:
+        """Displacement of the tip (t, 3) m, the root's force and moment (t, 3), and the largest size of the stress over
+        all sections (t,), or a solid's (t, c), of a structure without sections none.
+        """
+        base, (q, qd, qdd) = self.base_of(of), (each[:, self.first :] for each in (of.q, of.qd, of.qdd))
+        if structure.sections is None:
+            moving = BaseMotion(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
+            ends = section_forces(structure, moving, q, qd, qdd, of.time)
+            stress = np.full(len(q), np.nan) if structure.recovery is None else structure.recovery.felt(q)
+            tip = np.asarray(structure.displacement(q))[:, -1]
+            return {PLACE: tip, FORCE: ends.force[:, 0], MOMENT: ends.moment[:, 0], STRESS: stress}
+        loads = sections(structure, structure.sections, base, q, qd, qdd, self.loads)
+        tip = loads.place[:, -1] - structure.station_places.r0[-1]
+        pair = extreme_stresses(structure.sections.values, loads.section_force, loads.section_moment)
+        stress = np.maximum(pair[0], -pair[1]).max(axis=1)
+        return {PLACE: tip, FORCE: loads.force[:, 0], MOMENT: loads.moment[:, 0], STRESS: stress}
+
+    def within(self, rich: Structure, index: IntArray, structure: Structure, of: Trajectory) -> Within:
+        """A structure's solution in one with more shapes, its own at `index`."""
+        shared = np.append(np.arange(self.first), self.first + index)
+        return Within.lifted(self.posed(rich), self.posed(structure), of, shared)
+
+    def along(self, more: Enrichment | Twin, of: Trajectory) -> tuple[bool, bool, bool]:
+        """True if new shapes along x, y and z would be moved by a solution."""
+        structure = more.structure
+        if isinstance(more, Twin) or all(structure.counts[:3]):
+            return True, True, True
+        rich, index = more.model(structure.kind)
+        at, base, c = self.within(rich, index, structure, of).of, self.base_of(of), rich.coefficients
+        p, pd, pdd = (each[:, self.first :] for each in (at.q, at.qd, at.qdd))
+        residual = c.residual(p, pd, pdd, base.a_WO_B, base.w_WB_B, base.alpha_WB_B, self.loads)
+        counts = np.cumsum([0, *rich.counts])
+        forces = [np.abs(residual[:, a:b]).max(initial=0.0) for a, b in pairwise(counts)]
+        limit = IDLE * max(np.abs(p @ c.stiffness).max(), *forces)
+        axial, along_y, along_z = (n > 0 or size > limit for n, size in zip(structure.counts[:3], forces, strict=False))
+        return axial, along_y, along_z
+
+    def theory(self, structure: Structure, of: Trajectory, begin: Begin | None = None, *, straight: bool) -> Lacking:
+        """Find what a solution lacks by the theory of slender beams, from where it begins, or from equilibrium."""
+        if structure.source is None:
+            return Lacking()
+        theory = theory_of(structure) if straight else theory_of(structure).exact
+
+        def begun(_: int) -> State | None:
+            if begin is None:
+                return None
+            slender, thick = (begin(each) for each in (theory.slender, theory.thick))
+            behind = theory.thick.size - theory.slender.size
+            q, qd = (
+                np.pad(more - np.pad(less, (0, behind)), (self.first, 0))
+                for less, more in zip(slender, thick, strict=True)
+            )
+            return q, qd
+
+        own = self.posed(structure)
+        return beyond(own, of, {BEAM: theory}, lambda beams: self.posed(beams[BEAM]), begun)
 
 
 class Rings(NamedTuple):
     """Bounds (k,) of the ringing of modes that the samples do not resolve: rad/s, m, N, N m."""
 
     rate: Floats
-    tip: Floats
+    place: Floats
     force: Floats
     moment: Floats
 
 
-@dataclass(frozen=True, eq=False)
-class Solution:
-    """A solution at equal intervals: y and its rates (t, n), of a free hub its angle first."""
-
-    time: Floats
-    y: Floats
-    yd: Floats
-    ydd: Floats
-
-    def some(self, chosen: slice | IntArray) -> Solution:
-        """The solution at some of the times."""
-        return Solution(*(x[chosen] for x in (self.time, self.y, self.yd, self.ydd)))
-
-
 def lacking(
-    structure: Structure,
-    motion: Motion,
-    solution: Solution,
-    computed: Quantities | None = None,
-    *,
-    begin: Begin | None = None,
-) -> tuple[Parts, Rings]:
-    """Find what a solution lacks, quantity by quantity, over time, and what its samples may hide."""
-    more = enrichment(structure, _base(motion, solution)[0])
-    count = len(solution.time)
-    few = solution.some(np.linspace(0, count - 1, min(count, SCAN)).astype(int))
-    directions = driven(more, lambda rich, at: lifted(rich, at, motion, few))
+    structure: Structure, driven: Driven, of: Trajectory, computed: Reading, begin: Begin | None, *, straight: bool
+) -> tuple[Reading, Reading, Rings]:
+    """Read what a solution would be by the exact model with more shapes, and by that with no more than its own, and
+    find what its samples may hide.
+    """
+    more = enrichment(structure, driven.base_of(of))
+    count = len(of.time)
+    some = np.linspace(0, count - 1, min(count, SCAN)).astype(int)
+    directions = driven.at(some).along(more, of.at(some))
     exact, index = more.model("exact", directions=directions)
-    at = lifted(exact, index, motion, solution)
-    mine = lifted(structure, np.arange(structure.size), motion, solution)
-    of = operator(exact, at)
-    vibration = Vibration.of(of, solution.time)
-    residual = complete_residual(exact, at)
-    # In its own coordinates the solution leaves what its model leaves out, in the new ones what its shapes do.
-    first = residual.shape[1] - exact.size
-    new = residual.copy()
-    new[:, np.append(np.arange(first), first + index)] = 0.0
-    if begin is None:
-        rest = complete_residual(exact, at_rest(at))[0, first:]
-        # After a machine's spin-up the solution does not begin at rest: that is nothing that it lacks.
-        rest[index] -= complete_residual(structure, at_rest(mine))[0, first:]
-        new_at_rest = rest.copy()
-        new_at_rest[index] = 0.0
-        start, start_of_shapes = (settled(of, each) for each in (rest, new_at_rest))
-    else:
-        same = exact if structure.kind == exact.kind else more.model(structure.kind, directions=directions)[0]
-        start, start_of_shapes = (_departure(begin, each, at) for each in (exact, same))
-    correction = responses(of, vibration, solution.time)
-    total = correction(residual, start)
-    if computed is None:
-        computed = quantities(structure, mine)
-    truth, same_shapes = quantities(exact, at.moved(*total)), computed
+    within = driven.within(exact, index, structure, of)
+    linear = driven.posed(replace(exact, linear=True)) if straight else None
+    departures, residual = within.departures(linear), within.residual()
+
+    def start(richer: Structure) -> State | None:
+        return None if begin is None else _departure(begin, richer, within.of)
+
+    begun, few = start(exact), computed
+    total = departures.answer(residual, begun)
     if structure.kind != exact.kind:
-        shapes = correction(new, start_of_shapes)
-        same_shapes = quantities(exact, at.moved(*(a - b for a, b in zip(total, shapes, strict=True))))
-    parts = Parts(
-        Quantities(*(a - b for a, b in zip(truth, same_shapes, strict=True))),
-        Quantities(*(a - b for a, b in zip(same_shapes, computed, strict=True))),
-        Quantities(*(a - b for a, b in zip(truth, computed, strict=True))),
-    )
-    if exact.recovery is not None:
-        stress = np.linalg.norm(exact.recovery.felt(total.value[:, first:]), axis=1)
-        parts = Parts(*(each._replace(stress=stress) for each in parts))
-    return parts, _rings(exact, *vibration.shaken(of, residual, start))
+        same = more.model(structure.kind, directions=directions)[0]
+        few = within.moved(total.less(departures.answer(within.of_new(residual), start(same))))
+    return within.moved(total), few, _rings(exact, *departures.shaken(residual, begun))
 
 
 def _rings(exact: Structure, rate: Floats, amplitude: Floats) -> Rings:
@@ -138,81 +189,106 @@ def _rings(exact: Structure, rate: Floats, amplitude: Floats) -> Rings:
     return Rings(rate, *(np.linalg.norm(each, axis=1) for each in at))
 
 
-def quantities(structure: Structure, at: Sampled) -> Quantities:
-    """Tip, root loads and stress at a solution, by NumPy for complete models too."""
-    if structure.sections is None:
-        base = BaseMotion(at.base.a_WO_B, at.base.w_WB_B, at.base.alpha_WB_B)
-        ends = section_forces(structure, base, at.p, at.pd, at.pdd, at.time)
-        tip = np.asarray(structure.displacement(at.p))[:, -1]
-        return Quantities(tip, ends.force[:, 0], ends.moment[:, 0], np.zeros(len(tip)))
-    loads = sections(structure, structure.sections, at.base, at.p, at.pd, at.pdd, at.loads)
-    tip = loads.place[:, -1] - structure.station_places.r0[-1]
-    pair = extreme_stresses(structure.sections.values, loads.section_force, loads.section_moment)
-    return Quantities(tip, loads.force[:, 0], loads.moment[:, 0], np.maximum(pair[0], -pair[1]).max(axis=1))
-
-
-def driven(more: Enrichment | Twin, lifted: Callable[[Structure, IntArray], Sampled]) -> tuple[bool, bool, bool]:
-    """True if new shapes along x, y and z would be moved by a solution, lifted into a structure that has them."""
-    structure = more.structure
-    if isinstance(more, Twin) or all(structure.counts[:3]):
-        return True, True, True
-    rich, index = more.model(structure.kind)
-    at = lifted(rich, index)
-    residual = linear_residual(rich, at)
-    counts = np.cumsum([0, *rich.counts])
-    largest = [np.abs(residual[:, a:b]).max(initial=0.0) for a, b in pairwise(counts)]
-    c = rich.coefficients
-    limit = IDLE * max(np.abs(at.p @ c.stiffness).max(), *largest)
-    axial, along_y, along_z = (n > 0 or size > limit for n, size in zip(structure.counts[:3], largest, strict=False))
-    return axial, along_y, along_z
-
-
-def lifted(structure: Structure, index: IntArray, motion: Any, solution: Solution) -> Sampled:
-    """A solution in the coordinates of a structure with more shapes, its own at `index`."""
-    time, y, yd, ydd = solution.time, solution.y, solution.yd, solution.ydd
-    base, hub = _base(motion, solution)
-    first = 0 if hub is None else 1
-    p, pd, pdd = lifted = np.zeros((3, len(time), structure.size))
-    for onto, x in zip(lifted, (y, yd, ydd), strict=True):
-        onto[:, index] = x[:, first:]
-    loads = None if structure.history is None else np.asarray(structure.history(time))
-    return Sampled(time, base, p, pd, pdd, hub, motion if motion.free else None, loads)
-
-
-def _base(motion: Any, solution: Solution) -> tuple[Base, Floats | None]:
-    """Motion of the base; of a free hub its angle, rate and acceleration too, (t, 3)."""
-    hub = None
-    if motion.free:
-        hub = np.stack([x[:, 0] for x in (solution.y, solution.yd, solution.ydd)], axis=1)
-    base = motion.base(solution.time) if hub is None else motion.mount.base(*hub.T)
-    return mapped(base, np.asarray), hub
-
-
-def settled(of: Operator, rest: Floats) -> State:
-    """Departure from the first state of the equilibrium, by the residual there at rest; a free hub is held."""
-    beam = slice(of.mass.shape[0] - len(rest), None)
-    return np.asarray(np.linalg.solve(of.first()[beam, beam], -rest)), np.zeros_like(rest)
-
-
-def _departure(begin: Begin, richer: Structure, at: Sampled) -> State:
+def _departure(begin: Begin, richer: Structure, of: Trajectory) -> State:
     """Departure from the first state of that in which a richer structure begins; NaN where there is none."""
-    departure = np.zeros((2, at.p.shape[1]))
+    departure = np.zeros((2, of.q.shape[1]))
     try:
         state = begin(richer)
     except ComputationError:
         departure[:] = np.nan
         return departure[0], departure[1]
-    for each, begun, coordinates in zip(departure, state, (at.p[0], at.pd[0]), strict=True):
+    for each, begun, coordinates in zip(departure, state, (of.q[0], of.qd[0]), strict=True):
         each[-richer.size :] = begun - coordinates[-richer.size :]  # the axial shapes, which SFOAM lacks, come first
     return departure[0], departure[1]
 
 
-def at_rest(at: Sampled) -> Sampled:
-    """The first state at rest, a free hub at its angle."""
-    base, hub = mapped(at.base, lambda x: x[:1]), at.hub
-    if hub is not None:
-        hub = hub[:1] * [1, 0, 0]
-        base = at.motion.mount.base(*hub.T)
-    still = np.zeros_like(at.p[:1])
-    loads = None if at.loads is None else at.loads[:1]
-    return Sampled(at.time[:1], base, at.p[:1], still, still, hub, at.motion, loads)
+def stated(structure: Structure, tip: Floats, loads: Loads, q: Floats) -> Reading:
+    """Read a response with the displacement of its tip (t, 3), its loads and coordinates (t, n)."""
+    felt = loads.stress.max(axis=1) if structure.recovery is None else structure.recovery.felt(q)
+    sheared = np.zeros(len(tip)) if loads.von_mises is None else np.nan_to_num(loads.von_mises).max(axis=1)
+    return {PLACE: tip, FORCE: loads.force[:, 0], MOMENT: loads.moment[:, 0], STRESS: felt, SHEARED: sheared}
+
+
+def errors_of(
+    structure: Structure,
+    shapes: tuple[Reading, Reading],
+    model: tuple[Reading, Reading],
+    beyond: Lacking,
+    steps: Mapping[Quantity, float],
+    sizes: Mapping[Quantity, float],
+) -> Errors:
+    """Errors of a beam alone by readings that differ by its shapes and by its model; that of a solid is not judged."""
+    nothing = negligible(sizes, BEAM, structure.length)
+    if sizes[PLACE] <= UNMOVED * structure.length:
+        nothing.add(PLACE)
+    judgement = Judgement(shapes, model, beyond.sizes, steps, sizes, nothing)
+    tip, loads, stress = judgement.error(PLACE), judgement.loads(BEAM), judgement.error(STRESS)
+    if structure.source is None:
+        tip, loads, stress = (replace(each, model=math.nan) for each in (tip, loads, stress))
+    return Errors(tip, loads, stress, unjudged(structure), described(structure, beyond.causes.get(BEAM, {})))
+
+
+def response_errors(
+    structure: Structure,
+    motion: Motion,
+    solution: Trajectory,
+    tip: Floats,
+    loads: Loads | None,
+    steps: tuple[float, float, float],
+    *,
+    stride: int = 1,
+    begin: Begin | None = None,
+    tolerance: float = math.inf,
+) -> tuple[Errors, tuple[str, ...]]:
+    """Estimated errors of a response, as fractions of the largest tip displacement (t, 3), load and stress, and
+    warnings; `steps` are those of the time step, and the solution has `stride` steps to each of the results.
+    """
+    if not structure.judged or loads is None or len(tip) < 3:
+        alone = [ErrorEstimate(step=step, total=step) for step in steps]
+        if loads is None or not np.isfinite(loads.stress).any():  # such as that of particles, which is not known
+            alone[2] = ErrorEstimate()
+        return Errors(alone[0], alone[1], alone[2], unjudged(structure)), ()
+    every = stated(structure, tip, loads, solution.q[::stride, -structure.size :])
+    sizes = {key: largest(each) for key, each in every.items()}
+    straight = sizes[PLACE] <= BENT * structure.length
+    period = 2 * math.pi / float(structure.rest[0][0])
+    step, least = float(solution.time[1] - solution.time[0]), math.ceil(len(solution.time) / MOST)
+    few = max(1, min(int(period / PER_PERIOD / (stride * step)), len(tip) // FEWEST))
+    stride *= few
+    by_step = dict(zip((PLACE, FORCE, MOMENT, STRESS), (steps[0], steps[1], *steps[1:]), strict=True))
+    of = solution.at(slice(None, None, stride))
+    driven = Driven.by(structure, motion, of.time)
+    with np.errstate(all="ignore"):
+        beyond = driven.theory(structure, of, begin, straight=straight)
+
+    def judged(of: Trajectory, driven: Driven, computed: Reading) -> tuple[Errors, float]:
+        """Errors by some of the steps, and the rate of the fastest mode that these may have missed, rad/s."""
+        with np.errstate(all="ignore"):
+            truth, exact, rings = lacking(structure, driven, of, computed, begin, straight=straight)
+        if not np.isfinite(truth[PLACE]).all():
+            bounded = structure.source is not None
+            return _bounded(structure, sizes[PLACE], steps[0]) if bounded else Errors(ErrorEstimate(steps[0])), 0.0
+        errors = errors_of(structure, (exact, truth), (computed, exact), beyond, by_step, sizes)
+        return errors, _missed(rings, sizes, errors, RESOLVED / (least * step))
+
+    errors, rate = judged(of, driven, {key: each[::few] for key, each in every.items()})
+    finer = max(least, int(RESOLVED / (rate * step))) if rate else stride
+    if finer < stride:
+        of = solution.at(slice(None, None, finer))
+        driven = Driven.by(structure, motion, of.time)
+        errors, _ = judged(of, driven, driven.read(structure, of))
+    return errors, tuple(of_bodies(structure, beyond, sizes[PLACE], tolerance))
+
+
+def _missed(rings: Rings, sizes: dict[Quantity, float], errors: Errors, fastest: float) -> float:
+    """Circular frequency, rad/s, of the fastest mode up to the `fastest` resolved that may ring too much, or zero."""
+    limits = zip((PLACE, FORCE, MOMENT), (errors.displacement, errors.loads, errors.loads), strict=True)
+    visible = np.zeros(len(rings.rate), dtype=bool)
+    for key, stated in limits:
+        visible |= getattr(rings, key[1]) > stated.slender * sizes[key]
+    return float(rings.rate[visible & (rings.rate < fastest)].max(initial=0.0))
+
+
+def _bounded(structure: Structure, size: float, step: float) -> Errors:
+    model = LARGEST * (size / structure.length) ** 2
+    return Errors(ErrorEstimate(step, math.nan, model, total=step + model), note=TOO_FAR)

@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.accuracy.estimate import response_errors
-from gbeam.analysis.accuracy.response_errors import Solution
+from gbeam.analysis.accuracy.response_errors import response_errors
 from gbeam.analysis.outline import outline_of
 from gbeam.analysis.response.outcome import describe, effort, inaccuracies, stiffness
 from gbeam.analysis.response.peaks import displacement_peaks, load_peaks
@@ -115,7 +114,6 @@ def response_of(
     if not traced:
         outcome, message, from_run = describe(structure, problem, last, over_time, peaks, time, q[:, beam])
         if outcome == "done":
-            solution = Solution(trajectory.time, trajectory.q, trajectory.qd, trajectory.qdd)
             during = None if loads is None else loads.during(flight)
             settled, tip = up is not None or settings.begin.settled, np.asarray(displacement[flight, -1])
 
@@ -124,10 +122,10 @@ def response_of(
 
             steps = step_errors.displacement, step_errors.loads, step_errors.stress
             if settings.estimate:
-                begun = None if settled else begin
+                begun = None if settled and not motion.free else begin
                 tolerance = settings.tolerance
                 errors, doubts = response_errors(
-                    structure, motion, solution, tip, during, steps, stride=stride, begin=begun, tolerance=tolerance
+                    structure, motion, trajectory, tip, during, steps, stride=stride, begin=begun, tolerance=tolerance
                 )
                 from_run += doubts
             else:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.analysis.accuracy.correction import PLACE, pieces
 from gbeam.analysis.outline import assembly_of, outline_of
 from gbeam.analysis.response.outcome import yielding
 from gbeam.analysis.response.peaks import half_ranges, load_peaks
@@ -29,7 +30,7 @@ from gbeam.analysis.system.accuracy import doubts, system_errors, unmoved
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
 from gbeam.analysis.system.histories import Carried, beams_of, deflection, histories, loads_of, meshes_of
 from gbeam.analysis.system.point import Point, started, started_traced
-from gbeam.analysis.system.richer import PLACE, Answered, InputsOf, itself, judged_bodies, pieces
+from gbeam.analysis.system.richer import InputsOf, judged_bodies, read
 from gbeam.arrays.namespace import holds_jax, namespace
 from gbeam.errors import InputError
 from gbeam.guards.limits import HISTORY_BYTES, STEPS, refuse_more
@@ -121,7 +122,7 @@ class Ran(Run):
         beams = judged_bodies(self.posed.system)
         if not beams or not self.judged:
             return []
-        values = Answered(itself(self.posed.system), *self.every(stride)).read(beams)
+        values = read(self.posed.system, *self.every(stride), beams)
         return [values[name, each] for name in beams for each in LOADS]
 
     def loop(self, time: Floats) -> tuple[Loop | None, Floats | None]:
@@ -136,7 +137,7 @@ class Ran(Run):
     @cached_property
     def moved(self) -> Floats:
         """Displacements of all points, side by side, (t, 3 p) m."""
-        places = Answered(itself(self.posed.system), *self.every(1)).places()
+        places = read(self.posed.system, *self.every(1), ())[PLACE]
         moved = np.asarray((places - places[0]).reshape(len(places), -1))
         return np.zeros_like(moved) if unmoved(np.abs(moved).max(initial=0.0), places) else moved
 

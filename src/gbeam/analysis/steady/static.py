@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import overload
 
 import numpy as np
 
-from gbeam.analysis.accuracy.beam_theory import UNKNOWN as NO_THEORY
-from gbeam.analysis.accuracy.beam_theory import described, static_theory
-from gbeam.analysis.accuracy.correction import Sampled
+from gbeam.analysis.accuracy.beam_theory import largest
+from gbeam.analysis.accuracy.correction import PLACE, Reading
 from gbeam.analysis.accuracy.estimate import LIMIT, cause_and_cure, of_bodies, percent, unjudged
-from gbeam.analysis.accuracy.response_errors import IntArray, Quantities, driven, quantities
+from gbeam.analysis.accuracy.response_errors import BENT, Driven, errors_of
 from gbeam.analysis.steady.equilibrium import keeps, solve_equilibrium
 from gbeam.analysis.steady.operating_point import OperatingPoint, on_base, operating_point
 from gbeam.analysis.system.linear import system_rest
 from gbeam.analysis.system.steady import Drive, steady
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
+from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.models import TORSION
 from gbeam.mechanics.plausibility import input_warnings
@@ -30,75 +29,53 @@ from gbeam.mechanics.tree.system import System
 from gbeam.motion.bases.base import Base, mapped
 from gbeam.motion.protocol import Motion
 from gbeam.results.equilibrium import Deflection
-from gbeam.results.errors import ErrorEstimate, Errors
+from gbeam.results.errors import Errors
 from gbeam.results.response import BaseMotion
 from gbeam.results.result import Floats
 from gbeam.results.system import SystemRest
 
-NOTHING = 1e-6  # of the other load, over a length of the beam: a force or moment that is less is none
 LOST = "shapes and model are not judged: the exact model with more shapes comes to no equilibrium there"
 
 
 def static_errors(point: OperatingPoint) -> tuple[Errors, tuple[str, ...]]:
     """Estimated errors of an equilibrium, as fractions of displacement, root load and stress, and warnings."""
-    structure, note = point.structure, unjudged(point.structure)
+    structure = point.structure
     if not structure.judged:
-        return Errors(note=note), ()
-    mine = np.arange(structure.size)
+        return Errors(note=unjudged(structure)), ()
+    loaded = None if structure.load_values is None else np.asarray(structure.load_values)[None]
+    driven, at = Driven(mapped(point.base, lambda x: np.asarray(x)[None]), loaded), _resting(point.q)
     more = enrichment(structure, point.base)
-    which = driven(more, lambda rich, index: _lifted(rich, index, point))
-    rich = more.model("exact", directions=which)[0]
-    at = _solved(rich, point)
-    if at is None:
+    which = driven.along(more, at)
+    exact = more.model("exact", directions=which)[0]
+
+    def rested(rich: Structure) -> Reading | None:
+        """Reading of a structure with more shapes at its own equilibrium; None where there is none."""
+        rich = replace(rich, load_values=structure.load_values)
+        try:
+            return driven.read(rich, _resting(np.asarray(solve_equilibrium(rich, point.base).q)))
+        except (ComputationError, np.linalg.LinAlgError):
+            return None
+
+    computed, truth = driven.read(structure, at), rested(exact)
+    if truth is None:
         return Errors(note=LOST), (LOST,)
-    computed, exact = _read(structure, _lifted(structure, mine, point)), _read(rich, at)
-    same: Quantities | None = exact
-    if structure.kind != rich.kind:
-        alike = more.model(structure.kind, directions=which)[0]
-        rested = _solved(alike, point)
-        same = None if rested is None else _read(alike, rested)
-    length, slender = structure.length, structure.source is not None
-    lacking = static_theory(structure, lambda rich: _lifted(rich, mine, point)) if slender else NO_THEORY
-
-    def fractions(name: str, least: float) -> ErrorEstimate:
-        def apart(a: Quantities | None, b: Quantities | None) -> float:
-            if a is None or b is None:
-                return math.nan
-            away = float(np.linalg.norm(getattr(a, name) - getattr(b, name)))
-            return away / size if size > least else 0.0
-
-        size = max(float(np.linalg.norm(getattr(each, name))) for each in (computed, exact))
-        model = apart(same, exact) if slender else math.nan
-        away = ErrorEstimate(0.0, apart(computed, same), model, total=apart(computed, exact))
-        theory = lacking.sizes[name]
-        return away.with_theory(theory / size if theory and size > least else 0.0 * theory)
-
-    force, moment = (float(np.linalg.norm(each)) for each in (exact.force, exact.moment))
-    worst = max(
-        fractions("force", NOTHING * moment / length),
-        fractions("moment", NOTHING * force * length),
-        key=lambda each: each.total,
-    )
-    felt = structure.sections is not None or structure.recovery is not None  # matrices know no stress
-    stress = fractions("stress", 0.0) if felt else ErrorEstimate()
-    theory = described(structure, lacking.causes) if slender else ""
-    errors = Errors(fractions("tip", NOTHING**2 * length), worst, stress, note, theory)
-    doubts = _doubtful(errors)
-    if slender:
-        doubts += (*of_bodies(structure, lacking, float(np.linalg.norm(computed.tip)), LIMIT), *_sideways(point))
-    return errors, doubts
-
-
-def _read(structure: Structure, at: Sampled) -> Quantities:
-    """Tip, root loads and stress at an equilibrium."""
-    read, recovery = quantities(structure, at), structure.recovery
-    return read if recovery is None else read._replace(stress=recovery.felt(at.p))
+    same = truth if structure.kind == exact.kind else rested(more.model(structure.kind, directions=which)[0])
+    if same is None:
+        same = {key: np.nan * each for key, each in truth.items()}
+    sizes = {key: max(largest(each), largest(truth[key])) for key, each in computed.items()}
+    beyond = driven.theory(structure, at, straight=sizes[PLACE] <= BENT * structure.length)
+    errors = errors_of(structure, (computed, same), (same, truth), beyond, dict.fromkeys(computed, 0.0), sizes)
+    return errors, (*_doubtful(errors), *of_bodies(structure, beyond, sizes[PLACE], LIMIT), *_sideways(point))
 
 
 def _sideways(point: OperatingPoint) -> tuple[str, ...]:
     """Warn of an equilibrium that a beam with torsion would not keep: a strip on edge buckles sideways."""
     at = point.base, point.residual.unpack(point.u)[1]
-    if not keeps(point.about, *at) or keeps(theory_of(point.structure).thick.coefficients, *at):
+    if (
+        point.structure.source is None
+        or not keeps(point.about, *at)
+        or keeps(theory_of(point.structure).thick.coefficients, *at)
+    ):
         return ()
     return (f"a beam that twists would not stay there, but buckle sideways: {TORSION}",)
 
@@ -115,26 +92,9 @@ def _doubtful(errors: Errors) -> tuple[str, ...]:
     return (f"estimated to be wrong: {sizes}, mostly from {cause}; {cure}",)
 
 
-def _lifted(rich: Structure, index: IntArray, point: OperatingPoint) -> Sampled:
-    """An equilibrium in the coordinates of a structure with more shapes, its own at `index`."""
-    q = np.zeros(rich.size)
-    q[index] = point.q
-    return _resting(q, point)
-
-
-def _resting(q: Floats, point: OperatingPoint) -> Sampled:
-    base, loads, still = point.base, point.structure.load_values, np.zeros((1, len(q)))
-    at = mapped(base, lambda x: np.asarray(x)[None])
-    return Sampled(np.zeros(1), at, q[None], still, still, loads=None if loads is None else np.asarray(loads)[None])
-
-
-def _solved(rich: Structure, point: OperatingPoint) -> Sampled | None:
-    """A structure with more shapes at its own equilibrium; None where there is none."""
-    rich = replace(rich, load_values=point.structure.load_values)
-    try:
-        return _resting(np.asarray(solve_equilibrium(rich, point.base).q), point)
-    except (ComputationError, np.linalg.LinAlgError):
-        return None
+def _resting(q: Floats) -> Trajectory:
+    """A solution of one time at which coordinates (n,) rest."""
+    return Trajectory(np.zeros(1), q[None], *np.zeros((2, 1, len(q))))
 
 
 @overload

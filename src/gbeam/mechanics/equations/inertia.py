@@ -29,6 +29,7 @@ from gbeam.mechanics.fields.vectors import (
     turned,
     turned_back,
 )
+from gbeam.numerics.series import STEP
 
 Array = Any
 
@@ -339,7 +340,8 @@ def _common(part: Array, axes: int) -> Array:
     real = part.real
     if part.ndim < axes:
         return real
-    return real[0] if (real == real[:1]).all() else None
+    # The square of a step is left of a rate that is zero.
+    return real[0] if (np.abs(real - real[:1]) <= STEP).all() else None
 
 
 def _summed(vectors: Vector) -> Vector:
