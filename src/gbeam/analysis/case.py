@@ -397,7 +397,7 @@ def describe(case: Case | SpecimenCase | SystemCase) -> Description | SpecimenDe
     0.0648 kg, 15.99 s, {'axial': 1, 'y': 3, 'z': 3}
     """
     if isinstance(case, SystemCase):
-        system, doubts = case.system, [getattr(body, "warnings", ()) for body in case.system.bodies.values()]
+        system, doubts = case.system, [case.system.warnings]
         return SystemDescription(
             bodies={name: _body(system, name) for name in system.order},
             joints={name: _joint(each) for name, each in system.joints.items()},

@@ -334,8 +334,9 @@ class System(Value):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Doubts about the bodies' models."""
-        return tuple(each for body in self.bodies.values() for each in getattr(body, "warnings", ()))
+        """Doubts about the bodies' models, each behind the body's name."""
+        bodies = self.bodies.items()
+        return tuple(f"{name}: {each}" for name, body in bodies for each in getattr(body, "warnings", ()))
 
     @property
     def points(self) -> tuple[str, ...]:
