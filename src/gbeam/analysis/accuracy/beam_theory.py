@@ -36,7 +36,7 @@ class Lacking(NamedTuple):
 
 
 def beyond(
-    own: Posed,
+    solved: Posed,
     of: Trajectory,
     theories: Mapping[str, Theory],
     pose: Callable[[Mapping[str, Structure]], Posed],
@@ -47,7 +47,7 @@ def beyond(
     unknowns) by which thick ones have `begun` elsewhere; or by running both `again`.
     """
     slender, thick = ({name: getattr(each, kind) for name, each in theories.items()} for kind in ("slender", "thick"))
-    thin = Within.lifted(pose(slender), own, of)
+    thin = Within.lifted(pose(slender), solved, of)
     full = Within.lifted(pose(thick), thin.more, thin.of)
     columns = {name: [k for k, each in enumerate(full.more.bodies) if each == name] for name in theories}
     bent = {name: full.of.q[:, columns[name]] for name in theories}

@@ -111,7 +111,7 @@ class Departures:
         return Vibration(square, modes, resolved)
 
     def stiffer(self, by: Floats) -> Departures:
-        """The same with more stiffness (n, n)."""
+        """Departures with more stiffness (n, n)."""
         return replace(self, k=self.k + by)
 
     def settled(self, residual: Floats) -> State:

@@ -142,8 +142,8 @@ class Driven:
             )
             return q, qd
 
-        own = self.posed(structure)
-        return beyond(own, of, {BEAM: theory}, lambda beams: self.posed(beams[BEAM]), begun)
+        solved = self.posed(structure)
+        return beyond(solved, of, {BEAM: theory}, lambda beams: self.posed(beams[BEAM]), begun)
 
 
 class Rings(NamedTuple):

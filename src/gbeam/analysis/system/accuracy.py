@@ -77,8 +77,8 @@ def system_errors(
     if not judged or (again is None and len(of.time) < FEWEST):
         none = math.nan if note or judged else 0.0
         return SystemErrors(ErrorEstimate(step, none, none, total=step + none), note=note)
-    own = posed(system, inputs, judged)
-    computed = own.read(of)
+    solved = posed(system, inputs, judged)
+    computed = solved.read(of)
     place = computed[PLACE]
     sizes = {key: largest(each) for key, each in computed.items()}
     sizes[PLACE] = float(np.linalg.norm(place - (place[0] if start is None else start), axis=-1).max())
@@ -89,7 +89,9 @@ def system_errors(
     with np.errstate(all="ignore"):
         try:
             if again is None:
-                truth, few, *alone = _departing(system, own, of, inputs, bases, computed, settled=settled, exact=exact)
+                truth, few, *alone = _departing(
+                    system, solved, of, inputs, bases, computed, settled=settled, exact=exact
+                )
                 shapes, model = (few, truth), (computed, few)
             else:
                 some = [bases, *({name: bases[name]} for name in bases if len(bases) > 1)]
@@ -104,7 +106,7 @@ def system_errors(
         if not np.isfinite(truth[PLACE]).all():
             return SystemErrors(ErrorEstimate(step), note=FAR)
         theories = theories_of(system)
-        lacking = _beyond(system, own, of, inputs, theories, again, settled=settled) if theories else Lacking()
+        lacking = _beyond(system, solved, of, inputs, theories, again, settled=settled) if theories else Lacking()
     if theories and not lacking.sizes.get(PLACE, math.nan) <= LOST * max(sizes[PLACE], _extent(place)):
         lacking = Lacking()
         note = "; ".join(filter(None, (note, LOOP_LOST if again is not None and len(of.time) > 1 else BENT_FAR)))
@@ -160,7 +162,7 @@ def _begun(settled: bool) -> Callable[[int], State | None]:
 
 def _departing(
     system: System,
-    own: Posed,
+    solved: Posed,
     of: Trajectory,
     inputs: InputsOf,
     bases: Mapping[str, Base],
@@ -171,7 +173,7 @@ def _departing(
 ) -> Iterator[Reading]:
     """Readings with all that is lacking, without what shapes lack, and with what each of several beams lacks alone."""
     rich = richer(system, bases, exact=True)
-    within = Within.lifted(posed(rich.system, inputs, bases), own, of, rich.shared)
+    within = Within.lifted(posed(rich.system, inputs, bases), solved, of, rich.shared)
     departures, residual = within.departures(), within.residual()
     start = _begun(settled)(residual.shape[1])
     total = departures.answer(residual, start)
@@ -180,7 +182,7 @@ def _departing(
     for name in bases if len(bases) > 1 else ():
         # A system in which it alone is exact leaves what it lacks; the others feel it only through the joints.
         one = richer(system, {name: bases[name]}, exact=True)
-        few = Within.lifted(posed(one.system, inputs, ()), own, of, one.shared)
+        few = Within.lifted(posed(one.system, inputs, ()), solved, of, one.shared)
         kept = [k for k, each in enumerate(few.more.bodies) if each == name or each not in bases]
         alone = np.zeros_like(residual)
         alone[:, [within.more.names.index(few.more.names[k]) for k in kept]] = few.residual()[:, kept]
@@ -189,7 +191,7 @@ def _departing(
 
 def _beyond(
     system: System,
-    own: Posed,
+    solved: Posed,
     of: Trajectory,
     inputs: InputsOf,
     theories: Mapping[str, Theory],
@@ -206,5 +208,5 @@ def _beyond(
     # Without a loop, and at rest, what is computed is put into the equations: it may bend farther than they know.
     loop = rerun if again is not None and len(of.time) > 1 else None
     return beyond(
-        own, of, theories, lambda beams: posed(with_beams(system, beams), inputs, theories), _begun(settled), loop
+        solved, of, theories, lambda beams: posed(with_beams(system, beams), inputs, theories), _begun(settled), loop
     )
