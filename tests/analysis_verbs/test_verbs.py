@@ -167,8 +167,8 @@ def test_linearize_balanced_with_strain_on_the_face_of_the_root(call):
     assert status == 0 and len(facts["A"]) == 4 and len(facts["hankel_singular_values"]) == 8
     assert [signal["name"] for signal in facts["outputs"]].count("strain_1") == 1
     assert facts["gauges"] == [
-        {"at": 0.0, "y": 0.0, "z": 0.002, "along": [1.0, 0.0, 0.0]},
-        {"at": 0.0, "y": 0.01, "z": 0.0, "along": [1.0, 0.0, 0.0]},
+        {"at": 0.0, "y": 0.0, "z": 0.002, "along": [1.0, 0.0, 0.0], "body": ""},
+        {"at": 0.0, "y": 0.01, "z": 0.0, "along": [1.0, 0.0, 0.0], "body": ""},
     ]
     # ε = −v'' y at the root of a uniformly loaded cantilever, v'' = w L²/2EI.
     strain = facts["outputs"][[signal["name"] for signal in facts["outputs"]].index("strain_2")]["value"]

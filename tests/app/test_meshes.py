@@ -85,7 +85,8 @@ SQUARE = [[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
 @pytest.mark.parametrize(
     ("name", "content", "said"),
     [
-        ("empty.inp", b"", "has no solid elements"),
+        ("empty.inp", b"", "is empty"),
+        ("nodes.inp", b"*NODE\n1, 0.0, 0.0, 0.0\n", "has no solid elements"),
         ("bad.vtk", b"nothing of the kind\n", "cannot be read"),
         ("part.step", b"ISO-10303-21;\n", "cannot be read"),
     ],

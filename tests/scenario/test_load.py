@@ -93,7 +93,7 @@ def test_syntax(text: str, line: int, column: int, message: str, errors: Errors)
 
 def test_empty_text_misses_every_table(errors: Errors) -> None:
     assert [str(error).split("\n")[0] for error in errors("")] == [
-        f"s.toml:1:1: {name} is missing" for name in ("beam", "model", "motion")
+        f"s.toml:1:1: {name} is missing" for name in ("beam", "model")
     ]
 
 

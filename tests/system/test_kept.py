@@ -21,13 +21,13 @@ def test_a_tumbling_satellite_keeps_momentum_and_energy(kind: str) -> None:
     }
     bodies = {"bus": gb.RigidBody(20.0, (2.0, 3.0, 4.0), points=places), "left": panel, "right": panel}
     system, lost = gb.System(bodies, joints), []
-    for step in (5e-4, 2.5e-4, 1.25e-4):
+    for step in (1e-3, 5e-4, 1.25e-4):
         response = gb.simulate(system, duration=0.0625, step=step, estimate=False, loads=False, initial="undeformed")
         kept = response.invariants
         assert kept is not None and np.ptp(kept.energy[:, 1]) > 0.01 * kept.energy[0, 0]
         lost.append((kept.momentum_change, kept.angular_momentum_change, kept.energy_change))
     first, second, last = np.array(lost)
-    assert (first < 1e-10).all() and (last < 1e-12).all()
+    assert (second < 1e-10).all() and (last < 1e-12).all()
     np.testing.assert_allclose(first / second, 16.0, rtol=0.1)
 
 
