@@ -327,7 +327,7 @@ class _Window:
         return rounding
 
     def _known(self, some: slice) -> Any:
-        """What corrects some of the steps, where it is that of each alone, and controllers do not change it."""
+        """Inverses and maps of some of the steps, where each has its own and controllers do not change them."""
         if self.maps is None or self.held is not None:
             return None
         maps = tuple(each[some] for each in self.maps)
