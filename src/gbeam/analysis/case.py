@@ -244,8 +244,8 @@ class SystemCase(_InEnvironments):
                 self.system.point(f"motion.{name}.accept.point", limits["point"])
             for point in limits.get("control", ()):
                 self.system.point(f"motion.{name}.accept.control.{point}", point)
-            bodies = {key: body for key, body in self.system.bodies.items() if isinstance(body, Structure)}
-            stressed = [key for key, body in bodies.items() if body.sections is not None or body.recovery is not None]
+            flexible = self.system.flexible.items()
+            stressed = [key for key, body in flexible if body.sections is not None or body.recovery is not None]
             lacking = {} if stressed else {STRESS: "no body is a beam or a mesh"}
             refuse_unknown(f"motion.{name}.accept", limits, lacking)
             if limits.get("damage_at") is not None:

@@ -138,7 +138,7 @@ class _Tip(NamedTuple):
 
 def _refused(system: System, point: str | None) -> str | None:
     """The point, if there is one and some beam may be of another model; InputError else."""
-    if not any(isinstance(body, Structure) and body.source for body in system.bodies.values()):
+    if not any(body.source for body in system.flexible.values()):
         raise InputError("bodies", "have no beam, whose model could be another", "ask for run")
     if point is not None:
         system.point("point", point)
@@ -211,7 +211,7 @@ def _answer(
 def _tip_of(system: System, response: SystemResponse, point: str | None) -> _Tip:
     """Displacement of a point of a system, or of the tip that its beam moves farthest."""
     if point is None:
-        tips = [f"{name}.tip" for name, body in system.bodies.items() if isinstance(body, Structure) and body.source]
+        tips = [f"{name}.tip" for name, body in system.flexible.items() if body.source]
         point = max(tips, key=lambda each: float(np.abs(_moved(system, response, each)).max()))
     moved, left = _moved(system, response, point), response.residual_amplitude
     value, when = vector_peaks(response.time, moved)

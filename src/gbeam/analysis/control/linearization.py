@@ -222,14 +222,13 @@ def outputs_of(structure: Structure, point: OperatingPoint, gauges: Sequence[Gau
 
 def _gauged(system: System, gauges: Sequence[Gauge]) -> tuple[System, dict[str, Strained]]:
     """A system whose beams have stations where their gauges are, and these by the names of their signals."""
-    strained, bodies, named = dict[str, Strained](), dict(system.bodies), dict[str, dict[int, Gauge]]()
+    strained, named = dict[str, Strained](), dict[str, dict[int, Gauge]]()
+    bodies, flexible = dict(system.bodies), system.flexible
     for i, gauge in enumerate(gauges):
-        flexible = {name: body for name, body in bodies.items() if isinstance(body, Structure)}
         choice(f"gauges[{i}].body", gauge.body, flexible)
         named.setdefault(gauge.body, {})[i] = gauge
     for name, some in named.items():
-        body = bodies[name]
-        assert isinstance(body, Structure)
+        body = flexible[name]
         if body.sections is None:
             strained |= {f"strain_{i + 1}": Strained(name, _of_solid(body, i, gauge)) for i, gauge in some.items()}
             continue

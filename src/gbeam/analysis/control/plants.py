@@ -185,7 +185,7 @@ class OnJoint:
     def of(system: System, coordinate: str, point: str | None) -> OnJoint:
         """The joint of a system, and the tip of the only flexible body where no point is named."""
         choice("joint", coordinate, movable(system))
-        tips = [f"{name}.tip" for name, body in system.bodies.items() if isinstance(body, Structure)]
+        tips = [f"{name}.tip" for name in system.flexible]
         if point is None and len(tips) != 1:
             fix = f"choose from {', '.join(tips or system.points)}"
             raise InputError("point", "is missing: it says whose vibration is made least", fix)

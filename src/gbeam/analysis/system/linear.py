@@ -100,8 +100,7 @@ def system_modes(state: SteadySystem, moving: Vibrations, time: float, name: str
     largest = flat[np.arange(len(flat)), np.abs(flat).argmax(axis=1)] if flat.size else np.ones(len(shape))
     scale = np.where(largest == 0, 1, largest)
     warnings = system.warnings + state.point.sticking(system)
-    bodies = (each for each in system.bodies.values() if isinstance(each, Structure))
-    reduced = [each for each in bodies if each.resolved < each.size]
+    reduced = [each for each in system.flexible.values() if each.resolved < each.size]
     if state.changing:
         warnings += (f"the system turns, and its equations with it: these are modes of the place at {time:g} s",)
     return SystemModes(

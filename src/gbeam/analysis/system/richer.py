@@ -38,7 +38,7 @@ class Richer(NamedTuple):
 
 def judged_bodies(system: System) -> dict[str, Structure]:
     """Beams and solids of which it is known what they lack, by name."""
-    return {name: body for name, body in system.bodies.items() if isinstance(body, Structure) and body.judged}
+    return {name: body for name, body in system.flexible.items() if body.judged}
 
 
 def judged_beams(system: System) -> dict[str, Structure]:
@@ -49,7 +49,7 @@ def judged_beams(system: System) -> dict[str, Structure]:
 def left_unjudged(system: System) -> str:
     """The bodies of which nothing, or not the mesh, is judged, in words."""
     judged = judged_bodies(system)
-    others = [name for name, body in system.bodies.items() if isinstance(body, Structure) and name not in judged]
+    others = [name for name in system.flexible if name not in judged]
     meshes = [name for name, body in judged.items() if body.source is None]
     pairs = (NOT_ALL, others), (NO_MESH, meshes)
     return "; ".join(words.format(", ".join(names)) for words, names in pairs if names)

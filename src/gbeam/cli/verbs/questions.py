@@ -284,9 +284,8 @@ def _gauges_at(structure: Structure | System, text: str) -> list[Gauge]:
     body, at = "", text
     if not isinstance(structure, Structure):
         body, _, at = text.partition(".")
-        flexible = {name: each for name, each in structure.bodies.items() if isinstance(each, Structure)}
-        choice("--strain-at", body, flexible)
-        structure = flexible[body]
+        choice("--strain-at", body, structure.flexible)
+        structure = structure.flexible[body]
     if structure.source is None:
         index_of("--strain-at", at, structure.points)
         return [Gauge(at, along=way, body=body) for way in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]

@@ -324,13 +324,18 @@ class System(Value):
         """True if some of its values live in JAX, or are traced by it."""
         driven = [(joint.rates, joint.efforts) for joint in self.joints.values()]
         histories = [force.history for force in self.forces.values()]
-        loads = [body.history for body in self.bodies.values() if isinstance(body, Structure)]
+        loads = [body.history for body in self.flexible.values()]
         return holds_jax(self.tree, self.start, self.gravity, driven, histories, loads)
 
     @property
     def kind(self) -> str:
         """Word in the place of a model's kind."""
         return "system"
+
+    @property
+    def flexible(self) -> dict[str, Structure]:
+        """Bodies that deform, by name."""
+        return {name: body for name, body in self.bodies.items() if isinstance(body, Structure)}
 
     @property
     def warnings(self) -> tuple[str, ...]:
