@@ -10,7 +10,7 @@ from copy import deepcopy
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 from pydantic import ValidationError
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from gbeam.scenario.schema.system import SpecimenScenario, SystemScenario
     from gbeam.scenario.text.source import Mark
 
-    AnyScenario = Scenario | SpecimenScenario | SystemScenario
+    AnyScenario: TypeAlias = Scenario | SpecimenScenario | SystemScenario
 
 
 def provenance(scenario: Environments, command: str = "") -> Provenance:
