@@ -14,9 +14,9 @@ from gbeam.errors import InputError
 from gbeam.results.result import Complex, Floats
 from gbeam.results.solids import SolidStress, StressAt, Surface, SurfaceModes, von_mises
 from gbeam.solids.elements import TENSOR, chunks
+from gbeam.solids.norms import LargestNorms
 from gbeam.solids.shape_functions import KINDS, Indices, extrapolation
 
-BLOCK = 2**22  # numbers handled together
 VERTICES, TIMES = 1500, 1000  # of pictures, about
 AROUND = np.array([each for each in product((1.0, 0.0, -1.0), repeat=3) if each > (0.0, 0.0, 0.0)])  # half of all ways
 HALVES = np.array([1.0, 1.0, 1.0, 0.5, 0.5, 0.5])  # of strains with twice the tensor's shear, in the tensor
@@ -94,8 +94,8 @@ class NodalStress(Value):
         larger size (p,), or the first.
         """
         nodes = self.mesh.interfaces.get(point, [self.mesh.stations.get(point)])
-        order = np.arange(len(self.known)) if size is None else np.argsort(-size, kind="stable")
-        order = order[np.isin(self.node[order], nodes)]
+        order = np.flatnonzero(np.isin(self.node, nodes))
+        order = order if size is None else order[np.argsort(-size[order], kind="stable")]
         return np.asarray(order[np.unique(self.node[order], return_index=True)[1]])
 
     def strained(self, pairs: Indices) -> Floats:
@@ -162,18 +162,8 @@ class NodalStress(Value):
 
     def histories(self, q: Floats) -> tuple[Floats, Indices, Floats]:
         """Largest von Mises stress over time at every pair (p,), when (p,), and over all pairs at every time (t,)."""
-        count = len(self.known)
-        largest, when, over = np.full(count, -1.0), np.zeros(count, dtype=int), np.empty(len(q))
-        flat = self.table.reshape(count * 6, -1).T
-        step = max(1, BLOCK // (count * 6))
-        for start in range(0, len(q), step):
-            sizes = von_mises((q[start : start + step] @ flat).reshape(-1, count, 6))
-            over[start : start + step] = sizes.max(axis=1)
-            best = sizes.argmax(axis=0)
-            size = sizes[best, np.arange(count)]
-            more = size > largest
-            largest[more], when[more] = size[more], start + best[more]
-        return largest, when, over
+        largest = LargestNorms(deviatoric(self.table), q)
+        return largest.size, largest.when, largest.over
 
 
 def _materials(mesh: Any) -> list[str]:
@@ -233,6 +223,12 @@ def _area(corners: Floats) -> float:
     """Area of triangles (f, 3, 3)."""
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     return float(np.linalg.norm(normals, axis=1).sum() / 2)
+
+
+def deviatoric(table: Floats) -> Floats:
+    """Five numbers (5, ..., n) of stresses xx, yy, zz, yz, xz, xy (..., 6, n), whose norm is the von Mises stress."""
+    xx, yy, zz, yz, xz, xy = np.moveaxis(table, -2, 0)
+    return np.stack([xx - (yy + zz) / 2, *(np.sqrt(3) * each for each in ((yy - zz) / 2, yz, xz, xy))])
 
 
 def principal(stress: Floats) -> Floats:
