@@ -39,16 +39,13 @@ class Needs:
 
 @dataclass(frozen=True)
 class Option:
-    """An option of a question: an argument of its function, with its words.
-
-    Of a quantity `kind` is its kind, or gives it from all options.
-    """
+    """An option of a question: an argument of its function, with its words."""
 
     argument: str
     type: Any
     default: Any
     words: str
-    kind: str | Callable[[Mapping[str, Any]], str] = ""
+    kind: str | Callable[[Mapping[str, Any]], str] = ""  # of a quantity, or what gives it from all options
 
     @property
     def flag(self) -> str:

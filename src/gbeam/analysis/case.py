@@ -86,15 +86,7 @@ class _InEnvironments(Value):
             raise InputError("motion", "is missing", fix)
 
     def one_beam(self, where: str, what: str) -> Case:
-        """Refuse an answer that is of one beam; return the case where it is of one.
-
-        Parameters
-        ----------
-        where : str
-            Place of the error.
-        what : str
-            The answer, for the error.
-        """
+        """Refuse an answer, `what`, that is of one beam, by an error at `where`; return the case where it is of one."""
         problem, fix = self.no_beam
         raise InputError(where, f"{problem}, and {what} is of one beam", fix)
 

@@ -91,16 +91,12 @@ class Map:
 
 @dataclass(frozen=True, eq=False)
 class Panel:
-    """One pair of axes.
-
-    Lines over time have ``time, s`` as `x`; `limits` are the ends of the vertical axis where the data do not say them,
-    `named` is whether a legend names the lines, `ticks` the words at 0, 1, 2 … along x, `height` a share of the usual.
-    """
+    """One pair of axes."""
 
     y: str
     lines: tuple[Line, ...] = ()
     title: str = ""
-    x: str = "time, s"
+    x: str = "time, s"  # of lines over time
     areas: tuple[Area, ...] = ()
     levels: tuple[Level, ...] = ()
     marks: tuple[Mark, ...] = ()
@@ -108,12 +104,12 @@ class Panel:
     bars: Bars | None = None
     map: Map | None = None
     texts: tuple[tuple[float, float, str], ...] = ()
-    ticks: tuple[str, ...] = ()
-    limits: tuple[float, float] | None = None
+    ticks: tuple[str, ...] = ()  # words at 0, 1, 2 … along x
+    limits: tuple[float, float] | None = None  # ends of the vertical axis where the data do not say them
     logarithmic: bool = False
     zero: bool = False
-    named: bool = True
-    height: float = 1.0
+    named: bool = True  # whether a legend names the lines
+    height: float = 1.0  # share of the usual
 
 
 @dataclass(frozen=True, eq=False)

@@ -102,8 +102,6 @@ def low_pass(values: Floats, step: float, cutoff: float) -> Floats:
     """Butterworth low-pass of fourth order, run forwards and backwards: no phase, −6 dB at the cut-off.
 
     The ends are continued by their point reflection over one period of the cut-off, as far as the samples reach.
-
-    `values` (t, ...).
     """
     if not 0 < cutoff < 0.5 / step:
         raise InputError(

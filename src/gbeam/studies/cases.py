@@ -64,10 +64,7 @@ def read_cases(
     seed: int = 0,
     distributions: Mapping[str, Distribution] | None = None,
 ) -> Cases:
-    """Read what varies, ``PATH=VALUES`` each, and draw samples of it and of distributions in the scenario, by path.
-
-    The sampler saltelli makes samples × (d + 2) cases of d distributions.
-    """
+    """Read what varies, ``PATH=VALUES`` each, and draw samples of it and of distributions in the scenario, by path."""
     variations = [read_variation(text) for text in over]
     paths = [each.path for each in variations]
     declared = distributions or {}
@@ -106,10 +103,7 @@ def read_cases(
 
 
 def _saltelli(points: np.ndarray) -> np.ndarray:
-    """Two halves A and B of points (n, 2 d), and A with each column of B in turn: ((d + 2) n, d).
-
-    Saltelli et al., Computer Physics Communications 181 (2010), 259-270, Table 2.
-    """
+    """Two halves A and B of points (n, 2 d), and A with each column of B in turn: ((d + 2) n, d); Saltelli (2010)."""
     a, b = np.split(points, 2, axis=1)
     mixed = []
     for column in range(a.shape[1]):

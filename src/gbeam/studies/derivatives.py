@@ -37,16 +37,13 @@ EXACT, DIFFERENCE = "exact", "difference"
 
 @dataclass(frozen=True)
 class Slopes:
-    """Values (m,) read from an answer, and their derivatives, slopes (m, p) with errors (m, p), NaN of exact ones.
-
-    `bends` (m, p) is by how much the changes on either side differ, over the step: of its order where all is smooth.
-    """
+    """Values (m,) read from an answer, and their derivatives with respect to p parameters."""
 
     values: Floats
-    slopes: Floats
-    errors: Floats
+    slopes: Floats  # (m, p)
+    errors: Floats  # (m, p), NaN of exact ones
     methods: tuple[str, ...]
-    bends: Floats
+    bends: Floats  # (m, p), difference of the changes on either side over the step: of its order where all is smooth
 
 
 class Neighbourhood:
@@ -206,9 +203,8 @@ class Neighbourhood:
 
 
 class Quantities:
-    """Quantities of an answer at any values of the parameters, and their derivatives, by one run's steps and shapes.
-
-    Those are the steps in `motions`, and the shapes, of the `start`; without one each answer has its own.
+    """Quantities of an answer at any values of the parameters, and their derivatives, by the steps and shapes of one
+    `start`; without one each answer has its own.
     """
 
     def __init__(

@@ -53,22 +53,18 @@ class Row:
 
 @dataclass(frozen=True)
 class Inquiry:
-    """The computation of every case: a question at time `at`, s, and the figures that are taken from its answer.
-
-    Figures are `keys` of its facts, `functions` of the case, and `histories` at `times` (t,), s; cases that can be
-    integrated `together` are.
-    """
+    """The computation of every case: a question at time `at`, s, and the figures that are taken from its answer."""
 
     template: Template
     verb: str
     motion: str | None
     at: float | None = None
     options: Mapping[str, Any] = field(default_factory=dict)  # of the verb, as its function takes them
-    keys: tuple[Keys, ...] = ()
-    functions: tuple[Function, ...] = ()
+    keys: tuple[Keys, ...] = ()  # of the answer's facts
+    functions: tuple[Function, ...] = ()  # of the case
     histories: tuple[History | SystemHistory, ...] = ()
-    times: Floats = field(default_factory=lambda: np.empty(0))
-    together: bool = False
+    times: Floats = field(default_factory=lambda: np.empty(0))  # of the histories, (t,) s
+    together: bool = False  # whether cases that can be integrated together are
 
     def __post_init__(self) -> None:
         if self.verb not in QUESTIONS:

@@ -225,15 +225,12 @@ _LOADS = {"root_force": "N", "root_moment": "N m"}  # of the root
 
 @dataclass(frozen=True)
 class History:
-    """One component over time along `axis` (0, 1, 2) of base axes, in the motion of that name.
-
-    Its `quantity` is the root's force or moment, or the displacement of the point of that name, such as tip.
-    """
+    """One component over time in the motion of that name."""
 
     name: str
     motion: str
-    quantity: str
-    axis: int
+    quantity: str  # the root's force or moment, or a point's name, such as tip, for its displacement
+    axis: int  # 0, 1, 2, of base axes
 
     @property
     def unit(self) -> str:

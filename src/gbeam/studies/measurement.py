@@ -129,13 +129,10 @@ class Measurement:
 
 
 def read_measurement(path: str | os.PathLike[str], case: AnyCase, motion: str | None = None) -> Measurement:
-    """Read measured histories (a column ``time``) or modes (a column ``mode``) from a text file.
+    """Read measured histories (a column ``time``) or modes (a column ``mode``) from a text file: see :func:`fit`.
 
-    Histories are ``tip.z``, ``root_moment.y``, ``root_force.z``, ``hub.angle``, ``hub.rate`` and ``strain.z@10 mm`` (on
-    the face towards +z; ``strain.-z@...`` towards −z), with a unit in brackets, ``tip.z [mm]``, or SI, and where
-    several motions could be meant after a name, ``flight.tip.z``; columns of modes are ``frequency`` and
-    ``damping_ratio``. Of a solid ``strain.x@fillet`` is along an axis of a point; of a system histories are what its
-    sensors read, ``strip.tip.place_z``.
+    ``strain.z@10 mm`` is on the face towards +z, ``strain.-z@...`` towards −z; of a solid ``strain.x@fillet`` is along
+    an axis of a point.
     """
     try:
         return _read(os.fspath(path), case, motion)

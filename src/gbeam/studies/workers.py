@@ -93,10 +93,7 @@ class Workers:
             raise
 
     def rows(self, inquiry: Inquiry, batches: Iterable[Sequence[Task]]) -> Iterator[list[Row]]:
-        """Compute the batches.
-
-        A batch whose process dies is divided until one case is left, which has failed if its process dies once more.
-        """
+        """Compute the batches; one whose process dies is divided until one case is left, which fails once more."""
         left, again, suspects = iter(batches), deque[Sequence[Task]](), set[int]()
         while True:
             for worker in self._workers:

@@ -34,10 +34,7 @@ def mapped(base: Any, function: Callable[[Any], Any]) -> Base:
 
 
 def gradient(w_WB_B: Any, alpha_WB_B: Any) -> Any:
-    """Growth of the acceleration along x of a base in rotation, base axes, (..., 3) 1/s² (2020 (4)).
-
-    `w_WB_B`, `alpha_WB_B` (..., 3) rad/s².
-    """
+    """Growth of the acceleration along x of a base in rotation, base axes, (..., 3) 1/s² (2020 (4))."""
     xp = namespace(w_WB_B, alpha_WB_B)
     (wx, wy, wz), (_, aly, alz) = (xp.moveaxis(each, -1, 0) for each in (w_WB_B, alpha_WB_B))
     return xp.stack([-(wy**2 + wz**2), wx * wy + alz, wx * wz - aly], axis=-1)

@@ -21,28 +21,11 @@ POINTINGS = ("outward", "inward")
 
 @record
 class Mount:
-    """The beam's root on the x axis of the hub's axes H, turned by a constant rotation.
+    """The beam's root on the x axis of the hub's axes H, turned by a constant rotation: by the arguments of a Hub."""
 
-    Parameters
-    ----------
-    radius : float
-        From the hub's axis to the root, m; may be zero.
-    pointing : str
-        ``outward`` or ``inward``: from the root away from the hub's axis, or towards it and beyond.
-    setting_angle : float
-        Turn of the section's y and z axes about the beam, from the beam's y axis in the plane of rotation, rad.
-    gravity : sequence of three floats, optional
-        Acceleration of free fall, m/s², in hub axes at hub angle zero; it stays where it is as the hub turns.
-
-    Raises
-    ------
-    InputError
-        If a value is impossible.
-    """
-
-    radius: Any
+    radius: Any  # from the hub's axis to the root, m; may be zero
     R_HB: Any
-    gravity: Any
+    gravity: Any  # (3,) m/s² in hub axes at hub angle zero, or None
 
     def __init__(
         self, radius: Any, pointing: str = "outward", setting_angle: Any = 0.0, gravity: Any | None = None

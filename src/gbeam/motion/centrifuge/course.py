@@ -44,10 +44,7 @@ INVERSES: dict[str, Method] = {
 
 @record
 class Course:
-    """The target over a span, the inverse solved for it, and how the machine gets there from standstill and back.
-
-    Without a `solution` it is to be :meth:`solved` first.
-    """
+    """The target over a span, the inverse solved for it, or yet to be :meth:`solved`, and the way there and back."""
 
     target: Target
     geometry: Geometry

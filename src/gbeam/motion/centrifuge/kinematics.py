@@ -26,13 +26,6 @@ class Axes:
     Axis 1 turns the arm about the vertical Z; its angle is the integral of its rate and moves nothing but
     the scenery. Axis 2 (yaw, parallel to axis 1) turns the gimbal at the arm's end by `angle2` from the
     outward radius; axis 3 (roll) turns the specimen about the beam's axis by `angle3` from the horizontal.
-
-    Parameters
-    ----------
-    rate1, acceleration1 : array
-        ω1 in rad/s, dω1/dt in rad/s².
-    angle2, rate2, acceleration2 : array
-    angle3, rate3, acceleration3 : array
     """
 
     rate1: Any

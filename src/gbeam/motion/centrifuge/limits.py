@@ -74,26 +74,11 @@ class MachineLimits:
 
 @record
 class Limits:
-    """Limits as arrays: infinite where nothing is given.
+    """Limits as arrays: infinite where nothing is given."""
 
-    Parameters
-    ----------
-    axes : array, shape (3, 3)
-        Of rate, acceleration, jerk (rows) of axes 1, 2, 3 (columns).
-    inertia : float
-        kg m²; zero if not given.
-    power : float
-        W.
-
-    Raises
-    ------
-    InputError
-        If a limit is not positive, or a power is given without an inertia.
-    """
-
-    axes: Any
-    inertia: Any
-    power: Any
+    axes: Any  # (3, 3): of rate, acceleration, jerk (rows) of axes 1, 2, 3 (columns)
+    inertia: Any  # kg m²; zero if not given
+    power: Any  # W
 
     def __init__(self, limits: MachineLimits | None = None) -> None:
         machine = MachineLimits() if limits is None else limits
@@ -215,27 +200,11 @@ STARTS = ("rest", "pre-yawed", "idle")
 
 @dataclass(frozen=True)
 class Ends:
-    """Beginning and end of a centrifuge's motion, before the flight's first time and after its last.
+    """Beginning and end of a centrifuge's motion, before the flight's first time and after its last: see Centrifuge."""
 
-    Parameters
-    ----------
-    start : str
-        ``rest``: from standstill to standstill, the arm's tangential acceleration on the way ignored. ``pre-yawed``:
-        likewise, with axis 2 turned across the arm at standstill so that the load has its direction on the way.
-        ``idle``: the motion begins and ends in the state that it has at the flight's first and last time.
-    spin_up, spin_down : float, optional
-        From standstill to the flight's first time, and from its last to standstill, s; found within the machine's
-        limits where left out.
-
-    Raises
-    ------
-    InputError
-        If the start is unknown, a time is not positive, or one is given for a machine that begins at idle.
-    """
-
-    start: str = "rest"
-    spin_up: float | None = None
-    spin_down: float | None = None
+    start: str = "rest"  # one of STARTS
+    spin_up: float | None = None  # from standstill to the flight's first time, s; None: found within the limits
+    spin_down: float | None = None  # from its last time to standstill, likewise
 
     def __post_init__(self) -> None:
         choice("start", self.start, STARTS)

@@ -21,27 +21,12 @@ if TYPE_CHECKING:
 
 @record
 class PiecewiseLinear(Profile):
-    """Straight between knots, constant before the first and after the last.
+    """Straight between knots, constant before the first and after the last; one knot makes a constant."""
 
-    Parameters
-    ----------
-    times : array_like, shape (k,)
-        Knots, s, strictly increasing; one knot makes a constant.
-    values : array_like, shape (k,) or (k, 3)
-        Values at the knots, scalars or vectors.
-    record : RecordSummary, optional
-        Of the flight's record that it is.
-
-    Raises
-    ------
-    InputError
-        If the shapes differ, a number is not finite or the times do not increase.
-    """
-
-    times: Any
-    values: Any
+    times: Any  # of the knots, (k,) s, strictly increasing
+    values: Any  # (k,) or (k, 3)
     slopes: Any  # of the k + 1 segments, the outer two level, (k + 1,) or (k + 1, 3)
-    summary: RecordSummary | None = static()
+    summary: RecordSummary | None = static()  # of the flight's record that it is
 
     def __init__(self, times: Any, values: Any, *, record: RecordSummary | None = None) -> None:
         t, v = (array[None] if array.ndim == 0 else array for array in (as_array(times), as_array(values)))

@@ -70,68 +70,33 @@ def merged_edges(rows: list[Row], last: float) -> Floats:
 
 @dataclass(frozen=True)
 class Episode:
-    """A stretch of time in which the target is not the flight's load.
+    """A stretch of time in which the target is not the flight's load."""
 
-    Parameters
-    ----------
-    start, end : float
-        s.
-    reason : str
-        ``below idle``, ``gimbals`` (above idle, out of their reach) or ``left out`` (above idle, and the inverse cannot
-        follow).
-    flight_peak : float
-        Largest load of the flight in it, m/s².
-    """
-
-    start: float
+    start: float  # s
     end: float
-    reason: str
-    flight_peak: float
+    reason: str  # below idle; above it, gimbals (out of their reach) or left out (the inverse cannot follow)
+    flight_peak: float  # largest load of the flight in it, m/s²
 
 
 @record
 class Target:
-    """Reference load at the control point; built by :func:`gbeam.motion.build_target`.
+    """Reference load at the control point; built by :func:`gbeam.motion.build_target`."""
 
-    Parameters
-    ----------
-    load : Profile
-        Vector, base axes, m/s²: specific force where gravity acts, else acceleration. It stands still from half the
-        kernel's width before the span on, and from half of it after.
-    flight : Profile
-        The flight's own load, likewise, with its corners.
-    corners : Profile
-        The flight's, standing still beyond the span: what is rounded.
-    idle : float
-        Least load, m/s²; zero if there is none.
-    gravity : float
-        γ, m/s²: 9.80665 or 0.
-    half_width : float
-        Half the width of the kernel that rounds corners, s.
-    span : tuple of float
-        The flight's first and last time, s.
-    stretches : array, shape (m, 4)
-        Start s, end s, place of the reason in ``REASONS`` and the flight's largest load m/s² of every stretch in which
-        the target is not the flight's load; unused rows are infinite.
-    edges : array, shape (2m,)
-        Ascending: where the target stops being the flight's load and where it is again, s; unused ones are infinite.
-    rounded : bool
-        The load has no corners.
-    turns : bool
-        Its direction, or with gravity its size, changes, so that the gimbals must move.
-    """
-
+    # Vector, base axes, m/s²: specific force where gravity acts, else acceleration. It stands still from half the
+    # kernel's width before the span on, and from half of it after.
     load: Profile
-    flight: Profile
-    corners: Profile
-    idle: Any
-    gravity: float = static()
-    half_width: Any
-    span: tuple[Any, Any]
+    flight: Profile  # the flight's own load, likewise, with its corners
+    corners: Profile  # the flight's, standing still beyond the span: what is rounded
+    idle: Any  # least load, m/s²; zero if there is none
+    gravity: float = static()  # γ, m/s²: 9.80665 or 0
+    half_width: Any  # of the kernel that rounds corners, s
+    span: tuple[Any, Any]  # the flight's first and last time, s
+    # (m, 4): start s, end s, place of the reason in `REASONS` and the flight's largest load m/s² of every stretch in
+    # which the target is not the flight's load; unused rows are infinite.
     stretches: Any
-    edges: Any
-    rounded: bool = static()
-    turns: bool = static()
+    edges: Any  # (2 m,) ascending: where it stops being the flight's load, or is it again, s; unused ones infinite
+    rounded: bool = static()  # whether the load has no corners
+    turns: bool = static()  # whether its direction, or with gravity its size, changes: the gimbals must move
 
     def not_followed(self, t: Any) -> Any:
         """Tell at which times `t` (s, any shape) the target is not the flight's load."""
