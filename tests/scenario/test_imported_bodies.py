@@ -120,7 +120,8 @@ def test_a_modal_test_of_a_file_is_swept(folder: Path) -> None:
     [
         (SID.replace("strip.sid", "strip.sit"), "bodies.strip.standard_input_data", "no file"),
         (SID + "points = { lens = 99 }\n", "bodies.strip.points.lens", "no node"),
-        (SID.replace('"1 %"', "-1"), "bodies.strip.damping_ratio", "give zero or more"),
+        (SID.replace('"1 %"', "-1"), "bodies.strip.damping_ratio", "from 0 up to 1"),
+        (SID.replace("1 %", "200 %"), "bodies.strip.damping_ratio", "from 0 up to 1"),
         (modal_text(masses='["0.1 kg"]'), "bodies.panel.masses", "shape"),
         (modal_text(masses='["1 g", "1 g"]'), "bodies.panel.masses", "modal mass"),
         (modal_text(shapes="[[[0, 0, 1], [0, 0, 1]], [[0, 0, 1]]]"), "bodies.panel.shapes[1]", "1 displacements"),

@@ -207,6 +207,15 @@ def test_what_is_no_mesh_no_clamp_and_no_metal_is_said(tmp_path: Path) -> None:
         gb.SolidMesh.read(tmp_path / "a.inp", **(given | {"clamp": "every"}))
     cube = gb.SolidMesh.read(tmp_path / "a.inp", **given)
     same = cube.reduced(modes=1, damping_ratio=0.0)
+    for ratio, place in (2.0, "damping_ratio"), ([0.02] * 9 + [1.5], r"damping_ratio\[9\]"):
+        with pytest.raises(gb.InputError, match=f"{place} is .*; give a ratio of critical damping from 0 up to 1"):
+            cube.reduced(modes=1, damping_ratio=ratio)
+    (doubt,) = cube.reduced(modes=1, damping_ratio=0.5).structure.warnings[-1:]
+    assert (
+        doubt
+        == "damping_ratio is 0.5, outside the plausible 0 to 0.3; did you mean 0.5 %?"
+        not in same.structure.warnings
+    )
     with pytest.raises(gb.InputError, match="coarser has 8 nodes, and the mesh 8; give one with larger elements"):
         cube.reduced(modes=1, damping_ratio=0.0, coarser=same)
     slips = gb.SolidMesh.read(tmp_path / "a.inp", **(given | {"materials": gb.Material(2.7, 70e3, poissons_ratio=0.3)}))

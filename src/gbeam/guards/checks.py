@@ -30,6 +30,15 @@ def positive(where: str, value: Any, unit: str, *, zero: bool = False) -> Any:
     return number
 
 
+def damping_ratios(where: str, value: Any) -> None:
+    """Raise InputError where a ratio of critical damping, or one of several, is negative or damps a vibration away."""
+    ratios = as_array(value)
+    for i, ratio in enumerate(ratios.ravel()):
+        if not 0 <= ratio < 1:
+            place = f"{where}[{i}]" if ratios.ndim else where
+            raise InputError(place, f"is {ratio:g}", "give a ratio of critical damping from 0 up to 1, such as 0.01")
+
+
 def finite(where: str, value: Any) -> Any:
     """Return `value` as a float if it is a finite number."""
     if is_jax(value):

@@ -11,7 +11,7 @@ from gbeam.arrays.namespace import holds_jax, is_jax, namespace
 from gbeam.arrays.tree import Value, record, static
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import positive
+from gbeam.guards.checks import implausible, positive
 from gbeam.mechanics.equations.dalembert import Complete, CompleteHub, FreeHub, free_hub, ground_of
 from gbeam.mechanics.equations.inertia import Inertia
 from gbeam.mechanics.equations.linear import (
@@ -398,6 +398,7 @@ def linear_structure(
     mesh_error: tuple[float, ...] | None = None,
 ) -> Structure:
     """Structure whose equations are those of coefficients, with its particles (k,) and its stations."""
+    ratio = 0.0 if holds_jax(damping_ratio) else float(np.max(damping_ratio))
     return Structure(
         kind=kind,
         linear=True,
@@ -410,7 +411,7 @@ def linear_structure(
         station_places=stations,
         coefficients=terms.damped(damping_matrix(damping_ratio, terms.mass, terms.stiffness)),
         damping_ratio=damping_ratio,
-        warnings=warnings,
+        warnings=(*warnings, *implausible("damping_ratio", "damping", ratio)),
         points=points,
         turns=turns,
         unstiffened=unstiffened,

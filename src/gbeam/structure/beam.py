@@ -13,7 +13,7 @@ from gbeam.arrays.namespace import holds_jax, namespace
 from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import positive, possible
+from gbeam.guards.checks import damping_ratios, positive, possible
 from gbeam.structure.attachments import TIP, Load, Point, PointMass, Root
 from gbeam.structure.line import Line
 from gbeam.structure.material import ASSUMED_RATIO, Material
@@ -116,12 +116,7 @@ class Beam(Value):
             raise InputError("damping_ratio", f"is {ratios!r}", "give a number, or one for each mode")
         if not isinstance(ratios, (int, float)):
             object.__setattr__(self, "damping_ratio", tuple(float(z) for z in ratios))
-        for i, ratio in enumerate(np.atleast_1d(np.asarray(ratios, dtype=float))):
-            place = "damping_ratio" if np.ndim(ratios) == 0 else f"damping_ratio[{i}]"
-            if not 0 <= ratio < 1:
-                raise InputError(
-                    place, f"is {ratio:g}", "give a ratio of critical damping from 0 up to 1, such as 0.01"
-                )
+        damping_ratios("damping_ratio", ratios)
 
     def _refuse_names_twice(self) -> None:
         named = [(f"points[{i}].name", point.name) for i, point in enumerate(self.points)]

@@ -20,6 +20,7 @@ import numpy as np
 from gbeam.arrays.namespace import as_array, is_jax, namespace
 from gbeam.arrays.tree import record
 from gbeam.errors import InputError
+from gbeam.guards.checks import damping_ratios
 from gbeam.integrate.equations import LinearTerms
 from gbeam.mechanics.fields.taylor import EPSILON, Places
 from gbeam.numerics.eigen import symmetric_modes
@@ -283,9 +284,8 @@ def damping_matrix(ratio: Any, mass: Array, stiffness: Array) -> Array:
             f"lists {len(ratio)} values for the {n} modes of the model",
             f"give one value for all, or {n}, ascending in frequency",
         )
-    if not is_jax(ratio) and not (ratio >= 0).all():
-        least = float(np.min(ratio))
-        raise InputError("damping_ratio", f"is {least:g}", "give zero or more, such as 0.02")
+    if not is_jax(ratio):
+        damping_ratios("damping_ratio", ratio)
     xp = namespace(ratio, mass, stiffness)
     if not is_jax(ratio) and not np.any(ratio):
         return xp.zeros((n, n))
