@@ -187,6 +187,10 @@ def test_the_mesh_converges_and_says_by_how_much() -> None:
     assert run.errors.stress.total < 1e-4 and run.errors.displacement.total < 1e-4
     said = f"by a coarser one {percent(fine.mesh_error[0])} of the lowest frequency"
     assert said in run.errors.note and said in " ".join(of_beam(run))
+    bodies = {name: fine.structure for name in "ab"} | {"c": middle.structure}
+    held = gb.System(bodies, {name: gb.Joint("fixed", name) for name in bodies}, gravity=(0.0, 0.0, -1.0))
+    note = gb.static(held).errors.note
+    assert note == f"the mesh of a, b is not judged, {said}; the mesh of c is not judged"
     assert np.isnan(middle.mesh_error).all() and "unknown" in repr(middle) and "error of the mesh up to" in repr(fine)
     rough = meshes[1].reduced(modes=2, damping_ratio=0, coarser=replace(coarse, frequency=1.2 * coarse.frequency))
     assert any("mesh it finer" in each for each in rough.structure.warnings)

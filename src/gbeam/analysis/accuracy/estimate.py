@@ -89,9 +89,13 @@ def unjudged(structure: Structure) -> str:
         return ""
     if structure.mesh_error is None:
         return UNKNOWN
-    known = structure.mesh_error[0]
-    mesh = "" if math.isnan(known) else f", by a coarser one {percent(known)} of the lowest frequency"
-    return f"the mesh is not judged{mesh}"
+    return f"the mesh is not judged{by_coarser(structure)}"
+
+
+def by_coarser(structure: Structure) -> str:
+    """By how much a coarser mesh changes the lowest frequency, in words; empty where there is none."""
+    known = (structure.mesh_error or (math.nan,))[0]
+    return "" if math.isnan(known) else f", by a coarser one {percent(known)} of the lowest frequency"
 
 
 class Judgement(NamedTuple):

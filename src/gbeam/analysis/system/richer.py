@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.analysis.accuracy.correction import PLACE, Posed, Quantity, looked, pieces
+from gbeam.analysis.accuracy.estimate import by_coarser
 from gbeam.analysis.system.histories import Carried, carried, loads_of
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.enrichment import enrichment
@@ -50,9 +51,12 @@ def left_unjudged(system: System) -> str:
     """The bodies of which nothing, or not the mesh, is judged, in words."""
     judged = judged_bodies(system)
     others = [name for name in system.flexible if name not in judged]
-    meshes = [name for name, body in judged.items() if body.source is None]
-    pairs = (NOT_ALL, others), (NO_MESH, meshes)
-    return "; ".join(words.format(", ".join(names)) for words, names in pairs if names)
+    said = [NOT_ALL.format(", ".join(others))] if others else []
+    meshes = dict[str, list[str]]()
+    for name, body in judged.items():
+        if body.source is None:
+            meshes.setdefault(by_coarser(body), []).append(name)
+    return "; ".join(said + [NO_MESH.format(", ".join(names)) + more for more, names in meshes.items()])
 
 
 def richer(system: System, bases: Mapping[str, Base], *, exact: bool) -> Richer:
