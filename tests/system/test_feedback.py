@@ -105,6 +105,21 @@ def test_a_function_is_the_matrices_and_two_controllers_are_one() -> None:
         np.testing.assert_allclose(left.q, right.q, atol=1e-9)
 
 
+def test_samples_are_taken_until_they_settle() -> None:
+    """Later corrections of the motion leave them as they are: what was measured is there to rounding all the same."""
+    times = list[float]()
+
+    def law(t: float, y: np.ndarray) -> np.ndarray:
+        times.append(t)
+        return np.asarray(lead()[3] @ y)
+
+    controller = gb.Feedback(law, NAMES, ["axis.angle"], SAMPLE)
+    response = gb.simulate(satellite(controller, angle=0.3), duration=4.0, step=SAMPLE / 2, estimate=False)
+    assert response.loop is not None and len(times) <= 3 * 200
+    states = np.stack([response.q[:-1:2, 0], response.qd[:-1:2, 0]], axis=1)
+    np.testing.assert_allclose(response.loop.measured[:-1:2], states, atol=1e-13)
+
+
 def test_a_force_at_a_point_is_driven_and_reported() -> None:
     """A jet at the tip damps the panel; what is sampled and applied is in the response, and acts with the delay."""
     rates = ["panel.tip.velocity_x", "panel.tip.velocity_y"]

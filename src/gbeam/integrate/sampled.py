@@ -55,61 +55,54 @@ class Controllers(Protocol):
 
 
 class Sampling:
-    """Samples of a run's controllers, taken at the beginnings of steps: commands, measurements and states so far."""
+    """Samples of controllers, taken at the beginnings of steps, and the commands `held` in every step (t, m): the
+    last ones where no sample is known yet. A sample is its measurements, its command as asked and as limited, and the
+    next state.
+    """
 
     def __init__(self, controllers: Controllers, residual: Any, drive: Any, steps: Steps) -> None:
         self.controllers, self.residual, self.drive, self.steps = controllers, residual, drive, steps
-        self.count = max(part.stop for part in controllers.drives)
-        start, slack = steps.begin[0], NEAR * steps.length
-        self.taken, self.acting = [], []
+        self.held = np.zeros((len(steps), max(part.stop for part in controllers.drives)))
+        start, begun = steps.begin[0], steps.begin + NEAR * steps.length
+        self.taken, self.since = [], []
         for period, delay in controllers.timing:
-            number = np.floor((steps.begin + slack - start) / period).astype(int)
-            before = np.concatenate([[-1], number[:-1]])
-            self.taken.append(np.where(number > before, number, -1))
-            self.acting.append(np.floor((steps.begin + slack - start - delay) / period).astype(int))
-        kinds = range(len(self.taken))
-        self.states: list[list[Any]] = [[controllers.started(c)] for c in kinds]
-        self.asked: list[list[Array]] = [[] for _ in kinds]
-        self.commands: list[list[Array]] = [[] for _ in kinds]
-        self.measurements: list[list[Array]] = [[] for _ in kinds]
+            number = np.floor((begun - start) / period).astype(int)
+            self.taken.append(np.where(np.diff(number, prepend=-1) > 0, number, -1))
+            acting = np.floor((begun - start - delay) / period)
+            self.since.append(np.searchsorted(acting, np.arange(number[-1] + 2)))
+        self.started = [controllers.started(c) for c in range(len(self.taken))]
+        self.samples: list[list[tuple[Array, Array, Array, Any]]] = [[] for _ in self.taken]
 
-    def held(self, step: int) -> Array:
-        """Commands (m,) that act in a step; the latest where they are not known yet."""
-        out = np.zeros(self.count)
-        for part, acting, commands in zip(self.controllers.drives, self.acting, self.commands, strict=True):
-            if acting[step] >= 0 and commands:
-                out[part] = commands[min(acting[step], len(commands) - 1)]
-        return out
+    def hold(self, end: int) -> None:
+        """Hold the last commands until a step."""
+        for part, since, samples in zip(self.controllers.drives, self.since, self.samples, strict=True):
+            if samples:
+                self.held[since[len(samples)] : end, part] = samples[-1][2]
 
-    def sampled(self, step: int, measure: Any) -> None:
-        """Take the samples at the beginning of a step, of measurements that a function gives by controller."""
-        for c, taken in enumerate(self.taken):
-            if taken[step] < 0:
-                continue
-            s, value = int(taken[step]), measure(c)
-            time, state = float(self.steps.begin[step]), self.states[c][s]
-            asked, limited, after = self.controllers.commanded(c, time, value, state)
-            # What was sampled of earlier iterates from here on goes.
-            self.measurements[c][s:], self.asked[c][s:], self.commands[c][s:] = [value], [asked], [limited]
-            self.states[c][s + 1 :] = [after]
+    def take(self, c: int, s: int, step: int, measured: Array) -> None:
+        """Take a sample of a controller at the beginning of a step."""
+        samples, since = self.samples[c], self.since[c]
+        state = samples[s - 1][3] if s else self.started[c]
+        asked, limited, after = self.controllers.commanded(c, float(self.steps.begin[step]), measured, state)
+        samples[s:] = [(measured, asked, limited, after)]  # those of earlier iterates go
+        self.held[since[s] : since[s + 1], self.controllers.drives[c]] = limited
 
     def onto(self, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
         """Derivatives (t, n, m) of the residual with respect to what is commanded, at states and inputs (t, ...)."""
-        units = np.broadcast_to(1j * STEP * np.eye(self.count)[:, None], (self.count, len(q), self.count))
+        count = self.held.shape[1]
+        units = np.broadcast_to(1j * STEP * np.eye(count)[:, None], (count, len(q), count))
         values = self.residual(q, qd, qdd, self.controllers.driven(inputs, units))
         return np.moveaxis(values.imag, 0, -1) / STEP
 
-    def measured(self, c: int, at: Array, q: Array, qd: Array, held: Array) -> Array:
-        """Measurements (t, k) of a controller at beginnings `at` (t,) of steps, by states and commands before."""
-        inputs = self.controllers.driven(self.drive(self.steps.begin[at]), held)
+    def measured(self, c: int, q: Array, qd: Array, inputs: Any) -> Array:
+        """Measurements (t, k) of a controller by the states at its samples, and inputs with the commands before."""
         qdd = accelerations(self.residual, q, qd, inputs) if self.controllers.accelerates(c) else 0 * q
         return self.controllers.measured(c, q, qd, qdd, inputs)
 
-    def slopes(self, c: int, at: Array, q: Array, qd: Array, held: Array) -> tuple[Array, Array | None]:
+    def slopes(self, c: int, q: Array, qd: Array, inputs: Any) -> tuple[Array, Array | None]:
         """Derivatives of measurements with respect to (q, q̇), (t, k, 2 n), and to the commands before (t, k, m); None
         of those where only accelerations would follow at once.
         """
-        inputs = self.controllers.driven(self.drive(self.steps.begin[at]), held)
         accelerates = self.controllers.accelerates(c)
         qdd = accelerations(self.residual, q, qd, inputs) if accelerates else 0 * q
         by_place, by_rate, by_change = slopes(partial(self.controllers.measured, c), q, qd, qdd, inputs)
@@ -137,31 +130,33 @@ class Held:
 
     def __init__(self, sampling: Sampling, first: int, count: int) -> None:
         self.sampling, self.first = sampling, first
-        self.u = np.stack([sampling.held(first + k) for k in range(count)])
-        self.before = sampling.held(first - 1) if first else np.zeros(sampling.count)
+        sampling.hold(first + count)
+        self.u = sampling.held[first : first + count].copy()
+        self.before = sampling.held[first - 1] if first else 0 * self.u[0]
         self.change = np.zeros_like(self.u)
-        self.samples = [np.flatnonzero(taken[first : first + count] >= 0) for taken in sampling.taken]
-        self.sample = [{int(k): i for i, k in enumerate(each)} for each in self.samples]
-        self.values: list[Array] = []
-        self.slope: list[tuple[Array, Array | None]] = []
+        self.settled = False
+        self.due: list[list[tuple[int, int, int]]] = [[] for _ in self.u]  # of a step: controllers, which of the window
+        self.samples, self.inputs = {}, {}  # of the window, by controllers, and the inputs without commands
+        for c, taken in enumerate(sampling.taken):
+            at = np.flatnonzero(taken[first : first + count] >= 0)
+            if len(at):
+                self.samples[c], self.inputs[c] = at, sampling.drive(sampling.steps.begin[first + at])
+            for i, k in enumerate(at):  # and of all
+                self.due[k].append((c, i, int(taken[first + k])))
 
     def begin(self, z: Array) -> None:
         """Find how measurements follow the states z (t, m, n) at the beginnings of steps."""
-        self.slope = [
-            self.sampling.slopes(c, self.first + at, z[at, 0], z[at, 1], self._before(at)) if len(at) else (0, 0)
-            for c, at in enumerate(self.samples)
-        ]
-
-    def _before(self, at: Array) -> Array:
-        """Commands that act before the beginnings of steps."""
-        return np.concatenate([self.before[None], self.u])[at]
+        self.slope = self._at_samples(self.sampling.slopes, z)
 
     def measure(self, z: Array) -> None:
         """Measure at the states of the iterate."""
-        self.values = [
-            self.sampling.measured(c, self.first + at, z[at, 0], z[at, 1], self._before(at)) if len(at) else at
-            for c, at in enumerate(self.samples)
-        ]
+        self.values = self._at_samples(self.sampling.measured, z)
+
+    def _at_samples(self, function: Any, z: Array) -> dict[int, Any]:
+        """Values of a function of the states and the inputs at each controller's samples."""
+        before, driven = np.concatenate([self.before[None], self.u]), self.sampling.controllers.driven
+        inputs = {c: driven(each, before[self.samples[c]]) for c, each in self.inputs.items()}
+        return {c: function(c, z[at, 0], z[at, 1], inputs[c]) for c, at in self.samples.items()}
 
     def push(self, inverse: Array, t: Any, onto: Array) -> None:
         """Find how a step answers to its commands, J⁻¹ of their derivatives (t s, n, m)."""
@@ -172,15 +167,15 @@ class Held:
 
     def sampled(self, k: int, moved: Array) -> Array:
         """Take the samples of a step whose state is to be moved (m n,), and return what its commands change."""
-
-        def measured(c: int) -> Array:
-            i, (by_state, by_command) = self.sample[c][k], self.slope[c]
-            value = self.values[c][i] + by_state[i] @ moved
-            return value + by_command[i] @ self.change[k - 1] if k and by_command is not None else value
-
-        self.sampling.sampled(self.first + k, measured)
-        self.change[k] = self.sampling.held(self.first + k) - self.u[k]
-        return self.step[k] @ self.change[k]
+        step = self.first + k
+        for c, i, s in self.due[k]:
+            by_state, by_command = self.slope[c]
+            value = self.values[c][i] + by_state[i].dot(moved)
+            if k and by_command is not None:
+                value += by_command[i].dot(self.change[k - 1])
+            self.sampling.take(c, s, step, value)
+        self.change[k] = change = self.sampling.held[step] - self.u[k]
+        return self.step[k].dot(change)
 
     def changed(self, shape: tuple[int, ...]) -> Array:
         """Hold the new commands; returns what they change of the accelerations, to be taken away from these."""

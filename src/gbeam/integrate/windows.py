@@ -46,6 +46,7 @@ TOLERANCE, ROUNDING = 1e-12, 1e-6  # of the largest acceleration: error left by 
 TINY = float(np.finfo(float).tiny)
 CANCELLED = 100 * float(np.finfo(float).eps)  # of the forces at a coordinate, each a sum of many: their rounding
 SUMMED = 1e-10  # of the largest acceleration: rounding, which adds up over steps, where corrections cease to be quick
+SETTLED = 1e-9  # of the largest acceleration: error left by a correction after which samples are taken no more
 GROWN = 10.0  # times the rounding of steps that have converged, which is known, unlike that of iterates that diverge
 EARLIER = 0.01  # of the largest acceleration before a step, whose own may all vanish: to be told from none
 
@@ -116,6 +117,11 @@ class _Window:
         """True if the derivatives at its first state serve a whole window."""
         return self.apart > FAR
 
+    @property
+    def _sampled(self) -> Held | None:
+        """Commands to be corrected: none where they have settled."""
+        return None if self.held is None or self.held.settled else self.held
+
     def solve(self, end: int, enough: int) -> bool:
         """Correct steps before `end` until `enough` have converged; false where one fails."""
         while self.first < enough:
@@ -129,7 +135,10 @@ class _Window:
             count += 1
             if alone:
                 self._shorten(self.maps[0])
-            moved[:] = size / _reach(self.x)
+            reach = _reach(self.x)
+            moved[:] = size / reach
+            if self.held is not None:
+                self.held.settled = bool((size * QUICKEST <= SETTLED * reach).all())
             if far and moved[-1] <= MOVED and count[-1] <= QUICK:
                 self.more = min(self.more + self.more // 2 + 1, LONGEST)
             # By derivatives of another state corrections may shrink slowly without being rounding.
@@ -340,9 +349,9 @@ class _Window:
         defect = t.g @ self.z[:-1] + t.d @ (self.x - alone.reshape(self.x.shape)) - self.z[1:]
         moved = self._moved(step, defect.reshape(count, -1))
         change = (alone + _products(answer, moved[:-1])).reshape(self.x.shape)
-        if self.held is not None:
-            change = change + self.held.changed(self.x.shape)
-            self.inputs = self.held.driven(self.free, self.x.shape[1])
+        if self._sampled is not None:
+            change = change + self._sampled.changed(self.x.shape)
+            self.inputs = self._sampled.driven(self.free, self.x.shape[1])
         self.change = moved.reshape(self.z.shape), change
         self.z += self.change[0]
         self.x -= change
@@ -351,20 +360,21 @@ class _Window:
     def _moved(self, step: Array, defect: Array) -> Array:
         """Changes δz (t + 1, m n) of the states by δz₊ = S δz + the defects (t, m n)."""
         count, moved = len(defect), np.zeros((len(defect) + 1, defect.shape[1]))
-        if len(step) == 1 and self.held is None:  # sums of powers of one map, each twice as long as the last
+        held = self._sampled
+        if len(step) == 1 and held is None:  # sums of powers of one map, each twice as long as the last
             moved[1:], power, reach = defect, step[0].T, 1
             while reach < count:
                 moved[1 + reach :] += moved[1:-reach] @ power
                 power, reach = power @ power, 2 * reach
             return moved
-        if self.held is not None:
-            self.held.measure(self.z[:-1])
+        if held is not None:
+            held.measure(self.z[:-1])
         every = zip(np.broadcast_to(step, (count, *step.shape[1:])), defect, moved[:-1], moved[1:], strict=True)
         for k, (one, more, before, after) in enumerate(every):
-            np.dot(one, before, out=after)
+            one.dot(before, out=after)
             after += more
-            if self.held is not None:
-                after += self.held.sampled(k, before)
+            if held is not None:
+                after += held.sampled(k, before)
         return moved
 
     def _shorten(self, inverse: Array) -> None:

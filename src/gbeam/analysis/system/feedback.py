@@ -66,7 +66,7 @@ class SystemControllers:
     def commanded(self, controller: int, t: float, measured: Array, state: Any) -> tuple[Array, Array, Any]:
         """Command of one as its law has it and within its limits, and its next state."""
         each = self.every[controller]
-        asked, state = each.effort(t, np.asarray(measured, dtype=float), state)
+        asked, state = each.effort(t, measured, state)
         return asked, each.limited(asked), state
 
     def driven(self, inputs: Any, held: Array) -> Any:
@@ -85,13 +85,13 @@ def loop_of(controllers: SystemControllers, sampling: Sampling, time: Floats) ->
     for c, (period, delay) in enumerate(controllers.timing):
         taken = np.floor((time + slack - start) / period).astype(int)
         active = np.floor((time + slack - start - delay) / period).astype(int)
-        last = len(sampling.commands[c]) - 1
+        values, wanted, commands = (np.stack(each) for each in list(zip(*sampling.samples[c], strict=True))[:3])
         # The last time may be that of a sample which no step has taken.
-        measured.append(np.stack(sampling.measurements[c])[np.minimum(taken, last)])
-        asked.append(np.stack(sampling.asked[c])[np.minimum(taken, last)])
-        held = np.stack(sampling.commands[c])[np.clip(active, 0, last)]
-        beyond.append(np.mean(np.stack(sampling.asked[c]) != np.stack(sampling.commands[c]), axis=0))
-        acting.append(np.where(active[:, None] >= 0, held, 0.0))
+        taken, last = np.minimum(taken, len(values) - 1), np.clip(active, 0, len(values) - 1)
+        measured.append(values[taken])
+        asked.append(wanted[taken])
+        beyond.append(np.mean(wanted != commands, axis=0))
+        acting.append(np.where(active[:, None] >= 0, commands[last], 0.0))
     loop = Loop(
         measurements=signal_names(controllers.system.controllers, "measure"),
         units=tuple(signals_of(controllers.system)[each] for one in controllers.every for each in one.measure),

@@ -232,8 +232,7 @@ class LinearBody:
         S, Si, Sd, J, Ji, h, hi = self._moments(q, qd)
         Sdd = turned(Si, qdd) + turned(_times(c.k_a, qd), qd)
         hd = turned(hi, qdd) + turned(_times(c.k_al, qd), qd)
-        force = c.rigid[0] * root.a + cross(root.alpha, S) + cross(root.w, cross(root.w, S))
-        force = force + 2 * cross(root.w, Sd) + Sdd
+        force = c.rigid[0] * root.a + cross(root.alpha, S) + cross(root.w, cross(root.w, S) + 2 * Sd) + Sdd
         swelling = (root.w[..., None, None, :] @ Ji)[..., 0, :]  # ∂(J ω)/∂q
         moment = cross(S, root.a) + turned(J, root.alpha) + turned(swelling, qd) + hd
         moment = moment + cross(root.w, turned(J, root.w) + h)

@@ -13,17 +13,17 @@ from __future__ import annotations
 
 from typing import Any
 
-from gbeam.arrays.namespace import namespace
+import numpy as np
+
 from gbeam.arrays.tree import record
 
 Array = Any
+_NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])  # component after each, and the one before
 
 
 def cross(left: Array, right: Array) -> Array:
     """Vector product of vectors (..., 3)."""
-    xp = namespace(left, right)
-    (a, b, c), (x, y, z) = ((v[..., 0], v[..., 1], v[..., 2]) for v in (left, right))
-    return xp.stack([b * z - c * y, c * x - a * z, a * y - b * x], axis=-1)
+    return left.take(_NEXT, -1) * right.take(_LAST, -1) - left.take(_LAST, -1) * right.take(_NEXT, -1)
 
 
 def turned(R: Array, v: Array) -> Array:
@@ -72,9 +72,9 @@ class Frame:
     def carried(self, by: Relative) -> Frame:
         """Motion of a frame that moves relative to this one."""
         swept = cross(self.w, by.r)
-        a = self.a + cross(self.alpha, by.r) + cross(self.w, swept)
+        a = self.a + cross(self.alpha, by.r) + cross(self.w, swept if by.rd is None else swept + 2 * by.rd)
         if by.rd is not None:
-            a = a + 2 * cross(self.w, by.rd) + by.rdd
+            a = a + by.rdd
         R, p, v, w, alpha = self.R, self.p, self.v, self.w, self.alpha
         if R is not None:
             p, v = p + turned(R, by.r), v + swept if by.rd is None else v + swept + by.rd
