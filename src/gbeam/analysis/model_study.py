@@ -186,7 +186,8 @@ def _answer(
     if isinstance(structure, System):
         assert isinstance(response, SystemResponse)
         tip = _tip_of(structure, response, point)
-        body, q = structure.bodies[tip.point.partition(".")[0]], _coordinates(structure, response, tip.point)
+        name = tip.point.partition(".")[0]
+        body, q = structure.bodies[name], response.q[:, deforming(structure.coordinates, name)]
     else:
         assert isinstance(response, Response)
         peaks, hub = response.peaks, response.hub
@@ -217,12 +218,6 @@ def _tip_of(system: System, response: SystemResponse, point: str | None) -> _Tip
     value, when = vector_peaks(response.time, moved)
     residual = np.full(3, np.nan) if left is None else left[response.points.index(point)]
     return _Tip(response, point, moved, value[:3], when[:3], residual, response.residual_from)
-
-
-def _coordinates(system: System, response: SystemResponse, point: str) -> Floats:
-    """Coordinates (t, n) of the flexible body that a point is on."""
-    body = point.partition(".")[0]
-    return response.q[:, deforming(system.coordinates, body)]
 
 
 def _moved(system: System, response: SystemResponse, point: str) -> Floats:

@@ -160,12 +160,9 @@ def stress(result: SolidStress, title: str = "") -> Figure:
         levels = (Level(scale * near.yield_strength, f"yield of {near.material or 'the material'}"),)
     about = of_motion(result.motion, f"von Mises stress, {result.model}")
     panel = Panel(f"von Mises stress, {unit}", tuple(lines), levels=levels, zero=True, height=2.0)
-    return Figure(title, about, (panel,), (f"largest: {_where(result)}",))
-
-
-def _where(result: SolidStress) -> str:
     x, y, z = (1e3 * float(each) for each in result.worst.place)
-    return f"at ({x:.4g}, {y:.4g}, {z:.4g}) mm, {result.worst.time:.4g} s{result.worst.apart}"
+    where = f"at ({x:.4g}, {y:.4g}, {z:.4g}) mm, {result.worst.time:.4g} s{result.worst.apart}"
+    return Figure(title, about, (panel,), (f"largest: {where}",))
 
 
 def specimen(result: SpecimenLoads, title: str = "") -> Figure:

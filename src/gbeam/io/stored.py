@@ -18,7 +18,7 @@ from gbeam.guards.processes import confined
 from gbeam.io.hdf5 import contents, contents_of, image, provenance_of
 from gbeam.io.netcdf import groups_of
 from gbeam.results.provenance import Provenance
-from gbeam.results.result import Floats, Result
+from gbeam.results.result import Result
 
 
 @dataclass(frozen=True)
@@ -95,15 +95,11 @@ def _rows(stored: Stored, name: str, count: int) -> Iterator[str]:
     for k, variable in enumerate(_VECTORS):
         array = stored.variables.get(place + ("displacement" if variable == "tip" else variable))
         if array is not None:
-            values[:, 3 * k : 3 * k + 3] = _at_one_place(array, last=variable == "tip")
+            station = -1 if variable == "tip" else 0
+            values[:, 3 * k : 3 * k + 3] = array[:, station] if array.ndim == 3 else array
     stress = stored.variables.get(f"{place}stress")
     if stress is not None:
         values[:, -1] = stress[:, 0]
     quoted = f'"{name}"' if "," in name or '"' in name else name
     for t, row in zip(time, values, strict=True):
         yield f"{quoted},{t:.9g}," + ",".join("" if np.isnan(each) else f"{each:.9g}" for each in row)
-
-
-def _at_one_place(values: Floats, *, last: bool) -> Floats:
-    """Value of a vector at the last of several places, or the first."""
-    return values[:, -1 if last else 0] if values.ndim == 3 else values

@@ -4,55 +4,32 @@ Every motion is a :class:`Motion`: it has a `kind`, ``base(t)`` (a :class:`Base`
 end)``; a hub that is `free` to turn has a torque in place of a motion.
 """
 
-from gbeam.constants import STANDARD_GRAVITY
-from gbeam.motion.bases.base import Base
-from gbeam.motion.bases.flight import Flight
-from gbeam.motion.bases.hub import Hub, Mount
-from gbeam.motion.centrifuge.centrifuge import Centrifuge
-from gbeam.motion.centrifuge.course import INVERSES
-from gbeam.motion.centrifuge.kinematics import Axes, axis_angles, forward, moved
-from gbeam.motion.centrifuge.limits import AxisLimit, Limits, Machine, MachineLimits, machines, usage
-from gbeam.motion.centrifuge.target.build import build_target
-from gbeam.motion.centrifuge.target.target import Episode, Target
-from gbeam.motion.profiles.combine import Sum, Vector, vector
-from gbeam.motion.profiles.piecewise import PiecewiseLinear, constant, tabulated, trapezoid
-from gbeam.motion.profiles.profile import Profile, smoothed
-from gbeam.motion.profiles.pulse import Sine, SmoothStep
-from gbeam.motion.protocol import Motion
-from gbeam.motion.records.record import read_record
-
-__all__ = [
-    "INVERSES",
-    "STANDARD_GRAVITY",
-    "Axes",
-    "AxisLimit",
-    "Base",
-    "Centrifuge",
-    "Episode",
-    "Flight",
-    "Hub",
-    "Limits",
-    "Machine",
-    "MachineLimits",
-    "Motion",
-    "Mount",
-    "PiecewiseLinear",
-    "Profile",
-    "Sine",
-    "SmoothStep",
-    "Sum",
-    "Target",
-    "Vector",
-    "axis_angles",
-    "build_target",
-    "constant",
-    "forward",
-    "machines",
-    "moved",
-    "read_record",
-    "smoothed",
-    "tabulated",
-    "trapezoid",
-    "usage",
-    "vector",
-]
+from gbeam.constants import STANDARD_GRAVITY as STANDARD_GRAVITY
+from gbeam.motion.bases.base import Base as Base
+from gbeam.motion.bases.flight import Flight as Flight
+from gbeam.motion.bases.hub import Hub as Hub
+from gbeam.motion.centrifuge.centrifuge import Centrifuge as Centrifuge
+from gbeam.motion.centrifuge.course import INVERSES as INVERSES
+from gbeam.motion.centrifuge.kinematics import Axes as Axes
+from gbeam.motion.centrifuge.kinematics import axis_angles as axis_angles
+from gbeam.motion.centrifuge.kinematics import forward as forward
+from gbeam.motion.centrifuge.kinematics import moved as moved
+from gbeam.motion.centrifuge.limits import AxisLimit as AxisLimit
+from gbeam.motion.centrifuge.limits import Limits as Limits
+from gbeam.motion.centrifuge.limits import MachineLimits as MachineLimits
+from gbeam.motion.centrifuge.limits import machines as machines
+from gbeam.motion.centrifuge.limits import usage as usage
+from gbeam.motion.centrifuge.target.build import build_target as build_target
+from gbeam.motion.centrifuge.target.target import Target as Target
+from gbeam.motion.profiles.combine import Sum as Sum
+from gbeam.motion.profiles.combine import vector as vector
+from gbeam.motion.profiles.piecewise import PiecewiseLinear as PiecewiseLinear
+from gbeam.motion.profiles.piecewise import constant as constant
+from gbeam.motion.profiles.piecewise import tabulated as tabulated
+from gbeam.motion.profiles.piecewise import trapezoid as trapezoid
+from gbeam.motion.profiles.profile import Profile as Profile
+from gbeam.motion.profiles.profile import smoothed as smoothed
+from gbeam.motion.profiles.pulse import Sine as Sine
+from gbeam.motion.profiles.pulse import SmoothStep as SmoothStep
+from gbeam.motion.protocol import Motion as Motion
+from gbeam.motion.records.record import read_record as read_record

@@ -157,11 +157,8 @@ def json_schema_of_results() -> str:
 
 def reference_of_results() -> str:
     """Return a page with a table of every kind of result."""
-    return _HEAD + "".join(f"\n## {name}\n\n{_summary(kind)}\n\n{_table(kind)}" for name, kind in KINDS.items())
-
-
-def _summary(kind: type) -> str:
-    return (kind.__doc__ or "").strip().splitlines()[0]
+    summaries = {name: (kind.__doc__ or "").strip().splitlines()[0] for name, kind in KINDS.items()}
+    return _HEAD + "".join(f"\n## {name}\n\n{summaries[name]}\n\n{_table(kind)}" for name, kind in KINDS.items())
 
 
 def _table(kind: type) -> str:

@@ -181,7 +181,7 @@ class LoadPeaks(Part):
         if not np.isfinite(self.tension.value).all():
             return None
         tension, compression = self.tension.value.argmax(), self.compression.value.argmin()
-        k = self._stressed
+        k = int(self.stress.value.argmax())
         return StressPeak(
             *self._place(self.stress, k),
             Highest(*self._place(self.tension, int(tension))),
@@ -208,10 +208,6 @@ class LoadPeaks(Part):
         if self.von_mises is None:
             return None
         return Highest(*self._place(self.von_mises, int(self.von_mises.value.argmax())))
-
-    @property
-    def _stressed(self) -> int:
-        return int(self.stress.value.argmax())
 
     def _place(self, extremes: Extremes, k: int) -> tuple[float, float, float]:
         return float(extremes.value[k]), float(extremes.time[k]), float(self.stations[k])

@@ -4,30 +4,17 @@ text/ reads quantities, places and overrides; schema/ declares the tables; load 
 explain and placing put every error at its line; template is for those who write scenarios.
 """
 
-from gbeam.guards.units import UnitError, argument, quantity
-from gbeam.scenario.build import build, build_extent, build_machines, read_scenario
-from gbeam.scenario.load import load, load_environments, loads, placed, provenance
-from gbeam.scenario.schema import Environments, Scenario
-from gbeam.scenario.template import json_schema, template
-from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
-
-__all__ = [
-    "Diagnostic",
-    "Environments",
-    "Scenario",
-    "ScenarioError",
-    "UnitError",
-    "argument",
-    "build",
-    "build_extent",
-    "build_machines",
-    "json_schema",
-    "load",
-    "load_environments",
-    "loads",
-    "placed",
-    "provenance",
-    "quantity",
-    "read_scenario",
-    "template",
-]
+from gbeam.scenario.build import build as build
+from gbeam.scenario.build import build_extent as build_extent
+from gbeam.scenario.build import build_machines as build_machines
+from gbeam.scenario.build import read_scenario as read_scenario
+from gbeam.scenario.load import load as load
+from gbeam.scenario.load import load_environments as load_environments
+from gbeam.scenario.load import loads as loads
+from gbeam.scenario.load import placed as placed
+from gbeam.scenario.load import provenance as provenance
+from gbeam.scenario.schema import Scenario as Scenario
+from gbeam.scenario.template import json_schema as json_schema
+from gbeam.scenario.template import template as template
+from gbeam.scenario.text.diagnostics import Diagnostic as Diagnostic
+from gbeam.scenario.text.diagnostics import ScenarioError as ScenarioError

@@ -7,7 +7,7 @@ others depends on the sweep and on the case alone.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import groupby, islice
@@ -85,11 +85,6 @@ class Inquiry:
         loads = any(map(of_loads, self.keys)) or any(each.quantity != "tip" for each in self.histories)
         return Needs(errors, loads)
 
-    @property
-    def needs_facts(self) -> bool:
-        """True if the verb has to answer."""
-        return bool(self.keys or self.histories)
-
     def case(self, overrides: Sequence[str]) -> AnyCase:
         """The objects of one case."""
         return self.template.changed(overrides).built()
@@ -105,7 +100,7 @@ class Inquiry:
         """Compute one case. What goes wrong in it is part of the row: the other cases go on."""
         try:
             case = self.case(overrides)
-            facts = self.facts(case) if self.needs_facts else NO_FACTS
+            facts = self.facts(case) if self.keys or self.histories else NO_FACTS
         except Exception as error:
             return without_figures(number, self.width, error)
         return self.measured(number, case, facts)
@@ -223,16 +218,13 @@ def _together(inquiry: Inquiry, tasks: Sequence[Task]) -> list[Row]:
         except Exception as error:
             computed.append(without_figures(number, inquiry.width, error))
     # What varies in a motion may end a record elsewhere.
-    for _, alike in groupby(posed, key=lambda each: each[1].response):
-        computed += _integrated(inquiry, list(alike), set(structures) == {()})
+    one_structure = set(structures) == {()}
+    for _, group in groupby(posed, key=lambda each: each[1].response):
+        alike = list(group)
+        answers = {name: _responses(inquiry, alike, name, one_structure) for name in alike[0][1].motions}
+        for k, (number, case, _) in enumerate(alike):
+            computed.append(_row(inquiry, number, case, {name: each[k] for name, each in answers.items()}))
     return computed
-
-
-def _integrated(inquiry: Inquiry, posed: Sequence[Posed], one_structure: bool) -> Iterator[Row]:
-    """Rows of cases with the same settings."""
-    answers = {name: _responses(inquiry, posed, name, one_structure) for name in posed[0][1].motions}
-    for k, (number, case, _) in enumerate(posed):
-        yield _row(inquiry, number, case, {name: each[k] for name, each in answers.items()})
 
 
 def _responses(inquiry: Inquiry, posed: Sequence[Posed], name: str, one_structure: bool) -> list[Response | Exception]:

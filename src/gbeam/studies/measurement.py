@@ -151,7 +151,8 @@ def _read(path: str, case: AnyCase, motion: str | None) -> Measurement:
     at = table.numbers("file", clock) * _factor(names[clock], "time" if not modal else "ratio", clock)
     others = [name for name in names if name != clock]
     if not others:
-        raise InputError(OPTION, f"{path} has nothing but {clock}", f"add columns such as {_examples(modal)}")
+        examples = "frequency" if modal else "tip.z or root_moment.y"
+        raise InputError(OPTION, f"{path} has nothing but {clock}", f"add columns such as {examples}")
     _check_clock(at, path, modal, case)
     columns = tuple(_column(table, name, names[name], modal, case, motion) for name in others)
     return Measurement(path, at, modal, columns)
@@ -207,10 +208,6 @@ def _column(table: Table, name: str, unit: str, modal: bool, case: AnyCase, moti
 
 def _si(kind: str) -> str:
     return "Hz" if kind == "frequency" else KINDS[kind].unit
-
-
-def _examples(modal: bool) -> str:
-    return "frequency" if modal else "tip.z or root_moment.y"
 
 
 def _factor(unit: str, kind: str, name: str) -> float:

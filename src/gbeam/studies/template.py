@@ -293,7 +293,9 @@ def _with(node: Any, kind: str, wanted: Any, path: Path) -> Any:
     known = _below(node, kind)
     for step in wanted:
         if step not in known:
-            below = [str(name) for name, (each, _) in known.items() if _may_vary(each)]
+            below = [
+                str(name) for name, (each, _) in known.items() if isinstance(each, str) or any(_numbers(each, "", ()))
+            ]
             fix = advise(str(step), below) if below else "vary one of its numbers"
             raise InputError(path_text((*path, step)), "is no value that the case gives", fix)
     changed = {step: _with(*known[step], each, (*path, step)) for step, each in wanted.items()}
@@ -331,7 +333,3 @@ def _numbers(node: Any, kind: str, path: Path) -> Iterator[tuple[Path, float, st
         return
     for step, (value, of) in _below(node, kind).items():
         yield from _numbers(value, of, (*path, step))
-
-
-def _may_vary(node: Any) -> bool:
-    return isinstance(node, str) or any(True for _ in _numbers(node, "", ()))

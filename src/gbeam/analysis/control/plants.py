@@ -207,11 +207,8 @@ class OnJoint:
     @property
     def free(self) -> bool:
         """True if the drive is an effort."""
-        return self.coordinate not in self._rates
-
-    @property
-    def _rates(self) -> set[str]:
-        return {f"{name}.{each}" for name, joint in self.system.joints.items() for each in joint.rates}
+        rates = {f"{name}.{each}" for name, joint in self.system.joints.items() for each in joint.rates}
+        return self.coordinate not in rates
 
     def refuse_moving(self, goal: Goal) -> None:
         """Raise InputError unless it is at rest without a command, with the same sag all the way."""

@@ -166,11 +166,8 @@ class PointForce(Value):
     @property
     def history(self) -> Any:
         """Profiles of force and moment."""
-        return tuple(_profile(name, getattr(self, name)) for name in ("force", "moment"))
-
-
-def _profile(where: str, value: Any) -> Any:
-    return as_profile(where, (0.0, 0.0, 0.0) if value is None else value, 3)
+        vectors = {"force": self.force, "moment": self.moment}
+        return tuple(as_profile(name, (0.0, 0.0, 0.0) if each is None else each, 3) for name, each in vectors.items())
 
 
 @typed

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from gbeam.report.page.parts import Numbers
+from gbeam.report.page.parts import Numbers, Ref
 from gbeam.report.words import number
 from gbeam.results.modal import Modes
 from gbeam.results.result import Floats
@@ -21,6 +21,7 @@ SIGNS = np.array(np.meshgrid(*[(-1, 1)] * 3)).reshape(3, -1).T  # of a box's cor
 CORNERS = (SIGNS + 1) / 2
 SURFACE = ("vertices", "triangles", "shapes", "stress", "sizes")
 MESH = ("shapes", "sizes_real", "sizes_imag")  # of a surface in modes
+_PLACED = ("place", "attitude")  # of the points of a system
 LINE = (("rest", "place"), ("across", "across"))  # of a beam that is not straight, and where an outline has it
 FAR = 4  # times their own size: bodies that go farther are followed
 AMPLITUDE, TURN = 0.15, 0.6  # of a mode: of the length, of the largest displacement; rad, the largest rotation
@@ -39,11 +40,12 @@ def scene(motions: Mapping[str, str], variables: Variables, numbers: Numbers) ->
             shown.append((motion(name, environment, of, numbers), of["outline_time"], of["outline"]))
         elif "surface_vertices" in of:
             at_rest = np.ndim(of["root_acceleration"]) == 1
-            shown.append(_solid(name, environment, _still(of) if at_rest else of, numbers))
+            shown.append(_solid(name, environment, _at_once(of, "root_acceleration") if at_rest else of, numbers))
         elif "specimen_corner_place" in of:
             shown.append(_rigid(name, environment, of, numbers))
         elif "hangs_on" in of:
-            shown.append(_system(name, environment, of if of["place"].ndim == 3 else _resting(of), numbers))
+            at_rest = of["place"].ndim == 2
+            shown.append(_system(name, environment, _at_once(of, *_PLACED) if at_rest else of, numbers))
     if not shown:
         return None
     _, time, moved = shown[0]
@@ -53,17 +55,10 @@ def scene(motions: Mapping[str, str], variables: Variables, numbers: Numbers) ->
 def motion(name: str, environment: str, variables: Variables, numbers: Numbers) -> dict[str, Any]:
     """One motion: the beam's outline, stress, load, and the turning of what carries it."""
     of: Any = variables.get
-    time, some = of("time"), of("outline_time")
-    index = np.searchsorted(time, some - 1e-12).clip(max=len(time) - 1)  # of the response's own times
-    outline = of("outline")
-    header: dict[str, Any] = {
-        "name": name,
-        "environment": environment,
-        "parts": [{"beam": _beam(variables, index, numbers)}],
-        "length": float(of("point")[-1]),
-        "time": numbers.add(some),
-        "largest": _largest(outline),
-    }
+    index = _indices(of("time"), of("outline_time"))
+    beam = {"beam": _beam(variables, index, numbers)}
+    header = _header(name, environment, [beam], numbers.add(of("outline_time")), _largest(of("outline")))
+    header["length"] = float(of("point")[-1])
     if (rest := of("outline_place")) is not None:
         header |= _extent(rest, numbers)
     reach = np.array([[float(of("point")[-1]), 0.0, 0.0]]) if rest is None else rest
@@ -80,16 +75,9 @@ def _solid(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple
     """One motion of a solid: its surface in a few shapes; times and displacements (t, v, 3), the largest last."""
     some, at = v["surface_time"], v["surface_vertices"]
     surface, tip = _surface({key: v[f"surface_{key}"] for key in SURFACE}, v.get("solid_von_mises"), numbers)
-    index = np.searchsorted(v["time"], some - 1e-12).clip(max=len(v["time"]) - 1)
-    header = {
-        "name": name,
-        "environment": environment,
-        "parts": [{"surface": surface}],
-        "time": numbers.add(some),
-        "largest": _largest(tip),
-        **_around(at, numbers),
-    }
-    return header | _carried(v, index, at, numbers), some, tip
+    header = _header(name, environment, [{"surface": surface}], numbers.add(some), _largest(tip))
+    header |= _around(at, numbers) | _carried(v, _indices(v["time"], some), at, numbers)
+    return header, some, tip
 
 
 def _rigid(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple[dict[str, Any], Floats, Floats]:
@@ -100,15 +88,20 @@ def _rigid(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple
     box = {"size": (high - low).tolist(), "centre": ((low + high) / 2).tolist(), "rotation": np.eye(3).ravel().tolist()}
     still = np.zeros((len(index), 10))
     still[:, 3] = 1.0  # at the base and along its axes
-    header = {
-        "name": name,
-        "environment": environment,
-        "parts": [{"frame": numbers.add(still), "box": box, "points": np.asarray(bolts).tolist()}],
-        "time": numbers.add(v["time"][index]),
-        "largest": 0.0,
-        **_around(np.concatenate([corners, bolts]), numbers),
-    }
-    return header | _carried(v, index, corners, numbers), v["time"][index], v["root_acceleration"][index, None]
+    body = {"frame": numbers.add(still), "box": box, "points": np.asarray(bolts).tolist()}
+    header = _header(name, environment, [body], numbers.add(v["time"][index]), 0.0)
+    header |= _around(np.concatenate([corners, bolts]), numbers) | _carried(v, index, corners, numbers)
+    return header, v["time"][index], v["root_acceleration"][index, None]
+
+
+def _header(name: str, environment: str, parts: list[Any], time: Ref, largest: float) -> dict[str, Any]:
+    """Header of every motion: its parts, the place of its times, and its largest deflection."""
+    return {"name": name, "environment": environment, "parts": parts, "time": time, "largest": largest}
+
+
+def _indices(time: Floats, some: Floats) -> Any:
+    """Places among a response's own times of some of them."""
+    return np.searchsorted(time, some - 1e-12).clip(max=len(time) - 1)
 
 
 def _around(places: Floats, numbers: Numbers) -> dict[str, Any]:
@@ -171,7 +164,7 @@ def _system(name: str, environment: str, v: Variables, numbers: Numbers) -> tupl
     """One motion of a system: beams, boxes, roots; times and deflection (t, 1, 3) of the most deflected beam."""
     time, beams = v["time"], [body for body in v["body"] if f"{body}_outline" in v]
     some = v[f"{beams[0]}_outline_time"] if beams else time[:: -(-len(time) // TIMES)]
-    index = np.searchsorted(time, some - 1e-12).clip(max=len(time) - 1)
+    index = _indices(time, some)
     place, points = v["place"][index], list(v["point"])
     frames: dict[str, tuple[Any, Any, Floats]] = {
         "ground": (Rotation.identity(), np.zeros(3), np.zeros((len(some), 3)))
@@ -213,16 +206,10 @@ def _system(name: str, environment: str, v: Variables, numbers: Numbers) -> tupl
                 corners += [at[:, None] + turn.apply(centre + rotation @ (sign * size / 2))[:, None] for sign in SIGNS]
         parts.append(part | ({"joint": True} if v["joint_kind"][k] not in ("fixed", "free") else {}))
     middle, radius = _view(np.concatenate([place, *corners], axis=1))
-    header = {
-        "name": name,
-        "environment": environment,
-        "parts": parts,
-        "length": max((float(v[f"{body}_point"][-1]) for body in beams), default=radius),
-        "time": numbers.add(some),
-        "largest": max([_largest(deflected), *(_largest(v[f"{body}_outline"]) for body in beams)]),
-        "middle": numbers.add(middle),
-        "radiusShown": radius,
-    }
+    largest = max([_largest(deflected), *(_largest(v[f"{body}_outline"]) for body in beams)])
+    header = _header(name, environment, parts, numbers.add(some), largest)
+    header["length"] = max((float(v[f"{body}_point"][-1]) for body in beams), default=radius)
+    header |= {"middle": numbers.add(middle), "radiusShown": radius}
     still = np.concatenate([np.zeros((1, 3)), v["undeformed"], *(each[0] for each in corners)])
     return header | _carried(v, index, still, numbers), some, deflected
 
@@ -254,14 +241,9 @@ def shape(points: Floats, width: Floats, thickness: Floats, is_round: Any) -> di
     }
 
 
-def _still(v: Variables) -> Variables:
-    """A solid at rest as one that moves, at one time."""
-    return {**v, "time": np.zeros(1), "root_acceleration": v["root_acceleration"][None]}
-
-
-def _resting(v: Variables) -> Variables:
-    """A system at rest as one that moves, at one time."""
-    return {**v, "time": np.zeros(1), "place": v["place"][None], "attitude": v["attitude"][None]}
+def _at_once(v: Variables, *names: str) -> Variables:
+    """Variables of a body at rest as of one that moves, at one time, those of these names over time."""
+    return {**v, "time": np.zeros(1), **{name: v[name][None] for name in names}}
 
 
 def shapes(modes: Modes, variables: Variables, numbers: Numbers) -> dict[str, Any]:
@@ -322,8 +304,7 @@ def shapes_of_system(facts: Mapping[str, Any], v: Variables, numbers: Numbers) -
     labels = [f"{i}: {number(each['frequency'])} Hz, {v['body'][share.argmax()]}" for i, (each, share) in rows]
     beams, motions = [body for body in v["body"] if f"{body}_outline" in v], []
     rest = Rotation.from_quat(np.roll(v["attitude"], -1, axis=-1))
-    resting = _resting(v)
-    _, radius = _view(resting["place"])
+    _, radius = _view(v["place"][None])
 
     def of(name: str, k: int) -> Any:
         return _complex(v, name)[k]

@@ -5,41 +5,27 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from gbeam.scenario.schema.beam import Beam, General, Line, Load, PointMass
-from gbeam.scenario.schema.motion import AxisLimit, Centrifuge, Components, Flight, Hub, Limits, Motion
-from gbeam.scenario.schema.profile import Constant, Listed, Sine, SmoothStep, Sum, Trapezoid
-from gbeam.scenario.schema.response import Response
-from gbeam.scenario.schema.scenario import Environments, Model, Scenario
+from gbeam.scenario.schema.beam import Beam as Beam
+from gbeam.scenario.schema.beam import Line as Line
+from gbeam.scenario.schema.beam import Load as Load
+from gbeam.scenario.schema.beam import PointMass as PointMass
+from gbeam.scenario.schema.motion import AxisLimit as AxisLimit
+from gbeam.scenario.schema.motion import Centrifuge as Centrifuge
+from gbeam.scenario.schema.motion import Flight as Flight
+from gbeam.scenario.schema.motion import Hub as Hub
+from gbeam.scenario.schema.motion import Limits as Limits
+from gbeam.scenario.schema.profile import Constant as Constant
+from gbeam.scenario.schema.profile import Listed as Listed
+from gbeam.scenario.schema.profile import Sine as Sine
+from gbeam.scenario.schema.profile import SmoothStep as SmoothStep
+from gbeam.scenario.schema.profile import Trapezoid as Trapezoid
+from gbeam.scenario.schema.response import Response as Response
+from gbeam.scenario.schema.scenario import Environments as Environments
+from gbeam.scenario.schema.scenario import Model as Model
+from gbeam.scenario.schema.scenario import Scenario as Scenario
 
 if TYPE_CHECKING:
     from gbeam.scenario.schema.system import SpecimenScenario, SystemScenario
-
-__all__ = [
-    "AxisLimit",
-    "Beam",
-    "Centrifuge",
-    "Components",
-    "Constant",
-    "Environments",
-    "Flight",
-    "General",
-    "Hub",
-    "Limits",
-    "Line",
-    "Listed",
-    "Load",
-    "Model",
-    "Motion",
-    "PointMass",
-    "Response",
-    "Scenario",
-    "Sine",
-    "SmoothStep",
-    "Sum",
-    "Trapezoid",
-    "kind_of_scenario",
-]
-
 
 _OF_SYSTEMS = {"joints", "forces", "controllers", "system"}
 

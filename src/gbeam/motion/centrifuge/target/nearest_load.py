@@ -123,7 +123,8 @@ class NearestLoad(Profile):
         free = (size2.value >= (_FOLLOWED * self.idle) ** 2) & (across2.value >= (_FREE * self.least) ** 2)
         gate: Any = 1.0
         if self.gate is not None:
-            gate = _sharp_to_smooth(self.gate.series(now, order))
+            # A straight ramp between 0 and 1 without its corners: eight times differentiable.
+            gate = soft_step(soft_step(self.gate.series(now, order), 0.5, 1.0), 0.5, 1.0)
             free = free & (gate.value == 1)
         if not is_traced(free) and free.all():
             return flight
@@ -170,11 +171,6 @@ class NearestLoad(Profile):
     def knots(self, step: float) -> NDArray[np.float64]:
         knots = self.flight.knots(step)
         return knots if self.path is None else np.union1d(knots, self.path.knots(step))
-
-
-def _sharp_to_smooth(share: Series) -> Series:
-    """A straight ramp between 0 and 1 without its corners: eight times differentiable."""
-    return soft_step(soft_step(share, 0.5, 1.0), 0.5, 1.0)
 
 
 def _blend(share: Series, flight: list[Series], path: list[Series]) -> list[Series]:
