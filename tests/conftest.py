@@ -14,6 +14,10 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import IO, Any
 
+# As the command line does, and before NumPy starts its threads: a beam's matrices are small, and the threads of two
+# processes would wait for one another, for more than half of all processor time.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 import hypothesis
 import numpy as np
 import pytest
@@ -21,8 +25,6 @@ import pytest
 # A busy machine is no error.
 hypothesis.settings.register_profile("gbeam", deadline=None)
 hypothesis.settings.load_profile("gbeam")
-# As the command line does: a beam's matrices are small, and the threads of two processes would wait for one another.
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # Compiled programs are kept from run to run, in the project's own ignored folder.
 os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(Path(__file__).parents[1] / ".cache" / "jax"))
 # No test reads what another version of it has made.
