@@ -258,6 +258,22 @@ def test_a_mesh_comes_back_from_files(tmp_path: Path, name: str) -> None:
     assert held.mass == pytest.approx((STEEL.density + STIFF.density) * 0.1 * 0.05 * 0.03)
 
 
+@pytest.mark.parametrize("name", ["solid.vtk", "solid.vtu"])
+def test_a_selection_of_paraview_is_a_group(tmp_path: Path, name: str) -> None:
+    """Arrays of 0 and 1, of nodes and of elements; whole numbers of nodes, as their own, are none."""
+    mesh = block("hexahedron", (2, 1, 1), (200.0, 50.0, 30.0))
+    x = mesh.points[:, 0]
+    mesh.point_data = {"wall": (x == 0).astype(np.int8), "GlobalPointIds": np.arange(len(x))}
+    mesh.cell_data = {"root_half": [np.array([1, 0])], "tip_half": [np.array([0, 1])]}
+    meshio.write(tmp_path / name, meshio.Mesh(mesh.points, mesh.cells, mesh.point_data, mesh.cell_data))
+    materials: dict[str, Any] = {"root_half": STEEL, "tip_half": STIFF}
+    held = gb.SolidMesh.read(tmp_path / name, materials=materials, clamp="wall", unit="mm")
+    assert (held.points[held.clamped, 0] == 0).all() and held.clamped.sum() == 4
+    assert held.mass == pytest.approx((STEEL.density + STIFF.density) * 0.1 * 0.05 * 0.03)
+    with pytest.raises(gb.InputError, match=r"clamp is 'floor', .*; choose from wall, root_half, tip_half, 0, 1$"):
+        gb.SolidMesh.read(tmp_path / name, materials=materials, clamp="floor", unit="mm")
+
+
 def energy(mesh: gb.SolidMesh, moved: np.ndarray) -> float:
     """Strain energy of displacements (k, 3) with Green's strain."""
     total = 0.0

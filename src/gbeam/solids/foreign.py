@@ -71,7 +71,7 @@ def read_mesh(source: str | os.PathLike[str] | Any) -> Any:
         # It prints what fails and exits.
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
             mesh = meshio.read(source)
-        return _of_med(mesh) if ending_of(source) == ".med" else mesh
+        return _with_masks(_of_med(mesh) if ending_of(source) == ".med" else mesh)
     except InputError:
         raise
     except ModuleNotFoundError as error:  # meshio, or what it reads some formats by
@@ -122,6 +122,21 @@ def _of_med(mesh: Any) -> Any:
             numbers = [number for number, names in tags.items() if name in names]
             chosen = [np.flatnonzero(np.isin(each, numbers)) for each in values]
             sets[name] = chosen if sets is mesh.cell_sets else chosen[0]
+    return mesh
+
+
+def _with_masks(mesh: Any) -> Any:
+    """A mesh with its arrays of 0 and 1, as selections of ParaView are, as groups by their names."""
+    for sets, arrays in (
+        (mesh.point_sets, {name: [values] for name, values in mesh.point_data.items()}),
+        (mesh.cell_sets, mesh.cell_data),
+    ):
+        for name, values in arrays.items():
+            flat = [np.asarray(each) for each in values]
+            known = {*np.unique(np.concatenate(flat)).tolist()} if all(each.ndim == 1 for each in flat) else set()
+            if known == {0, 1} and all(each.dtype.kind in "iub" for each in flat):
+                chosen = [np.flatnonzero(each) for each in flat]
+                sets.setdefault(name, chosen if sets is mesh.cell_sets else chosen[0])
     return mesh
 
 
