@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+
 
 class GbeamError(Exception):
     """Base of everything that gbeam raises on purpose.
@@ -46,6 +49,25 @@ class InputError(GbeamError, ValueError):
         """Return the same error seen from one level further out, `prefix`."""
         joint = "" if not prefix or not self.where or self.where.startswith("[") else "."
         return InputError(f"{prefix}{joint}{self.where}", self.problem, self.fix)
+
+
+@contextmanager
+def naming(where: str | Mapping[str, str]) -> Iterator[None]:
+    """Give the InputErrors raised inside another place, or by a mapping those at some places."""
+    try:
+        yield
+    except InputError as error:
+        place = where if isinstance(where, str) else where.get(error.where, error.where)
+        raise InputError(place, error.problem, error.fix) from None
+
+
+@contextmanager
+def placing_within(prefix: str) -> Iterator[None]:
+    """Give the InputErrors raised inside a prefix of their place: :meth:`InputError.within`."""
+    try:
+        yield
+    except InputError as error:
+        raise error.within(prefix) from None
 
 
 class ComputationError(GbeamError, RuntimeError):

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.arrays.tree import Value
-from gbeam.errors import InputError
+from gbeam.errors import InputError, naming
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.assembly import assemble
 from gbeam.mechanics.fields.basis import FAMILIES, quadrature
@@ -328,10 +328,8 @@ class SpecimenCase(_InEnvironments):
             where, at = f"motion.{name}.accept", limits.get("damage_at")
             refuse_unknown(where, limits, lacking)
             if at is not None and recovery is not None:
-                try:
+                with naming(f"{where}.damage_at"):
                     recovery.strain(at, (1.0, 0.0, 0.0))
-                except InputError as error:
-                    raise InputError(f"{where}.damage_at", error.problem, error.fix) from None
 
     def assemble(self, stations: ArrayLike | None = None) -> Structure:
         """Return the structure; its stations are its points.

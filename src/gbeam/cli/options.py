@@ -225,15 +225,6 @@ def read(verb: str, file: Path, overrides: Sequence[str]) -> Input:
     return loaded
 
 
-@contextmanager
-def naming(option: str) -> Iterator[None]:
-    """Name an option as the place of the InputErrors raised inside."""
-    try:
-        yield
-    except InputError as error:
-        raise InputError(option, error.problem, error.fix) from None
-
-
 def number(option: str, text: str, kind: str) -> float:
     """Read an option with a unit."""
     from gbeam.guards.units import read_quantity  # not needed, nor imported, for help

@@ -10,10 +10,10 @@ from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Literal
 
-from gbeam.cli.options import Output, naming, signed
+from gbeam.cli.options import Output, signed
 from gbeam.cli.process import Watch, command, figures_wanted
 from gbeam.cli.publication import publish
-from gbeam.errors import InputError
+from gbeam.errors import InputError, naming
 from gbeam.printable import printable
 
 if TYPE_CHECKING:

@@ -54,7 +54,7 @@ def _cases(sweep: Sweep) -> list[list[str]]:
 def _quantiles(sweep: Sweep) -> list[list[str]]:
     """Least, mean and largest, and the quantiles of the cases that have a figure."""
     every = [values[np.isfinite(values)] for values in sweep.measures.values()]
-    words = {
+    words: dict[str, Any] = {
         "least": np.min,
         "5 %": lambda v: np.quantile(v, 0.05),
         "median": np.median,
@@ -63,11 +63,9 @@ def _quantiles(sweep: Sweep) -> list[list[str]]:
         "largest": np.max,
         "standard deviation": lambda v: np.std(v, ddof=1) if len(v) > 1 else np.nan,
     }
-    return [[word, *(_figure(of, values) for values in every)] for word, of in words.items()]
-
-
-def _figure(of: Any, values: Floats) -> str:
-    return number(float(of(values))) if len(values) else "–"
+    return [
+        [word, *(number(float(of(values))) if len(values) else "–" for values in every)] for word, of in words.items()
+    ]
 
 
 def _failures(sweep: Sweep) -> list[str]:

@@ -144,7 +144,6 @@ class Sweep(Figured):
 
     @declared("", "units of the histories by name", role="fact", key="histories")
     def recorded(self) -> Mapping[str, Mapping[str, str]]:
-        """The histories' units by name; their values are in files only."""
         return {name: {"unit": self.units[name]} for name in self.histories}
 
     @declared("", "estimates by name with their bounds; lists along the grid", role="fact", key="statistics")

@@ -15,6 +15,7 @@ from __future__ import annotations
 import dataclasses
 import re
 import sys
+import textwrap
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from operator import attrgetter
@@ -161,11 +162,8 @@ def document(kind: type) -> None:
     section = parameters(kind)
     if "Parameters\n" not in text and section.count("\n") > 1:
         above, examples, below = text.partition("    Examples\n")
-        kind.__doc__ = f"{above.rstrip()}\n\n{_indented(section)}\n" + (f"\n{examples}{below}" if examples else "")
-
-
-def _indented(section: str) -> str:
-    return "\n".join(f"    {line}" for line in section.splitlines())
+        section = textwrap.indent(section, "    ")
+        kind.__doc__ = f"{above.rstrip()}\n\n{section}\n" + (f"\n{examples}{below}" if examples else "")
 
 
 def _type_words(annotation: str, each: Declaration) -> str:

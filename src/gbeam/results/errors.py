@@ -205,7 +205,6 @@ class Oscillating(Noted):
 
     @declared("", "whether nothing grows", role="fact")
     def stable(self) -> bool:
-        """True if nothing grows."""
         return not self.instabilities
 
     @declared("Hz", "natural frequency", "mode")

@@ -42,7 +42,8 @@ def facts_of(record: Any) -> dict[str, Any]:
             if one is None:  # not estimated: no number in any row
                 shares: list[Any] = [dict.fromkeys(units_of(record_in(type(record), name)), math.nan)] * len(every)
             else:
-                shares = [_plain(at_place(one, i, axis), _across(each, along)) for i in range(len(every))]
+                across = replace(each, dims=tuple(dim for dim in each.dims if dim != along))
+                shares = [_plain(at_place(one, i, axis), across) for i in range(len(every))]
             for row, share in zip(every, shares, strict=True):
                 _put(row, f"{key}{end}", share)
     return facts
@@ -259,10 +260,6 @@ def _along(each: Declaration, lists: Mapping[str, str]) -> str | None:
     if each.role == "rows" or (each.key or "").startswith("/"):
         return None
     return next((dim for dim in each.dims if dim in lists), None)
-
-
-def _across(each: Declaration, along: str) -> Declaration:
-    return replace(each, dims=tuple(dim for dim in each.dims if dim != along))
 
 
 def _labels(record: Any, dim: str) -> tuple[str, ...] | None:

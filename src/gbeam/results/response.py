@@ -312,7 +312,6 @@ class Response(Driven, Figured):
         "m", "largest displacement of every named point", "point", role="rows", name=None, key="points", optional=True
     )
     def point_peaks(self) -> Mapping[str, VectorPeaks]:
-        """Largest displacement of every point beside the tip that has a name, by it."""
         peaks = self.peaks.displacement
         if peaks is None:
             return {}

@@ -39,17 +39,14 @@ class Invariants(Part):
 
     @declared("", "largest change of the momentum, over its largest size", role="fact")
     def momentum_change(self) -> float:
-        """Largest change of the momentum over its largest size."""
         return self._drift(self.momentum)
 
     @declared("", "largest change of the angular momentum, over its largest size", role="fact")
     def angular_momentum_change(self) -> float:
-        """Largest change of the angular momentum over its largest size."""
         return self._drift(self.angular_momentum)
 
     @declared("", "largest change of the energy, over the largest of its parts", role="fact")
     def energy_change(self) -> float:
-        """Largest change of the whole energy over the largest of its parts."""
         whole, size = self.energy.sum(axis=1), np.abs(self.energy).max(initial=0.0)
         return float(np.abs(whole - whole[0]).max(initial=0.0) / size) if size > 0 else 0.0
 
@@ -222,17 +219,14 @@ class SystemResponse(Driven, Figured):
         "m", "displacement of the point from its place at the start, the largest", "point", key="displacement_max"
     )
     def largest(self) -> Floats:
-        """Largest distance of every point from its place at the start, (p,) m."""
         return np.linalg.norm(self.place - self.place[0], axis=-1).max(axis=0)
 
     @declared("m/s^2", "acceleration, the largest", "point", key="acceleration_max")
     def largest_acceleration(self) -> Floats:
-        """Largest acceleration of every point, (p,) m/s²."""
         return np.linalg.norm(self.acceleration, axis=-1).max(axis=0)
 
     @declared("", "coordinate at the end", "coordinate", name="last", key="end")
     def last(self) -> Floats:
-        """Coordinates at the end, (n,)."""
         return self.q[-1]
 
     def at(self, point: str) -> Floats:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gbeam.errors import InputError
+from gbeam.errors import InputError, naming, placing_within
 from gbeam.scenario.schema import specimen as schema
 
 if TYPE_CHECKING:
@@ -91,10 +91,8 @@ def _carried(name: str, table: schema.Carried) -> RigidBody:
     """A body on a rigid link."""
     from gbeam.mechanics.tree.system import RigidBody
 
-    try:
+    with placing_within(f"carried.{name}"):
         return RigidBody(table.mass, table.inertia, table.centre)
-    except InputError as error:
-        raise error.within(f"carried.{name}") from None
 
 
 def _material(parts: Collector, where: str, table: Any) -> Any:
@@ -112,16 +110,16 @@ def matrices_of(parts: Collector, where: str, table: schema.MatricesBody) -> Str
     def places() -> Any:
         if table.nodes is None:
             return None
-        try:
+        with naming("nodes"):
             read = read_matrix(table.nodes)
-        except InputError as error:
-            raise InputError("nodes", error.problem, error.fix) from None
         return read.toarray() if hasattr(read, "toarray") else read
 
     def model() -> Structure:
         files = (table.matrices,) if isinstance(table.matrices, str) else table.matrices
         inertia = None if table.inertia is None else _inertia(table.inertia)
-        try:
+        named = {"mass": table.mass_matrix, "stiffness": table.stiffness_matrix}
+        places_of = {key: f"{key}_matrix" if file else "matrices" for key, file in named.items()}
+        with naming(places_of | {"paths": "matrices", "path": "matrices"}):
             imported = ImportedModel.read(
                 *files,
                 mass=table.mass_matrix,
@@ -134,11 +132,6 @@ def matrices_of(parts: Collector, where: str, table: schema.MatricesBody) -> Str
                 **{key: getattr(table, key) for key in _AS_THEY_ARE},
                 inertia=inertia,
             )
-        except InputError as error:
-            named = {"mass": table.mass_matrix, "stiffness": table.stiffness_matrix}
-            names = {key: f"{key}_matrix" if file else "matrices" for key, file in named.items()}
-            names |= {"paths": "matrices", "path": "matrices"}
-            raise InputError(names.get(error.where, error.where), error.problem, error.fix) from None
 
     return parts.attempt(where, model)
 
@@ -151,11 +144,8 @@ def standard_input_of(parts: Collector, where: str, table: schema.StandardInputB
     from gbeam.solids.standard_input import read_sid
 
     def model() -> Structure:
-        try:
+        with naming({"path": "standard_input_data"}):
             return read_sid(table.standard_input_data, damping_ratio=table.damping_ratio, points=table.points)
-        except InputError as error:
-            named = "standard_input_data" if error.where == "path" else error.where
-            raise InputError(named, error.problem, error.fix) from None
 
     return parts.attempt(where, model)
 
@@ -172,11 +162,8 @@ def modal_test_of(parts: Collector, where: str, table: schema.ModalTestBody) -> 
         return read if table.damping_ratio is None else replace(read, damping_ratio=table.damping_ratio)
 
     def model() -> Structure:
-        try:
+        with naming({"path": "modal_test"}):
             measured = test()
-        except InputError as error:
-            named = "modal_test" if error.where == "path" else error.where
-            raise InputError(named, error.problem, error.fix) from None
         count = len(np.asarray(measured.nodes))
         masses = np.full(count, table.masses) if np.ndim(table.masses) == 0 else table.masses
         try:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.errors import InputError
+from gbeam.errors import InputError, placing_within
 from gbeam.io.models.arrays import read_state_space
 from gbeam.mechanics.assembly import assemble
 from gbeam.mechanics.structure import Structure
@@ -119,10 +119,8 @@ def _matrices(k: int, law: control.Matrices) -> Any:
     """Matrices of a table or of its file; with a step where they are of discrete time."""
     if law.file is None:
         return tuple(np.array(getattr(law, name), dtype=float, ndmin=2) for name in "abcd")
-    try:
+    with placing_within(f"law[{k}]"):
         stored = read_state_space(law.file)
-    except InputError as error:
-        raise error.within(f"law[{k}]") from None
     return stored if stored.dt else (stored.a, stored.b, stored.c, stored.d)
 
 

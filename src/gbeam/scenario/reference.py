@@ -102,7 +102,8 @@ class _Page:
         for key, schema in table["properties"].items():
             value = self._value(schema.get("additionalProperties", schema), of)
             default = "required" if key in required else _default(schema.get("default"))
-            rows.append(" | ".join([f"| `{key}`", value, default, f"{_escaped(schema['description'])} |"]))
+            words = schema["description"].replace("|", "\\|")
+            rows.append(" | ".join([f"| `{key}`", value, default, f"{words} |"]))
         return "\n".join(rows) + "\n"
 
     def _value(self, schema: dict[str, Any], of: str) -> str:
@@ -193,10 +194,6 @@ def _default(value: Any) -> str:
     if value is None or value in ("", [], {}):
         return "–"
     return f"`{json.dumps(value)}`" if not isinstance(value, dict) else "–"
-
-
-def _escaped(text: str) -> str:
-    return text.replace("|", "\\|")
 
 
 def _anchor(heading: str) -> str:

@@ -12,7 +12,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from gbeam.errors import GbeamError, InputError
+from gbeam.errors import GbeamError, InputError, naming
 from gbeam.guards.kinds import KINDS
 from gbeam.guards.limits import refuse_more
 from gbeam.guards.units import read_quantity
@@ -122,10 +122,8 @@ _NEAR, _FAR = 0.1, 10.0  # times the scenario's value: bounds where none are giv
 
 def named(template: Template, names: Sequence[str], option: str) -> list[PhysicalValue]:
     """Values by their paths; InputError, of an option of the command line, if one is none."""
-    try:
+    with naming(option):
         return physical_values(template, names)
-    except InputError as error:
-        raise InputError(option, error.problem, error.fix) from None
 
 
 def bounds_of(each: PhysicalValue, bounds: Bounds, option: str) -> tuple[float, float]:

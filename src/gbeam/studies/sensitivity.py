@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.analysis.case import Case, SpecimenCase, SystemCase
-from gbeam.errors import GbeamError, InputError
+from gbeam.errors import GbeamError, InputError, naming
 from gbeam.guards.arguments import typed
 from gbeam.progress import Progress
 from gbeam.results.cases import Sensitivity
@@ -154,10 +154,8 @@ def _kinks(slopes: Slopes, values: Sequence[float], units: Sequence[str]) -> Fla
 
 def figure(facts: Facts, name: str, option: str = OPTION) -> Keys:
     """Keys of a figure that has a derivative."""
-    try:
+    with naming(option):
         keys = find(facts, name)
-    except InputError as error:
-        raise InputError(option, error.problem, error.fix) from None
     if isinstance(node_at(facts, keys), (bool, int)) or _NOT_PHYSICAL.search(path_text(own_keys(keys))):
         raise InputError(option, f"{name!r} is a count, a flag or an estimate, without a derivative", "name a figure")
     if not math.isfinite(value_at(facts, keys)):

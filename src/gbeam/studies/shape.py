@@ -108,7 +108,7 @@ def shape_hub_command(
         if joint is not None:
             raise InputError("--joint", f"is {joint!r}, and the scenario is of one beam", "name its hub by --motion")
         name, hub = hub_of(case, motion)
-        structure, turned = case, _at_rest(hub)
+        structure, turned = case, driven(hub, constant(0.0))  # mounted as it is: free, or at rate zero
     where = f"joints.{name}" if isinstance(case, SystemCase) else f"motion.{name}"
     if case.automatic:
         raise InputError("model.modes", "is left out, and a command knows the modes of given shapes", "give it")
@@ -190,11 +190,6 @@ def _grounded(case: SystemCase, name: str | None) -> System:
         fix = "give a flight of constant acceleration, or leave it out"
         raise InputError(f"motion.{chosen}", "shakes or turns the system, which no command undoes", fix)
     return replace(case.system, gravity=tuple((-load[0]).tolist()))
-
-
-def _at_rest(hub: Hub) -> Hub:
-    """The hub without its command, mounted as it is: free, or at rate zero."""
-    return driven(hub, constant(0.0))
 
 
 def _end(hub: Hub, name: str) -> float:

@@ -18,7 +18,7 @@ import numpy as np
 from gbeam.analysis.case import AnyCase, Case, SystemCase
 from gbeam.analysis.system.histories import beams_of
 from gbeam.arrays.tree import altered, arguments_of
-from gbeam.errors import InputError
+from gbeam.errors import InputError, placing_within
 from gbeam.guards.kinds import KINDS, kind_of_argument
 from gbeam.guards.units import read_quantity
 from gbeam.mechanics.assembly import assemble
@@ -306,10 +306,8 @@ def _with(node: Any, kind: str, wanted: Any, path: Path) -> Any:
         return type(node)(every.values())
     if np.ndim(node):
         return np.array([*every.values()])
-    try:
+    with placing_within(path_text(path)):
         return altered(node, **changed)
-    except InputError as error:
-        raise error.within(path_text(path)) from None
 
 
 def _read(current: Any, kind: str, text: str, path: Path) -> Any:

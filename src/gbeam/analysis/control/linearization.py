@@ -24,7 +24,7 @@ from gbeam.analysis.system.linear import Strained, frozen, instabilities, linear
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import each_leaf, record
 from gbeam.constants import BY_STRAINS
-from gbeam.errors import InputError
+from gbeam.errors import InputError, placing_within
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice
 from gbeam.integrate.equations import accelerations
@@ -70,10 +70,8 @@ def surface_gauges(beam: Beam, stations: Iterable[float]) -> list[Gauge]:
     """
     gauges: list[Gauge] = []
     for i, at in enumerate(stations):
-        try:
+        with placing_within(f"stations[{i}]"):
             gauges += [surface_gauge(beam, at, face) for face in ("z", "y")]
-        except InputError as error:
-            raise error.within(f"stations[{i}]") from None
     return gauges
 
 
@@ -263,10 +261,8 @@ def _of_solid(structure: Structure, i: int, gauge: Gauge) -> Floats:
     if structure.recovery is None:
         fix = "leave them out: particles, matrices and modes have no strain"
         raise InputError("gauges", "are given of no beam and no mesh", fix)
-    try:
+    with placing_within(f"gauges[{i}]"):
         return np.asarray(structure.recovery.strain(str(gauge.at), gauge.along))
-    except InputError as error:
-        raise error.within(f"gauges[{i}]") from None
 
 
 @typed

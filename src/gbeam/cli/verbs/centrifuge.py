@@ -15,7 +15,6 @@ from gbeam.cli.options import (
     Input,
     Output,
     ScenarioFile,
-    naming,
     number,
     option,
     read,
@@ -23,7 +22,7 @@ from gbeam.cli.options import (
 from gbeam.cli.outputs import deliver
 from gbeam.cli.process import Watch, command
 from gbeam.cli.publication import publish
-from gbeam.errors import InputError
+from gbeam.errors import InputError, naming
 from gbeam.questions import machine_of
 
 SAMPLE = 0.005  # s, where neither the scenario nor the command line gives one

@@ -19,7 +19,6 @@ from gbeam.cli.options import (
     Output,
     ScenarioFile,
     asked,
-    naming,
     number,
     numbers,
     option,
@@ -28,7 +27,7 @@ from gbeam.cli.options import (
 )
 from gbeam.cli.outputs import deliver
 from gbeam.cli.process import Watch
-from gbeam.errors import InputError
+from gbeam.errors import InputError, naming
 from gbeam.questions import QUESTIONS, Needs, Question
 
 if TYPE_CHECKING:

@@ -217,11 +217,7 @@ def _numbers(samples: Sequence[str] | NDArray[Any]) -> Floats:
     try:
         return np.asarray(samples, dtype=np.float64)
     except ValueError:
-        return np.array([_number(cell) for cell in samples])
-
-
-def _number(cell: str) -> float:
-    return float(cell) if _is_number(cell) else math.nan
+        return np.array([float(cell) if _is_number(cell) else math.nan for cell in samples])
 
 
 def _is_number(cell: str) -> bool:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.constants import STANDARD_GRAVITY
-from gbeam.errors import InputError
+from gbeam.errors import InputError, placing_within
 from gbeam.guards.checks import positive
 from gbeam.guards.limits import SAMPLES, refuse_more
 from gbeam.numerics.samples import low_pass, true_runs
@@ -115,10 +115,8 @@ def filtered(time: Floats, values: Floats, cutoff: float | None, resample: float
         if np.abs(np.diff(time) - step).max() > UNEVEN * step:
             even = np.linspace(time[0], time[-1], len(time))
             time, values = even, _splined(time, values, even)
-        try:
+        with placing_within("record"):
             values = low_pass(values, step, positive("cutoff", cutoff, "Hz"))
-        except InputError as error:
-            raise error.within("record") from None
     if resample is None:
         return time, values
     rate = positive("record.resample", resample, "Hz")

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import as_array, is_traced, namespace
 from gbeam.arrays.tree import assign, record
-from gbeam.errors import InputError
+from gbeam.errors import InputError, naming
 from gbeam.guards.arguments import typed
 from gbeam.motion.profiles.piecewise import PiecewiseLinear, constant
 from gbeam.motion.profiles.profile import Convolved, Profile, beside
@@ -154,10 +154,8 @@ def as_profile(where: str, value: Any, components: int = 1) -> Profile:
     if isinstance(value, Profile):
         profile = value
     else:
-        try:
+        with naming(where):
             profile = constant(value)
-        except InputError as error:
-            raise InputError(where, error.problem, error.fix) from None
     shape = np.shape(profile(0.0))
     if shape != (() if components == 1 else (components,)):
         what = "a scalar" if shape == () else "a vector" if shape == (3,) else f"an array of shape {shape}"

@@ -51,7 +51,6 @@ class LoadPeak(Part):
 
     @declared("", "why it is not reproduced", name=None, key="reason")
     def reason_or_none(self) -> str | None:
-        """The reason; None where there is none."""
         return self.reason or None
 
     @declared("", "reproduced over the flight's", name=None)

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
-from gbeam.errors import InputError
+from gbeam.errors import InputError, placing_within
 from gbeam.results.declared import declared, quantity
 
 if TYPE_CHECKING:
@@ -78,7 +78,6 @@ class Judged:
     @declared("", "whether every limit is kept: true, false, or empty where there is none", role="fact", key=None,
               name="accepted")  # fmt: skip
     def acceptance(self) -> str:
-        """true where every limit is kept, false where one is not, empty where there is none."""
         return {None: "", True: "true", False: "false"}[self.accepted]
 
     @declared("", "whether every limit that can be judged is kept", role="fact", name=None)
@@ -251,10 +250,8 @@ def checked_limits(accept: Mapping[str, object] | None) -> dict[str, Limit]:
     for name, limit in ({} if accept is None else accept).items():
         if name not in RULES:
             raise InputError("accept", f"has {name!r}", f"choose from {', '.join(RULES)}")
-        try:
+        with placing_within("accept"):
             limits[name] = RULES[name].checked(limit)
-        except InputError as error:
-            raise error.within("accept") from None
     return limits
 
 
