@@ -17,7 +17,7 @@ Newton's method proper.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any, cast
 
 import numpy as np
@@ -130,8 +130,9 @@ class _Window:
             self._factor()
             size, moved, count, since, least = self.corrections
             fresh, before, far, alone = since == 0, size.copy(), not moved[-1] <= MOVED, len(size) == 1
-            rounding = self._rounding(self.maps[0])
-            size[:] = self._correct(*self.maps)
+            stages = self._stages()
+            rounding = self._rounding(stages, self.maps[0]) if count.any() else 0 * size  # which a first one hides
+            size[:] = self._correct(stages, *self.maps)
             count += 1
             if alone:
                 self._shorten(self.maps[0])
@@ -196,7 +197,8 @@ class _Window:
             some = self.steps[self.ahead.start : self.ahead.stop]
             self.driven = self.drive(np.stack([some.times(offset) for offset in self.scheme.offsets], axis=1).ravel())
         length, begin = length[self.first : last], self.first - self.ahead.start
-        self.t: Tableau = self.scheme.tableau(length[:1] if (length == length[0]).all() else length)
+        t: Tableau = self.scheme.tableau(length[:1] if (length == length[0]).all() else length)
+        self.t, self.onto = t, np.block([[t.w_q, t.c_q], [t.w_v, t.c_v]])
         at = slice(stages * begin, stages * (begin + len(length)))
         self.inputs = self.free = each_leaf(lambda leaf: leaf[at], self.driven)
         if self.sampling is not None:
@@ -270,10 +272,10 @@ class _Window:
 
     def _stages(self) -> tuple[Array, Array, Array]:
         """q, q̇, q̈ (t s, n) at the stages."""
-        t, z, x = self.t, self.z[:-1], self.x
-        q, qd = t.w_q @ z + t.c_q @ x, t.w_v @ z + t.c_v @ x
-        n = x.shape[-1]
-        return q.reshape(-1, n), qd.reshape(-1, n), x.reshape(-1, n)
+        count, stages, n = self.x.shape
+        both = self.onto @ np.concatenate([self.z[:-1], self.x], axis=1)
+        q, qd = both.reshape(count, 2, stages, n).swapaxes(0, 1).reshape(2, -1, n)
+        return q, qd, self.x.reshape(-1, n)
 
     def _differentiate(self) -> None:
         """Find K, C and M at some stages from the first old one on, and between these; at the very first alone."""
@@ -325,10 +327,10 @@ class _Window:
         maps = inverse, answer, step - through.reshape(-1, states * n, states * n)
         self.maps = maps if not done else tuple(map(np.concatenate, zip(self.maps, maps, strict=True)))
 
-    def _rounding(self, inverse: Array) -> Array:
-        """Accelerations (t,) left of forces that cancel, which no correction takes away."""
+    def _rounding(self, states: Iterable[Array], inverse: Array) -> Array:
+        """Accelerations (t,) left of forces that cancel at stages, which no correction takes away."""
         _, stages, n = self.x.shape
-        sizes = (np.abs(each).reshape(-1, stages, n, 1) for each in self._stages())
+        sizes = (np.abs(each).reshape(-1, stages, n, 1) for each in states)
         forces = sum(np.abs(by) @ each for by, each in zip(self.slope, sizes, strict=True))
         rounding = _largest(CANCELLED * _products(np.abs(inverse), forces.reshape(-1, stages * n)))
         if self.most == np.inf:
@@ -342,10 +344,10 @@ class _Window:
         maps = tuple(each[some] for each in self.maps)
         return maps if len(maps[0]) > 1 else None
 
-    def _correct(self, inverse: Array, answer: Array, step: Array) -> Array:
-        """Correct every step; returns the sizes of the corrections, (t,)."""
+    def _correct(self, states: Iterable[Array], inverse: Array, answer: Array, step: Array) -> Array:
+        """Correct every step by its stages; returns the sizes of the corrections, (t,)."""
         t, count = self.t, len(self.x)
-        alone = _products(inverse, self.residual(*self._stages(), self.inputs).reshape(count, -1))
+        alone = _products(inverse, self.residual(*states, self.inputs).reshape(count, -1))
         defect = t.g @ self.z[:-1] + t.d @ (self.x - alone.reshape(self.x.shape)) - self.z[1:]
         moved = self._moved(step, defect.reshape(count, -1))
         change = (alone + _products(answer, moved[:-1])).reshape(self.x.shape)
