@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import meshio
@@ -83,6 +84,11 @@ def test_a_solid_alone_is_what_python_makes_of_it(folder: Path) -> None:
     assert response.solid is not None and response.loads is not None
     alone = model.stress(gb.simulate(model.structure, case.motions["turn"], case.response, name="turn"))
     assert response.solid.worst.von_mises == alone.worst.von_mises
+    # Its page says, not folded away, what of its mesh is known.
+    gb.study(case).report(folder / "page.html")
+    page = re.sub("<details.*?</details>", "", (folder / "page.html").read_text(encoding="utf-8"), flags=re.DOTALL)
+    assert '<p class="faint">Turn: the mesh is not judged</p>' in page and "file of bodies.arm.mesh" in page
+    assert response.solid.worst.spread == 0 and "elements differ by" in page  # at a corner of one element
     assert response.solid.nearest_yield is not None and response.solid.nearest_yield.margin == pytest.approx(
         250e6 / response.solid.worst.von_mises - 1
     )

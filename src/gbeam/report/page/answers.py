@@ -103,7 +103,9 @@ def _errors(motions: Facts) -> str:
                 rows.append([name, quantity, *map(percent, parts)])
     head, caption = ("motion", "of", *ERRORS.values()), "Estimated errors, of the largest size"
     shown = table(head, rows, caption, words=(0, 1), optional=range(3, len(head)))
-    return shown or paragraph("no error estimate", "faint")
+    notes = {name: each["errors"].get("note") for name, each in motions.items()}
+    said = "".join(paragraph(f"{name}: {note}", "faint") for name, note in notes.items() if note)
+    return (shown or paragraph("no error estimate", "faint")) + said
 
 
 def modes_body(facts: Facts, viewer: str, drawn: str) -> str:
@@ -244,9 +246,10 @@ def stress_table(solids: Facts, of: str = "motion") -> str:
         worst, near = solid["worst"], solid.get("nearest_yield")
         place = [1e3 * worst["place"][axis] for axis in "xyz"]
         margin = np.nan if near is None else near["margin"]
-        return [name, 1e-6 * worst["von_mises"], *place, Cell(worst["material"] or "–"), margin]
+        apart = percent(worst["spread"]) if worst["spread"] else "–"  # of one element
+        return [name, 1e-6 * worst["von_mises"], *place, Cell(worst["material"] or "–"), apart, margin]
 
-    head = (of, "von Mises, MPa", "x, mm", "y, mm", "z, mm", "material", "least margin on yield")
+    head = (of, "von Mises, MPa", "x, mm", "y, mm", "z, mm", "material", "elements differ by", "least margin on yield")
     return table(head, (row(*each) for each in solids.items()), "Largest stress, and where it is", words=(0, 5))
 
 

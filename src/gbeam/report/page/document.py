@@ -233,7 +233,7 @@ def _origin(origin: Mapping[str, Any]) -> str:
     rows = [
         ("date", _date(origin["date"]) if origin.get("date") else ""),
         ("command", origin["command"]),
-        *((f"record of {each['motion']}", f"{each['file']}, SHA-256 {each['sha256']}") for each in origin["records"]),
+        *((f"file of {each['motion']}", f"{each['file']}, SHA-256 {each['sha256']}") for each in origin["records"]),
         ("SHA-256 of what it says", origin["scenario_sha256"]),
         ("gbeam", origin["gbeam"]),
         ("Python", origin["python"]),
