@@ -15,7 +15,7 @@ from scipy.interpolate import BSpline
 from scipy.optimize import brentq
 
 import gbeam as gb
-from gbeam.analysis.accuracy.estimate import BEYOND
+from gbeam.analysis.accuracy.estimate import cure_of_theory
 from gbeam.analysis.steady.loss import _lost
 from gbeam.analysis.steady.operating_point import REST, OperatingPoint, on_base
 from gbeam.mechanics.theory import theory_of
@@ -95,7 +95,7 @@ def test_a_deflection_states_shear(kind: str) -> None:
     assert rest.errors.displacement.beam_theory == pytest.approx(expected, rel=2e-3)
     assert rest.errors.loads.beam_theory < 1e-9 and rest.errors.stress.beam_theory < 1e-9
     (warning,) = rest.warnings
-    assert warning.endswith("mostly from the theory of slender beams (shear); " + BEYOND)
+    assert warning.endswith("mostly from the theory of slender beams (shear); " + cure_of_theory("shear"))
 
 
 @pytest.mark.parametrize("bent", [0.3, 3.0])
@@ -201,6 +201,7 @@ def test_a_strip_states_what_its_clamp_does(width: float) -> None:
     gain = plate_gain(width)
     assert rest.errors.displacement.beam_theory == pytest.approx(gain, rel=0.1)
     assert rest.errors.theory == "plate action"
+    assert ("plate = true" in " ".join(rest.warnings)) == (gain > 0.01)
 
 
 def test_a_strip_bent_far_is_a_plate() -> None:

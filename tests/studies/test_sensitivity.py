@@ -180,6 +180,7 @@ def test_positions_at_the_tip_of_a_body_move_with_its_length(made: bool) -> None
         ("flight.tip.z.max", E, [], "did you mean"),
         ("flight.tip.z.max_abs", "beam.lenght", [], "did you mean 'beam.length'"),
         ("flight.tip.z.max_abs", "model.modes.z", [], "is no physical value"),
+        ("flight.tip.z.max_abs", "beam.length=1 m:2 m", [], "give beam.length alone; a range is one of the bounds"),
         ("flight.tip.z.max_abs", "response.duration", [], "a setting of the computation"),
     ],
 )

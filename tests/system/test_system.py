@@ -46,12 +46,27 @@ TWO = {"rod": ROD, "bar": ROD}
             "joints.b.on",
             "no body 'beam'",
         ),
+        ({"rod": ROD, "bar": ROD}, {"a": HINGE, "b": gb.Joint("fixed", "bar", "rod")}, "joints.b.on", "no such point"),
     ],
 )
 def test_trees_that_are_none_are_refused(bodies: Any, joints: Any, where: str, problem: str) -> None:
     with pytest.raises(gb.InputError) as caught:
         gb.System(bodies, joints)
     assert caught.value.where == where and problem in caught.value.problem and caught.value.fix
+
+
+@pytest.mark.parametrize(
+    ("on", "fix"),
+    [
+        ("rod.ends", "did you mean 'rod.end'?"),
+        ("rood.end", "did you mean 'rod.end'?"),
+        ("sky", "choose one of rod.end, rod.root"),
+    ],
+)
+def test_a_point_that_is_not_there_names_those_that_are(on: str, fix: str) -> None:
+    with pytest.raises(gb.InputError) as caught:
+        gb.System({"rod": ROD}, {"a": HINGE}, {"push": gb.PointForce(on)})
+    assert (caught.value.where, caught.value.fix) == ("forces.push.on", fix)
 
 
 @pytest.mark.parametrize(
@@ -64,6 +79,8 @@ def test_trees_that_are_none_are_refused(bodies: Any, joints: Any, where: str, p
         ({"stiffness": -1.0}, "stiffness.angle"),
         ({"stops": (0.2, 0.1)}, "stops.angle"),
         ({"stops": (0.1, 0.2)}, "stop_stiffness"),
+        ({"stop_stiffness": 3.0}, "stop_stiffness.angle"),
+        ({"ease": 0.1}, "ease.angle"),
         ({"rate": 1.0, "effort": 2.0}, "effort.angle"),
         ({"kind": "fixed", "axes": None, "stiffness": 20.0}, "stiffness"),
         ({"kind": "free", "axes": None, "initial": 0.1}, "initial"),

@@ -71,7 +71,10 @@ def physical_values(scenario: Template, names: Sequence[str] = ()) -> list[Physi
             raise InputError("--with", f"names {name} twice", "name each value once")
         if name not in every:
             possible = [path for path in every if _why_fixed(path) is None]
-            fix = advise(name, possible, listed="the scenario has")
+            path, equals, _ = name.partition("=")
+            fix = advise(path, possible, listed="the scenario has")
+            if equals and path in possible:
+                fix = f"give {path} alone; a range is one of the bounds"
             raise InputError("--with", f"{name!r} is no physical value that the scenario gives", fix)
         if (why := _why_fixed(name)) is not None:
             raise InputError("--with", f"{name} {why}", "leave it out, or compare runs by gbeam sweep")

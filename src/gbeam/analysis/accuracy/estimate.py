@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gbeam.analysis.accuracy.beam_theory import Lacking, largest
+from gbeam.analysis.accuracy.beam_theory import WORDS, Lacking, largest
 from gbeam.analysis.accuracy.correction import Quantity, Reading
 from gbeam.mechanics.models import TORSION
 from gbeam.mechanics.structure import Structure
@@ -16,7 +16,6 @@ from gbeam.results.errors import ErrorEstimate
 
 BEAM = "beam"  # name of a beam that is alone
 LIMIT = 0.01  # an error of a steady state above is warned of
-BEYOND = 'kind = "exact" with modes.twist, shear_y, shear_z has all but plate action'
 
 
 def percent(share: float) -> str:
@@ -24,10 +23,17 @@ def percent(share: float) -> str:
     return f"{100 * share:{'.0f' if share > 0.1 else '.2g'}} %"
 
 
+def cure_of_theory(theory: str) -> str:
+    """The cure of what the theory of slender beams leaves out, by its causes in words."""
+    if theory.partition(";")[0] == WORDS["plate"]:
+        return "no model of a beam has it: plate = true of its section says how much it is at most, a mesh how much"
+    return 'kind = "exact" with modes.twist, shear_y, shear_z has all but plate action'
+
+
 def cause_and_cure(shapes: float, model: float, beam_theory: float, theory: str) -> tuple[str, str]:
     """The largest of the errors from too few shapes, of the model and of the beam theory, and what helps."""
     if beam_theory > max(shapes, model):
-        return f"the theory of slender beams ({theory})", BEYOND
+        return f"the theory of slender beams ({theory})", cure_of_theory(theory)
     if math.isnan(model) and not math.isnan(shapes):  # of a solid, whose model is not judged
         return FEW_MODES
     if not shapes >= model:

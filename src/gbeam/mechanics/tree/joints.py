@@ -231,6 +231,12 @@ class Joint(Value):
             low[k], high[k] = ends
             if not (is_jax(values["stop_stiffness"]) or values["stop_stiffness"][k] > 0):
                 raise InputError("stop_stiffness", "is missing", f"a stop of {coordinate} needs one")
+        for name, needed in (("ease", "stiffness"), ("stop_stiffness", "stops")):
+            to = self._named(needed, getattr(self, needed), self._held)
+            for coordinate in self._named(name, getattr(self, name), self._held):
+                if coordinate not in to:
+                    fix = f"give {needed} of {coordinate} too, or leave it out"
+                    raise InputError(f"{name}.{coordinate}", f"does nothing without {needed}", fix)
         coupling = self._coupling(values["stiffness"])
         return Holder(low=low, high=high, stop=values.pop("stop_stiffness"), coupling=coupling, **values)
 

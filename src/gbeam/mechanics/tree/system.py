@@ -36,6 +36,7 @@ from gbeam.mechanics.tree.steps import about
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.profiles.combine import as_profile
 from gbeam.motion.protocol import Motion
+from gbeam.printable import advise
 
 Array = Any
 Floats = NDArray[np.float64]
@@ -308,12 +309,12 @@ class System(Value):
             If there is no such point.
         """
         body, _, point = name.partition(".")
-        if body not in self.bodies:
-            fix = f'name a body and one of its points, such as "{next(iter(self.bodies))}.{ROOT}", or "{GROUND}"'
-            raise InputError(where, f"is {name!r}, and there is no body {body!r}", fix)
-        names = self.points_of(body)
+        known = body in self.bodies
+        names = self.points_of(body) if known else ()
         if point not in names:
-            raise InputError(where, f"is {name!r}, and {body} has no such point", f"choose from {', '.join(names)}")
+            problem = f"{body} has no such point" if known else f"there is no body {body!r}"
+            points = [f"{each}.{end}" for each in ([body] if known else self.bodies) for end in self.points_of(each)]
+            raise InputError(where, f"is {name!r}, and {problem}", advise(name, points))
         return body, names.index(point)
 
     @property
