@@ -79,6 +79,11 @@ class _InEnvironments(Value):
             raise InputError("response", "duration is missing", 'no record gives one: add duration = "16 s"')
         return self.response
 
+    @property
+    def extent(self) -> dict[str, Any]:
+        """Argument of :func:`gbeam.plan` that says where the specimen is."""
+        return extent_of(self.beam if isinstance(self, Case) else self.assemble())  # type: ignore[attr-defined]
+
     def require_motion(self) -> None:
         """Raise InputError where nothing moves the base of one structure."""
         if not self.motions and not isinstance(self, SystemCase):
@@ -166,11 +171,6 @@ class Case(_InEnvironments):
     def one_beam(self, where: str, what: str) -> Case:
         return self
 
-    @property
-    def extent(self) -> dict[str, Any]:
-        """Argument of :func:`gbeam.plan` that says where the specimen is."""
-        return {"beam": self.beam}
-
 
 @typed
 @dataclass(frozen=True, eq=False, repr=False)
@@ -257,11 +257,6 @@ class SystemCase(_InEnvironments):
         """
         return self.system
 
-    @property
-    def extent(self) -> dict[str, Any]:
-        """Argument of :func:`gbeam.plan` that says where the specimen is: its points, undeformed."""
-        return {"envelope": self.system.undeformed}
-
 
 @typed
 @dataclass(frozen=True, eq=False, repr=False)
@@ -344,14 +339,19 @@ class SpecimenCase(_InEnvironments):
     def one_beam(self, where: str, what: str) -> Case:
         return super().one_beam(f"{where}.{self.name}", what)
 
-    @property
-    def extent(self) -> dict[str, Any]:
-        """Argument of :func:`gbeam.plan` that says where the specimen is; of bare matrices, which do not, none."""
-        recovery = self.structure.recovery
-        return {} if recovery is None else {"envelope": recovery.envelope}
-
 
 AnyCase = Case | SpecimenCase | SystemCase
+
+
+def extent_of(specimen: Beam | Structure | System) -> dict[str, Any]:
+    """Argument of :func:`gbeam.plan` that says where a specimen is, undeformed; none of bare matrices, which do not."""
+    if isinstance(specimen, Beam):
+        return {"beam": specimen}
+    if isinstance(specimen, System):
+        return {"envelope": specimen.undeformed}
+    return {} if specimen.recovery is None else {"envelope": specimen.recovery.envelope}
+
+
 MODES = 6  # natural frequencies at most
 
 

@@ -15,7 +15,7 @@ from typing import Any
 from gbeam.arrays.namespace import as_array, is_jax
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
-from gbeam.printable import shortened
+from gbeam.printable import closest, shortened
 
 
 def positive(where: str, value: Any, unit: str, *, zero: bool = False) -> Any:
@@ -85,10 +85,8 @@ def choice(where: str, name: str, choices: Iterable[str]) -> None:
     """Raise InputError unless the name is one of the choices."""
     names = tuple(choices)
     if name not in names:
-        import difflib
-
-        close = difflib.get_close_matches(str(name), names, n=1)
-        guess = f"did you mean {close[0]!r}? " if close else ""
+        near = closest(str(name), names)
+        guess = f"did you mean {near!r}? " if near else ""
         raise InputError(where, f"is {name!r}", f"{guess}choose one of {', '.join(names)}")
 
 

@@ -129,25 +129,22 @@ def build_machines(scenario: schema.Environments) -> dict[str, Centrifuge]:
 
 def build_extent(scenario: schema.Environments) -> dict[str, Any]:
     """Place of the specimen of a scenario, as an argument of :func:`gbeam.plan`; none where it has none."""
+    from gbeam.analysis.case import extent_of
+
     if type(scenario) is schema.Environments:
         return {}
     parts = Collector()
     if isinstance(scenario, schema.Scenario):
-        extent: dict[str, Any] = {"beam": beam_of(parts, "beam", scenario.beam)}
+        structure: Any = beam_of(parts, "beam", scenario.beam)
     else:
         from gbeam.scenario.build_system import specimen_of, system_of
         from gbeam.scenario.schema.system import SpecimenScenario
 
-        if isinstance(scenario, SpecimenScenario):
-            structure = specimen_of(parts, scenario)
-            recovery = None if structure is None else structure.recovery
-            extent = {} if recovery is None else {"envelope": recovery.envelope}
-        else:
-            system = system_of(parts, scenario)  # type: ignore[arg-type]
-            extent = {} if system is None else {"envelope": system.undeformed}
+        build_structure: Any = specimen_of if isinstance(scenario, SpecimenScenario) else system_of
+        structure = build_structure(parts, scenario)
     if parts.errors:
         raise placed(scenario, parts.errors)
-    return extent
+    return extent_of(structure)
 
 
 def _points(structure: Mapping[str, Any]) -> tuple[str, ...]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 import re
 from collections.abc import Callable, Iterator, Sequence
@@ -16,6 +15,7 @@ from numpy.typing import NDArray
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import COLUMNS, LARGEST
+from gbeam.printable import closest
 
 CLOCK = (
     r"(?:(?P<date>\d{4}-\d\d-\d\d)(?:T| +)|(?P<day>\d{1,3}):)?"
@@ -121,8 +121,8 @@ class Table:
             raise InputError(f"record.{axis}", f"names {name!r}, given {len(columns)} times", "name each column once")
         names = [one.name for one in self.columns]
         every = [*names, *(alias for one in self.columns for alias in one.aliases)]
-        close = difflib.get_close_matches(name, every, n=1)
-        guess = f"did you mean {close[0]!r}? " if close else ""
+        near = closest(name, every)
+        guess = f"did you mean {near!r}? " if near else ""
         more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
         listed = ", ".join(names[:_LISTED]) + more
         raise InputError(f"record.{axis}", f"names no column {name!r}", f"{guess}the columns are {listed}")

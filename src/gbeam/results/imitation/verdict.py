@@ -33,46 +33,35 @@ def verdict(
     loaded beyond.
     """
     within = accounting.tolerance if within is None else within
-    part = [] if whole is None else [part_words(accounting.span, whole)]
-    return "; ".join([*part, *_parts(flight, machine, peaks, accounting, within, margins, point)])
-
-
-def _parts(
-    flight: str,
-    machine: str,
-    peaks: Mapping[str, PeakPair],
-    accounting: Accounting,
-    within: float,
-    margins: tuple[float, float] | None,
-    point: str,
-) -> Iterator[str]:
+    said = [] if whole is None else [part_words(accounting.span, whole)]
     main = accounting.main
     if main is not None and main.reason:
-        yield (
+        said.append(
             f"{flight}'s load peak of {in_g(main.load)} at {main.time:.2f} s is not reproduced: {machine} makes "
             f"{in_g(main.reproduced)} ({main.reason})"
         )
     largest = peaks.get("largest_load", PeakPair())
     if math.isfinite(largest.machine):
-        yield _largest(flight, machine, largest)
+        said.append(_largest(flight, machine, largest))
     if "tip" in peaks:
-        yield _tip(flight, machine, peaks["tip"], within, point)
+        said.append(_tip(flight, machine, peaks["tip"], within, point))
     moment = peaks.get("root_moment", PeakPair())
     if math.isfinite(moment.ratio):
-        yield f"root moment {change(moment.ratio)}"
+        said.append(f"root moment {change(moment.ratio)}")
     if margins is not None:
         beyond = [name for name, margin in zip((flight, machine), margins, strict=True) if margin < 0]
         above = f", ABOVE YIELD in {' and '.join(beyond)}" if beyond else ""
-        yield f"margin on yield {margins[0]:.3g} in {flight}, {margins[1]:.3g} on {machine}{above}"
-    yield _load_peaks(accounting)
-    yield from _missed(accounting, main)
-    yield _time(accounting)
+        said.append(f"margin on yield {margins[0]:.3g} in {flight}, {margins[1]:.3g} on {machine}{above}")
+    said.append(_load_peaks(accounting))
+    said += _missed(accounting, main)
+    said.append(_time(accounting))
     if accounting.preloads:
         worst = max(accounting.preloads, key=lambda each: each.load - max(each.flight, accounting.idle))
-        yield (
+        said.append(
             f"preload: {machine} makes {in_g(worst.load)} at {worst.time:.2f} s, where {flight} has "
             f"{in_g(worst.flight)}{f' and idle is {in_g(accounting.idle)}' if accounting.idle else ''}"
         )
+    return "; ".join(said)
 
 
 def _largest(flight: str, machine: str, load: PeakPair) -> str:
