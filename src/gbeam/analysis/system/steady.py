@@ -263,17 +263,19 @@ def turning_of(system: System, motion: Motion | None, turning: str | None) -> st
         for each in joint.coordinates
         if each.startswith("angle")
     ]
+    if turning is None and isinstance(motion, Hub):
+        return ""
+    if not angles:
+        fix = "hold a body by a revolute joint, whose rate is raised, or let the ground move as a hub"
+        raise InputError("joints", "have no angle that turns", fix)
     if turning is not None:
         if turning not in angles:
-            fix = f"choose from {', '.join(angles)}" if angles else "hold a body by a revolute joint that turns"
+            fix = f"choose from {', '.join(angles)}"
             raise InputError("turning", f"is {turning!r}, which is no angle of a joint", fix)
         return turning
-    if isinstance(motion, Hub):
-        return ""
     choices = [each for each in angles if system.coordinates.index(each) in system.tree.fixed] or angles
     if len(choices) != 1:
-        listed = ", ".join(choices) or "a revolute joint's, which it has not"
-        raise InputError("turning", "is missing", f"say which angle turns: {listed}")
+        raise InputError("turning", "is missing", f"say which angle turns: {', '.join(choices)}")
     return choices[0]
 
 
