@@ -101,8 +101,14 @@ def test_a_model_of_all_modes_lacks_none() -> None:
 
 
 def test_damping_by_coordinates_reaches_the_modes_besides(bracket: dict[int, gb.Structure]) -> None:
-    """A list of ratios is of the model's coordinates: the last one is that of all modes that it lacks."""
+    """A list of ratios is of the model's modes, or of all its coordinates: the last one is that of the rest."""
     solid = bracket[2].recovery.mesh  # type: ignore[union-attr]
+    tested = solid.reduced(modes=2, damping_ratio=[0.01, 0.03]).structure
+    vibration = gb.modes(tested, errors=False)
+    np.testing.assert_allclose(vibration.damping_ratio, [0.01, 0.03], rtol=1e-6)
+    assert tested == solid.reduced(modes=2, damping_ratio=[0.01] + [0.03] * 13).structure
+    with pytest.raises(gb.InputError, match="damping_ratio lists 3 values for the 14"):
+        solid.reduced(modes=2, damping_ratio=[0.01] * 3)
     listed = solid.reduced(modes=2, damping_ratio=[0.02] * 14).structure
     assert listed.size == 14 and listed.richer is not None and listed.richer.size > 14
     even = bracket[2].richer

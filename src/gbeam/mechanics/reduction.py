@@ -31,19 +31,29 @@ FAINT = 1e-14  # of the largest: a product of shapes that is rounding
 @dataclass(frozen=True, eq=False)
 class Reduced:
     """Shapes (u, n) of unit modal mass, their stiffness (n, n), and static displacements (u, m) under the loads; the
-    first `size` are a model's coordinates, ascending in frequency, the others what some more modes have beside them.
+    first `size` are a model's coordinates, `modes` and others, ascending in frequency, the rest what some more modes
+    have beside them.
     """
 
     shapes: Floats
     stiffness: Floats
     static: Floats
+    modes: int
     size: int
 
     def structure(self, build: Callable[[int, Any], Structure], damping_ratio: Any) -> Structure:
-        """The structure built in the model's coordinates, with that in all of them, which damp as the model's last."""
-        ratio, count = damping_ratio, len(self.stiffness)
-        every = ratio if np.ndim(ratio) == 0 else [*ratio, *[ratio[-1]] * (count - self.size)]
-        return replace(build(self.size, ratio), richer=build(count, every))
+        """The structure built in the model's coordinates, with that in all of them, damped as the last one given."""
+
+        def damped(n: int) -> Any:
+            known = np.ndim(damping_ratio) and len(damping_ratio)
+            return (
+                [*damping_ratio, *[damping_ratio[-1]] * (n - known)]
+                if known in (self.modes, self.size)
+                else damping_ratio
+            )
+
+        few, every = self.size, len(self.stiffness)
+        return replace(build(few, damped(few)), richer=build(every, damped(every)))
 
 
 def linear_fields(points: Floats) -> Floats:
@@ -92,7 +102,7 @@ def reduce(stiffness: Any, mass: Any, loads: Floats, modes: int) -> Reduced:
         shapes = np.concatenate([shapes, beyond], axis=1)
     joint = shapes.T @ (stiffness @ shapes)
     joint[:size, :size] = np.diag(1 / inverse)
-    return Reduced(shapes, joint, static, size)
+    return Reduced(shapes, joint, static, modes, size)
 
 
 def _dense(stiffness: Floats, mass: Floats) -> tuple[Floats, Floats]:

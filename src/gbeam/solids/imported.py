@@ -199,7 +199,7 @@ class ImportedModel(Value):
         modes : int
             Number of modes; the static answers come on top, as in a solid's model.
         damping_ratio : float or sequence
-            Of critical damping, of every coordinate, or one for each.
+            Of critical damping, of all coordinates, or one for each mode, of which static shapes have the last one's.
         clamp : sequence of int
             Numbers of the nodes that follow the base; none where the matrices are those of the free nodes alone.
         points : dict of int, optional

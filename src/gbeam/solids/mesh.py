@@ -283,7 +283,7 @@ class SolidMesh(Value):
             the base deforms the solid as all of its elements would, and six for each interface, so that forces and
             moments there do (attachment modes: a reduction by Craig and Bampton about the clamp).
         damping_ratio : float or sequence
-            Of critical damping, of every coordinate, or one for each.
+            Of critical damping, of all coordinates, or one for each mode, of which static shapes have the last one's.
         kind : str
             Name of the model in results.
         coarser : SolidModel, optional

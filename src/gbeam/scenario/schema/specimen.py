@@ -142,7 +142,9 @@ class Reduced(Table):
     """Keys of what is reduced to modes."""
 
     modes: _Count = Field(default=10, description="number of modes; up to twelve static shapes come on top")
-    damping_ratio: Ratios = Field(description="of critical damping, of every coordinate, or a list with one for each")
+    damping_ratio: Ratios = Field(
+        description="of critical damping, of all, or a list with one for each mode; static shapes have the last one's"
+    )
 
 
 class SolidBody(Reduced):
