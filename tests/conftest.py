@@ -15,7 +15,7 @@ from types import SimpleNamespace
 from typing import IO, Any
 
 # As the command line does, and before NumPy starts its threads: a beam's matrices are small, and the threads of two
-# processes would wait for one another, for more than half of all processor time.
+# processes would wait for one another.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import hypothesis
