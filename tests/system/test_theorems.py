@@ -27,7 +27,7 @@ def _lagrange(system: gb.System, y: np.ndarray, yd: np.ndarray, ydd: np.ndarray)
     inputs = system.inputs(np.asarray(0.0))
 
     def energies(q: np.ndarray, qd: np.ndarray) -> np.ndarray:
-        return system.tree.invariants(q, qd, inputs, GRAVITY)[2]
+        return system.tree.invariants(system.tree.motion(q, qd, 0 * qd, inputs), GRAVITY)[2]
 
     n, eye = len(y), np.eye(len(y))
     at, rate = y + 1j * STEP * yd, yd + 1j * STEP * ydd
@@ -107,7 +107,8 @@ def test_free_tree_keeps_momentum() -> None:
     rest = system.tree(y, yd, 0 * y, inputs)
     mass = (system.tree(np.tile(y, (len(y), 1)), np.tile(yd, (len(y), 1)), np.eye(len(y)), inputs) - rest).T
     ydd = np.linalg.solve(mass, -rest)
-    moving = system.tree.invariants(y + 1j * STEP * yd, yd + 1j * STEP * ydd, inputs, np.zeros(3))
+    state = system.tree.motion(y + 1j * STEP * yd, yd + 1j * STEP * ydd, 0 * yd, inputs)
+    moving = system.tree.invariants(state, np.zeros(3))
     large = np.abs(ydd).max()
     for rate, size in zip(moving, (large, large, np.abs(moving[2].imag).max() / STEP), strict=True):
         np.testing.assert_allclose(rate.imag.sum() / STEP, 0.0, atol=1e-10 * size)

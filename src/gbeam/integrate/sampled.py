@@ -69,7 +69,7 @@ class Sampling:
             number = np.floor((begun - start) / period).astype(int)
             self.taken.append(np.where(np.diff(number, prepend=-1) > 0, number, -1))
             acting = np.floor((begun - start - delay) / period)
-            self.since.append(np.searchsorted(acting, np.arange(number[-1] + 2)))
+            self.since.append(np.searchsorted(acting, np.arange(number[-1] + 2)).tolist())
         self.started = [controllers.started(c) for c in range(len(self.taken))]
         self.samples: list[list[tuple[Array, Array, Array, Any]]] = [[] for _ in self.taken]
 

@@ -64,7 +64,7 @@ def histories(
     }
     if inertial:
         gravity = np.zeros(3) if system.gravity is None else as_array(system.gravity)
-        momentum, spin, energy = tree.invariants(y, yd, inputs, gravity)
+        momentum, spin, energy = tree.invariants(state, gravity)
         out |= {"momentum": momentum, "angular_momentum": spin, "energy": energy}
     return out, {name: carried(system, state, name, acting) for name in beams_of(system)}
 

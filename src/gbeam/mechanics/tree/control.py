@@ -183,7 +183,7 @@ class Feedback(Value):
 
     def _finite(self, t: float, efforts: Floats) -> Floats:
         """Efforts, unless the law has left all bounds."""
-        if not all(map(math.isfinite, efforts)):
+        if not all(map(math.isfinite, efforts.tolist())):
             problem = f"the law of the controller of {', '.join(self.drive)} gives {efforts} at {t:.6g} s"
             fix = "limit it, or look" if self.limit is None else "look"
             raise ComputationError("diverged", f"{problem}: {fix} for what grows there")

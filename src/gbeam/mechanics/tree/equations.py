@@ -261,23 +261,22 @@ class Tree:
         demanded = concatenated(rows)
         return demanded if inputs.efforts is None else demanded - inputs.efforts, ground, on_points
 
-    def invariants(self, y: Array, yd: Array, inputs: Inputs, gravity: Array) -> tuple[Array, Array, Array]:
+    def invariants(self, state: State, gravity: Array) -> tuple[Array, Array, Array]:
         """Momentum N s and angular momentum N m s about the origin (..., 3), ground's axes, and energy (..., 3) J:
         kinetic, elastic, of gravity.
         """
-        state = self.motion(y, yd, 0 * yd, inputs)
         force = moment = kinetic = elastic = weight = 0.0
         for k, link in enumerate(self.links):
             q, qd, (_, root) = state.q[k], state.qd[k], state.moved(k)
             energy, momentum = link.body.moving(q[-1], qd[-1], root)
             push, spin = turned(root.R, momentum.force), turned(root.R, momentum.moment)
             force, moment = force + push, moment + spin + cross(root.p, push)
-            joint = namespace(y).concatenate(q[:-1], axis=-1) if q[:-1] else q[-1][..., :0]
+            joint = namespace(*q).concatenate(q[:-1], axis=-1) if q[:-1] else q[-1][..., :0]
             kinetic = kinetic + energy
             elastic = elastic + link.body.stored(q[-1]) + link.holder.stored(joint)
             mass, first = link.body.mass_moment(q[-1])
             weight = weight - ((mass * root.p + turned(root.R, first)) * gravity).sum(axis=-1)
-        return force, moment, namespace(y).stack([kinetic, elastic, weight], axis=-1)
+        return force, moment, namespace(kinetic, elastic).stack([kinetic, elastic, weight], axis=-1)
 
     def local(self, y: Array, yd: Array, ydd: Array) -> tuple[Tree, Array, Array, Array]:
         """The tree with as many coordinates as degrees of freedom, and all of these with their rates, at others (n,):
