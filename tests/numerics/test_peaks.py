@@ -110,3 +110,18 @@ def test_several_runs_have_each_the_peaks_that_they_have_alone() -> None:
         times, between = quintic_hermite(t, *(each[k] for each in runs), own)
         for ours, alone in zip(together, maxima(t, sizes[k], times, np.abs(between)), strict=True):
             np.testing.assert_array_equal(ours[k], alone)
+
+
+RATE = 2 * np.pi / 0.73  # of a vibration with 0.73 steps to a period
+
+
+@pytest.mark.parametrize("angle", [RATE, 2 * np.arctan(RATE / 2)], ids=["sampled", "by steps of Newmark's"])
+def test_what_vibrates_within_steps_does_not_exceed_its_samples(angle: float) -> None:
+    """A thousandth of a slow history, whose largest sample is 3e-7 too small; its velocity says nine times as much."""
+    t = np.arange(400.0)
+    slow = [0.01**k * np.sin(0.01 * t + k * np.pi / 2) for k in range(3)]
+    quick = [1e-3 * RATE**k * np.cos(angle * t + k * np.pi / 2) for k in range(3)]
+    for parts, peak, tolerance in ((slow, 1.0, 2e-7), ([a + b for a, b in zip(slow, quick, strict=True)], None, 2e-5)):
+        q, qd, qdd = (each[:, None] for each in parts)
+        value, _ = maxima(t, q, *quintic_hermite(t, q, qd, qdd, near_maxima(t, q)))
+        assert value[0] == pytest.approx(peak or q.max(), abs=tolerance)

@@ -13,7 +13,7 @@ from gbeam.analysis.response.record import response_of
 from gbeam.analysis.response.settings import ResponseSettings, Settings
 from gbeam.analysis.response.simulation import Posed, pose, settings_of, simulate, steps_within
 from gbeam.analysis.response.step_errors import Run
-from gbeam.analysis.response.stepping import Plan, scheme_of
+from gbeam.analysis.response.stepping import Plan, first_steps, scheme_of
 from gbeam.arrays.namespace import holds_jax
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
@@ -158,8 +158,10 @@ def _responses(
         motion = motion.over(settings.start, settings.start + settings.duration)
         if traced or holds_jax(motion):
             raise InputError("simulate_batch", "is given what JAX traces", "map simulate over it with jax.vmap")
-        posed, before, after = pose(structure, motion, settings.chosen(free=motion.free))
-        if before or after:
+        chosen = settings.chosen(free=motion.free)
+        *few, step = first_steps(structure, motion, chosen)
+        posed, before, after = pose(structure, motion, chosen, *step)
+        if few or before or after:
             yield index, simulate(structure, motion, settings)
             continue
         case = _going_on(index, posed, structure.equations if one_structure else None, posed.plan())

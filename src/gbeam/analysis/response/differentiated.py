@@ -179,7 +179,7 @@ class Grid:
         if settings.step is not None:
             return Grid(done.step, 1)
         prepared = motion.over(settings.start, settings.start + settings.duration)
-        return Grid(done.step, round(first_step(structure, prepared, settings) / done.step))
+        return Grid(done.step, max(1, round(first_step(structure, prepared, settings) / done.step)))
 
 
 class Differentiated:

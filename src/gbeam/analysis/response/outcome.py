@@ -159,8 +159,6 @@ def _causes(structure: Structure, drive: Drive, matrices: tuple[Array, Array, Ar
 
 
 MANY = 100  # steps between two of the results' times, above which a run says why
-LABOUR = 50_000  # steps, from which on one that follows the motion alone is worth a thought
-STILL = 0.05  # of the elastic forces: less inertia of the modes is that of a motion they do not vibrate in
 GROWN = math.log(1e3)  # a crookedness of a thousandth of the beam's length is its length then
 NOTICED = math.log(2)  # what grows less has hardly had the time
 
@@ -287,24 +285,6 @@ def effort(settings: ResponseSettings, steps: int, finer: int) -> tuple[str, ...
         f"{settings.integrator} took {steps} steps, {finer} to each of the results: its error, most of it a delay that "
         "grows with every cycle of a lightly damped vibration, falls as the square of the step only; "
         'response.integrator = "gauss" keeps the same accuracy in far fewer',
-    )
-
-
-def stiffness(structure: Structure, settings: ResponseSettings, trajectory: Trajectory) -> tuple[str, ...]:
-    """Advise, where an automatic step follows modes that the motion does not excite, a scheme that damps them."""
-    steps = len(trajectory.time) - 1
-    if settings.step is not None or steps < LABOUR or not structure.linear:
-        return ()
-    c, n = structure.coefficients, structure.size
-    push, pull = (np.abs(each @ part).max() for each, part in (
-        (trajectory.qdd[:, -n:], c.mass), (trajectory.q[:, -n:], c.stiffness)))  # fmt: skip
-    if not push < STILL * pull:
-        return ()
-    lowest = float(structure.rest[0][0]) / (2 * np.pi)
-    return (
-        f"the motion lies far below the lowest frequency, {lowest:.4g} Hz, whose periods {steps} steps divide; "
-        'response.integrator = "generalized-alpha" with parameters = { rho_inf = 0 } and a step of the motion\'s own '
-        f"time, such as {settings.duration / 1000:.2g} s, damps what is not excited: see the error that it states",
     )
 
 

@@ -2,7 +2,8 @@
 
 Near a sample i two things say how a history goes on until its neighbours: the quintic Hermite polynomials of the two
 steps, where the first and second derivatives are known, or the polynomial of sixth degree through the seven nearest
-samples, where they are not. Both are evaluated at a few times only, next to those samples that may win.
+samples, where they are not. Both are evaluated at a few times only, next to those samples that may win. A coordinate
+that vibrates within its steps goes straight from sample to sample: its derivatives say nothing of what lies between.
 """
 
 from __future__ import annotations
@@ -26,6 +27,9 @@ _PER_STEP = 8  # subdivisions; the vertex of a parabola through three of them is
 _COUNT = 128  # windows at most per history
 _STRAIGHT = 1e-150  # of a second derivative: less is none
 _SMOOTH = 0.25  # degree 6 may change degree 4 by this share of what that changed degree 2; corners and jumps: 0.35
+_RESOLVED = (
+    0.5  # of squares of changes by positions and by velocities: that of their difference at 2.6 steps to a period
+)
 _SHARES = np.arange(_PER_STEP + 1) / _PER_STEP
 # Hermite's polynomials of fifth degree there: of value, first and second derivative at either end.
 _QUINTIC = np.stack(
@@ -106,14 +110,23 @@ def quintic_hermite(time: Floats, q: Floats, qd: Floats, qdd: Floats, at: Indice
     """Times (u, p) and q (u, p, n) in the steps about samples (u,), from values and derivatives (t, n) there."""
     count, within = int(np.prod(q.shape[:-1])), at % len(time)
     history = np.stack([q, qd, qdd], axis=-2).reshape(count, 3, q.shape[-1])
+    known = np.reshape(_resolved(time, q, qd), (-1, 1, q.shape[-1]))[at // len(time)]
 
     def step(shift: int) -> Floats:
         j = within + shift
         scale = (time[j + 1] - time[j])[:, None, None] ** np.arange(3)[:, None]
-        both = np.concatenate([scale * history[at + shift], scale * history[at + shift + 1]], axis=1)
-        return np.asarray(_QUINTIC @ both)
+        before, after = history[at + shift], history[at + shift + 1]
+        straight = before[:, :1] + _SHARES[:, None] * (after - before)[:, :1]
+        return np.where(known, _QUINTIC @ np.concatenate([scale * before, scale * after], axis=1), straight)
 
     return _subdivided(time, within), np.concatenate([step(-1), step(0)[:, 1:]], axis=1)
+
+
+def _resolved(time: Floats, q: Floats, qd: Floats) -> Any:
+    """True for coordinates (..., t, n) whose ways over two steps change by about as much as their velocity says."""
+    way = np.diff(q[..., 2:, :] - q[..., :-2, :], axis=-2)
+    said = np.diff((time[2:] - time[:-2])[:, None] * qd[..., 1:-1, :], axis=-2)
+    return ((way - said) ** 2).sum(axis=-2) <= _RESOLVED * (way**2 + said**2).sum(axis=-2)
 
 
 def seven_point(time: Floats, values: Floats, at: Indices) -> tuple[Floats, Floats]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from gbeam.analysis.accuracy.response_errors import response_errors
 from gbeam.analysis.outline import outline_of
-from gbeam.analysis.response.outcome import describe, effort, inaccuracies, stiffness
+from gbeam.analysis.response.outcome import describe, effort, inaccuracies
 from gbeam.analysis.response.peaks import displacement_peaks, load_peaks
 from gbeam.analysis.response.problem import Problem, start_of
 from gbeam.analysis.response.settings import ResponseSettings
@@ -132,7 +132,6 @@ def response_of(
                 alone = [ErrorEstimate(step=step) for step in steps]
                 errors = Errors(alone[0], alone[1], alone[2], settings.not_estimated)
             from_run += inaccuracies(structure, errors, settings) + effort(settings, len(trajectory.time) - 1, stride)
-            from_run += stiffness(structure, settings, trajectory)
         from_inputs = input_warnings(structure, motion, name=name, span=(time[0], time[-1]), base=over_time)
         warnings = from_inputs + settings.warnings + from_run + (() if axes is None else axes.warnings)
     return Response(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, Unpack, overload
 
 import numpy as np
@@ -17,7 +17,7 @@ from gbeam.analysis.response.stepping import (
     Plan,
     answered,
     corners,
-    first_step,
+    first_steps,
     going_on,
     integrated,
     once,
@@ -59,6 +59,7 @@ class Posed:
     problem: Problem
     coarse: float
     fixed: float | None
+    limit: int  # of steps of a run
 
     @property
     def kept(self) -> float:
@@ -76,7 +77,7 @@ class Posed:
         """Plan the runs that the settings need."""
         if not self.structure.size:  # nothing is integrated
             return once(self.kept, StepErrors(0.0, 0.0, 0.0))
-        return planned(self.settings, self.coarse, self.fixed)
+        return planned(self.settings, self.coarse, self.fixed, self.limit)
 
     def steps(self, step: float) -> Steps:
         """Steps of about a length, s; one that does not divide the duration goes beyond the end."""
@@ -137,9 +138,10 @@ class Posed:
         ]
 
 
-def pose(structure: Structure, motion: Motion, settings: ResponseSettings) -> tuple[Posed, int, int]:
+def pose(
+    structure: Structure, motion: Motion, settings: ResponseSettings, coarse: float, limit: int
+) -> tuple[Posed, int, int]:
     """Pose a run, from a machine's start if that comes before; and how many steps it takes before and after."""
-    coarse = first_step(structure, motion, settings)
     step = None if settings.step is None else settings.duration / max(1, round(settings.duration / settings.step))
     kept = step or coarse
     each = 8.0 * (3 * structure.size + 9 * len(structure.stations))
@@ -148,7 +150,7 @@ def pose(structure: Structure, motion: Motion, settings: ResponseSettings) -> tu
     refuse_more("response.duration", "steps", settings.duration / kept, most, each, fix)
     before, after = steps_beyond(motion, settings, kept)
     problem = problem_of(structure, motion, settings.start - before * kept, settings.begin)
-    return Posed(structure, motion, settings, problem, coarse, step), before, after
+    return Posed(structure, motion, settings, problem, coarse, step, limit), before, after
 
 
 def steps_within(structure: Structure, q: Floats, displacement: Floats | None = None) -> int | None:
@@ -253,24 +255,35 @@ def simulate(
     motion = motion.over(settings.start, settings.start + settings.duration)
     if structure.holds_jax or holds_jax(motion):
         return _traced(structure, motion, settings, name)
-    posed, before, after = pose(structure, motion, settings)
-    kept = posed.kept
-
-    def how(what: str) -> dict[str, Any]:
-        return {"stop": posed.too_far, "progress": lambda share: tell(progress, what, share)}
-
-    up = ramp(posed.problem, settings, kept, -before, before, **how("spinning up")) if before else None
-    if up is not None and not up.whole:
-        return response_of(structure, motion, settings, posed.problem, (None, up, None), name, kept, StepErrors(), 1)
-    if up is not None:
-        posed = replace(posed, problem=going_on(posed.problem, up))
-    run, errors = answered(posed.plan(), lambda step, what: posed.run(step, **how(what)))
+    for coarse, limit in first_steps(structure, motion, settings):
+        posed, before, after = pose(structure, motion, settings, coarse, limit)
+        up = _ramp(posed, -before, before, progress, "spinning up")
+        if up is not None and not up.whole:
+            step, errors = posed.kept, StepErrors()
+            return response_of(structure, motion, settings, posed.problem, (None, up, None), name, step, errors, 1)
+        if up is not None:
+            posed = replace(posed, problem=going_on(posed.problem, up))
+        run, errors = answered(posed.plan(), partial(_run, posed, progress))
+        if max(errors.displacement, errors.loads) <= settings.tolerance / 3:
+            break
     down = None
-    if after and run.whole:
-        at_end = round(settings.duration / kept)
-        down = ramp(going_on(posed.problem, run.trajectory), settings, kept, at_end, after, **how("spinning down"))
+    if run.whole:
+        ended = replace(posed, problem=going_on(posed.problem, run.trajectory))
+        down = _ramp(ended, round(settings.duration / posed.kept), after, progress, "spinning down")
     runs = up, run.trajectory, down
     return response_of(structure, motion, settings, posed.problem, runs, name, run.step, errors, posed.stride(run.step))
+
+
+def _ramp(posed: Posed, first: int, count: int, progress: Progress, what: str) -> Trajectory | None:
+    """Spin-up or spin-down of so many steps, if there are any."""
+    if not count:
+        return None
+    how = {"stop": posed.too_far, "progress": partial(tell, progress, what)}
+    return ramp(posed.problem, posed.settings, posed.kept, first, count, **how)
+
+
+def _run(posed: Posed, progress: Progress, step: float, what: str) -> Run:
+    return posed.run(step, stop=posed.too_far, progress=partial(tell, progress, what))
 
 
 def _traced(structure: Structure, motion: Motion, settings: ResponseSettings, name: str) -> Response:

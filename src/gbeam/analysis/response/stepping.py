@@ -25,6 +25,7 @@ from gbeam.results.result import Floats
 
 MAX_STEPS = 4_000_000
 LOADS_STEPS = 50_000  # at most, where it is the loads that need them
+MANY = 20_000  # steps, with which a third of the tolerance is enough where the periods ask for more
 ONE_CORNER = 1e-6  # of the duration: corners nearer to one another are one
 JUMPS = 2, 3, 4, 6, 8, 12, 16  # into how many a step is divided; a check takes four, three or two of the new ones
 BENT = 4  # into how many at most where a law bends, for errors to be seen to fall
@@ -52,13 +53,26 @@ def scheme_of(settings: ResponseSettings) -> Scheme:
     )
 
 
-def first_step(structure: Structure, motion: Motion, settings: ResponseSettings) -> float:
-    """Step of the results, s: an even number over the duration, at least 500 and 20 to the lowest period, none longer
-    than the shortest time between corners of motion or loads.
+def first_step(structure: Structure, motion: Motion, settings: ResponseSettings, few: bool = False) -> float:
+    """Step of the results, s: an even number over the duration, at least 500 and, unless `few` are enough, 20 to the
+    lowest period, none longer than the shortest time between corners of motion or loads.
     """
-    period = 2 * math.pi / float(structure.rest[0][0]) if structure.size else 20 * RIGID
-    largest = min(period / 20, settings.duration / 500)
+    largest = settings.duration / (MANY if few else 500)
+    if not few:
+        period = 2 * math.pi / float(structure.rest[0][0]) if structure.size else 20 * RIGID
+        largest = min(period / 20, largest)
     return settings.duration / even_steps(largest, corners(structure, motion, largest), settings)
+
+
+def first_steps(structure: Structure, motion: Motion, settings: ResponseSettings) -> list[tuple[float, int]]:
+    """Steps of the results to try, s, each with the most steps of a run: of a specimen whose periods ask for many first
+    those that are enough where it hardly vibrates.
+    """
+    step = first_step(structure, motion, settings)
+    few = first_step(structure, motion, settings, few=True)
+    if settings.step is None and structure.size and step < few:
+        return [(few, round(settings.duration / few)), (step, MAX_STEPS)]
+    return [(step, MAX_STEPS)]
 
 
 def even_steps(largest: float, corners: Floats, settings: ResponseSettings) -> int:
@@ -113,24 +127,28 @@ def check(step: float, order: int) -> Plan:
 
 def refine(coarse: float, order: int, settings: ResponseSettings, limit: int = MAX_STEPS) -> Plan:
     """Divide the step, from twice the results', until the errors estimated of what moves and of the peaks are within
-    their aims; histories of root loads, if followed, only to a third of the tolerance and by LOADS_STEPS.
+    their aims; histories of root loads, if followed, only to a third of the tolerance and by LOADS_STEPS. Where steps
+    are to be no finer than the results' that is the only aim.
     """
+    aims = settings.aim, settings.aim_of_peaks
+    if round(settings.duration / coarse) == limit:
+        aims = settings.tolerance / 3, settings.tolerance / 3
 
     def refined(step: float) -> tuple[float, str]:
         return step, f"refining the step to {1e3 * step:.3g} ms"
 
     runs = [(yield 2 * coarse, "integrating"), (yield refined(coarse))]
     while True:
-        left, promised = _left(runs[-3:], order, settings)
+        left, promised = _left(runs[-3:], order, aims)
         both, new = runs[-2].whole and runs[-1].whole, runs[-1]
         if both and promised <= 1 and (more := _check_needed(runs, left)):
             checked = yield more, f"checking with {1e3 * more:.3g} ms"
             runs = sorted([*runs, checked], key=lambda each: -each.step)
-            left, _ = _left(runs[-3:], order, settings)
+            left, _ = _left(runs[-3:], order, aims)
         far, most = promised, limit
         if both and left <= 1 and not new.missed and not (new.bends and len(runs) < 3):
             errors = of_everything(runs[-3:], order)
-            far, most = 3 * errors.loads / settings.tolerance, LOADS_STEPS
+            far, most = 3 * errors.loads / settings.tolerance, min(limit, LOADS_STEPS)
             if not (far > 1 and new.followed):  # as NaN is not
                 return new, errors
         finer = min(finer_by(far, order), BENT if new.bends else JUMPS[-1])
@@ -147,9 +165,9 @@ def finer_by(far: float, order: int) -> int:
     return next((jump for jump in JUMPS if jump >= times), JUMPS[-1])
 
 
-def _left(runs: list[Run], order: int, settings: ResponseSettings) -> tuple[float, float]:
+def _left(runs: list[Run], order: int, aims: tuple[float, float]) -> tuple[float, float]:
     """Error of tip or peaks over its aim, by the order observed and by the scheme's own."""
-    error, tip, peaks = Estimate.of(runs, order), settings.aim, settings.aim_of_peaks
+    error, (tip, peaks) = Estimate.of(runs, order), aims
     return max(error.tip / tip, error.peaks / peaks), max(error.promised_tip / tip, error.promised_peaks / peaks)
 
 
