@@ -110,7 +110,7 @@ def quintic_hermite(time: Floats, q: Floats, qd: Floats, qdd: Floats, at: Indice
     """Times (u, p) and q (u, p, n) in the steps about samples (u,), from values and derivatives (t, n) there."""
     count, within = int(np.prod(q.shape[:-1])), at % len(time)
     history = np.stack([q, qd, qdd], axis=-2).reshape(count, 3, q.shape[-1])
-    known = np.reshape(_resolved(time, q, qd), (-1, 1, q.shape[-1]))[at // len(time)]
+    known = np.reshape(_resolved(time, q, qd), (count // len(time), 1, q.shape[-1]))[at // len(time)]
 
     def step(shift: int) -> Floats:
         j = within + shift
