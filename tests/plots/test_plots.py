@@ -247,6 +247,9 @@ def test_comparison(study: Study) -> None:
     assert drawn[0].get_xscale() == drawn[0].get_yscale() == "log"
     np.testing.assert_array_equal(_lines(drawn[0])["flight"], spectra[:, 2])
     np.testing.assert_array_equal(_lines(drawn[0])["spin"], 2 * spectra[:, 2])
+    beside = replace(shock, flight=spectra * [1, 0, 0], centrifuge=spectra * [1, 0, 0])  # of a sensor that is turned
+    (only,) = plot_shock(full, beside, "t").axes
+    np.testing.assert_array_equal(_lines(only)["flight"], spectra[:, 0])
 
 
 def _with_root(study: Study) -> Comparison:

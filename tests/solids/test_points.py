@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -85,6 +86,27 @@ def test_spectra_of_control_points_are_their_weighted_mean() -> None:
     assert both is not None and both.control == "middle (75 %), tip (25 %)"
     np.testing.assert_allclose(both.centrifuge, 0.75 * single[0].centrifuge + 0.25 * single[1].centrifuge)
     np.testing.assert_allclose(single[1].flight, tip.shock.flight)
+    sensor = gb.Sensor(turn=(0.5, 0.0, 0.0), frequency=40.0, sensitivity=[[1, 0.02, 0], [0, 1, 0], [0.05, 0, 1]])
+    weights = {"middle": 3.0, "tip": 1.0}
+    by_sensor = gb.compare(*pair(), control=weights, sensors={"middle": sensor, "tip": sensor}).shock
+    heard = [
+        replace(each, point_acceleration=np.stack([each.reading_at(name, sensor) for name in each.points], axis=1))
+        for each in pair()
+    ]
+    wanted = gb.compare(*heard, control=weights).shock
+    assert by_sensor.control == "middle (75 %, as its sensor reads), tip (25 %, as its sensor reads)"
+    np.testing.assert_array_equal(by_sensor.flight, wanted.flight)
+    np.testing.assert_array_equal(by_sensor.centrifuge, wanted.centrifuge)
+    assert not np.allclose(wanted.flight, both.flight, rtol=0.1)
+    one = gb.compare(*pair(), sensors={"tip": gb.Sensor()}).shock
+    assert one.control == "the tip (as its sensor reads)"
+    np.testing.assert_array_equal(one.flight, tip.shock.flight)
+    for read, words in (
+        ({"middle": sensor}, "sensors.middle is at no point whose spectra are compared; name the point in control"),
+        ({"tip": gb.Sensor(frequency=900.0)}, "sensors.tip.frequency is 900 Hz, with samples 0.002 s apart"),
+    ):
+        with pytest.raises(gb.InputError, match=words):
+            gb.compare(*pair(), sensors=read)
     for control, words in (({"nose": 1.0}, "is no point; choose from middle, tip"), ({"tip": 0.0}, "is 0")):
         with pytest.raises(gb.InputError, match=words):
             gb.compare(*pair(), control=control)

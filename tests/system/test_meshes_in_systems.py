@@ -54,6 +54,15 @@ def test_a_mesh_in_a_system_has_the_stress_of_the_specimen() -> None:
 def test_limits_at_points_of_a_mesh_in_a_system_are_the_specimens() -> None:
     accept: dict[str, Any] = {"damage": 100.0, "srs": 100.0}
     wanted = gb.compare(*specimen(), accept=accept, damage_at="half", control={"half": 1.0})
+    sensor = gb.Sensor(turn=(0.5, 0.0, 0.0), frequency=40.0)
+    read, alone = both()[1].reading_at("strip.half", sensor), specimen()[1].reading_at("half", sensor)
+    sensed = [
+        gb.compare(*each, control={at: 1.0}, sensors={at: sensor}).shock
+        for each, at in ((specimen(), "half"), (both(), "strip.half"))
+    ]
+    np.testing.assert_allclose(read, alone, atol=2e-3 * np.abs(alone).max())
+    np.testing.assert_allclose(sensed[1].centrifuge, sensed[0].centrifuge, rtol=2e-3)
+    assert sensed[1].control == "strip.half (100 %, as its sensor reads)"
     judged = gb.compare(*both(), accept=accept, damage_at="strip.half", control={"strip.half": 1.0}, point="strip.tip")
     for one, theirs in zip(judged.criteria, wanted.criteria, strict=True):
         assert one.name == theirs.name and np.isfinite(one.value)

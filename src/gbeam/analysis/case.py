@@ -234,8 +234,9 @@ class SystemCase(_InEnvironments):
         for name, limits in self.accept.items():
             if limits.get("point") is not None:
                 self.system.point(f"motion.{name}.accept.point", limits["point"])
-            for point in limits.get("control", ()):
-                self.system.point(f"motion.{name}.accept.control.{point}", point)
+            for key in ("control", "sensors"):
+                for point in limits.get(key, ()):
+                    self.system.point(f"motion.{name}.accept.{key}.{point}", point)
             flexible = self.system.flexible.items()
             stressed = [key for key, body in flexible if body.sections is not None or body.recovery is not None]
             lacking = {} if stressed else {STRESS: "no body is a beam or a mesh"}

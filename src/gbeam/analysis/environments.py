@@ -11,9 +11,10 @@ from gbeam.analysis.case import AnyCase, Case, SpecimenCase, SystemCase
 from gbeam.analysis.imitation.comparison import compare
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
-from gbeam.errors import ComputationError, InputError
+from gbeam.errors import ComputationError, InputError, naming
 from gbeam.guards.arguments import typed
 from gbeam.progress import Progress, tell
+from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.criteria import judging
 from gbeam.results.response import Response
 from gbeam.results.study import Failure, Study, SystemStudy
@@ -80,11 +81,15 @@ def study_of(
         raise ComputationError(
             first.outcome, "; ".join(f"motion.{n}: {failure.message}" for n, failure in failures.items())
         )
+
+    def compared(name: str, flight: str) -> Comparison:
+        settings = judging(case.accept.get(name, {}))
+        sensors = [f"sensors.{point}.frequency" for point in settings.get("sensors", ())]
+        with naming({place: f"motion.{name}.accept.{place}" for place in sensors}):
+            return replace(compare(responses[flight], responses[name], **settings), provenance=case.provenance)
+
     comparisons = tuple(
-        replace(
-            compare(responses[flight], responses[name], **judging(case.accept.get(name, {}))),
-            provenance=case.provenance,
-        )
+        compared(name, flight)
         for name, flight in case.tracks.items()
         if {flight, name} <= responses.keys() and responses[flight].outcome == responses[name].outcome == "done"
     )

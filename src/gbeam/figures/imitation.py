@@ -80,9 +80,9 @@ def _mismatch(c: Comparison, axis: int) -> Iterator[_Part]:
 
 
 def shock(comparison: Comparison, spectra: Shock, title: str = "") -> Figure:
-    """Describe the shock response spectra of the tip's acceleration, along the axes in which the tip moves."""
-    panels = []
-    for axis in moved(comparison):
+    """Describe the shock response spectra, along the axes in which they are not small."""
+    panels, main = [], comparison.main_axis
+    for axis in sorted(moving(spectra.flight, spectra.centrifuge), key=lambda k: k != main):
         lines = (
             Line(spectra.frequency, spectra.flight[:, axis], comparison.flight, **FLIGHT),
             Line(spectra.frequency, spectra.centrifuge[:, axis], comparison.centrifuge, **imitating(0)),

@@ -15,7 +15,7 @@ from gbeam.results.errors import FrequencyErrors, Instability, Oscillating, Syst
 from gbeam.results.facts import at_place
 from gbeam.results.machine import AxesResult, Driven
 from gbeam.results.parts import LoadPeaks, Loads, Outline
-from gbeam.results.response import BaseMotion
+from gbeam.results.response import BaseMotion, Sensor
 from gbeam.results.result import Complex, Figured, Floats, Part
 from gbeam.results.solids import SolidStress, Surface, SurfaceModes
 
@@ -243,6 +243,25 @@ class SystemResponse(Driven, Figured):
             If there is no such point.
         """
         return self.place[:, index_of("point", point, self.points)]
+
+    def reading_at(self, point: str, sensor: Sensor | None = None) -> Floats:
+        """Return what an accelerometer at a point reads, (t, 3) m/s².
+
+        Parameters
+        ----------
+        point : str
+            ``body.point``.
+        sensor : Sensor, optional
+            Its axes in those of the point, with which they turn, frequency and sensitivity; the acceleration along
+            the axes of the point (specific force where gravity acts) without one.
+
+        Raises
+        ------
+        InputError
+            If there is no such point, or the samples do not resolve the sensor.
+        """
+        felt = self.acceleration[:, index_of("point", point, self.points)]
+        return felt if sensor is None else sensor.reads(felt, float(self.time[1] - self.time[0]))
 
     def signal(self, name: str) -> Floats:
         """Return what a sensor would read, by the name of an output of :func:`gbeam.linearize`, (t,) SI.

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.printable import advise
-from gbeam.results.imitation.criteria import RULES
+from gbeam.results.imitation.criteria import RULES, refuse_unread
 from gbeam.scenario import schema
 from gbeam.scenario.build_beam import beam_of, model_of
 from gbeam.scenario.load import Collector, change, load, placed, provenance
@@ -159,6 +159,8 @@ def _acceptance(
     parts: Collector, scenario: schema.Environments, points: tuple[str, ...] = ()
 ) -> dict[str, dict[str, Any]]:
     """Limits of acceptance and their settings, by the centrifuge's name."""
+    from gbeam.results.response import Sensor
+
     machines = {name: each for name, each in scenario.motion.items() if isinstance(each, schema.Centrifuge)}
     limited = {name: each.limits_of_acceptance for name, each in machines.items() if each.limits_of_acceptance}
     for name, limits in limited.items():
@@ -167,11 +169,20 @@ def _acceptance(
                 parts.attempt(f"motion.{name}.accept", RULES[key].checked, limit)
         named = {f"control.{each}": each for each in limits.get("control", ())}
         named |= {key: limits[key] for key in ("point", "damage_at") if key in limits}
-        parts.errors += [
+        sensors = limits.get("sensors", {})
+        named |= {f"sensors.{each}": each for each in sensors}
+        unknown = [
             InputError(f"motion.{name}.accept.{key}", f"is no point: {each!r}", advise(each, points))
             for key, each in named.items()
             if points and each not in points
         ]
+        parts.errors += unknown
+        if sensors and not unknown:
+            where, read = f"motion.{name}.accept", (limits.get("control", ()), limits.get("point"))
+            parts.attempt(where, refuse_unread, sensors, *read)
+            limits["sensors"] = {
+                each: parts.attempt(f"{where}.sensors.{each}", Sensor, **dict(table)) for each, table in sensors.items()
+            }
     return limited
 
 

@@ -10,14 +10,14 @@ from gbeam.analysis.imitation.accounting import History, account_of, largest_loa
 from gbeam.analysis.imitation.fatigue import fatigue
 from gbeam.analysis.imitation.specimen import specimen_of
 from gbeam.analysis.response.peaks import maxima, near_maxima, seven_point, vector_peaks
-from gbeam.errors import InputError
+from gbeam.errors import InputError, placing_within
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import index_of, positive
 from gbeam.motion.bases.base import gradients
 from gbeam.numerics.samples import interpolated, largest_riding_acceleration, low_pass
 from gbeam.results.imitation.accounting import TOLERANCE, PeakPair
 from gbeam.results.imitation.comparison import Comparison
-from gbeam.results.imitation.criteria import Limit, checked_limits
+from gbeam.results.imitation.criteria import Limit, checked_limits, refuse_unread
 from gbeam.results.imitation.measures import (
     Mismatch,
     RootHistory,
@@ -27,7 +27,7 @@ from gbeam.results.imitation.measures import (
     Statistics,
 )
 from gbeam.results.parts import Influence
-from gbeam.results.response import Response
+from gbeam.results.response import Response, Sensor
 from gbeam.results.result import Flags, Floats
 from gbeam.results.system import SystemResponse
 
@@ -109,6 +109,7 @@ def compare(
     accept: Mapping[str, Limit] | None = None,
     control: Mapping[str, float] | None = None,
     damage_at: str | None = None,
+    sensors: Mapping[str, Sensor] | None = None,
 ) -> Comparison:
     """Compare the response on a centrifuge with that in the flight it imitates.
 
@@ -134,6 +135,9 @@ def compare(
     damage_at : str, optional
         Named point whose fatigue damage is compared; by default the root of a beam, and of a solid where its
         von Mises stress is largest; of several beams, solids or materials that where the stress ranges most in flight.
+    sensors : mapping of str to Sensor, optional
+        Accelerometers at points of the shock response spectra, which are of what they read: see
+        :meth:`Response.reading_at`, of systems :meth:`SystemResponse.reading_at`.
 
     Returns
     -------
@@ -145,7 +149,7 @@ def compare(
     Raises
     ------
     InputError
-        If a limit has no such name, or means nothing, or there is no such point.
+        If a limit has no such name, or means nothing, there is no such point, or a sensor is not read or resolved.
 
     Examples
     --------
@@ -201,9 +205,11 @@ def compare(
         )  # fmt: skip
         root = _root(covered, history, in_flight(a.stress[:, 0]), b.stress[during, 0])
     weights = _weights(control, flight, centrifuge)
-    felt = flight.accelerations, centrifuge.accelerations
+    sensors = {} if sensors is None else sensors
+    refuse_unread(sensors, weights, chosen)
+    felt = _felt(runs[0], flight, sensors), _felt(runs[1], centrifuge, sensors)
     if felt[0] is not None and felt[1] is not None and covered.any():
-        shock = _shock(time, covered, in_flight(felt[0]), felt[1][during], weights, chosen, flight, centrifuge)
+        shock = _shock(time, covered, in_flight(felt[0]), felt[1][during], weights, chosen, sensors, flight, centrifuge)
     names, growth = _names(flight, centrifuge), in_flight(gradients(flight.base.w_WB_B, flight.base.alpha_WB_B))
     spun = gradients(centrifuge.base.w_WB_B[during], centrifuge.base.alpha_WB_B[during])
     of_beam, root_load = not len(centrifuge.envelope), in_flight(flight.base.a_WO_B)
@@ -352,6 +358,18 @@ def _weights(control: Mapping[str, float] | None, *responses: Response) -> dict[
     return {} if control is None else {name: weight / total for name, weight in control.items()}
 
 
+def _felt(run: Response | SystemResponse, response: Response, sensors: Mapping[str, Sensor]) -> Floats | None:
+    """Accelerations (t, s, 3) of all points; as sensors read them where there are some."""
+    felt = response.accelerations
+    if felt is None or not sensors:
+        return felt
+    felt = np.array(felt)
+    for name, sensor in sensors.items():
+        with placing_within(f"sensors.{name}"):
+            felt[:, _station(response, name)] = run.reading_at(name, sensor)
+    return felt
+
+
 def _shock(
     time: Floats,
     covered: Flags,
@@ -359,6 +377,7 @@ def _shock(
     actual: Floats,
     weights: Mapping[str, float],
     tip: str,
+    sensors: Mapping[str, Sensor],
     *responses: Response,
 ) -> Shock | None:
     """Spectra of accelerations (t, s, 3) at the tip, or the mean of those at control points."""
@@ -372,5 +391,7 @@ def _shock(
         places = [_station(each, name) for each in responses]
         both = np.concatenate([reference[:, places[0]], actual[:, places[1]]], axis=1)
         mean += share * largest_riding_acceleration(both, 2 * np.pi * frequency, 0.5 / QUALITY, step, covered)
-    said = ", ".join(f"{name} ({100 * share:.3g} %)" for name, share in weights.items()) or tip
-    return Shock(QUALITY, frequency, mean[:, :3], mean[:, 3:], **({"control": said} if said else {}))
+    read = dict.fromkeys(sensors, ", as its sensor reads")
+    said = ", ".join(f"{name} ({100 * share:.3g} %{read.get(name, '')})" for name, share in weights.items())
+    said = said or (tip or "the tip") + (" (as its sensor reads)" if sensors else "")
+    return Shock(QUALITY, frequency, mean[:, :3], mean[:, 3:], control=said)

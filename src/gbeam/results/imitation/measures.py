@@ -278,7 +278,7 @@ class Shock(Part):
         "m/s^2", "the same on the centrifuge", "frequency axis", name="shock_centrifuge", key=None
     )
 
-    control: str = fact("points whose spectra they are, with their weights", name=None, default="the tip")
+    control: str = fact("points whose spectra they are, with their weights and sensors", name=None, default="the tip")
 
     @declared("m/s^2", "spectrum in flight, by frequency", "frequency direction", name=None, key="flight")
     def rows_flight(self) -> Floats:

@@ -32,11 +32,31 @@ Share = Annotated[float, Quantity("ratio", "positive")]
 Ratio = Annotated[float, Quantity("ratio", "positive")]
 Level = Annotated[float, Quantity("amplitude ratio", "positive")]
 Ratios = Annotated[Annotated[Ratio, Tag("one")] | Annotated[tuple[Ratio, Ratio], Tag("list")], ONE_OR_LIST]
+_Leak = Annotated[float, Quantity("ratio")]
+_Reading = tuple[_Leak, _Leak, _Leak]
 Levels = Annotated[Annotated[Level, Tag("one")] | Annotated[tuple[Level, Level], Tag("list")], ONE_OR_LIST]
 
 _TYPES: dict[str, Any] = {"most": Share, "least": Share, "ratio": Ratios, "level": Levels}
 _FIELDS: dict[str, Any] = {rule.name: (_TYPES[rule.kind] | None, optional(rule.words)) for rule in RULES.values()}
 _Limits = create_model("_Limits", __base__=Table, **_FIELDS)
+
+
+class Sensor(Table):
+    """An accelerometer of three axes: a mass on a spring along each, of which the deflection is read."""
+
+    turn: Turn3 = Field(
+        default=(0.0, 0.0, 0.0),
+        description="rotation vector of its axes in the base axes, of a system in those of its point: [x, y, z]",
+    )
+    frequency: Annotated[float, Quantity("frequency", "positive")] | None = optional(
+        "natural frequency of the spring, or the cut-off of a filter of second order; without one it reads the "
+        "acceleration itself"
+    )
+    damping_ratio: Ratio = Field(default=0.7, description="of the spring; 0.7 gives the widest flat range")
+    sensitivity: tuple[_Reading, _Reading, _Reading] | None = optional(
+        "rows with the reading of each axis for a unit along each: one on the diagonal, and beside it what leaks from "
+        "the others"
+    )
 
 
 class Accept(_Limits):  # type: ignore[misc, valid-type]
@@ -60,6 +80,9 @@ class Accept(_Limits):  # type: ignore[misc, valid-type]
     damage_at: str | None = optional(
         "point whose fatigue damage is that of damage; left out, the root of a beam, and of a solid where "
         "its von Mises stress is largest, of several materials that whose stress ranges most in flight"
+    )
+    sensors: dict[str, Sensor] = by_name(
+        "accelerometers by the names of points: srs is of what they read there, in place of the acceleration itself"
     )
 
     @property
