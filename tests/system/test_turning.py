@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 import gbeam as gb
+from gbeam.analysis.steady.frequency_errors import Richer
+from gbeam.analysis.system.steady import Drive, Turning
 from gbeam.results.facts import json_of
 from tests.analysis_verbs.beams import slender
 from validation.published.tables import UNIFORM_FLAP
@@ -187,3 +189,18 @@ def test_friction_that_holds_is_warned_of_where_the_rotor_turns() -> None:
             assert [each.split(" is ")[0] for each in said] == ["friction of hinge.angle"] * (friction > 0)
     with pytest.raises(gb.InputError, match=r"nothing oscillates at 0 rad/s; friction of hinge\.angle is a damper"):
         gb.campbell(spinning(0.5, two=False), turning="spin.angle", end=20.0, count=2, modes=1)
+
+
+def test_newtons_method_goes_in_shares_where_it_fails_at_once() -> None:
+    """A panel with a mass, with the shapes that shear and twist ask for, at 800 rad/s: none was found, which was taken
+    for a loss of the equilibrium. A beam on a hub is pulled there by shares of the load.
+    """
+    material, mass = gb.Material(2700.0, 70e9, poissons_ratio=0.33), gb.PointMass(0.3, 0.5)
+    heavy = gb.Beam(0.3, STRIP.section, material, [mass], damping_ratio=0.01)
+    system, path = panels(gb.assemble(heavy, "exact", y=2, z=2), SPIN, "rim"), Turning(Drive(None, 0.0, "spin.angle"))
+    _, thick, *_ = Richer(path(system, 0.0)).by_theories(system)[0]
+    steady, beam = path(thick, 800.0), thick.bodies["panel_rim"]
+    alone = gb.solve_equilibrium(beam, gb.Hub(radius=0.5, rate=800.0).base(0.0))
+    stretched = steady.frames[-2].p - (0.8, 0, 0)
+    assert stretched == pytest.approx(beam.tip(alone.q), rel=1e-9, abs=1e-15) and stretched[0] > 1e-4
+    assert steady.margin > 0

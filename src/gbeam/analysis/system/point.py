@@ -21,6 +21,7 @@ Array = Any
 Floats = NDArray[np.float64]
 ITERATIONS = 50
 MASSLESS = 1e-13  # of the largest: a smaller inertia is rounding
+SHORTEST = 1 / 64  # share of what is out of balance that is taken away at once
 CLOSE = 1e-12  # of the coordinates: a correction that is smaller has converged
 
 
@@ -136,27 +137,40 @@ def started_traced(system: System, motion: Motion | None, time: float, initial: 
     return y + elastic * root(left, jnp.zeros(len(free))), yd
 
 
-def rested(system: System, tree: Tree, inputs: Inputs, start: Floats | None = None) -> Point:
-    """A system's tree at rest in relative equilibrium, joints and bodies; of those that nothing holds, the nearest one
-    to a `start` (n,), by default that of the joints, with bodies undeformed.
-    """
-    y, still = system.start[0][tree.free] if start is None else start, np.zeros(len(tree.free))
-    size = np.inf
+def _newton(tree: Tree, y: Floats, inputs: Inputs, left_over: Floats) -> tuple[Floats, Floats, Floats, Floats, bool]:
+    """Coordinates at rest where so much is out of balance, stiffness and mass, the last change, and if it is none."""
+    still = np.zeros(len(y))
     for _ in range(ITERATIONS):
         left, k, _, m = Point(tree, y, still, still, inputs).slopes()
-        change = np.linalg.lstsq(k, -left, rcond=1e-12)[0]
+        change = np.asarray(np.linalg.lstsq(k, left_over - left, rcond=1e-12)[0], dtype=np.float64)
         size = float(np.abs(change).max(initial=0.0))
         # Steps of a radian at most: a beam far from its equilibrium turns by as much.
         y = y + change / max(1.0, size)
         if size <= CLOSE * (1.0 + np.abs(y).max(initial=0.0)):
-            left = tree(y, still, still, inputs)
-            refuse_massless(system, m, tree.free)
-            acceleration = np.linalg.solve(m, -left)
-            break
-    else:
-        name = _farthest(system, tree, change)
-        problem = f"no place was found in which the system rests: {name} goes on and on; hold what is free"
-        raise ComputationError("no equilibrium", problem)
+            return y, k, m, change, True
+    return y, k, m, change, False
+
+
+def rested(system: System, tree: Tree, inputs: Inputs, start: Floats | None = None) -> Point:
+    """A system's tree at rest in relative equilibrium, joints and bodies; of those that nothing holds, the nearest one
+    to a `start` (n,), by default that of the joints, with bodies undeformed. Where Newton's method fails from there,
+    what is out of balance at the start is taken away in shares.
+    """
+    y, still = system.start[0][tree.free] if start is None else start, np.zeros(len(tree.free))
+    beginning, reached, stride = tree(y, still, still, inputs), 0.0, 1.0
+    while reached < 1.0:
+        share = min(reached + stride, 1.0)
+        moved, k, m, change, converged = _newton(tree, y, inputs, (1.0 - share) * beginning)
+        if converged:
+            y, reached, stride = moved, share, 2 * stride
+        elif stride > SHORTEST:
+            stride /= 4
+        else:
+            name = _farthest(system, tree, change)
+            problem = f"no place was found in which the system rests: {name} goes on and on; hold what is free"
+            raise ComputationError("no equilibrium", problem)
+    refuse_massless(system, m, tree.free)
+    acceleration = np.linalg.solve(m, -tree(y, still, still, inputs))
     scale = np.abs(np.linalg.solve(m, np.abs(k) @ np.ones(len(y)))).max(initial=1.0)
     if np.abs(acceleration).max(initial=0.0) > 1e-6 * scale:
         name = _farthest(system, tree, acceleration)
