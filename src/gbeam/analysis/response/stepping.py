@@ -66,11 +66,13 @@ def first_step(structure: Structure, motion: Motion, settings: ResponseSettings,
 
 def first_steps(structure: Structure, motion: Motion, settings: ResponseSettings) -> list[tuple[float, int]]:
     """Steps of the results to try, s, each with the most steps of a run: of a specimen whose periods ask for many first
-    those that are enough where it hardly vibrates.
+    those that are enough where it hardly vibrates, unless they could pass a pulse unseen.
     """
     step = first_step(structure, motion, settings)
     few = first_step(structure, motion, settings, few=True)
-    if settings.step is None and structure.size and step < few:
+    gaps = np.diff(np.unique(corners(structure, motion, few)))
+    short = ((gaps > 1e-12 * settings.duration) & (gaps < few / 2)).any()
+    if settings.step is None and structure.size and step < few and not short:
         return [(few, round(settings.duration / few)), (step, MAX_STEPS)]
     return [(step, MAX_STEPS)]
 
