@@ -159,8 +159,6 @@ def _acceptance(
     parts: Collector, scenario: schema.Environments, points: tuple[str, ...] = ()
 ) -> dict[str, dict[str, Any]]:
     """Limits of acceptance and their settings, by the centrifuge's name."""
-    from gbeam.results.response import Sensor
-
     machines = {name: each for name, each in scenario.motion.items() if isinstance(each, schema.Centrifuge)}
     limited = {name: each.limits_of_acceptance for name, each in machines.items() if each.limits_of_acceptance}
     for name, limits in limited.items():
@@ -178,6 +176,8 @@ def _acceptance(
         ]
         parts.errors += unknown
         if sensors and not unknown:
+            from gbeam.results.response import Sensor
+
             where, read = f"motion.{name}.accept", (limits.get("control", ()), limits.get("point"))
             parts.attempt(where, refuse_unread, sensors, *read)
             limits["sensors"] = {
