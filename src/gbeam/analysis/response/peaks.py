@@ -27,9 +27,7 @@ _PER_STEP = 8  # subdivisions; the vertex of a parabola through three of them is
 _COUNT = 128  # windows at most per history
 _STRAIGHT = 1e-150  # of a second derivative: less is none
 _SMOOTH = 0.25  # degree 6 may change degree 4 by this share of what that changed degree 2; corners and jumps: 0.35
-_RESOLVED = (
-    0.5  # of squares of changes by positions and by velocities: that of their difference at 2.6 steps to a period
-)
+_RESOLVED = 0.5  # of squared changes of ways, by positions and by velocities: their difference's at 2.6 steps a period
 _SHARES = np.arange(_PER_STEP + 1) / _PER_STEP
 # Hermite's polynomials of fifth degree there: of value, first and second derivative at either end.
 _QUINTIC = np.stack(

@@ -53,14 +53,12 @@ def scheme_of(settings: ResponseSettings) -> Scheme:
     )
 
 
-def first_step(structure: Structure, motion: Motion, settings: ResponseSettings, few: bool = False) -> float:
-    """Step of the results, s: an even number over the duration, at least 500 and, unless `few` are enough, 20 to the
-    lowest period, none longer than the shortest time between corners of motion or loads.
+def first_step(structure: Structure, motion: Motion, settings: ResponseSettings) -> float:
+    """Step of the results, s: an even number over the duration, at least 500 and 20 to the lowest period, none longer
+    than the shortest time between corners of motion or loads.
     """
-    largest = settings.duration / (MANY if few else 500)
-    if not few:
-        period = 2 * math.pi / float(structure.rest[0][0]) if structure.size else 20 * RIGID
-        largest = min(period / 20, largest)
+    period = 2 * math.pi / float(structure.rest[0][0]) if structure.size else 20 * RIGID
+    largest = min(period / 20, settings.duration / 500)
     return settings.duration / even_steps(largest, corners(structure, motion, largest), settings)
 
 
@@ -69,11 +67,13 @@ def first_steps(structure: Structure, motion: Motion, settings: ResponseSettings
     those that are enough where it hardly vibrates, unless they could pass a pulse unseen.
     """
     step = first_step(structure, motion, settings)
-    few = first_step(structure, motion, settings, few=True)
-    gaps = np.diff(np.unique(corners(structure, motion, few)))
-    short = ((gaps > 1e-12 * settings.duration) & (gaps < few / 2)).any()
-    if settings.step is None and structure.size and step < few and not short:
-        return [(few, round(settings.duration / few)), (step, MAX_STEPS)]
+    if settings.step is None and structure.size and step < settings.duration / MANY:
+        bends = corners(structure, motion, settings.duration / MANY)
+        few = settings.duration / even_steps(settings.duration / MANY, bends, settings)
+        gaps = np.diff(np.unique(bends))
+        short = ((gaps > 1e-12 * settings.duration) & (gaps < few / 2)).any()
+        if step < few and not short:
+            return [(few, round(settings.duration / few)), (step, MAX_STEPS)]
     return [(step, MAX_STEPS)]
 
 
