@@ -109,6 +109,7 @@ class Trajectory:
 
 
 AT_ONCE = 5_000  # numbers of the states that are evaluated at once: of more, all sections of beams fill memory
+HUGE = 2.0**100  # an acceleration beside which no other force is felt: mass times it is all of them
 FEWEST = 50  # states evaluated at once: of fewer, each call costs more than its sums
 
 
@@ -116,7 +117,7 @@ def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> tuple
     """Derivatives K, C, M (t, r, n) of a function (t, r) of the state by q, q̇, q̈ (t, n) at inputs (t, ...)."""
     n, pieces = q.shape[1], []
     steps = 1j * STEP * np.eye(3 * n).reshape(3 * n, 1, 3, n)
-    for some in _pieces(q):
+    for some in _pieces(q, n**2):
         at, part = [each[some] for each in (q, qd, qdd)], each_leaf(lambda leaf: leaf[some], inputs)  # noqa: B023
         values = residual(*(each + steps[:, :, k] for k, each in enumerate(at)), part)
         pieces.append(values.imag / STEP)
@@ -126,24 +127,18 @@ def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> tuple
 
 def accelerations(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
     """q̈ (t, n) that equations linear in q̈ demand at q, q̇ (t, n) and inputs (t, ...); NaN where M is singular."""
-    pieces = []
-    for some in _pieces(q):
+    pieces, n = [], q.shape[1]
+    units = HUGE * np.eye(n + 1, n, k=-1)[:, None]  # none, and each alone
+    for some in _pieces(q, n):
         part = each_leaf(lambda leaf: leaf[some], inputs)  # noqa: B023
-        values = residual(q[some], qd[some], _moved(0 * q[some]), part)
-        mass = (values.imag / STEP).transpose(1, 2, 0)
-        pieces.append(solved(mass, -values[0].real[..., None])[..., 0])
+        forces = residual(q[some], qd[some], np.broadcast_to(units, (n + 1, *q[some].shape)), part)
+        pieces.append(solved(forces[1:].transpose(1, 2, 0) / HUGE, -forces[0][..., None])[..., 0])
     return np.concatenate(pieces)
 
 
-def _pieces(q: Array) -> list[slice]:
-    count, n = q.shape
-    size = max(FEWEST, AT_ONCE // max(n, 1) ** 2)
-    return [slice(first, first + size) for first in range(0, count, size)]
-
-
-def _moved(state: Array) -> Array:
-    """States (t, n), each of their numbers moved by a complex step, (n, t, n)."""
-    return state + 1j * STEP * np.eye(state.shape[1])[:, None]
+def _pieces(q: Array, each: int) -> list[slice]:
+    size = max(FEWEST, AT_ONCE // max(each, 1))
+    return [slice(first, first + size) for first in range(0, len(q), size)]
 
 
 def solved(left: Array, right: Array) -> Array:

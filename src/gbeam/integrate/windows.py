@@ -39,8 +39,6 @@ HALVINGS = 8  # of a correction of a single step
 MOVED, STALE = 0.3, 1.0  # sizes of a correction of steps that are far, and of several after which derivatives are old
 QUICK = 2  # corrections until the last step is near, up to which more steps follow it the next time
 SLOW, FAST = 0.5, 0.01  # of the last correction: where one is larger, derivatives are closer, where smaller farther
-CLOSE = 0.03  # of the last correction of accelerations at ends: where one is larger, the mass is found there
-CORRECTIONS = 10  # of accelerations at ends at most
 QUICKEST, STALLED = 0.01, 0.9  # factors of corrections: none is thought to be smaller, and where they do not shrink
 TOLERANCE, ROUNDING = 1e-12, 1e-6  # of the largest acceleration: error left by the last correction, and where it stalls
 TINY = float(np.finfo(float).tiny)
@@ -214,8 +212,7 @@ class _Window:
         z, x, t = self.z[:count], self.x[:count], self.t
         weights = [each if len(each) == 1 else each[:count] for each in (t.end_z, t.end_x)]
         ends = weights[0] @ z + weights[1] @ x
-        mass = np.broadcast_to(self.slope[2], (len(self.x), *x.shape[1:], x.shape[-1]))[:count]
-        self.done.append((ends[:, 0], ends[:, 1], x, mass, *([] if self.held is None else [self.held.u[:count]])))
+        self.done.append((ends[:, 0], ends[:, 1], x[:, -1], *([] if self.held is None else [self.held.u[:count]])))
         self.start, self.most = x[-1, -1], GROWN * float(rounding[:count].max())
         self.first, self.again = self.first + count, LONGEST
         self._keep(slice(count, None))
@@ -245,30 +242,14 @@ class _Window:
 
     def ended(self) -> tuple[Array, Array, Array]:
         """q, q̇, q̈ (t, n) at the ends of the steps that have left since the last call."""
-        q, qd, x, mass, *commands = map(np.concatenate, zip(*self.done, strict=True))
+        q, qd, qdd, *commands = map(np.concatenate, zip(*self.done, strict=True))
         self.done = []
-        if self.scheme.ends:
-            return q, qd, x[:, -1].copy()
-        residual = exact(self.residual)
-        if residual is not self.residual:
-            mass = mass - self.residual.mass
-        inputs, size = self.drive(self.steps.end[self.first - len(q) : self.first]), np.full(len(q), np.inf)
-        if self.sampling is not None:
-            inputs = self.sampling.controllers.driven(inputs, *commands)
-        at = np.arange(len(x))[:, None] + np.array(self.scheme.offsets)
-        qdd = _interpolated(at.ravel(), x.reshape(-1, x.shape[-1]), np.arange(1, len(x) + 1))
-        # Where derivatives at one state serve all steps, so does its mass.
-        between = mass[-1:, -1] if self.even else (mass[:, -1] + np.concatenate([mass[1:, 0], mass[-1:, -1]])) / 2
-        inverse = solved(between, np.broadcast_to(np.eye(between.shape[-1]), between.shape))
-        for _ in range(CORRECTIONS):  # with the mass at hand, for the equations are linear in q̈
-            change = _products(inverse, residual(q, qd, qdd, inputs))
-            qdd = qdd - change
-            before, size = size, _largest(change)
-            if _converged(size, before, qdd, 0.0, stalls=True, quick=False).all():
-                return q, qd, qdd
-            if not (size < CLOSE * before).all():
-                break
-        return q, qd, accelerations(residual, q, qd, inputs)
+        if not self.scheme.ends:
+            inputs = self.drive(self.steps.end[self.first - len(q) : self.first])
+            if self.sampling is not None:
+                inputs = self.sampling.controllers.driven(inputs, *commands)
+            qdd = accelerations(exact(self.residual), q, qd, inputs)
+        return q, qd, qdd
 
     def _stages(self) -> tuple[Array, Array, Array]:
         """q, q̇, q̈ (t s, n) at the stages."""
