@@ -11,12 +11,15 @@ import pytest
 from scipy.io import savemat
 
 import gbeam as gb
-from gbeam.mechanics.tree.control import in_series, lead_lag, notch, pid
+from gbeam.mechanics.tree.control import gains, in_series, lead_lag, notch, pid
 from gbeam.scenario import ScenarioError, build, loads
 
 pytestmark = pytest.mark.usefixtures("reading_in_process")
 
-POINTING = (Path(__file__).parents[2] / "examples" / "pointing_satellite.toml").read_text(encoding="utf-8")
+POINTING, TWO_PANELS = (
+    (Path(__file__).parents[2] / "examples" / f"{name}.toml").read_text(encoding="utf-8")
+    for name in ("pointing_satellite", "satellite_two_panels")
+)
 
 
 def _gain(law: tuple[np.ndarray, ...], s: complex) -> complex:
@@ -47,6 +50,19 @@ def test_a_scenario_is_the_system_in_python() -> None:
     assert law == same
     # What it measures is taken from the reference: it pushes back.
     assert law.effort(0.0, np.array([0.1]), law.start)[0] < 0
+
+
+def test_a_free_body_is_pointed_in_a_scenario() -> None:
+    """Names of attitude and spin, and gains on them, as in Python."""
+    names = [f"bus.root.{each}_{axis}" for each in ("attitude", "spin") for axis in "xyz"]
+    rows = np.hstack([1.5 * np.eye(3), 6.0 * np.eye(3)]).tolist()
+    drives = [f"wheel.moment_{axis}" for axis in "xyz"]
+    table = f"measure = {names}\ndrive = {drives}\nlaw = [{{ kind = 'gains', gains = {rows} }}]\nsample = '50 ms'\n"
+    case = build(loads(TWO_PANELS.replace("[response]", f"[controllers.pointing]\n{table}\n[response]")))
+    same = gb.Feedback(gains(rows), names, drives, 0.05, reference=[0.0] * 6)
+    assert case.system.controllers["pointing"] == same
+    closed = gb.linearize(case.system, loop="closed", outputs=["bus.root.attitude_x"])
+    assert closed.outputs[0].unit == "rad" and closed.eigenvalue.real.max() < 1e-6
 
 
 FILED = POINTING[: POINTING.index("law = [")] + 'law = [{ kind = "state-space", file = "FILE" }]' + POINTING[

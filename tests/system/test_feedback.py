@@ -7,8 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.linalg import expm
+from scipy.spatial.transform import Rotation
 
 import gbeam as gb
+from gbeam.mechanics.tree.control import gains
 
 PANEL = gb.assemble(
     gb.Beam(3.0, gb.Section.rectangle(0.5, 0.02), gb.Material(2700.0, 70e9), damping_ratio=0.005), "FOAM", y=0, z=3
@@ -135,6 +137,49 @@ def test_a_force_at_a_point_is_driven_and_reported() -> None:
     assert response.invariants is not None and alone.invariants is not None
     assert response.invariants.energy[-1].sum() < 0.995 * alone.invariants.energy[-1].sum()
     assert 0 < loop.saturated[1] < 1 and np.abs(loop.applied[:, :2]).max() <= 0.015
+
+
+def pointed(turn: tuple[float, ...], spin: tuple[float, ...] = (0.0, 0.0, 0.0), gain: float = 2.0) -> gb.System:
+    """A free rigid body whose attitude and spin are fed back to a torque in its axes: a star tracker and a gyro."""
+    names = [f"bus.root.{each}_{axis}" for each in ("attitude", "spin") for axis in "xyz"]
+    drives = [f"wheels.moment_{axis}" for axis in "xyz"]
+    law = gb.Feedback(gains(np.hstack([-gain * np.eye(3), -1.5 * gain * np.eye(3)])), names, drives, SAMPLE)
+    free = gb.Joint("free", "bus", turn=turn, initial_rate=dict(zip(("wx", "wy", "wz"), spin, strict=True)))
+    wheels = gb.PointForce("bus.root", follower=True)
+    bus = gb.RigidBody(10.0, (1.0, 2.0, 3.0))
+    return gb.System({"bus": bus}, {"orbit": free}, {"wheels": wheels}, controllers={"c": law})
+
+
+def test_attitude_about_one_axis_is_a_sampled_double_integrator() -> None:
+    """x⁺ = A x + B u at any angle, and the closed loop that is linearised at rest has its poles."""
+    a, b = np.array([[1.0, SAMPLE], [0.0, 1.0]]), np.array([SAMPLE**2 / 2, SAMPLE]) / 3.0
+    step = a - np.outer(b, [2.0, 3.0])
+    expected = [np.array([2.5, 0.0])]
+    for _ in range(200):
+        expected.append(step @ expected[-1])
+    response = gb.simulate(pointed((0, 0, 2.5)), duration=4.0, step=SAMPLE, estimate=False, initial="undeformed")
+    assert response.loop is not None and response.loop.units == ("rad",) * 3 + ("rad/s",) * 3
+    np.testing.assert_allclose(response.loop.measured[:-1, [2, 5]], expected[:-1], atol=1e-9)
+    np.testing.assert_allclose(response.signal("bus.root.attitude_z"), np.array(expected)[:, 0], atol=1e-9)
+    closed = gb.linearize(pointed((0, 0, 0)), loop="closed", outputs=["bus.root.attitude_z"])
+    for pole in np.log(np.linalg.eigvals(step)) / SAMPLE:
+        assert np.abs(closed.eigenvalue - pole).min() < 1e-6
+
+
+def test_attitude_in_three_axes_goes_to_the_target_and_jumps_at_half_a_turn() -> None:
+    system = pointed((1.9, -1.6, 1.1), (0.3, 0.5, -0.4))
+    response = gb.simulate(system, duration=16.0, step=SAMPLE, estimate=False, initial="undeformed")
+    assert response.loop is not None
+    attitude, spin = np.split(response.loop.measured[:-1], 2, axis=1)
+    left = (attitude**2).sum(axis=1) + (spin**2 * (1.0, 2.0, 3.0)).sum(axis=1) / 2  # Lyapunov's function
+    assert left[0] > 7.0 and left[-1] < 1e-6 and (np.diff(left) < 1e-3 * SAMPLE).all()
+    turned = Rotation.from_rotvec(attitude)
+    euler = response.attitude[:-1, response.points.index("bus.root")]
+    assert (turned.inv() * Rotation.from_quat(euler, scalar_first=True)).magnitude().max() < 1e-9
+    spun = gb.simulate(pointed((0, 0, 3.0), (0, 0, 1.0), 1e-12), duration=4.0, step=SAMPLE, initial="undeformed")
+    angle = 3.0 + spun.time
+    wrapped = (angle + np.pi) % (2 * np.pi) - np.pi
+    np.testing.assert_allclose(spun.loop.measured[:-1, 2], wrapped[:-1], atol=1e-8)
 
 
 @pytest.mark.parametrize(("limit", "fix"), [(None, "s: limit it, or look for"), (20.0, "s: look for what grows")])

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import gbeam as gb
 from gbeam.mechanics.tree.frames import turned
 from gbeam.mechanics.tree.signals import measurements, signals_of
-from gbeam.mechanics.tree.steps import parameters_of_all, rotation_by_parameters, rotation_by_vector
+from gbeam.mechanics.tree.steps import parameters_of_all, rotation_by_parameters, rotation_by_vector, vector_of
 from gbeam.numerics.series import STEP
 from tests.system.trees import JOINTS, flexible, tree
 
@@ -178,6 +178,10 @@ def test_rotations() -> None:
     np.testing.assert_allclose(spin[:, [2, 0, 1], [1, 2, 0]], w.real, rtol=1e-11, atol=1e-14)
     np.testing.assert_allclose(w.imag / STEP, alpha.real, rtol=1e-10, atol=1e-14)
     np.testing.assert_allclose(rotation_by_parameters(parameters_of_all(R.real)), R.real, atol=1e-14)
+    short = np.linalg.norm(phi, axis=1) < 3.0
+    back = vector_of(parameters_of_all(R[short]))
+    np.testing.assert_allclose(back.real, phi[short], rtol=1e-12, atol=1e-14)
+    np.testing.assert_allclose(back.imag / STEP, rate[short], rtol=1e-10, atol=1e-13)
 
 
 def test_measurements_are_those_of_results() -> None:
@@ -188,4 +192,5 @@ def test_measurements_are_those_of_results() -> None:
     zero = np.zeros_like(response.q)
     read = measurements(still, still.tree, response.q, response.qd, zero, still.inputs(response.time), names)
     np.testing.assert_allclose(read[:, names.index("b1.tip.place_y")], response.at("b1.tip")[:, 1], rtol=1e-12)
+    np.testing.assert_allclose(read[:, names.index("b1.tip.attitude_y")], response.signal("b1.tip.attitude_y"))
     np.testing.assert_allclose(read[:, names.index("j1.angle")], response.coordinate("j1.angle"))

@@ -20,7 +20,7 @@ from gbeam.results.result import Complex, Figured, Floats, Part
 from gbeam.results.solids import SolidStress, Surface, SurfaceModes
 
 ENERGIES = ("kinetic", "elastic", "gravity")
-_OF_POINTS = {"place": "place", "velocity": "velocity", "acceleration": "acceleration", "spin": "angular_velocity"}
+_OF_POINTS = {each: each for each in ("place", "velocity", "attitude", "acceleration")} | {"spin": "angular_velocity"}
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -269,8 +269,9 @@ class SystemResponse(Driven, Figured):
         Parameters
         ----------
         name : str
-            ``joint.angle``, ``joint.angle_rate``, ``body.point.place_x``, ``velocity_x`` (axes of the ground),
-            ``acceleration_x`` or ``spin_x`` (axes of the point); of a beam ``body.root_force.x``, ``root_moment.x``.
+            ``joint.angle``, ``joint.angle_rate``, ``body.point.place_x``, ``velocity_x``, ``attitude_x`` (axes
+            of the ground), ``acceleration_x`` or ``spin_x`` (axes of the point); of a beam ``body.root_force.x``,
+            ``root_moment.x``.
 
         Raises
         ------
@@ -281,7 +282,12 @@ class SystemResponse(Driven, Figured):
         quantity, _, axis = kind.rpartition("_")
         if owner in self.points and quantity in _OF_POINTS and axis in tuple("xyz"):
             k = "xyz".index(axis)
-            return np.asarray(getattr(self, _OF_POINTS[quantity])[:, self.points.index(owner), k])
+            values = getattr(self, _OF_POINTS[quantity])[:, self.points.index(owner)]
+            if quantity == "attitude":
+                from scipy.spatial.transform import Rotation
+
+                values = Rotation.from_quat(values, scalar_first=True).as_rotvec()
+            return np.asarray(values[:, k])
         body, _, load = owner.rpartition(".")
         if body in self.beams and load in ("root_force", "root_moment") and kind in tuple("xyz"):
             return np.asarray(getattr(self.beams[body].loads, load)[:, "xyz".index(kind)])

@@ -302,9 +302,9 @@ def linearize(
     inputs, outputs : sequence of str, optional
         Those that are kept, by name. Of a system: efforts on coordinates (``hinge.angle``) and components of its forces
         (``thrust.force_x``); what is measured, ``joint.angle``, ``joint.angle_rate``, ``body.point.place_x``,
-        ``velocity_x``, ``acceleration_x``, ``spin_x``. By default the driven coordinates, all forces, and accelerations
-        of the base and of prescribed coordinates (``base_acceleration_x``, ``axis.angle_acceleration``); coordinates,
-        rates, places and strains.
+        ``velocity_x``, ``attitude_x``, ``acceleration_x``, ``spin_x``. By default the driven coordinates, all forces,
+        and accelerations of the base and of prescribed coordinates (``base_acceleration_x``,
+        ``axis.angle_acceleration``); coordinates, rates, places and strains.
     at : str
         Of a system: ``rest``, where it rests, or ``start``, the motion at its start.
     loop : str

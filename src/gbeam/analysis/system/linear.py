@@ -279,7 +279,7 @@ def _default_inputs(system: System, motion: Motion | None) -> list[str]:
 
 def _default_outputs(system: System) -> list[str]:
     """Coordinates, their rates and the places of points."""
-    others = ("acceleration", "velocity", "spin")
+    others = ("acceleration", "velocity", "attitude", "spin")
     return [each for each in signals_of(system) if not each.rpartition(".")[2].startswith(others)]
 
 

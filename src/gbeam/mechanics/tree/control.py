@@ -37,8 +37,9 @@ class Feedback(Value):
         are) is sampled by Tustin's rule, one in discrete time has the step `sample`.
     measure : sequence of str
         Measurements by name, as the outputs of :func:`gbeam.linearize`: ``joint.angle``, ``joint.angle_rate``,
-        ``body.point.place_x``, ``velocity_x``, ``acceleration_x``, ``spin_x``. Accelerations are those just before
-        the sample.
+        ``body.point.place_x``, ``velocity_x``, ``attitude_x``, ``acceleration_x``, ``spin_x``. Accelerations are those
+        just before the sample. The attitude is the rotation vector from the ground's axes to the point's, rad, with the
+        same components in both; at half a turn it jumps to that of the shorter way.
     drive : sequence of str
         Efforts by name, as its inputs: ``joint.angle``, ``force.force_x``, ``force.moment_z``. They are added to what
         acts there otherwise.

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from gbeam.arrays.namespace import namespace
 from gbeam.mechanics.tree.frames import turned
 from gbeam.mechanics.tree.joints import SLIDES
+from gbeam.mechanics.tree.steps import parameters_of_all, vector_of
 
 if TYPE_CHECKING:
     from gbeam.mechanics.tree.system import System
@@ -48,7 +49,8 @@ def signals_of(system: System) -> dict[str, str]:
     """Names of what may be measured of a system, with their units.
 
     Of joints: ``joint.angle`` and ``joint.angle_rate`` and likewise; of points their ``place``, ``velocity`` (axes of
-    the ground), ``acceleration`` and ``spin``, as sensors there read them (axes of the point).
+    the ground), ``attitude``, the rotation vector of at most half a turn from the ground's axes to the point's,
+    ``acceleration`` and ``spin``, as sensors there read them (axes of the point).
     """
     signals: dict[str, str] = {}
     for name, joint in system.joints.items():
@@ -56,7 +58,7 @@ def signals_of(system: System) -> dict[str, str]:
             if each[0] != "e":
                 unit = "m" if each in SLIDES else "rad"
                 signals |= {f"{name}.{each}": unit, f"{name}.{each}_rate": f"{unit}/s"}
-    units = {"place": "m", "velocity": "m/s", "acceleration": "m/s^2", "spin": "rad/s"}
+    units = {"place": "m", "velocity": "m/s", "attitude": "rad", "acceleration": "m/s^2", "spin": "rad/s"}
     for point in system.points:
         signals |= {f"{point}.{kind}_{axis}": unit for kind, unit in units.items() for axis in "xyz"}
     return signals
@@ -78,7 +80,12 @@ def measurements(system: System, tree: Any, y: Array, yd: Array, ydd: Array, inp
             of, point = system.point("outputs", owner)
             frame = state.points_of(system.order.index(of))[point]
             name, _, axis = kind.partition("_")
-            vectors = {"place": frame.p, "acceleration": frame.a, "spin": frame.w}
-            vector = turned(frame.R, frame.v) if name == "velocity" else vectors[name]
-            columns.append(vector[..., "xyz".index(axis)])
+            read = {
+                "place": lambda at: at.p,
+                "velocity": lambda at: turned(at.R, at.v),
+                "attitude": lambda at: vector_of(parameters_of_all(xp.broadcast_to(at.R, (*state.shape, 3, 3)))),
+                "acceleration": lambda at: at.a,
+                "spin": lambda at: at.w,
+            }
+            columns.append(xp.broadcast_to(read[name](frame)[..., "xyz".index(axis)], state.shape))
     return xp.stack(columns, axis=-1) if columns else xp.zeros((*y.shape[:-1], 0))

@@ -173,6 +173,17 @@ def parameters_of_all(R: Array) -> Array:
     return continuous(xp.where(unit[:1, :1] >= 0, unit, -unit))
 
 
+def vector_of(e: Array) -> Array:
+    """Rotation vectors (..., 3) rad, of half a turn at most, of unit Euler parameters (..., 4)."""
+    xp = namespace(e)
+    e = xp.where(e[..., :1] < 0, -e, e)
+    half = e[..., 1:] / (1 + e[..., :1])  # along the axis, tan θ/4 long
+    s = (half * half).sum(axis=-1, keepdims=True)
+    small = s < SMALL**4
+    size = xp.sqrt(xp.where(small, 1.0, s))
+    return 4 * half * xp.where(small, 1 - s / 3 * (1 - 3 * s / 5), xp.arctan(size) / size)
+
+
 def continuous(e: Array) -> Array:
     """Euler parameters (t, ..., 4) without jumps of sign."""
     xp = namespace(e)

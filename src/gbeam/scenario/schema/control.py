@@ -88,7 +88,8 @@ class Controller(Table):
     measure: tuple[str, ...] = Field(
         min_length=1,
         max_length=ENTRIES,
-        description='what is sampled: "joint.angle", "joint.angle_rate", "body.point.place_x", velocity_x and so on',
+        description='what is sampled: "joint.angle", "joint.angle_rate", "body.point.place_x", velocity_x, '
+        "attitude_x (rotation vector, rad), acceleration_x, spin_x",
     )
     drive: tuple[str, ...] = Field(
         min_length=1, max_length=ENTRIES, description='efforts: "joint.angle", "force.force_x", "force.moment_z"'
