@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from gbeam.report.words import columns
+from gbeam.report.words import columns, stress_words
 
 HEADS = ["value", "was", "is", "unit"]
 ROWS = [["beam.material.youngs_modulus", "7e+10", "6.9e+10", "Pa"], ["beam.length", "0.3", "0.31", "m"]]
@@ -23,3 +23,17 @@ def test_a_table_folds_on_a_narrow_terminal(monkeypatch: pytest.MonkeyPatch) -> 
     assert folded[:4] == ["beam.material.youngs_modulus", "  was    7e+10", "  is     6.9e+10", "  unit   Pa"]
     words = " ".join(folded)
     assert all(cell in words for row in ROWS for cell in row)
+
+
+@pytest.mark.parametrize(
+    ("stress", "said"),
+    [
+        (0.0, "no stress"),
+        (2e-26, "no stress"),  # rounding at a profile's first instant was a margin of 1e34
+        (1e-6, "stress 0 to 1.000e-12 MPa, largest in tension at 1.000 m, no stress to yield by"),
+        (100e6, "stress 0 to 100.0 MPa, largest in tension at 1.000 m, margin on yield 1.5"),
+        (500e6, "stress 0 to 500.0 MPa, largest in tension at 1.000 m, ABOVE YIELD: margin -0.5"),
+    ],
+)
+def test_rounding_is_no_stress(stress: float, said: str) -> None:
+    assert stress_words([0.0, 1.0], [0.0, stress], [0.0, 0.0], 250e6) == said

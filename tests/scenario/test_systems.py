@@ -154,6 +154,8 @@ WRONG = {
     "two moments": (', "12 kg m^2"]', "]", "bodies.bus.inertia", "has 2 entries", None),
     "station": ('duration = "20 s"\n', 'duration = "20 s"\nstations = [1]\n', "response.stations", "is of one beam",
                 "stations"),
+    "stops": ('axes = [[0, 1, 0]]', 'axes = [[0, 1, 0]]\nstops = ["30 deg", "-10 deg"]\nstop_stiffness = "1 kN m/rad"',
+              "joints.hinge_left.stops.angle", "is 30 deg, -10 deg", "stops"),
     "gravity": ("[response]", '[system]\ngravity = [0, 0, "-1 g"]' + FLIGHT + "[response]", "system.gravity",
                 "is given beside a motion", "gravity"),
 }  # fmt: skip

@@ -92,14 +92,15 @@ def stress_words(stations: Any, tension: Any, compression: Any, yield_strength: 
     stress = float(max(sizes))
     worst = sizes.index(stress)
     sign = "tension" if tension[worst] >= -compression[worst] else "compression"
-    low, high = (number(1e-6 * float(each)) for each in (min(compression), max(tension)))
+    low, high = (number(1e-6 * each) for each in tidy((min(compression), max(tension)), 0.0))
+    if low == high == "0":
+        return "no stress"
     words = f"stress {low} to {high} MPa, largest in {sign} at {number(float(stations[worst]))} m"
-    if yield_strength is None or stress == 0:
+    if yield_strength is None:
         return words
-    from gbeam.results.parts import yield_margin
+    from gbeam.results.parts import margin_words, yield_margin
 
-    margin = float(yield_margin(yield_strength, np.array(stress)))
-    return f"{words}, {'margin on yield' if margin >= 0 else 'ABOVE YIELD: margin'} {margin:.3g}"
+    return f"{words}, {margin_words(float(yield_margin(yield_strength, np.array(stress))))}"
 
 
 def resting_loads(loads: Loads) -> str:

@@ -12,6 +12,7 @@ from gbeam.results.declared import BESIDE, INSIDE, declared, fact, part, quantit
 from gbeam.results.result import Floats, Part
 
 _SECTION_AXES = "S: axes of the deformed section"
+UNSTRESSED = 1e-12  # of the strength: a smaller stress is rounding
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -267,7 +268,14 @@ class Peaks(Part):
 def yield_margin(yield_strength: float, stress: Floats) -> Floats:
     """Margin on yield, yield strength over the size of the stress less one: negative beyond yield, inf unstressed."""
     with np.errstate(divide="ignore"):
-        return np.asarray(yield_strength / stress - 1)
+        return np.asarray(np.where(stress < UNSTRESSED * yield_strength, math.inf, yield_strength / stress - 1))
+
+
+def margin_words(margin: float) -> str:
+    """Say a margin on yield."""
+    if margin == math.inf:
+        return "no stress to yield by"
+    return f"margin on yield {margin:.3g}" if margin >= 0 else f"ABOVE YIELD: margin {margin:.3g}"
 
 
 @dataclass(frozen=True, repr=False, eq=False)

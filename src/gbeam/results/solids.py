@@ -13,7 +13,7 @@ from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.guards.checks import index_of, vector
 from gbeam.results.declared import declared, fact, labels, part, quantity
-from gbeam.results.parts import yield_margin
+from gbeam.results.parts import margin_words, yield_margin
 from gbeam.results.result import Complex, Figured, Floats, Part
 
 
@@ -124,14 +124,12 @@ class SolidStress(Figured):
         """The largest stress and the least margin in words."""
         if self.nearest_yield is None:
             return said(self.worst), "margin on yield not known: no material has a yield_strength"
-        margin = self.nearest_yield.margin
-        assert margin is not None
-        words = "margin on yield" if margin >= 0 else "ABOVE YIELD: margin"
+        assert self.nearest_yield.margin is not None
+        words = margin_words(self.nearest_yield.margin)
         material = self.nearest_yield.material or "the material"
         same = (self.worst.node, self.worst.material) == (self.nearest_yield.node, self.nearest_yield.material)
-        return said(
-            self.worst
-        ), f"{words} {margin:.3g} in {material}{', there' if same else f': {said(self.nearest_yield)}'}"
+        there = ", there" if same else f": {said(self.nearest_yield)}"
+        return said(self.worst), f"{words} in {material}{there}"
 
     def __repr__(self) -> str:
         of, (worst, margin) = f" {self.motion!r}" if self.motion else "", self.lines

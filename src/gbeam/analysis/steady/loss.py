@@ -110,15 +110,16 @@ def judged(critical: Critical, path: Path, structure: Structure | System, progre
     at = critical.value
     point: Any = path(structure, (1 - CLOSE) * at)
     richer = Richer(point)
-    exact = _lost(richer.exact.model, path, at, progress)
-    same = exact if richer.same is richer.exact else _lost(richer.same.model, path, at, progress)
+    count = 5 if richer.theories else 2
+    exact = _lost(richer.exact.model, path, at, progress, part=(0, count))
+    same = exact if richer.same is richer.exact else _lost(richer.same.model, path, at, progress, part=(1, count))
     errors = _errors(at, same, exact)
     if not richer.theories:
         errors = replace(errors, model=math.nan)
         doubts = doubtful_loss(critical.quantity, critical.model, errors)
         return replace(critical, errors=errors, warnings=critical.warnings + doubts)
     models, plates = richer.by_theories(structure)
-    slender, *thick = (_lost(each, path, at, progress) for each in models)
+    slender, *thick = (_lost(each, path, at, progress, part=(k, count)) for k, each in enumerate(models, start=2))
     beam_theory = max(apart(at if math.isinf(slender) else slender, each) for each in thick)
     errors = errors.with_theory(0.0 if math.isinf(errors.model) else beam_theory)
     if isinstance(structure, System):
@@ -175,8 +176,17 @@ def _unseen(critical: Critical, path: Path, structure: Structure | System, progr
     )
 
 
-def _lost(rich: Any, path: Path, near: float, progress: Progress, shares: Sequence[float] = SHARES) -> float:
-    """Value at which a richer model loses its equilibrium; infinity where it keeps it to the last of the shares."""
+def _lost(
+    rich: Any,
+    path: Path,
+    near: float,
+    progress: Progress,
+    shares: Sequence[float] = SHARES,
+    part: tuple[int, int] = (0, 1),
+) -> float:
+    """Value at which a richer model loses its equilibrium; infinity where it keeps it to the last of the shares. `part`
+    is how many models were looked at before, and of how many.
+    """
 
     @cache
     def margin(value: float) -> float:
@@ -187,7 +197,8 @@ def _lost(rich: Any, path: Path, near: float, progress: Progress, shares: Sequen
 
     low = 0.0
     for i, share in enumerate(shares):
-        tell(progress, f"errors of the critical value, by {rich.kind} with more shapes", i / len(shares))
+        done = (part[0] + i / len(shares)) / part[1]
+        tell(progress, f"errors of the critical value, by {rich.kind} with more shapes", done)
         if margin(share * near) < 0:
             return brentq(margin, low, share * near, xtol=CLOSE * near, maxiter=200)
         low = share * near

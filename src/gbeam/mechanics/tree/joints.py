@@ -227,7 +227,9 @@ class Joint(Value):
             k = self.coordinates.index(coordinate)
             ends = array(f"stops.{coordinate}", pair)
             if ends.shape != (2,) or not ends[0] < ends[1]:
-                raise InputError(f"stops.{coordinate}", f"is {pair!r}", "give the lowest and the highest coordinate")
+                unit, of_unit = ("m", ends) if coordinate in SLIDES else ("deg", np.degrees(ends))
+                listed = ", ".join(f"{each:.6g} {unit}" for each in np.ravel(of_unit))
+                raise InputError(f"stops.{coordinate}", f"is {listed}", "give the lowest and the highest coordinate")
             low[k], high[k] = ends
             if not (is_jax(values["stop_stiffness"]) or values["stop_stiffness"][k] > 0):
                 raise InputError("stop_stiffness", "is missing", f"a stop of {coordinate} needs one")
