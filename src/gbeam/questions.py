@@ -204,7 +204,7 @@ def _structure(case: AnyCase, needs: Needs) -> Any:
         return case.assemble()
     length = case.beam.length
     structure = case.assemble([length * i / (STATIONS - 1) for i in range(STATIONS)] if needs.shapes else None)
-    return structure if needs.errors else replace(structure, source=None, richer=None)
+    return structure if needs.errors else replace(structure, source=None, richer=None, coarser=None)
 
 
 def _time(case: AnyCase, at: float | None) -> float:

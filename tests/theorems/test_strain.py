@@ -25,7 +25,7 @@ FACES = ("z", "y", "-z", "-y")
 def _no_errors_of_poles() -> Iterator[None]:
     """Leave out the errors of poles, which take most of a linear model's time and have tests of their own."""
     with pytest.MonkeyPatch.context() as patch:
-        none = np.ones(1), FrequencyErrors(*np.zeros((4, 1)))
+        none = np.ones(1), FrequencyErrors(*np.zeros((5, 1)))
         patch.setattr("gbeam.analysis.control.linearization.pole_errors", lambda *_: none)
         yield
 

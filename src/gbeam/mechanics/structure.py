@@ -140,9 +140,11 @@ class Structure:
     richer : Structure or None
         The same with more coordinates, of which its own come first, where some more modes were kept than it has: by
         these the error of those left out is judged.
-    mesh_error : tuple of float or None
-        Where static shapes are among the coordinates, errors of the frequencies of its modes by the mesh, as fractions,
-        NaN where unknown: these frequencies are the lowest, and those above are none of the specimen's.
+    coarser : Structure or None
+        The same of a coarser mesh in coordinates as like its own as can be: by it the error of the mesh is judged.
+    modes : int or None
+        Number of modes where static shapes are among the coordinates: their frequencies are the lowest, and those
+        above are none of the specimen's.
 
     Examples
     --------
@@ -177,8 +179,9 @@ class Structure:
     turns: Array | None = None
     unstiffened: bool = static(default=False)
     recovery: Recovery | None = static(default=None)
-    mesh_error: tuple[float, ...] | None = static(default=None)
+    modes: int | None = static(default=None)
     richer: Structure | None = static(default=None)
+    coarser: Structure | None = static(default=None)
 
     def __repr__(self) -> str:
         shapes = ", ".join(f"{n} {way}" for n, way in zip(self.counts, FAMILIES, strict=True) if n)
@@ -332,11 +335,17 @@ class Structure:
     @property
     def resolved(self) -> int:
         """Number of the lowest frequencies that are the specimen's, and not of static shapes."""
-        return self.size if self.mesh_error is None else len(self.mesh_error)
+        return self.size if self.modes is None else self.modes
 
     def at_time(self, time: float) -> Structure:
         """Return the structure with its loads frozen at a `time`, s: as static, modes and stability take it."""
         return self if self.history is None else replace(self, load_values=self.history(np.asarray(float(time))))
+
+    def turned(self, basis: Array) -> Structure:
+        """A linear structure of particles in coordinates p with q = basis p, without what is recovered."""
+        c, turns = self.coefficients.turned(basis), None if self.turns is None else self.turns @ basis
+        places, stations = self.places.turned(basis), self.station_places.turned(basis)
+        return replace(self, coefficients=c, places=places, station_places=stations, turns=turns, recovery=None)
 
     @property
     def particles(self) -> StrainField | SeriesField | Places:
@@ -395,7 +404,7 @@ def linear_structure(
     turns: Array | None = None,
     warnings: tuple[str, ...] = (),
     unstiffened: bool = False,
-    mesh_error: tuple[float, ...] | None = None,
+    modes: int | None = None,
 ) -> Structure:
     """Structure whose equations are those of coefficients, with its particles (k,) and its stations."""
     ratio = 0.0 if holds_jax(damping_ratio) else float(np.max(damping_ratio))
@@ -415,5 +424,5 @@ def linear_structure(
         points=points,
         turns=turns,
         unstiffened=unstiffened,
-        mesh_error=mesh_error,
+        modes=modes,
     )

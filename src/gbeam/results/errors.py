@@ -1,4 +1,4 @@
-"""Estimated errors of a result by their causes: time steps, too few shapes, the model, the beam theory."""
+"""Estimated errors of a result by their causes: time steps, too few shapes, the model, the beam theory, the mesh."""
 
 from __future__ import annotations
 
@@ -11,9 +11,10 @@ import numpy as np
 from gbeam.results.declared import declared, fact, labels, part, quantity
 from gbeam.results.result import Complex, Floats, Part
 
-PARTS = ("shapes", "model", "beam_theory", "total")
+PARTS = ("shapes", "model", "beam_theory", "mesh", "total")
 SHAPES, MODEL = "estimated error from too few shapes", "estimated error of the model against exact"
 THEORY, TOTAL = "estimated error of the theory of slender beams", "estimated error in all"
+MESH, COARSER = "estimated error of a solid's mesh", "by the difference to a coarser one"
 UNKNOWN = "what is not estimated, and why"
 SLENDER = "against one with shear, rotary inertia and twist, and by plate action"
 
@@ -26,6 +27,7 @@ class ErrorEstimate(Part):
     shapes: float = quantity("", SHAPES, note="against the same model with more", default=math.nan)
     model: float = quantity("", MODEL, default=math.nan)
     beam_theory: float = quantity("", THEORY, note=SLENDER, default=math.nan)
+    mesh: float = quantity("", MESH, note=COARSER, default=math.nan)
     total: float = quantity("", TOTAL, note="the largest of all together, maybe less than their sum", default=math.nan)
 
     @property
@@ -33,9 +35,10 @@ class ErrorEstimate(Part):
         """All but the beam theory's: against an exact slender beam."""
         return self.total - (0.0 if math.isnan(self.beam_theory) else self.beam_theory)
 
-    def with_theory(self, share: float) -> ErrorEstimate:
-        """Errors with one of the beam theory; one that is not known leaves the total."""
-        return replace(self, beam_theory=share, total=self.total + (0.0 if math.isnan(share) else share))
+    def adding(self, *, beam_theory: float = math.nan, mesh: float = math.nan) -> ErrorEstimate:
+        """Errors with one of the beam theory, or of the mesh; one that is not known leaves the total."""
+        more = {name: share for name, share in (("beam_theory", beam_theory), ("mesh", mesh)) if not math.isnan(share)}
+        return replace(self, total=self.total + sum(more.values()), **more)
 
     def __repr__(self) -> str:
         parts = {f.name.replace("_", " "): getattr(self, f.name) for f in fields(self)}
@@ -122,7 +125,10 @@ class FrequencyErrors(Part):
     shapes: Floats = quantity("", SHAPES, note="against the same model with more")
     model: Floats = quantity("", MODEL, note="with enough shapes")
     beam_theory: Floats = quantity("", THEORY, note=SLENDER)
-    total: Floats = quantity("", TOTAL, note="against the exact model with more shapes, and of the beam theory")
+    mesh: Floats = quantity("", MESH, note=COARSER)
+    total: Floats = quantity(
+        "", TOTAL, note="against the exact model with more shapes, of the beam theory and of the mesh"
+    )
     theory: str = fact("causes of the error of the beam theory, and what it assumes", name=None, key=None, default="")
     unseen: tuple[float, ...] = fact(
         "frequencies below the highest of these that bend the beam and twist it, and that no model has",
@@ -144,8 +150,7 @@ class FrequencyErrors(Part):
         return {name: getattr(self, name) for name in PARTS}
 
     def __getitem__(self, chosen: Any) -> FrequencyErrors:
-        shapes, model, beam_theory, total = (each[chosen] for each in self.parts.values())
-        return FrequencyErrors(shapes, model, beam_theory, total, self.theory, self.unseen, self.note)
+        return replace(self, **{name: each[chosen] for name, each in self.parts.items()})
 
     def within(self, share: float) -> int:
         """Number of the first frequencies whose every total is within a share; zero where there is no estimate."""

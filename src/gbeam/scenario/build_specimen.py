@@ -59,20 +59,22 @@ def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure
             renamed = renamed.replace("thickness", "thicknesses", 1) if table.thicknesses else renamed
             raise InputError(renamed, error.problem, error.fix) from None
 
-    def reduced(file: str, size: float | None, coarser: SolidModel | None = None) -> SolidModel:
-        mesh = read(file, size)
-        options: dict[str, Any] = {"modes": table.modes, "damping_ratio": table.damping_ratio}
-        source = mesh, options, None if coarser is None else coarser.frequency
+    options: dict[str, Any] = {"modes": table.modes, "damping_ratio": table.damping_ratio}
+
+    def reduced(file: str, mesh: SolidMesh, coarser: SolidModel | None = None, rough: Any = None) -> SolidModel:
+        source = mesh, options, rough
         return kept(f"reducing {file}", source, lambda: mesh.reduced(**options, coarser=coarser))
 
     def model() -> Structure:
-        coarser = None
+        coarser = rough = None
         if table.coarser is not None or table.coarser_size is not None:
+            file = table.coarser or table.mesh
             try:
-                coarser = reduced(table.coarser or table.mesh, table.coarser_size)
+                rough = read(file, table.coarser_size)
+                coarser = reduced(file, rough)
             except InputError as error:
                 raise InputError("coarser", f"{error.where} {error.problem}", error.fix) from None
-        return reduced(table.mesh, table.element_size, coarser).structure
+        return reduced(table.mesh, read(table.mesh, table.element_size), coarser, rough).structure
 
     return parts.attempt(where, model)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -273,7 +272,7 @@ class ImportedModel(Value):
                 kind=kind,
                 warnings=(*doubts, *more),
                 unstiffened=bool(doubts or more),
-                mesh_error=(math.nan,) * modes,
+                modes=modes,
             )
 
         return reduction.structure(build, damping_ratio)

@@ -44,7 +44,7 @@ from gbeam.solids.foreign import (
     unit_size,
 )
 from gbeam.solids.links import Linked, Links, attached, refuse_names
-from gbeam.solids.model import SolidModel, mesh_errors
+from gbeam.solids.model import SolidModel, beside, hardly_coarser
 from gbeam.solids.placed import Placed, with_cards
 from gbeam.solids.plausibility import doubts_of, refuse_folded, refuse_loose
 from gbeam.solids.shape_functions import Indices
@@ -287,7 +287,8 @@ class SolidMesh(Value):
         kind : str
             Name of the model in results.
         coarser : SolidModel, optional
-            Of a coarser mesh of the same solid, by which the mesh's error is estimated; without one it is unknown.
+            Of a coarser mesh of the same solid, with as many modes and the same points, by which the mesh's error is
+            estimated: its answers' differences to those of the finer one. Without one it is unknown.
 
         Returns
         -------
@@ -296,7 +297,8 @@ class SolidMesh(Value):
         Raises
         ------
         InputError
-            If more modes are asked for than there are unknowns, or the coarser mesh is none.
+            If more modes are asked for than there are unknowns, or the coarser mesh is none, or has fewer modes or
+            other points.
 
         Examples
         --------
@@ -336,7 +338,7 @@ class SolidMesh(Value):
         halves = geometric_stiffness(self.points, self.blocks, still[:count, :, stressed], shapes)
         halves += linked.geometric_stiffness(held, mass, loads[:, stressed], reduced.static[:, stressed], reduced)
         frequency = np.sqrt(np.diagonal(reduced.stiffness)[:modes]) / (2 * np.pi)
-        error, doubts = mesh_errors(frequency, coarser)
+        doubts = () if coarser is None else hardly_coarser(coarser.mesh, self)
         nodal, length = NodalStress.of(self, shapes), float(np.linalg.norm(linked.points, axis=1).max())
 
         def build(n: int, damping_ratio: Any) -> Structure:
@@ -358,11 +360,14 @@ class SolidMesh(Value):
                 points=self.named_points,
                 kind=kind,
                 warnings=(*self.warnings, *doubts),
-                mesh_error=tuple(error.tolist()),
+                modes=modes,
             )
             return replace(structure, recovery=replace(nodal, size=n))
 
-        return SolidModel(self, reduced.structure(build, damping_ratio), frequency, error)
+        structure = reduced.structure(build, damping_ratio)
+        if coarser is not None:
+            structure = beside(coarser, structure)
+        return SolidModel(self, structure, frequency)
 
     @property
     def named_points(self) -> tuple[str, ...]:

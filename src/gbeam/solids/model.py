@@ -1,8 +1,8 @@
-"""A solid reduced to a few coordinates: its structure, its stress, and the error of its mesh."""
+"""A solid reduced to a few coordinates: its structure, its stress, and the same of a coarser mesh beside it."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,17 +10,20 @@ import numpy as np
 from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
+from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.structure import Structure
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.solids import SolidStress
+from gbeam.solids.elements import mass_matrix
+from gbeam.solids.shape_functions import Indices
 from gbeam.solids.stress import NodalStress, solid_stress
 
 if TYPE_CHECKING:
     from gbeam.solids.mesh import SolidMesh
 
-ROUGH = 0.05  # of the lowest frequency, between two meshes
+COARSER = 2**0.5  # times as large elements, from where an error of second order is less than the difference
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,8 +36,6 @@ class SolidModel(Value):
     structure : Structure
         That analyses take; its coordinates are modes of unit modal mass, ascending in frequency.
     frequency : (m,) natural frequencies of the modes, Hz
-    mesh_error : (m,) estimated errors of the frequencies by the mesh, as fractions
-        Their difference to those of a coarser mesh; NaN where there is none.
 
     Examples
     --------
@@ -49,7 +50,16 @@ class SolidModel(Value):
     mesh: SolidMesh
     structure: Structure
     frequency: Floats
-    mesh_error: Floats
+
+    @property
+    def mesh_error(self) -> Floats:
+        """Estimated errors (m,) of the frequencies at rest by the mesh, as fractions: their differences to those of a
+        coarser mesh; NaN where there is none.
+        """
+        if self.structure.coarser is None:
+            return np.full(len(self.frequency), np.nan)
+        rough = self.structure.coarser.rest[0][: len(self.frequency)] / (2 * np.pi)
+        return np.asarray(np.abs(rough / self.frequency - 1))
 
     def __repr__(self) -> str:
         shown = ", ".join(f"{each:.4g}" for each in self.frequency[:6])
@@ -107,13 +117,81 @@ class SolidModel(Value):
         return solid_stress(self._nodal, time, q, **about)
 
 
-def mesh_errors(frequency: Floats, coarser: SolidModel | None) -> tuple[Floats, tuple[str, ...]]:
-    """Differences of frequencies to those of a coarser mesh, as fractions, and a warning where they are large."""
-    error = np.full(len(frequency), np.nan)
-    if coarser is None:
-        return error, ()
-    both = min(len(error), len(coarser.frequency))
-    error[:both] = np.abs(coarser.frequency[:both] / frequency[:both] - 1)
-    if error[0] <= ROUGH:
-        return error, ()
-    return error, (f"the mesh: a coarser one changes the lowest frequency by {100 * error[0]:.2g} %; mesh it finer",)
+def beside(coarser: SolidModel, finer: Structure) -> Structure:
+    """A structure with that of a coarser mesh: in coordinates as like its own as can be, put out at its points and
+    stressed where it is.
+    """
+    from scipy.spatial import cKDTree
+
+    rough, fine = coarser._nodal, finer.recovery
+    assert isinstance(fine, NodalStress)
+    structure, n = coarser.structure, finer.size
+    if structure.size < n and structure.richer is not None:
+        structure = structure.richer
+    if structure.size < n or coarser.structure.resolved < finer.resolved:
+        problem = f"has {coarser.structure.resolved} modes, and the mesh {finer.resolved}"
+        raise InputError("coarser", problem, "give it as many, or more nodes")
+    for what, have, want in (
+        ("points", structure.points, finer.points),
+        ("materials", tuple(dict.fromkeys(rough.material)), tuple(dict.fromkeys(fine.material))),
+    ):
+        if set(have) != set(want):
+            problem = f"has the {what} {', '.join(have)}, and the mesh {', '.join(want)}"
+            raise InputError("coarser", problem, "give it the same")
+    known, mesh = max(n, coarser.structure.size), rough.mesh
+    shapes = rough.every_shape[..., :known]
+    mass = mass_matrix(mesh.points, mesh.blocks)
+    moved = (mass @ shapes.reshape(len(shapes), -1)).reshape(shapes.shape) + mesh.point_masses[:, None, None] * shapes
+    _, near = cKDTree(fine.mesh.points).query(mesh.points)
+    left, _, right = np.linalg.svd(np.tensordot(moved, fine.shapes[near], ((0, 1), (0, 1))), full_matrices=False)
+    basis = np.zeros((structure.size, n))
+    basis[:known] = left @ right
+    every = np.pad(basis, ((0, rough.every_shape.shape[-1] - len(basis)), (0, 0)))
+    # Where both have a node: stress changes fast near those where it is largest.
+    there = _nearest(rough, fine, fine.felt_at)
+    felt = replace(fine, felt_at=np.unique(_nearest(fine, rough, there)))
+    nodal = replace(
+        rough,
+        every_shape=rough.every_shape @ every,
+        every_table=rough.every_table @ every,
+        size=n,
+        felt_at=_nearest(rough, felt, felt.felt_at),
+    )
+    other = structure.turned(basis)
+    first, places = np.array(other.station_places.first), finer.station_places
+    tip = np.linalg.norm(mesh.points - places.r0[-1], axis=1).argmin()  # of several as far from the root the same
+    first[-1] = nodal.shapes[tip]
+    stations = Places(places.r0, first, other.station_places.second)
+    other = replace(
+        other, station_places=stations, stations=finer.stations, length=finer.length, recovery=nodal, richer=None
+    )
+    richer = finer.richer and replace(finer.richer, recovery=replace(felt, size=finer.richer.size))
+    return replace(finer, recovery=felt, richer=richer, coarser=other)
+
+
+def _nearest(of: NodalStress, to: NodalStress, pairs: Indices) -> Indices:
+    """Pairs of a mesh nearest to pairs of another one, of the same materials."""
+    from scipy.spatial import cKDTree
+
+    out, kinds, wanted = np.zeros_like(pairs), np.array(of.material), np.array(to.material)[pairs]
+    for name in np.unique(wanted):
+        some, which = np.flatnonzero(kinds == name), wanted == name
+        tree = cKDTree(of.mesh.points[of.node[some]])
+        out[which] = some[tree.query(to.mesh.points[to.node[pairs[which]]])[1]]
+    return out
+
+
+def hardly_coarser(coarser: SolidMesh, finer: SolidMesh) -> tuple[str, ...]:
+    """Warn of a coarser mesh whose elements are hardly larger in any direction."""
+
+    def size(mesh: SolidMesh) -> Floats:
+        boxes = [np.ptp(mesh.points[block.nodes], axis=1) for block in mesh.blocks]
+        return np.asarray(np.concatenate(boxes).mean(axis=0))
+
+    ratio = float((size(coarser) / size(finer)).max())
+    if ratio >= COARSER:
+        return ()
+    return (
+        f"the coarser mesh has elements {ratio:.2g} times as large: the error of the mesh may be larger than the "
+        "difference; give one of about twice the size",
+    )

@@ -33,7 +33,8 @@ FACES = {
 @dataclass(frozen=True, eq=False)
 class NodalStress(Value):
     """Stresses of a mesh by the first `size` of coordinates with shapes (k, 3, n): at all pairs `known` (p,), a node
-    and the number of a material of its elements in one, those of unit coordinates (p, 6, n).
+    and the number of a material of its elements in one, those of unit coordinates (p, 6, n); `felt_at` are the pairs
+    that one of all coordinates stresses most.
     """
 
     mesh: Any
@@ -42,23 +43,26 @@ class NodalStress(Value):
     known: Indices
     every_table: Floats
     size: int
+    felt_at: Indices
 
     @classmethod
     def of(cls, mesh: Any, shapes: Floats) -> Self:
         """Stresses of a mesh."""
         from scipy.sparse import csr_array
 
-        count, names = len(mesh.points), _materials(mesh)
+        count, names, n = len(mesh.points), _materials(mesh), shapes.shape[-1]
         pairs = [names.index(block.material) * count + np.unique(block.nodes) for block in mesh.blocks]
         known = np.unique(np.concatenate(pairs))
-        empty = cls(mesh, shapes, hull(mesh.points), known, np.empty((0, 6, shapes.shape[-1])), shapes.shape[-1])
-        total, shared = np.zeros((len(known), 6, shapes.shape[-1])), np.zeros(len(known))
+        empty = cls(mesh, shapes, hull(mesh.points), known, np.empty((0, 6, n)), n, known[:0])
+        total, shared = np.zeros((len(known), 6, n)), np.zeros(len(known))
         for pair, stress in empty._elements():
             some, place = np.unique(pair, return_inverse=True)
             sums = csr_array((np.ones(len(pair)), (place, np.arange(len(pair)))), shape=(len(some), len(pair)))
             total[some] += (sums @ stress.reshape(len(pair), -1)).reshape(len(some), *stress.shape[1:])
             shared[some] += np.bincount(place)
-        return replace(empty, every_table=total / shared[:, None, None])
+        table = total / shared[:, None, None]
+        most = np.unique(von_mises(np.moveaxis(table, 1, 2)).argmax(axis=0))
+        return replace(empty, every_table=table, felt_at=most)
 
     @property
     def shapes(self) -> Floats:
@@ -156,9 +160,8 @@ class NodalStress(Value):
         return float(np.ptp(von_mises(np.concatenate(parts)))) / mean if mean > 0 else 0.0
 
     def felt(self, q: Floats) -> Floats:
-        """Stress over time (t, c) at the pairs that one of all coordinates stresses most."""
-        most = np.unique(von_mises(np.moveaxis(self.every_table, 1, 2)).argmax(axis=0))
-        return np.asarray(np.tensordot(q, self.table[most], (1, 2)).reshape(len(q), -1))
+        """Stress over time (t, c) where it is felt most."""
+        return np.asarray(np.tensordot(q, self.table[self.felt_at], (1, 2)).reshape(len(q), -1))
 
     def histories(self, q: Floats) -> tuple[Floats, Indices, Floats]:
         """Largest von Mises stress over time at every pair (p,), when (p,), and over all pairs at every time (t,)."""

@@ -1,4 +1,4 @@
-"""Estimated errors by their causes, steps, too few shapes, model and theory of slender beams, and in words."""
+"""Estimated errors by their causes, steps, too few shapes, model, mesh and theory of slender beams, and in words."""
 
 from __future__ import annotations
 
@@ -30,9 +30,12 @@ def cure_of_theory(theory: str) -> str:
     return 'kind = "exact" with modes.twist, shear_y, shear_z has all but plate action'
 
 
-def cause_and_cure(shapes: float, model: float, beam_theory: float, theory: str) -> tuple[str, str]:
-    """The largest of the errors from too few shapes, of the model and of the beam theory, and what helps."""
-    if beam_theory > max(shapes, model):
+def cause_and_cure(errors: ErrorEstimate, theory: str) -> tuple[str, str]:
+    """The largest of the errors from too few shapes, of the model, the mesh and the beam theory, and what helps."""
+    shapes, model = errors.shapes, errors.model
+    if errors.mesh > np.nanmax([shapes, model, errors.beam_theory, 0.0]):
+        return ROUGH_MESH
+    if errors.beam_theory > max(shapes, model):
         return f"the theory of slender beams ({theory})", cure_of_theory(theory)
     if math.isnan(model) and not math.isnan(shapes):  # of a solid, whose model is not judged
         return FEW_MODES
@@ -48,7 +51,7 @@ def fuller(model: float) -> str:
 
 def wrong_by(what: str, size: str, errors: ErrorEstimate, theory: str) -> str:
     """Say by how much a quantity of a steady state is wrong, mostly from what, and what helps."""
-    cause, cure = cause_and_cure(errors.shapes, errors.model, errors.beam_theory, theory)
+    cause, cure = cause_and_cure(errors, theory)
     return f"{what} is wrong by an estimated {size}: {cause}; {cure}"
 
 
@@ -76,6 +79,8 @@ def of_bodies(structure: Structure, lacking: Lacking, tip: float, limit: float) 
 NOTHING = 1e-7  # of what another load makes
 UNMOVED = 1e-14  # of the length
 FEW_MODES = "too few modes", "raise modes"
+ROUGH_MESH = "the mesh", "mesh it finer"
+NO_MESH = "the mesh is not judged"
 UNKNOWN = "shapes and model are not judged: it is neither a beam, a mesh nor matrices"
 
 
@@ -93,20 +98,14 @@ def unjudged(structure: Structure) -> str:
     """The errors of a structure that are not judged, in words."""
     if structure.source is not None:
         return ""
-    if structure.mesh_error is None:
+    if structure.modes is None:
         return UNKNOWN
-    return f"the mesh is not judged{by_coarser(structure)}"
-
-
-def by_coarser(structure: Structure) -> str:
-    """By how much a coarser mesh changes the lowest frequency, in words; empty where there is none."""
-    known = (structure.mesh_error or (math.nan,))[0]
-    return "" if math.isnan(known) else f", by a coarser one {percent(known)} of the lowest frequency"
+    return NO_MESH if structure.coarser is None else ""
 
 
 class Judgement(NamedTuple):
     """Readings that differ by too few shapes, and by the model, what the theory of slender beams lacks, errors of the
-    steps, the sizes to which all are relative, and what is `nothing` but rounding.
+    steps, the sizes to which all are relative, and what is `nothing` but rounding; by the mesh, where that is known.
     """
 
     shapes: tuple[Reading, Reading]
@@ -115,6 +114,7 @@ class Judgement(NamedTuple):
     steps: Mapping[Quantity, float]
     sizes: Mapping[Quantity, float]
     nothing: Collection[Quantity]
+    mesh: tuple[Reading, Reading] | None = None
 
     def apart(self, key: Quantity, *pairs: tuple[Reading, Reading]) -> float:
         """Largest sum of differences of two readings, as a share of the size."""
@@ -130,8 +130,10 @@ class Judgement(NamedTuple):
         shapes, model, total = (self.apart(key, *each) for each in causes)
         step = 0.0 if key in self.nothing else self.steps.get(key, math.nan)
         away = ErrorEstimate(step, shapes, model, total=total + (0.0 if math.isnan(step) else step))
+        if self.mesh is not None:
+            away = away.adding(mesh=self.apart(key, self.mesh))
         theory, size = self.theory.get(key, math.nan), self.sizes[key]
-        return away.with_theory(0.0 if key in self.nothing or size == 0 else theory / size)
+        return away.adding(beam_theory=0.0 if key in self.nothing or size == 0 else theory / size)
 
     def loads(self, body: str) -> ErrorEstimate:
         """The larger error of the force and the moment at a body's root."""

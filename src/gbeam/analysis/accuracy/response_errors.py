@@ -181,6 +181,17 @@ def lacking(
     return within.moved(total), few, _rings(exact, *departures.shaken(residual, begun))
 
 
+def by_mesh(
+    structure: Structure, driven: Driven, of: Trajectory, computed: Reading, begin: Begin | None
+) -> tuple[Reading, Reading] | None:
+    """Read what a solution would be by a coarser mesh, and what is computed; None where there is no such mesh."""
+    if structure.coarser is None:
+        return None
+    within = driven.within(structure.coarser, np.arange(structure.size), structure, of)
+    begun = None if begin is None else _departure(begin, structure.coarser, within.of)
+    return within.moved(within.departures().answer(within.residual(), begun)), computed
+
+
 def _rings(exact: Structure, rate: Floats, amplitude: Floats) -> Rings:
     """Ringing of modes with amplitudes (first + n, k) at the tip and, by the elastic forces, at the root."""
     c, q = exact.coefficients, amplitude[-exact.size :]
@@ -216,12 +227,15 @@ def errors_of(
     beyond: Lacking,
     steps: Mapping[Quantity, float],
     sizes: Mapping[Quantity, float],
+    mesh: tuple[Reading, Reading] | None,
 ) -> Errors:
-    """Errors of a beam alone by readings that differ by its shapes and by its model; that of a solid is not judged."""
+    """Errors of a body alone by readings that differ by its shapes, by its model, which a solid has not, and by its
+    mesh.
+    """
     nothing = negligible(sizes, BEAM, structure.length)
     if sizes[PLACE] <= UNMOVED * structure.length:
         nothing.add(PLACE)
-    judgement = Judgement(shapes, model, beyond.sizes, steps, sizes, nothing)
+    judgement = Judgement(shapes, model, beyond.sizes, steps, sizes, nothing, mesh)
     tip, loads, stress = judgement.error(PLACE), judgement.loads(BEAM), judgement.error(STRESS)
     if structure.source is None:
         tip, loads, stress = (replace(each, model=math.nan) for each in (tip, loads, stress))
@@ -265,10 +279,11 @@ def response_errors(
         """Errors by some of the steps, and the rate of the fastest mode that these may have missed, rad/s."""
         with np.errstate(all="ignore"):
             truth, exact, rings = lacking(structure, driven, of, computed, begin, straight=straight)
+            mesh = by_mesh(structure, driven, of, computed, begin)
         if not np.isfinite(truth[PLACE]).all():
             bounded = structure.source is not None
             return _bounded(structure, sizes[PLACE], steps[0]) if bounded else Errors(ErrorEstimate(steps[0])), 0.0
-        errors = errors_of(structure, (exact, truth), (computed, exact), beyond, by_step, sizes)
+        errors = errors_of(structure, (exact, truth), (computed, exact), beyond, by_step, sizes, mesh)
         return errors, _missed(rings, sizes, errors, RESOLVED / (least * step))
 
     errors, rate = judged(of, driven, {key: each[::few] for key, each in every.items()})

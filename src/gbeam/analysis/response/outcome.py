@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.analysis.accuracy.estimate import FEW_MODES, cure_of_theory, percent
+from gbeam.analysis.accuracy.estimate import FEW_MODES, ROUGH_MESH, cure_of_theory, percent
 from gbeam.analysis.response.problem import Problem
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.steady.equilibrium import expanded
@@ -252,6 +252,7 @@ def inaccuracies(structure: Structure, errors: Errors, settings: ResponseSetting
         "shapes": "raise model.modes, or leave them out",
         "step": _cure_of_step(settings),
         "beam_theory": f"{errors.theory}; {cure_of_theory(errors.theory)}",
+        "mesh": ROUGH_MESH[1],
     }
     names = {"shapes": "too few shapes", "beam_theory": "the theory of slender beams"}
     if structure.richer is not None:

@@ -189,8 +189,8 @@ def campbell(
         looked = [
             _errors(richer, point_at(followed[i].rate), followed[i], index[i]) for i in sorted({0, until // 2, until})
         ]
-        shapes, model, theory, total = (np.fmax.reduce([e.parts[part] for e in looked]) for part in PARTS)
-        errors = FrequencyErrors(shapes, model, theory, total, looked[-1].theory, looked[0].unseen, looked[0].note)
+        parts: dict[str, Any] = {part: np.fmax.reduce([e.parts[part] for e in looked]) for part in PARTS}
+        errors = replace(looked[0], **parts, theory=looked[-1].theory)
         crossings = [
             replace(crossing, errors=crossing_errors(crossing, mode, slope, richer, point_at))
             for crossing, mode, slope in met
@@ -228,8 +228,8 @@ def _errors(richer: Richer, point: Any, speed: _Speed, track: np.ndarray) -> Fre
     errors = richer.errors(point, value, speed.coordinates[chosen])
     every = np.full((len(PARTS), len(track)), np.nan)
     every[:, oscillating] = [*errors.parts.values()]
-    shapes, model, theory, total = every
-    return FrequencyErrors(shapes, model, theory, total, errors.theory, errors.unseen, errors.note)
+    parts: dict[str, Any] = dict(zip(PARTS, every, strict=True))
+    return replace(errors, **parts)
 
 
 def _crossings(
@@ -273,10 +273,9 @@ def crossing_errors(
     """Errors of a crossing's speed, by the mode (n,) of richer models at the same multiple; infinite if not near."""
     speed, order = crossing.speed, crossing.order
 
-    def gaps(rate: float) -> tuple[float, float]:
-        """Gaps of the same model with more shapes, and of the exact one, rad/s."""
-        same, exact = richer.references(point_at(rate), mode[None])
-        return float(same[0]) - order * rate, float(exact[0]) - order * rate
+    def gaps(rate: float) -> list[float]:
+        """Gaps of the same model with more shapes, of the exact one, and of one with coarser meshes, rad/s."""
+        return [float(each[0]) - order * rate for each in richer.references(point_at(rate), mode[None])]
 
     first = gaps(speed)
 
@@ -297,7 +296,8 @@ def crossing_errors(
     model = richer.of_model(apart(same, exact))
     away = ErrorEstimate(0.0, apart(speed, same), model, total=apart(speed, exact))
     share = float(richer.by_theory(point_at(speed), mode[None]).shares[0])
-    return away.with_theory(share * order / abs(slope - order))
+    mesh = math.nan if richer.rough is None else apart(root(2), speed)
+    return away.adding(beam_theory=share * order / abs(slope - order), mesh=mesh)
 
 
 def doubtful_crossings(crossings: Sequence[Crossing], theory: str) -> tuple[str, ...]:

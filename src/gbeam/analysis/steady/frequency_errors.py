@@ -1,7 +1,8 @@
 """Errors of frequencies: from too few shapes, of the model, and of the theory of slender beams.
 
 They are compared with those of the same model with more shapes, of the exact one, and of a thick beam beside a slender;
-of meshes and matrices, which are all that is known of what they are made of, with those of the same with more modes.
+of meshes and matrices, which are all that is known of what they are made of, with those of the same with more modes,
+and of meshes with those of coarser ones.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from gbeam.analysis.accuracy.estimate import LIMIT, percent, unjudged, wrong_by
 from gbeam.analysis.steady.operating_point import OperatingPoint, Steady
 from gbeam.analysis.system.richer import (
     bases_of,
+    coarser,
     judged_beams,
     judged_bodies,
     left_unjudged,
@@ -43,27 +45,18 @@ SHOWN = 3  # frequencies that no model has, named at once
 def doubtful(errors: FrequencyErrors) -> tuple[str, ...]:
     """Warn of frequencies that are wrong by more than one in a hundred, and of those that are left out."""
     said = []
-    total = np.where(np.isnan(errors.model), errors.shapes, errors.total)  # a rough mesh has a warning of its own
-    above = np.flatnonzero(total > LIMIT)
+    above = np.flatnonzero(errors.total > LIMIT)
     if above.size:
-        worst = int(above[total[above].argmax()])
+        worst = int(above[errors.total[above].argmax()])
         which = f"mode {above[0] + 1}" if len(above) == 1 else f"{len(above)} modes, from mode {above[0] + 1} on,"
         parts = ErrorEstimate(**{part: float(getattr(errors, part)[worst]) for part in PARTS})
-        size = percent(float(total[worst])) + " at most" * (len(above) > 1)
+        size = percent(float(errors.total[worst])) + " at most" * (len(above) > 1)
         said.append(wrong_by(f"the frequency of {which}", size, parts, errors.theory))
     if errors.unseen:
         named = ", ".join(f"{each:.4g}" for each in errors.unseen[:SHOWN])
         more = f" and {len(errors.unseen) - SHOWN} more" if len(errors.unseen) > SHOWN else ""
         said.append(f"there are modes of bending and twist at {named} Hz{more} besides: {TORSION}")
     return tuple(said)
-
-
-def by_mesh(of: Structure | System, coordinates: Complex) -> Floats:
-    """Errors of modes (k, n) by a solid's mesh: those of the modes at rest that they are most like; NaN if unknown."""
-    known = np.full(coordinates.shape[1], np.nan)
-    if isinstance(of, Structure) and of.mesh_error is not None:
-        known[: len(of.mesh_error)] = of.mesh_error
-    return np.asarray(known[np.abs(coordinates).argmax(axis=1)]) if known.size else np.full(len(coordinates), np.nan)
 
 
 class ByTheory(NamedTuple):
@@ -82,7 +75,9 @@ class More(NamedTuple):
 
 
 class Richer:
-    """Models with more shapes beside a steady state, the fastest of several: of its kinds, exact, of thick beams."""
+    """Models with more shapes beside a steady state, the fastest of several: of its kinds, exact, of thick beams; and
+    with coarser meshes.
+    """
 
     def __init__(self, state: OperatingPoint | SteadySystem) -> None:
         if isinstance(state, SteadySystem):
@@ -93,29 +88,35 @@ class Richer:
         self.exact = _with_more(state, exact=True)
         only_exact = all(body.richer is not None or body.kind == "exact" for body in bodies)
         self.same = self.exact if only_exact else _with_more(state, exact=False)
+        of = _of(state)
+        rough = coarser(of) if isinstance(of, System) else of.coarser
+        self.rough = None if rough is None else More(rough, {})
 
     def errors(
         self, state: Any, eigenvalue: Complex, coordinates: Complex, *, gyroscopic: bool = True
     ) -> FrequencyErrors:
         """Errors of the frequencies of modes (k, n) with eigenvalues (k,) about a steady state."""
         frequency = np.abs(eigenvalue)
-        same, exact = self.references(state, coordinates, gyroscopic=gyroscopic)
+        same, exact, rough = self.references(state, coordinates, gyroscopic=gyroscopic)
         by_theory = self.by_theory(state, coordinates, gyroscopic=gyroscopic)
         shapes, model, total = (np.abs(a / b - 1) for a, b in ((frequency, same), (same, exact), (frequency, exact)))
-        of = _of(state)
-        mesh = by_mesh(of, coordinates)
-        total = total + np.nan_to_num(by_theory.shares) + np.nan_to_num(mesh)
-        note = "" if len(mesh) and np.isfinite(mesh).all() else unknown_part(of)
-        return FrequencyErrors(shapes, self.of_model(model), by_theory.shares, total, *by_theory[1:], note)
+        mesh = np.abs(rough / frequency - 1)
+        total = total + np.nan_to_num(by_theory.shares) + (0.0 if self.rough is None else mesh)
+        note = unknown_part(_of(state))
+        return FrequencyErrors(shapes, self.of_model(model), by_theory.shares, mesh, total, *by_theory[1:], note)
 
     def of_model(self, share: Any) -> Any:
         """A model's share of an error, which is not known where no beam has a model."""
         return share if self.theories else np.nan * share
 
-    def references(self, state: Any, coordinates: Complex, *, gyroscopic: bool = True) -> tuple[Floats, Floats]:
-        """Circular frequencies (k,) by models with more shapes and by exact ones; NaN where these do not rest."""
+    def references(self, state: Any, coordinates: Complex, *, gyroscopic: bool = True) -> tuple[Floats, Floats, Floats]:
+        """Circular frequencies (k,) by models with more shapes, by exact ones and by coarser meshes; NaN where there
+        are none, or these do not rest.
+        """
 
-        def reference(richer: More) -> Floats:
+        def reference(richer: More | None) -> Floats:
+            if richer is None:
+                return np.full(len(coordinates), np.nan)
             try:
                 other = state.richer(richer.model)
                 rate, modes = _oscillating(other, gyroscopic=gyroscopic)
@@ -128,7 +129,7 @@ class Richer:
             return np.asarray(rate[mac(lifted, modes, mass).argmax(axis=1)])
 
         exact = reference(self.exact)
-        return exact if self.same is self.exact else reference(self.same), exact
+        return exact if self.same is self.exact else reference(self.same), exact, reference(self.rough)
 
     def by_theories(self, of: Structure | System, state: Any = None) -> tuple[list[Any], dict[str, Floats]]:
         """Slender beams in a structure or a system, thick ones, and these with plate action as they are bent in a
@@ -244,7 +245,7 @@ def unknown_part(of: Structure | System) -> str:
 def unknown_errors(of: Structure | System, count: int) -> FrequencyErrors | None:
     """No errors of so many frequencies, and why; None where there is nothing to judge."""
     note, unknown = unknown_part(of), np.full(count, np.nan)
-    return FrequencyErrors(unknown, unknown, unknown, unknown, note=note) if note else None
+    return FrequencyErrors(unknown, unknown, unknown, unknown, unknown, note=note) if note else None
 
 
 def _of(state: OperatingPoint | SteadySystem) -> Structure | System:

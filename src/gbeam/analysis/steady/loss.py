@@ -114,6 +114,8 @@ def judged(critical: Critical, path: Path, structure: Structure | System, progre
     exact = _lost(richer.exact.model, path, at, progress, part=(0, count))
     same = exact if richer.same is richer.exact else _lost(richer.same.model, path, at, progress, part=(1, count))
     errors = _errors(at, same, exact)
+    if richer.rough is not None:
+        errors = errors.adding(mesh=apart(_lost(richer.rough.model, path, at, progress), at))
     if not richer.theories:
         errors = replace(errors, model=math.nan)
         doubts = doubtful_loss(critical.quantity, critical.model, errors)
@@ -121,7 +123,7 @@ def judged(critical: Critical, path: Path, structure: Structure | System, progre
     models, plates = richer.by_theories(structure)
     slender, *thick = (_lost(each, path, at, progress, part=(k, count)) for k, each in enumerate(models, start=2))
     beam_theory = max(apart(at if math.isinf(slender) else slender, each) for each in thick)
-    errors = errors.with_theory(0.0 if math.isinf(errors.model) else beam_theory)
+    errors = errors.adding(beam_theory=0.0 if math.isinf(errors.model) else beam_theory)
     if isinstance(structure, System):
         model, words = "the system", _in_words(richer, point, models, plates)
     else:

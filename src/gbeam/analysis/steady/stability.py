@@ -10,7 +10,7 @@ eigenvalues decide. There damping matters: the least of it lowers the flutter lo
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 
@@ -31,7 +31,7 @@ from gbeam.motion.profiles.profile import Profile
 from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress, tell
 from gbeam.results.equilibrium import Critical, CriticalMap, MapErrors
-from gbeam.results.errors import PARTS, ErrorEstimate
+from gbeam.results.errors import ErrorEstimate
 from gbeam.structure.attachments import PointMass
 from gbeam.structure.beam import Beam
 
@@ -206,7 +206,7 @@ def critical_speed_map(
     hub, unloaded = hub_of(motion, "a critical speed", INSTEAD, name), assemble(beam, model)
     limit = SEARCH_FACTOR * lowest_frequency(unloaded) if upper is None else upper
     speed = np.full((len(masses), len(positions)), np.nan)
-    errors = MapErrors(*np.full((len(PARTS), *speed.shape), np.nan))
+    errors = MapErrors(*np.full((len(fields(MapErrors)), *speed.shape), np.nan))
     worst = ErrorEstimate(total=0.0)
     for i, mass in enumerate(masses):
         for j, at in enumerate(positions):
@@ -216,8 +216,8 @@ def critical_speed_map(
             path, _ = turned(structure, hub, None, 0.0, "", "", "", held=True)
             loss = judged(first_loss_along(path, structure, limit, "hub rate", "rad/s"), path, structure)
             speed[i, j] = np.nan if loss.value is None else loss.value
-            for part in PARTS:
-                getattr(errors, part)[i, j] = getattr(loss.errors, part)
+            for each in fields(errors):
+                getattr(errors, each.name)[i, j] = getattr(loss.errors, each.name)
             if loss.errors.total > worst.total:
                 worst = loss.errors
     heavy, where = np.asarray(masses, dtype=float), np.asarray(positions, dtype=float)

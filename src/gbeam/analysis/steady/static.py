@@ -60,11 +60,12 @@ def static_errors(point: OperatingPoint) -> tuple[Errors, tuple[str, ...]]:
     if truth is None:
         return Errors(note=LOST), (LOST,)
     same = truth if structure.kind == exact.kind else rested(more.model(structure.kind, directions=which)[0])
-    if same is None:
-        same = {key: np.nan * each for key, each in truth.items()}
+    unknown = {key: np.nan * each for key, each in truth.items()}
     sizes = {key: max(largest(each), largest(truth[key])) for key, each in computed.items()}
     beyond = driven.theory(structure, at, straight=sizes[PLACE] <= BENT * structure.length)
-    errors = errors_of(structure, (computed, same), (same, truth), beyond, dict.fromkeys(computed, 0.0), sizes)
+    same, steps = same or unknown, dict.fromkeys(computed, 0.0)
+    mesh = None if structure.coarser is None else (rested(structure.coarser) or unknown, computed)
+    errors = errors_of(structure, (computed, same), (same, truth), beyond, steps, sizes, mesh)
     return errors, (*_doubtful(errors), *of_bodies(structure, beyond, sizes[PLACE], LIMIT), *_sideways(point))
 
 
@@ -87,7 +88,7 @@ def _doubtful(errors: Errors) -> tuple[str, ...]:
     if not above:
         return ()
     worst = max(above.values(), key=lambda each: each.total)
-    cause, cure = cause_and_cure(worst.shapes, worst.model, worst.beam_theory, errors.theory)
+    cause, cure = cause_and_cure(worst, errors.theory)
     sizes = " and ".join(f"the {name} by {percent(each.total)}" for name, each in above.items())
     return (f"estimated to be wrong: {sizes}, mostly from {cause}; {cure}",)
 

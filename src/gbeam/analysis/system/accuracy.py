@@ -20,6 +20,7 @@ from gbeam.analysis.accuracy.estimate import UNMOVED, Judgement, cause_and_cure,
 from gbeam.analysis.system.richer import (
     InputsOf,
     bases_of,
+    coarser,
     judged_bodies,
     left_unjudged,
     posed,
@@ -105,12 +106,14 @@ def system_errors(
             return SystemErrors(ErrorEstimate(step), note=FAR)
         if not np.isfinite(truth[PLACE]).all():
             return SystemErrors(ErrorEstimate(step), note=FAR)
+        mesh = _by_mesh(system, solved, of, inputs, again, judged, settled=settled)
         theories = theories_of(system)
         lacking = _beyond(system, solved, of, inputs, theories, again, settled=settled) if theories else Lacking()
     if theories and not lacking.sizes.get(PLACE, math.nan) <= LOST * max(sizes[PLACE], _extent(place)):
         lacking = Lacking()
         note = "; ".join(filter(None, (note, LOOP_LOST if again is not None and len(of.time) > 1 else BENT_FAR)))
-    judgement = Judgement(shapes, model, lacking.sizes, dict(steps), sizes, nothing)
+    by_mesh = None if mesh is None else (mesh, computed)
+    judgement = Judgement(shapes, model, lacking.sizes, dict(steps), sizes, nothing, by_mesh)
     loads, stress = [judgement.loads(name) for name in judged], [judgement.error((name, "stress")) for name in judged]
     return SystemErrors(
         displacement=judgement.error(PLACE),
@@ -132,12 +135,12 @@ def doubts(errors: SystemErrors, tolerance: float) -> tuple[str, ...]:
         ("places", "displacement", errors.displacement, errors.by_beam),
         ("loads", "of them", errors.loads, errors.loads_by_beam),
     ):
-        parts = each.shapes, each.model, each.beam_theory
+        parts = each.shapes, each.model, each.beam_theory, each.mesh
         if not any(part > tolerance for part in parts):
             continue
         which = int(np.argmax(by_beam))
-        cause, cure = cause_and_cure(*parts, errors.theory[which])
-        if parts[0] == max(parts):
+        cause, cure = cause_and_cure(each, errors.theory[which])
+        if each.shapes == np.nanmax(parts):
             cure = "raise its model.modes, of a mesh its modes"  # which are given in a system
         share = percent(each.total)
         said.append(
@@ -153,6 +156,26 @@ def _run(system: System, again: Again, count: int, bodies: Iterable[str]) -> Rea
     if len(ran.time) < count:
         raise ComputationError("not converged", "the richer system has no response")
     return read(system, ran, inputs, bodies)
+
+
+def _by_mesh(
+    system: System,
+    solved: Posed,
+    of: Trajectory,
+    inputs: InputsOf,
+    again: Again | None,
+    bodies: Iterable[str],
+    *,
+    settled: bool,
+) -> Reading | None:
+    """Readings with coarser meshes of the solids; None where none has one."""
+    rough = coarser(system)
+    if rough is None:
+        return None
+    if again is not None:
+        return _run(rough, again, len(of.time), bodies)
+    within = Within.lifted(posed(rough, inputs, bodies), solved, of)
+    return within.moved(within.departures().answer(within.residual(), _begun(settled)(len(solved.names))))
 
 
 def _begun(settled: bool) -> Callable[[int], State | None]:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.analysis.accuracy.correction import PLACE, Posed, Quantity, looked, pieces
-from gbeam.analysis.accuracy.estimate import by_coarser
+from gbeam.analysis.accuracy.estimate import NO_MESH
 from gbeam.analysis.system.histories import Carried, carried, loads_of
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.enrichment import enrichment
@@ -24,7 +24,6 @@ from gbeam.motion.bases.base import Base
 Floats = NDArray[np.float64]
 IntArray = NDArray[np.int_]
 NOT_ALL = "shapes and model are not judged of {}: neither a beam, a mesh nor matrices"
-NO_MESH = "the mesh of {} is not judged"
 InputsOf = Callable[[System, Any], Inputs]  # of a system with the same joints, at some (index) of the times
 
 
@@ -52,11 +51,18 @@ def left_unjudged(system: System) -> str:
     judged = judged_bodies(system)
     others = [name for name in system.flexible if name not in judged]
     said = [NOT_ALL.format(", ".join(others))] if others else []
-    meshes = dict[str, list[str]]()
-    for name, body in judged.items():
-        if body.source is None:
-            meshes.setdefault(by_coarser(body), []).append(name)
-    return "; ".join(said + [NO_MESH.format(", ".join(names)) + more for more, names in meshes.items()])
+    meshes = [name for name, body in judged.items() if body.source is None and body.coarser is None]
+    return "; ".join(said + ([NO_MESH.replace("mesh", f"mesh of {', '.join(meshes)}")] if meshes else []))
+
+
+def coarser(system: System) -> System | None:
+    """The system with coarser meshes of its solids, in the same coordinates; None where none has one."""
+    rough = {
+        name: replace(body.coarser, load_values=body.load_values)
+        for name, body in system.flexible.items()
+        if body.coarser is not None
+    }
+    return replace(system, bodies={**system.bodies, **rough}) if rough else None
 
 
 def richer(system: System, bases: Mapping[str, Base], *, exact: bool) -> Richer:

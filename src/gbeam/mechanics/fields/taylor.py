@@ -24,6 +24,11 @@ class Places:
         """The polynomials of some of the points."""
         return Places(self.r0[chosen], self.first[chosen], None if self.second is None else self.second[chosen])
 
+    def turned(self, basis: Any) -> Places:
+        """The polynomials in coordinates p with q = basis p."""
+        second = None if self.second is None else basis.T @ self.second @ basis
+        return Places(self.r0, self.first @ basis, second)
+
     def at_rest(self) -> Places:
         """The polynomials themselves, which are those about the beam at rest."""
         return self

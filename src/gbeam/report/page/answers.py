@@ -88,6 +88,7 @@ def loads_table(motions: Facts, of: str = "motion") -> str:
 ERRORS = {
     "total": "total",
     "beam_theory": "of the beam theory",
+    "mesh": "of the mesh",
     "model": "of the model",
     "shapes": "of too few shapes",
     "step": "of the time step",
