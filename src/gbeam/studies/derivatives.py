@@ -1,8 +1,8 @@
 """Derivatives of whatever is read from an answer, with respect to physical values of the scenario.
 
 Of responses over time they come from the derivative of the run (`gbeam.analysis.response.differentiated`).
-Where a jump moves with the value, whose steps that stand still miss, and of the other verbs' answers, which are cheap
-and smooth, they come from central differences of fourth order, with how far these differ from those of second order.
+Where a jump moves with the value, whose steps that stand still miss, and of the other verbs' answers, which are
+smooth, they come from central differences of fourth order, with how far these differ from those of second order.
 """
 
 from __future__ import annotations
@@ -83,8 +83,11 @@ class Neighbourhood:
         else:
             self.answer = inquiry.facts(self.case)
 
-    def slopes(self, read: Read, motions: Sequence[str] = ()) -> Slopes:
-        """Derivatives of what is read from the answer; other motions than those named are not differentiated."""
+    def slopes(self, read: Read, motions: Sequence[str] = (), *, rough: bool = False) -> Slopes:
+        """Derivatives of what is read from the answer; other motions than those named are not differentiated.
+
+        Rough ones of differences are of second order, from half of the answers, and have no errors.
+        """
         if self.runs:
             return self._of_runs(read, motions or list(self.case.motions))
         values = read(self.case, self.answer)
@@ -97,7 +100,7 @@ class Neighbourhood:
                 case = self._case(k, steps * step)
                 return read(case, self.inquiry.facts(case))
 
-            rows.append(_differences(at, values, step))
+            rows.append(_differences(at, values, step, rough))
         return _gathered(values, rows, [DIFFERENCE] * len(rows))
 
     def done(self, name: str) -> Response:
@@ -223,6 +226,7 @@ class Quantities:
         self._start = start if start is not None and start.runs else None
         self._grids = None if self._start is None else {name: self._start.grid(name) for name in motions}
         self._last: tuple[Floats, Floats, Neighbourhood] | None = None
+        self._sloped: tuple[Neighbourhood, Floats] | None = None
         self.evaluations = 0
 
     def __call__(self, values: Floats) -> Floats:
@@ -230,8 +234,11 @@ class Quantities:
         return self._at(values)[1]
 
     def slopes(self, values: Floats) -> Floats:
-        """Derivatives with respect to the values, (m, p)."""
-        return self._at(values)[2].slopes(self._read, self._motions).slopes
+        """Derivatives with respect to the values, (m, p); the last ones are kept."""
+        about = self._at(values)[2]
+        if self._sloped is None or self._sloped[0] is not about:
+            self._sloped = about, about.slopes(self._read, self._motions, rough=True).slopes
+        return self._sloped[1]
 
     def _at(self, values: Floats) -> tuple[Floats, Floats, Neighbourhood]:
         if self._last is None or not np.array_equal(self._last[0], values):
@@ -275,10 +282,15 @@ def _slope(less: Floats, middle: Floats, more: Floats, step: float) -> tuple[Flo
     return (more - less) / (2 * step), np.abs(more - 2 * middle + less) / step
 
 
-def _differences(at: Callable[[float], Floats], middle: Floats, step: float) -> tuple[Floats, Floats, Floats]:
-    """Central differences of fourth order, the bend, and how far those of second order are away."""
-    inner, outer = ((at(n), at(-n)) for n in (1.0, 2.0))
+def _differences(
+    at: Callable[[float], Floats], middle: Floats, step: float, rough: bool = False
+) -> tuple[Floats, Floats, Floats]:
+    """Central differences of fourth order, or rough of second, the bend, and how far these are away."""
+    inner = at(1.0), at(-1.0)
     slope, bend = _slope(inner[1], middle, inner[0], step)
+    if rough:
+        return slope, bend, np.full(len(middle), np.nan)
+    outer = at(2.0), at(-2.0)
     fourth = (8 * (inner[0] - inner[1]) - (outer[0] - outer[1])) / (12 * step)
     return fourth, bend, np.abs(fourth - slope)
 

@@ -57,7 +57,8 @@ def fit(
         the scenario has several; of a system what :meth:`SystemResponse.signal` reads, ``strip.tip.place_z``; or
         columns ``mode``, ``frequency`` and ``damping_ratio``.
     free : sequence of str
-        Paths of the values to find, such as ``beam.material.youngs_modulus``.
+        Paths of the values to find, such as ``beam.material.youngs_modulus``; ``*`` stands for part of one step, and
+        values that it fits, which the scenario gives alike, stay alike: ``bodies.plate.springs.*.stiffness.z``.
     bounds : mapping of str to a pair, optional
         By path, in SI or as text with a unit; a tenth to ten times the scenario's value where not given.
     motion : str, optional

@@ -6,7 +6,7 @@ import math
 import os
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
@@ -37,12 +37,15 @@ _NEAR_TIP = 1e-9  # of the length: written with as many digits
 
 @dataclass(frozen=True)
 class PhysicalValue:
-    """A number in a scenario, SI, by its path; `followers` are places by path at the tip, which move with a length."""
+    """A number in a scenario, SI, by its path, or one that all `places` of a pattern such as ``springs.*.stiffness.z``
+    have; `followers` are places by path at the tip, which move with a length.
+    """
 
     path: str
     value: float
     kind: str
-    followers: Mapping[str, float] = field(default_factory=dict)
+    followers: Mapping[str, float]
+    places: tuple[str, ...]
 
     @property
     def unit(self) -> str:
@@ -51,26 +54,23 @@ class PhysicalValue:
 
     @property
     def of_motion(self) -> str:
-        """Name of the motion that it belongs to; empty for the beam's."""
-        first, _, rest = self.path.partition(".")
-        return rest.partition(".")[0] if first == "motion" else ""
+        """Name of the motion that it belongs to; empty for the beam's, and for that of several motions."""
+        motions = {place.split(".")[1] if place.startswith("motion.") else "" for place in self.places}
+        return motions.pop() if len(motions) == 1 else ""
 
 
 def physical_values(scenario: Template, names: Sequence[str] = ()) -> list[PhysicalValue]:
     """Return the values of those names; without names every one that is not zero."""
     every = scenario.quantities()
+    possible = [path for path in every if _why_fixed(path) is None]
     if not names:
-        usual = [
-            path
-            for path, (value, _) in every.items()
-            if value and not _UNUSUAL.search(path) and _why_fixed(path) is None
-        ]
-        return [_made(path, every) for path in usual]
-    for k, name in enumerate(names):
-        if name in names[:k]:
-            raise InputError("--with", f"names {name} twice", "name each value once")
-        if name not in every:
-            possible = [path for path in every if _why_fixed(path) is None]
+        return [_made(path, (path,), every) for path in possible if every[path][0] and not _UNUSUAL.search(path)]
+    chosen: list[PhysicalValue] = []
+    for name in names:
+        places = _matching(name, possible) or ((name,) if name in every else ())
+        if twice := [path for path in places if any(path in each.places for each in chosen)]:
+            raise InputError("--with", f"names {twice[0]} twice", "name each value once")
+        if not places:
             path, equals, _ = name.partition("=")
             fix = advise(path, possible, listed="the scenario has")
             if equals and path in possible:
@@ -78,12 +78,28 @@ def physical_values(scenario: Template, names: Sequence[str] = ()) -> list[Physi
             raise InputError("--with", f"{name!r} is no physical value that the scenario gives", fix)
         if (why := _why_fixed(name)) is not None:
             raise InputError("--with", f"{name} {why}", "leave it out, or compare runs by gbeam sweep")
-    return [_made(name, every) for name in names]
+        if other := [path for path in places if every[path] != every[places[0]]]:
+            ends = (
+                f"{path} = {every[path][0]:g} {KINDS[every[path][1]].unit}".strip() for path in (places[0], other[0])
+            )
+            raise InputError("--with", f"{name!r} names values that differ, {' and '.join(ends)}", "make them alike")
+        chosen.append(_made(name, places, every))
+    return chosen
 
 
-def _made(path: str, every: dict[str, tuple[float, str]]) -> PhysicalValue:
-    value, kind = every[path]
-    return PhysicalValue(path, value, kind, dict(_at_tip(path, every)))
+def _matching(name: str, paths: Sequence[str]) -> tuple[str, ...]:
+    """Paths of a name in which each ``*`` stands for part of one step, but not of the first."""
+    first, *others = name.split("*")
+    if not others or "." not in first:
+        return ()
+    pattern = re.compile(r"[^.\[\]]+".join(map(re.escape, (first, *others))))
+    return tuple(filter(pattern.fullmatch, paths))
+
+
+def _made(name: str, places: tuple[str, ...], every: dict[str, tuple[float, str]]) -> PhysicalValue:
+    value, kind = every[places[0]]
+    followers = {each: at for path in places for each, at in _at_tip(path, every)}
+    return PhysicalValue(name, value, kind, followers, places)
 
 
 def _at_tip(path: str, every: dict[str, tuple[float, str]]) -> Iterator[tuple[str, float]]:
@@ -104,7 +120,7 @@ def changed(parameters: Sequence[PhysicalValue], values: Sequence[float]) -> dic
     others: dict[str, float] = {}
     for each, value in zip(parameters, values, strict=True):
         if value != each.value:
-            others[each.path] = float(value)
+            others |= dict.fromkeys(each.places, float(value))
             for path, at in each.followers.items():
                 others[path] = others.get(path, at) + float(value) - each.value
     return others
