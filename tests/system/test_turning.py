@@ -9,6 +9,7 @@ import pytest
 
 import gbeam as gb
 from gbeam.analysis.steady.frequency_errors import Richer
+from gbeam.analysis.system.point import Point
 from gbeam.analysis.system.steady import Drive, Turning
 from gbeam.results.facts import json_of
 from tests.analysis_verbs.beams import slender
@@ -204,3 +205,27 @@ def test_newtons_method_goes_in_shares_where_it_fails_at_once() -> None:
     stretched = steady.frames[-2].p - (0.8, 0, 0)
     assert stretched == pytest.approx(beam.tip(alone.q), rel=1e-9, abs=1e-15) and stretched[0] > 1e-4
     assert steady.margin > 0
+
+
+@pytest.mark.parametrize("held", [True, False])
+def test_a_steady_state_begins_where_lower_ones_lead(held: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same states as from rest, in fewer corrections."""
+    structure = gb.assemble(STRIP, "exact", axial=1, y=2, z=2)
+    swept = gb.Joint("fixed", "panel", on="bus.rim", turn=(0.0, 0.7, 0.3))
+    system = gb.System({"bus": BUS, "panel": structure}, {"spin": SPIN if held else FREE, "clamp": swept})
+    slopes, count = Point.slopes, 0
+
+    def counted(point: Point) -> object:
+        nonlocal count
+        count += 1
+        return slopes(point)
+
+    monkeypatch.setattr(Point, "slopes", counted)
+    drive, rates, answers = Drive(coordinate="spin.angle"), np.linspace(10.0, 120.0, 12), []
+    for paths in ([Turning(drive, held)] * 12, [Turning(drive, held) for _ in rates]):
+        count = 0
+        states = [path(system, float(rate)) for path, rate in zip(paths, rates, strict=True)]
+        answers.append((count, np.array([each.point.y for each in states])))
+    (fewer, led), (more, alone) = answers
+    assert np.abs(led).max() > 0.02 and fewer < 0.85 * more
+    np.testing.assert_allclose(led, alone, atol=1e-11)

@@ -22,7 +22,7 @@ Floats = NDArray[np.float64]
 ITERATIONS = 50
 MASSLESS = 1e-13  # of the largest: a smaller inertia is rounding
 SHORTEST = 1 / 64  # share of what is out of balance that is taken away at once
-CLOSE = 1e-12  # of the coordinates: a correction that is smaller has converged
+CLOSE = 1e-12  # of the coordinates: where the next correction would be smaller, they have converged
 
 
 @dataclass(frozen=True)
@@ -139,24 +139,26 @@ def started_traced(system: System, motion: Motion | None, time: float, initial: 
 
 def _newton(tree: Tree, y: Floats, inputs: Inputs, left_over: Floats) -> tuple[Floats, Floats, Floats, Floats, bool]:
     """Coordinates at rest where so much is out of balance, stiffness and mass, the last change, and if it is none."""
-    still = np.zeros(len(y))
+    still, before = np.zeros(len(y)), 0.0
     for _ in range(ITERATIONS):
         left, k, _, m = Point(tree, y, still, still, inputs).slopes()
         change = np.asarray(np.linalg.lstsq(k, left_over - left, rcond=1e-12)[0], dtype=np.float64)
         size = float(np.abs(change).max(initial=0.0))
         # Steps of a radian at most: a beam far from its equilibrium turns by as much.
         y = y + change / max(1.0, size)
-        if size <= CLOSE * (1.0 + np.abs(y).max(initial=0.0)):
+        # The next correction is smaller by what this one is smaller than the last one, at least.
+        if min(size, 1.0) * min(size / before if before else 1.0, 1.0) <= CLOSE * (1.0 + np.abs(y).max(initial=0.0)):
             return y, k, m, change, True
+        before = size
     return y, k, m, change, False
 
 
 def rested(system: System, tree: Tree, inputs: Inputs, start: Floats | None = None) -> Point:
     """A system's tree at rest in relative equilibrium, joints and bodies; of those that nothing holds, the nearest one
-    to a `start` (n,), by default that of the joints, with bodies undeformed. Where Newton's method fails from there,
-    what is out of balance at the start is taken away in shares.
+    to a `start` of all coordinates, by default that of the joints, with bodies undeformed. Where Newton's method fails
+    from there, what is out of balance at the start is taken away in shares.
     """
-    y, still = system.start[0][tree.free] if start is None else start, np.zeros(len(tree.free))
+    y, still = (system.start[0] if start is None else start)[tree.free], np.zeros(len(tree.free))
     beginning, reached, stride = tree(y, still, still, inputs), 0.0, 1.0
     while reached < 1.0:
         share = min(reached + stride, 1.0)
