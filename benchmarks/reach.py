@@ -79,7 +79,7 @@ PARTS = {  # of a call, and functions
     "laws in them": "sampled",
     "derivatives": "_differentiate",
     "factors": "_factor",
-    "ends": "ended",
+    "ends": "accelerations",
 }
 LIMITS = {  # of what misses its goal
     "closed loop": "The law is a function of Python, which three corrections call at each sample, one after another: "

@@ -124,6 +124,22 @@ def test_a_step_is_factored_again_only_where_its_derivatives_are_new(monkeypatch
     assert sum(factored) < 0.4 * sum(states) / 2  # two stages a step
 
 
+def test_accelerations_are_found_where_they_are_asked_for() -> None:
+    states: list[int] = []
+
+    def counted(q: Any, qd: Any, qdd: Any, force: Any) -> Any:
+        states.append(len(q))
+        return Swing()(q, qd, qdd, force)
+
+    run = integrate(NonlinearEquations(counted, load), gauss(), *START, **KNOWN)
+    states.clear()
+    some = run.at(slice(None, None, 50)).at([1, 3, 5])
+    for _ in range(2):
+        np.testing.assert_allclose(Swing()(some.q, some.qd, some.qdd, load(some.time)), 0.0, atol=1e-11)
+    assert states == [3]  # once
+    assert len(run.qdd) == 301 and sum(states) == 301
+
+
 def test_a_window_too_long_for_newton_is_cut() -> None:
     """A pendulum that nearly stands on its head, in steps of a tenth of a second: 100 s, energy kept."""
 

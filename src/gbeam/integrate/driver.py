@@ -9,13 +9,13 @@ import numpy as np
 
 from gbeam.arrays.namespace import holds_tracer, is_jax, namespace
 from gbeam.integrate import linear
-from gbeam.integrate.equations import LinearEquations, NonlinearEquations, Trajectory
+from gbeam.integrate.equations import Demanded, LinearEquations, NonlinearEquations, Trajectory
 from gbeam.integrate.schemes import Scheme, added
 from gbeam.integrate.steps import Corners, Floats, Steps, fitted
 from gbeam.integrate.windows import windows
 
 _LINEAR_CHUNK = 500  # steps whose maps are found at once: as many as stay in a cache
-Piece = tuple[Any, ...]  # q, q̇, q̈ (k, n), and which of the steps were solved (k,)
+Piece = tuple[Any, ...]  # q, q̇ and perhaps q̈ (k, n), and which of the steps were solved (k,)
 
 
 def integrate(
@@ -57,7 +57,7 @@ def through(
     converged, stopped, done = True, False, 0
     for *piece, solved in run(equations, scheme, q, qd, steps):  # type: ignore[arg-type]
         if not is_jax(piece[0]):
-            good = solved & np.isfinite(piece[2]).all(axis=1)
+            good = solved & np.isfinite(piece[-1]).all(axis=1)
             valid = len(good) if good.all() else int(np.argmin(good))
             converged = valid == len(good)
             last = None if stop is None or valid == 0 or not pieces else stop(piece[0][:valid])
@@ -71,8 +71,9 @@ def through(
             progress(done / (len(time) - 1))
         if stopped or not converged:
             break
-    q, qd, qdd = (namespace(part[0]).concatenate(part) for part in zip(*pieces, strict=True))
-    return Trajectory(time[: len(q)], q, qd, qdd, converged, stopped)
+    q, qd, *qdd = (namespace(part[0]).concatenate(part) for part in zip(*pieces, strict=True))
+    known = qdd[0] if qdd else Demanded(equations, steps, q, qd)
+    return Trajectory(time[: len(q)], q, qd, known, converged, stopped)
 
 
 def _linear(equations: LinearEquations, scheme: Scheme, q: Any, qd: Any, steps: Steps) -> Iterator[Piece]:

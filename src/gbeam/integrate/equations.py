@@ -89,12 +89,14 @@ def exact(residual: Any) -> Any:
 
 @dataclass(frozen=True)
 class Trajectory:
-    """Coordinates (t, n) over time (t,), as far as the integration got before it failed or was stopped."""
+    """Coordinates (t, n) over time (t,), as far as the integration got before it failed or was stopped; accelerations
+    of which a scheme has none at the ends of steps are found where they are asked for.
+    """
 
     time: Floats
     q: Any
     qd: Any
-    qdd: Any
+    known: Any  # q̈, or a function that finds it at some steps (k,)
     converged: bool = True
     stopped: bool = False
 
@@ -103,9 +105,16 @@ class Trajectory:
         """True if it came to its end."""
         return self.converged and not self.stopped
 
+    @property
+    def qdd(self) -> Any:
+        """Accelerations (t, n)."""
+        return self.known(np.arange(len(self.time))) if callable(self.known) else self.known
+
     def at(self, steps: Any) -> Trajectory:
         """The trajectory at some of its steps."""
-        return replace(self, time=self.time[steps], q=self.q[steps], qd=self.qd[steps], qdd=self.qdd[steps])
+        known, index = self.known, np.arange(len(self.time))[steps]
+        found = (lambda some: known(index[some])) if callable(known) else known[steps]
+        return replace(self, time=self.time[steps], q=self.q[steps], qd=self.qd[steps], known=found)
 
 
 AT_ONCE = 5_000  # numbers of the states that are evaluated at once: of more, all sections of beams fill memory
@@ -134,6 +143,32 @@ def accelerations(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
         forces = residual(q[some], qd[some], np.broadcast_to(units, (n + 1, *q[some].shape)), part)
         pieces.append(solved(forces[1:].transpose(1, 2, 0) / HUGE, -forces[0][..., None])[..., 0])
     return np.concatenate(pieces)
+
+
+class Demanded:
+    """Accelerations (t, n) that equations demand of a run at its start and at the ends of its kept steps, each found
+    when it is first asked for.
+    """
+
+    def __init__(self, equations: Any, steps: Any, q: Any, qd: Any) -> None:
+        self.equations, self.q, self.qd = equations, q, qd
+        self.time = np.append(steps.first[:1], steps.end[steps.kept])
+        self.held = None
+        if equations.controllers is not None:
+            held = equations.samplings[-1].held
+            self.held = np.concatenate([0 * held[:1], held[steps.kept]])
+        self.values, self.found = np.zeros(q.shape), np.zeros(len(q), dtype=bool)
+
+    def __call__(self, some: Any) -> Any:
+        """Accelerations (k, n) at some of the times (k,)."""
+        new = np.unique(some[~self.found[some]])
+        if len(new):
+            inputs = self.equations.drive(self.time[new])
+            if self.held is not None:
+                inputs = self.equations.controllers.driven(inputs, self.held[new])
+            self.values[new] = accelerations(exact(self.equations.residual), self.q[new], self.qd[new], inputs)
+            self.found[new] = True
+        return self.values[some]
 
 
 def _pieces(q: Array, each: int) -> list[slice]:

@@ -19,7 +19,7 @@ import numpy as np
 
 import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.arrays.tree import each_leaf
-from gbeam.integrate.equations import Fitted, NonlinearEquations, slopes
+from gbeam.integrate.equations import Demanded, Fitted, NonlinearEquations, slopes
 from gbeam.integrate.schemes import Scheme, stepped
 from gbeam.integrate.steps import Steps
 from gbeam.integrate.windows import windows
@@ -43,11 +43,13 @@ def traced(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, s
             at = order[np.searchsorted(times, t, sorter=order)]
             return each_leaf(lambda leaf: leaf[at], driven)
 
-        out, done = np.full((3, *shape), np.nan), 0
+        of, out, done = NonlinearEquations(residual, drive), np.full((3, *shape), np.nan), 0
         with np.errstate(all="ignore"):  # of what is no number
-            for *piece, _ in windows(NonlinearEquations(residual, drive), scheme, q, qd, steps):
-                out[:, done : done + len(piece[0])] = piece
+            for *piece, _ in windows(of, scheme, q, qd, steps):
+                out[: len(piece), done : done + len(piece[0])] = piece
                 done += len(piece[0])
+            if not scheme.ends:
+                out[2, :done] = Demanded(of, steps, *out[:2])(np.arange(done))
         return tuple(out)
 
     @jax.custom_jvp

@@ -50,7 +50,9 @@ EARLIER = 0.01  # of the largest acceleration before a step, whose own may all v
 
 
 def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, steps: Steps) -> Iterator[Piece]:
-    """Integrate; yields the initial state, then by pieces the kept q, q̇, q̈ (k, n) and whether each was solved."""
+    """Integrate; yields the initial state, then by pieces the kept q, q̇ (k, n), of a scheme whose last stage is the end
+    q̈, too, and whether each was solved.
+    """
     if not q.size:  # all motion is prescribed
         still = np.zeros((1 + np.count_nonzero(steps.kept), 0))
         yield from ((each, each, each, np.ones(len(each), dtype=bool)) for each in (still[:1], still[1:]))
@@ -62,7 +64,7 @@ def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, 
 
     with np.errstate(all="ignore"):  # of iterates that diverge
         qdd = demanded(steps.first[0], q, qd)
-    yield q[None], qd[None], qdd[None], np.array([True])
+    yield *(each[None] for each in (q, qd, qdd)[: 2 + scheme.ends]), np.array([True])
     window, begin, solved = _Window(residual, drive, scheme, steps, sampling_of(equations, steps)), 0, True
     # A scheme whose last stage is the end of a step begins anew after a jump: no window goes beyond one.
     for end in np.append(np.flatnonzero(steps.anew[:-1]) + 1 if scheme.ends else [], len(steps)).astype(int):
@@ -71,15 +73,14 @@ def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, 
             with np.errstate(all="ignore"):
                 solved = window.solve(end, min(end, begin + ENOUGH))
                 if window.first > begin:
-                    *ended, qdds = window.ended()
-                    q, qd = (each[-1] for each in ended)
+                    ended = window.ended()
+                    q, qd = (each[-1] for each in ended[:2])
                     if scheme.ends and window.first == end and steps.anew[end - 1]:
-                        qdd, qdds[-1] = (demanded(at[end - 1], q, qd) for at in (steps.resume, steps.end))
+                        qdd, ended[2][-1] = (demanded(at[end - 1], q, qd) for at in (steps.resume, steps.end))
                     kept = steps.kept[begin : window.first]
-                    yield *(each[kept] for each in (*ended, qdds)), np.ones(np.count_nonzero(kept), dtype=bool)
+                    yield *(each[kept] for each in ended), np.ones(np.count_nonzero(kept), dtype=bool)
             if not solved:
-                failed = np.full((1, len(qdd)), np.nan)
-                yield failed, failed, failed, np.array([False])
+                yield *np.full((2 + scheme.ends, 1, len(qdd)), np.nan), np.array([False])
                 return
             begin = window.first
 
@@ -212,7 +213,7 @@ class _Window:
         z, x, t = self.z[:count], self.x[:count], self.t
         weights = [each if len(each) == 1 else each[:count] for each in (t.end_z, t.end_x)]
         ends = weights[0] @ z + weights[1] @ x
-        self.done.append((ends[:, 0], ends[:, 1], x[:, -1], *([] if self.held is None else [self.held.u[:count]])))
+        self.done.append((ends[:, 0], ends[:, 1], *([x[:, -1]] if self.scheme.ends else [])))
         self.start, self.most = x[-1, -1], GROWN * float(rounding[:count].max())
         self.first, self.again = self.first + count, LONGEST
         self._keep(slice(count, None))
@@ -240,16 +241,11 @@ class _Window:
         self.begin(self.z[0], self.start)
         return True
 
-    def ended(self) -> tuple[Array, Array, Array]:
-        """q, q̇, q̈ (t, n) at the ends of the steps that have left since the last call."""
-        q, qd, qdd, *commands = map(np.concatenate, zip(*self.done, strict=True))
+    def ended(self) -> tuple[Array, ...]:
+        """q, q̇ (t, n), and q̈ if they have it, at the ends of the steps that have left since the last call."""
+        ends = tuple(map(np.concatenate, zip(*self.done, strict=True)))
         self.done = []
-        if not self.scheme.ends:
-            inputs = self.drive(self.steps.end[self.first - len(q) : self.first])
-            if self.sampling is not None:
-                inputs = self.sampling.controllers.driven(inputs, *commands)
-            qdd = accelerations(exact(self.residual), q, qd, inputs)
-        return q, qd, qdd
+        return ends
 
     def _stages(self) -> tuple[Array, Array, Array]:
         """q, q̇, q̈ (t s, n) at the stages."""

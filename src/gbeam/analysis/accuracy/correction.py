@@ -216,4 +216,4 @@ class Within(NamedTuple):
     def moved(self, by: Correction) -> Reading:
         """Read the solution with a correction added."""
         of = self.of
-        return self.more.read(replace(of, q=of.q + by.value, qd=of.qd + by.rate, qdd=of.qdd + by.acceleration))
+        return self.more.read(replace(of, q=of.q + by.value, qd=of.qd + by.rate, known=of.qdd + by.acceleration))

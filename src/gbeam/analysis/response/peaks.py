@@ -187,12 +187,15 @@ def displacement_peaks(
     late = residual_from is not None and start < len(time) - 1
     if is_jax(moved):
         return [_samples(time, each[:, -1], start if late else None) for each in moved]
-    q, qd, qdd = (np.stack([getattr(each, name)[:, first:] for each in trajectories]) for name in ("q", "qd", "qdd"))
+    q, qd = (np.stack([getattr(each, name) for each in trajectories]) for name in ("q", "qd"))
 
     def largest(begin: int, measure: Callable[[Floats], Floats]) -> tuple[Floats, Floats]:
         values = measure(moved[:, begin:])
         chosen = near_maxima(time[begin:], values)
-        t, y = quintic_hermite(time[begin:], q[:, begin:], qd[:, begin:], qdd[:, begin:], chosen)
+        run, sample = np.divmod(chosen, len(time) - begin)
+        qdd = np.stack([_beside(each, begin + sample[run == k]) for k, each in enumerate(trajectories)])
+        some = np.s_[:, begin:, first:]
+        t, y = quintic_hermite(time[begin:], q[some], qd[some], qdd[some], chosen)
         return maxima(time[begin:], values, t, measure(np.asarray(structure.displacement(y))), chosen)
 
     stations, residual = moved.shape[2], np.full((len(trajectories), 3), np.nan)
@@ -201,6 +204,13 @@ def displacement_peaks(
         residual = (highest[:, :3] + highest[:, 3:]) / 2
     every = [_vectors(*each, stations) for each in zip(*largest(0, _sizes), strict=True)]
     return [_of_stations(*each) for each in zip(every, residual, strict=True)]
+
+
+def _beside(trajectory: Trajectory, samples: Indices) -> Floats:
+    """Accelerations (t, n) at samples (u,) and their neighbours; NaN elsewhere."""
+    qdd, some = np.full(trajectory.q.shape, np.nan), np.unique(samples[:, None] + np.arange(-1, 2))
+    qdd[some] = trajectory.at(some).qdd
+    return qdd
 
 
 def _of_stations(every: VectorPeaks, residual: Floats) -> Peaks:
@@ -287,7 +297,8 @@ def half_ranges(time: Floats, values: Any, start: float) -> Any:
 def peaks_of_coordinates(trajectory: Trajectory, vectors: Floats, of: Callable[[Floats], Floats]) -> Floats:
     """Largest sizes (4,) of components and length of a vector of q, also at Hermite polynomials between steps."""
     time, sizes = trajectory.time, _sizes(vectors[:, None])
-    t, q = quintic_hermite(time, trajectory.q, trajectory.qd, trajectory.qdd, near_maxima(time, sizes))
+    near = near_maxima(time, sizes)
+    t, q = quintic_hermite(time, trajectory.q, trajectory.qd, _beside(trajectory, near), near)
     value, _ = maxima(time, sizes, t, _sizes(of(q)[:, :, None]))
     return value
 

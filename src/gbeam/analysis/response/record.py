@@ -89,7 +89,8 @@ def response_of(
         of: Trajectory, steps: Any, known: Base | None = None
     ) -> tuple[tuple[Any, ...], BaseMotion, HubResult | None, Loads | None]:
         """Coordinates, base, hub and loads at some of the steps."""
-        time, q, qd, qdd = (x[steps] for x in (of.time, of.q, of.qd, of.qdd))
+        of = of.at(steps)
+        time, q, qd, qdd = of.time, of.q, of.qd, of.qdd
         base, hub = moving(motion, time, q, qd, qdd, known)
         loads = None
         if settings.loads:

@@ -118,11 +118,11 @@ class Posed:
         """Force and moment at the root, and both sides' stress at every section; none where the settings have none."""
         if not self.settings.loads:
             return []
-        some = slice(None, None, stride)
-        time, q, qd, qdd = (x[some] for x in (trajectory.time, trajectory.q, trajectory.qd, trajectory.qdd))
-        base, _ = moving(self.motion, time, q, qd, qdd)
-        q, qd, qdd = (x[:, self.problem.first :] for x in (q, qd, qdd))
-        forces = section_forces(self.structure, base, q, qd, qdd, time, motion=self.motion)
+        at = trajectory.at(slice(None, None, stride))
+        state = at.q, at.qd, at.qdd
+        base, _ = moving(self.motion, at.time, *state)
+        q, qd, qdd = (x[:, self.problem.first :] for x in state)
+        forces = section_forces(self.structure, base, q, qd, qdd, at.time, motion=self.motion)
         sides = [forces.stress_tension, forces.stress_compression]
         if forces.von_mises is not None and np.isfinite(forces.von_mises).all():
             sides.append(forces.von_mises)  # of what is only twisted the others are rounding

@@ -234,7 +234,7 @@ def joined(up: Trajectory | None, flight: Trajectory, down: Trajectory | None, s
     if down is not None:
         parts.append(down.at(slice(1, None)))
     xp = namespace(flight.q)
-    histories = {name: xp.concatenate([getattr(part, name) for part in parts]) for name in ("q", "qd", "qdd")}
+    q, qd, qdd = (xp.concatenate([getattr(part, name) for part in parts]) for name in ("q", "qd", "qdd"))
     time = np.concatenate([part.time for part in parts])
     first = 0 if up is None else len(up.time) - 1
-    return replace(flight, time=time, **histories), slice(first, first + len(flight.time[::stride]))
+    return replace(flight, time=time, q=q, qd=qd, known=qdd), slice(first, first + len(flight.time[::stride]))

@@ -115,7 +115,7 @@ def read(system: System, of: Trajectory, inputs: InputsOf, bodies: Iterable[str]
     places, along = list[Floats](), {name: list[Carried]() for name in bodies}
     for some in pieces(len(of.time), system.tree.size):
         now, at = inputs(system, some), of.at(some)
-        state = system.tree.motion(at.q, at.qd, at.qdd, now)
+        state = system.tree.motion(at.q, at.qd, at.qdd if along else 0 * at.q, now)
         places.append(np.stack([frame.p for frame in state.every_point], axis=1))
         if along:
             acting = system.tree.demanded(state, now)[2]
@@ -136,6 +136,7 @@ def read(system: System, of: Trajectory, inputs: InputsOf, bodies: Iterable[str]
 def bases_of(system: System, of: Trajectory, inputs: InputsOf) -> dict[str, Base]:
     """Motions of the roots of the bodies that can be judged, at some of the times (t, 3)."""
     some = looked(len(of.time))
-    state = system.tree.motion(of.q[some], of.qd[some], of.qdd[some], inputs(system, some))
+    at = of.at(some)
+    state = system.tree.motion(at.q, at.qd, at.qdd, inputs(system, some))
     roots = {name: state.roots[k] for k, name in enumerate(system.order)}
     return {name: Base(roots[name].a, roots[name].w, roots[name].alpha) for name in judged_bodies(system)}
