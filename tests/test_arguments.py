@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import inspect
 import re
-import subprocess
-import sys
 from collections.abc import Callable
 from dataclasses import fields as dataclass_fields
 from dataclasses import replace
@@ -634,25 +632,3 @@ def test_a_mistake_inside_is_not_blamed_on_an_argument(given: Given, monkeypatch
 def test_the_keywords_of_a_response_are_its_settings() -> None:
     fields = {each.name: each.type for each in dataclass_fields(gb.ResponseSettings)}
     assert {name: hint.__forward_arg__ for name, hint in Settings.__annotations__.items()} == fields
-
-
-@pytest.mark.slow  # mypy reads gbeam, unless it has before
-def test_type_checkers_see_options_that_are_misspelt(tmp_path: Path) -> None:
-    snippet = tmp_path / "snippet.py"
-    snippet.write_text(
-        "import gbeam as gb\n"
-        "def respond(structure: gb.Structure, motion: gb.Flight) -> None:\n"
-        "    gb.simulate(structure, motion, duration=10.0, step=1e-3)\n"
-        "    gb.simulate(structure, motion, duratoin=10.0)\n"
-        "    gb.simulate(structure, motion, duration=[10.0])\n"
-        "    gb.simulate_batch([(structure, motion)], duration=1.0, stpe=0.1)\n"
-        "    gb.static(structure, motoin=motion)\n",
-        encoding="utf-8",
-    )
-    command = [sys.executable, "-m", "mypy", "--config-file", "pyproject.toml", str(snippet)]
-    done = subprocess.run(command, cwd=Path(__file__).parents[1], capture_output=True, text=True)
-    errors = [line.partition("snippet.py:")[2] for line in done.stdout.splitlines() if ": error:" in line]
-    # Of an overloaded function mypy says it twice.
-    lines = [*dict.fromkeys(error.partition(":")[0] for error in errors)]
-    assert lines == ["4", "5", "6", "7"], done.stdout + done.stderr
-    assert 'Unexpected keyword argument "duratoin" for overloaded function "simulate"' in errors[0]
