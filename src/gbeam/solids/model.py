@@ -143,9 +143,13 @@ def beside(coarser: SolidModel, finer: Structure) -> Structure:
     mass = mass_matrix(mesh.points, mesh.blocks)
     moved = (mass @ shapes.reshape(len(shapes), -1)).reshape(shapes.shape) + mesh.point_masses[:, None, None] * shapes
     _, near = cKDTree(fine.mesh.points).query(mesh.points)
-    left, _, right = np.linalg.svd(np.tensordot(moved, fine.shapes[near], ((0, 1), (0, 1))), full_matrices=False)
+    alike = np.tensordot(moved, fine.shapes[near], ((0, 1), (0, 1)))
+    # Of stiff shapes a soft one has what the coarser mesh bends by the forces that hold it: less would strain it more.
+    rates = (np.diagonal(each.coefficients.stiffness) for each in (structure, finer))
+    forced = np.minimum(1.0, 1 / np.divide.outer(next(rates)[:known], next(rates)))
+    turn, size = np.linalg.qr(alike * forced)
     basis = np.zeros((structure.size, n))
-    basis[:known] = left @ right
+    basis[:known] = turn * np.where(np.diagonal(size) < 0, -1.0, 1.0)
     every = np.pad(basis, ((0, rough.every_shape.shape[-1] - len(basis)), (0, 0)))
     # Where both have a node: stress changes fast near those where it is largest.
     there = _nearest(rough, fine, fine.felt_at)
