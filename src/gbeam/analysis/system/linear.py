@@ -130,13 +130,13 @@ def system_modes(state: SteadySystem, moving: Vibrations, time: float, name: str
 
 def instabilities(point: Steady, moving: Vibrations) -> tuple[Instability, ...]:
     """Growing motions about a steady state."""
-    ways = point.directions(moving.divergence), point.directions(moving.modes)
+    flutter = np.flatnonzero(moving.flutter)
+    ways = [point.directions(each) if each.size else () for each in (moving.divergence, moving.modes[:, flutter])]
     return (
         *(Instability("divergence", float(v.real), 0.0, d) for v, d in zip(moving.diverging, ways[0], strict=True)),
         *(
             Instability("flutter", float(v.real), float(abs(v) / (2 * np.pi)), d)
-            for v, d, grows in zip(moving.value, ways[1], moving.flutter, strict=True)
-            if grows
+            for v, d in zip(moving.value[flutter], ways[1], strict=True)
         ),
     )
 
