@@ -137,6 +137,16 @@ def test_errors_and_intervals_of_few_data_are_those_of_linear_least_squares(rele
     assert fitted.intervals[0] - fitted.values[0] == pytest.approx(12.7062 * error * np.array([-1, 1]), rel=1e-4)
 
 
+def test_a_step_to_what_the_scenario_refuses_is_taken_back(released: Path) -> None:
+    """From 500 mm the first step is to 56 mm, where a point is beyond the tip: that was the end, said of the file."""
+    point = 'beam.points=[{ name = "gauge", at = "280 mm" }]'
+    true = gb.read_scenario(released, ["beam.length=300 mm", point])
+    modes = gb.modes(true.assemble(), true.motions["flight"])
+    data = written("short.csv", "mode,frequency", [1, 2], modes.frequency)
+    fitted = gb.fit(released, data, ["beam.length"], overrides=["beam.length=500 mm", point])
+    assert fitted.values[0] == pytest.approx(0.3, rel=1e-6)
+
+
 def test_what_the_data_cannot_tell_is_named(released: Path) -> None:
     data = written("modes.csv", "mode,frequency", [1, 2], [34.0, 213.0])
     with pytest.raises(gb.ComputationError, match=f"cannot tell ({E} and {DENSITY}|{DENSITY} and {E}) apart") as raised:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.analysis.case import Case, SpecimenCase, SystemCase
-from gbeam.errors import ComputationError, InputError
+from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.progress import Progress
 from gbeam.results.result import Floats
@@ -242,7 +242,7 @@ def _search(
     def residual(x: Floats, weights: Floats) -> Floats:
         try:
             return np.asarray((model(x * scale) - measured) * weights)
-        except (InputError, ComputationError):  # the scenario does not allow it, or diverges: the step is taken back
+        except GbeamError:  # the scenario does not allow it, or diverges: the step is taken back
             return np.full(len(measured), _IMPOSSIBLE * first / np.sqrt(len(measured)))
 
     def jacobian(x: Floats, weights: Floats) -> Floats:
