@@ -102,15 +102,15 @@ class Given:
             ),
             "Case": (
                 ("case", self.beam, gb.Model("FOAM", z=1), {"flight": self.still}, self.settings),
-                {"tracks": {}, "stations": (0.1,), "accept": {}},
+                {"tracks": {}, "stations": (0.1,), "accept": {}, "sensors": {"tip": gb.Sensor()}},
             ),
             "SpecimenCase": (
                 ("case", "strip", self.structure, {"flight": self.still}, self.settings),
-                {"tracks": {}, "accept": {}},
+                {"tracks": {}, "accept": {}, "sensors": {"tip": gb.Sensor()}},
             ),
             "SystemCase": (
                 ("case", gb.System({"bar": self.bar}, {"hinge": self.hinge}), {}, self.settings),
-                {"tracks": {}, "accept": {}},
+                {"tracks": {}, "accept": {}, "sensors": {"bar.root": gb.Sensor()}},
             ),
             "Centrifuge": (
                 (self.still,),

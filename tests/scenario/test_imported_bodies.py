@@ -11,8 +11,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray
 
 import gbeam as gb
+from gbeam.figures import figures_of
+from gbeam.results.facts import facts_of
 from gbeam.scenario import ScenarioError
 from tests.solids.test_modal_tests import beam, measured
 
@@ -223,8 +226,8 @@ def test_control_points_of_a_scenario_judge_a_box(folder: Path) -> None:
     run = study.responses["machine"]
     leaking = '[[1, 0, "2 %"], [0, 1, 0], [0, 0, 1]]'
     lid = f'turn = [0, 0, "20 deg"], frequency = "50 Hz", damping_ratio = "60 %", sensitivity = {leaking}'
-    sensed = MACHINE.replace("srs =", f"sensors = {{ lid = {{ {lid} }} }}, srs =")
-    by_sensor = gb.study(case_of(folder, BOX + TURN + sensed + RESPONSE)).comparisons[0].shock
+    sensed = gb.study(case_of(folder, BOX + TURN + MACHINE + RESPONSE + f"[sensors]\nlid = {{ {lid} }}\n"))
+    by_sensor = sensed.comparisons[0].shock
     leaks = np.eye(3) + np.array([[0, 0, 0.02], [0, 0, 0], [0, 0, 0]])
     sensor = gb.Sensor(turn=(0, 0, np.radians(20)), frequency=50.0, damping_ratio=0.6, sensitivity=leaks)
     weights = {"lid": 3.0, "edge": 1.0}
@@ -233,6 +236,16 @@ def test_control_points_of_a_scenario_judge_a_box(folder: Path) -> None:
     assert by_sensor.control == "lid (75 %, as its sensor reads), edge (25 %)"
     np.testing.assert_allclose(by_sensor.centrifuge, wanted.centrifuge, rtol=1e-12)
     assert not np.allclose(by_sensor.centrifuge, comparison.shock.centrifuge, rtol=0.05)
+    for name, each in sensed.responses.items():
+        readings, expected = each.readings, study.responses[name].reading_at("lid", sensor)
+        assert readings is not None and readings.points == ("lid",)
+        np.testing.assert_allclose(readings.acceleration[:, 0], expected, atol=1e-12)
+        said = facts_of(each)["sensors"]["lid"]["size"]
+        assert said["max_abs"] == pytest.approx(np.linalg.norm(expected, axis=1).max(), rel=1e-3)
+        assert "sensors" in figures_of(each)
+    sensed.save(folder / "read.nc")
+    kept = xarray.open_datatree(folder / "read.nc")["motions/machine"]
+    np.testing.assert_allclose(kept["sensor_acceleration"].sel(sensor="lid"), readings.acceleration[:, 0])
     assert run.points == ("lid", "edge", "tip") and run.accelerations is not None
     place = np.array([0.15, 0, 0])
     w, alpha, a = run.base.w_WB_B, run.base.alpha_WB_B, run.base.a_WO_B
@@ -251,12 +264,11 @@ def test_control_points_of_a_scenario_judge_a_box(folder: Path) -> None:
         ('srs = "40 dB"', 'damage_at = "lit"', "motion.machine.accept.damage_at", "did you mean 'lid'"),
         ('srs = "40 dB"', "damage_at = 2", "motion.machine.accept.damage_at", "text"),
         ('srs = "40 dB"', 'point = "lit"', "motion.machine.accept.point", "did you mean 'lid'"),
-        ('srs = "40 dB"', "sensors = { lit = {} }", "motion.machine.accept.sensors.lit", "did you mean 'lid'"),
-        ('srs = "40 dB"', "sensors = { tip = {} }", "motion.machine.accept.sensors.tip", "name the point in control"),
-        ('srs = "40 dB"', "sensors = { lid = 2 }", "motion.machine.accept.sensors.lid", "table"),
-        ('srs = "40 dB"', 'sensors = { lid = { frequency = "2 s" } }', "accept.sensors.lid.frequency", "a frequency"),
-        ('srs = "40 dB"', "sensors = { lid = { damping_ratio = 0 } }", "accept.sensors.lid.damping_ratio", "zero"),
-        ('srs = "40 dB"', "sensors = { lid = { sensitivity = [1, 1, 1] } }", "sensors.lid.sensitivity[0]", "list"),
+        ("[motion.machine]", "[sensors.lit]\n[motion.machine]", "sensors.lit", "did you mean 'lid'"),
+        ("[motion.machine]", "[sensors]\nlid = 2\n[motion.machine]", "sensors.lid", "table"),
+        ("[motion.machine]", '[sensors]\nlid.frequency = "2 s"\n[motion.machine]', "sensors.lid.frequency", "a freq"),
+        ("[motion.machine]", "[sensors]\nlid.damping_ratio = 0\n[motion.machine]", "sensors.lid.damping_ratio", "zero"),
+        ("[motion.machine]", "[sensors]\nlid.sensitivity = 1\n[motion.machine]", "sensors.lid.sensitivity", "list"),
     ],
 )  # fmt: skip
 def test_control_points_that_are_none_are_placed(folder: Path, before: str, after: str, place: str, words: str) -> None:

@@ -102,7 +102,7 @@ def test_spectra_of_control_points_are_their_weighted_mean() -> None:
     assert one.control == "the tip (as its sensor reads)"
     np.testing.assert_array_equal(one.flight, tip.shock.flight)
     for read, words in (
-        ({"middle": sensor}, "sensors.middle is at no point whose spectra are compared; name the point in control"),
+        ({"meddle": sensor}, "sensors.meddle.point is 'meddle'|sensors.meddle.* 'meddle'"),
         ({"tip": gb.Sensor(frequency=900.0)}, "sensors.tip.frequency is 900 Hz, with samples 0.002 s apart"),
     ):
         with pytest.raises(gb.InputError, match=words):

@@ -38,6 +38,7 @@ from gbeam.results.provenance import Provenance
 from gbeam.structure.beam import Beam
 
 if TYPE_CHECKING:
+    from gbeam.results.response import Sensor
     from gbeam.scenario.schema.scenario import Scenario
     from gbeam.scenario.schema.system import SpecimenScenario, SystemScenario
 
@@ -119,6 +120,8 @@ class Case(_InEnvironments):
         see :func:`gbeam.compare`.
     provenance : Provenance, optional
         Of the scenario; results of the whole case have it.
+    sensors : mapping of str to Sensor
+        Accelerometers by the names of points, whose readings results have.
 
     Attributes
     ----------
@@ -143,6 +146,7 @@ class Case(_InEnvironments):
     stations: tuple[float, ...] = ()
     accept: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     provenance: Provenance | None = None
+    sensors: Mapping[str, Sensor] = field(default_factory=dict)
     # Not an argument, so that dataclasses.replace leaves it behind.
     scenario: Scenario | None = field(default=None, init=False, repr=False, compare=False)
 
@@ -191,6 +195,8 @@ class SystemCase(_InEnvironments):
         As of a :class:`Case`, and ``point``, whose displacement is compared.
     provenance : Provenance, optional
         Of the scenario; results of the whole case have it.
+    sensors : mapping of str to Sensor
+        Accelerometers by the names of points, whose readings results have.
 
     Attributes
     ----------
@@ -217,6 +223,7 @@ class SystemCase(_InEnvironments):
     tracks: Mapping[str, str] = field(default_factory=dict)
     accept: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     provenance: Provenance | None = None
+    sensors: Mapping[str, Sensor] = field(default_factory=dict)
     scenario: SystemScenario | None = field(default=None, init=False, repr=False, compare=False)
     no_beam = (
         "make a system",
@@ -231,12 +238,13 @@ class SystemCase(_InEnvironments):
             if self.system.gravity is not None:
                 fix = f"leave one out: {name} carries its own, as specific force"
                 raise InputError("system.gravity", "is given beside a motion of the ground", fix)
+        for point in self.sensors:
+            self.system.point(f"sensors.{point}", point)
         for name, limits in self.accept.items():
             if limits.get("point") is not None:
                 self.system.point(f"motion.{name}.accept.point", limits["point"])
-            for key in ("control", "sensors"):
-                for point in limits.get(key, ()):
-                    self.system.point(f"motion.{name}.accept.{key}.{point}", point)
+            for point in limits.get("control", ()):
+                self.system.point(f"motion.{name}.accept.control.{point}", point)
             flexible = self.system.flexible.items()
             stressed = [key for key, body in flexible if body.sections is not None or body.recovery is not None]
             lacking = {} if stressed else {STRESS: "no body is a beam or a mesh"}
@@ -280,6 +288,8 @@ class SpecimenCase(_InEnvironments):
         As of a :class:`Case`.
     provenance : Provenance, optional
         Of the scenario; results of the whole case have it.
+    sensors : mapping of str to Sensor
+        Accelerometers by the names of points, whose readings results have.
 
     Attributes
     ----------
@@ -306,6 +316,7 @@ class SpecimenCase(_InEnvironments):
     tracks: Mapping[str, str] = field(default_factory=dict)
     accept: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     provenance: Provenance | None = None
+    sensors: Mapping[str, Sensor] = field(default_factory=dict)
     scenario: SpecimenScenario | None = field(default=None, init=False, repr=False, compare=False)
     no_beam = (
         "is no beam",

@@ -7,16 +7,20 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any, overload
 
+import numpy as np
+
 from gbeam.analysis.case import AnyCase, Case, SpecimenCase, SystemCase
 from gbeam.analysis.imitation.comparison import compare
+from gbeam.analysis.response.peaks import vector_peaks
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
-from gbeam.errors import ComputationError, InputError, naming
+from gbeam.errors import ComputationError, InputError, placing_within
 from gbeam.guards.arguments import typed
 from gbeam.progress import Progress, tell
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.criteria import judging
-from gbeam.results.response import Response
+from gbeam.results.parts import Extremes, VectorPeaks
+from gbeam.results.response import Readings, Response, Sensor
 from gbeam.results.study import Failure, Study, SystemStudy
 from gbeam.results.system import SystemResponse
 
@@ -82,11 +86,12 @@ def study_of(
             first.outcome, "; ".join(f"motion.{n}: {failure.message}" for n, failure in failures.items())
         )
 
+    if case.sensors:
+        responses = {name: replace(each, readings=_readings(each, case.sensors)) for name, each in responses.items()}
+
     def compared(name: str, flight: str) -> Comparison:
-        settings = judging(case.accept.get(name, {}))
-        sensors = [f"sensors.{point}.frequency" for point in settings.get("sensors", ())]
-        with naming({place: f"motion.{name}.accept.{place}" for place in sensors}):
-            return replace(compare(responses[flight], responses[name], **settings), provenance=case.provenance)
+        settings = judging(case.accept.get(name, {})) | {"sensors": case.sensors}
+        return replace(compare(responses[flight], responses[name], **settings), provenance=case.provenance)
 
     comparisons = tuple(
         compared(name, flight)
@@ -95,6 +100,19 @@ def study_of(
     )
     of = SystemStudy if isinstance(case, SystemCase) else Study
     return of(case.title, dict(responses), comparisons, dict(failures), provenance=case.provenance)
+
+
+def _readings(response: Response | SystemResponse, sensors: Mapping[str, Sensor]) -> Readings | None:
+    """Readings of accelerometers; None in a response that is not done or has no accelerations."""
+    if response.outcome != "done" or getattr(response, "accelerations", ()) is None:
+        return None
+    read = []
+    for point, sensor in sensors.items():
+        with placing_within(f"sensors.{point}"):
+            read.append(response.reading_at(point, sensor))
+    value, time = np.stack([vector_peaks(response.time, each) for each in read], axis=1)
+    peaks = VectorPeaks(Extremes(value[:, :3], time[:, :3]), Extremes(value[:, 3], time[:, 3]))
+    return Readings(tuple(sensors), np.stack(read, axis=1), peaks)
 
 
 def _answers(case: AnyCase, progress: Progress) -> tuple[dict[str, Any], dict[str, Failure]]:

@@ -105,6 +105,8 @@ def _of_system(result: SystemResponse, title: str) -> dict[str, Describe]:
     every: dict[str, Describe] = {"points": partial(systems.points, result, title)}
     if named(result):
         every["coordinates"] = partial(systems.coordinates, result, title)
+    if result.readings is not None:
+        every["sensors"] = partial(response.sensors, result, result.readings, title)
     if result.loop is not None:
         every["loop"] = partial(systems.loop, result, title)
     every |= {f"loads {body}": partial(systems.loads, result, body, title) for body in result.beams}
@@ -155,6 +157,8 @@ def _of_response(result: Response, title: str, flight: Response | None = None) -
     if result.specimen is not None:
         every["specimen"] = partial(systems.specimen, result.specimen, title)
     every["base"] = partial(response.base, result, title)
+    if result.readings is not None:
+        every["sensors"] = partial(response.sensors, result, result.readings, title)
     if result.loads is not None and result.specimen is None:
         every["loads"] = partial(response.loads, result, result.loads, title)
     if result.axes is not None:

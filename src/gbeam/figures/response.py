@@ -35,9 +35,10 @@ from gbeam.results.equilibrium import Deflection
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.machine import AxesResult
 from gbeam.results.parts import Loads
-from gbeam.results.response import BaseMotion, HubResult, PlotHeading, Response
+from gbeam.results.response import BaseMotion, HubResult, PlotHeading, Readings, Response
 from gbeam.results.result import Floats
 from gbeam.results.study import ModelStudy, Study
+from gbeam.results.system import SystemResponse
 
 Names = tuple[tuple[str, ...], tuple[str, ...]]
 AXES = ("axis 1, the arm", "axis 2, yaw", "axis 3, roll")
@@ -213,6 +214,17 @@ def base(response: Response, title: str = "") -> Figure:
         panel = Panel(f"{words}, {unit}", spans=spans, height=1.0 if turning else 1.6)
         panels.append(components(response.time, scale * values, "xyz", panel))
     about = of_motion(response.name, "motion of the base, base axes")
+    return Figure(title, about, tuple(panels), outcomes=(response.outcome,))
+
+
+def sensors(response: Response | SystemResponse, readings: Readings, title: str = "") -> Figure:
+    """Describe what accelerometers read, a panel for each."""
+    scale, unit = scale_of(declared(Readings, "acceleration")[1], readings.acceleration)
+    panels = [
+        components(response.time, scale * readings.acceleration[:, k], "xyz", Panel(f"{point}, {unit}", height=1.2))
+        for k, point in enumerate(readings.points)
+    ]
+    about = of_motion(response.name, "readings of the accelerometers, along their axes")
     return Figure(title, about, tuple(panels), outcomes=(response.outcome,))
 
 

@@ -16,7 +16,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, index_of, positive
 from gbeam.numerics.samples import displacement
-from gbeam.results.declared import INSIDE, declared, fact, part, quantity
+from gbeam.results.declared import INSIDE, declared, fact, labels, part, quantity
 from gbeam.results.errors import Errors
 from gbeam.results.machine import AxesResult, Driven
 from gbeam.results.parts import Influence, Loads, Outline, Peaks, VectorPeaks
@@ -107,6 +107,19 @@ class Sensor(Value):
                 raise InputError("frequency", problem, f"simulate in steps of {1 / (RESOLVED * self.frequency):.2g} s")
             felt = omega**2 * displacement(felt, omega, self.damping_ratio, step)
         return felt if self.sensitivity is None else felt @ np.asarray(self.sensitivity, dtype=float).T
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Readings(Part):
+    """Readings of accelerometers at points over time, along their own axes."""
+
+    json_rows: ClassVar[dict[str, str]] = {"sensor": ""}
+
+    points: tuple[str, ...] = labels("name of the point at which the sensor is", "sensor")
+    acceleration: Floats = quantity(
+        "m/s^2", "reading of the sensor", "time sensor axis", key=None, frame="axes of the sensor"
+    )
+    peaks: VectorPeaks = part("largest readings", "sensor", unit="m/s^2", name="max_", key=INSIDE)
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -298,6 +311,7 @@ class Response(Driven, Figured):
     specimen: SpecimenLoads | None = part(
         "loads of a rigid specimen", name="specimen_", key="specimen", optional=True, default=None
     )
+    readings: Readings | None = part("of accelerometers", name="sensor_", key="sensors", optional=True, default=None)
 
     @declared("s", "time of the part of the flight", "ends", name=None, key="span", optional=True)
     def part_span(self) -> tuple[float, float] | None:

@@ -15,7 +15,7 @@ from gbeam.results.errors import FrequencyErrors, Instability, Oscillating, Syst
 from gbeam.results.facts import at_place
 from gbeam.results.machine import AxesResult, Driven
 from gbeam.results.parts import LoadPeaks, Loads, Outline
-from gbeam.results.response import BaseMotion, Sensor
+from gbeam.results.response import BaseMotion, Readings, Sensor
 from gbeam.results.result import Complex, Figured, Floats, Part
 from gbeam.results.solids import SolidStress, Surface, SurfaceModes
 
@@ -191,6 +191,7 @@ class SystemResponse(Driven, Figured):
         "surfaces of meshes for pictures, by the name of the body", "body", optional=True, name="surface_", key=None,
         default_factory=dict,
     )  # fmt: skip
+    readings: Readings | None = part("of accelerometers", name="sensor_", key="sensors", optional=True, default=None)
     integrator: str = fact("integrator", default="gauss")
     step: float = fact("time step", "s", default=math.nan)
     steps: int = fact("number of steps", default=0)

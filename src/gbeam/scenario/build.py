@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.printable import advise
-from gbeam.results.imitation.criteria import RULES, refuse_unread
+from gbeam.results.imitation.criteria import RULES
 from gbeam.scenario import schema
 from gbeam.scenario.build_beam import beam_of, model_of
 from gbeam.scenario.load import Collector, change, load, placed, provenance
@@ -78,7 +78,8 @@ def build(scenario: AnyScenario, *, ahead: bool = False) -> AnyCase:
     if response is not None:
         span = (response.start, response.start + response.duration)
         motions |= centrifuges(parts, scenario, motions, span, ahead=ahead)
-    accept = _acceptance(parts, scenario, _points(structure))
+    accept = _acceptance(parts, scenario, points := _points(structure))
+    sensors = _sensors(parts, scenario.sensors, points)
     if parts.errors or None in structure.values():
         raise placed(scenario, parts.errors)
     case = parts.attempt(
@@ -90,6 +91,7 @@ def build(scenario: AnyScenario, *, ahead: bool = False) -> AnyCase:
         tracks={name: table.tracks for name, table in scenario.motion.items() if isinstance(table, schema.Centrifuge)},
         accept=accept,
         provenance=provenance(scenario),
+        sensors=sensors,
         **structure,
     )
     if case is None:
@@ -167,23 +169,23 @@ def _acceptance(
                 parts.attempt(f"motion.{name}.accept", RULES[key].checked, limit)
         named = {f"control.{each}": each for each in limits.get("control", ())}
         named |= {key: limits[key] for key in ("point", "damage_at") if key in limits}
-        sensors = limits.get("sensors", {})
-        named |= {f"sensors.{each}": each for each in sensors}
-        unknown = [
+        parts.errors += [
             InputError(f"motion.{name}.accept.{key}", f"is no point: {each!r}", advise(each, points))
             for key, each in named.items()
             if points and each not in points
         ]
-        parts.errors += unknown
-        if sensors and not unknown:
-            from gbeam.results.response import Sensor
-
-            where, read = f"motion.{name}.accept", (limits.get("control", ()), limits.get("point"))
-            parts.attempt(where, refuse_unread, sensors, *read)
-            limits["sensors"] = {
-                each: parts.attempt(f"{where}.sensors.{each}", Sensor, **dict(table)) for each, table in sensors.items()
-            }
     return limited
+
+
+def _sensors(parts: Collector, tables: Mapping[str, schema.Sensor], points: tuple[str, ...]) -> dict[str, Any]:
+    """Accelerometers by the names of points, which of a system are looked at later."""
+    if not tables:
+        return {}
+    from gbeam.results.response import Sensor
+
+    unknown = [each for each in tables if points and each not in points]
+    parts.errors += [InputError(f"sensors.{each}", f"is no point: {each!r}", advise(each, points)) for each in unknown]
+    return {each: parts.attempt(f"sensors.{each}", Sensor, **dict(table)) for each, table in tables.items()}
 
 
 def _response(parts: Collector, table: schema.Response, motions: Mapping[str, Motion]) -> ResponseSettings | None:

@@ -17,7 +17,7 @@ from gbeam.motion.bases.base import gradients
 from gbeam.numerics.samples import interpolated, largest_riding_acceleration, low_pass
 from gbeam.results.imitation.accounting import TOLERANCE, PeakPair
 from gbeam.results.imitation.comparison import Comparison
-from gbeam.results.imitation.criteria import Limit, checked_limits, refuse_unread
+from gbeam.results.imitation.criteria import Limit, checked_limits
 from gbeam.results.imitation.measures import (
     Mismatch,
     RootHistory,
@@ -136,7 +136,7 @@ def compare(
         Named point whose fatigue damage is compared; by default the root of a beam, and of a solid where its
         von Mises stress is largest; of several beams, solids or materials that where the stress ranges most in flight.
     sensors : mapping of str to Sensor, optional
-        Accelerometers at points of the shock response spectra, which are of what they read: see
+        Accelerometers by the names of points: the shock response spectra there are of what they read, see
         :meth:`Response.reading_at`, of systems :meth:`SystemResponse.reading_at`.
 
     Returns
@@ -149,7 +149,7 @@ def compare(
     Raises
     ------
     InputError
-        If a limit has no such name, or means nothing, there is no such point, or a sensor is not read or resolved.
+        If a limit has no such name, or means nothing, there is no such point, or a sensor is not resolved.
 
     Examples
     --------
@@ -206,7 +206,6 @@ def compare(
         root = _root(covered, history, in_flight(a.stress[:, 0]), b.stress[during, 0])
     weights = _weights(control, flight, centrifuge)
     sensors = {} if sensors is None else sensors
-    refuse_unread(sensors, weights, chosen)
     felt = _felt(runs[0], flight, sensors), _felt(runs[1], centrifuge, sensors)
     if felt[0] is not None and felt[1] is not None and covered.any():
         shock = _shock(time, covered, in_flight(felt[0]), felt[1][during], weights, chosen, sensors, flight, centrifuge)
@@ -393,5 +392,5 @@ def _shock(
         mean += share * largest_riding_acceleration(both, 2 * np.pi * frequency, 0.5 / QUALITY, step, covered)
     read = dict.fromkeys(sensors, ", as its sensor reads")
     said = ", ".join(f"{name} ({100 * share:.3g} %{read.get(name, '')})" for name, share in weights.items())
-    said = said or (tip or "the tip") + (" (as its sensor reads)" if sensors else "")
+    said = said or (tip or "the tip") + (" (as its sensor reads)" if (tip or "tip") in sensors else "")
     return Shock(QUALITY, frequency, mean[:, :3], mean[:, 3:], control=said)

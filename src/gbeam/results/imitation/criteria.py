@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 Limit = float | tuple[float, float]
 Value = tuple[float, str]  # and where it occurs
-OF_RESPONSES = ("point", "control", "damage_at", "sensors")  # settings of what responds
+OF_RESPONSES = ("point", "control", "damage_at")  # settings of what responds
 SETTINGS = ("tolerance", "tolerance_of", *OF_RESPONSES)  # beside the limits in a table of acceptance
 STRESS, DISPLACEMENT = "a stress", "a displacement"  # that not every specimen has
 NOT_ACCEPTED, EXCEEDED = "not accepted", "machine limits exceeded"
@@ -242,15 +242,6 @@ def refuse_unknown(where: str, limits: Iterable[str], lacking: Mapping[str, str]
             raise InputError(
                 f"{where}.{name}", f"is of {rule.needs}, and {lacking[rule.needs]}", f"choose from {others}"
             )
-
-
-def refuse_unread(sensors: Iterable[str], control: Iterable[str], point: str | None) -> None:
-    """Refuse a sensor at a point whose spectra are not compared."""
-    read = (*control,) or (point or "tip",)
-    for name in sensors:
-        if name not in read:
-            problem = "is at no point whose spectra are compared"
-            raise InputError(f"sensors.{name}", problem, "name the point in control, or in point")
 
 
 def checked_limits(accept: Mapping[str, object] | None) -> dict[str, Limit]:

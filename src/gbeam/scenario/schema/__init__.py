@@ -14,6 +14,7 @@ from gbeam.scenario.schema.motion import Centrifuge as Centrifuge
 from gbeam.scenario.schema.motion import Flight as Flight
 from gbeam.scenario.schema.motion import Hub as Hub
 from gbeam.scenario.schema.motion import Limits as Limits
+from gbeam.scenario.schema.motion import Sensor as Sensor
 from gbeam.scenario.schema.profile import Constant as Constant
 from gbeam.scenario.schema.profile import Listed as Listed
 from gbeam.scenario.schema.profile import Sine as Sine

@@ -81,9 +81,6 @@ class Accept(_Limits):  # type: ignore[misc, valid-type]
         "point whose fatigue damage is that of damage; left out, the root of a beam, and of a solid where "
         "its von Mises stress is largest, of several materials that whose stress ranges most in flight"
     )
-    sensors: dict[str, Sensor] = by_name(
-        "accelerometers by the names of points: srs is of what they read there, in place of the acceleration itself"
-    )
 
     @property
     def limits(self) -> dict[str, Any]:

@@ -13,8 +13,8 @@ from gbeam.guards.limits import NAME, SHAPES, TITLE
 from gbeam.printable import advise, shortened, unprintable
 from gbeam.questions import QUESTIONS
 from gbeam.scenario.schema.beam import Beam
-from gbeam.scenario.schema.fields import Loc, Table, optional, refuse, wrong
-from gbeam.scenario.schema.motion import Centrifuge, Flight, Hub, Motion
+from gbeam.scenario.schema.fields import Loc, Table, by_name, optional, refuse, wrong
+from gbeam.scenario.schema.motion import Centrifuge, Flight, Hub, Motion, Sensor
 from gbeam.scenario.schema.response import Response
 
 if TYPE_CHECKING:
@@ -122,6 +122,10 @@ class Environments(Titled):
         description="what the base does, each [motion.NAME]; without any it rests, which run of one structure refuses",
     )
     response: Response = Field(default_factory=Response, description="response over time")
+    sensors: dict[str, Sensor] = by_name(
+        "accelerometers by the names of points, each [sensors.POINT]: what they read is put out over time, and in "
+        "accept srs is of it, in place of the acceleration itself"
+    )
     sweep: Sweep | None = optional("many cases, for gbeam sweep")
 
     _source: Source | None = PrivateAttr(None)
