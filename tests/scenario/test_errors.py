@@ -205,7 +205,7 @@ BUILT = {
     ),
     "residual too late": (
         'duration = "4 s"', 'duration = "4 s"\nresidual_from = "5 s"', "response.residual_from",
-        "is 5 s", "give a time from 0 s to 4 s", '"5 s"',
+        "is 5 s", "give a time from 0 s on, before 4 s", '"5 s"',
     ),
     "SFOAM": (
         'kind = "FOAM"', 'kind = "SFOAM"', "model.modes.axial",

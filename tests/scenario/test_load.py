@@ -152,7 +152,7 @@ class TestRecord:
         assert built.response.start == 1.0
         assert built.response.duration == pytest.approx(0.05)
         with pytest.raises(
-            ScenarioError, match=r"--set response.residual_from=3 s: .*\n.*give a time from 1 s to 1.05 s"
+            ScenarioError, match=r"--set response.residual_from=3 s: .*\n.*give a time from 1 s on, before 1.05 s"
         ):
             build(load(tmp_path / "s.toml", ["response.residual_from=3 s"]))
 

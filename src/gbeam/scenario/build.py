@@ -219,7 +219,7 @@ def _response(parts: Collector, table: schema.Response, motions: Mapping[str, Mo
         assert flight.record is not None
         parts.errors += _not_all_of(name, flight.record, start, end, has_duration=table.duration is not None)
     if table.residual_from is not None and not start <= table.residual_from < end:
-        fix = f"give a time from {start:g} s to {end:g} s"
+        fix = f"give a time from {start:g} s on, before {end:g} s"
         parts.errors.append(InputError("response.residual_from", f"is {table.residual_from:g} s", fix))
     initial = parts.attempt("response.initial", Initial, **table.initial.settings)
     if initial is None:
