@@ -104,7 +104,7 @@ class _Window:
         self.residual, self.drive, self.scheme, self.steps, self.sampling = residual, drive, scheme, steps, sampling
         self.first, self.apart, self.more, self.again = 0, FAR + 1, FIRST, LONGEST
         self.ahead, self.driven, self.held = range(0), cast(Any, None), cast(Any, None)
-        self.done: list[tuple[Array, ...]] = []
+        self.done, self.lengths = list[tuple[Array, ...]](), np.zeros(0)
 
     def begin(self, z: Array, x: Array) -> None:
         """Begin with no step, from a state z (m, n) and accelerations (n,)."""
@@ -196,8 +196,10 @@ class _Window:
             some = self.steps[self.ahead.start : self.ahead.stop]
             self.driven = self.drive(np.stack([some.times(offset) for offset in self.scheme.offsets], axis=1).ravel())
         length, begin = length[self.first : last], self.first - self.ahead.start
-        t: Tableau = self.scheme.tableau(length[:1] if (length == length[0]).all() else length)
-        self.t, self.onto = t, np.block([[t.w_q, t.c_q], [t.w_v, t.c_v]])
+        lengths = length[:1] if (length == length[0]).all() else length
+        if not np.array_equal(lengths, self.lengths):
+            t: Tableau = self.scheme.tableau(lengths)
+            self.lengths, self.t, self.onto = lengths, t, np.block([[t.w_q, t.c_q], [t.w_v, t.c_v]])
         at = slice(stages * begin, stages * (begin + len(length)))
         self.inputs = self.free = each_leaf(lambda leaf: leaf[at], self.driven)
         if self.sampling is not None:

@@ -182,7 +182,7 @@ class Tree:
     @property
     def free(self) -> Array:
         """Indices of the coordinates that are unknown."""
-        return np.setdiff1d(np.arange(self.size), self.fixed)
+        return np.delete(np.arange(self.size), self.fixed)
 
     def parted(self, y: Array) -> list[list[Array]]:
         """Coordinates of each link: of each step of its joint, then of its body."""
