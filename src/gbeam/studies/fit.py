@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from gbeam.analysis.case import Case, SpecimenCase, SystemCase
 from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.progress import Progress
+from gbeam.questions import Needs, reduced
 from gbeam.results.result import Floats
 from gbeam.results.searches import Fit, FittedColumn
 from gbeam.studies.derivatives import Neighbourhood, Quantities
@@ -114,7 +116,7 @@ def fit(
     start = (
         None
         if measurement.modal or not isinstance(case, Case)
-        else Neighbourhood(inquiry, parameters, progress=progress)
+        else Neighbourhood(inquiry, parameters, adapt=partial(reduced, needs=Needs(errors=False)), progress=progress)
     )
     model = Quantities(
         inquiry, parameters, measurement.read, start, measurement.motions, measurement.parts,
