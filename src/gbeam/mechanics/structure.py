@@ -342,7 +342,13 @@ class Structure:
         return self if self.history is None else replace(self, load_values=self.history(np.asarray(float(time))))
 
     def turned(self, basis: Array) -> Structure:
-        """A linear structure of particles in coordinates p with q = basis p, without what is recovered."""
+        """Return a linear structure of particles in coordinates p with q = basis p, without what is recovered.
+
+        Parameters
+        ----------
+        basis : (n, k)
+            Coordinates q of each of the new ones.
+        """
         c, turns = self.coefficients.turned(basis), None if self.turns is None else self.turns @ basis
         places, stations = self.places.turned(basis), self.station_places.turned(basis)
         return replace(self, coefficients=c, places=places, station_places=stations, turns=turns, recovery=None)
