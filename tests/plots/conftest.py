@@ -38,7 +38,7 @@ def _response(name: str, environment: str, turning: float) -> Response:
         step=1e-3,
         steps=2000,
         error_estimate=1e-5,
-        errors=Errors(ErrorEstimate(8e-6, 0.0, 2e-6, 0.0, 1e-5)),
+        errors=Errors(ErrorEstimate(8e-6, 0.0, 2e-6, 0.0, total=1e-5)),
         residual_from=1.0,
     )
 
