@@ -15,7 +15,9 @@ from scipy.spatial.transform import Rotation
 
 import gbeam as gb
 from gbeam.motion import constant
+from gbeam.report.steady import system_rest
 from gbeam.report.study import of_beam
+from gbeam.report.words import percent
 from gbeam.solids.elements import STRAIN, chunks, mass_matrix, stiffness_matrix
 from gbeam.solids.foreign import read_mesh
 from gbeam.solids.shape_functions import KINDS
@@ -203,6 +205,11 @@ def test_the_mesh_converges_and_says_by_how_much() -> None:
         assert 0.01 < of.errors.stress.mesh < 0.5
     said = " ".join(of_beam(of))
     assert "mesh" in said and "not judged" not in said and any("mesh it finer" in each for each in of.warnings)
+    lost, rough = (
+        gb.critical_speed(each.structure, gb.Hub(radius=0.1, pointing="inward")) for each in (judged, coarse)
+    )
+    assert lost.value is not None and rough.value is not None and lost.error_note == ""
+    assert lost.errors.mesh == pytest.approx(abs(rough.value / lost.value - 1), rel=1e-3)
     without = gb.static(middle.structure, acceleration=(0.0, 0.0, 9.81)).errors
     assert without.note == "the mesh is not judged" and np.isnan(without.displacement.mesh)
 
@@ -244,6 +251,7 @@ def test_bodies_of_a_system_state_their_meshes_share() -> None:
     np.testing.assert_allclose(modes.errors.mesh[:4], np.abs(rough.frequency / modes.frequency - 1)[:4])
     both = gb.static(held(middle, b=replace(middle, coarser=None)))
     assert both.errors.note == "the mesh of b is not judged" and both.errors.displacement.mesh > 0
+    assert f"errors of the meshes {percent(both.errors.displacement.mesh)}" in system_rest([both])
 
 
 def test_few_modes_answer_steady_loads_as_all_do() -> None:

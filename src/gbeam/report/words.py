@@ -159,3 +159,5 @@ def by_beam(errors: SystemErrors) -> Iterator[str]:
         yield f"errors of root loads and of stress of {listed}"
     if math.isfinite(errors.displacement.beam_theory):
         yield f"errors by the theory of slender beams {percent(errors.displacement.beam_theory)}"
+    if math.isfinite(errors.displacement.mesh):
+        yield f"errors of the meshes {percent(errors.displacement.mesh)}"
