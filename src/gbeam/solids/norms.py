@@ -9,6 +9,7 @@ from gbeam.solids.shape_functions import Indices
 
 STRAIGHT = 0.01  # of the largest norm: by so much coordinates depart from chords between times of all norms
 FEW = 8  # times that are computed together
+SOME = 4  # one of so many times tells maps whose norms are the largest
 BLOCK = 2**22  # numbers handled together
 SETTLED = 1e-9  # by which a norm between others may be larger without being computed
 ROUNDING = 1e-12  # by which norms that are equal differ
@@ -32,7 +33,7 @@ class LargestNorms:
         scaled = q * self.columns.mean(axis=0)
         ends = np.array([0, *_ends(scaled, STRAIGHT * np.abs(scaled).sum(axis=1).max(), 0, len(q) - 1)])
         spans = self._chunks(ends, every)
-        foremost = np.concatenate([self._at(ends[span], every).argmax(axis=1) for span in spans])
+        foremost = np.concatenate([self._at(ends[span][::SOME], every).argmax(axis=1) for span in spans])
         self._throughout(times, np.unique(foremost))
         last, at_last = 0, np.empty(0)
         for span in spans:

@@ -17,6 +17,7 @@ from gbeam.analysis.response.stepping import (
     Plan,
     answered,
     corners,
+    enough,
     first_steps,
     going_on,
     integrated,
@@ -264,7 +265,7 @@ def simulate(
         if up is not None:
             posed = replace(posed, problem=going_on(posed.problem, up))
         run, errors = answered(posed.plan(), partial(_run, posed, progress))
-        if max(errors.displacement, errors.loads) <= settings.tolerance / 3:
+        if enough(run, errors, settings):
             break
     down = None
     if run.whole:

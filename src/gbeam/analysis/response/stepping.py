@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Generator
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -25,7 +26,7 @@ from gbeam.results.result import Floats
 
 MAX_STEPS = 4_000_000
 LOADS_STEPS = 50_000  # at most, where it is the loads that need them
-MANY = 20_000  # steps, with which a third of the tolerance is enough where the periods ask for more
+FEW = 5_000, 20_000  # steps, with which a third of the tolerance is enough where the periods ask for more than the last
 ONE_CORNER = 1e-6  # of the duration: corners nearer to one another are one
 JUMPS = 2, 3, 4, 6, 8, 12, 16  # into how many a step is divided; a check takes four, three or two of the new ones
 BENT = 4  # into how many at most where a law bends, for errors to be seen to fall
@@ -63,18 +64,36 @@ def first_step(structure: Structure, motion: Motion, settings: ResponseSettings)
 
 
 def first_steps(structure: Structure, motion: Motion, settings: ResponseSettings) -> list[tuple[float, int]]:
-    """Steps of the results to try, s, each with the most steps of a run: of a specimen whose periods ask for many first
-    those that are enough where it hardly vibrates, unless they could pass a pulse unseen.
-    """
+    """Steps of the results to try, s, each with the most steps of a run."""
     step = first_step(structure, motion, settings)
-    if settings.step is None and structure.size and step < settings.duration / MANY:
-        bends = corners(structure, motion, settings.duration / MANY)
-        few = settings.duration / even_steps(settings.duration / MANY, bends, settings)
-        gaps = np.diff(np.unique(bends))
-        short = ((gaps > 1e-12 * settings.duration) & (gaps < few / 2)).any()
-        if step < few and not short:
-            return [(few, round(settings.duration / few)), (step, MAX_STEPS)]
-    return [(step, MAX_STEPS)]
+    if not structure.size:
+        return [(step, MAX_STEPS)]
+    return steps_to_try(step, MAX_STEPS, partial(corners, structure, motion), settings)
+
+
+def steps_to_try(
+    step: float, most: int, corners: Callable[[float], Floats], settings: ResponseSettings
+) -> list[tuple[float, int]]:
+    """Steps of the results to try, s, each with the most steps of a run: where the periods ask for many first those
+    that are enough for what hardly vibrates, unless they could pass a pulse unseen.
+
+    `corners` gives the times that steps of a length should not pass unseen, s.
+    """
+    tries = [(step, most)]
+    if settings.step is None and step < settings.duration / FEW[-1]:
+        for count in FEW[::-1]:
+            bends = corners(settings.duration / count)
+            few = settings.duration / even_steps(settings.duration / count, bends, settings)
+            gaps = np.diff(np.unique(bends))
+            short = ((gaps > 1e-12 * settings.duration) & (gaps < few / 2)).any()
+            if step < few and not short:
+                tries.insert(0, (few, round(settings.duration / few)))
+    return tries
+
+
+def enough(run: Run, errors: StepErrors, settings: ResponseSettings) -> bool:
+    """True if a run by steps that were tried misses nothing, and its errors are within a third of the tolerance."""
+    return not run.missed and max(errors.displacement, errors.loads) <= settings.tolerance / 3
 
 
 def even_steps(largest: float, corners: Floats, settings: ResponseSettings) -> int:

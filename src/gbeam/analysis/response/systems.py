@@ -20,11 +20,13 @@ from gbeam.analysis.response.step_errors import Run
 from gbeam.analysis.response.stepping import (
     LOADS_STEPS,
     answered,
+    enough,
     even_steps,
     integrated,
     planned,
     scheme_of,
     steps_beyond,
+    steps_to_try,
 )
 from gbeam.analysis.system.accuracy import doubts, system_errors, unmoved
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
@@ -192,18 +194,17 @@ def simulate_system(
     if system.holds_jax or holds_jax(motion):
         return _traced(posed, settings, name)
     point = posed.start(settings)
-    coarse = _first_step(posed, point, settings)
-    flight, settings = settings, _with_ends(motion, settings, settings.step or coarse)
-    if settings.start < flight.start:
-        point = posed.start(settings)
-    _refuse_long(system, settings, settings.step or coarse)
-    jumps = posed.jumps(settings, coarse)
-
-    def run(of: PosedSystem, begun: Point, step: float, what: str) -> Ran:
-        return of.run(settings, begun.y, begun.yd, step, corners=jumps, progress=partial(tell, progress, what))
-
-    plan = planned(settings, coarse, settings.step, LOADS_STEPS)
-    chosen, of_steps = answered(plan, lambda step, what: run(posed, point, step, what))
+    flight = settings
+    for coarse, most in steps_to_try(_first_step(posed, point, flight), LOADS_STEPS, posed.corners, flight):
+        settings = _with_ends(motion, flight, flight.step or coarse)
+        if settings.start < flight.start:
+            point = posed.start(settings)
+        _refuse_long(system, settings, settings.step or coarse)
+        jumps = posed.jumps(settings, coarse)
+        plan = planned(settings, coarse, settings.step, most)
+        chosen, of_steps = answered(plan, partial(_run, posed, settings, point, jumps, progress))
+        if enough(chosen, of_steps, settings):
+            break
     assert isinstance(chosen, Ran)
     if chosen.missed:
         of_steps = StepErrors()
@@ -212,7 +213,8 @@ def simulate_system(
 
     def again(of: System) -> tuple[Trajectory, InputsOf]:
         richer = PosedSystem(of, motion)
-        return run(richer, richer.start(settings), chosen.step, "errors of shapes and models").every(stride)
+        what = "errors of shapes and models"
+        return _run(richer, settings, richer.start(settings), jumps, progress, chosen.step, what).every(stride)
 
     if settings.estimate and chosen.whole:
         steps = {(name, each): math.nan for name in judged_bodies(system) for each in LOADS}
@@ -220,6 +222,19 @@ def simulate_system(
         settled, closed = begin.state == "equilibrium", again if system.controllers else None
         errors = system_errors(system, *chosen.every(stride), closed, steps, settled=settled)
     return _described(chosen, settings, stride, errors, name, flight, chosen.missed)
+
+
+def _run(
+    posed: PosedSystem,
+    settings: ResponseSettings,
+    point: Point,
+    jumps: Corners,
+    progress: Progress,
+    step: float,
+    what: str,
+) -> Ran:
+    """The run from a state, by steps of a length, s, for what is said."""
+    return posed.run(settings, point.y, point.yd, step, corners=jumps, progress=partial(tell, progress, what))
 
 
 def _refuse_long(system: System, settings: ResponseSettings, step: float) -> None:
