@@ -172,7 +172,7 @@ def test_nafems_fv52_square_plate() -> None:
 
 
 def test_the_mesh_converges_and_says_by_how_much() -> None:
-    """What is stated is the difference to the coarser mesh's own answer, and more than the error against one twice as
+    """The stated error is the difference to the coarser mesh's own answer, and more than the error against one twice as
     fine again; at the clamp's edges the stress is singular, and the order lower than four.
     """
     meshes = [solid(block("tetra10", (n, 1, 1), (0.4, 0.05, 0.05))) for n in (4, 8, 16)]

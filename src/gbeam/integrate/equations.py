@@ -113,8 +113,8 @@ class Trajectory:
     def at(self, steps: Any) -> Trajectory:
         """The trajectory at some of its steps."""
         known, index = self.known, np.arange(len(self.time))[steps]
-        found = (lambda some: known(index[some])) if callable(known) else known[steps]
-        return replace(self, time=self.time[steps], q=self.q[steps], qd=self.qd[steps], known=found)
+        some = (lambda each: known(index[each])) if callable(known) else known[steps]
+        return replace(self, time=self.time[steps], q=self.q[steps], qd=self.qd[steps], known=some)
 
 
 AT_ONCE = 5_000  # numbers of the states that are evaluated at once: of more, all sections of beams fill memory
@@ -157,17 +157,17 @@ class Demanded:
         if equations.controllers is not None:
             held = equations.samplings[-1].held
             self.held = np.concatenate([0 * held[:1], held[steps.kept]])
-        self.values, self.found = np.zeros(q.shape), np.zeros(len(q), dtype=bool)
+        self.values, self.computed = np.zeros(q.shape), np.zeros(len(q), dtype=bool)
 
     def __call__(self, some: Any) -> Any:
         """Accelerations (k, n) at some of the times (k,)."""
-        new = np.unique(some[~self.found[some]])
+        new = np.unique(some[~self.computed[some]])
         if len(new):
             inputs = self.equations.drive(self.time[new])
             if self.held is not None:
                 inputs = self.equations.controllers.driven(inputs, self.held[new])
             self.values[new] = accelerations(exact(self.equations.residual), self.q[new], self.qd[new], inputs)
-            self.found[new] = True
+            self.computed[new] = True
         return self.values[some]
 
 

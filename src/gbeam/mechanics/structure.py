@@ -141,7 +141,7 @@ class Structure:
         The same with more coordinates, of which its own come first, where some more modes were kept than it has: by
         these the error of those left out is judged.
     coarser : Structure or None
-        The same of a coarser mesh in coordinates as like its own as can be: by it the error of the mesh is judged.
+        Made of a coarser mesh, in coordinates as like its own as can be: by it the error of the mesh is judged.
     modes : int or None
         Number of modes where static shapes are among the coordinates: their frequencies are the lowest, and those
         above are none of the specimen's.

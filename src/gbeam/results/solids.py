@@ -128,8 +128,8 @@ class SolidStress(Figured):
         words = margin_words(self.nearest_yield.margin)
         material = self.nearest_yield.material or "the material"
         same = (self.worst.node, self.worst.material) == (self.nearest_yield.node, self.nearest_yield.material)
-        there = ", there" if same else f": {said(self.nearest_yield)}"
-        return said(self.worst), f"{words} in {material}{there}"
+        where = ", there" if same else f": {said(self.nearest_yield)}"
+        return said(self.worst), f"{words} in {material}{where}"
 
     def __repr__(self) -> str:
         of, (worst, margin) = f" {self.motion!r}" if self.motion else "", self.lines

@@ -152,8 +152,8 @@ def beside(coarser: SolidModel, finer: Structure) -> Structure:
     basis[:known] = turn * np.where(np.diagonal(size) < 0, -1.0, 1.0)
     every = np.pad(basis, ((0, rough.every_shape.shape[-1] - len(basis)), (0, 0)))
     # Where both have a node: stress changes fast near those where it is largest.
-    there = _nearest(rough, fine, fine.felt_at)
-    felt = replace(fine, felt_at=np.unique(_nearest(fine, rough, there)))
+    of_both = _nearest(fine, rough, _nearest(rough, fine, fine.felt_at))
+    felt = replace(fine, felt_at=np.unique(of_both))
     nodal = replace(
         rough,
         every_shape=rough.every_shape @ every,

@@ -280,9 +280,9 @@ def turning_of(system: System, motion: Motion | None, turning: str | None) -> st
     return choices[0]
 
 
-class Found:
-    """Steady states that were found, by a value with which drives grow: of the same system the next one begins where
-    those at up to three lower values lead, and takes fewer corrections.
+class Equilibria:
+    """Workspace of a search: coordinates of steady states by a value with which drives grow. Of the same system the
+    next one begins where those at up to three lower values lead, and takes fewer corrections.
     """
 
     def __init__(self) -> None:
@@ -317,10 +317,10 @@ class Turning:
 
     drive: Drive
     held: bool = False
-    found: Found = field(default_factory=Found, repr=False, compare=False)
+    equilibria: Equilibria = field(default_factory=Equilibria, repr=False, compare=False)
 
     def __call__(self, of: System, rate: float) -> SteadySystem:
-        return self.found.steady(of, rate, replace(self.drive, rate=rate), held=self.held)
+        return self.equilibria.steady(of, rate, replace(self.drive, rate=rate), held=self.held)
 
     def refuse_changing(self, system: System, rate: float) -> None:
         """Refuse a system whose equations change as it turns: it has no frequencies."""
@@ -339,10 +339,10 @@ class Loaded:
     """Steady states of a system, or of richer ones, by a factor on its loads and forces."""
 
     drive: Drive
-    found: Found = field(default_factory=Found, repr=False, compare=False)
+    equilibria: Equilibria = field(default_factory=Equilibria, repr=False, compare=False)
 
     def __call__(self, of: System, factor: float) -> SteadySystem:
-        return self.found.steady(of, factor, replace(self.drive, factor=factor))
+        return self.equilibria.steady(of, factor, replace(self.drive, factor=factor))
 
     def share(self, system: System) -> float:
         """Stiffness that loads and forces bring, over the system's; if they only bend it, how far, over its extent."""
