@@ -26,6 +26,7 @@ from gbeam import (
     solve_equilibrium,
 )
 from gbeam.mechanics.equations.linear import Coefficients
+from validation.published.references import swept
 from validation.published.specimens import (
     PLANAR,
     exact_unit_beam,
@@ -36,7 +37,7 @@ from validation.published.specimens import (
     unit_coefficients,
     vibration_about_equilibrium,
 )
-from validation.published.tables import BLADE, SOUTHWELL, TIP_MASS_FLAP, UNIFORM_FLAP
+from validation.published.tables import BLADE, SOUTHWELL, SWEPT, TIP_MASS_FLAP, UNIFORM_FLAP
 
 # A beam of unit length, unit mass per length and unit EI: nondimensional, with EA = α², α the slenderness.
 ROUNDED = 6e-4  # published values have three decimals, in places rounded twice
@@ -127,6 +128,13 @@ def test_flap_and_chord_of_slenderness_70(speed: float, flap: float, chord: floa
     stretched = vibration_about_equilibrium(exact_unit_beam(70.0), spinning(speed, axis=2), 1)
     assert stretched[0] == pytest.approx(exact_chord, rel=1e-4)
     assert abs(stretched[0] - chord) > 8e-4
+
+
+# --- blade with a swept tip, Epps and Chandra (1996), as read in GXBeam.jl, which takes the same tolerance
+
+
+def test_a_blade_with_a_swept_tip_bends_and_twists_as_measured() -> None:
+    assert swept(45, 750)[:6] == pytest.approx(SWEPT[45][750], rel=0.1)
 
 
 # --- the rotating bar, code_aster V3.04.104 and V3.04.105: u(x) = sin ax/(a cos aL) − x, a = ω √(ρ/E)

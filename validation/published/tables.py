@@ -95,6 +95,14 @@ BLADE = {
     750: ([14.8, 36.1, 62.9], [13.55, 34.0, 59.49, 91.81]),
 }
 
+# degrees of sweep of the outer 6 of 37.5 in, rpm: frequencies out of the plane measured, Hz; the last three of 750 rpm
+# of the same experiments, in what GXBeam's test takes for its fourth to sixth modes
+SWEPT = {
+    15: {0: [1.8, 10.2, 27.2], 500: [10.1, 25.2, 44.4], 750: [14.4, 34.8, 55.9, 87.5, 120.1, 147.3]},
+    30: {0: [1.7, 10.4, 26.6], 500: [10.2, 23.7, 39.3], 750: [14.9, 30.7, 48.6, 83.7, 122.6, 166.2]},
+    45: {0: [1.6, 10.4, 24.8], 500: [10.2, 21.6, 35.1], 750: [14.7, 26.1, 44.8, 78.8, 117.7, 162.0]},
+}
+
 # --- inextensible elastica under a dead tip force (own quadrature; Mattiasson's table of 1981)
 # F L²/EI: 1 − x/L, y/L and slope of the tip, rad
 ELASTICA = {
