@@ -225,7 +225,7 @@ class OnJoint:
         for name, at in zip(rest.names, rest.local.y, strict=True):
             joint, _, of = name.rpartition(".")
             if joint in self.system.joints and abs(at - start.get(name, at)) > _ASIDE:
-                problem = f"is {start[name]:.4g}, and it rests at {at:.6g}"
+                problem = f"is {start[name]:.4g}, and it rests at {round(at, 12) + 0.0:.6g}"
                 raise InputError(f"joints.{joint}.initial.{of}", problem, "let it begin there")
         if self.system.gravity is not None and np.any(np.asarray(self.system.gravity)):
             far = goal.value * goal.duration / 2 if goal.to_rate else goal.value
