@@ -179,7 +179,7 @@ def blade() -> Iterator[Row]:
                 # The lowest at rest is measured to one place, and from 1.4 to 1.8 Hz where sweep hardly moves it.
                 within = 0.1 if rpm or mode else 0.2
                 yield Row(f"blade with a tip swept by {sweep}°", f"{rpm} rpm, mode {mode + 1}", theirs,
-                          float(ours[mode]), "Hz", within, source, "most are measured higher, without sweep too")  # fmt: skip
+                          float(ours[mode]), "Hz", within, source, "most measured higher, straight too")  # fmt: skip
 
 
 def swept(sweep: float, rpm: float) -> np.ndarray:
