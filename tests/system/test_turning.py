@@ -209,7 +209,7 @@ def test_newtons_method_goes_in_shares_where_it_fails_at_once() -> None:
 
 @pytest.mark.parametrize("held", [True, False])
 def test_a_steady_state_begins_where_lower_ones_lead(held: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The same states as from rest, in fewer corrections."""
+    """States are those found from rest, in fewer corrections."""
     structure = gb.assemble(STRIP, "exact", axial=1, y=2, z=2)
     swept = gb.Joint("fixed", "panel", on="bus.rim", turn=(0.0, 0.7, 0.3))
     system = gb.System({"bus": BUS, "panel": structure}, {"spin": SPIN if held else FREE, "clamp": swept})

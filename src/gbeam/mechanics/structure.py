@@ -348,6 +348,11 @@ class Structure:
         ----------
         basis : (n, k)
             Coordinates q of each of the new ones.
+
+        Returns
+        -------
+        Structure
+            With k coordinates, whose answers are those of the old ones that the basis reaches.
         """
         c, turns = self.coefficients.turned(basis), None if self.turns is None else self.turns @ basis
         places, stations = self.places.turned(basis), self.station_places.turned(basis)

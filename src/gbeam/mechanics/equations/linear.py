@@ -177,7 +177,7 @@ class Coefficients:
         return 0.5 * q @ self.stiffness @ q
 
     def turned(self, basis: Array) -> Coefficients:
-        """The same in coordinates p with q = basis p; of a structure without loads."""
+        """Coefficients in coordinates p with q = basis p, of a structure without loads."""
         squares = ("mass", "damping", "stiffness", "gyroscopic", "k_ww", "k_al", "k_a")
         both = {name: basis.T @ getattr(self, name) @ basis for name in squares}
         return replace(self, **both, **{name: getattr(self, name) @ basis for name in ("f_ww", "f_al", "f_a")})
