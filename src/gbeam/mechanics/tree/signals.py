@@ -67,6 +67,14 @@ def signals_of(system: System) -> dict[str, str]:
 def measurements(system: System, tree: Any, y: Array, yd: Array, ydd: Array, inputs: Any, wanted: Sequence[str]) -> Any:
     """Values (..., k) of what is measured, at unknown coordinates of the tree or of one local to it."""
     xp, state, columns = namespace(y, inputs.ground.a), tree.motion(y, yd, ydd, inputs), []
+    read = {
+        "place": lambda at: at.p,
+        "velocity": lambda at: turned(at.R, at.v),
+        "attitude": lambda at: vector_of(parameters_of_all(xp.broadcast_to(at.R, (*state.shape, 3, 3)))),
+        "acceleration": lambda at: at.a,
+        "spin": lambda at: at.w,
+    }
+    vectors = dict[tuple[str, str], Any]()  # of which several components may be wanted
     for each in wanted:
         owner, _, kind = each.rpartition(".")
         if owner in system.joints:
@@ -77,15 +85,9 @@ def measurements(system: System, tree: Any, y: Array, yd: Array, ydd: Array, inp
             k = names.index(kind.removesuffix("_rate"))
             columns.append(xp.broadcast_to(xp.concatenate(parts, axis=-1)[..., k], state.shape))
         else:
-            of, point = system.point("outputs", owner)
-            frame = state.points_of(system.order.index(of))[point]
             name, _, axis = kind.partition("_")
-            read = {
-                "place": lambda at: at.p,
-                "velocity": lambda at: turned(at.R, at.v),
-                "attitude": lambda at: vector_of(parameters_of_all(xp.broadcast_to(at.R, (*state.shape, 3, 3)))),
-                "acceleration": lambda at: at.a,
-                "spin": lambda at: at.w,
-            }
-            columns.append(xp.broadcast_to(read[name](frame)[..., "xyz".index(axis)], state.shape))
+            if (owner, name) not in vectors:
+                of, point = system.point("outputs", owner)
+                vectors[owner, name] = read[name](state.points_of(system.order.index(of))[point])
+            columns.append(xp.broadcast_to(vectors[owner, name][..., "xyz".index(axis)], state.shape))
     return xp.stack(columns, axis=-1) if columns else xp.zeros((*y.shape[:-1], 0))
