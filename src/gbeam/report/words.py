@@ -73,13 +73,9 @@ def percent(share: float) -> str:
     return f"{100 * share:.0f} %" if share >= 0.1 else f"{number(100 * share, 2)} %"
 
 
-ERRORS = "step", "shapes", "model", "beam_theory", "mesh"
-
-
 def error_words(errors: ErrorEstimate) -> str:
     """An error with what it is made of, the largest first: ``0.29 % (model 0.27, shapes 0.01, step 0.002)``."""
-    parts = {name.replace("_", " "): getattr(errors, name) for name in ERRORS}
-    known = sorted(((size, name) for name, size in parts.items() if size > 0), reverse=True)
+    known = sorted(((size, name) for name, size in errors.causes.items() if size > 0), reverse=True)
     shares = ", ".join(f"{name} {number(100 * size, 2)}" for size, name in known)
     return f"{percent(errors.total)}{f' ({shares})' if len(known) > 1 else ''}"
 

@@ -31,6 +31,11 @@ class ErrorEstimate(Part):
     total: float = quantity("", TOTAL, note="the largest of all together, maybe less than their sum", default=math.nan)
 
     @property
+    def causes(self) -> dict[str, float]:
+        """Errors by their causes, in words."""
+        return {each.name.replace("_", " "): getattr(self, each.name) for each in fields(self) if each.name != "total"}
+
+    @property
     def slender(self) -> float:
         """All but the beam theory's: against an exact slender beam."""
         return self.total - (0.0 if math.isnan(self.beam_theory) else self.beam_theory)
@@ -41,7 +46,7 @@ class ErrorEstimate(Part):
         return replace(self, total=self.total + sum(more.values()), **more)
 
     def __repr__(self) -> str:
-        parts = {f.name.replace("_", " "): getattr(self, f.name) for f in fields(self)}
+        parts = self.causes | {"total": self.total}
         # A static deflection has no steps.
         known = [f"{k} {100 * x:.2g} %" for k, x in parts.items() if math.isfinite(x) and (x or k != "step")]
         return ", ".join(known) or "not known"
