@@ -11,6 +11,7 @@ import dataclasses
 import inspect
 import sys
 from collections.abc import Callable
+from functools import cache
 from typing import Any, TypeVar, dataclass_transform
 
 import numpy as np
@@ -55,7 +56,7 @@ def record(cls: type[_T]) -> type[_T]:
 
 
 def __hash__(self: Any) -> int:
-    return hash((type(self), *(getattr(self, name) for name in leaves_and_statics(type(self))[1])))
+    return hash((type(self), *(getattr(self, name) for name in leaves_and_statics(type(self))[1])))  # type: ignore[arg-type]
 
 
 def _same(one: Any, other: Any) -> bool:
@@ -108,11 +109,10 @@ def each_leaf(function: Callable[[Any], Any], tree: Any) -> Any:
     if tree is None:
         return None
     if dataclasses.is_dataclass(tree):
-        leaves, _ = leaves_and_statics(type(tree))
+        leaves, fixed = leaves_and_statics(type(tree))  # type: ignore[arg-type]
         changed: Any = object.__new__(type(tree))
-        for field in dataclasses.fields(tree):
-            value = getattr(tree, field.name)
-            object.__setattr__(changed, field.name, each_leaf(function, value) if field.name in leaves else value)
+        values = {name: each_leaf(function, getattr(tree, name)) for name in leaves}
+        assign(changed, **values, **{name: getattr(tree, name) for name in fixed})
         return changed
     if isinstance(tree, list | tuple):
         return type(tree)([each_leaf(function, part) for part in tree])
@@ -127,6 +127,7 @@ def register_all(register: Callable[[type], None]) -> None:
         register(cls)
 
 
+@cache
 def leaves_and_statics(cls: type) -> tuple[list[str], list[str]]:
     """Names of a record's fields: those that are leaves, and those that are static."""
     fields = dataclasses.fields(cls)

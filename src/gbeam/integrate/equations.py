@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.arrays.namespace import namespace
+from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.arrays.tree import each_leaf, record
 from gbeam.numerics.series import STEP
 
@@ -35,6 +35,15 @@ class LinearTerms:
         """Terms of C, of K and of F."""
         return self.velocity, self.stiffness, self.force
 
+    def at(self, features: Array) -> tuple[Array, Array, Array]:
+        """C, K (..., n, n) and F (..., n) at features (..., k), of which the last may be left out."""
+        xp, count = namespace(features, self.force), features.shape[-1]
+        flat = (features @ xp.reshape(each[:count], (count, -1)) for each in self.each)
+        velocity, stiffness, force = (
+            xp.reshape(part, (*part.shape[:-1], *each.shape[1:])) for part, each in zip(flat, self.each, strict=True)
+        )
+        return velocity, stiffness, force
+
     @property
     def nonzero(self) -> tuple[Array, Array, Array]:
         """Flags of the terms of C, K and F that are not zero, (k,) each."""
@@ -55,6 +64,15 @@ class LinearEquations:
     features: Callable[[Any], Array] | None = None
     rest: tuple[Array, Array] | None = None
 
+    def accelerations(self, q: Array, qd: Array, inputs: Any) -> Array:
+        """q̈ (t, n) demanded at q, q̇ (t, n) and inputs (t, ...)."""
+        pieces = []
+        for some_q, some_qd, part in _pieces(q.shape[1], q, qd, inputs):
+            c, k, f = self.matrices(part)
+            force = f - (k @ some_q[..., None] + c @ some_qd[..., None])[..., 0]
+            pieces.append(solved(self.mass, force.T).T)
+        return namespace(*pieces).concatenate(pieces)
+
 
 @dataclass(frozen=True, eq=False)
 class NonlinearEquations:
@@ -67,6 +85,10 @@ class NonlinearEquations:
     controllers: Any = None
     samplings: Any = None
     vibrates: bool = False
+
+    def accelerations(self, q: Array, qd: Array, inputs: Any) -> Array:
+        """q̈ (t, n) demanded at q, q̇ (t, n) and inputs (t, ...)."""
+        return accelerations(exact(self.residual), q, qd, inputs)
 
 
 @record
@@ -126,8 +148,7 @@ def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> tuple
     """Derivatives K, C, M (t, r, n) of a function (t, r) of the state by q, q̇, q̈ (t, n) at inputs (t, ...)."""
     n, pieces = q.shape[1], []
     steps = 1j * STEP * np.eye(3 * n).reshape(3 * n, 1, 3, n)
-    for some in _pieces(q, n**2):
-        at, part = [each[some] for each in (q, qd, qdd)], each_leaf(lambda leaf: leaf[some], inputs)  # noqa: B023
+    for *at, part in _pieces(n**2, q, qd, qdd, inputs):
         values = residual(*(each + steps[:, :, k] for k, each in enumerate(at)), part)
         pieces.append(values.imag / STEP)
     k, c, m = np.concatenate(pieces, axis=1).reshape(3, n, len(q), pieces[0].shape[-1]).transpose(0, 2, 3, 1)
@@ -138,9 +159,8 @@ def accelerations(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
     """q̈ (t, n) that equations linear in q̈ demand at q, q̇ (t, n) and inputs (t, ...); NaN where M is singular."""
     pieces, n = [], q.shape[1]
     units = HUGE * np.eye(n + 1, n, k=-1)[:, None]  # none, and each alone
-    for some in _pieces(q, n):
-        part = each_leaf(lambda leaf: leaf[some], inputs)  # noqa: B023
-        forces = residual(q[some], qd[some], np.broadcast_to(units, (n + 1, *q[some].shape)), part)
+    for some_q, some_qd, part in _pieces(n, q, qd, inputs):
+        forces = residual(some_q, some_qd, np.broadcast_to(units, (n + 1, *some_q.shape)), part)
         pieces.append(solved(forces[1:].transpose(1, 2, 0) / HUGE, -forces[0][..., None])[..., 0])
     return np.concatenate(pieces)
 
@@ -154,7 +174,7 @@ class Demanded:
         self.equations, self.q, self.qd = equations, q, qd
         self.time = np.append(steps.first[:1], steps.end[steps.kept])
         self.held = None
-        if equations.controllers is not None:
+        if isinstance(equations, NonlinearEquations) and equations.controllers is not None:
             held = equations.samplings[-1].held
             self.held = np.concatenate([0 * held[:1], held[steps.kept]])
         self.values, self.computed = np.zeros(q.shape), np.zeros(len(q), dtype=bool)
@@ -166,14 +186,17 @@ class Demanded:
             inputs = self.equations.drive(self.time[new])
             if self.held is not None:
                 inputs = self.equations.controllers.driven(inputs, self.held[new])
-            self.values[new] = accelerations(exact(self.equations.residual), self.q[new], self.qd[new], inputs)
+            self.values[new] = self.equations.accelerations(self.q[new], self.qd[new], inputs)
             self.computed[new] = True
         return self.values[some]
 
 
-def _pieces(q: Array, each: int) -> list[slice]:
-    size = max(FEWEST, AT_ONCE // max(each, 1))
-    return [slice(first, first + size) for first in range(0, len(q), size)]
+def _pieces(each: int, *parts: Any) -> list[Any]:
+    """Arrays and records (t, ...) in pieces that are evaluated at once, of so many numbers a time."""
+    count, size = len(parts[0]), max(FEWEST, AT_ONCE // max(each, 1))
+    if count <= size or is_jax(parts[0]):
+        return [parts]
+    return [each_leaf(lambda leaf: leaf[first : first + size], parts) for first in range(0, count, size)]  # noqa: B023
 
 
 def solved(left: Array, right: Array) -> Array:

@@ -12,7 +12,7 @@ import numpy as np
 
 from gbeam.arrays.namespace import namespace
 from gbeam.integrate.equations import LinearEquations, solved
-from gbeam.integrate.schemes import Scheme
+from gbeam.integrate.schemes import Scheme, Tableau
 from gbeam.integrate.steps import Steps
 
 Array = Any
@@ -20,10 +20,8 @@ Array = Any
 
 def start(equations: LinearEquations, scheme: Scheme, steps: Steps, q: Array, qd: Array) -> tuple[Array, Array]:
     """The first z (m, n) from an initial state, and the accelerations (n,) that its equations demand."""
-    c, k, f = (x[0] for x in equations.matrices(equations.drive(steps.first[:1])))
-    xp = namespace(equations.mass, k, q)
-    qdd = solved(equations.mass, (f - k @ q - c @ qd)[:, None])[:, 0]
-    return scheme.tableau(steps.length[0]).first @ xp.stack([q, qd, qdd]), qdd
+    qdd = equations.accelerations(q[None], qd[None], equations.drive(steps.first[:1]))[0]
+    return scheme.tableau(steps.length[0]).first @ namespace(q, qdd).stack([q, qd, qdd]), qdd
 
 
 def _sum(weights: Array, values: Array) -> Array:
@@ -39,16 +37,20 @@ def chunk(
     z: Array,
     steps: Steps,
     added: tuple[Array | float, Array | float] = (0.0, 0.0),
-) -> tuple[Array, tuple[Array, Array, Array]]:
-    """Take steps from z (m, n) with terms `added` to M and C; returns the next z, and kept q, q̇, q̈ (k, n)."""
+) -> tuple[Array, tuple[Array, ...]]:
+    """Take steps from z (m, n) with terms `added` to M and C; returns the next z, and kept q, q̇ and, where the scheme
+    has them or JAX traces them, q̈ (k, n).
+    """
     t = scheme.tableau(steps.length[:1] if steps.equal else steps.length)
     count, stages, (m, n) = len(steps), len(scheme.offsets), z.shape
-    at = [equations.matrices(equations.drive(steps.times(offset))) for offset in scheme.offsets]
-    xp, mass = namespace(equations.mass, z, *at[0]), equations.mass + added[0]
-    at = [(c + added[1], k, f) for c, k, f in at]
+    times = np.stack([steps.times(offset) for offset in scheme.offsets], axis=1)
+    at = equations.matrices(equations.drive(times.ravel()))
+    xp, mass = namespace(equations.mass, z, *at), equations.mass + added[0]
+    c, k, f = (xp.reshape(each, (count, stages, *each.shape[1:])) for each in at)
+    at = c + added[1], k, f
     anew = scheme.ends and not steps.equal
-    groups = [np.arange(n)] if xp is not np or anew else _uncoupled(mass, at)
-    answers = [_stages(xp, t, mass, at, group, m) for group in groups]
+    groups = [np.arange(n)] if xp is not np or anew else _uncoupled(mass, *at)
+    answers = [_stages(xp, t, mass, *at, group) for group in groups]
     maps = answers[0][1] if len(groups) == 1 else np.zeros((count, m, n, m * n + 1))
     if anew:
         ends = _sum(t.end_z, _unit(m, n)) + _sum(t.end_x, answers[0][0])
@@ -65,13 +67,14 @@ def chunk(
         parts.append(xp.reshape((flat[..., :-1] @ state)[..., 0] + flat[..., -1], (count, stages, -1)))
     x = parts[0] if len(groups) == 1 else np.concatenate(parts, axis=-1)[..., np.argsort(np.concatenate(groups))]
     ends = _sum(t.end_z, states) + _sum(t.end_x, x)
-    q, qd, qdd = (values if steps.kept.all() else values[steps.kept] for values in (ends[:, 0], ends[:, 1], x[:, -1]))
+    kept = tuple(each if steps.kept.all() else each[steps.kept] for each in (ends[:, 0], ends[:, 1], x[:, -1]))
+    if xp is np and not scheme.ends:
+        return last.reshape(m, n), kept[:2]
+    q, qd, qdd = kept
     # The last stage's acceleration is that at the end, unless the stage lies before it, or just before a jump.
     again = np.flatnonzero(steps.jump[steps.kept]) if scheme.ends else np.arange(len(q))
     if again.size:
-        c, k, f = equations.matrices(equations.drive(steps.end[steps.kept][again]))
-        force = f - (k @ q[again, :, None] + c @ qd[again, :, None])[..., 0]
-        acceleration = xp.linalg.solve(equations.mass, force.T).T
+        acceleration = equations.accelerations(q[again], qd[again], equations.drive(steps.end[steps.kept][again]))
         if scheme.ends:
             qdd[again] = acceleration
         else:
@@ -79,11 +82,11 @@ def chunk(
     return xp.reshape(last, (m, n)), (q, qd, qdd)
 
 
-def _uncoupled(mass: Array, at: list[tuple[Array, Array, Array]]) -> list[Array]:
+def _uncoupled(mass: Array, *at: Array) -> list[Array]:
     """Groups of coordinates that no matrix couples, such as the directions of a beam that does not turn."""
     coupled = (mass != 0) | np.eye(len(mass), dtype=bool)
-    for c, k, _ in at:
-        coupled = coupled | (c != 0).any(axis=0) | (k != 0).any(axis=0)
+    for each in at[:2]:
+        coupled = coupled | (each != 0).any(axis=(0, 1))
     coupled = coupled | coupled.T
     for _ in range(len(mass).bit_length()):  # twice as far each time
         coupled = coupled @ coupled
@@ -95,24 +98,15 @@ def _unit(m: int, n: int) -> Array:
     return np.eye(m * n, m * n + 1).reshape(1, m, n, m * n + 1)
 
 
-def _stages(
-    xp: Any, t: Any, mass: Array, at: list[tuple[Array, Array, Array]], group: Array, m: int
-) -> tuple[Array, Array]:
+def _stages(xp: Any, t: Tableau, mass: Array, c: Array, k: Array, f: Array, group: Array) -> tuple[Array, Array]:
     """Affine maps of the own part of z to the stages' x, (t, stages, n, m n + 1), and to the next z, (t, m, n, ...)."""
-    stages, n, whole = len(at), len(group), len(group) == len(mass)
-    if not whole:
+    (*_, stages, m), n = t.w_q.shape, len(group)
+    if n < len(mass):
         pair = np.ix_(group, group)
-        mass, at = mass[pair], [(c[:, *pair], k[:, *pair], f[:, group]) for c, k, f in at]
-    # S x = F − L z at all stages together.
-    c_v, c_q, w_v, w_q = (weights[..., None, None] for weights in (t.c_v, t.c_q, t.w_v, t.w_q))
-    rows, sides = [], []
-    for i, (c, k, f) in enumerate(at):
-        blocks = [c_v[:, i, j] * c + c_q[:, i, j] * k + (mass if i == j else 0) for j in range(stages)]
-        onto = [-(w_v[:, i, a] * c + w_q[:, i, a] * k) for a in range(m)]
-        rows.append(xp.concatenate(blocks, axis=-1) if stages > 1 else blocks[0])
-        sides.append(xp.concatenate([*onto, xp.broadcast_to(f, onto[0].shape[:2])[..., None]], axis=-1))
-    left = xp.concatenate(rows, axis=-2) if stages > 1 else rows[0]
-    x = solved(left, xp.concatenate(sides, axis=-2) if stages > 1 else sides[0])
+        mass, c, k, f = mass[pair], c[..., *pair], k[..., *pair], f[..., group]
+    # J x = F − L z at all stages together.
+    jacobian, onto = t.jacobians(k, c, mass[None, None])
+    x = solved(jacobian, xp.concatenate([-onto, xp.reshape(f, (-1, stages * n, 1))], axis=-1))
     x = xp.reshape(x, (-1, stages, n, m * n + 1))
     return x, _sum(t.g, _unit(m, n)) + _sum(t.d, x)
 

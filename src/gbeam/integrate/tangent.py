@@ -82,14 +82,10 @@ def _chunk(
     stages, (m, n, p) = len(scheme.offsets), z.shape
     states = _states(run, scheme, t)
     at = [within(steps.times(offset), *state) for offset, state in zip(scheme.offsets, states, strict=True)]
-    c_v, c_q, w_v, w_q = (weights[..., None, None] for weights in (t.c_v, t.c_q, t.w_v, t.w_q))
-    rows, sides = [], []
-    for i, (mass, c, k, f) in enumerate(at):
-        blocks = [c_v[:, i, j] * c + c_q[:, i, j] * k + (mass if i == j else 0) for j in range(stages)]
-        rows.append(np.concatenate(blocks, axis=-1))
-        sides.append(np.concatenate([*(-(w_v[:, i, a] * c + w_q[:, i, a] * k) for a in range(m)), f], axis=-1))
+    mass, c, k, f = (np.stack(each, axis=1) for each in zip(*at, strict=True))
+    jacobian, by_state = t.jacobians(k, c, mass)
     # x = onto z + own at all stages.
-    x = np.linalg.solve(np.concatenate(rows, axis=-2), np.concatenate(sides, axis=-2))
+    x = np.linalg.solve(jacobian, np.concatenate([-by_state, f.reshape(len(steps), stages * n, p)], axis=-1))
     onto, constant = x[..., : m * n], x[..., m * n :]
     by_stage = x.reshape(len(steps), stages, n, m * n + p)
     unit = np.eye(m * n, m * n + p).reshape(m, n, m * n + p)

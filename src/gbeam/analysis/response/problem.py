@@ -196,17 +196,18 @@ def problem_of(structure: Structure, motion: Motion, start: float, initial: Init
     if structure.linear:
         c = structure.coefficients
 
-        def matrices(inputs: tuple[Base, Any]) -> tuple[Array, Array, Array]:
-            now, loads = inputs
-            return c.at(now.a_WO_B, now.w_WB_B, now.alpha_WB_B, loads)
+        terms = c.terms
 
         def features(inputs: tuple[Base, Any]) -> Array:
             now, loads = inputs
             return c.features(now.a_WO_B, now.w_WB_B, now.alpha_WB_B, loads)
 
+        def matrices(inputs: tuple[Base, Any]) -> tuple[Array, Array, Array]:
+            return terms.at(features(inputs))
+
         # No derivative is taken through the modes: those of equal frequencies have none.
         rest = None if any(map(is_jax, (c.mass, c.damping, c.stiffness))) else (c.damping, c.stiffness)
-        equations = LinearEquations(c.mass, matrices, drive, lambda: c.terms, features, rest)
+        equations = LinearEquations(c.mass, matrices, drive, lambda: terms, features, rest)
         return Problem(equations, q, qd, 0, stable)
     return Problem(NonlinearEquations(OnBase(structure.equations), drive), q, qd, 0, stable)
 

@@ -116,14 +116,15 @@ def response_of(
         outcome, message, from_run = describe(structure, problem, last, over_time, peaks, time, q[:, beam])
         if outcome == "done":
             during = None if loads is None else loads.during(flight)
-            settled, tip = up is not None or settings.begin.settled, np.asarray(displacement[flight, -1])
+            tip = np.asarray(displacement[flight, -1])
 
             def begin(richer: Structure) -> tuple[Floats, Floats]:
                 return start_of(richer, motion, settings.start, settings.begin)[:2]
 
             steps = step_errors.displacement, step_errors.loads, step_errors.stress
             if settings.estimate:
-                begun = None if settled and not motion.free else begin
+                settled = not motion.free and (up is not None or settings.begin.settled)
+                begun = None if settled else begin
                 tolerance = settings.tolerance
                 errors, doubts = response_errors(
                     structure, motion, trajectory, tip, during, steps, stride=stride, begin=begun, tolerance=tolerance

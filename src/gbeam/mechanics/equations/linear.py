@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import as_array, is_jax, namespace
+from gbeam.arrays.namespace import as_array, concatenated, is_jax, namespace
 from gbeam.arrays.tree import record
 from gbeam.errors import InputError
 from gbeam.guards.checks import damping_ratios
@@ -95,24 +95,7 @@ class Coefficients:
         self, a_WO_B: Array, w_WB_B: Array, alpha_WB_B: Array, load_values: Array | None = None
     ) -> tuple[Array, Array, Array]:
         """C + G, K and F, (..., n, n) and (..., n), at base motions (..., 3) under load components (..., loads, 6)."""
-        xp = namespace(self.mass, a_WO_B, w_WB_B, load_values)
-        w2 = w_WB_B[..., :, None] * w_WB_B[..., None, :]
-
-        def term(values: Array, constants: Array, axes: int) -> Array:
-            # One matrix product over all times: contraction of the leading axes.
-            flat = xp.reshape(values, (*values.shape[: values.ndim - axes], -1))
-            return xp.reshape(
-                flat @ xp.reshape(constants, (flat.shape[-1], -1)), (*flat.shape[:-1], *constants.shape[axes:])
-            )
-
-        velocity = self.damping + term(w_WB_B, self.gyroscopic, 1)
-        stiffness = self.stiffness + term(w2, self.k_ww, 2) + term(alpha_WB_B, self.k_al, 1)
-        stiffness = stiffness + term(a_WO_B, self.k_a, 1)
-        force = term(w2, self.f_ww, 2) + term(alpha_WB_B, self.f_al, 1) + term(a_WO_B, self.f_a, 1)
-        if load_values is not None and self.loads is not None:
-            stiffness = stiffness - term(load_values, self.loads.slope[:, :, 6:], 2)
-            force = force + term(load_values, self.loads.constant[:, :, 6:], 2)
-        return velocity, stiffness, force
+        return self.terms.at(self.features(a_WO_B, w_WB_B, alpha_WB_B, load_values))
 
     def frozen(
         self, a_WO_B: Array, w_WB_B: Array, alpha_WB_B: Array, load_values: Array | None = None
@@ -127,25 +110,23 @@ class Coefficients:
     def terms(self) -> LinearTerms:
         """Terms that :meth:`at` sums over :meth:`features`."""
         xp, n = namespace(self.mass), self.size
-        flat = {name: xp.reshape(getattr(self, name), (9, *getattr(self, name).shape[2:])) for name in ("k_ww", "f_ww")}
-        stiffness = [self.stiffness[None], xp.zeros((3, n, n)), flat["k_ww"], self.k_al, self.k_a]
-        force = [xp.zeros((4, n)), flat["f_ww"], self.f_al, self.f_a]
+        k_ww, f_ww = (xp.reshape(each, (9, *each.shape[2:])) for each in (self.k_ww, self.f_ww))
+        stiffness = [self.stiffness[None], xp.zeros((3, n, n)), k_ww, self.k_al, self.k_a]
+        force = [xp.zeros((4, n)), f_ww, self.f_al, self.f_a]
         if self.loads is not None:
             stiffness.append(-xp.reshape(self.loads.slope[:, :, 6:], (-1, n, n)))
             force.append(xp.reshape(self.loads.constant[:, :, 6:], (-1, n)))
-        velocity = [self.damping[None], self.gyroscopic]
-        rest = sum(len(part) for part in stiffness) - 4
-        velocity.append(xp.zeros((rest, n, n)))
-        return LinearTerms(xp.concatenate(velocity), xp.concatenate(stiffness), xp.concatenate(force))
+        velocity = [self.damping[None], self.gyroscopic, xp.zeros((sum(map(len, stiffness)) - 4, n, n))]
+        return LinearTerms(*map(xp.concatenate, (velocity, stiffness, force)))
 
     def features(self, a_WO_B: Array, w_WB_B: Array, alpha_WB_B: Array, load_values: Array | None = None) -> Array:
-        """1, ω, ω ωᵀ, α, a_O and the components of the loads, (t, k), at base motions (t, 3)."""
-        xp = namespace(a_WO_B, w_WB_B, load_values)
-        w2 = w_WB_B[:, :, None] * w_WB_B[:, None, :]
-        parts = [xp.ones((len(w2), 1)), w_WB_B, xp.reshape(w2, (-1, 9)), alpha_WB_B, a_WO_B]
+        """1, ω, ω ωᵀ, α, a_O and the components of the loads, (..., k), at base motions (..., 3)."""
+        xp, shape = namespace(a_WO_B, w_WB_B, load_values), w_WB_B.shape[:-1]
+        w2 = w_WB_B[..., :, None] * w_WB_B[..., None, :]
+        parts = [xp.ones((*shape, 1)), w_WB_B, xp.reshape(w2, (*shape, 9)), alpha_WB_B, a_WO_B]
         if load_values is not None and self.loads is not None:
-            parts.append(xp.reshape(load_values, (len(w2), -1)))
-        return xp.concatenate(parts, axis=1)
+            parts.append(xp.reshape(load_values, (*load_values.shape[:-2], -1)))
+        return concatenated(parts)
 
     def residual(
         self,
