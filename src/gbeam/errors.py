@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from typing import Any
 
 
 class GbeamError(Exception):
@@ -45,10 +46,17 @@ class InputError(GbeamError, ValueError):
         self.where, self.problem, self.fix = where, problem, fix
         super().__init__(f"{where} {problem}; {fix}" if where else f"{problem}; {fix}")
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.where, self.problem, self.fix)
+
+    def at(self, where: str) -> InputError:
+        """Return the same error of another place, `where`."""
+        return InputError(where, self.problem, self.fix)
+
     def within(self, prefix: str) -> InputError:
         """Return the same error seen from one level further out, `prefix`."""
         joint = "" if not prefix or not self.where or self.where.startswith("[") else "."
-        return InputError(f"{prefix}{joint}{self.where}", self.problem, self.fix)
+        return self.at(f"{prefix}{joint}{self.where}")
 
 
 @contextmanager
@@ -57,8 +65,7 @@ def naming(where: str | Mapping[str, str]) -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        place = where if isinstance(where, str) else where.get(error.where, error.where)
-        raise InputError(place, error.problem, error.fix) from None
+        raise error.at(where if isinstance(where, str) else where.get(error.where, error.where)) from None
 
 
 @contextmanager
@@ -96,3 +103,6 @@ class ComputationError(GbeamError, RuntimeError):
     def __init__(self, outcome: str, message: str) -> None:
         self.outcome = outcome
         super().__init__(message)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.outcome, *self.args)

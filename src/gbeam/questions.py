@@ -166,7 +166,8 @@ def motion_of(motions: Mapping[str, Any], name: str | None, kind: str = "") -> s
     alike = [each for each, motion in motions.items() if motion is not None and motion.kind == kind]
     choice = alike or list(motions)
     if not choice:
-        raise InputError("motion", "is missing", "add one that answers; `gbeam new` shows how")
+        which = f' with kind = "{kind}"' if kind else ""
+        raise InputError("motion", "is missing", f"add [motion.NAME]{which}; `gbeam new` shows how")
     if len(choice) > 1 and (alike or not kind):
         raise InputError("--motion", "is missing", f"name one of {', '.join(choice)}")
     return choice[0]  # without any of the kind it is refused with its reason, as any other would be
@@ -312,6 +313,7 @@ def critical_speed(
     progress: Callable[[str, float], None] | None = None,
 ) -> Critical:
     """The rate, factor of the loads or acceleration of the root, up to `to`, at which beams buckle."""
+    from gbeam.analysis.case import Case
     from gbeam.analysis.steady import stability
     from gbeam.analysis.steady.operating_point import held_base
     from gbeam.mechanics.tree.system import System
@@ -329,7 +331,8 @@ def critical_speed(
         still = None if isinstance(structure, System) else held_base(base, time)
         return stability.critical_load(structure, still, **options)
     if vary == "acceleration":
-        case.one_beam("bodies", "--vary acceleration")
+        if not isinstance(case, Case):
+            raise InputError("--vary", "is acceleration, which pushes one [beam] by its root", "give rate or loads")
         return stability.buckling_acceleration(structure, **options)
     options["motion"] = base
     return replace(stability.critical_speed(structure, turning=turning, name=name, **options), motion=name)

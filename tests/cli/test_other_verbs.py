@@ -140,7 +140,7 @@ def test_a_shell_completes_verbs_options_and_choices(
 
 def test_a_place_needs_a_motion(gbeam: Call) -> None:
     answer = gbeam("place", EXAMPLES / "robot_arm.toml")
-    assert answer.status == 2 and "motion is missing; add one that answers" in answer.err
+    assert answer.status == 2 and 'motion is missing; add [motion.NAME] with kind = "centrifuge"' in answer.err
 
 
 def test_a_joint_that_turns_has_a_diagram(tmp_path: Path, gbeam: Call, with_figures: None) -> None:

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from pydantic import ValidationError
 
-from gbeam.errors import GbeamError, InputError
+from gbeam.errors import ComputationError, InputError, naming, placing_within
 from gbeam.scenario import Diagnostic, Scenario, ScenarioError, build, load, loads, placed
 
 Errors = Callable[..., tuple[Diagnostic, ...]]
@@ -63,8 +63,25 @@ def test_printed_like_a_compiler(text: str, errors: Errors) -> None:
         "      |                   ^^^^^^^^\n"
         "      = give 0 to 0.3 m from the root"
     )
-    assert isinstance(ScenarioError([error]), GbeamError)
     assert json.loads(json.dumps(ScenarioError([error]).as_json()))[0]["column"] == 19
+
+
+def test_a_wrong_scenario_is_a_wrong_input_that_keeps_its_places(text: str) -> None:
+    """Caught as any other wrong input; whoever names another place for what is raised inside leaves the file's."""
+    wrong = text.replace('"300 mm"', '"300 kg"').replace('"4 s"', "-4")
+    refused = pytest.raises(InputError, match=r"s.toml:\d+:\d+: beam.length: ")
+    with refused as caught, naming("--over"), placing_within("motion"):
+        loads(wrong, "s.toml")
+    error = caught.value
+    assert isinstance(error, ScenarioError) and error.where == "beam.length"
+    assert [each.path for each in error.diagnostics] == ["beam.length", "response.duration"]
+    again = pickle.loads(pickle.dumps(error))
+    assert (str(again), again.diagnostics) == (str(error), error.diagnostics)
+    other = pickle.loads(pickle.dumps(InputError("beam.length", "is 0 m", "give more")))
+    assert str(other) == "beam.length is 0 m; give more" and other.fix == "give more"
+    failed = pickle.loads(pickle.dumps(ComputationError("diverged", "at 1 s")))
+    assert (failed.outcome, str(failed)) == ("diverged", "at 1 s")
+    assert str(placed(loads(text, "s.toml"), [error])) == str(error)
 
 
 def test_tabs_and_wide_characters_before_the_caret(text: str, errors: Errors) -> None:

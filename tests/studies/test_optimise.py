@@ -91,6 +91,23 @@ def test_what_cannot_be_minimised_is_refused(fast: Path, minimise: str, over: st
         gb.optimise(fast, minimise, [over], subject_to=[subject] if subject else [])
 
 
+def test_values_that_the_scenario_refuses_are_named(fast: Path) -> None:
+    """On the way to the mass that bends the beam most, beyond the tip."""
+    at = "beam.masses[0].at"
+    heavy = ['beam.masses=[{ at = "250 mm", mass = "50 g" }]']
+    words = r"--bounds allow beam.masses\[0\].at = 0.\d+ m, which the scenario refuses: .*beyond the tip; give narrower"
+    with pytest.raises(gb.InputError, match=words):
+        options = {"verb": "static", "motion": "flight", "bounds": {at: (0.1, 0.4)}}
+        gb.optimise(fast, "tip.z", [at], overrides=heavy, **options)  # type: ignore[arg-type]
+
+
+def test_a_figure_that_depends_on_nothing_is_said(fast: Path) -> None:
+    best = gb.optimise(
+        fast, "root_force.y", [THICKNESS], verb="static", motion="flight", bounds={THICKNESS: (3e-3, 5e-3)}
+    )
+    assert best.warnings == (f"root_force.y does not depend on {THICKNESS}",)
+
+
 def test_the_command_writes_a_scenario_a_file_and_a_plot(fast: Path, gbeam: Call, with_figures: None) -> None:
     words = ("optimize", fast, "--verb", "static", "--minimise", "flight.loads.root_force.z", "--over", THICKNESS)
     done = gbeam(*words, "--bounds", f"{THICKNESS}=3 mm:5 mm", "--write", "best.toml", "--out", "best")

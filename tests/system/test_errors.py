@@ -146,6 +146,16 @@ def test_a_given_step_states_its_error() -> None:
     assert 1e-7 < true < response.errors.displacement.step < 6 * true
 
 
+def test_loads_that_steps_do_not_resolve_are_warned_of() -> None:
+    """The force on a stretched beam whose root is pushed at once rings in axial modes, while its places hardly move."""
+    beam = gb.assemble(STRIP, "FOAM", axial=2, y=0, z=1)
+    jerked = gb.trapezoid(0.5, jerk=5.0, start=0.01, hold=0.05)
+    slide = {"slide": gb.Joint("prismatic", "beam", axes=[(1, 0, 0)], rate=jerked)}
+    response = gb.simulate(gb.System({"beam": beam}, slide), duration=0.1)
+    assert response.errors.loads.step > 0.1 and response.errors.displacement.total < 1e-3
+    assert any("loads are wrong" in each and "the steps do not resolve" in each for each in response.warnings)
+
+
 def test_bodies_without_a_beam_are_named_as_not_judged() -> None:
     slope = np.array([0.0, 0.3, 1.0])[:, None, None] * [[0.0], [0.0], [1.0]]
     place, curve = np.array([[0.0, 0, 0], [0.5, 0, 0], [1.0, 0, 0]]), np.zeros((3, 3, 1, 1))

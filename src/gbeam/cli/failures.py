@@ -31,9 +31,11 @@ def report(error: GbeamError, as_json: bool) -> int:
         if as_json:
             _print({"outcome": error.outcome, "message": str(error), "motions": {}})
         return FAILED
+    from gbeam.scenario import ScenarioError  # not needed, nor imported, for help
+
     # A scenario's diagnostics begin with file:line, which editors open: nothing may stand before it.
-    mark = "gbeam: " if isinstance(error, InputError) else ""
-    words = on_one_line(shortened(str(error), LONGEST)) if mark else str(error)
+    placed = isinstance(error, ScenarioError)
+    mark, words = ("", str(error)) if placed else ("gbeam: ", on_one_line(shortened(str(error), LONGEST)))
     return _refuse(f"{mark}{words}", _diagnostics(error), as_json)
 
 
@@ -126,7 +128,7 @@ def _refuse(text: str, diagnostics: list[dict[str, Any]], as_json: bool) -> int:
 
 
 def _diagnostics(error: GbeamError) -> list[dict[str, Any]]:
-    from gbeam.scenario import ScenarioError  # not needed, nor imported, for help
+    from gbeam.scenario import ScenarioError
 
     if isinstance(error, ScenarioError):
         return [dict(diagnostic) for diagnostic in error.as_json()]

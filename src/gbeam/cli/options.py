@@ -157,7 +157,7 @@ class Input:
             yield
         except InputError as error:
             if error.where in options:
-                raise InputError(options[error.where], error.problem, error.fix) from None
+                raise error.at(options[error.where]) from None
             from gbeam.scenario import placed
 
             raise placed(self.scenario, [error]) from None

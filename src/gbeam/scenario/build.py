@@ -40,7 +40,7 @@ def read_scenario(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -
 
     Raises
     ------
-    ScenarioError
+    InputError
         With everything that is wrong, each with its place in the file.
 
     Examples

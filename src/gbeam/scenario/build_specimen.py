@@ -57,7 +57,7 @@ def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure
             one = error.where.replace("point_masses", "masses")
             renamed = one.replace("materials", "material", 1) if table.material is not None else one
             renamed = renamed.replace("thickness", "thicknesses", 1) if table.thicknesses else renamed
-            raise InputError(renamed, error.problem, error.fix) from None
+            raise error.at(renamed) from None
 
     options: dict[str, Any] = {"modes": table.modes, "damping_ratio": table.damping_ratio}
 
@@ -171,7 +171,7 @@ def modal_test_of(parts: Collector, where: str, table: schema.ModalTestBody) -> 
         try:
             return measured.structure(masses, points=table.points)
         except InputError as error:
-            raise InputError(error.where.replace("mass", "masses", 1), error.problem, error.fix) from None
+            raise error.at(error.where.replace("mass", "masses", 1)) from None
 
     return parts.attempt(where, model)
 

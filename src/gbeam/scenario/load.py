@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Iterator
 from copy import deepcopy
 from dataclasses import replace
 from functools import lru_cache
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
@@ -93,7 +94,11 @@ class Collector:
 
 def placed(scenario: Environments, errors: Iterable[InputError]) -> ScenarioError:
     """Return the ScenarioError of what the objects of the core refused."""
-    return ScenarioError(_diagnostic(scenario.source, error) for error in errors)
+    each = (
+        error.diagnostics if isinstance(error, ScenarioError) else [_diagnostic(scenario.source, error)]
+        for error in errors
+    )
+    return ScenarioError(chain.from_iterable(each))
 
 
 def _diagnostic(source: Source | None, error: InputError) -> Diagnostic:

@@ -243,10 +243,15 @@ class Quantities:
     def _at(self, values: Floats) -> tuple[Floats, Floats, Neighbourhood]:
         if self._last is None or not np.array_equal(self._last[0], values):
             self.evaluations += 1
-            about = Neighbourhood(
-                self._inquiry, self._parameters, values.tolist(), grids=self._grids, parts=self._parts,
-                adapt=self._shaped, progress=self._progress,
-            )  # fmt: skip
+            try:
+                about = Neighbourhood(
+                    self._inquiry, self._parameters, values.tolist(), grids=self._grids, parts=self._parts,
+                    adapt=self._shaped, progress=self._progress,
+                )  # fmt: skip
+            except InputError as error:
+                tried = (f"{each.path} = {v:.6g} {each.unit}" for each, v in zip(self._parameters, values, strict=True))
+                problem = f"allow {', '.join(tried)}, which the scenario refuses: {error.where} {error.problem}"
+                raise InputError("--bounds", problem, "give narrower ones") from None
             for name in self._motions if self._grids is not None else ():
                 about.done(name)
             read = self._read(about.case, about.answer)

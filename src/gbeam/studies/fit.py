@@ -83,7 +83,7 @@ def fit(
 
     Raises
     ------
-    InputError, ScenarioError
+    InputError
         If the scenario, the data, a value or a bound is wrong, or there are more values than data.
     ComputationError
         If the data cannot tell two values apart, or do not depend on one; or a run is not done.

@@ -138,7 +138,7 @@ def read_measurement(path: str | os.PathLike[str], case: AnyCase, motion: str | 
         return _read(os.fspath(path), case, motion)
     except InputError as error:
         where = OPTION if error.where.startswith("record") else error.where
-        raise InputError(where, error.problem, error.fix) from None
+        raise error.at(where) from None
 
 
 def _read(path: str, case: AnyCase, motion: str | None) -> Measurement:

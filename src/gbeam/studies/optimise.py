@@ -85,7 +85,7 @@ def optimise(
 
     Raises
     ------
-    InputError, ScenarioError
+    InputError
         If the scenario, a figure, a value, a bound or a requirement is wrong.
     ComputationError
         If the scenario's own run is not done.
@@ -124,12 +124,12 @@ def optimise(
         Requirement(name, unit_at(facts_of(last.answer), keys), low, high, float(before[k]), float(after[k]))
         for k, (name, keys, low, high) in enumerate(goal.required, 1)
     )
-    broken = [each.name for each in requirements if not each.kept]
+    broken, paths = [each.name for each in requirements if not each.kept], tuple(each.path for each in parameters)
     return Optimum(
         title=template.title,
         minimise=minimise,
         unit=goal.unit,
-        parameters=tuple(each.path for each in parameters),
+        parameters=paths,
         units=tuple(each.unit for each in parameters),
         before=np.array([each.value for each in parameters]),
         values=values,
@@ -145,7 +145,7 @@ def optimise(
         starts=starts,
         agreed=agreeing(ends, values, limits),
         outcome=BROKEN if broken else "done",
-        warnings=search.warnings,
+        warnings=search.warnings + (() if not search.flat else (f"{minimise} does not depend on {', '.join(paths)}",)),
         provenance=template.provenance,
     )
 
@@ -226,6 +226,7 @@ class Search:
     tried: list[tuple[Floats, float]] = field(default_factory=list)
     ranks: list[tuple[float, float]] = field(default_factory=list)  # of those tried, each better than before
     warnings: tuple[str, ...] = ()
+    flat: bool = True  # while no value tried has changed the objective
 
     def __call__(self, start: Floats) -> Floats:
         """End of a search from some values."""
@@ -256,6 +257,7 @@ class Search:
         def gradient(x: Floats) -> Floats:
             values = low + x * width
             slope = slopes(values)[0] * width / sizes[0]
+            self.flat = self.flat and not slope.any()
             return slope if power == 1 else 2 * self.model(values)[0] / sizes[0] * slope
 
         constraints: Any = ()

@@ -80,7 +80,7 @@ def sensitivity(
 
     Raises
     ------
-    InputError, ScenarioError
+    InputError
         If the scenario, a figure or a value is wrong; or a value that is named may not be a little more or less.
     ComputationError
         If a run whose figures are differentiated is not done.

@@ -86,7 +86,7 @@ def shape_hub_command(
 
     Raises
     ------
-    InputError, ScenarioError
+    InputError
         If the scenario is wrong, has no such hub or leaves the numbers of shapes out; or as
         :func:`gbeam.shape_command` does.
     ComputationError
@@ -134,7 +134,7 @@ def shape_hub_command(
         if error.where != "gravity":
             raise
         if isinstance(case, SystemCase) and case.motions:
-            raise InputError(f"motion.{motion_of(case.motions, motion)}", error.problem, error.fix) from None
+            raise error.at(f"motion.{motion_of(case.motions, motion)}") from None
         raise error.within("system" if isinstance(case, SystemCase) else where) from None
     return replace(shaped, motion=name, provenance=case.provenance)
 

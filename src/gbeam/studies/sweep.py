@@ -114,7 +114,7 @@ def sweep(
 
     Raises
     ------
-    InputError, ScenarioError
+    InputError
         If the scenario, what varies or a measure is wrong, no case is possible, or the store is another sweep's or in
         use.
     ComputationError

@@ -127,14 +127,11 @@ class Ran(Run):
         values = read(self.posed.system, *self.every(stride), beams)
         return [values[name, each] for name in beams for each in LOADS]
 
-    def loop(self, time: Floats) -> tuple[Loop | None, Floats | None]:
-        """Record of its controllers, and their commands (t, m) that act at times."""
-        return (None, None) if self.sampling is None else loop_of(self.posed.equations.controllers, self.sampling, time)
-
     @cached_property
-    def acting(self) -> Floats | None:
-        """Commands of its controllers that act at its times."""
-        return self.loop(self.trajectory.time)[1]
+    def loop(self) -> Loop | None:
+        """Record of its controllers at its times."""
+        controllers = self.posed.equations.controllers
+        return None if self.sampling is None else loop_of(controllers, self.sampling, self.trajectory.time)
 
     @cached_property
     def moved(self) -> Floats:
@@ -151,7 +148,7 @@ class Ran(Run):
     def inputs(self, of: System, steps: Any) -> Inputs:
         """Inputs at some of its steps of its system, or of another with the same controllers."""
         plain = of.inputs(self.trajectory.time[steps], self.posed.motion)
-        return plain if self.acting is None else SystemControllers(of).driven(plain, self.acting[steps])
+        return plain if self.loop is None else SystemControllers(of).driven(plain, self.loop.applied[steps])
 
     def every(self, stride: int) -> tuple[Trajectory, InputsOf]:
         """Each `stride`-th of its steps, and the inputs at some of these."""
@@ -348,6 +345,10 @@ def _described(
     if motion is None:
         invariants = Invariants(*(over_time.pop(key) for key in ("momentum", "angular_momentum", "energy")))
     base: Any = None if motion is None else motion.base(time)
+    loop = run.loop
+    if loop is not None:
+        histories = {each: getattr(loop, each)[::stride] for each in ("measured", "asked", "applied")}
+        loop = replace(loop, **histories)
     outcome, message = "done", ""
     if not every.whole:
         outcome = "not converged"
@@ -356,9 +357,6 @@ def _described(
         )
     warnings += (*settings.warnings, *yielded)
     warnings += tuple(each for each in doubts(errors, settings.tolerance) if each not in warnings)
-    step_error = errors.displacement.step
-    if outcome == "done" and step_error > settings.tolerance:
-        warnings += (f"the error of the steps is {100 * step_error:.2g} %: give a smaller step or tolerance",)
     residual: Any = None
     if settings.residual_from is not None:
         deflected = (deflection(system, each, over_time["q"]) for each in system.points)
@@ -375,7 +373,7 @@ def _described(
         points=system.points,
         coordinates=system.coordinates,
         invariants=invariants,
-        loop=run.loop(time)[0],
+        loop=loop,
         beams=beams,
         solids=solids,
         surfaces=surfaces,

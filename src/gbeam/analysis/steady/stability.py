@@ -325,8 +325,9 @@ def critical_load(
             )
 
     if share < NOTHING:
-        fix = "add one, or give a time at which one acts; `gbeam critical-speed` can raise a hub's rate instead"
-        raise InputError("forces" if isinstance(structure, System) else "beam.loads", "has none that acts", fix)
+        where, what = ("forces", "a joint's") if isinstance(structure, System) else ("beam.loads", "a hub's")
+        fix = f"add one, or give a time at which one acts; `gbeam critical-speed` can raise {what} rate instead"
+        raise InputError(where, "have none that act", fix)
     limit = SEARCH_FACTOR / share if upper is None else positive("to", upper, "times the loads")
     lost = first_loss_along(path, structure, limit, "load factor", "times the loads", progress)
     return judged(lost, path, structure, progress)

@@ -45,6 +45,7 @@ FAR = "shapes and models are not judged: a system with more shapes does not foll
 UNKNOWN = "errors by the theory of slender beams are not known: "
 BENT_FAR = UNKNOWN + "thick beams do not follow"
 LOOP_LOST = UNKNOWN + "controllers do not hold the system with more shapes in its beams"
+STEPS = "the steps do not resolve what vibrates; give a smaller step, or damp it"
 LOST = 10.0  # times the motion, or the extent of the system: a larger answer of linear equations is none
 
 
@@ -129,20 +130,23 @@ def system_errors(
 
 
 def doubts(errors: SystemErrors, tolerance: float) -> tuple[str, ...]:
-    """Warnings of what is wrong by more than a tolerance, but for the steps, and of what is not judged."""
+    """Warnings of what is wrong by more than a tolerance, and of what is not judged."""
     said = [errors.note] if errors.note else []
     for what, size, each, by_beam in (
         ("places", "displacement", errors.displacement, errors.by_beam),
         ("loads", "of them", errors.loads, errors.loads_by_beam),
     ):
-        parts = each.shapes, each.model, each.beam_theory, each.mesh
+        parts = each.step, each.shapes, each.model, each.beam_theory, each.mesh
         if not any(part > tolerance for part in parts):
+            continue
+        share = percent(np.nanmax([each.total, each.step]))
+        if each.step == np.nanmax(parts):
+            said.append(f"{what} are wrong by an estimated {share} of the largest {size}: {STEPS}")
             continue
         which = int(np.argmax(by_beam))
         cause, cure = cause_and_cure(each, errors.theory[which])
         if each.shapes == np.nanmax(parts):
             cure = "raise its model.modes, of a mesh its modes"  # which are given in a system
-        share = percent(each.total)
         said.append(
             f"{what} are wrong by an estimated {share} of the largest {size}: {cause}, most of {errors.beams[which]}; "
             f"{cure}"

@@ -78,8 +78,8 @@ class SystemControllers:
         return replace(inputs, **changes)
 
 
-def loop_of(controllers: SystemControllers, sampling: Sampling, time: Floats) -> tuple[Loop, Floats]:
-    """Samples and commands of the controllers, held at times (t,) s, and the commands (t, m) that act at these."""
+def loop_of(controllers: SystemControllers, sampling: Sampling, time: Floats) -> Loop:
+    """Samples and commands of the controllers, held at times (t,) s."""
     start, slack = sampling.steps.begin[0], NEAR * float(sampling.steps.length.min())
     measured, asked, acting, beyond = [], [], [], []
     for c, (period, delay) in enumerate(controllers.timing):
@@ -92,7 +92,7 @@ def loop_of(controllers: SystemControllers, sampling: Sampling, time: Floats) ->
         asked.append(wanted[taken])
         beyond.append(np.mean(wanted != commands, axis=0))
         acting.append(np.where(active[:, None] >= 0, commands[last], 0.0))
-    loop = Loop(
+    return Loop(
         measurements=signal_names(controllers.system.controllers, "measure"),
         units=tuple(signals_of(controllers.system)[each] for one in controllers.every for each in one.measure),
         drives=signal_names(controllers.system.controllers, "drive"),
@@ -101,4 +101,3 @@ def loop_of(controllers: SystemControllers, sampling: Sampling, time: Floats) ->
         applied=np.concatenate(acting, axis=1),
         saturated=np.concatenate(beyond),
     )
-    return loop, loop.applied

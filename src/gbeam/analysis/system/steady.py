@@ -346,6 +346,9 @@ class Loaded:
 
     def share(self, system: System) -> float:
         """Stiffness that loads and forces bring, over the system's; if they only bend it, how far, over its extent."""
+        inputs = self.drive.inputs(system)
+        if not any(each is not None and np.any(each) for each in (*inputs.loads, inputs.wrenches)):
+            return 0.0  # as differences of what rests would not be, by rounding
         rest, pushed = self(system, 0.0), self(system, SLIGHT)
         square, modes = symmetric_modes(*(symmetric(each) for each in (rest.linear.stiffness, rest.linear.mass)))
         held = modes[:, square > RIGID**2 * square[-1]] / np.sqrt(square[square > RIGID**2 * square[-1]])

@@ -78,7 +78,7 @@ def report_of_file(path: Path) -> str:
         with np.errstate(all="ignore"):  # what a damaged file holds beyond all bounds is drawn as a gap
             return _page_of(file)
     except InputError as error:
-        raise InputError(str(file), error.problem, error.fix) from None
+        raise error.at(str(file)) from None
     except (LookupError, TypeError, ValueError, AttributeError, ArithmeticError):  # no figures of a result
         raise InputError(str(file), "holds no whole result: it was changed or is damaged", _FIX) from None
 

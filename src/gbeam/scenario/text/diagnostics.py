@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass, replace
+from typing import Any
 
-from gbeam.errors import GbeamError
+from gbeam.errors import InputError
 from gbeam.printable import on_one_line, printable, shortened
 
 LONGEST_MESSAGE = 1000  # characters: it may list thirty columns
@@ -55,12 +56,23 @@ class Diagnostic:
         return line[first : first + _WIDTH], column - first
 
 
-class ScenarioError(GbeamError):
-    """The scenario is wrong (exit status 2): everything that is wrong with it, at once."""
+class ScenarioError(InputError):
+    """The scenario is wrong (exit status 2): everything that is wrong with it, at once, each at its place in the file,
+    which it keeps wherever it is seen from; its own `where`, `problem` and `fix` are those of the first.
+    """
 
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
         self.diagnostics = tuple(sorted(diagnostics, key=lambda d: (d.line or 0, d.column or 0)))
-        super().__init__("\n".join(str(d) for d in self.diagnostics))
+        first = self.diagnostics[0]
+        super().__init__(first.path, first.message, first.hint)
+        self.args = ("\n".join(str(d) for d in self.diagnostics),)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.diagnostics,)
+
+    def at(self, where: str) -> ScenarioError:
+        """Return the error itself: its places are the file's."""
+        return self
 
     def as_json(self) -> list[dict[str, str | int | None]]:
         """Return the diagnostics as objects for JSON; without the line of the file where that is very long."""
