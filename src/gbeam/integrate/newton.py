@@ -132,11 +132,16 @@ def _stage_residual(residual: Any, t: Tableau, z: Array, inputs: Any, x: Array) 
     return jax.vmap(residual)(q, qd, x, inputs)
 
 
+def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> tuple[Array, Array, Array]:
+    """Derivatives K, C, M (n, n) of a residual by q, q̇, q̈ (n,)."""
+    k, c, m = jax.jacfwd(lambda *state: residual(*state, inputs), argnums=(0, 1, 2))(q, qd, qdd)
+    return k, c, m
+
+
 def _inverse_jacobian(residual: Any, t: Tableau, z: Array, inputs: Any, x: Array) -> Array:
     """Inverse Jacobian (s n, s n) of a step, the residual's derivatives being those between its stages."""
-    q, qd, qdd = (jnp.mean(values, axis=0) for values in (t.w_q @ z + t.c_q @ x, t.w_v @ z + t.c_v @ x, x))
-    between = jax.tree.map(lambda leaf: jnp.mean(leaf, axis=0), inputs)
-    k, c, m = jax.jacfwd(lambda q, qd, qdd: residual(q, qd, qdd, between), argnums=(0, 1, 2))(q, qd, qdd)
+    state = (jnp.mean(values, axis=0) for values in (t.w_q @ z + t.c_q @ x, t.w_v @ z + t.c_v @ x, x))
+    k, c, m = slopes(residual, *state, jax.tree.map(lambda leaf: jnp.mean(leaf, axis=0), inputs))
     return jnp.linalg.inv(jnp.kron(t.c_q, k) + jnp.kron(t.c_v, c) + jnp.kron(jnp.eye(len(x)), m))
 
 

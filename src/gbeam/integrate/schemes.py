@@ -208,7 +208,7 @@ def added(equations: LinearEquations, scheme: Scheme, step: float) -> tuple[Floa
     if scheme.exponent is None or equations.rest is None:
         nothing = np.zeros(np.shape(equations.mass))
         return nothing, nothing
-    return _to_modes(scheme.exponent, step, equations.mass, *equations.rest)
+    return to_modes(scheme.exponent, step, equations.mass, *equations.rest)
 
 
 def stepped(equations: NonlinearEquations, scheme: Scheme, steps: Any, n: int) -> Any:
@@ -221,22 +221,24 @@ def stepped(equations: NonlinearEquations, scheme: Scheme, steps: Any, n: int) -
     still = each_leaf(lambda leaf: np.zeros(np.shape(leaf)), equations.drive(steps.first[:1]))
     zero = np.zeros((1, n))
     stiffness, damping, mass = (symmetric(each[0]) for each in slopes(residual, zero, zero, zero, still))
-    return Fitted(residual, *_to_modes(scheme.exponent, steps.longest, mass, damping, stiffness))
+    return Fitted(residual, *to_modes(scheme.exponent, steps.longest, mass, damping, stiffness))
 
 
-def _to_modes(exponent: Any, step: float, mass: Floats, damping: Floats, stiffness: Floats) -> tuple[Floats, Floats]:
-    """Matrices (n, n) that M and C of steps of a length (s) need more, so that modes keep their times."""
+def to_modes(exponent: Any, step: Any, mass: Floats, damping: Floats, stiffness: Floats) -> tuple[Floats, Floats]:
+    """Matrices (..., n, n) that M and C of steps of a length (...) s need more, so that modes keep their times."""
     square, modes = symmetric_modes(stiffness, mass)
     frequency = np.sqrt(np.maximum(square, 0.0))
-    rate = np.einsum("ia,ij,ja->a", modes, damping, modes)
+    rate = ((damping @ modes) * modes).sum(axis=-2)
     fits = (frequency > 0) & (np.abs(rate) < 2 * frequency)
-    frequency, rate, modes = frequency[fits], rate[fits], modes[:, fits]
-    angle = np.minimum(frequency * step, FITTED)
-    ratio = rate / (2 * frequency)
+    frequency = np.where(fits, frequency, 1.0)  # of others, which are left as they are, any
+    angle = np.minimum(frequency * np.asarray(step)[..., None], FITTED)
+    ratio = np.where(fits, rate / (2 * frequency), 0.0)
     z = angle * (-ratio + 1j * np.sqrt(1 - ratio**2))
     mu = exponent(z)
     # μ² m + μ h c + (ω h)² = 0 with the mode's own stiffness.
     factor = np.abs(z / mu) ** 2
     slower = np.divide(mu.real, z.real, out=np.ones_like(ratio), where=ratio > 0)
     shapes = mass @ modes
-    return shapes * (factor - 1) @ shapes.T, shapes * (rate * (slower * factor - 1)) @ shapes.T
+    every = np.where(fits, factor - 1, 0.0), np.where(fits, rate * (slower * factor - 1), 0.0)
+    more_mass, more_damping = (shapes * each[..., None, :] @ np.swapaxes(shapes, -1, -2) for each in every)
+    return more_mass, more_damping

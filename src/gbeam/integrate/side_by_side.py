@@ -11,16 +11,17 @@ from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from itertools import tee
-from typing import Any
+from typing import Any, cast
 
 import jax
 import numpy as np
 
 from gbeam.integrate import lanes, newton
-from gbeam.integrate.equations import LinearEquations, LinearTerms, NonlinearEquations, Trajectory
+from gbeam.integrate.equations import Fitted, LinearEquations, LinearTerms, NonlinearEquations, Trajectory
 from gbeam.integrate.newton import chunks, stretches
-from gbeam.integrate.schemes import Scheme, added, stepped
+from gbeam.integrate.schemes import Scheme, added, to_modes
 from gbeam.integrate.steps import Steps
+from gbeam.numerics.eigen import symmetric
 
 Array = Any
 Histories = tuple[Array, Array, Array]  # q, q̇, q̈ of b runs at the start and the ends of the steps, (b, t + 1, n) each
@@ -43,7 +44,8 @@ class Run:
         steps = self.steps
         if isinstance(self.equations, NonlinearEquations):
             leaves, form = self.residual
-            return "nonlinear", form, *map(np.shape, leaves), len(steps), steps.anew.tobytes()
+            alike = self.equations.vibrates, len(steps), steps.anew.tobytes()
+            return "nonlinear", form, *map(np.shape, leaves), *alike
         if self.terms is None or (self.scheme.ends and steps.anew.any()):
             return None
         return "linear", len(self.q), len(steps), self.parts
@@ -52,8 +54,7 @@ class Run:
     def residual(self) -> tuple[list[Array], Any]:
         """Arrays and form of the residual of nonlinear equations."""
         assert isinstance(self.equations, NonlinearEquations)
-        of_steps = stepped(self.equations, self.scheme, self.steps, len(self.q))
-        leaves, form = jax.tree.flatten(of_steps)
+        leaves, form = jax.tree.flatten(self.equations.residual)
         return leaves, form
 
     @cached_property
@@ -162,12 +163,16 @@ def _over_runs(solve: Callable[..., Any], *more_axes: int | None) -> Callable[..
     return over_runs
 
 
+_slopes = _over_runs(newton.slopes, 0, 0, 0, 0)
 _accelerations = _over_runs(newton.accelerations, 0, 0, 0)
 _quick = _over_runs(newton.steps, 0, 0, 0, 0, None, None, None)
 
 
-def _residuals(runs: Sequence[Run]) -> tuple[Any, tuple[int | None, ...], list[Array]]:
-    """Form, axes and arrays of the runs' residuals: no axis of those that are common."""
+Residuals = tuple[Any, tuple[int | None, ...], list[Array]]  # form, axes and arrays: no axis of those that are common
+
+
+def _residuals(runs: Sequence[Run]) -> Residuals:
+    """The runs' residuals."""
     common = {id(leaf) for leaf in jax.tree.leaves(runs[0].common)}
     every = list(zip(*(run.residual[0] for run in runs), strict=True))
     axes = [None if id(leaf[0]) in common and all(x is leaf[0] for x in leaf) else 0 for leaf in every]
@@ -175,10 +180,24 @@ def _residuals(runs: Sequence[Run]) -> tuple[Any, tuple[int | None, ...], list[A
     return runs[0].residual[1], tuple(axes), leaves
 
 
+def _fitted(runs: Sequence[Run], residuals: Residuals) -> Residuals:
+    """The residuals that steps solve: fitted to their modes, as by :func:`gbeam.integrate.schemes.stepped`."""
+    exponent, equations = runs[0].scheme.exponent, cast(NonlinearEquations, runs[0].equations)
+    if exponent is None or not equations.vibrates:
+        return residuals
+    form, axes, leaves = residuals
+    zero, first = np.zeros((len(runs), len(runs[0].q))), runs[0].steps.first[:1]
+    still = jax.tree.map(lambda leaf: np.zeros((len(runs), *np.shape(leaf)[1:])), equations.drive(first))
+    k, c, m = (symmetric(np.asarray(each)) for each in _slopes(*residuals, zero, zero, zero, still))
+    more = to_modes(exponent, [run.steps.longest for run in runs], m, c, k)
+    leaves, form = jax.tree.flatten(Fitted(jax.tree.unflatten(form, leaves), *more))
+    return form, (*axes, 0, 0), leaves
+
+
 def _nonlinear(runs: Sequence[Run]) -> tuple[Histories, Array]:
     scheme = runs[0].scheme
     equations: list[Any] = [run.equations for run in runs]
-    residual = _residuals(runs)
+    residual = _fitted(runs, _residuals(runs))
     q, qd = (np.stack([getattr(run, name) for run in runs]) for name in ("q", "qd"))
 
     def accelerations(times: Sequence[float], q: Array, qd: Array) -> Array:

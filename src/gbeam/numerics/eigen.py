@@ -13,11 +13,12 @@ Array = Any
 
 
 def symmetric_modes(stiffness: Array, mass: Array) -> tuple[Array, Array]:
-    """Eigenvalues (n,), ascending, and eigenvectors (n, n) in columns, of unit length in M."""
+    """Eigenvalues (..., n), ascending, and eigenvectors (..., n, n) in columns, of unit length in M."""
     xp = namespace(stiffness, mass)
     scale = xp.linalg.inv(xp.linalg.cholesky(mass))
-    value, vector = xp.linalg.eigh(scale @ stiffness @ scale.T)
-    return value, scale.T @ vector
+    across = xp.swapaxes(scale, -1, -2)
+    value, vector = xp.linalg.eigh(scale @ stiffness @ across)
+    return value, across @ vector
 
 
 def positive_definite(matrices: Array) -> bool:
