@@ -1,9 +1,8 @@
 """Nonlinear equations in time, compiled by JAX: steps of many runs side by side, in chunks of equal size.
 
-On a CPU a loop with a condition inside costs as much as the arithmetic of a step. So a step makes a given number of
-corrections from an extrapolated guess, with the inverse Jacobian of its chunk's beginning; the size of the last two
-says what error is left. A run of steps in which one leaves too much is done again with more corrections by the same
-program.
+A step is corrected from an extrapolated guess, with the inverse Jacobian of its group's beginning, until the size of
+the last two corrections says that the error left is small. Meanwhile a run that is near waits, unchanged, for those
+beside it.
 """
 
 from __future__ import annotations
@@ -109,11 +108,10 @@ def _groups(steps: Steps, size: int, *, restart: bool) -> Iterator[tuple[Any, An
 
 
 Array = Any
-# By the order of the scheme, since a higher one takes longer steps: corrections per step, steps per Jacobian.
-CORRECTIONS, PER_JACOBIAN = {2: 4, 4: 5}, {2: 20, 4: 2}
+PER_JACOBIAN = {2: 20, 4: 4}  # steps, by the order of the scheme: a higher one takes longer steps
 LEAST = 1e-3  # m/s² or rad/s²: beside smaller accelerations errors are not measured
-PATIENT = 8  # corrections where those did not suffice
-ACCEPTED = 1e-8  # of the largest acceleration: the error that the last correction may leave
+FEWEST, MOST = 2, 8  # corrections of a step
+NEAR, ACCEPTED = 1e-10, 1e-8  # of the largest acceleration: errors left after which no correction follows, at most
 
 
 class Carry(NamedTuple):
@@ -140,8 +138,8 @@ def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> tuple
 
 def _inverse_jacobian(residual: Any, t: Tableau, z: Array, inputs: Any, x: Array) -> Array:
     """Inverse Jacobian (s n, s n) of a step, the residual's derivatives being those between its stages."""
-    state = (jnp.mean(values, axis=0) for values in (t.w_q @ z + t.c_q @ x, t.w_v @ z + t.c_v @ x, x))
-    k, c, m = slopes(residual, *state, jax.tree.map(lambda leaf: jnp.mean(leaf, axis=0), inputs))
+    q, qd, qdd = (jnp.mean(values, axis=0) for values in (t.w_q @ z + t.c_q @ x, t.w_v @ z + t.c_v @ x, x))
+    k, c, m = slopes(residual, q, qd, qdd, jax.tree.map(lambda leaf: jnp.mean(leaf, axis=0), inputs))
     return jnp.linalg.inv(jnp.kron(t.c_q, k) + jnp.kron(t.c_v, c) + jnp.kron(jnp.eye(len(x)), m))
 
 
@@ -188,12 +186,10 @@ def steps(
     inputs: Any,
     at_ends: Any,
     last: Any,
-    corrections: Any,
     count: Any,
 ) -> Any:
-    """Take `count` groups of steps, inputs (groups, steps, s, ...), by as many Newton corrections each, one Jacobian a
-    group; returns the carry, q, q̇, q̈ (groups · steps, n) and each step's relative error; groups after `last` are
-    fillings.
+    """Take `count` groups of steps, inputs (groups, steps, s, ...), one Jacobian a group; returns the carry, q, q̇, q̈
+    (groups · steps, n) and each step's relative error; groups after `last` are fillings.
     """
     stages, n = carry.x.shape
 
@@ -203,14 +199,17 @@ def steps(
         inverse = _inverse_jacobian(residual, t, carry.z, first, _guess(t, carry))
 
         def step(carry: Carry, at: Any) -> Any:
-            def correct(_: Any, state: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
-                x, last, _ = state
+            def far(state: tuple[Array, ...]) -> Array:
+                _, size, before, tries = state
+                return (tries < FEWEST) | (tries < MOST) & (_left(size, before) > NEAR)
+
+            def corrected(state: tuple[Array, ...]) -> tuple[Array, ...]:
+                x, size, _, tries = state
                 correction = (inverse @ _stage_residual(residual, t, carry.z, at, x).ravel()).reshape(stages, n)
                 x = x - correction
-                return x, _size(correction, x), last
+                return x, _size(correction, x), size, tries + 1
 
-            far = jnp.full((), jnp.inf)
-            x, size, before = jax.lax.fori_loop(0, corrections, correct, (_guess(t, carry), far, far))
+            x, size, before, _ = jax.lax.while_loop(far, corrected, (_guess(t, carry), jnp.inf, jnp.inf, 0))
             after, q, qd = _next(t, carry, x)
             return after, (q, qd, x[-1], _left(size, before))
 

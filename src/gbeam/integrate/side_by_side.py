@@ -165,7 +165,7 @@ def _over_runs(solve: Callable[..., Any], *more_axes: int | None) -> Callable[..
 
 _slopes = _over_runs(newton.slopes, 0, 0, 0, 0)
 _accelerations = _over_runs(newton.accelerations, 0, 0, 0)
-_quick = _over_runs(newton.steps, 0, 0, 0, 0, None, None, None)
+_steps = _over_runs(newton.steps, 0, 0, 0, 0, None, None)
 
 
 Residuals = tuple[Any, tuple[int | None, ...], list[Array]]  # form, axes and arrays: no axis of those that are common
@@ -211,25 +211,15 @@ def _nonlinear(runs: Sequence[Run]) -> tuple[Histories, Array]:
     qdd = accelerations([run.steps.first[0] for run in runs], q, qd)
     carry = begun(q, qd, qdd, [run.steps.length[0] for run in runs])
     pieces, sound = [[x[:, None] for x in (q, qd, qdd)]], np.ones(len(runs), dtype=bool)
-    size, corrections = newton.PER_JACOBIAN[scheme.order], newton.CORRECTIONS[scheme.order]
-    equal = Counter(run.steps for run in runs)  # which runs of a batch mostly share
-    laid = {steps: iter(tee(stretches(scheme, steps, size), count)) for steps, count in equal.items()}
+    equal, size = Counter(run.steps for run in runs), newton.PER_JACOBIAN[scheme.order]
+    laid = {steps: iter(tee(stretches(scheme, steps, size), count)) for steps, count in equal.items()}  # most are equal
     of_runs = [chunks(run.equations.drive, scheme, next(laid[run.steps])) for run in runs]
     for every in zip(*of_runs, strict=True):
         inside, ends = every[0].inside, [chunk.end for chunk in every]
         tableau, inputs, at_ends = _stacked([(chunk.tableau, chunk.inputs, chunk.at_ends) for chunk in every])
-        result: Any = None
-        solved = np.zeros(len(runs), dtype=bool)
-        for tries in (corrections, newton.PATIENT):
-            arguments = tableau, carry, inputs, at_ends, every[0].last, tries, every[0].count
-            new = jax.tree.map(np.asarray, _quick(*residual, *arguments))
-            # A run that is solved keeps what it has: nothing of it depends on the others.
-            result = new if result is None else jax.tree.map(partial(_chosen, solved), result, new)
-            solved |= (new[1][-1][:, inside] <= newton.ACCEPTED).all(axis=1)  # NaN is not
-            if (solved | ~sound).all():
-                break
-        carry, piece = result[0], [np.array(values)[:, inside] for values in result[1][:-1]]
-        sound = sound & solved
+        carry, history = _steps(*residual, tableau, carry, inputs, at_ends, every[0].last, every[0].count)
+        *piece, left = (np.asarray(values)[:, inside] for values in history)
+        sound &= (left <= newton.ACCEPTED).all(axis=1)  # NaN is not
         if scheme.ends and ends[0].anew:
             q, qd = piece[0][:, -1], piece[1][:, -1]
             begin, final = (accelerations([getattr(end, at) for end in ends], q, qd) for at in ("resume", "end"))
@@ -237,8 +227,3 @@ def _nonlinear(runs: Sequence[Run]) -> tuple[Histories, Array]:
         pieces.append(piece)
     q, qd, qdd = (np.concatenate(part, axis=1) for part in zip(*pieces, strict=True))
     return (q, qd, qdd), sound
-
-
-def _chosen(which: Array, a: Array, b: Array) -> Array:
-    """One array (b, ...) where `which` (b,) is true, the other elsewhere."""
-    return np.where(which.reshape(-1, *[1] * (a.ndim - 1)), a, b)
