@@ -110,7 +110,7 @@ def lowest_modes(
     `solve` applies the inverse of the stiffness, and `start` (n, b) begins the space. All of its vectors are kept
     orthogonal (Golub and Underwood 1977, The block Lanczos method for computing eigenvalues).
     """
-    basis: list[Floats] = []
+    basis, steps = list[Floats](), list[Floats]()
     flexibility, value = np.zeros((0, 0)), np.zeros(0)
     vector, residual = flexibility, value
     new, weighed = _orthonormal(start, mass @ start, basis, mass)
@@ -118,6 +118,7 @@ def lowest_modes(
     while new.shape[1] and not (len(value) == modes + more and (residual < close * np.abs(value)).all()):
         basis.append(new)
         step = solve(weighed)
+        steps.append(step)
         heavy = mass @ step
         across = _products(basis, heavy)
         flexibility = np.block([[flexibility, across[: len(flexibility)]], [across.T]])
@@ -127,7 +128,7 @@ def lowest_modes(
         value, vector = value[lowest], vector[:, lowest]
         residual = np.linalg.norm(new.T @ heavy @ vector[-step.shape[1] :], axis=0)
     # Once more by the stiffness: without what has no mass, of which products with the mass do not know.
-    return value, solve(mass @ _combined(basis, vector)) / value if basis else vector
+    return value, _combined(steps, vector) / value if steps else vector
 
 
 def _orthonormal(

@@ -38,16 +38,14 @@ class Block(Value):
 
 
 class Part(NamedTuple):
-    """Elements of a block at the points of a rule: nodes (e, k), volumes (e, q), gradients (e, q, k, 3), shape
-    functions (q, k), of shells the strains (e, q, 6, k, 3) that stand for those of the gradients, and elasticity
-    (..., 6, 6).
+    """Elements of a block at the points of a rule: nodes (e, k), volumes (e, q), gradients (e, q, k, 3), of shells the
+    strains (e, q, 6, k, 3) that stand for those of the gradients, and elasticity (..., 6, 6).
     """
 
     block: Block
     nodes: Indices
     volume: Floats
     gradients: Floats
-    values: Floats
     assumed: Floats | None
     elasticity: Floats
 
@@ -75,27 +73,34 @@ class Part(NamedTuple):
         return np.asarray(law @ slopes.reshape(*slopes.shape[:2], 9, slopes.shape[-1]))
 
 
-def determinants(points: Floats, nodes: Indices, slopes: Floats) -> Floats:
-    """Determinants (e, q) of elements' maps from the reference."""
-    return np.linalg.det(jacobians(points, nodes, slopes))
+def determinants(points: Floats, block: Block) -> Floats:
+    """Determinants (e, q) of elements' maps from the reference at the rule of mass."""
+    slopes = shape_functions(block.kind, KINDS[block.kind].mass)[-1]
+    return np.linalg.det(jacobians(points, block.nodes, slopes))
+
+
+def masses(points: Floats, block: Block) -> Floats:
+    """Masses (e, q) of elements at the points of the rule of mass."""
+    weights = shape_functions(block.kind, KINDS[block.kind].mass)[1]
+    return block.density * weights * determinants(points, block)
 
 
 def chunks(points: Floats, blocks: Sequence[Block], degree: str, most: int = CHUNK) -> Iterator[Part]:
-    """Parts of all elements at the rules of stiffness, mass or stress; that of a shell has no shear across it, which
-    vanishes on its faces.
+    """Parts of all elements at the rules of stiffness or stress; that of a shell has no shear across it, which vanishes
+    on its faces.
     """
     for block in blocks:
         rule = getattr(KINDS[block.kind], degree)
-        _, weights, values, slopes = shape_functions(block.kind, rule)
+        _, weights, _, slopes = shape_functions(block.kind, rule)
         step = max(1, most // len(weights))
         for start in range(0, len(block.nodes), step):
             nodes, elasticity, assumed = block.nodes[start : start + step], block.elasticity, None
             base = jacobians(points, nodes, slopes)
             gradients = np.einsum("qkc,eqcd->eqkd", slopes, np.linalg.inv(base), optimize=True)
-            if KINDS[block.kind].shell and degree != "mass":
+            if KINDS[block.kind].shell:
                 shear = np.sqrt(FACTOR) if degree == "stiffness" else 0.0
                 assumed, elasticity = shell_strains(points, nodes, block.kind, elasticity, rule, shear)
-            yield Part(block, nodes, np.linalg.det(base) * weights, gradients, values, assumed, elasticity)
+            yield Part(block, nodes, np.linalg.det(base) * weights, gradients, assumed, elasticity)
 
 
 def _assembled(size: int, blocks: Sequence[Block], width: int, parts: Iterable[Floats]) -> Any:
@@ -146,10 +151,10 @@ def mass_matrix(points: Floats, blocks: Sequence[Block]) -> Any:
     """Consistent mass (k, k) of one component of the displacement."""
 
     def parts() -> Iterator[Floats]:
-        for part in chunks(points, blocks, "mass"):
-            q, k = part.values.shape
-            products = (part.values[:, :, None] * part.values[:, None]).reshape(q, k * k)
-            yield part.block.density * part.volume @ products
+        for block in blocks:
+            values = shape_functions(block.kind, KINDS[block.kind].mass)[2]
+            q, k = values.shape
+            yield masses(points, block) @ (values[:, :, None] * values[:, None]).reshape(q, k * k)
 
     return _assembled(len(points), blocks, 1, parts())
 

@@ -25,10 +25,10 @@ from gbeam.solids.cad import mesh_of
 from gbeam.solids.cards import cards_of
 from gbeam.solids.elements import (
     Block,
-    chunks,
     coupled,
     geometric_stiffness,
     mass_matrix,
+    masses,
     stiffness_matrix,
 )
 from gbeam.solids.foreign import (
@@ -267,8 +267,8 @@ class SolidMesh(Value):
     @property
     def mass(self) -> float:
         """Mass with that on the nodes and of the bodies that it carries, kg."""
-        parts = (part.block.density * part.volume.sum() for part in chunks(self.points, self.blocks, "mass"))
-        return float(sum(parts) + self.point_masses.sum() + sum(each.mass for each in self.links.bodies.values()))
+        parts = sum(masses(self.points, block).sum() for block in self.blocks)
+        return float(parts + self.point_masses.sum() + sum(each.mass for each in self.links.bodies.values()))
 
     @typed
     def reduced(

@@ -9,7 +9,7 @@ import numpy as np
 from gbeam.errors import InputError
 from gbeam.results.result import Floats
 from gbeam.solids.elements import determinants
-from gbeam.solids.shape_functions import KINDS, shape_functions
+from gbeam.solids.shape_functions import KINDS
 from gbeam.solids.stress import corners_of, outer_triangles
 
 if TYPE_CHECKING:
@@ -27,8 +27,7 @@ def refuse_folded(mesh: SolidMesh) -> None:
     """Refuse elements that are turned inside out or folded."""
     bad: list[int] = []
     for block in mesh.blocks:
-        slopes = shape_functions(block.kind, KINDS[block.kind].mass)[-1]
-        grown = determinants(mesh.points, block.nodes, slopes)
+        grown = determinants(mesh.points, block)
         bad += block.numbers[~(grown.min(axis=1) > FLAT * np.abs(grown).max(axis=1))].tolist()
     if bad:
         some = ", ".join(map(str, bad[:3])) + (", ..." if len(bad) > 3 else "")
