@@ -49,13 +49,6 @@ class Part(NamedTuple):
     assumed: Floats | None
     elasticity: Floats
 
-    def of(self, chosen: Any) -> Part:
-        """Some of the elements."""
-        per_element = {name: getattr(self, name)[chosen] for name in ("nodes", "volume", "gradients")}
-        if self.assumed is not None:
-            per_element |= {"assumed": self.assumed[chosen], "elasticity": self.elasticity[chosen]}
-        return self._replace(**per_element)
-
     def slopes(self, u: Floats) -> Floats:
         """Slopes (e, q, 3, 3, m) of displacements (k, 3, m) of all nodes: along an axis, of a component."""
         (e, q, k, _), m = self.gradients.shape, u.shape[-1]

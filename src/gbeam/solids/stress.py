@@ -55,7 +55,7 @@ class NodalStress(Value):
         known = np.unique(np.concatenate(pairs))
         empty = cls(mesh, shapes, hull(mesh.points), known, np.empty((0, 6, n)), n, known[:0])
         total, shared = np.zeros((len(known), 6, n)), np.zeros(len(known))
-        for pair, stress in empty._elements():
+        for pair, stress in empty._elements(mesh.blocks):
             some, place = np.unique(pair, return_inverse=True)
             sums = csr_array((np.ones(len(pair)), (place, np.arange(len(pair)))), shape=(len(some), len(pair)))
             total[some] += (sums @ stress.reshape(len(pair), -1)).reshape(len(some), *stress.shape[1:])
@@ -143,19 +143,24 @@ class NodalStress(Value):
         }
         return skin, left[:, :kept] * sizes[:kept]
 
-    def _elements(self, wanted: int | None = None) -> Iterator[tuple[Indices, Floats]]:
-        """Pairs (m,) and stresses (m, 6, n) at the nodes of elements: of all, or of those at one pair."""
+    def _elements(self, blocks: Any) -> Iterator[tuple[Indices, Floats]]:
+        """Pairs (m,) and stresses (m, 6, n) at the nodes of the elements of some blocks."""
         names, count = _materials(self.mesh), len(self.mesh.points)
-        for part in chunks(self.mesh.points, self.mesh.blocks, "stress"):
+        for part in chunks(self.mesh.points, blocks, "stress"):
             pair = np.searchsorted(self.known, names.index(part.block.material) * count + part.nodes)
-            chosen = slice(None) if wanted is None else (pair == wanted).any(axis=1)
-            stress = part.of(chosen).stress(self.shapes)
-            at_nodes = np.einsum("kq,eqvn->ekvn", extrapolation(part.block.kind), stress, optimize=True)
-            yield pair[chosen].ravel(), at_nodes.reshape(-1, *at_nodes.shape[2:])
+            outward, stress = extrapolation(part.block.kind), part.stress(self.shapes)
+            at_nodes = np.einsum("kq,eqvn->ekvn", outward, stress, optimize=True)
+            yield pair.ravel(), at_nodes.reshape(-1, *at_nodes.shape[2:])
 
     def spread(self, pair: int, q: Floats) -> float:
         """Difference of the elements at a pair in von Mises stress, as a fraction of that of their mean."""
-        parts = [stress[at == pair] @ q for at, stress in self._elements(pair)]
+        number, node = divmod(int(self.known[pair]), len(self.mesh.points))
+        around = [
+            replace(block, nodes=block.nodes[(block.nodes == node).any(axis=1)])
+            for block in self.mesh.blocks
+            if block.material == _materials(self.mesh)[number]
+        ]
+        parts = [stress[at == pair] @ q for at, stress in self._elements(around)]
         mean = float(von_mises(self.table[pair] @ q))
         return float(np.ptp(von_mises(np.concatenate(parts)))) / mean if mean > 0 else 0.0
 
@@ -190,14 +195,16 @@ def corners_of(kind: str) -> int:
 
 def outer_triangles(mesh: Any) -> Indices:
     """Corners (f, 3) of the triangles that make up the outer faces."""
-    triangles = list[Indices]()
+    triangles, count = list[Indices](), len(mesh.points)
     for size in (3, 4):
         faces = [
             block.nodes[:, face] for block in mesh.blocks for face in FACES[corners_of(block.kind)] if len(face) == size
         ]
         if faces:
             every = np.concatenate(faces)
-            _, index, shared = np.unique(np.sort(every, axis=1), axis=0, return_index=True, return_counts=True)
+            first, second, third = np.sort(every, axis=1).T[:3]  # no two faces share three corners
+            _, edge = np.unique(first * count + second, return_inverse=True)
+            _, index, shared = np.unique(edge * count + third, return_index=True, return_counts=True)
             outer = every[index[shared == 1]]
             triangles += [outer[:, [0, k, k + 1]] for k in range(1, size - 1)]
     return np.concatenate(triangles)
