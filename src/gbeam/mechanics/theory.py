@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.integrate.equations import LinearTerms
 from gbeam.mechanics.assembly import load_work, particles_of, sections_of
 from gbeam.mechanics.enrichment import Enrichment, enrichment, own_families
 from gbeam.mechanics.equations.inertia import inertia_of
@@ -66,9 +65,8 @@ SLENDER, SHEAR, TWIST = (0, 4, 5), (1, 2), (3,)  # strains: stretch, shear along
 
 
 class Theory(NamedTuple):
-    """A beam by slender and by thick theory, with the structure's `size` coordinates first: `columns` of shear and
-    twist, `curvature` (2, g, n), `rigidity` (2, g) N m³, `bodies` (b, 3, n), and what the thick one's equations have
-    `beyond`.
+    """A beam by slender and by thick theory, with the structure's coordinates first: `columns` of shear and
+    twist, `curvature` (2, g, n), `rigidity` (2, g) N m³, `bodies` (b, 3, n).
     """
 
     slender: Structure
@@ -79,8 +77,6 @@ class Theory(NamedTuple):
     node: Array
     bodies: Array
     beam: Beam
-    size: int
-    beyond: tuple[Array, LinearTerms]
 
     def plate(self, q: Array) -> Array:
         """Stiffness (n, n) that the strip has beyond the model's, by the largest curvatures at coordinates (t, n)."""
@@ -226,7 +222,6 @@ class _Parts:
         offset = np.array([body.offset for body in self.beam.masses]).reshape(-1, 3)
         _, about_y, about_z = self.beam.rigidities(self.rule.node)
         models = self.model(slender, rotary=self.beam.rotary_inertia), self.model(thick, rotary=True)
-        count = strains.shape[1]
         return Theory(
             *models,
             {"shear": slice(ends[1], ends[2]), "twist": slice(ends[2], ends[3])},
@@ -235,8 +230,6 @@ class _Parts:
             self.rule.node,
             bodies.points(slice(None), offset).slopes(np.zeros(thick.shape[1])),
             self.beam,
-            count,
-            _beyond(*models, count),
         )
 
     def shaped(self, families: Families) -> Array:
@@ -307,21 +300,6 @@ class _Parts:
             source=None,
             warnings=(),
         )
-
-
-def _beyond(slender: Structure, thick: Structure, count: int) -> tuple[Array, LinearTerms]:
-    few, more = slender.coefficients, thick.coefficients
-
-    def difference(less: Array, whole: Array) -> Array:
-        out = np.array(whole[..., :count])
-        out[..., : few.size, :] -= less[..., :count]
-        return out
-
-    force = np.array(more.terms.force)
-    force[:, : few.size] -= few.terms.force
-    velocity = difference(few.terms.velocity, more.terms.velocity)
-    stiffness = difference(few.terms.stiffness, more.terms.stiffness)
-    return difference(few.mass, more.mass), LinearTerms(velocity, stiffness, force)
 
 
 def _load_terms(work: LoadWork, field: StrainField, at: Array, count: int) -> LoadTerms:

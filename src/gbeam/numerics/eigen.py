@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from functools import cached_property
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -167,6 +168,41 @@ def stability_margin(mass: Floats, velocity: Floats, stiffness: Floats, zero: fl
         return float(square[0] + zero * np.abs(square).max())
     value, _ = eigenvalues(mass, velocity, stiffness)
     return float((growth_limit(value, np.abs(value).max()) - value.real).min())
+
+
+class Steady:
+    """A steady state of a structure or of a system, and small departures from it."""
+
+    zero: ClassVar[float]  # of the largest eigenvalue: a smaller one is none
+    first: int  # index of the first coordinate by which modes are recognised
+
+    @property
+    def linear(self) -> Linear:
+        """M, C, K and B of small departures."""
+        raise NotImplementedError
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the coordinates by which modes are recognised, those that deform a body ``body.q1``."""
+        raise NotImplementedError
+
+    def directions(self, modes: Complex) -> tuple[str, ...]:
+        """Words for what each mode (n, k) moves most."""
+        raise NotImplementedError
+
+    def vibrations(self, *, gyroscopic: bool = True) -> Vibrations:
+        """Vibrations, growing and decaying motions about it."""
+        return vibrations(self.linear, gyroscopic=gyroscopic, zero=max(self.zero, ZERO))
+
+    @cached_property
+    def moving(self) -> Vibrations:
+        """Vibrations with gyroscopic coupling."""
+        return self.vibrations()
+
+    @property
+    def margin(self) -> float:
+        """Positive while nothing grows: see :func:`stability_margin`."""
+        return stability_margin(*self.linear[:3], self.zero**2)
 
 
 def matched(alike: Floats) -> tuple[NDArray[np.intp], Floats]:

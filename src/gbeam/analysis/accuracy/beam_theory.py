@@ -17,7 +17,6 @@ from gbeam.errors import ComputationError
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import Theory
-from gbeam.motion.bases.base import Base
 from gbeam.results.result import Floats
 from gbeam.structure.beam import assumptions
 
@@ -94,19 +93,6 @@ def causes(theory: Theory, p: Any, beam: Any, plate: Any) -> dict[str, float]:
         forces = beam[:, columns]
         work[name] = (forces.conj() * np.linalg.solve(stiffness[columns, columns], forces.T).T).sum(axis=1)
     return {name: float(np.abs(each).max(initial=0.0) / energy) for name, each in work.items()}
-
-
-def mode_causes(theory: Theory, base: Base, loads: Any, mode: Any, rate: Any, plate: Floats) -> dict[str, float]:
-    """Share of each cause in the energy of modes (k, own) at rates (k,) on a base (3,), without a free hub's."""
-    a, w, alpha = (np.asarray(x)[None] for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B))
-    load_row = None if loads is None else np.asarray(loads)[None]
-    features = theory.thick.coefficients.features(a, w, alpha, load_row)[0]
-    mass, terms = theory.beyond
-    velocity, stiffness = (np.tensordot(features, each, 1) for each in (terms.velocity, terms.stiffness))
-    rate = np.asarray(rate)[:, None]
-    residual = mode @ stiffness.T + 1j * rate * (mode @ velocity.T) - rate**2 * mode @ mass.T
-    p = np.pad(mode, ((0, 0), (0, theory.thick.size - mode.shape[1])))
-    return causes(theory, p, residual, p @ plate)
 
 
 def largest(values: Floats) -> float:

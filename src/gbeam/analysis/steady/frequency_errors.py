@@ -12,13 +12,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.analysis.accuracy.beam_theory import WORDS, causes, described, mode_causes
-from gbeam.analysis.accuracy.estimate import LIMIT, percent, unjudged, wrong_by
-from gbeam.analysis.steady.operating_point import OperatingPoint, Steady
+from gbeam.analysis.accuracy.beam_theory import WORDS, causes, described
+from gbeam.analysis.accuracy.estimate import BEAM, LIMIT, percent, unjudged, wrong_by
+from gbeam.analysis.steady.operating_point import OperatingPoint
 from gbeam.analysis.system.richer import (
     bases_of,
     coarser,
-    judged_beams,
     judged_bodies,
     left_unjudged,
     richer,
@@ -34,7 +33,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import theory_of
 from gbeam.mechanics.tree.signals import deforming
 from gbeam.mechanics.tree.system import System
-from gbeam.numerics.eigen import mac, matched
+from gbeam.numerics.eigen import Steady, mac, matched
 from gbeam.results.errors import PARTS, ErrorEstimate, FrequencyErrors
 from gbeam.results.result import Complex, Floats
 
@@ -80,16 +79,17 @@ class Richer:
     """
 
     def __init__(self, state: OperatingPoint | SteadySystem) -> None:
-        if isinstance(state, SteadySystem):
-            self.theories, bodies = theories_of(state.system), [*judged_bodies(state.system).values()]
+        of = state.of
+        rough: Structure | System | None
+        if isinstance(of, System):
+            bodies, rough, self.theories = judged_bodies(of), coarser(of), theories_of(of)
         else:
-            bodies = [state.structure]
-            self.theories = {} if state.structure.source is None else {"": theory_of(state.structure)}
+            bodies, rough = {BEAM: of}, of.coarser
+            self.theories = {} if of.source is None else {BEAM: theory_of(of)}
+        self.beams = {name: bodies[name] for name in self.theories}
         self.exact = _with_more(state, exact=True)
-        only_exact = all(body.richer is not None or body.kind == "exact" for body in bodies)
+        only_exact = all(body.richer is not None or body.kind == "exact" for body in bodies.values())
         self.same = self.exact if only_exact else _with_more(state, exact=False)
-        of = _of(state)
-        rough = coarser(of) if isinstance(of, System) else of.coarser
         self.rough = None if rough is None else More(rough, {})
 
     def errors(
@@ -102,7 +102,7 @@ class Richer:
         shapes, model, total = (np.abs(a / b - 1) for a, b in ((frequency, same), (same, exact), (frequency, exact)))
         mesh = np.abs(rough / frequency - 1)
         total = total + np.nan_to_num(by_theory.shares) + (0.0 if self.rough is None else mesh)
-        note = unknown_part(_of(state))
+        note = unknown_part(state.of)
         return FrequencyErrors(shapes, self.of_model(model), by_theory.shares, mesh, total, *by_theory[1:], note)
 
     def of_model(self, share: Any) -> Any:
@@ -137,7 +137,7 @@ class Richer:
         """
         beams, plates = [], dict[str, Floats]()
         for name, each in self.theories.items():
-            q = np.zeros(0) if state is None else _bent(state, name)
+            q = np.zeros(0) if state is None else state.q[deforming(state.names, name)]
             plates[name] = each.plate(np.pad(q, (0, each.thick.size - len(q)))[None])
             beams.append((each.slender, *each.variants(plates[name])))
         if isinstance(of, System):
@@ -146,10 +146,10 @@ class Richer:
 
     def by_theory(self, point: Any, coordinates: Complex, *, gyroscopic: bool = True) -> ByTheory:
         """Errors of these modes' frequencies by the theory of slender beams."""
-        k, of_system = len(coordinates), isinstance(point, SteadySystem)
+        k = len(coordinates)
         if not self.theories:
             return ByTheory(np.full(k, np.nan), "", ())
-        models, plates = self.by_theories(_of(point), point)
+        models, plates = self.by_theories(point.of, point)
         try:
             others = [point.richer(each) for each in models]
             (slender, shape), (thick, deep), (plated, flat) = (
@@ -172,30 +172,18 @@ class Richer:
         alone = np.setdiff1d(np.arange(len(thick)), like)
         unseen = [j for j in alone if moving[j] > BENT and thick[j] < slender[looked].max(initial=0.0)]
         worst = np.zeros(0, dtype=int) if not k else np.array([np.nan_to_num(shares).argmax()])
-        rate = slender[chosen[worst]]
-        if of_system:
-            words = self.in_words(point, others[0], others[1], mode[worst], rate, plates)
-        else:
-            loads, theory = point.residual.unpack(point.u)[1], self.theories[""]
-            by = mode_causes(theory, point.base, loads, coordinates[worst], rate, plates[""])
-            words = described(point.structure, by)
+        words = self.in_words(others[0], others[1], mode[worst], slender[chosen[worst]], plates)
         return ByTheory(shares, words, tuple(float(thick[j]) / (2 * np.pi) for j in unseen))
 
     def in_words(
-        self,
-        state: SteadySystem,
-        slender: SteadySystem,
-        thick: SteadySystem,
-        mode: Complex,
-        rate: Floats,
-        plates: Mapping[str, Floats],
+        self, slender: Steady, thick: Steady, mode: Complex, rate: Floats, plates: Mapping[str, Floats]
     ) -> str:
         """Causes in the energy of a mode (1, n) of thick beams, which leaves what slender ones do not have."""
         known = np.ix_(*[[thick.names.index(name) for name in slender.names]] * 2)
         left = np.zeros_like(mode)
         for of, less, factor in zip(thick.linear, slender.linear, (-(rate**2), 1j * rate, np.ones(1)), strict=False):
-            beyond = np.array(of)
-            beyond[known] -= less
+            beyond = np.array(of[thick.first :, thick.first :])
+            beyond[known] -= less[slender.first :, slender.first :]
             left += factor[:, None] * (mode @ beyond.T)
         energies, every = dict[str, float](), dict[str, dict[str, float]]()
         for name, theory in self.theories.items():
@@ -208,14 +196,7 @@ class Richer:
         for name, by in every.items():
             for cause, share in by.items():
                 merged[cause] += share * energies[name] / total
-        return described(judged_beams(state.system)[max(energies, key=energies.__getitem__)], merged)
-
-
-def _bent(state: Any, name: str) -> Floats:
-    """Coordinates (n,) of a beam in a steady state."""
-    if isinstance(state, OperatingPoint):
-        return state.q
-    return np.asarray(state.local.y)[deforming(state.names, name)]
+        return described(self.beams[max(energies, key=energies.__getitem__)], merged)
 
 
 def among(names: Sequence[str], others: Sequence[str], modes: Complex) -> Complex:
@@ -248,11 +229,6 @@ def unknown_errors(of: Structure | System, count: int) -> FrequencyErrors | None
     return FrequencyErrors(unknown, unknown, unknown, unknown, unknown, note=note) if note else None
 
 
-def _of(state: OperatingPoint | SteadySystem) -> Structure | System:
-    """The system or the structure of a steady state."""
-    return state.system if isinstance(state, SteadySystem) else state.structure
-
-
 def _with_more(state: OperatingPoint | SteadySystem, *, exact: bool) -> More:
     """More shapes than a steady state has, in exact models or in models of its own kinds."""
     if isinstance(state, SteadySystem):
@@ -263,7 +239,7 @@ def _with_more(state: OperatingPoint | SteadySystem, *, exact: bool) -> More:
     structure, (_, along_y, along_z, *_) = state.structure, state.structure.counts
     kind, directions = "exact" if exact else structure.kind, (True, along_y > 0, along_z > 0)
     model, index = enrichment(structure, state.base).model(kind, directions=directions)
-    return More(model, {name: f"q{at + 1}" for name, at in zip(state.names, index, strict=True)})
+    return More(model, {name: f"{BEAM}.q{at + 1}" for name, at in zip(state.names, index, strict=True)})
 
 
 def _oscillating(state: Steady, *, gyroscopic: bool) -> tuple[Floats, Complex]:

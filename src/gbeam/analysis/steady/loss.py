@@ -10,17 +10,14 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from gbeam.analysis.accuracy.beam_theory import described, mode_causes
 from gbeam.analysis.accuracy.estimate import LIMIT, apart, fuller, percent, wrong_by
 from gbeam.analysis.steady.frequency_errors import Richer, among, judgeable, unknown_part
-from gbeam.analysis.steady.operating_point import Steady
 from gbeam.analysis.system.linear import instabilities
 from gbeam.errors import ComputationError
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
-from gbeam.motion.bases.base import Base
-from gbeam.numerics.eigen import symmetric, symmetric_modes
+from gbeam.numerics.eigen import Steady, symmetric, symmetric_modes
 from gbeam.progress import Progress, tell
 from gbeam.results.equilibrium import Critical
 from gbeam.results.errors import ErrorEstimate, along
@@ -124,13 +121,8 @@ def judged(critical: Critical, path: Path, structure: Structure | System, progre
     slender, *thick = (_lost(each, path, at, progress, part=(k, count)) for k, each in enumerate(models, start=2))
     beam_theory = max(apart(at if math.isinf(slender) else slender, each) for each in thick)
     errors = errors.adding(beam_theory=0.0 if math.isinf(errors.model) else beam_theory)
-    if isinstance(structure, System):
-        model, words = "the system", _in_words(richer, point, models, plates)
-    else:
-        base, values, theory = point.base, point.structure.load_values, richer.theories[""]
-        lowest = _lowest(theory.slender, values, base)[:, : theory.size]
-        causes = mode_causes(theory, base, values, lowest, np.zeros(1), plates[""])
-        model, words = critical.model, described(structure, causes)
+    words = _in_words(richer, point, models, plates)
+    model = "the system" if isinstance(structure, System) else critical.model
     doubts = doubtful_loss(critical.quantity, model, errors, words)
     return replace(critical, errors=errors, warnings=critical.warnings + doubts)
 
@@ -141,15 +133,8 @@ def _errors(at: float, same: float, exact: float) -> ErrorEstimate:
     return ErrorEstimate(0.0, abs(at / same - 1), model, total=total)
 
 
-def _lowest(slender: Structure, values: Any, base: Base) -> Floats:
-    """Shape (1, n) along which a slender beam has the least stiffness."""
-    motion = base.a_WO_B, base.w_WB_B, base.alpha_WB_B
-    stiffness = slender.coefficients.at(*motion, values)[1]
-    return symmetric_modes((stiffness + stiffness.T) / 2, slender.coefficients.mass)[1][:, :1].T
-
-
 def _in_words(richer: Richer, point: Any, models: Sequence[Any], plates: Mapping[str, Floats]) -> str:
-    """Error by the theory of slender beams in the shape of a system with the least stiffness."""
+    """Error by the theory of slender beams in the shape with the least stiffness."""
     try:
         slender, thick = (point.richer(each) for each in models[:2])
     except ComputationError:
@@ -157,7 +142,7 @@ def _in_words(richer: Richer, point: Any, models: Sequence[Any], plates: Mapping
     stiffness, mass = symmetric(slender.linear.stiffness), symmetric(slender.linear.mass)
     lowest = symmetric_modes(stiffness, mass)[1][:, :1].T
     shape = among(slender.names, thick.names, lowest)
-    return richer.in_words(point, slender, thick, shape, np.zeros(1), plates)
+    return richer.in_words(slender, thick, shape, np.zeros(1), plates)
 
 
 def _unseen(critical: Critical, path: Path, structure: Structure | System, progress: Progress) -> tuple[str, ...]:

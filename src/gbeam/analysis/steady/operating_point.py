@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
+from gbeam.analysis.accuracy.estimate import BEAM
 from gbeam.analysis.steady.equilibrium import equilibrium_about, expanded
 from gbeam.errors import ComputationError, InputError
 from gbeam.mechanics.equations.linear import Coefficients
@@ -16,7 +17,7 @@ from gbeam.mechanics.equations.residuals import OnBase, OnHub
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base, mapped
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.eigen import Linear, Vibrations, stability_margin, vibrations
+from gbeam.numerics.eigen import Linear, Steady
 from gbeam.numerics.series import complex_step
 from gbeam.results.modal import outermost
 from gbeam.results.response import BaseMotion
@@ -27,7 +28,7 @@ REST = Base(*np.zeros((3, 3)))
 
 
 @dataclass(frozen=True, eq=False)
-class OperatingPoint:
+class OperatingPoint(Steady):
     """A state (y, ẏ, ÿ; u) at which a residual vanishes, and the base's motion there, with a free hub if it is on one;
     `known` are coefficients that are.
     """
@@ -41,6 +42,7 @@ class OperatingPoint:
     base: Base
     known: Coefficients | None = None
     hub: Any = None
+    zero = 0.0
 
     @cached_property
     def about(self) -> Coefficients:
@@ -48,7 +50,12 @@ class OperatingPoint:
         return expanded(self.structure, self.q)[0] if self.known is None else self.known
 
     @property
-    def first(self) -> int:
+    def of(self) -> Structure:
+        """The structure."""
+        return self.structure
+
+    @property
+    def first(self) -> int:  # type: ignore[override]
         """Index of the beam's first coordinate in y."""
         return self.residual.first
 
@@ -67,24 +74,10 @@ class OperatingPoint:
         """M, C, K and B of small departures."""
         return linear_matrices(self)
 
-    def vibrations(self, *, gyroscopic: bool = True) -> Vibrations:
-        """Vibrations, growing and decaying motions about it."""
-        return vibrations(self.linear, gyroscopic=gyroscopic)
-
-    @cached_property
-    def moving(self) -> Vibrations:
-        """Vibrations with gyroscopic coupling."""
-        return self.vibrations()
-
-    @property
-    def margin(self) -> float:
-        """Positive while nothing grows: see :func:`stability_margin`."""
-        return stability_margin(*self.linear[:3])
-
     @property
     def names(self) -> list[str]:
         """Names of the beam's coordinates."""
-        return [f"q{k + 1}" for k in range(self.structure.size)]
+        return [f"{BEAM}.q{k + 1}" for k in range(self.structure.size)]
 
     def richer(self, structure: Structure) -> OperatingPoint:
         """Relative equilibrium of another structure in the same motion, under the same loads."""
@@ -106,38 +99,6 @@ class OperatingPoint:
             more = twisted.max(axis=0) > moved.max(axis=(0, 1))
             ways = ["twist" if each else way for way, each in zip(ways, more, strict=True)]
         return tuple(ways)
-
-
-class Steady(Protocol):
-    """A steady state of a structure or of a system, and small departures from it."""
-
-    @property
-    def first(self) -> int:
-        """Index of the first coordinate by which modes are recognised."""
-        ...
-
-    @property
-    def linear(self) -> Linear:
-        """M, C and K of small departures."""
-        ...
-
-    def vibrations(self, *, gyroscopic: bool = True) -> Vibrations:
-        """Vibrations, growing and decaying motions about it."""
-        ...
-
-    @property
-    def moving(self) -> Vibrations:
-        """Vibrations with gyroscopic coupling."""
-        ...
-
-    @property
-    def margin(self) -> float:
-        """Positive while nothing grows."""
-        ...
-
-    def directions(self, modes: Complex) -> tuple[str, ...]:
-        """Words for what each mode (n, k) moves most."""
-        ...
 
 
 def extent(structure: Structure) -> Floats:

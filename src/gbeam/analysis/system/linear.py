@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,14 +32,11 @@ from gbeam.mechanics.tree.steps import parameters_of_all
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.eigen import Vibrations
+from gbeam.numerics.eigen import Steady, Vibrations
 from gbeam.numerics.series import STEP
 from gbeam.results.errors import Instability
 from gbeam.results.state_space import Signal, StateSpace
 from gbeam.results.system import BeamShape, SystemModes, SystemRest
-
-if TYPE_CHECKING:
-    from gbeam.analysis.steady.operating_point import Steady
 
 Array = Any
 Floats = NDArray[np.float64]

@@ -23,12 +23,10 @@ from gbeam.motion.protocol import Motion
 from gbeam.numerics.eigen import (
     RIGID,
     Linear,
-    Vibrations,
+    Steady,
     positive_definite,
-    stability_margin,
     symmetric,
     symmetric_modes,
-    vibrations,
 )
 from gbeam.numerics.series import STEP
 
@@ -81,13 +79,24 @@ class Drive:
 
 
 @dataclass(frozen=True, eq=False)
-class SteadySystem:
+class SteadySystem(Steady):
     """A system in a steady state, and small departures from it."""
 
     system: System
     drive: Drive
     point: Point
-    first: int = 0  # index of the first coordinate by which modes are recognised
+    zero = RIGID
+    first = 0
+
+    @property
+    def of(self) -> System:
+        """The system."""
+        return self.system
+
+    @property
+    def q(self) -> Floats:
+        """Local coordinates, (n,)."""
+        return self.local.y
 
     @cached_property
     def local(self) -> Point:
@@ -115,20 +124,6 @@ class SteadySystem:
                 moved, size = body.displacement(q[None]), np.abs(body.station_places.r0).max()
                 bent[name] = float(np.abs(moved).max()) / max(float(size), 1e-300)
         return max(bent, key=lambda name: bent[name], default="a body")
-
-    def vibrations(self, *, gyroscopic: bool = True) -> Vibrations:
-        """Vibrations, growing and decaying motions about it."""
-        return vibrations(self.linear, gyroscopic=gyroscopic, zero=RIGID)
-
-    @cached_property
-    def moving(self) -> Vibrations:
-        """Vibrations with gyroscopic coupling."""
-        return self.vibrations()
-
-    @property
-    def margin(self) -> float:
-        """Positive while nothing grows: see :func:`stability_margin`."""
-        return stability_margin(*self.linear[:3], RIGID**2)
 
     @property
     def names(self) -> list[str]:
