@@ -26,8 +26,13 @@ def base_residual(structure: Structure, q: Array, qd: Array, qdd: Array, base: B
 def hub_residual(
     structure: Structure, hub: Hub, y: Array, yd: Array, ydd: Array, torque: Array, loads: Array
 ) -> tuple[Array, Array]:
-    equations = structure.on_free_hub(hub)
-    return OnHub(equations, hub.mount)(y, yd, ydd, (torque, loads)), equations.momentum(y, yd)
+    residual = OnHub(structure.on_free_hub(hub), hub.mount)
+
+    def hub_row(acceleration: Array) -> Array:
+        return residual(y, 0 * yd, acceleration, (torque, loads))[0]
+
+    # The row of the mass matrix, times the rates.
+    return residual(y, yd, ydd, (torque, loads)), hub_row(yd) - hub_row(0 * yd)
 
 
 def _values(structure: Structure, loaded: bool) -> Array:

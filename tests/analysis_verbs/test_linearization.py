@@ -7,10 +7,10 @@ import pytest
 import scipy.io
 
 from gbeam import Beam, Gauge, InputError, Model, Root, assemble
-from gbeam.analysis.control.linearization import linearize, nonlinear_system
+from gbeam.analysis.control.linearization import linearize, nonlinear_system, outputs_of, raveled
 from gbeam.analysis.control.reduction import balanced_truncation, modal_truncation
 from gbeam.analysis.steady.modal import modes
-from gbeam.analysis.steady.operating_point import evaluated_at, linear_matrices, on_base, on_hub, operating_point
+from gbeam.analysis.steady.operating_point import on_base, on_hub, operating_point
 from gbeam.analysis.steady.static import static
 from gbeam.motion import Base, Centrifuge, Flight, Hub, constant
 from gbeam.report import text
@@ -33,24 +33,25 @@ def test_matrices_are_finite_differences(kind):
     structure = assemble(beam_2009(0.1), Model(kind, 1, 2, 1))
     q = np.random.default_rng(3).normal(size=4) * [1e-4, 0.1, 0.02, 0.1]
     point = on_base(structure, BASE, q)
-    linear = linear_matrices(point)
-    state = [np.asarray(x) for x in (point.y, point.yd, point.ydd, point.u)]
-    for which, matrix in ((0, linear.stiffness), (1, linear.velocity), (2, linear.mass), (3, -linear.inputs)):
+    linear, outputs, u = point.linear, outputs_of(structure, point, ()), np.concatenate(raveled(point.inputs))
+    forces = outputs.matrices(point, u)[2]
+    state = [np.asarray(x) for x in (point.y, point.yd, point.ydd, u)]
+    for which, matrix in ((0, linear.stiffness), (1, linear.velocity), (2, linear.mass), (3, -forces)):
         for k in range(matrix.shape[1]):
             h = 1e-4 if which else 1e-6
             ends = []
             for sign in (1, -1):
                 moved = [x.copy() for x in state]
                 moved[which][k] += sign * h
-                ends.append(evaluated_at(structure, point.residual, *moved)[0])
+                ends.append(point.residual(*moved[:3], outputs.inputs(moved[3])))
             column = (ends[0] - ends[1]) / (2 * h)
             assert column == pytest.approx(matrix[:, k], rel=1e-6, abs=1e-6 * np.abs(matrix).max())
 
 
 def test_a_free_hub_keeps_its_momentum():
     point = on_hub(structure_2009("FOAM", 1, 3), FREE_2009, 1.3)
-    linear = linear_matrices(point)
-    assert float(point.u[0]) == pytest.approx(0, abs=1e-9)
+    linear = point.linear
+    assert float(point.inputs[0]) == pytest.approx(0, abs=1e-9)
     assert np.abs(linear.stiffness[:, 0]).max() == 0
 
 

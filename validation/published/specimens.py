@@ -29,7 +29,7 @@ from gbeam import (
     assemble,
     simulate,
 )
-from gbeam.analysis.steady.operating_point import linear_matrices, on_base
+from gbeam.analysis.steady.operating_point import on_base
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.motion import Base
 from validation.published import hubbeam2009, zhang2020
@@ -146,7 +146,7 @@ def frequencies(c: Coefficients, base: Base, count: int) -> np.ndarray:
 
 def vibration_about_equilibrium(s: Structure, base: Base, count: int) -> np.ndarray:
     """Vibration about the relative equilibrium of a complete model."""
-    at = linear_matrices(on_base(s, base))
+    at = on_base(s, base).linear
     return gyroscopic_frequencies(at.mass, at.velocity, at.stiffness, count)
 
 

@@ -94,7 +94,8 @@ BASE_RATES = tuple(Signal(f"base_rate_{i}", "rad/s") for i in "xyz")
 class Outputs:
     """Outputs of (y, ẏ, ÿ, u): tip displacement and (absolute) acceleration, root moment, strains (of a beam from
     gauges' section forces by `strains` (gauges, 6), of a solid from coordinates by `shares` (gauges, n)), those of the
-    tip at other `points`, stations by their numbers, and a free hub's angle and rate, in base axes.
+    tip at other `points`, stations by their numbers, and a free hub's angle and rate, in base axes; u are inputs `like`
+    those of the residual in one vector.
     """
 
     structure: Structure
@@ -104,12 +105,14 @@ class Outputs:
     strains: Array
     shares: Array
     points: Array
+    like: Any
 
     def __call__(self, y: Array, yd: Array, ydd: Array, u: Array) -> Array:
         """Outputs (p,)."""
         i = self.residual.first
         q, qd, qdd = y[i:], yd[i:], ydd[i:]
-        base, (_, values) = self.residual.base(y, yd, ydd, u), self.residual.unpack(u)
+        inputs = self.inputs(u)
+        base, values = self.residual.base(y, yd, ydd, inputs), inputs[1]
         now = mapped(base, lambda x: x[None])
         loads = None if values is None else values[None]
         _, moment, *carried, a, _ = sections(self.structure, self.outboard, now, q[None], qd[None], qdd[None], loads)
@@ -122,14 +125,17 @@ class Outputs:
         strain = xp.concatenate([strain, self.shares @ q])
         return xp.concatenate([moved[-1], a[0, -1], -moment[0, 0], strain, named, hub])
 
-    def stacked(self, z: Array) -> Array:
-        """Outputs of one vector (y, ẏ, ÿ, u)."""
-        n = self.structure.size + self.residual.first
-        return self(z[:n], z[n : 2 * n], z[2 * n : 3 * n], z[3 * n :])
+    def inputs(self, u: Array) -> Any:
+        """Inputs of the residual in one vector: base or torque, then loads."""
+        parts = iter(np.split(u, np.cumsum([each.size for each in raveled(self.like)])))
+        return each_leaf(lambda leaf: next(parts).reshape(np.shape(leaf)), self.like)
 
-    def matrices(self, z: Array) -> tuple[Array, Array]:
-        """Values (p,) at one vector (y, ẏ, ÿ, u), and the derivatives with respect to it."""
-        return self.stacked(z), complex_step(self.stacked, z)
+    def matrices(self, point: OperatingPoint, u: Array) -> tuple[Array, Array, Array]:
+        """Values (p,) at an operating point, their derivatives with respect to (y, ẏ, ÿ, u), and forces (n, m) of u."""
+        state = point.y, point.yd, point.ydd
+        ends = np.cumsum([len(each) for each in state])
+        slopes = complex_step(lambda z: self(*np.split(z, ends)), np.concatenate([*state, u]))
+        return self(*state, u), slopes, -complex_step(lambda x: self.residual(*state, self.inputs(x)), u)
 
     def rates(self, x: Array, u: Array) -> tuple[Array, Array]:
         """Rate of the state (y, ẏ, and on a base that is not a free hub its angular velocity), and the outputs."""
@@ -137,9 +143,16 @@ class Outputs:
         n = self.structure.size + i
         y, yd, rate = x[:n], x[n : 2 * n], x[2 * n :]
         full = u if i else np.concatenate([u[:3], rate, u[3:]])
-        inputs = each_leaf(lambda leaf: leaf[None], self.residual.unpack(full))
+        inputs = each_leaf(lambda leaf: leaf[None], self.inputs(full))
         ydd = accelerations(self.residual, y[None], yd[None], inputs)[0]
         return np.concatenate([yd, ydd, u[3:6] if not i else []]), self(y, yd, ydd, full)
+
+
+def raveled(inputs: Any) -> list[Array]:
+    """The arrays of inputs, each as a vector."""
+    parts: list[Array] = []
+    each_leaf(lambda leaf: parts.append(np.ravel(leaf)), inputs)
+    return parts
 
 
 def coordinate_signals(structure: Structure, first: int) -> tuple[Signal, ...]:
@@ -213,9 +226,7 @@ def outputs_of(structure: Structure, point: OperatingPoint, gauges: Sequence[Gau
     if gauges or points.size:
         rows = list(range(len(structure.stations) + 1))
     outboard = replace(every, mass=every.mass[rows], loaded=every.loaded[rows])
-    # Without its words, which are a part of compiled programs: beams of one size share them.
-    structure = replace(structure, source=None, warnings=(), points=())
-    return Outputs(structure, point.residual, outboard, which, strains, shares, points)
+    return Outputs(structure, point.residual, outboard, which, strains, shares, points, point.inputs)
 
 
 def _gauged(system: System, gauges: Sequence[Gauge]) -> tuple[System, dict[str, Strained]]:
@@ -367,10 +378,11 @@ def linearize(
     linear = point.linear
     n = len(linear.mass)
     measured = outputs_of(structure, point, gauges)
-    value, d = measured.matrices(np.concatenate([point.y, point.yd, point.ydd, point.u]))
-    a, drive, out, through = linear.state_space(*np.split(d, [n, 2 * n, 3 * n], axis=1))
+    held = np.concatenate(raveled(point.inputs))
+    value, d, forces = measured.matrices(point, held)
+    a, drive, out, through = linear._replace(inputs=forces).state_space(*np.split(d, [n, 2 * n, 3 * n], axis=1))
     states = coordinate_signals(structure, point.first)
-    begun, held = np.concatenate([point.y, point.yd]), np.asarray(point.u)
+    begun = np.concatenate([point.y, point.yd])
     if not point.first:
         # u = (a, ω, α, loads): ω becomes a state where it acts, fed by α.
         acts = [i for i in range(3, 6) if np.abs(drive[:, i]).max() > 1e-12 or np.abs(through[:, i]).max() > 1e-12]

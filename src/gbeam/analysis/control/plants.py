@@ -16,6 +16,7 @@ from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.response.stepping import scheme_of
 from gbeam.analysis.response.systems import PosedSystem, simulate_system
+from gbeam.analysis.steady.operating_point import turning_inertia
 from gbeam.analysis.system.histories import deflection
 from gbeam.analysis.system.steady import Drive, SteadySystem, steady
 from gbeam.arrays.tree import altered
@@ -87,16 +88,6 @@ def driven(hub: Hub, profile: Profile) -> Hub:
     """The hub under a command, mounted as it is."""
     commanded: Hub = altered(hub, **{"torque" if hub.free else "rate": profile})
     return commanded
-
-
-def turning_inertia(structure: Structure, hub: Hub) -> float:
-    """Moment of inertia of hub and straight beam about the hub's axis, kg m²."""
-    mass, sx, sy, sz, xx, yy, zz, xy, yz, zx = (float(each) for each in np.asarray(structure.coefficients.rigid))
-    to_hub = np.asarray(hub.mount.R_HB)
-    second = to_hub @ np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]]) @ to_hub.T
-    first, radius = to_hub @ np.array([sx, sy, sz]), float(hub.radius)
-    assert hub.inertia is not None
-    return float(hub.inertia) + mass * radius**2 + 2 * radius * float(first[0]) + float(second[0, 0] + second[1, 1])
 
 
 @dataclass(frozen=True)

@@ -11,14 +11,15 @@ import numpy as np
 
 from gbeam.analysis.accuracy.estimate import BEAM
 from gbeam.analysis.steady.equilibrium import equilibrium_about, expanded
+from gbeam.arrays.tree import each_leaf
 from gbeam.errors import ComputationError, InputError
+from gbeam.integrate.equations import slopes
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.equations.residuals import OnBase, OnHub
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base, mapped
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.eigen import Linear, Steady
-from gbeam.numerics.series import complex_step
 from gbeam.results.modal import outermost
 from gbeam.results.response import BaseMotion
 from gbeam.results.result import Complex, Floats
@@ -29,8 +30,8 @@ REST = Base(*np.zeros((3, 3)))
 
 @dataclass(frozen=True, eq=False)
 class OperatingPoint(Steady):
-    """A state (y, ẏ, ÿ; u) at which a residual vanishes, and the base's motion there, with a free hub if it is on one;
-    `known` are coefficients that are.
+    """A state (y, ẏ, ÿ) at which a residual vanishes under inputs, and the motion of the base there, with a free hub if
+    it is on one; `known` are coefficients that are.
     """
 
     structure: Structure
@@ -38,7 +39,7 @@ class OperatingPoint(Steady):
     y: Array
     yd: Array
     ydd: Array
-    u: Array
+    inputs: Any
     base: Base
     known: Coefficients | None = None
     hub: Any = None
@@ -65,14 +66,29 @@ class OperatingPoint(Steady):
         return self.y[self.first :]
 
     @property
+    def loads(self) -> Array | None:
+        """Components of the loads, (loads, 6)."""
+        return self.inputs[1]
+
+    @property
     def frozen(self) -> BaseMotion:
         """The base's motion as a record."""
-        return frozen(self.base)
+        return BaseMotion(*(np.asarray(x) for x in (self.base.a_WO_B, self.base.w_WB_B, self.base.alpha_WB_B)))
 
     @cached_property
     def linear(self) -> Linear:
-        """M, C, K and B of small departures."""
-        return linear_matrices(self)
+        """M, C and K of small departures."""
+        q, residual, none = self.q, self.residual, np.zeros((len(self.y), 0))
+        if self.structure.linear or not (self.yd[self.first :].any() or self.ydd[self.first :].any()):
+            # A complete model's small departures from where it rests are a linear model about that place.
+            if isinstance(residual, OnBase):
+                of = self.base.a_WO_B, self.base.w_WB_B, self.base.alpha_WB_B, self.loads
+                return Linear(self.about.mass, *self.about.at(*of)[:2], none)
+            if not self.structure.linear:
+                residual, q = OnHub(residual.equations.about(self.about), residual.mount), 0 * q
+        y = np.concatenate([self.y[: self.first], q])
+        k, c, m = _slopes(residual, y, self.yd, self.ydd, self.inputs)
+        return Linear(m, c, k, none)
 
     @property
     def names(self) -> list[str]:
@@ -121,48 +137,11 @@ def drawn(structure: Structure) -> dict[str, Any]:
     return known | {"place": place, "across": axes[:, :, 1]}
 
 
-def frozen(base: Base) -> BaseMotion:
-    """Base motion as a record of the results."""
-    return BaseMotion(*(np.asarray(x) for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
-
-
-def evaluated_at(
-    structure: Structure, residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array, u: Array
-) -> tuple[Array, Array]:
-    """The residual (n,) and its derivatives with respect to (y, ẏ, ÿ, u), (n, 3n + inputs)."""
-    return residual(y, yd, ydd, residual.unpack(u)), stepped(residual, y, yd, ydd, u)
-
-
-def stepped(residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array, u: Array) -> Array:
-    """Derivatives of the residual, by complex steps."""
-    n = len(y)
-
-    def stacked(x: Array) -> Array:
-        return residual(x[:n], x[n : 2 * n], x[2 * n : 3 * n], residual.unpack(x[3 * n :]))
-
-    return complex_step(stacked, np.concatenate([y, yd, ydd, u]))
-
-
-def linear_matrices(point: OperatingPoint) -> Linear:
-    """Derivatives of the residual at an operating point."""
-    structure, residual, n = point.structure, point.residual, len(point.y)
-    if not structure.linear and (point.yd[point.first :].any() or point.ydd[point.first :].any()):
-        # The beam moves: how its places bend further matters.
-        return _split(evaluated_at(structure, residual, point.y, point.yd, point.ydd, point.u)[1], n)
-    # A complete model's small departures from where it rests are a linear model about that place.
-    c, q = point.about, point.q if structure.linear else np.zeros(structure.size)
-    if isinstance(residual, OnBase):
-        base, loads = residual.unpack(point.u)
-        velocity, stiffness, _ = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads)
-        inputs = c.input_matrix(q, point.yd, base.w_WB_B, loaded=loads is not None)
-        return Linear(c.mass, velocity, stiffness, inputs)
-    about = residual if structure.linear else OnHub(residual.equations.about(c), residual.mount)
-    y = np.concatenate([point.y[: point.first], q])
-    return _split(stepped(about, y, point.yd, point.ydd, point.u), n)
-
-
-def _split(d: Array, n: int) -> Linear:
-    return Linear(d[:, 2 * n : 3 * n], d[:, n : 2 * n], d[:, :n], -d[:, 3 * n :])
+def _slopes(residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array, inputs: Any) -> tuple[Array, Array, Array]:
+    """Derivatives K, C, M (n, n) of a residual at one state."""
+    one = each_leaf(lambda leaf: np.asarray(leaf)[None], (y, yd, ydd, inputs))
+    k, c, m = slopes(residual, *one)
+    return k[0], c[0], m[0]
 
 
 def frozen_base(motion: Motion, time: float) -> Base:
@@ -195,44 +174,21 @@ def placed(
     return at, moving, coefficients, q is None and qd is None
 
 
-def beam_acceleration(
-    structure: Structure, residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array, u: Array
-) -> Array:
+def beam_acceleration(residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array, inputs: Any) -> Array:
     """q̈ that the beam's equations ask for, the hub's acceleration being given, (n,)."""
-    n, i = len(y), residual.first
-    still = np.where(np.arange(n) < i, ydd, 0.0)
-    value, slope = evaluated_at(structure, residual, y, yd, still, u)
-    return np.linalg.solve(slope[i:, 2 * n + i : 3 * n], -value[i:])
+    i = residual.first
+    still = np.where(np.arange(len(y)) < i, ydd, 0.0)
+    _, _, mass = _slopes(residual, y, yd, still, inputs)
+    return np.linalg.solve(mass[i:, i:], -residual(y, yd, still, inputs)[i:])
 
 
 def on_base(structure: Structure, base: Base, q: Array | None = None, qd: Array | None = None) -> OperatingPoint:
     """Operating point on a base with a frozen motion, in relative equilibrium or with q, qd (n,) given."""
     at, moving, coefficients, rests = placed(structure, base, q, qd)
     residual = OnBase(structure.equations)
-    u, still = residual.pack(base, structure.load_values), np.zeros_like(at)
-    qdd = still if rests else beam_acceleration(structure, residual, at, moving, still, u)
-    return OperatingPoint(structure, residual, at, moving, qdd, u, base, coefficients)
-
-
-def _about_rest(point: OperatingPoint) -> tuple[OnHub, Array]:
-    """A linear residual about a point, and its y there; where nothing moves the hub's row is the complete one's."""
-    residual, y = point.residual, point.y
-    assert isinstance(residual, OnHub)
-    if point.structure.linear:
-        return residual, y
-    return OnHub(residual.equations.about(point.about), residual.mount), np.append(y[0], np.zeros(len(y) - 1))
-
-
-def needed_torque(point: OperatingPoint) -> float:
-    """Torque on a free hub that its state needs, the beam at rest relative to the hub, N m."""
-    residual, y = _about_rest(point)
-    return float(residual(y, point.yd, point.ydd, (0.0, residual.unpack(point.u)[1]))[0])
-
-
-def angular_momentum(point: OperatingPoint) -> float:
-    """Angular momentum that hub and beam have, the beam at rest relative to the hub, N m s."""
-    residual, y = _about_rest(point)
-    return float(residual.equations.momentum(y, point.yd))
+    inputs, still = (base, structure.load_values), np.zeros_like(at)
+    qdd = still if rests else beam_acceleration(residual, at, moving, still, inputs)
+    return OperatingPoint(structure, residual, at, moving, qdd, inputs, base, coefficients)
 
 
 def on_hub(
@@ -249,13 +205,17 @@ def on_hub(
     at, moving, coefficients, rests = placed(structure, base, q, qd)
     residual = OnHub(structure.on_free_hub(hub), hub.mount)
     y, yd, ydd = (np.append(x, beam) for x, beam in ((angle, at), (rate, moving), (acceleration, 0 * at)))
-    u = residual.pack(0.0, structure.load_values)
-    if rests:
-        u[0] = needed_torque(OperatingPoint(structure, residual, y, yd, ydd, u, base, coefficients))
-    else:
-        ydd[1:] = beam_acceleration(structure, residual, y, yd, ydd, u)
-        u[0] = evaluated_at(structure, residual, y, yd, ydd, u)[0][0]
-    return OperatingPoint(structure, residual, y, yd, ydd, u, base, coefficients, hub)
+    loads = structure.load_values
+    if not rests:
+        ydd[1:] = beam_acceleration(residual, y, yd, ydd, (0.0, loads))
+    torque = residual(y, yd, ydd, (0.0, loads))[0]
+    return OperatingPoint(structure, residual, y, yd, ydd, (torque, loads), base, coefficients, hub)
+
+
+def turning_inertia(structure: Structure, hub: Any, q: Array | None = None) -> float:
+    """Moment of inertia of a free hub and the beam, straight or at q (n,), about the hub's axis, kg m²."""
+    at = np.zeros(structure.size) if q is None else q
+    return float(on_hub(structure, hub, 0.0, q=at).linear.mass[0, 0])
 
 
 def settled_hub(structure: Structure, hub: Any, time: float, q: Array | None, qd: Array | None) -> OperatingPoint:
@@ -265,7 +225,7 @@ def settled_hub(structure: Structure, hub: Any, time: float, q: Array | None, qd
     rate = acceleration = angle = 0.0
     for _ in range(60):
         point = on_hub(structure, hub, rate, acceleration, q, angle)
-        needed, has = needed_torque(point), angular_momentum(point)
+        needed = float(point.inputs[0])
         if spring > 0:
             turn = (torque - needed) / spring
             if abs(turn) <= 1e-12 * (1 + abs(angle)):
@@ -273,8 +233,8 @@ def settled_hub(structure: Structure, hub: Any, time: float, q: Array | None, qd
             angle += turn
             continue
         # The beam's own inertia hardly depends on its shape: the rigid hub's step converges fast.
-        inertia = angular_momentum(on_hub(structure, hub, 1.0, 0.0, point.q))
-        step = (momentum - has) / inertia, (torque - needed) / inertia
+        inertia = turning_inertia(structure, hub, point.q)
+        step = momentum / inertia - rate, (torque - needed) / inertia
         rate, acceleration = rate + step[0], acceleration + step[1]
         if abs(step[0]) <= 1e-12 * (1 + abs(rate)) and abs(step[1]) <= 1e-12 * (1 + abs(acceleration)):
             return on_hub(structure, hub, rate, acceleration, q, qd=qd)
@@ -287,8 +247,7 @@ def _momentum_of_the_torque(structure: Structure, hub: Any, time: float, q: Arra
     """Angular momentum that torque and damper have left since time zero, N m s."""
     if time <= 0:
         return 0.0
-    unit = on_hub(structure, hub, 1.0, q=np.zeros(structure.size) if q is None else q)
-    decay = float(hub.damping) / angular_momentum(unit)
+    decay = float(hub.damping) / turning_inertia(structure, hub, q)
     breaks = [float(b) for b in np.asarray(hub.torque.breaks) if 0 < b < time]
     import scipy.integrate  # only a free hub under a torque needs it
 

@@ -71,7 +71,7 @@ def static_errors(point: OperatingPoint) -> tuple[Errors, tuple[str, ...]]:
 
 def _sideways(point: OperatingPoint) -> tuple[str, ...]:
     """Warn of an equilibrium that a beam with torsion would not keep: a strip on edge buckles sideways."""
-    at = point.base, point.residual.unpack(point.u)[1]
+    at = point.base, point.loads
     if (
         point.structure.source is None
         or not keeps(point.about, *at)
@@ -201,7 +201,7 @@ def deflection_at(
         displacement=displacement,
         q=q,
         strain_energy=float(structure.strain_energy(q)),
-        stable=keeps(point.about, point.base, point.residual.unpack(point.u)[1]),
+        stable=keeps(point.about, point.base, point.loads),
         warnings=warnings,
         loads=loads,
         errors=errors,

@@ -99,12 +99,6 @@ class FreeHub:
             turning, beam = turning - forces[..., :6] @ self.twist, beam - forces[..., 6:]
         return concatenated([turning[..., None], beam])
 
-    def momentum(self, y: Array, yd: Array) -> Array:
-        """Angular momentum of hub and beam about the axis, N m s."""
-        q, qd, rate = y[1:], yd[1:], yd[0]
-        inertia = self.ground.inertia + self.rigid + (2 * self.f2 - self.k2 @ q) @ q
-        return inertia * rate + (self.b0 + self.b1 @ q) @ qd
-
 
 def _rows(vector: Array, *matrices: Array) -> Any:
     """Products of some (n, n) matrices with vectors (..., n), (..., n) each."""
@@ -223,11 +217,3 @@ class CompleteHub:
     def about(self, c: Coefficients) -> FreeHub:
         """Put a linear model on the hub's rim."""
         return free_hub(c, self.mount, self.ground)
-
-    def momentum(self, y: Array, yd: Array) -> Array:
-        """Angular momentum of hub and beam about the axis, N m s."""
-        inertia = self.system.inertia
-        xp = namespace(y, inertia.mass)
-        r, rd, _ = inertia.field.paths(y[1:], yd[1:], xp.zeros_like(y[1:]))
-        lever = xp.cross(self.mount.R_HB[2], r + self.mount.radius * self.mount.R_HB[0])
-        return self.ground.inertia * yd[0] + xp.sum(inertia.mass[:, None] * lever * (lever * yd[0] + rd))

@@ -143,16 +143,6 @@ class Coefficients:
         inside = velocity @ qd[..., None] + stiffness @ q[..., None]
         return qdd @ self.mass + inside[..., 0] - force
 
-    def input_matrix(self, q: Array, qd: Array, w_WB_B: Array, *, loaded: bool = False) -> Array:
-        """Forces of a unit of each input, a_O, ω, α and the loads' components, (n, 9 + 6 loads)."""
-        xp = namespace(self.mass, q, w_WB_B)
-        acceleration = self.f_a - self.k_a @ q
-        rate = 2 * xp.einsum("i,ijn->jn", w_WB_B, self.f_ww - self.k_ww @ q) - self.gyroscopic @ qd
-        rows = [acceleration, rate, self.f_al - self.k_al @ q]
-        if loaded and self.loads is not None:
-            rows.append(xp.reshape((self.loads.constant + self.loads.slope @ q)[:, :, 6:], (-1, self.size)))
-        return xp.concatenate(rows).T
-
     def strain_energy(self, q: Array) -> Array:
         """½ qᵀKq, J."""
         return 0.5 * q @ self.stiffness @ q
