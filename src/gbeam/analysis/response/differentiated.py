@@ -5,9 +5,7 @@ response, so that the difference of any two figures over the width w is the deri
 second order in w: a peak needs no rule of its own, since to first order it does not matter when it occurs.
 
 The equations of motion are linearised about the run. A parameter enters by pairs of problems, a little less and a
-little more of it. The residual of a linear model is one product, of terms that know the motion and of coefficients that
-know the beam, either of which is differentiated with the other held; that of a nonlinear model is evaluated for either
-of a pair at the run's states, with derivatives by complex steps.
+little more of it, whose residuals are evaluated at the run's states.
 """
 
 from __future__ import annotations
@@ -27,9 +25,8 @@ from gbeam.integrate.equations import LinearEquations, Trajectory, accelerations
 from gbeam.integrate.schemes import Scheme, added, stepped
 from gbeam.integrate.steps import Corners, Steps, fitted
 from gbeam.integrate.tangent import System, tangent
-from gbeam.mechanics.equations.linear import Coefficients
+from gbeam.mechanics.equations.residuals import OnBase
 from gbeam.mechanics.structure import Structure
-from gbeam.motion.bases.base import Base
 from gbeam.motion.centrifuge.kinematics import axes_result
 from gbeam.motion.protocol import Motion
 from gbeam.results.errors import StepErrors
@@ -38,40 +35,6 @@ from gbeam.results.response import Response
 from gbeam.results.result import Floats
 
 Array = Any
-_I, _J = np.triu_indices(3)  # pairs of angular velocities, each once
-
-
-def terms(q: Array, qd: Array, qdd: Array, base: Base, loads: Array | None) -> Array:
-    """Terms (t, f) of r = terms @ coefficients, at q (t, n), base motions (t, 3) and load components (t, loads, 6).
-
-    r = M q̈ + (C + ω·G) q̇ + (K + ωω:K_ww + α·K_al + a·K_a − loads) q − F
-    """
-    w = base.w_WB_B
-    inputs = [w[:, _I] * w[:, _J], base.alpha_WB_B, base.a_WO_B]
-    if loads is not None:
-        inputs.append(loads.reshape(len(q), -1))
-    u = np.concatenate(inputs, axis=1)
-    return np.concatenate([qdd, qd, _outer(w, qd), q, _outer(u, q), u], axis=1)
-
-
-def coefficient_matrix(c: Coefficients, *, loaded: bool) -> Array:
-    """Coefficients (f, n) in the order of the terms."""
-    twice = np.where(_I == _J, 1.0, 2.0)
-    k = [twice[:, None, None] * c.k_ww[_I, _J], c.k_al, c.k_a]
-    f = [twice[:, None] * c.f_ww[_I, _J], c.f_al, c.f_a]
-    if loaded:
-        assert c.loads is not None
-        slope, constant = c.loads.slope[:, :, 6:], c.loads.constant[:, :, 6:]
-        k.append(-slope.reshape(-1, *slope.shape[2:]))
-        f.append(constant.reshape(-1, constant.shape[2]))
-    matrices = [c.mass[None], c.damping[None], c.gyroscopic, c.stiffness[None], *k]
-    rows = [np.swapaxes(each, 1, 2).reshape(-1, c.size) for each in matrices]
-    return np.concatenate([*rows, *(-each for each in f)])
-
-
-def _outer(u: Array, q: Array) -> Array:
-    """Products u_i q_j, (t, i j)."""
-    return (u[:, :, None] * q[:, None, :]).reshape(len(q), -1)
 
 
 @dataclass(frozen=True)
@@ -82,78 +45,58 @@ class Posed:
     motion: Any
     problem: Problem
 
+    @property
+    def drive(self) -> Any:
+        """What drives it at times (t,)."""
+        return self.problem.equations.drive
+
+    def driven_as(self, other: Posed) -> bool:
+        """True if it is driven as another is."""
+        return self.motion is other.motion and self.structure.history is other.structure.history
+
 
 Pair = tuple[Posed, Posed]  # of less and of more of a parameter
 
 
-def linearised(
-    nominal: Posed, pairs: Sequence[Pair], width: Floats, within: tuple[Scheme, Steps] | None = None
-) -> System:
+Within = tuple[Scheme, Steps]  # fitted steps, and whose
+
+
+def _residual(posed: Posed, within: Within | None) -> Any:
+    """The residual of a problem, or that which fitted steps solve."""
+    equations: Any = posed.problem.equations
+    if not isinstance(equations, LinearEquations):
+        return equations.residual if within is None else stepped(equations, *within, len(posed.problem.q))
+    c = posed.structure.coefficients
+    if within is not None:
+        mass, damping = added(equations, within[0], within[1].longest)
+        c = replace(c, mass=c.mass + mass, damping=c.damping + damping)
+    return OnBase(c)
+
+
+def linearised(nominal: Posed, pairs: Sequence[Pair], width: Floats, within: Within | None = None) -> System:
     """Return the equations (those that fitted steps solve `within`) linearised about states of the nominal
     problem, for pairs of parameters that differ by `width` (p,).
     """
-    if isinstance(nominal.problem.equations, LinearEquations):
-        return _linear(nominal, pairs, width, within)
-    return _nonlinear(nominal, pairs, width, within)
-
-
-def _linear(nominal: Posed, pairs: Sequence[Pair], width: Floats, within: tuple[Scheme, Steps] | None) -> System:
-    equations: Any = nominal.problem.equations
-    loaded = nominal.structure.history is not None
-    n = nominal.structure.size
-
-    def fit(posed: Posed) -> tuple[Floats, Floats]:
-        return (np.zeros((n, n)),) * 2 if within is None else added(_equations(posed), within[0], within[1].longest)
-
-    def matrix(posed: Posed) -> Floats:
-        c, (mass, damping) = posed.structure.coefficients, fit(posed)
-        return coefficient_matrix(replace(c, mass=c.mass + mass, damping=c.damping + damping), loaded=loaded)
-
-    more_mass, more_damping = fit(nominal)
-    mass_of_steps = equations.mass + more_mass
-    coefficients = matrix(nominal)
-    by_beam = np.stack([(matrix(more) - matrix(less)) / w for (less, more), w in zip(pairs, width, strict=True)], 1)
-    flat = by_beam.reshape(len(coefficients), -1)
-    # A parameter of the beam alone leaves the motion as it is.
-    moving = [k for k, pair in enumerate(pairs) if _moves(nominal, pair)]
+    residual = _residual(nominal, within)
+    residuals = [[_residual(posed, within) for posed in pair] for pair in pairs]
+    linear = isinstance(nominal.problem.equations, LinearEquations)
 
     def system(time: Floats, q: Floats, qd: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        inputs = equations.drive(time)
-        c, k, f = equations.matrices(inputs)
-        c = c + more_damping
-        qdd = np.linalg.solve(mass_of_steps, (f - (k @ q[..., None] + c @ qd[..., None])[..., 0]).T).T
-        forces = -(terms(q, qd, qdd, *inputs) @ flat).reshape(len(time), -1, n)
-        for j in moving:
-            less, more = (terms(q, qd, qdd, *posed.problem.equations.drive(time)) for posed in pairs[j])
-            forces[:, j] -= (more - less) / width[j] @ coefficients
-        return np.broadcast_to(mass_of_steps, k.shape), c, k, np.swapaxes(forces, 1, 2)
-
-    return system
-
-
-def _moves(nominal: Posed, pair: Pair) -> bool:
-    return any(posed.motion is not nominal.motion or posed.structure.history is not None for posed in pair)
-
-
-def _equations(posed: Posed) -> Any:
-    return posed.problem.equations
-
-
-def _nonlinear(nominal: Posed, pairs: Sequence[Pair], width: Floats, within: tuple[Scheme, Steps] | None) -> System:
-    def residual_of(posed: Posed) -> Any:
-        equations = _equations(posed)
-        return equations.residual if within is None else stepped(equations, *within, len(posed.problem.q))
-
-    residual, residuals = residual_of(nominal), [[residual_of(posed) for posed in pair] for pair in pairs]
-
-    def system(time: Floats, q: Floats, qd: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        inputs = _equations(nominal).drive(time)
-        qdd = accelerations(residual, q, qd, inputs)
-        k, c, mass = slopes(residual, q, qd, qdd, inputs)
+        inputs = nominal.drive(time)
+        if linear:
+            base, loads = inputs
+            c, k, f = residual.equations.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads)
+            mass = np.broadcast_to(residual.equations.mass, k.shape)
+            qdd = np.linalg.solve(mass[0], (f - (k @ q[..., None] + c @ qd[..., None])[..., 0]).T).T
+        else:
+            qdd = accelerations(residual, q, qd, inputs)
+            k, c, mass = slopes(residual, q, qd, qdd, inputs)
         forces = np.empty((*q.shape, len(pairs)))
         for j, pair in enumerate(pairs):
+            # A parameter of the beam alone leaves the motion as it is.
             less, more = (
-                of(q, qd, qdd, _equations(posed).drive(time)) for of, posed in zip(residuals[j], pair, strict=True)
+                of(q, qd, qdd, inputs if posed.driven_as(nominal) else posed.drive(time))
+                for of, posed in zip(residuals[j], pair, strict=True)
             )
             forces[..., j] = -(more - less) / width[j]
         return mass, c, k, forces
@@ -305,7 +248,7 @@ class Differentiated:
     def _corners(self, posed: Posed) -> Corners:
         times = corners(posed.structure, posed.motion, self.coarse)
         start = self.settings.start
-        return Corners.of(times, posed.problem.equations.drive, start, start + self.settings.duration)
+        return Corners.of(times, posed.drive, start, start + self.settings.duration)
 
     def _jumps(self, posed: Posed) -> Floats:
         """Times at which something jumps."""
