@@ -30,7 +30,7 @@ from gbeam.integrate.steps import Steps
 
 Array = Any
 Piece = tuple[Any, ...]
-FIRST, MOST, LONGEST = 50, 200, 1000  # steps in a window: at first, at most, and where derivatives hold all along
+FIRST, MOST, LONGEST = 100, 200, 1000  # steps in a window: at first, at most, and where derivatives hold all along
 NEAR, APART, FAR = 4, 8, 24  # stages between derivatives: at least, at first, and at most
 AHEAD, ENOUGH = 400, 100  # steps whose drives are evaluated at once, and whose ends are found together, at least
 FEW = 64  # steps under way, up to which more follow: of many, a call of the residual costs little beside its sums
@@ -294,7 +294,8 @@ class _Window:
         done = 0 if self.maps is None else len(self.maps[0])
         if done in (1, count):
             return
-        t, slope = each_leaf(lambda leaf: leaf if len(leaf) == 1 else leaf[done:], (self.t, self.slope))
+        t = self.t if len(self.t.d) == 1 else each_leaf(lambda leaf: leaf[done:], self.t)
+        slope = (each if len(each) == 1 else each[done:] for each in self.slope)
         jacobian, onto = t.jacobians(*slope)
         unit = np.broadcast_to(np.eye(stages * n), jacobian.shape)
         both = solved(jacobian, np.concatenate([unit, onto], axis=-1))
