@@ -144,15 +144,14 @@ HUGE = 2.0**100  # an acceleration beside which no other force is felt: mass tim
 FEWEST = 50  # states evaluated at once: of fewer, each call costs more than its sums
 
 
-def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> tuple[Array, Array, Array]:
-    """Derivatives K, C, M (t, r, n) of a function (t, r) of the state by q, q̇, q̈ (t, n) at inputs (t, ...)."""
+def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
+    """Derivatives K, C, M (3, t, r, n) of a function (t, r) of the state by q, q̇, q̈ (t, n) at inputs (t, ...)."""
     n, pieces = q.shape[1], []
     steps = 1j * STEP * np.eye(3 * n).reshape(3 * n, 1, 3, n)
     for *at, part in _pieces(n**2, q, qd, qdd, inputs):
         values = residual(*(each + steps[:, :, k] for k, each in enumerate(at)), part)
         pieces.append(values.imag / STEP)
-    k, c, m = np.concatenate(pieces, axis=1).reshape(3, n, len(q), pieces[0].shape[-1]).transpose(0, 2, 3, 1)
-    return k, c, m
+    return np.concatenate(pieces, axis=1).reshape(3, n, len(q), pieces[0].shape[-1]).transpose(0, 2, 3, 1)
 
 
 def accelerations(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:

@@ -59,8 +59,8 @@ def chunk(
         if len(groups) > 1:
             columns = np.append((n * np.arange(m)[:, None] + group).ravel(), m * n)
             maps[:, :, group[:, None], columns] = part
-    before, last = _recur(xp, xp.reshape(maps, (count, m * n, m * n + 1)), xp.reshape(z, (-1,)))
-    states, parts = xp.reshape(before, (count, m, n)), []
+    every = recurrence(xp, xp.reshape(maps, (count, m * n, m * n + 1)), xp.reshape(z, (-1,)))
+    states, last, parts = xp.reshape(every[:-1], (count, m, n)), xp.reshape(every[-1], (m, n)), []
     for group, (x, _) in zip(groups, answers, strict=True):
         state = xp.reshape(states if len(groups) == 1 else states[:, :, group], (count, -1, 1))
         flat = xp.reshape(x, (count, stages * len(group), -1))
@@ -69,7 +69,7 @@ def chunk(
     ends = _sum(t.end_z, states) + _sum(t.end_x, x)
     kept = tuple(each if steps.kept.all() else each[steps.kept] for each in (ends[:, 0], ends[:, 1], x[:, -1]))
     if xp is np and not scheme.ends:
-        return last.reshape(m, n), kept[:2]
+        return last, kept[:2]
     q, qd, qdd = kept
     # The last stage's acceleration is that at the end, unless the stage lies before it, or just before a jump.
     again = np.flatnonzero(steps.jump[steps.kept]) if scheme.ends else np.arange(len(q))
@@ -79,7 +79,7 @@ def chunk(
             qdd[again] = acceleration
         else:
             qdd = acceleration
-    return xp.reshape(last, (m, n)), (q, qd, qdd)
+    return last, (q, qd, qdd)
 
 
 def _uncoupled(mass: Array, *at: Array) -> list[Array]:
@@ -125,18 +125,18 @@ def _started_anew(equations: LinearEquations, scheme: Scheme, maps: Array, ends:
     return maps
 
 
-def _recur(xp: Any, maps: Array, z: Array) -> tuple[Array, Array]:
-    """States before each step, (t, m n), and the one after the last."""
+def recurrence(xp: Any, maps: Array, z: Array) -> Array:
+    """States before each of some steps and after the last, (t + 1, m n), by affine maps (t, m n, m n + 1)."""
     if xp is np:
         states = np.ones((len(maps) + 1, z.size + 1))
         states[0, :-1] = z
         for one, before, after in zip(maps, states[:-1], states[1:, :-1], strict=True):
             np.dot(one, before, out=after)
-        return states[:-1, :-1], states[-1, :-1]
+        return states[:, :-1]
     import jax
 
     def step(z: Array, one: Array) -> tuple[Array, Array]:
         return one[:, :-1] @ z + one[:, -1], z
 
     last, before = jax.lax.scan(step, z, maps)
-    return before, last
+    return xp.concatenate([before, last[None]])

@@ -87,7 +87,7 @@ def _changes(scheme: Scheme, steps: Steps, run: Any, of: Any, changed: Any, dq: 
     def host(*arguments: Any) -> Any:
         (q, qd, qdd), (residual, driven) = jax.tree.map(np.asarray, arguments)
         with np.errstate(all="ignore"):
-            return slopes(residual, q, qd, qdd, driven)
+            return tuple(slopes(residual, q, qd, qdd, driven))
 
     square = (jax.ShapeDtypeStruct((len(states[0]), n, n), float),) * 3
     slope = jax.pure_callback(host, square, states, of, vmap_method="sequential")

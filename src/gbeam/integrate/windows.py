@@ -17,13 +17,14 @@ Newton's method proper.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from typing import Any, cast
 
 import numpy as np
 
 from gbeam.arrays.tree import each_leaf
 from gbeam.integrate.equations import NonlinearEquations, accelerations, exact, slopes, solved
+from gbeam.integrate.linear import recurrence
 from gbeam.integrate.sampled import Held, Sampling, sampling_of
 from gbeam.integrate.schemes import Scheme, Tableau, stepped
 from gbeam.integrate.steps import Steps
@@ -87,7 +88,7 @@ def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, 
 
 class _Window:
     """Steps under way, from the `first` on: their states z (t + 1, m, n) and accelerations x (t, s, n), corrected in
-    place, and the `slope` of the equations, K, C and M (1 or t, s, n, n), from stages so far `apart`. Rows (5, t) of
+    place, and the `slope` of the equations, K, C and M (1 or t, s, 3, n, n), from stages so far `apart`. Rows (5, t) of
     `corrections` are their last size, absolute and of the accelerations, how many there were, how far all since its
     derivatives were found have moved a step, and the least factor by which one shrank.
     """
@@ -125,13 +126,13 @@ class _Window:
         """Correct steps before `end` until `enough` have converged; false where one fails."""
         while self.first < enough:
             self._follow(end)
-            self._differentiate()
-            self._factor()
+            states = self._states()
+            self._differentiate(states)
+            self._factor(states)
             size, moved, count, since, least = self.corrections
             fresh, before, far, alone = since == 0, size.copy(), not moved[-1] <= MOVED, len(size) == 1
-            stages = self._stages()
-            rounding = self._rounding(stages, self.maps[0]) if count.any() else 0 * size  # which a first one hides
-            size[:] = self._correct(stages, *self.maps)
+            rounding = self._rounding(states) if (moved <= MOVED).any() else 0 * size  # which a large one hides
+            size[:] = self._correct(states, *self.maps)
             count += 1
             if alone:
                 self._shorten(self.maps[0])
@@ -144,7 +145,7 @@ class _Window:
             # By derivatives of another state corrections may shrink slowly without being rounding.
             quick = least <= FAST
             noise, stalls = np.minimum(rounding, self.most), fresh & (count > 1)
-            good = _converged(size, before, self.x, noise, stalls=stalls, quick=quick)
+            good = _converged(size, before, reach, noise, stalls=stalls, quick=quick)
             least[:] = np.fmin(least, size / np.where(np.isfinite(before), before, np.nan))
             slow = ~good & (count > 1) & ~(size <= SLOW * before)
             since[:] = np.where(slow, np.inf, since + moved)
@@ -169,7 +170,7 @@ class _Window:
             return
         if count and not self.corrections[1, -1] <= MOVED:
             return
-        longest = LONGEST if self.slope is not None and len(self.slope[0]) == 1 else MOST
+        longest = LONGEST if self.slope is not None and len(self.slope) == 1 else MOST
         more = min(self.more, end - self.first - count, longest - count)
         if more <= 0:
             return
@@ -178,12 +179,11 @@ class _Window:
             self.slope = None
         self.z = np.concatenate([self.z, np.repeat(self.z[-1:], more, axis=0)])
         self.x = np.concatenate([self.x, np.broadcast_to(last, (more, *self.x.shape[1:]))])
-        if self.slope is not None and len(self.slope[0]) == count > 1 and not self.even:
-            self.slope = tuple(
-                np.concatenate([each, np.broadcast_to(each[-1:, -1:], (more, *each.shape[1:]))]) for each in self.slope
-            )
+        if self.slope is not None and len(self.slope) == count > 1 and not self.even:
+            alike = np.broadcast_to(self.slope[-1:, -1:], (more, *self.slope.shape[1:]))
+            self.slope = np.concatenate([self.slope, alike])
         elif self.slope is not None:
-            self.slope, self.maps = tuple(each[-1:, -1:] for each in self.slope), None
+            self.slope, self.maps = self.slope[-1:, -1:], None
         begun = np.repeat([[np.inf], [np.inf], [0.0], [0.0], [np.inf]], more, axis=1)
         self.corrections = np.concatenate([self.corrections, begun], axis=1)
         self._place()
@@ -199,7 +199,8 @@ class _Window:
         lengths = length[:1] if (length == length[0]).all() else length
         if not np.array_equal(lengths, self.lengths):
             t: Tableau = self.scheme.tableau(lengths)
-            self.lengths, self.t, self.onto = lengths, t, np.block([[t.w_q, t.c_q], [t.w_v, t.c_v]])
+            rows = [np.concatenate(pair, axis=-1) for pair in ((t.w_q, t.c_q), (t.w_v, t.c_v))]
+            self.lengths, self.t, self.onto = lengths, t, np.stack(rows, axis=1)
         at = slice(stages * begin, stages * (begin + len(length)))
         self.inputs = self.free = each_leaf(lambda leaf: leaf[at], self.driven)
         if self.sampling is not None:
@@ -224,9 +225,8 @@ class _Window:
         """Keep some of the steps, the first or the last."""
         z, many = slice(some.start, some.stop if some.stop is None else some.stop + 1), len(self.x)
         self.z, self.x, self.corrections = self.z[z], self.x[some], self.corrections[:, some]
-        if len(self.slope[0]) == many > 1:
-            last = tuple(each[-1:, -1:] for each in self.slope)
-            self.slope = tuple(each[some] for each in self.slope) if len(self.x) else last
+        if len(self.slope) == many > 1:
+            self.slope = self.slope[some] if len(self.x) else self.slope[-1:, -1:]
         self.maps = self._known(some)
         if len(self.x):
             self._place()
@@ -249,33 +249,29 @@ class _Window:
         self.done = []
         return ends
 
-    def _stages(self) -> tuple[Array, Array, Array]:
-        """q, q̇, q̈ (t s, n) at the stages."""
-        count, stages, n = self.x.shape
-        both = self.onto @ np.concatenate([self.z[:-1], self.x], axis=1)
-        q, qd = both.reshape(count, 2, stages, n).swapaxes(0, 1).reshape(2, -1, n)
-        return q, qd, self.x.reshape(-1, n)
+    def _states(self) -> Array:
+        """q, q̇, q̈ (3, t s, n) at the stages."""
+        both = self.onto @ np.concatenate([self.z[:-1], self.x], axis=1)[:, None]
+        return np.concatenate([both, self.x[:, None]], axis=1).swapaxes(0, 1).reshape(3, -1, self.x.shape[-1])
 
-    def _differentiate(self) -> None:
+    def _differentiate(self, states: Array) -> None:
         """Find K, C and M at some stages from the first old one on, and between these; at the very first alone."""
-        (count, stages, n), shape = self.x.shape, (-1, self.x.shape[1], 3, self.x.shape[2], self.x.shape[2])
+        (count, stages, n), since = self.x.shape, self.corrections[3]
 
         def function(*state: Any) -> Array:
-            return np.stack(slopes(self.residual, *state), axis=1)
+            return slopes(self.residual, *state).swapaxes(0, 1)
 
         if self.slope is None:
-            self.slope = tuple(np.moveaxis(self._between(function, None)[:, None], 2, 0))
-        since = self.corrections[3]
+            self.slope = self._between(function, states, None)[:, None]
         stale = ~(since < np.inf if self.even and count > 1 else since <= (STALE if count > 1 else MOVED))
         if not stale.any():
             return
         first = int(np.argmax(stale))
-        renewed = np.moveaxis(self._between(function, first).reshape(shape), 2, 0)
-        held = (np.broadcast_to(each, (count, stages, n, n))[:first] for each in self.slope)
-        self.slope = tuple(np.concatenate(pair) for pair in zip(held, renewed, strict=True))
+        renewed = self._between(function, states, first).reshape(-1, stages, 3, n, n)
+        self.slope = np.concatenate([np.broadcast_to(self.slope, (count, *renewed.shape[1:]))[:first], renewed])
         since[first:], self.maps = 0.0, self._known(slice(first))
 
-    def _between(self, function: Any, first: int | None = 0) -> Array:
+    def _between(self, function: Any, states: Array, first: int | None = 0) -> Array:
         """Values (t s, ...) of a function of states and inputs from a step on; of the first stage alone without one."""
         steps, stages, _ = self.x.shape
         begin, count = (0, 1) if first is None else (stages * first, stages * (steps - first))
@@ -283,36 +279,35 @@ class _Window:
         at = begin + np.linspace(0, count - 1, samples).round().astype(int)
         if first is not None:  # of the first step all, so that it converges as by Newton's method
             at = np.union1d(at, begin + np.arange(stages))
-        values = function(*(each[at] for each in self._stages()), each_leaf(lambda leaf: leaf[at], self.inputs))
+        values = function(*states[:, at], each_leaf(lambda leaf: leaf[at], self.inputs))
         return _interpolated(at, values, np.arange(begin, begin + count)) if len(at) > 1 else values
 
-    def _factor(self) -> None:
+    def _factor(self, states: Array) -> None:
         """Find what corrects steps that have none or new derivatives: inverse J⁻¹ (t, s n, s n), J⁻¹ L (t, s n, m n),
         and maps of δz over the steps, (t, m n, m n); one of each where all steps are alike.
         """
-        (*_, stages, states), (count, _, n) = self.t.w_q.shape, self.x.shape
+        (*_, stages, m), (count, _, n) = self.t.w_q.shape, self.x.shape
         done = 0 if self.maps is None else len(self.maps[0])
         if done in (1, count):
             return
         t = self.t if len(self.t.d) == 1 else each_leaf(lambda leaf: leaf[done:], self.t)
-        slope = (each if len(each) == 1 else each[done:] for each in self.slope)
-        jacobian, onto = t.jacobians(*slope)
+        jacobian, onto = t.jacobians(*np.moveaxis(self.slope if len(self.slope) == 1 else self.slope[done:], 2, 0))
         unit = np.broadcast_to(np.eye(stages * n), jacobian.shape)
         both = solved(jacobian, np.concatenate([unit, onto], axis=-1))
         inverse, answer = both[..., : stages * n], both[..., stages * n :]
-        step = (t.g[:, :, None, :, None] * np.eye(n)[:, None, :]).reshape(-1, states * n, states * n)
+        step = (t.g[:, :, None, :, None] * np.eye(n)[:, None, :]).reshape(-1, m * n, m * n)
         if self.held is not None:
-            self.held.push(inverse, t, self._between(self.held.sampling.onto))
-        through = t.d @ answer.reshape(-1, stages, n * states * n)
-        maps = inverse, answer, step - through.reshape(-1, states * n, states * n)
+            self.held.push(inverse, t, self._between(self.held.sampling.onto, states))
+        through = t.d @ answer.reshape(-1, stages, n * m * n)
+        maps = inverse, answer, step - through.reshape(-1, m * n, m * n)
         self.maps = maps if not done else tuple(map(np.concatenate, zip(self.maps, maps, strict=True)))
 
-    def _rounding(self, states: Iterable[Array], inverse: Array) -> Array:
+    def _rounding(self, states: Array) -> Array:
         """Accelerations (t,) left of forces that cancel at stages, which no correction takes away."""
-        _, stages, n = self.x.shape
-        sizes = (np.abs(each).reshape(-1, stages, n, 1) for each in states)
-        forces = sum(np.abs(by) @ each for by, each in zip(self.slope, sizes, strict=True))
-        rounding = _largest(CANCELLED * _products(np.abs(inverse), forces.reshape(-1, stages * n)))
+        (_, stages, n), inverse = self.x.shape, self.maps[0]
+        sizes = np.abs(states).reshape(3, -1, stages, n, 1)
+        forces = (np.abs(np.moveaxis(self.slope, 2, 0)) @ sizes).sum(axis=0).reshape(-1, stages * n)
+        rounding = _largest(CANCELLED * _products(np.abs(inverse), forces))
         if self.most == np.inf:
             self.most = GROWN * float(rounding.max())
         return rounding
@@ -324,7 +319,7 @@ class _Window:
         maps = tuple(each[some] for each in self.maps)
         return maps if len(maps[0]) > 1 else None
 
-    def _correct(self, states: Iterable[Array], inverse: Array, answer: Array, step: Array) -> Array:
+    def _correct(self, states: Array, inverse: Array, answer: Array, step: Array) -> Array:
         """Correct every step by its stages; returns the sizes of the corrections, (t,)."""
         t, count = self.t, len(self.x)
         alone = _products(inverse, self.residual(*states, self.inputs).reshape(count, -1))
@@ -341,22 +336,20 @@ class _Window:
 
     def _moved(self, step: Array, defect: Array) -> Array:
         """Changes δz (t + 1, m n) of the states by δz₊ = S δz + the defects (t, m n)."""
-        count, moved = len(defect), np.zeros((len(defect) + 1, defect.shape[1]))
-        held = self._sampled
-        if len(step) == 1 and held is None:  # sums of powers of one map, each twice as long as the last
+        count, held = len(defect), self._sampled
+        if len(step) > 1 and held is None:
+            return recurrence(np, np.concatenate([step, defect[..., None]], axis=-1), 0 * defect[0])
+        moved = np.zeros((count + 1, defect.shape[1]))
+        if held is None:  # sums of powers of one map, each twice as long as the last
             moved[1:], power, reach = defect, step[0].T, 1
             while reach < count:
                 moved[1 + reach :] += moved[1:-reach] @ power
                 power, reach = power @ power, 2 * reach
             return moved
-        if held is not None:
-            held.measure(self.z[:-1])
+        held.measure(self.z[:-1])
         every = zip(np.broadcast_to(step, (count, *step.shape[1:])), defect, moved[:-1], moved[1:], strict=True)
         for k, (one, more, before, after) in enumerate(every):
-            one.dot(before, out=after)
-            after += more
-            if held is not None:
-                after += held.sampled(k, before)
+            after[:] = one.dot(before) + more + held.sampled(k, before)
         return moved
 
     def _shorten(self, inverse: Array) -> None:
@@ -364,7 +357,7 @@ class _Window:
         (state, change), share = self.change, 1.0
         whole = np.linalg.norm(change)
         for _ in range(HALVINGS):
-            following = inverse @ self.residual(*self._stages(), self.inputs).reshape(1, -1, 1)
+            following = inverse @ self.residual(*self._states(), self.inputs).reshape(1, -1, 1)
             if np.linalg.norm(following) <= (1 - share / 2) * whole or whole <= ROUNDING * np.linalg.norm(self.x):
                 return
             share /= 2
@@ -385,11 +378,10 @@ def _interpolated(at: Array, values: Array, points: Array) -> Array:
     near, itself = at[index], np.eye(size, dtype=bool)
     apart = np.where(itself, 1.0, points[:, None, None] - near[:, None, :])
     between = np.where(itself, 1.0, near[:, :, None] - near[:, None, :])
-    weight = (apart / between).prod(axis=-1).reshape(len(points), size, *(1,) * (values.ndim - 1))
-    out = weight[:, 0] * values[index[:, 0]]
-    for k in range(1, size):
-        out += weight[:, k] * values[index[:, k]]
-    return out
+    weight = (apart / between).prod(axis=-1)
+    weights = np.zeros((len(points), len(at)))
+    np.put_along_axis(weights, index, weight, axis=1)
+    return (weights @ values.reshape(len(at), -1)).reshape(len(points), *values.shape[1:])
 
 
 def _first(flags: Array) -> int:
@@ -408,15 +400,13 @@ def _reach(x: Array) -> Array:
     return largest + EARLIER * np.maximum.accumulate(largest) + TINY
 
 
-def _converged(
-    size: Array, before: Array, x: Array, noise: Array | float, *, stalls: bool, quick: Array | bool
-) -> Array:
+def _converged(size: Array, before: Array, reach: Array, noise: Array, *, stalls: Array, quick: Array) -> Array:
     """True if the last two sizes (t,) of corrections, which shrink by a constant factor, leave no more than a tolerance
     and rounding. The first one moves states of which it does not know what acts there: it leaves any. Where they
-    stall at less than a part of the accelerations x (t, ..., n), all that is left is rounding; as where they have been
+    stall at less than a part of the accelerations' `reach` (t,), all that is left is rounding; as where they have been
     quick and no longer are, for the rounding of earlier steps adds to a step's own.
     """
-    reach, shrunk = _reach(x), size / np.maximum(before, 1e-300)
+    shrunk = size / np.maximum(before, 1e-300)
     left = np.where(np.isfinite(before), size * np.clip(shrunk, QUICKEST, 1.0), np.inf)
     ended = stalls & (shrunk > STALLED) | quick & (shrunk > SLOW) & (size <= SUMMED * reach)
     return (left <= TOLERANCE * reach + noise) | (ended & (size <= ROUNDING * reach))

@@ -210,8 +210,8 @@ class Within(NamedTuple):
         chosen = looked(len(self.of.time))
         at = self.of.at(chosen)
         elastic = np.array([".q" in name for name in self.more.names], dtype=bool)
-        matrices = slopes(more.residual, at.q, at.qd, at.qdd, more.inputs(chosen))
-        return Departures(self.of.time, at.time, *matrices, elastic)
+        k, c, m = slopes(more.residual, at.q, at.qd, at.qdd, more.inputs(chosen))
+        return Departures(self.of.time, at.time, k, c, m, elastic)
 
     def moved(self, by: Correction) -> Reading:
         """Read the solution with a correction added."""

@@ -242,15 +242,8 @@ class Inertia:
         turns = [k for k in range(3) if any(np.imag(each[..., k]).any() for each in motion[4:])]
         still = not any(map(np.iscomplexobj, motion[:2]))
         out, slope = self.same.slopes(q, qd, qdd, a, w, alpha, turns, still=still)
-        first = 0
-        for each in motion:
-            size = each.shape[-1]
-            if np.iscomplexobj(each):
-                moved = each.imag if each.ndim == axes else each.imag[None]
-                change = np.moveaxis(moved, 0, -2) @ slope[..., first : first + size, :]
-                out = out + 1j * np.moveaxis(change, -2, 0)
-            first += size
-        return out
+        moved = np.moveaxis(concatenated([each.imag for each in motion]), 0, -2)
+        return out + 1j * np.moveaxis(moved @ slope, -2, 0)
 
     def about(self, q: Array) -> tuple[Places, Geometric | None]:
         """Places about coordinates (n,), and their geometric stiffness unless they have second derivatives."""
