@@ -33,6 +33,7 @@ Array = Any
 Piece = tuple[Any, ...]
 FIRST, MOST, LONGEST = 100, 200, 1000  # steps in a window: at first, at most, and where derivatives hold all along
 NEAR, APART, FAR = 4, 8, 24  # stages between derivatives: at least, at first, and at most
+NEAREST = 6  # derivatives, between which others are found
 AHEAD, ENOUGH = 400, 100  # steps whose drives are evaluated at once, and whose ends are found together, at least
 FEW = 64  # steps under way, up to which more follow: of many, a call of the residual costs little beside its sums
 LATE, ALONE = 6, 25  # corrections of a step until it is near, and of a single one, or the first, until it converges
@@ -194,7 +195,8 @@ class _Window:
         if last > self.ahead.stop:
             self.ahead = range(self.first, min(max(last, self.first + AHEAD), len(self.steps)))
             some = self.steps[self.ahead.start : self.ahead.stop]
-            self.driven = self.drive(np.stack([some.times(offset) for offset in self.scheme.offsets], axis=1).ravel())
+            self.times = np.stack([some.times(offset) for offset in self.scheme.offsets], axis=1).ravel()
+            self.driven = self.drive(self.times)
         length, begin = length[self.first : last], self.first - self.ahead.start
         lengths = length[:1] if (length == length[0]).all() else length
         if not np.array_equal(lengths, self.lengths):
@@ -202,6 +204,7 @@ class _Window:
             rows = [np.concatenate(pair, axis=-1) for pair in ((t.w_q, t.c_q), (t.w_v, t.c_v))]
             self.lengths, self.t, self.onto = lengths, t, np.stack(rows, axis=1)
         at = slice(stages * begin, stages * (begin + len(length)))
+        self.at = self.times[at]
         self.inputs = self.free = each_leaf(lambda leaf: leaf[at], self.driven)
         if self.sampling is not None:
             self.maps = None
@@ -280,7 +283,7 @@ class _Window:
         if first is not None:  # of the first step all, so that it converges as by Newton's method
             at = np.union1d(at, begin + np.arange(stages))
         values = function(*states[:, at], each_leaf(lambda leaf: leaf[at], self.inputs))
-        return _interpolated(at, values, np.arange(begin, begin + count)) if len(at) > 1 else values
+        return _interpolated(self.at[at], values, self.at[begin : begin + count]) if len(at) > 1 else values
 
     def _factor(self, states: Array) -> None:
         """Find what corrects steps that have none or new derivatives: inverse J⁻¹ (t, s n, s n), J⁻¹ L (t, s n, m n),
@@ -371,8 +374,8 @@ def _products(matrices: Array, vectors: Array) -> Array:
 
 
 def _interpolated(at: Array, values: Array, points: Array) -> Array:
-    """Values (k, ...) at places (k,), interpolated at points (p,) by the cubic through the nearest four."""
-    size = min(4, len(at))
+    """Values (k, ...) at times (k,), interpolated at others (p,) by the polynomials through the nearest."""
+    size = min(NEAREST, len(at))
     first: Array = np.clip(np.searchsorted(at, points) - size // 2, 0, len(at) - size)
     index = first[:, None] + np.arange(size)
     near, itself = at[index], np.eye(size, dtype=bool)
