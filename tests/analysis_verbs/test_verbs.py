@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -61,14 +62,15 @@ def test_an_equilibrium_and_its_loss_have_pages(call):
             assert shown[0] < -1 and shown[1] > 0  # the root goes one way, the tip stays behind
         else:
             shown = np.ravel(facts["critical_speed"])
-        assert len(shown) and all(f"{each:#.4g}" in page for each in shown)
+        numbers = [float(each) for each in re.findall(r"-?\d+\.\d+", page)]
+        assert len(shown) and all(np.isclose(numbers, each, rtol=1e-4).any() for each in shown)
     assert np.ravel(facts["critical_speed"])[0] == pytest.approx(2.9107, rel=0.2)
 
 
 def test_no_unit_is_torn_and_no_rounding_is_damping(scenario, gbeam):
     answer = gbeam("linearize", "hub.toml", "--motion", "slew")
     assert answer.status == 0
-    assert "[N m]" in answer.out.replace("\N{NO-BREAK SPACE}", " ").splitlines()[-3]
+    assert any(line.split()[1:3] == ["N", "m"] for line in answer.out.splitlines())
     answer = gbeam("modes", "hub.toml", "--motion", "slew", "--at", "32 s")
     assert answer.status == 0 and "e-1" not in answer.out
 

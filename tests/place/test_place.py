@@ -148,7 +148,8 @@ def test_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert facts["outcome"] == "limits exceeded" and "nearest comes upright, 60 ms" in answer.err
     assert len(facts["options"]) == 2 and all(each["exceeded"] for each in facts["options"]) and facts["set"] == []
     assert main([*command, *limit, "--smoothing", "60 ms", "--write", "--out", str(tmp_path / "out")]) == 1
-    assert "  inverted, 60 ms: " in capsys.readouterr().out and file.read_text(encoding="utf-8") == SCENARIO
+    rows = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert ["inverted", "60.00"] in [row[:2] for row in rows] and file.read_text(encoding="utf-8") == SCENARIO
     assert json.loads((tmp_path / "out" / "place.json").read_text())["outcome"] == "limits exceeded"
     assert main([*command, *limit, "--smoothing", "60 ms", "--ignore-limits"]) == 0
     assert "exceeds axis 2 jerk" in capsys.readouterr().out

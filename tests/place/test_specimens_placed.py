@@ -17,7 +17,7 @@ from gbeam.analysis.imitation.specimen import Specimen
 from gbeam.cli import main
 from gbeam.motion.bases.base import gradients
 from gbeam.questions import QUESTIONS
-from gbeam.report.machine import placement as describe
+from gbeam.report import text as describe
 
 from ..scenarios import FLIGHT, SPIN, response
 from ..solids.bodies import STIFF, block, solid
@@ -295,7 +295,7 @@ def test_a_camera_beside_a_boom_bends_it_less_where_it_is_placed() -> None:
     assert placement.best.place[2] > 0.01 and placement.point.startswith(("strip", "camera"))
     assert run["best"].tip_difference < 0.2 * run["current"].tip_difference
     assert run["best"].tip_difference < run["middle"].tip_difference
-    words = str(describe(placement))
+    words = describe(placement)
     assert "in the middle of the specimen" in words and "mid-way" in words and "root force" in words
 
 

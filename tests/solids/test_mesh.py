@@ -15,9 +15,9 @@ from scipy.spatial.transform import Rotation
 
 import gbeam as gb
 from gbeam.motion import constant
-from gbeam.report.steady import system_rest
+from gbeam.report import text
 from gbeam.report.study import of_beam
-from gbeam.report.words import percent
+from gbeam.report.words import number
 from gbeam.solids.elements import STRAIN, chunks, mass_matrix, stiffness_matrix
 from gbeam.solids.foreign import read_mesh
 from gbeam.solids.shape_functions import KINDS
@@ -251,7 +251,7 @@ def test_bodies_of_a_system_state_their_meshes_share() -> None:
     np.testing.assert_allclose(modes.errors.mesh[:4], np.abs(rough.frequency / modes.frequency - 1)[:4])
     both = gb.static(held(middle, b=replace(middle, coarser=None)))
     assert both.errors.note == "the mesh of b is not judged" and both.errors.displacement.mesh > 0
-    assert f"errors of the meshes {percent(both.errors.displacement.mesh)}" in system_rest([both])
+    assert f"mesh {number(100 * both.errors.displacement.mesh, 2)}" in text(both)
 
 
 def test_few_modes_answer_steady_loads_as_all_do() -> None:

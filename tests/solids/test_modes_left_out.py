@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.report.steady import campbell, critical, modes, state_space
+from gbeam.report import text
 from validation.codes.calculix_specimens import BORE, sector
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -164,7 +164,7 @@ def test_speeds_at_which_a_bracket_buckles(bracket: dict[int, gb.Structure], mod
     assert 0.7 * true < few.errors.shapes < 1.2 * true and few.errors.total == few.errors.shapes
     assert np.isnan(few.errors.model) and few.error_note == "the mesh is not judged"
     assert any("9.2 %: too few modes; raise modes" in each for each in few.warnings) == (true > 0.01)
-    assert "; the mesh is not judged" in critical(few, "spin")
+    assert "; the mesh is not judged" in text(few)
 
 
 def test_an_acceleration_that_buckles_a_bracket(bracket: dict[int, gb.Structure]) -> None:
@@ -191,7 +191,7 @@ def test_a_campbell_diagram_and_its_crossings(bracket: dict[int, gb.Structure]) 
         assert (ours.track, ours.order) == (theirs.track, theirs.order)
         true_speed = abs(ours.speed / theirs.speed - 1)
         assert 0.4 * true_speed < ours.errors.total < 1.1 * true_speed and np.isnan(ours.errors.model)
-    assert len(few.crossings) == 2 and "errors are of modes left out: the mesh is not judged" in campbell(few)
+    assert len(few.crossings) == 2 and "errors are of modes left out: the mesh is not judged" in text(few)
 
 
 def test_a_bracket_in_a_system_errs_as_alone(bracket: dict[int, gb.Structure]) -> None:
@@ -216,7 +216,7 @@ def test_poles_of_a_linear_model(bracket: dict[int, gb.Structure]) -> None:
     count = int((space.frequency <= space.accurate_to).sum())
     assert 2 < count < bracket[2].size
     np.testing.assert_allclose(space.frequency[:count], true[:count], rtol=0.01)
-    assert "by the model with more modes; the mesh is not judged" in state_space(space)
+    assert "by the model with more modes; the mesh is not judged" in text(space)
 
 
 def test_why_there_are_no_errors_is_said() -> None:
@@ -235,5 +235,5 @@ def test_why_there_are_no_errors_is_said() -> None:
         for answer in (gb.modes(of, spun), gb.campbell(of, spun, end=2.0, count=4, modes=1), gb.linearize(of, spun)):
             assert answer.error_note == note and answer.errors is not None and np.isnan(answer.errors.total).all()
         assert gb.critical_speed(of, spun).error_note == note
-    assert f"no error estimate: {alone}" in modes(gb.modes(particles, spun))
-    assert f"no error estimate: {alone}" in state_space(gb.linearize(particles, spun))
+    assert f"no error estimate: {alone}" in text(gb.modes(particles, spun))
+    assert f"no error estimate: {alone}" in text(gb.linearize(particles, spun))

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -17,14 +16,11 @@ from gbeam.errors import InputError, naming
 from gbeam.printable import printable
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
-
     from gbeam.figures import Describe
     from gbeam.results.provenance import Provenance
     from gbeam.results.searches import Fit, Optimum
 
 LIST = "list"  # in place of a figure's name
-_PLAIN_WIDTH = 110  # columns of a table where stdout is a file
 
 
 def deliver(
@@ -43,7 +39,8 @@ def deliver(
     more: Callable[[Path], object] | None = None,  # writes further files
     also: Sequence[Path] = (),  # files that are there already
     listed: bool = True,  # whether to say which files were written
-    **words: Any,  # of `gbeam.report.text`
+    copy: Path | None = None,  # of the scenario, with the values of the answer
+    **options: Any,  # of the report
 ) -> None:
     """Print an answer, or several of one kind, as JSON or in words, and write its files into a folder, if any."""
     origin = origin or answer.provenance
@@ -77,13 +74,12 @@ def deliver(
             more(hidden)
 
     if not output.json:
-        from gbeam.report import text
+        from gbeam.report import lines_of
+        from gbeam.report.words import plain
 
-        said = text(answer, **words)
-        if isinstance(said, str):
-            print(printable(said))
-        else:
-            show_table(said)
+        show_lines(lines_of(type(answers[0]), plain(known()), **options))
+        if copy is not None:
+            print(printable(f"\n{copy} has these values"))
     files: list[Path] = []
     if folder is not None:
         with Watch("writing results") as watch:
@@ -101,16 +97,26 @@ def show(words: str, facts: Mapping[str, Any], json: bool) -> None:
     print(as_json(facts) if json else printable(words))
 
 
-def show_table(table: RenderableType) -> None:
-    """Print what rich draws: as wide as the terminal, and as wide in a file as a table needs."""
-    from rich.console import Console
-    from rich.segment import Segment, Segments
+_STYLES = {"good": "green", "bad": "bold red", "warning": "yellow", "faint": "dim", "verdict": "bold"}
 
-    console = Console(highlight=False, width=None if sys.stdout.isatty() else _PLAIN_WIDTH)
-    drawn = [Segment(printable(text), style, control) for text, style, control in console.render(table)]
-    with console.capture() as captured:
-        console.print(Segments(drawn), end="")
-    print("\n".join(line.rstrip(" ") for line in captured.get().split("\n")), end="")
+
+def show_lines(lines: Iterable[tuple[str, str]]) -> None:
+    """Print lines, each with its tone: a terminal has colours, and wraps them below where they begin."""
+    from gbeam.report.words import terminal_width
+
+    width = terminal_width()
+    if not width:
+        print("\n".join(printable(line) for line, _ in lines))
+        return
+
+    from rich.console import Console
+    from rich.text import Text
+
+    console = Console(highlight=False)
+    for line, tone in lines:
+        indent = " " * (len(line) - len(line.lstrip()) + 2)
+        wrapped = wrap(printable(line), width, subsequent_indent=indent) or [""]
+        console.print(Text("\n".join(wrapped), style=_STYLES.get(tone, "")))
 
 
 def list_figures(verb: str, json: bool) -> int:

@@ -3,46 +3,75 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Mapping
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from gbeam.report.words import as_json
+from gbeam.report.blocks import FIGURES, Block, Facts, Items, Place, Section, Sentence, in_words, quantities
+from gbeam.report.words import as_json, plain
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
+    from gbeam.results.result import Result
 
-__all__ = ["as_json", "text"]
+__all__ = ["as_json", "blocks_of", "lines_of", "text", "warnings_of"]
 # Kinds by the module that has a function of their name; of others every quantity is listed.
 _MODULES = {
-    "cases": ("Sweep", "Sensitivity", "Fit", "Optimum", "ShapedCommand"),
-    "machine": ("Placement",),
-    "steady": ("Deflection", "Modes", "Campbell", "Critical", "CriticalMap", "StateSpace", "SystemRest", "SystemModes"),
-    "study": ("SystemResponse",),
-    "tables": ("Study", "SystemStudy", "ModelStudy", "MachinePlan"),
+    "cases": ("Sweep",),
+    "machine": ("MachinePlan", "Comparison"),
+    "searches": ("Sensitivity", "Fit", "Optimum", "ShapedCommand", "Placement"),
+    "steady": ("Deflection", "Modes", "Campbell", "Critical", "CriticalMap", "StateSpace"),
+    "study": ("Study", "ModelStudy"),
+    "systems": ("SystemRest", "SystemModes", "SystemStudy", "SystemResponse"),
 }
+_TITLED = ("Study", "SystemStudy", "MachinePlan", "ModelStudy")  # in a terminal
 
 
-def text(answer: Any, **more: Any) -> str | RenderableType:
-    """Return an answer, or several of one kind, in words; of what fills a terminal's width what rich prints."""
-    kind = type(answer[0] if isinstance(answer, tuple) else answer).__name__
+def blocks_of(
+    kind: str, facts: Facts, words: Mapping[str, str] | None = None, options: Mapping[str, Any] | None = None
+) -> Iterable[Block]:
+    """Return what a report says of a kind of result, from its JSON, with `words` of its quantities by their paths.
+
+    `options` are those of the function of the kind, such as the unit of speeds.
+    """
     module = next((name for name, kinds in _MODULES.items() if kind in kinds), None)
     if module is None:
-        return _listed(answer)
+        return _unnamed(facts, words)
     name = re.sub(r"(?<!^)(?=[A-Z])", "_", kind).lower()
-    words: str | RenderableType = getattr(import_module(f"gbeam.report.{module}"), name)(answer, **more)
-    return words
+    blocks: Iterable[Block] = getattr(import_module(f"gbeam.report.{module}"), name)(facts, **(options or {}))
+    return blocks
 
 
-def _listed(answer: Any) -> str:
-    """Numbers and words of an answer, each on a line with what it is."""
-    from gbeam.report.words import number
-    from gbeam.results.declared import declarations
+def _unnamed(facts: Facts, words: Mapping[str, str] | None) -> Iterable[Block]:
+    """Yield the quantities of a kind that no module describes."""
+    yield Section("View", (Place("viewer"),))
+    yield from quantities(facts, words=words)
+    yield Section("Figures", (FIGURES,))
 
-    lines = [(type(answer).__doc__ or "").partition("\n")[0]]
-    for name, each in declarations(type(answer)):
-        value, unit = getattr(answer, name), each.unit(answer) if callable(each.unit) else str(each.unit)
-        if isinstance(value, (bool, str)):
-            lines.append(f"  {each.words}: {value}")
-        elif getattr(value, "ndim", 0) == 0 and isinstance(value, (int, float)):
-            lines.append(f"  {each.words}: {number(value)} {unit}".rstrip())
-    return "\n".join([*lines, *(f"warning: {each}" for each in answer.warnings)])
+
+def lines_of(kind: type, facts: Facts, **options: Any) -> list[tuple[str, str]]:
+    """Return the lines that a terminal shows of a kind of result, from its JSON, each with its tone."""
+    from gbeam.results.facts import paths_of
+    from gbeam.results.kinds import tree_of_answers  # of every kind, which `gbeam check` does without
+
+    title = [Sentence(facts["title"], "verdict")] if facts.get("title") and kind.__name__ in _TITLED else []
+    words = {path: each.words for path, each in paths_of(tree_of_answers(kind))}
+    return in_words([*title, *blocks_of(kind.__name__, facts, words, options), *warnings_of(facts)])
+
+
+def text(*answers: Result) -> str:
+    """Return a result, or several of one kind, in words."""
+    from gbeam.report.facts import facts, whole
+
+    return "\n".join(line for line, _ in lines_of(type(whole(answers[0])), plain(facts(*answers))))
+
+
+def warnings_of(facts: Facts) -> Iterable[Block]:
+    """Yield the warnings of a result, or of several by motion, each once."""
+    every = [("", facts), *facts.get("motions", {}).items()]
+    names: dict[str, list[str]] = {}
+    for name, each in every:
+        for warning in each.get("warnings", ()):
+            names.setdefault(warning, []).append(name)
+    common = ([""], [name for name, _ in every[1:]])
+    lines = (line if of in common else f"{', '.join(filter(None, of))}: {line}" for line, of in names.items())
+    yield Items(tuple(lines), "warning")

@@ -1,60 +1,103 @@
-"""Many cases in words: sweeps with their statistics, sensitivities, fits, optima and shaped commands."""
+"""Report of a sweep: its cases, or their statistics."""
 
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from gbeam.report.words import columns, number, percent, warning_lines
-from gbeam.results.cases import PROBABILITY, Indices, Sensitivity, Statistics, Sweep
-from gbeam.results.result import Floats
-from gbeam.results.searches import COMMANDS, Fit, Optimum, Requirement, ShapedCommand
+from gbeam.report.blocks import (
+    FIGURES,
+    Block,
+    Blocks,
+    Cell,
+    Columns,
+    Facts,
+    Items,
+    Section,
+    Sentence,
+    named,
+    six,
+    table,
+)
+from gbeam.report.words import known, number
+from gbeam.results.cases import ANSWERED, BOUNDS, PROBABILITY
 
-_ROWS = 40  # of the table on the screen
+_FEW = 40  # cases that are all listed at once
+_LISTED = 400  # on a page
 _FAILURES = 5  # that are named
 
 
-def sweep(sweep: Sweep) -> str:
-    """One line per case, or per quantile where the cases are drawn or many; then what failed."""
-    heads = [_headed(each.path, each.unit) for each in sweep.parameters if not each.drawn]
-    measures = [_headed(name, sweep.units[name]) for name in sweep.measures]
-    if sweep.statistics:
-        lines = [line for name in sweep.statistics for line in ["", *estimates(sweep, name, heads)]][1:]
-    elif sweep.outcome.size > _ROWS:
-        lines = columns(["", *measures], _quantiles(sweep))
-    elif sweep.measures:
-        lines = columns([*heads, *measures, *([] if sweep.state == "done" else ["outcome"])], _cases(sweep))
-    else:
-        lines = []
-    if sweep.statistics and sweep.lost:
-        lines += ["", f"{sweep.lost} of {sweep.outcome.size} cases are not done: the estimates are of the others"]
-    ended = ", ".join(f"{count} {name}" for name, count in sweep.counts.items())
-    last = [f"{sweep.outcome.size} cases: {ended}", *_failures(sweep), *warning_lines(sweep)]
-    return "\n".join([*lines, "", *last]).lstrip("\n")
+def sweep(facts: Facts) -> Blocks:
+    """Cases of a grid, or the statistics of what is drawn; the failures; and on a page every case."""
+    outcomes = np.array(facts["outcomes"], dtype=object)
+    few = not facts["statistics"] and outcomes.size <= _FEW
+    yield table(
+        facts["parameters"],
+        {"varies": "path", "unit": "unit", "values": lambda each: each["distribution"] or _ends(each["values"])},
+        f"figures of gbeam {facts['verb']}",
+        detail=True,
+    )
+    if facts["statistics"]:
+        yield Section("", tuple(block for name in facts["statistics"] for block in _estimates(facts, name)))
+    elif facts["measures"]:
+        yield Section("", (_cases(facts, outcomes) if few else _quantiles(facts["measures"]),))
+    yield Section("", tuple(_ended(facts, outcomes)))
+    yield Section("Figures", (FIGURES,))
+    if not few:
+        yield Section("Cases", (_cases(facts, outcomes),))
 
 
-def _headed(name: str, unit: str) -> str:
-    return f"{name}{f', {unit}' if unit else ''}"
+def _ended(facts: Facts, outcomes: Any) -> Blocks:
+    """Numbers of cases by their outcomes, and the first that are not done, by what they say."""
+    lost = int((~np.isin(outcomes.astype(str), ("done", *ANSWERED))).sum())
+    if facts["statistics"] and lost:
+        yield Sentence(f"{lost} of {outcomes.size} cases are not done: the estimates are of the others")
+    counts = ", ".join(f"{count} {name}" for name, count in facts["counts"].items())
+    yield Sentence(f"{outcomes.size} cases: {counts}", "bad" if lost else "")
+    said: dict[str, int] = {}
+    for outcome, message in zip(outcomes.ravel(), np.array(facts["messages"], dtype=object).ravel(), strict=True):
+        if outcome != "done":
+            words = f"{outcome}: {message}" if message else outcome
+            said[words] = said.get(words, 0) + 1
+    shown = [f"{count} × {words}" for words, count in list(said.items())[:_FAILURES]]
+    yield Items((*shown, *(["…"] if len(said) > _FAILURES else [])), "bad")
 
 
-def _cases(sweep: Sweep) -> list[list[str]]:
-    """Parameters and figures of every case of a grid, and its outcome where not all are done."""
-    rows = []
-    for at in np.ndindex(sweep.outcome.shape):
-        places = [each.values[i] for each, i in zip(sweep.parameters, at, strict=True)]
-        shown = [value if isinstance(value, str) else f"{value:.6g}" for value in places]
-        figures = [number(float(values[at])) for values in sweep.measures.values()]
-        rows.append(shown + figures + ([] if sweep.state == "done" else [str(sweep.outcome[at])]))
-    return rows
+def _titled(name: str, unit: str) -> str:
+    return f"{name}, {unit}" if unit else name
 
 
-def _quantiles(sweep: Sweep) -> list[list[str]]:
+def _ends(values: list[Any]) -> str:
+    words = [six(each).text for each in values]
+    return f"{len(values)} values, {f'{words[0]} to {words[-1]}' if len(values) > 3 else ', '.join(words)}"
+
+
+def _cases(facts: Facts, outcomes: Any) -> Block:
+    """Parameters and figures of every case, and its outcome where not all are done."""
+
+    parameters, measures = facts["parameters"], facts["measures"]
+    axes = [facts["dimensions"].index("sample" if each["distribution"] else each["path"]) for each in parameters]
+    figures = [np.array(each["values"], dtype=float) for each in measures.values()]
+
+    def case(place: tuple[int, ...]) -> list[Cell]:
+        ended = Cell(outcomes[place], "" if outcomes[place] == "done" else "bad")
+        values = (each["values"][place[at]] for each, at in zip(parameters, axes, strict=True))
+        return [*map(six, values), *(Cell(number(each[place])) for each in figures), ended]
+
+    heads = [_titled(each["path"], each["unit"]) for each in parameters]
+    heads += [_titled(name, each["unit"]) for name, each in measures.items()]
+    heads += [] if facts["outcome"] == "done" else ["outcome"]
+    places = list(np.ndindex(outcomes.shape))
+    more = f"the first {_LISTED} of {len(places)}" if len(places) > _LISTED else ""
+    detail = len(places) > _FEW or bool(facts["statistics"])
+    return table(map(case, places[:_LISTED]), {head: str(k) for k, head in enumerate(heads)}, more, detail=detail)
+
+
+def _quantiles(measures: Facts) -> Block:
     """Least, mean and largest, and the quantiles of the cases that have a figure."""
-    every = [values[np.isfinite(values)] for values in sweep.measures.values()]
-    words: dict[str, Any] = {
+    summaries: dict[str, Any] = {
         "least": np.min,
         "5 %": lambda v: np.quantile(v, 0.05),
         "median": np.median,
@@ -63,41 +106,35 @@ def _quantiles(sweep: Sweep) -> list[list[str]]:
         "largest": np.max,
         "standard deviation": lambda v: np.std(v, ddof=1) if len(v) > 1 else np.nan,
     }
-    return [
-        [word, *(number(float(of(values))) if len(values) else "–" for values in every)] for word, of in words.items()
-    ]
+
+    every = [np.array(each["values"], dtype=float) for each in measures.values()]
+    finite = [values[np.isfinite(values)] for values in every]
+    rows = [[name, *(number(of(each)) if len(each) else "–" for each in finite)] for name, of in summaries.items()]
+    heads = ["", *(_titled(name, each["unit"]) for name, each in measures.items())]
+    return table(rows, {head: str(k) for k, head in enumerate(heads)})
 
 
-def _failures(sweep: Sweep) -> list[str]:
-    """The first cases that are not done, by what they say."""
-    lines: dict[str, int] = {}
-    for at in np.ndindex(sweep.outcome.shape):
-        if sweep.outcome[at] != "done":
-            said = f"{sweep.outcome[at]}: {sweep.message[at]}" if sweep.message[at] else str(sweep.outcome[at])
-            lines[said] = lines.get(said, 0) + 1
-    shown = [f"  {count} × {said}" for said, count in list(lines.items())[:_FAILURES]]
-    return shown + (["  …"] if len(lines) > _FAILURES else [])
+def _estimates(facts: Facts, name: str) -> Blocks:
+    """Statistics of one measure or history, with their intervals of 95 % confidence."""
+    estimates, history = facts["statistics"][name], name in facts["histories"]
+    title = _titled(name, facts["histories" if history else "measures"][name]["unit"])
+    if history:
+        yield _history(facts["time"], estimates, title)
+    elif isinstance(estimates["draws"], int):
+        rows = [
+            (each, number(known(at["estimate"])), _between(at)) for each, at in estimates.items() if each != "draws"
+        ]
+        columns = {"": "0", " ": "1", "  ": "2"}
+        yield table(rows, columns, f"{title}, of {estimates['draws']} draws, with 95 % confidence")
+        if name in facts["indices"]:
+            yield _shares(facts["indices"][name])
+    else:
+        yield _over_grid(facts, estimates, title)
 
 
-def estimates(sweep: Sweep, name: str, heads: list[str]) -> list[str]:
-    """Lines on one measure or history."""
-    statistics, unit = sweep.statistics[name], sweep.units[name]
-    title = f"{name}{f', {unit}' if unit else ''}"
-    if name in sweep.histories:
-        return _history(sweep.time, statistics, title)
-    if heads:
-        return [f"{title}:", *_over_grid(sweep, statistics, heads)]
-    draws = int(statistics.count)
-    lines = [f"{title}, of {draws} draws, with 95 % confidence:"]
-    rows = [[each, number(float(at[0])), between(at)] for each in statistics.names for at in [statistics[each]]]
-    width = max(len(each) for each in statistics.names)
-    lines += [f"  {row[0]:<{width}}  {row[1]:>11}  {row[2]}" for row in rows]
-    return lines + (_shares(sweep.indices[name]) if name in sweep.indices else [])
-
-
-def between(bounds: Floats) -> str:
-    """An interval from an estimate and its bounds, (3,): ``0.1 to 0.2``; one-sided where an end is not known."""
-    low, high = (float(each) for each in bounds[1:])
+def _between(bounds: Facts) -> str:
+    """An interval, ``0.1 to 0.2``; one-sided where an end is not known."""
+    low, high = (known(bounds[end]) for end in ("low", "high"))
     if math.isnan(low) and math.isnan(high):
         return "too few draws for a bound"
     if math.isnan(low):
@@ -105,155 +142,49 @@ def between(bounds: Floats) -> str:
     return f"above {number(low)}" if math.isnan(high) else f"{number(low)} to {number(high)}"
 
 
-def _shares(indices: Indices) -> list[str]:
+def _shares(indices: Facts) -> Block:
     """Sobol indices, the largest in total first."""
-    order = np.argsort(-indices.values[:, 1, 0])
-    width = max(len(each) for each in indices.parameters)
-    lines = [f"  {'share of the variance':<{width}}  {'by itself':<20}  in total"]
-    for k in order:
-        cells = [f"{value:.3f} ± {high - value:.3f}" for value, _, high in indices.values[k]]
-        lines.append(f"  {indices.parameters[k]:<{width}}  {cells[0]:<20}  {cells[1]}")
-    return lines
+
+    def bounded(bounds: Facts) -> str:
+        return f"{known(bounds['estimate']):.3f} ± {known(bounds['high']) - known(bounds['estimate']):.3f}"
+
+    columns: Columns = {
+        "share of the variance": "name",
+        "by itself": lambda row: bounded(row["first"]),
+        "in total": lambda row: bounded(row["total"]),
+    }
+    return table(sorted(named(indices), key=lambda row: -known(row["total"]["estimate"])), columns)
 
 
-def _over_grid(sweep: Sweep, statistics: Statistics, heads: list[str]) -> list[str]:
-    """A line for every point of the grid: mean and quantiles, or the probability."""
-    grid = [each for each in sweep.parameters if not each.drawn]
-    names = [each for each in statistics.names if each in ("mean", "5 %", "95 %", PROBABILITY)]
-    main = names[0]
-    rows = []
-    for at in np.ndindex(statistics.count.shape):
-        places = [each.values[i] for each, i in zip(grid, at, strict=True)]
-        row = [value if isinstance(value, str) else f"{value:.6g}" for value in places]
-        row += [number(float(statistics[each][at][0])) for each in names]
-        row.insert(len(places) + 1, between(statistics[main][at]))
-        rows.append(row)
-    return columns([*heads, main, "95 % confidence", *names[1:]], rows)
+def _over_grid(facts: Facts, estimates: Facts, title: str) -> Block:
+    """A row for every point of the grid: mean and quantiles, or the probability."""
+    grid = [each for each in facts["parameters"] if not each["distribution"]]
+    names = [each for each in estimates if each in ("mean", "5 %", "95 %", PROBABILITY)]
+    values = {name: {at: np.array(estimates[name][at], dtype=float) for at in BOUNDS} for name in names}
+
+    def row(place: tuple[int, ...]) -> list[Cell]:
+        main, *others = (Cell(number(values[name]["estimate"][place])) for name in names)
+        between = _between({at: values[names[0]][at][place] for at in BOUNDS})
+        return [*(six(each["values"][k]) for each, k in zip(grid, place, strict=True)), main, Cell(between), *others]
+
+    heads = [*(_titled(each["path"], each["unit"]) for each in grid), names[0], "95 % confidence", *names[1:]]
+    places = np.ndindex(values[names[0]]["estimate"].shape)
+    return table(map(row, places), {head: str(k) for k, head in enumerate(heads)}, title)
 
 
-def _history(time: Floats, statistics: Statistics, title: str) -> list[str]:
+def _history(time: list[float], estimates: Facts, title: str) -> Block:
     """Band over time at the time at which the median is largest, at the first point of the grid."""
-    values = statistics.values[(0,) * (statistics.count.ndim - 1)]
-    at = [statistics.names.index(each) for each in ("5 %", "median", "95 %")]
-    median = np.abs(np.nan_to_num(values[:, at[1], 0]))
-    k = int(median.argmax())
-    low, middle, high = (number(float(values[k, each, 0])) for each in at)
-    least, most = float(values[k, at[0], 1]), float(values[k, at[2], 2])
-    lines = [
-        f"{title}, over time: the median is largest at {time[k]:.4g} s, {middle}",
-        f"  5 % to 95 % of the cases there: {low} to {high}",
-    ]
+
+    def over_time(name: str, bound: str) -> Any:
+        values = np.array(estimates[name][bound], dtype=float)
+        return values[(0,) * (values.ndim - 1)]
+
+    median = over_time("median", "estimate")
+    k = int(np.abs(np.nan_to_num(median)).argmax())
+    low, high = (number(float(over_time(name, "estimate")[k])) for name in ("5 %", "95 %"))
+    least, most = float(over_time("5 %", "low")[k]), float(over_time("95 %", "high")[k])
+    lines = [f"5 % to 95 % of the cases there: {low} to {high}"]
     if math.isfinite(least) and math.isfinite(most):
-        lines.append(f"  nine tenths of all lie there, with 95 % confidence, within {number(least)} to {number(most)}")
-    return lines
-
-
-def sensitivity(sensitivity: Sensitivity) -> str:
-    """A table for each measure, those parameters first by which it changes most."""
-    s = sensitivity
-    lines: list[str] = []
-    for k, name in enumerate(s.measures):
-        lines += [f"{name} = {number(float(s.figures[k]))} {s.units[k]}".rstrip()]
-        rows = [_row(s, k, int(j)) for j in s.ranked(name)]
-        lines += [
-            "  " + line for line in columns(["of", "value", "+1 % changes it by", "derivative, SI", ""], rows)
-        ] + [""]
-    exact = s.methods.count("exact")
-    if exact:
-        of_run = "" if np.isnan(s.run_error) else f"; the run's own estimated error: {percent(s.run_error)}"
-        lines.append(
-            f"{exact} of {len(s.methods)} parameters by the exact derivative of the run, its steps held fixed{of_run}."
-        )
-    if exact < len(s.methods):
-        lines.append("± is how far the differences of second and fourth order are apart.")
-    lines += [f"not varied: {each}" for each in s.not_varied]
-    return "\n".join([*lines, *warning_lines(s)])
-
-
-def _row(s: Sensitivity, k: int, j: int) -> list[str]:
-    derivative, change = float(s.derivatives[k, j]), 0.01 * float(s.derivatives[k, j] * s.values[j])
-    # A figure without a unit is a ratio, and its change one too.
-    relative = s.units[k] and s.figures[k]
-    share = percent(change / float(s.figures[k])) if relative else f"{number(change)} {s.units[k]}".rstrip()
-    error = "" if np.isnan(s.errors[k, j]) else f"± {number(float(s.errors[k, j]), 1)}"
-    value = f"{float(s.values[j]):.6g} {s.parameter_units[j]}".rstrip()
-    return [
-        s.parameters[j],
-        value,
-        share,
-        number(derivative),
-        " ".join([error, "kink" if s.kinks[k, j] else ""]).strip(),
-    ]
-
-
-def fit(fit: Fit, written: Path | None = None) -> str:
-    """A row for each value, then its correlation with the others and what the data leave."""
-    rows = [
-        [
-            path,
-            f"{fit.before[k]:.6g}",
-            f"{fit.values[k]:.6g}",
-            f"± {number(float(fit.errors[k]), 2)}",
-            "on its bound" if fit.at_bound[k] else f"{fit.intervals[k, 0]:.6g} to {fit.intervals[k, 1]:.6g}",
-            fit.units[k],
-        ]
-        for k, path in enumerate(fit.parameters)
-    ]
-    lines = columns(["value", "was", "is", "one sigma", "95 %", "unit"], rows)
-    for k, path in enumerate(fit.parameters):
-        lines += [
-            f"  correlation of {fit.parameters[j]} and {path}: {fit.correlation[k, j]:+.2f}"
-            for j in range(k)
-            if fit.correlation[k, j] == fit.correlation[k, j]  # known
-        ]
-    for each in fit.columns:
-        size = f"{number(each.noise)} {each.unit}".rstrip()
-        lines.append(f"  residual of {each.name}: {size} ({len(each.measured)} data)")
-    if fit.starts > 1:
-        lines.append(f"{fit.agreed} of {fit.starts} searches end at these values")
-    lines.append(f"{fit.evaluations} evaluations of the scenario")
-    return "\n".join([*lines, *warning_lines(fit), *_written(written)])
-
-
-def optimum(optimum: Optimum, written: Path | None = None) -> str:
-    """The figure, the values, and the requirements that decide or are not kept."""
-    o = optimum
-    lines = [f"{o.minimise}: {number(o.figure)} {o.unit}".rstrip() + f", was {number(o.figure_before)}"]
-    rows = [
-        [path, f"{o.before[k]:.6g}", f"{o.values[k]:.6g}", o.units[k], "on its bound" if o.at_bound[k] else ""]
-        for k, path in enumerate(o.parameters)
-    ]
-    lines += columns(["value", "was", "is", "unit", ""], rows)
-    kept = [each for each in o.requirements if each.kept]
-    lines += [f"  decides: {_required(each)}" for each in kept if each.active]
-    lines += [f"  NOT KEPT: {_required(each)}" for each in o.requirements if not each.kept]
-    if o.requirements:
-        lines.append(f"  {len(kept)} of {len(o.requirements)} requirements kept")
-    proved = "" if math.isnan(o.error) else f"; the last run's estimated error is {percent(o.error)}"
-    if o.starts > 1:
-        lines.append(f"{o.agreed} of {o.starts} searches end at these values")
-    lines.append(f"{o.evaluations} evaluations of the scenario{proved}")
-    return "\n".join([*lines, *warning_lines(o), *_written(written)])
-
-
-def _required(each: Requirement) -> str:
-    side = "at most" if each.bound == each.high else "at least"
-    return f"{each.name} {number(each.value)}, {side} {number(each.bound)} {each.unit}".rstrip()
-
-
-def _written(file: Path | None) -> list[str]:
-    return [] if file is None else ["", f"{file} has these values"]
-
-
-def shaped_command(command: ShapedCommand) -> str:
-    """Vibration that each command leaves, the shaped one first."""
-    c = command
-    rows = [
-        [run.name, f"{number(1e3 * run.residual, 3)} mm" if run.outcome == "done" else run.outcome, number(run.largest)]
-        for run in c.runs
-    ]
-    known = f"designed on {c.design}, run on {c.check}"
-    span = f", for frequencies wrong by up to {percent(c.robust)}" if c.robust else ""
-    lines = [f"{c.kind} {c.task} in {number(c.duration)} s, {known}{span}"]
-    lines += ["  " + line for line in columns(["command", "leaves", f"largest, {COMMANDS[c.kind][1]}"], rows)]
-    return "\n".join([*lines, *warning_lines(c)])
+        lines.append(f"nine tenths of all lie there, with 95 % confidence, within {number(least)} to {number(most)}")
+    words = f"{title}, over time: the median is largest at {time[k]:.4g} s, {number(float(median[k]))}"
+    return Section(words, (Items(tuple(lines)),), titled=True)

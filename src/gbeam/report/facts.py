@@ -19,7 +19,7 @@ from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response
 from gbeam.results.result import Result
 from gbeam.results.study import Reproduction, Study, SystemStudy
-from gbeam.results.system import SystemRest
+from gbeam.results.system import SystemResponse, SystemRest
 
 VERSION = 1  # of the keys: raised where one changes or goes
 
@@ -59,9 +59,10 @@ def _worded(figures: dict[str, Any], answers: list[Result]) -> dict[str, Any]:
     for answer in answers:
         match answer:
             case MachinePlan():
-                from gbeam.report.machine import judged_lines
+                from gbeam.report.machine import ends_line, judged_lines
 
-                figures["motions"][answer.name]["lines"] = list(judged_lines(answer))
+                lines = [ends_line(answer.time, answer.axes), *judged_lines(answer)]
+                figures["motions"][answer.name]["lines"] = lines
             case Comparison():
                 from gbeam.report.study import comparison_lines
 
@@ -75,6 +76,10 @@ def _worded(figures: dict[str, Any], answers: list[Result]) -> dict[str, Any]:
                     figures["motions"][name]["lines"] = lines
                 for each, compared in zip(figures["comparisons"], answer.comparisons, strict=True):
                     each["lines"] = list(comparison_lines(compared))
+            case SystemResponse():
+                from gbeam.report.study import of_system
+
+                figures["lines"] = list(of_system(answer))
             case Sweep():
                 figures["outcome"] = answer.state
     return figures

@@ -1,20 +1,35 @@
-"""Sentences on a centrifuge: tracking of the load, every part of the flight, the place of the specimen."""
+"""Reports of a centrifuge: its axes and their limits, tracking of the load, and how well it imitates a flight."""
 
 from __future__ import annotations
 
 import math
-import textwrap
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from typing import Any
 
-from gbeam.report.words import number, percent, sentence, warning_lines
+from gbeam.figures.description import raised
+from gbeam.report.blocks import (
+    FIGURES,
+    Block,
+    Blocks,
+    Cell,
+    Column,
+    Columns,
+    Facts,
+    Items,
+    Section,
+    Sentence,
+    Value,
+    factor,
+    named,
+    table,
+)
+from gbeam.report.words import known, number, percent, sentence
 from gbeam.results.imitation.accounting import Accounting, PeakPair
-from gbeam.results.imitation.criteria import Judged
-from gbeam.results.imitation.placement import Candidate, Placement, degrees
+from gbeam.results.imitation.criteria import GOOD, RULES, Judged
 from gbeam.results.imitation.verdict import change, in_g
 from gbeam.results.imitation.verdict import percent as share_of
-from gbeam.results.machine import AxesResult, Driven
+from gbeam.results.machine import AxesResult, Driven, Shortfall
 from gbeam.results.result import Floats
 
 _EXACT = 1e-9  # of the load: a smaller error is rounding
@@ -67,6 +82,7 @@ def not_followed_stretches(axes: AxesResult) -> list[tuple[float, float, str]]:
 SHORTEST = 0.005  # s, of a stretch that is listed
 _APART = 5e-4  # s: two peaks are at different times
 _NONE = 5e-5  # a smaller error is none
+_MANY = 12  # stretches that a page folds
 SHOWN = 8  # peaks and stretches listed; a rough record has hundreds
 
 
@@ -118,152 +134,165 @@ def accounting_lines(accounting: Accounting) -> Iterator[str]:
 
 def peak_lines(peaks: Mapping[str, PeakPair]) -> Iterator[str]:
     """Largest root loads and stress over the flight."""
-    units = {"root_force": (1.0, "N"), "root_moment": (1.0, "N m"), "stress": (1e-6, "MPa")}
     words = []
-    for name, (scale, unit) in units.items():
-        pair = peaks.get(name, PeakPair())
+    for name in ("root_force", "root_moment", "stress"):
+        pair, (what, unit) = peaks.get(name, PeakPair()), _QUANTITIES[name].split(", ")
         if math.isfinite(pair.ratio):
-            values = f"{scale * pair.flight:.4g} {unit} in flight, {scale * pair.machine:.4g} {unit}"
-            words.append(f"{name.replace('_', ' ')} {values} ({change(pair.ratio)})")
+            flight, machine = (f"{factor(unit) * each:.4g} {unit}" for each in (pair.flight, pair.machine))
+            words.append(f"{what} {flight} in flight, {machine} ({change(pair.ratio)})")
     if words:
         yield f"{'; '.join(words)} on the centrifuge"
 
 
-_PLACES = {"current": "now", "best": "placed", "middle": "at mid-span"}
-_LISTED = 6  # candidates of either kind
-_WIDTH = 110  # columns
+def machine_plan(facts: Facts) -> Blocks:
+    """Use of every limit, how well the load is followed, and the verdict on it, of every machine."""
+    for name, each in facts["motions"].items():
+        state = each.get("state", each["outcome"])  # files of 0.2 have none
+        title = f"{name} ({each['arm']:g} m, tracks {each['tracks']}): {state}"
+        yield Section(title, tuple(_planned(each)), titled=True, tone="good" if state in GOOD else "bad")
+        yield from verdict(each, (each["tracks"] or "flight", name))
+        yield said(each)
+    yield Section("Histories", (FIGURES,))
 
 
-def placement(placement: Placement, written: str | None = None) -> str:
-    """The best placement and how to apply it, every measure before and after, the simulations, the other candidates."""
-    best, before = placement.best, placement.before
-    parts = {name: weight for name, weight in placement.weights.items() if weight}
-    measure = (
-        " + ".join(f"{weight:g} × {name}" for name, weight in parts.items()) if len(parts) > 1 else next(iter(parts))
-    )
-    measure += f" of {placement.point}" if placement.point and {"tip", "vibration"} & parts.keys() else ""
-    share = f", {placement.fraction:.4f} of the length" if placement.straight else ""
-    now = place_words(before.place) if before is not None else f"{1e3 * placement.current:.2f} mm"
-    nearest = "" if placement.outcome == "done" else " (nearest to the limits, which none keeps)"
-    lines = [
-        f"{placement.centrifuge}, tracking {placement.flight}: least {measure}{nearest}",
-        f"  control point  {place_words(best.place)} from the root{share} (now {now})",
-        f"  largest load   {largest(best.largest_load, None if before is None else before.largest_load)}",
-        f"  mounting       {best.mounting}{turned(best.turn)}",
-        f"  smoothing      {1e3 * best.smoothing:.4g} ms{_range(placement)}",
-    ]
-    if placement.changes:
-        flags = " ".join(f'--set "{each}"' for each in placement.settings)
-        lines.append(f"  to apply it    {flags}")
-        lines.append(f"                 {f'written to {written}' if written else 'or place again with --write'}")
-    lines += warning_lines(placement)
-    if placement.message and placement.outcome == "done":
-        lines += ["", *textwrap.wrap(sentence(placement.message), _WIDTH)]
-    return "\n".join([*lines, *_measures(placement), *_verified(placement), *_candidates(placement, measure)])
+def _planned(plan: Facts) -> Blocks:
+    if plan["message"]:
+        yield Sentence(plan["message"], "bad")
+    yield limits(plan)
+    yield Sentence(followed(plan))
+    yield held(plan)
+    lacks = tuple(str(Shortfall(**each)) for each in plan["shortfalls"])
+    yield Items(lacks[:SHOWN], "warning")
+    if len(lacks) > SHOWN:
+        yield Sentence(f"and {len(lacks) - SHOWN} more: see --json")
 
 
-def largest(load: PeakPair, before: PeakPair | None) -> str:
-    """Largest load anywhere on the specimen as placed, in flight, and as it is mounted now."""
-    if not math.isfinite(load.machine):
-        return "not known"
-    now = "" if before is None else f"; now {_load(before)}"
-    return f"anywhere on the specimen {_load(load)}, {in_g(load.flight)} in flight{now}"
+def limits(machine: Facts) -> Block:
+    """What is used of each limit, when, and the share of what is allowed."""
+
+    def used(use: Facts) -> Value:
+        if use["allowed"] is None or not math.isfinite(use["allowed"]):
+            return "no limit"
+        return Cell(f"{use['share']:.0%}".replace("%", " %"), "bad" if use["exceeded"] else "", use["share"])
+
+    cells: Columns = {
+        "machine": lambda use: f"{use['axis']} {use['quantity']}",
+        "used": "used",
+        "allowed": "allowed",
+        "share": used,
+        "at, s": lambda use: f"{use['time']:.3f}" if use["used"] else "–",
+        "unit": lambda use: raised(use["unit"]),
+    }
+    return table(machine["limits"], cells, "Limits used")
 
 
-def _load(load: PeakPair) -> str:
-    place = f" at {load.place_machine}" if load.place_machine else ""
-    return f"{in_g(load.machine)}{place} ({change(load.ratio)})"
+def held(machine: Facts) -> Block:
+    """Stretches in which the target is held, and why."""
+    cells = {"from, s": "start:.3f", "to, s": "end:.3f", "why": "reason"}
+    return table(machine["not_followed"], cells, "The target is held", most=SHOWN, detail="lines" not in machine)
 
 
-def _measures(placement: Placement) -> list[str]:
-    """Every measure at every place: the mismatch field alone, and with the load's own error at the control point."""
-    lines = ["", "Of flight's peak".ljust(19) + "".join(each.ljust(39) for each in ("mismatch field", "with tracking"))]
-    lines.append(" " * 19 + 2 * "".join(place.ljust(13) for place in places_of(straight=placement.straight).values()))
-    for name in placement.values["best"]:
-        rows = (placement.values, placement.totals)
-        cells = [of_peak(each[place][name]) if each else "–" for each in rows for place in _PLACES]
-        lines.append(f"  {name:<17}" + "".join(cell.ljust(13) for cell in cells))
-    return [line.rstrip() for line in lines]
+def comparison(facts: Facts) -> Blocks:
+    """The verdict on a centrifuge's imitation of a flight."""
+    yield from verdict(facts, (facts["flight"], facts["centrifuge"]))
+    yield said(facts)
+    yield Section("Histories", (FIGURES,))
 
 
-def places_of(*, straight: bool) -> dict[str, str]:
-    """Names of the compared places, of a straight specimen or of one in space."""
-    return _PLACES if straight else _PLACES | {"middle": "mid-way"}
+def verdict(judged: Facts, names: tuple[str, str]) -> Blocks:
+    """The verdict on an imitation; `names` are those of flight and machine."""
+    tables = _criteria(judged), _peaks(judged, names), _load_peaks(judged), _not_followed(judged)
+    yield Section("Verdict", (Sentence(judged["verdict"], "verdict"), *tables), detail=True)
 
 
-def of_peak(share: float) -> str:
-    """A share of flight's peak, in words."""
-    return f"{100 * share:.3g} %" if share > 1e-8 else "0 %"  # below, it is rounding
+def said(judged: Facts) -> Block:
+    """The verdict and what it rests on, in words."""
+    lines, tone = Items(tuple(judged["lines"])), "bad" if judged["accepted"] is False else "verdict"
+    return Section(sentence(judged["verdict"]), (lines,), titled=True, folded="Verdict in words", tone=tone)
 
 
-def place_words(place: Sequence[float]) -> str:
-    """A control point (3,) m, along x or anywhere, in words."""
-    words = [f"{1e3 * each:.2f}" for each in place]
-    return f"({', '.join(words)}) mm" if any(place[1:]) else f"{words[0]} mm"
+def _criteria(judged: Facts) -> Block:
+    def limit(each: Facts) -> Value:
+        if "limit" not in each:
+            return None
+        bounds = tuple(each["limit"]) if isinstance(each["limit"], list) else each["limit"]
+        return RULES[each["name"]].limit_written(bounds).removeprefix("limit ")
+
+    def kept(each: Facts) -> Value:
+        if "limit" not in each:
+            return "needs the response: gbeam run"
+        return Cell("kept", "good") if each["passed"] else Cell("not kept", "bad")
+
+    cells: Columns = {
+        "limit on": lambda each: each["name"].replace("_", " "),
+        "value": lambda each: RULES[each["name"]].written(known(each["value"])) if "limit" in each else None,
+        "where": "where",
+        "limit": limit,
+        "": kept,
+    }
+    rows = [*judged["criteria"], *({"name": name} for name in judged["not_judged"])]
+    return table(rows, cells, "Accepted if every limit is kept", optional=("where",))
 
 
-def turned(turn: Sequence[float]) -> str:
-    """A rotation vector (3,) rad in words; empty where there is none."""
-    return f", turned by {degrees(turn)}" if any(turn) else ""
+_QUANTITIES = {
+    "largest_load": "load anywhere on the specimen, g",
+    "tip": "tip displacement, mm",
+    "root_force": "root force, N",
+    "root_moment": "root moment, N m",
+    "stress": "stress, MPa",
+}
 
 
-def _range(placement: Placement) -> str:
-    """Range that was searched, and whether the best lies at its end."""
-    low, high = placement.widths
-    if low == high:
-        return ""
-    searched = f", of {1e3 * low:.4g} to {1e3 * high:.4g} ms"
-    if placement.best.smoothing > low * (1 + 1e-6):
-        return searched + (": the widest tried" if placement.best.smoothing > high * (1 - 1e-6) else "")
-    unlimited = "; no limit of the machine forbids less" if placement.best.share < 1 else ""
-    return f"{searched}: the least tried{unlimited}"
+def _peaks(judged: Facts, names: tuple[str, str]) -> Block:
+    """Largest sizes over the whole flight, and of the load over all of the machine's run."""
+
+    def size(key: str) -> Column:
+        return lambda pair: factor(_QUANTITIES[pair["name"]]) * known(pair[key])
+
+    cells: Columns = {
+        "largest": lambda pair: _QUANTITIES[pair["name"]],
+        names[0]: size("flight"),
+        names[1]: size("machine"),
+        "change": _changed,
+        "in flight at, s": "time_flight",
+        "on the machine at, s": "time_machine",
+        "where": lambda pair: pair.get("place_machine", "").removeprefix("the "),
+    }
+    rows = [pair for pair in named(judged["peaks"]) if pair["flight"] is not None]
+    caption = "Largest over the whole flight; loads over the machine's whole run"
+    return table(rows, cells, caption, optional=("where",))
 
 
-def _verified(placement: Placement) -> list[str]:
-    if not placement.verifications:
-        return []
-    checks = placement.checks
-    lines = [
-        "",
-        "By simulation, largest difference from flight",
-        " " * 19 + f"tip          vibration    root {'shear' if placement.straight else 'force'}   moment",
-    ]
-    for place, label in places_of(straight=placement.straight).items():
-        check = checks[place]
-        values = (
-            (f"{1e3 * check.tip_difference:.4g}", "mm"),
-            (f"{1e3 * check.vibration:.3g}", "mm"),
-            (f"{check.force_difference:.3g}", "N"),
-            (f"{check.moment_difference:.3g}", "N m"),
-        )
-        words = ("–" if value == "nan" else f"{value} {unit}" for value, unit in values)
-        lines.append(f"  {label:<17}" + "".join(word.ljust(13) for word in words).rstrip())
-    gain = placement.vibration_gain
-    if math.isnan(gain):
-        return lines
-    middle = "at mid-span" if placement.straight else "in the middle of the specimen"
-    return [*lines, f"  {gain:.3g} times less vibration than with the control point {middle}"]
+def _load_peaks(judged: Facts) -> Block:
+    cells: Columns = {
+        "at, s": "time",
+        "flight, g": "load",
+        "at, s ": "time_machine",
+        "machine, g": "reproduced",
+        "change": _changed,
+        "as a vector": lambda peak: _percent(peak["error"]),
+        "at the same instant": lambda peak: _percent(peak["instant_error"]),
+        "": lambda peak: Cell(f"not reproduced: {peak['reason']}", "bad") if peak["reason"] else "",
+    }
+    return table(judged["accounting"]["peaks"], cells, "Peaks of the load at the control point")
 
 
-def _candidates(placement: Placement, measure: str) -> list[str]:
-    kept = [candidate for candidate in placement.options if not candidate.exceeded]
-    broken = [candidate for candidate in placement.options if candidate.exceeded]
-    listed = [*kept[:_LISTED], *broken[:_LISTED]]
-    lines = ["", f"Options by {measure} with what smoothing and tracking change of the load, best first"]
-    lines += [_candidate(candidate) for candidate in listed]
-    more = len(placement.options) - len(listed)
-    lines += [f"  and {more} more: see --json"] if more else []
-    return [*lines, *(f"  cannot: {reason}" for reason in placement.refused)]
+def _not_followed(judged: Facts) -> Block:
+    accounting = judged["accounting"]
+    rows, shares = accounting["not_followed"], known(accounting["followed_share"])
+    of = "load at the time" if accounting["tolerance_of"] == "instant" else "largest load"
+    within = f"within {share_of(accounting['tolerance'])} of the {of}"
+    caption = f"Not followed: {_percent(1 - shares)} of the flight's time ({_percent(shares)} is followed, {within})"
+    cells = {"from, s": "start:.3f", "to, s": "end:.3f", "flight up to, g": "flight_peak", "why": "reason"}
+    stretches = table(rows, cells, caption)
+    several = f"{len(rows)} stretches that are not followed"
+    return Section(several, (stretches,), folded=several) if len(rows) > _MANY else stretches
 
 
-def _candidate(candidate: Candidate) -> str:
-    words = f"  {candidate.mounting}{turned(candidate.turn)}, {1e3 * candidate.smoothing:.4g} ms: "
-    words += f"{100 * candidate.total_error:.3g} % at {place_words(candidate.place)}; "
-    if candidate.exceeded:
-        worst, others = max(candidate.exceeded, key=lambda use: use.share), len(candidate.exceeded) - 1
-        return words + f"exceeds {worst}" + (f" and {others} more" if others else "")
-    if math.isfinite(candidate.largest_load.machine):
-        words += f"largest load {_load(candidate.largest_load)}; "
-    peaks = ", ".join(f"{acceleration:.3g}" for acceleration in candidate.accelerations)
-    share = f", {candidate.share:.0%} of a limit" if candidate.share else ""
-    return words + f"axis accelerations {peaks} rad/s²{share}"
+def _changed(pair: Facts) -> Value:
+    return change(known(pair["ratio"])) if math.isfinite(known(pair["ratio"])) else "–"
+
+
+def _percent(value: float | None) -> str:
+    share = known(value)
+    return share_of(share if abs(share) > _NONE else 0.0) if math.isfinite(share) else "–"

@@ -1,4 +1,4 @@
-"""Sentences on a response over time, and on its comparison with flight's."""
+"""Reports of responses over time, of their comparison with flight's, and of the study of models."""
 
 from __future__ import annotations
 
@@ -7,24 +7,41 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from gbeam.report.machine import ends_line, judged_lines, not_followed_stretches, peak_lines, tracked
-from gbeam.report.words import (
-    by_beam,
-    columns,
-    error_words,
-    largest_loads,
-    number,
-    percent,
-    sentence,
-    tidy,
-    warning_lines,
+from gbeam.report.blocks import (
+    FIGURES,
+    Block,
+    Blocks,
+    Cell,
+    Column,
+    Columns,
+    Facts,
+    Items,
+    Place,
+    Section,
+    Sentence,
+    table,
 )
+from gbeam.report.loads import errors, loads_table, parts_tables
+from gbeam.report.machine import (
+    ends_line,
+    followed,
+    judged_lines,
+    limits,
+    not_followed_stretches,
+    peak_lines,
+    said,
+    tracked,
+    verdict,
+)
+from gbeam.report.words import errors_in_words, known, largest_loads, number, percent, sentence, tidy
+from gbeam.results.facts import facts_of
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.criteria import RULES
 from gbeam.results.imitation.verdict import metres
 from gbeam.results.imitation.verdict import percent as share_of
-from gbeam.results.response import HubResult, Response
-from gbeam.results.system import SystemResponse, named
+from gbeam.results.response import Response
+from gbeam.results.system import SystemResponse
+from gbeam.results.system import named as named_histories
 
 ROUNDING = 1e-9  # of what it belongs to: a smaller number is none
 EPISODES = 8  # of holding listed; a rough record has hundreds
@@ -44,7 +61,8 @@ def of_beam(response: Response) -> Iterator[str]:
         if part is not None:
             yield from part.lines
     if response.hub is not None:
-        yield _hub(response.hub)
+        rate = float(abs(response.hub.rate).max())
+        yield f"hub: angle at the end {number(response.hub.angle[-1])} rad, largest rate {number(rate)} rad/s"
         if response.hub.free and np.any(response.damping_ratio):
             yield _damping(response)
     if response.kept_every > 1:
@@ -60,7 +78,7 @@ def _accuracy(response: Response) -> str:
     if math.isnan(response.error_estimate) or response.outcome != "done":
         error = "no error estimate"
     else:
-        error = f"estimated error {error_words(response.errors.displacement)} of the largest displacement"
+        error = f"estimated error {errors_in_words(facts_of(response.errors.displacement))} of the largest displacement"
         if math.isfinite(response.errors.loads.total):
             error += f", {percent(response.errors.loads.total)} of the largest root load"
         if response.solid is not None and math.isfinite(response.errors.stress.total):
@@ -80,11 +98,6 @@ def _damping(response: Response) -> str:
 
 def _time(seconds: float) -> str:
     return f"{number(1e3 * seconds)} ms" if seconds < 1 else f"{number(seconds)} s"
-
-
-def _hub(hub: HubResult) -> str:
-    rate = float(abs(hub.rate).max())
-    return f"hub: angle at the end {number(hub.angle[-1])} rad, largest rate {number(rate)} rad/s"
 
 
 def of_machine(response: Response | SystemResponse) -> Iterator[str]:
@@ -155,26 +168,11 @@ def comparison_lines(comparison: Comparison) -> Iterator[str]:
         yield f"mismatch up to {mismatch.max_acceleration[main]:.3g} m/s² along the beam{bent}{advice}"
 
 
-def system_response(response: SystemResponse) -> str:
-    """The largest motions of the points, the joints at the end, what is kept, and the error."""
-    lines = [f"{response.name or response.environment}: {response.outcome}"]
-    lines += [f"  {sentence(response.message)}"] if response.message else []
-    lines += [f"  {line}" for line in of_system(response)]
-    return "\n".join([*lines, *warning_lines(response)])
-
-
 def of_system(response: SystemResponse) -> Iterator[str]:
-    """Sentences on points, joints, loads, energy and the error."""
-    far, hard = (tidy(each, float(each.max())) for each in (response.largest, response.largest_acceleration))
-    heads, across = ["point", "moves by, m", "acceleration, m/s²"], [far, hard]
-    if response.residual_size is not None:
-        heads.append(f"residual from {response.residual_from:g} s, m")
-        across.append(tidy(response.residual_size, max(far)))
-    rows = [[name, *map(number, row)] for name, *row in zip(response.points, *across, strict=True)]
-    yield from columns(heads, rows)
-    every = named(response)
+    """Sentences on joints, loads, energy and the error."""
+    every = named_histories(response)
     size = max((float(np.abs(each).max()) for each in every.values()), default=0.0)
-    ends = tidy([float(each[-1]) for each in every.values()], max(size, max(far)))
+    ends = tidy([float(each[-1]) for each in every.values()], max(size, float(response.largest.max(initial=0.0))))
     joints = ", ".join(f"{name} {number(end)}" for name, end in zip(every, ends, strict=True))
     if joints:
         yield f"at the end {joints}"
@@ -188,4 +186,96 @@ def of_system(response: SystemResponse) -> Iterator[str]:
     error = percent(response.error_estimate)
     known = f"estimated error {error}" if math.isfinite(response.error_estimate) else "no error estimate"
     yield f"{response.integrator}, {response.steps} steps of {1e3 * response.step:.4g} ms, {known}"
-    yield from by_beam(response.errors)
+
+
+HINT = "Drag across a plot to zoom all of them, double-click to see all again, click to take the viewer to that time."
+
+
+def study(facts: Facts) -> Blocks:
+    """The verdicts on centrifuges, the largest displacements and loads, the machines, the errors, and all in words."""
+    motions = {name: each for name, each in facts["motions"].items() if "environment" in each}
+    yield from verdicts(facts)
+    yield Section("Motion", (Place("viewer"),))
+    yield Section("Histories", (Place("figures", HINT),))
+    yield Section("Response", (_tips(motions), loads_table(motions), *parts_tables(motions)))
+    for name, each in motions.items():
+        if "limits" in each:
+            yield Section(f"Machine: {name}", (limits(each), Sentence(followed(each))), titled=True, detail=True)
+    yield Section("Accuracy", tuple(errors(motions)), detail=True)
+    yield from in_words_of(facts)
+
+
+def verdicts(facts: Facts) -> Blocks:
+    """Runs that went wrong, and how well each centrifuge imitates its flight."""
+    wrong = [(name, each) for name, each in facts["motions"].items() if each["outcome"] != "done"]
+    lines = tuple(Sentence(f"motion {name} {each['outcome']}: {each['message']}", "bad") for name, each in wrong)
+    yield Section("Outcome", lines, detail=True)
+    for compared in facts["comparisons"]:
+        yield from verdict(compared, (compared["flight"], compared["centrifuge"]))
+
+
+def in_words_of(facts: Facts) -> Blocks:
+    """How every run ended, with its sentences, and every verdict with what it rests on."""
+    for name, each in facts["motions"].items():
+        kind = each.get("environment", name)
+        title = f"{name}{'' if kind == name else f' ({kind})'}: {each['outcome']}"
+        folded, tone = (title, "good") if each["outcome"] == "done" else ("", "bad")
+        message = (Sentence(sentence(each["message"]), "bad"),) if each.get("message") else ()
+        used = (limits(each),) if "limits" in each else ()
+        lines = Items(tuple(each.get("lines", ())))
+        yield Section(title, (*message, *used, lines), titled=True, folded=folded, tone=tone)
+    yield from map(said, facts["comparisons"])
+
+
+def _tips(motions: Facts) -> Block:
+    """Largest displacements of the tip along the axes in which it moves."""
+    rows = []
+    for name, each in motions.items():
+        sizes = {axis: known(peak["max_abs"]) for axis, peak in each["tip"].items()}
+        # A direction that nothing drives holds rounding errors, whose time would mean nothing.
+        moving = [axis for axis, size in sizes.items() if size > ROUNDING * max(sizes.values())]
+        shown = [axis for axis in moving if axis != "size" or len(moving) > 2]
+        rows += [{"motion": name, "axis": axis, **each["tip"][axis]} for axis in shown]
+    cells: Columns = {
+        "motion": "motion",
+        "tip along": "axis",
+        "largest, mm": "max_abs",
+        "at, s": "time_of_max:.3f",
+        "residual amplitude, mm": "residual_amplitude",
+    }
+    caption = "Displacement of the tip relative to the base axes"
+    return table(rows, cells, caption, optional=("residual amplitude, mm",))
+
+
+def model_study(facts: Facts) -> Blocks:
+    """A row per motion and model, then why a row has no answer or may be doubted."""
+
+    def written(key: str, form: str, scale: float = 1.0) -> Column:
+        return lambda row: "–" if row[key] is None else _signed(format(scale * row[key], form))
+
+    cells: Columns = {
+        "motion": lambda row: f"{row['motion']}, {facts['direction'][row['motion']]}",
+        "model": "model",
+        "outcome": lambda row: Cell(row["outcome"], "" if row["outcome"] == "done" else "bad"),
+        "peak, mm": written("peak", ".5g", 1e3),
+        "error": written("peak_error", "+.2%"),
+        "residual, mm": written("residual", ".4g", 1e3),
+        "error ": written("residual_error", "+.2%"),
+        "phase, rad": written("phase", "+.4f"),
+        "seconds": written("seconds", ".2f"),
+    }
+    yield table(facts["rows"], cells)
+    remarks = []
+    for row in facts["rows"]:
+        which = f"{row['motion']}, {row['model']}"
+        if row["message"]:
+            remarks.append(f"{which} {row['outcome']}: {row['message']}")
+        # To check with exact is what this study has just done.
+        remarks += [f"{which}: {each}" for each in row["warnings"] if "check with model.kind" not in each]
+    yield Items(tuple(remarks))
+    yield Section("Figures", (FIGURES,))
+
+
+def _signed(words: str) -> str:
+    """Digits without a minus before a zero."""
+    return words if any(digit in words for digit in "123456789") else words.replace("-", "+")

@@ -6,7 +6,7 @@ import json
 import math
 import shutil
 import sys
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,23 +14,22 @@ import numpy as np
 from gbeam.printable import json_printable
 
 if TYPE_CHECKING:
-    from gbeam.results.errors import ErrorEstimate, SystemErrors
-    from gbeam.results.parts import LoadPeaks, Loads
-    from gbeam.results.result import Result
+    from gbeam.results.parts import LoadPeaks
 
 
 def as_json(value: Any) -> str:
     """Write a value as JSON, with null for what is not finite, which JSON has no word for."""
-    return json_printable(json.dumps(_plain(value), indent=2, ensure_ascii=False, allow_nan=False))
+    return json_printable(json.dumps(plain(value), indent=2, ensure_ascii=False, allow_nan=False))
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
+    """Return a value as JSON has it, with None for what is not finite."""
     if callable(value):  # what takes time to find, and is not always printed
-        return _plain(value())
+        return plain(value())
     if isinstance(value, Mapping):
-        return {key: _plain(each) for key, each in value.items()}
+        return {key: plain(each) for key, each in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_plain(each) for each in value]
+        return [plain(each) for each in value]
     if isinstance(value, float):  # numpy's float64 is one
         return float(value) if math.isfinite(value) else None
     return value
@@ -41,8 +40,13 @@ def terminal_width() -> int:
     return shutil.get_terminal_size().columns if sys.stdout.isatty() else 0
 
 
-def columns(heads: list[str], rows: list[list[str]]) -> list[str]:
-    """Lines of a table, flush right but for its first column; on a narrower terminal each row in lines of its own."""
+def known(value: float | None) -> float:
+    """Return a number of JSON, which has null for what is none."""
+    return math.nan if value is None else float(value)
+
+
+def columns(heads: list[str], rows: list[list[str]], left: Collection[int] = (0,)) -> list[str]:
+    """Lines of a table, flush right but for some columns; on a narrower terminal each row in lines of its own."""
     widths = [max(len(row[k]) for row in [heads, *rows]) for k in range(len(heads))]
     room = terminal_width()
     if 0 < room < sum(widths) + 2 * len(widths):
@@ -52,11 +56,10 @@ def columns(heads: list[str], rows: list[list[str]]) -> list[str]:
             named = zip(heads[1:], others, strict=True)
             folded += [first, *(f"  {head:<{beside}}  {cell}" for head, cell in named if cell)]
         return folded
-    cells = [
-        [row[0].ljust(widths[0]), *(c.rjust(w) for c, w in zip(row[1:], widths[1:], strict=True))]
+    return [
+        "  ".join(f"{cell:{'<' if k in left else '>'}{widths[k]}}" for k, cell in enumerate(row)).rstrip()
         for row in [heads, *rows]
     ]
-    return ["  ".join(row).rstrip() for row in cells]
 
 
 def number(value: float, digits: int = 4) -> str:
@@ -73,11 +76,12 @@ def percent(share: float) -> str:
     return f"{100 * share:.0f} %" if share >= 0.1 else f"{number(100 * share, 2)} %"
 
 
-def error_words(errors: ErrorEstimate) -> str:
+def errors_in_words(errors: Mapping[str, float | None]) -> str:
     """An error with what it is made of, the largest first: ``0.29 % (model 0.27, shapes 0.01, step 0.002)``."""
-    known = sorted(((size, name) for name, size in errors.causes.items() if size > 0), reverse=True)
-    shares = ", ".join(f"{name} {number(100 * size, 2)}" for size, name in known)
-    return f"{percent(errors.total)}{f' ({shares})' if len(known) > 1 else ''}"
+    parts = {name: known(size) for name, size in errors.items() if name != "total"}
+    ranked = sorted(((size, name.replace("_", " ")) for name, size in parts.items() if size > 0), reverse=True)
+    shares = ", ".join(f"{name} {number(100 * size, 2)}" for size, name in ranked)
+    return f"{percent(known(errors['total']))}{f' ({shares})' if len(ranked) > 1 else ''}"
 
 
 def tidy(values: Iterable[float], size: float) -> list[float]:
@@ -102,23 +106,6 @@ def stress_words(stations: Any, tension: Any, compression: Any, yield_strength: 
     return f"{words}, {margin_words(float(yield_margin(yield_strength, np.array(stress))))}"
 
 
-def resting_loads(loads: Loads) -> str:
-    """Force and moment of the base on the root, and the stress, at rest."""
-    largest = float(np.abs(loads.force).max())
-    lever = max(float(np.abs(loads.moment).max()), largest * float(loads.stations[-1]))
-    force, moment = (
-        ", ".join(f"{value:.5g}" for value in tidy(vector[0], size))
-        for vector, size in ((loads.root_force, largest), (loads.root_moment, lever))
-    )
-    words = f"base on root: force ({force}) N, moment ({moment}) N m"
-    if np.isfinite(loads.stress).all():
-        extremes = loads.stress_tension[0], loads.stress_compression[0]
-        words += f"; {stress_words(loads.stations, *extremes, loads.yield_strength)}"
-    if loads.beam_torque is not None:
-        words += f"; torque from the hub {tidy(loads.beam_torque, lever)[0]:.5g} N m"
-    return words
-
-
 def largest_loads(peaks: LoadPeaks) -> str:
     """Largest sizes over time: at the root, of the stress, and of the torque about a hub's axis."""
     force, moment = (float(each[0].size.value) for each in (peaks.force, peaks.moment))
@@ -131,29 +118,6 @@ def largest_loads(peaks: LoadPeaks) -> str:
     return words
 
 
-def warning_lines(result: Result) -> list[str]:
-    """A line for each warning of a result."""
-    return [f"  warning: {each}" for each in result.warnings]
-
-
 def sentence(text: str) -> str:
     """Words with a capital letter in front."""
     return text[:1].upper() + text[1:]
-
-
-def by_beam(errors: SystemErrors) -> Iterator[str]:
-    """Lines on a system's errors, beam by beam."""
-    if len(errors.by_beam):
-        alone = zip(errors.beams, errors.by_beam, strict=True)
-        yield f"errors by shapes and model of {', '.join(f'{name} {percent(float(each))}' for name, each in alone)}"
-    if len(errors.loads_by_beam):
-        each = zip(errors.beams, errors.loads_by_beam, errors.stress_by_beam, strict=True)
-        listed = ", ".join(
-            f"{name} {percent(float(loads))} and {percent(float(stress)) if math.isfinite(stress) else 'unknown'}"
-            for name, loads, stress in each
-        )
-        yield f"errors of root loads and of stress of {listed}"
-    if math.isfinite(errors.displacement.beam_theory):
-        yield f"errors by the theory of slender beams {percent(errors.displacement.beam_theory)}"
-    if math.isfinite(errors.displacement.mesh):
-        yield f"errors of the meshes {percent(errors.displacement.mesh)}"

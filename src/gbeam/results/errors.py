@@ -88,7 +88,7 @@ class SystemErrors(Part):
         "of the largest size of the normal stress over a beam's sections, the largest of all",
         default_factory=ErrorEstimate,
     )
-    beams: tuple[str, ...] = labels("beam that is judged", "judged", default=())
+    beams: tuple[str, ...] = labels("beam that is judged", "judged", key="", default=())
     by_beam: Floats = quantity(
         "",
         "estimated error that the beam's shapes and model bring",

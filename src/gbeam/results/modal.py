@@ -191,6 +191,11 @@ class Campbell(Noted, Figured):
         """Speed at which the equilibrium is lost, rad/s; None where it is not."""
         return None if self.critical is None else self.critical.value
 
+    @declared("", "how the equilibrium is lost, as a sentence", role="fact", name=None)
+    def critical_speed_reason(self) -> str | None:
+        """How the equilibrium is lost, None where it is not."""
+        return None if self.critical is None else self.critical.reason
+
     @declared("", "errors of the critical speed", role="part", name=None)
     def critical_speed_errors(self) -> ErrorEstimate | None:
         """Errors of the critical speed, None where there is none."""

@@ -34,6 +34,10 @@ class FittedColumn(Part):
         note="NaN where the data are no history; noise has none",
     )
 
+    @declared("", "data in the column", name=None)
+    def data(self) -> int:
+        return len(self.measured)
+
     @property
     def residual(self) -> Floats:
         """Measured less fitted."""

@@ -177,7 +177,7 @@ def place(
     written = _apply(loaded, scenario, name, placement.changes) if write_back and placement.changes else None
     deliver(
         placement, "place", folder, output, origin=loaded.case.provenance,
-        facts={"written": written}, listed=False, written=written,
+        facts={"written": written}, listed=False,
     )  # fmt: skip
     if placement.outcome != "done":
         complain(f"{placement.outcome}: motion.{name}: {placement.message}")

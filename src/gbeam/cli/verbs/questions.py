@@ -106,8 +106,7 @@ def campbell(
     unit, size = unit_of(asked(options).get("to") or asked(options).get("from", "0"), "angular rate")
     figures = {"campbell": partial(steady.campbell, diagram, loaded.case.title, (1 / size, unit))}
     deliver(
-        diagram, "campbell", folder, output, origin=loaded.case.provenance, figures=figures,
-        unit=unit, size=size,
+        diagram, "campbell", folder, output, origin=loaded.case.provenance, figures=figures, speeds={unit: 1 / size},
     )  # fmt: skip
     return 0
 
@@ -147,7 +146,6 @@ def critical_speed(
     critical = loaded.answer(question, name, at, options, Needs())
     deliver(
         critical, "critical_speed", folder, output, origin=loaded.case.provenance, listed=False,
-        motion=name,
     )  # fmt: skip
     return 0
 
@@ -268,7 +266,7 @@ def linearize(
     system = replace(system, provenance=loaded.case.provenance)
     deliver(
         system, "linear", folder, output, facts={"gauges": [asdict(gauge) for gauge in gauges]}, listed=False,
-        more=lambda hidden: system.to_mat(hidden / "linear.mat"), gauges=gauges,
+        more=lambda hidden: system.to_mat(hidden / "linear.mat"),
     )  # fmt: skip
     return 0
 

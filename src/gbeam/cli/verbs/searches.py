@@ -81,7 +81,7 @@ def fit(
         )
 
     write_found(answer, scenario, write)
-    deliver(answer, "fit", folder, output, suffix=".nc", written=write)
+    deliver(answer, "fit", folder, output, suffix=".nc", copy=write)
     return 0
 
 
@@ -148,7 +148,7 @@ def optimize(
         )
 
     write_found(answer, scenario, write)
-    deliver(answer, "optimum", folder, output, verb="optimize", suffix=".nc", written=write)
+    deliver(answer, "optimum", folder, output, verb="optimize", suffix=".nc", copy=write)
     if answer.outcome != "done":
         complain(f"{answer.outcome}: no values were found that keep the requirements")
         return FAILED

@@ -6,130 +6,52 @@ import base64
 import hashlib
 import json
 import tomllib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Mapping
 from importlib.resources import files
 from typing import Any, NamedTuple
 
 from gbeam.errors import InputError
 from gbeam.figures import Describe
-from gbeam.figures.description import raised
 from gbeam.guards.limits import parse_json
 from gbeam.printable import json_printable
+from gbeam.report import blocks_of, warnings_of
+from gbeam.report.blocks import Blocks, Section, Sentence, Verbatim, pairs
 from gbeam.report.facts import facts_text
-from gbeam.report.page import answers, machine, searches
-from gbeam.report.page.parts import (
-    Numbers,
-    Value,
-    badge,
-    drawn,
-    escaped,
-    folded,
-    heading,
-    listed,
-    paragraph,
-    section,
-    table,
-    verbatim,
-)
+from gbeam.report.page.parts import Numbers, badge, drawn, drawn_blocks, escaped, heading
 from gbeam.report.page.records import figures_in, modes_in
 from gbeam.report.page.scene import scene, shapes, shapes_of_system
 from gbeam.report.words import as_json
 from gbeam.results.result import Result
 
-Body = Callable[[Mapping[str, Any], str, str], str]  # of the JSON, the viewer's place, and the figures
-
 
 class Page(NamedTuple):
-    """Page of a kind of result: its verb, the body, and keys by which files of 0.2, which name no kind, are known."""
+    """Page of a kind of result: its verb, and keys by which files of 0.2, which name no kind, are known."""
 
     verb: str
-    body: Body
     keys: tuple[str, ...]
     of_motions: tuple[str, ...] = ()
 
 
-_APART = ("form", "units", "provenance", "warnings", "files", "title", "outcome", "state")
-
-
-def _quantities(facts: Mapping[str, Any], viewer: str, plots: str) -> str:
-    """The inside of the page of a kind that has none of its own: its quantities, and a table for each list of them."""
-    known = {key: value for key, value in facts.items() if key not in _APART}
-    return "".join([section("View", viewer), *_inside(known, facts.get("units", {}), ""), section("Figures", plots)])
-
-
-def _system_study(facts: Mapping[str, Any], viewer: str, plots: str) -> str:
-    """The verdicts on centrifuges, the quantities of all responses, and what the axes do."""
-    motions = {name: each for name, each in facts["motions"].items() if "limits" in each}
-    alone = {key: value for key, value in facts.items() if key != "comparisons"}
-    alone["motions"] = {n: {k: v for k, v in each.items() if k != "limits"} for n, each in facts["motions"].items()}
-    machines = "".join(machine.machine_section(name, each) for name, each in motions.items())
-    return answers.verdicts(facts) + _quantities(alone, viewer, plots) + machines
-
-
-def _inside(known: Mapping[str, Any], units: Mapping[str, str], place: str) -> Iterator[str]:
-    """Single values in a table, lists and named rows of them in one each; what such rows hold stands below its name."""
-    single = {key: value for key, value in known.items() if not isinstance(value, (dict, list))}
-    told = {key: value for key, value in single.items() if value not in (None, "")}
-    rows = [(key.replace("_", " "), _shown(value), raised(units.get(place + key, ""))) for key, value in told.items()]
-    yield table(("", "", ""), rows, words=(0, 2))
-    for key, value in known.items():
-        below = f"{place}{key}[i]."
-        if key == "beams":
-            beams = {name: {"loads": each} for name, each in value.items()}
-            over_time = all("sections" in each for each in value.values())
-            yield (answers.loads_table if over_time else answers.resting_loads_table)(beams, "beam")
-            continue
-        if key == "solids":
-            yield answers.stress_table(value, "body")
-            continue
-        if isinstance(value, dict):
-            below = f"{place}{key}.*."
-            if key == "motions":
-                for name, each in value.items():
-                    yield heading(f"motion {name}", 3)
-                    yield from _inside({k: v for k, v in each.items() if k not in _APART}, units, below)
-                continue
-            value = [{"": name, **each} for name, each in value.items() if isinstance(each, dict)]
-        if isinstance(value, list) and value and all(isinstance(each, dict) for each in value):
-            yield heading(key.replace("_", " "), 3)
-            yield _rows_table(value, units, below)
-
-
-def _rows_table(rows: list[Mapping[str, Any]], units: Mapping[str, str], place: str) -> str:
-    """A table of records: a column for each of their single values."""
-    names = [key for key in rows[0] if not isinstance(rows[0][key], (dict, list))]
-    words = [k for k, key in enumerate(names) if any(isinstance(row.get(key), str) for row in rows)]
-    cells = [[_shown(row.get(key)) for key in names] for row in rows]
-    heads = [", ".join(filter(None, (name.replace("_", " "), raised(units.get(place + name, ""))))) for name in names]
-    return table(heads, cells, words=words)
-
-
-def _shown(value: Any) -> Value:
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    return str(value) if isinstance(value, int) else value
-
-
 PAGES = {
-    "Study": Page("run", answers.run_body, ("motions", "comparisons")),
-    "Comparison": Page("run", machine.comparison_body, ("verdict", "flight", "centrifuge")),
-    "ModelStudy": Page("models", _quantities, ("reference", "rows")),
-    "StateSpace": Page("linearize", _quantities, ("states", "inputs", "outputs")),
-    "Deflection": Page("static", answers.static_body, ("motions",), ("displacement", "tip", "stable")),
-    "MachinePlan": Page("plan", machine.plan_body, ("motions",), ("limits", "tracks")),
-    "Modes": Page("modes", answers.modes_body, ("modes", "instabilities")),
-    "Campbell": Page("campbell", answers.campbell_body, ("tracks", "crossings")),
-    "Critical": Page("critical-speed", answers.critical_body, ("quantity", "searched_to", "reason")),
-    "CriticalMap": Page("critical-speed --masses", answers.critical_map_body, ("mass", "position", "critical_speed")),
-    "Placement": Page("place", machine.placement_body, ("fraction_of_length", "options")),
-    "SystemStudy": Page("run", _system_study, ("motions",), ("points", "coordinates", "steps")),
-    "SystemRest": Page("static", _quantities, ("motions",), ("points", "coordinates", "ground_force")),
-    "SystemModes": Page("modes", _quantities, ("modes", "body_names")),
-    "Sweep": Page("sweep", searches.sweep_body, ("parameters", "measures")),
-    "Fit": Page("fit", searches.fit_body, ("covariance", "columns")),
-    "Optimum": Page("optimize", searches.optimum_body, ("minimise", "subject_to")),
-    "Sensitivity": Page("sensitivity", searches.sensitivity_body, ("measures", "run_error")),
-    "ShapedCommand": Page("shape", searches.shaping_body, ("commands", "coefficients")),
+    "Study": Page("run", ("motions", "comparisons")),
+    "Comparison": Page("run", ("verdict", "flight", "centrifuge")),
+    "ModelStudy": Page("models", ("reference", "rows")),
+    "StateSpace": Page("linearize", ("states", "inputs", "outputs")),
+    "Deflection": Page("static", ("motions",), ("displacement", "tip", "stable")),
+    "MachinePlan": Page("plan", ("motions",), ("limits", "tracks")),
+    "Modes": Page("modes", ("modes", "instabilities")),
+    "Campbell": Page("campbell", ("tracks", "crossings")),
+    "Critical": Page("critical-speed", ("quantity", "searched_to", "reason")),
+    "CriticalMap": Page("critical-speed --masses", ("mass", "position", "critical_speed")),
+    "Placement": Page("place", ("fraction_of_length", "options")),
+    "SystemStudy": Page("run", ("motions",), ("points", "coordinates", "steps")),
+    "SystemRest": Page("static", ("motions",), ("points", "coordinates", "ground_force")),
+    "SystemModes": Page("modes", ("modes", "body_names")),
+    "Sweep": Page("sweep", ("parameters", "measures")),
+    "Fit": Page("fit", ("covariance", "columns")),
+    "Optimum": Page("optimize", ("minimise", "subject_to")),
+    "Sensitivity": Page("sensitivity", ("measures", "run_error")),
+    "ShapedCommand": Page("shape", ("commands", "coefficients")),
 }
 
 
@@ -143,10 +65,6 @@ def _kind(facts: Mapping[str, Any]) -> str | None:
         if facts.keys() >= set(page.keys) and all(motion.keys() >= set(page.of_motions) for motion in motions):
             return name
     return None
-
-
-def _body(kind: str) -> Body:
-    return PAGES[kind].body if kind in PAGES else _quantities
 
 
 def html(
@@ -168,19 +86,11 @@ def html(
     plots = drawn((each() for each in described.values()), numbers, header)
     verb = PAGES[kind].verb if kind in PAGES else kind
     header |= viewer(kind, facts, variables or {}, numbers)
-    body = _body(kind)(facts, '<div id="gbeam-viewer"></div>' if header.keys() & {"scene", "modes"} else "", plots)
+    shown = '<div id="gbeam-viewer"></div>' if header.keys() & {"scene", "modes"} else ""
+    blocks = [Section("Warnings", tuple(warnings_of(facts))), *blocks_of(kind, facts), *_origin(origin)]
+    body, state = drawn_blocks(blocks, shown, plots), badge(facts.get("state", facts["outcome"]))
     title = facts.get("title") or _title(origin) or f"gbeam {verb}"
-    warnings = answers.warnings(facts) if "motions" in facts else facts.get("warnings", [])
-    if warnings:
-        body = heading("Warnings") + listed(warnings, "warning") + body
-    return _page(
-        title,
-        badge(facts.get("state", facts["outcome"])),
-        _subject(verb, origin),
-        body + _origin(origin),
-        header,
-        numbers,
-    )
+    return _page(title, state, _subject(verb, origin), body, header, numbers)
 
 
 def viewer(
@@ -226,10 +136,9 @@ def _title(origin: Mapping[str, Any]) -> str:
     return str(scenario.get("title", "")) if isinstance(scenario, dict) else ""
 
 
-def _origin(origin: Mapping[str, Any]) -> str:
+def _origin(origin: Mapping[str, Any]) -> Blocks:
     if not origin:
-        return ""
-    changes = paragraph("changed by --set: " + ", ".join(origin["overrides"])) if origin["overrides"] else ""
+        return
     rows = [
         ("date", _date(origin["date"]) if origin.get("date") else ""),
         ("command", origin["command"]),
@@ -240,9 +149,9 @@ def _origin(origin: Mapping[str, Any]) -> str:
         ("platform", origin["platform"]),
         ("packages", ", ".join(f"{name} {version}" for name, version in origin["dependencies"].items())),
     ]
-    facts = table(("", ""), [row for row in rows if row[1]], words=(0, 1))
-    scenario = folded("Scenario file", verbatim(origin["scenario"])) if origin["scenario"] else ""
-    return heading("Scenario and provenance") + changes + scenario + facts
+    changes = (Sentence("changed by --set: " + ", ".join(origin["overrides"])),) if origin["overrides"] else ()
+    scenario = Section("", (Verbatim(origin["scenario"]),) if origin["scenario"] else (), folded="Scenario file")
+    yield Section("Scenario and provenance", (*changes, scenario, pairs(row for row in rows if row[1])))
 
 
 def _page(title: str, state: str, subject: str, body: str, header: Mapping[str, Any], numbers: Numbers) -> str:
@@ -282,8 +191,6 @@ def _hash(text: str) -> str:
 def html_of(result: Result) -> str:
     """Return the inside of a result's page, without its figures and the viewer."""
     known = json.loads(facts_text(result))
-    kind = str(known["form"]["kind"])
-    title, inside = known.get("title", ""), _body(kind)(known, "", "")
-    warnings = answers.warnings(known) if "motions" in known else known["warnings"]
-    said = badge(known.get("state", known["outcome"]))
-    return f"<div>{heading(title, 3) if title else ''}<p>{said}</p>{listed(warnings, 'warning')}{inside}</div>"
+    blocks = drawn_blocks([*warnings_of(known), *blocks_of(str(known["form"]["kind"]), known)], "", "")
+    title, said = known.get("title", ""), badge(known.get("state", known["outcome"]))
+    return f"<div>{heading(title, 3) if title else ''}<p>{said}</p>{blocks}</div>"

@@ -7,8 +7,8 @@ import hashlib
 import html
 import math
 import re
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ import numpy as np
 from gbeam.figures.description import GREY, REFERENCE, Bars, Figure, Line, Map, Panel
 from gbeam.numerics.samples import thinned
 from gbeam.printable import printable
+from gbeam.report.blocks import Block, Cell, Items, Place, Sentence, Table, Verbatim
 from gbeam.report.words import number, sentence
 from gbeam.results.imitation.criteria import GOOD
 from gbeam.results.result import Floats
@@ -26,23 +27,9 @@ def escaped(text: object) -> str:
     return html.escape(printable(str(text)))
 
 
-@dataclass(frozen=True)
-class Cell:
-    """A cell of a table with a class, or a bar beside it."""
-
-    text: str
-    kind: str = ""  # good, bad or empty
-    share: float = math.nan  # of the bar, 0 to 1; NaN for none
-
-
 def heading(text: str, level: int = 2) -> str:
     """A heading."""
     return f"<h{level}>{escaped(text)}</h{level}>"
-
-
-def section(title: str, inside: str) -> str:
-    """A heading and what stands below it; nothing where there is nothing."""
-    return heading(title) + inside if inside else ""
 
 
 def paragraph(text: str, kind: str = "") -> str:
@@ -50,50 +37,50 @@ def paragraph(text: str, kind: str = "") -> str:
     return f"<p{_class(kind)}>{escaped(sentence(text))}</p>"
 
 
-def listed(lines: Iterable[str], kind: str = "") -> str:
-    """A list; nothing where there is no line."""
-    items = "".join(f"<li>{escaped(sentence(line))}</li>" for line in lines)
-    return f"<ul{_class(kind)}>{items}</ul>" if items else ""
+def drawn_blocks(blocks: Iterable[Block], viewer: str, figures: str, level: int = 2) -> str:
+    """Return blocks as HTML, with the viewer and the figures at their places, below headings of a level."""
+    drawn = []
+    for tables, group in groupby(blocks, lambda block: isinstance(block, Table)):
+        inside = [shown for block in group if (shown := _drawn_block(block, viewer, figures, level))]
+        beside = tables and len(inside) > 1
+        drawn.append(f'<div class="gbeam-tables">{"".join(inside)}</div>' if beside else "".join(inside))
+    return "".join(drawn)
 
 
-def folded(summary: str, inside: str) -> str:
-    """Content that shows once its summary is clicked."""
-    return f"<details><summary>{escaped(summary)}</summary>{inside}</details>"
-
-
-def verbatim(text: str) -> str:
-    """Text as it stands in a file."""
-    return f"<pre>{escaped(text)}</pre>"
-
-
-Value = Cell | str | float | None  # of a cell
-
-
-def table(
-    head: Sequence[str],
-    rows: Iterable[Sequence[Value]],
-    caption: str = "",
-    words: Iterable[int] = (0,),
-    optional: Iterable[int] = (),
-) -> str:
-    """A table whose columns are numbers, to the right with four digits, but for those of `words`.
-
-    The columns that are `optional` are left out where no row has anything there.
-    """
-    texts, every = set(words), [[_shown(value) for value in row] for row in rows]
-    if not every:
+def _drawn_block(block: Block, viewer: str, figures: str, level: int) -> str:
+    match block:
+        case Table():
+            return table(block)
+        case Sentence():
+            return paragraph(block.text, block.tone)
+        case Items():
+            items = "".join(f"<li>{escaped(sentence(line))}</li>" for line in block.lines)
+            return f"<ul{_class(block.tone)}>{items}</ul>" if items else ""
+        case Verbatim():
+            return f"<pre>{escaped(block.text)}</pre>"
+        case Place():
+            shown = viewer if block.of == "viewer" else figures
+            return (paragraph(block.hint, "faint gbeam-screen") if shown and block.hint else "") + shown
+    inside = drawn_blocks(block.blocks, viewer, figures, level + bool(block.title))
+    if not inside:
         return ""
-    empty = {column for column in optional if all(row[column].text in ("", "–") for row in every)}
-    kept = [column for column in range(len(head)) if column not in empty]
+    if block.folded:
+        return f"<details><summary>{escaped(block.folded)}</summary>{inside}</details>"
+    return (heading(block.title, level) if block.title else "") + inside
+
+
+def table(block: Table) -> str:
+    """A table whose columns of numbers stand to the right; nothing where it has no row."""
+    if not block.rows:
+        return ""
+    numeric = [block.numeric(k) for k in range(len(block.heads))]
     top = "".join(
-        f'<th scope="col"{_class("" if column in texts else "number")}>{_breaking(head[column])}</th>'
-        if head[column]
-        else "<td></td>"
-        for column in kept
+        f'<th scope="col"{_class("number" if right else "")}>{_breaking(head)}</th>' if head else "<td></td>"
+        for head, right in zip(block.heads, numeric, strict=True)
     )
-    body = "".join(f"<tr>{''.join(_cell(row[column], column not in texts) for column in kept)}</tr>" for row in every)
-    title = f"<caption>{escaped(caption)}</caption>" if caption else ""
-    top = f"<thead><tr>{top}</tr></thead>" if any(head) else ""
+    body = "".join(f"<tr>{''.join(map(_cell, row, numeric))}</tr>" for row in block.rows)
+    title = f"<caption>{escaped(block.caption)}</caption>" if block.caption else ""
+    top = f"<thead><tr>{top}</tr></thead>" if any(block.heads) else ""
     return f'<div class="gbeam-wide"><table>{title}{top}<tbody>{body}</tbody></table></div>'
 
 
@@ -107,32 +94,12 @@ def badge(state: str) -> str:
     return f'<span class="badge {"good" if state in GOOD else "bad"}">{escaped(state)}</span>'
 
 
-def plot_places(drawn: Iterable[tuple[str, str]]) -> str:
-    """Places of plots, each by its id and title; nothing where there is none."""
-    places = "".join(
-        f'<figure><figcaption>{escaped(title)}</figcaption><div id="{escaped(name)}"></div></figure>'
-        for name, title in drawn
-    )
-    return f'<div class="gbeam-plots">{places}</div>' if places else ""
-
-
-def known(value: float | None) -> float:
-    """A number of JSON, which has null for what is none."""
-    return math.nan if value is None else float(value)
-
-
-def _shown(value: Value) -> Cell:
-    if isinstance(value, Cell):
-        return value
-    return Cell(value if isinstance(value, str) else number(known(value)))
-
-
 def _cell(cell: Cell, numeric: bool) -> str:
     inside = escaped(cell.text)
     if math.isfinite(cell.share):
         bar = f'<meter class="share" min="0" max="1" value="{min(cell.share, 1.0):.3f}"></meter>'
         inside = f"{bar}<span>{inside}</span>"
-    return f"<td{_class(' '.join(filter(None, (cell.kind, 'number' if numeric else ''))))}>{inside}</td>"
+    return f"<td{_class(' '.join(filter(None, (cell.tone, 'number' if numeric else ''))))}>{inside}</td>"
 
 
 def _class(names: str) -> str:
@@ -185,7 +152,11 @@ def _figure(figure: Figure, numbers: Numbers, header: dict[str, Any]) -> str:
     notes = [*figure.notes, *([f"grey: {', '.join(reasons)}"] if reasons else [])]
     parts = [heading(figure.subject, 3), *(paragraph(note, "faint") for note in notes)]
     plain = [panel for panel in figure.panels if panel.bars is None and panel.map is None]
-    parts.append(plot_places([_plot(panel, figure.subject, numbers, header["plots"]) for panel in plain]))
+    places = "".join(
+        f'<figure><figcaption>{escaped(title)}</figcaption><div id="{escaped(name)}"></div></figure>'
+        for name, title in (_plot(panel, figure.subject, numbers, header["plots"]) for panel in plain)
+    )
+    parts.append(f'<div class="gbeam-plots">{places}</div>' if places else "")
     parts += [_table(panel, panel.bars) for panel in figure.panels if panel.bars is not None]
     parts += [_map(panel, panel.map, numbers, header["maps"]) for panel in figure.panels if panel.map is not None]
     return "".join(parts)
@@ -247,14 +218,14 @@ def _ascending(x: Floats) -> Floats:
 def _table(panel: Panel, bars: Bars) -> str:
     largest = max((float(np.nanmax(np.abs(each), initial=0.0)) for each in bars.values.values()), default=0.0) or 1.0
 
-    def cell(label: str, k: int) -> Value:
+    def cell(label: str, k: int) -> Cell:
         value, words = bars.values[label][k], number(bars.values[label][k])
         if bars.low:
             words += f" ({number(bars.low[label][k])} to {number(bars.high[label][k])})"
         return Cell(words, share=abs(value) / largest)
 
-    rows = [[name, *(cell(label, k) for label in bars.values)] for k, name in enumerate(bars.names)]
-    return table((panel.x, *bars.values), rows, panel.title)
+    rows = tuple((Cell(name), *(cell(label, k) for label in bars.values)) for k, name in enumerate(bars.names))
+    return table(Table((panel.x, *bars.values), rows, panel.title))
 
 
 def _map(panel: Panel, cells: Map, numbers: Numbers, maps: list[dict[str, Any]]) -> str:

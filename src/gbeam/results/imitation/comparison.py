@@ -194,7 +194,7 @@ class MachinePlan(Judged, Driven, Figured):
             self.tracks or "flight", self.name or "centrifuge", self.peaks, self.accounting, whole=self.whole
         )
 
-    @property
+    @declared("", "the outcome, with what limits make of it", role="fact", name=None)
     def state(self) -> str:
         """Outcome with what the limits of acceptance make of it."""
         return state_of(self.outcome, [self])

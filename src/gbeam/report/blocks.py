@@ -1,0 +1,262 @@
+"""Blocks of which a report is made: tables, sentences and sections as data, drawn in words here and by the page."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from gbeam.constants import STANDARD_GRAVITY
+from gbeam.report.words import columns, number, percent
+
+Facts = Mapping[str, Any]  # of the JSON, with None for what is not finite
+# Units in which tables have numbers that JSON has in SI.
+_SHOWN = {"mm": 1e3, "ms": 1e3, "MPa": 1e-6, "g": 1 / STANDARD_GRAVITY, "deg": 180 / math.pi, "rpm": 30 / math.pi}
+
+_NUMERIC = re.compile(r"[-+±–]?\s*\d.*|–?")
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A cell of a table with a tone, or a bar beside it."""
+
+    text: str
+    tone: str = ""
+    share: float = math.nan  # of the bar, 0 to 1; NaN for none
+
+
+Value = Cell | str | float | None  # of a cell; numbers get four digits
+Column = str | Callable[[Any], Value]  # path in a row with a format, such as `tip.x:.6g`, or what makes a cell of it
+Columns = dict[str, Column]  # by their heads
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of cells below their heads; of what is longer than `most` a terminal has the first rows only."""
+
+    heads: tuple[str, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+    caption: str = ""
+    most: int | None = None
+    detail: bool = False  # whether it is for a page only
+
+    def numeric(self, column: int) -> bool:
+        """Return whether all that a column has are numbers, which stand to the right."""
+        return all(_NUMERIC.fullmatch(row[column].text) for row in self.rows)
+
+
+@dataclass(frozen=True)
+class Sentence:
+    """A sentence."""
+
+    text: str
+    tone: str = ""
+
+
+@dataclass(frozen=True)
+class Items:
+    """Sentences one below the other, in a page as a list."""
+
+    lines: tuple[str, ...]
+    tone: str = ""
+
+
+@dataclass(frozen=True)
+class Verbatim:
+    """Text to be copied."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Place:
+    """Place of the figures, or of the viewer, in a page."""
+
+    of: Literal["figures", "viewer"]
+    hint: str = ""
+
+
+@dataclass(frozen=True)
+class Section:
+    """Blocks below a title; nothing where no block has anything."""
+
+    title: str
+    blocks: tuple[Block, ...]
+    titled: bool = False  # whether a terminal has the title, too
+    folded: str = ""  # words that a page shows instead until they are clicked, if any
+    detail: bool = False  # whether it is for a page only
+    tone: str = ""  # of the title in a terminal
+
+
+Block = Table | Sentence | Items | Verbatim | Place | Section
+Blocks = Iterator[Block]
+FIGURES = Place("figures")
+
+
+def table(
+    rows: Iterable[Any], cells: Mapping[str, Column], caption: str = "", optional: Iterable[str] = (), **more: Any
+) -> Table:
+    """Return a table of columns by their heads; those that are `optional` are left out where no row has a value.
+
+    Numbers at paths are in SI: a head such as "stress, MPa" converts them, and rounding errors of the largest in that
+    unit are zero.
+    """
+    forms = ["" if callable(column) else column.partition(":")[2] for column in cells.values()]
+    units = ["" if callable(column) else _unit(head) for head, column in cells.items()]
+    every = [[_value(row, column) for column in cells.values()] for row in rows]
+    sizes = dict.fromkeys(units, 0.0)
+    for unit, value in (pair for row in every for pair in zip(units, row, strict=True)):
+        sizes[unit] = max(sizes[unit], abs(value) if isinstance(value, (int, float)) else 0.0)
+
+    def cell(value: Value, form: str, unit: str) -> Cell:
+        if unit and isinstance(value, (int, float)):
+            value = 0.0 if abs(value) <= max(1e-10 * sizes[unit], 1e-20) else factor(unit) * value
+        return _cell(value, form)
+
+    drawn = [tuple(map(cell, row, forms, units)) for row in every]
+    kept = [k for k, head in enumerate(cells) if head not in optional or any(row[k].text not in " –" for row in drawn)]
+    heads = tuple(head.strip() for k, head in enumerate(cells) if k in kept)
+    return Table(heads, tuple(tuple(row[k] for k in kept) for row in drawn), caption, **more)
+
+
+def _unit(head: str) -> str:
+    return head.strip().rpartition(", ")[2] if ", " in head else ""
+
+
+def factor(unit: str) -> float:
+    """Number of a unit, or of the one at the end of a head, in one of SI."""
+    return _SHOWN.get(_unit(unit) or unit, 1.0)
+
+
+def pairs(rows: Iterable[tuple[str, Value]], caption: str = "") -> Table:
+    """Return a table of names and values, without heads."""
+    return Table(("", ""), tuple((Cell(name), _cell(value)) for name, value in rows), caption)
+
+
+def named(rows: Facts) -> list[Facts]:
+    """Rows of JSON that stand by name, each with its name."""
+    return [{"name": name, **each} for name, each in rows.items()]
+
+
+def numbered(rows: Iterable[Facts]) -> list[Facts]:
+    """Rows of JSON that stand in a list, each with its number from one."""
+    return [{"number": str(k), **each} for k, each in enumerate(rows, 1)]
+
+
+_APART = ("form", "units", "provenance", "warnings", "files", "title", "outcome", "state", "lines")
+
+
+def quantities(
+    facts: Facts, units: Mapping[str, str] | None = None, place: str = "", words: Mapping[str, str] | None = None
+) -> Iterator[Block]:
+    """Yield any quantities of JSON, `words` by path: single values in a table, lists and named rows in one each."""
+    from gbeam.figures.description import raised  # with figures of every kind, which `gbeam check` does without
+
+    units = facts.get("units", {}) if units is None else units
+    told = {key: value for key, value in facts.items() if key not in _APART and value not in (None, "")}
+    single: dict[str, Column] = {
+        "": lambda key: key.replace("_", " "),
+        " ": lambda key: told[key],
+        "  ": lambda key: raised(units.get(place + key, "")),
+        "   ": lambda key: (words or {}).get(place + key, ""),
+    }
+    yield table([key for key, value in told.items() if not isinstance(value, (dict, list))], single, optional=("   ",))
+    for key, value in told.items():
+        if key == "motions":
+            for name, each in value.items():
+                yield Section(
+                    f"motion {name}", tuple(quantities(each, units, f"{place}motions.*.", words)), titled=True
+                )
+            continue
+        if isinstance(value, dict) and any(not isinstance(each, dict) for each in value.values()):
+            yield Section(key.replace("_", " "), tuple(quantities(value, units, f"{place}{key}.", words)), titled=True)
+            continue
+        named_rows = isinstance(value, dict)
+        rows = [{"": name, **row} for name, row in value.items()] if named_rows else value
+        if isinstance(rows, list) and rows and all(isinstance(row, dict) for row in rows):
+            below = f"{place}{key}.*." if named_rows else f"{place}{key}[i]."
+            keys = [key for key, each in rows[0].items() if not isinstance(each, (dict, list))]
+            heads = (
+                ", ".join(filter(None, (each.replace("_", " "), raised(units.get(below + each, ""))))) for each in keys
+            )
+            yield Section(
+                key.replace("_", " "), (table(rows, dict(zip(heads, keys, strict=True)), most=24),), titled=True
+            )
+
+
+def _value(row: Any, column: Column) -> Value:
+    if callable(column):
+        return column(row)
+    for key in column.partition(":")[0].split("."):
+        row = row.get(key) if isinstance(row, Mapping) else None if row is None else row[int(key)]
+    value: Value = row
+    return value
+
+
+def _cell(value: Value, form: str = "") -> Cell:
+    match value:
+        case Cell():
+            return value
+        case bool():
+            return Cell("yes" if value else "no")
+        case str() | int():
+            return Cell(str(value))
+        case None:
+            return Cell("–")
+    if not math.isfinite(value):
+        return Cell("–")
+    return Cell(percent(value) if form == "%" else f"{value:{form}}".rstrip(".") if form else number(value))
+
+
+def six(value: float | str | None) -> Cell:
+    """A value that is to be copied, with six digits."""
+    return _cell(value, ".6g")
+
+
+def in_words(blocks: Iterable[Block]) -> list[tuple[str, str]]:
+    """Return blocks as lines of text, each with its tone; sections and captioned tables stand between empty lines."""
+    lines: list[tuple[str, str]] = []
+    for line, tone in _lines(blocks):
+        if line or (lines and lines[-1][0]):
+            lines.append((line, tone))
+    return lines if not lines or lines[-1][0] else lines[:-1]
+
+
+_BLANK = ("", "")
+
+
+def _lines(blocks: Iterable[Block]) -> Iterator[tuple[str, str]]:
+    for block in blocks:
+        match block:
+            case Table(detail=False) if block.rows:
+                yield from _rows(block)
+            case Sentence():
+                yield block.text, block.tone
+            case Items():
+                start = "  warning: " if block.tone == "warning" else ""
+                yield from ((f"{start}{line}", block.tone) for line in block.lines)
+            case Verbatim():
+                yield f"  {block.text}", ""
+            case Section(detail=False, titled=False):
+                yield from [_BLANK, *_lines(block.blocks), _BLANK]
+            case Section(detail=False):
+                below = ((f"  {line}".rstrip(), tone) for line, tone in _lines(block.blocks))
+                yield from [_BLANK, (block.title, block.tone), *below, _BLANK]
+
+
+def _rows(block: Table) -> Iterator[tuple[str, str]]:
+    shown = block.rows[: block.most]
+    left = {k for k in range(len(block.heads)) if not block.numeric(k)}
+    lines = columns(list(block.heads), [[cell.text for cell in row] for row in shown], left)
+    tones = ["faint", *("bad" if any(cell.tone == "bad" for cell in row) else "" for row in shown)]
+    folded = len(lines) != len(tones)
+    drawn = [(line, "" if folded else tone) for line, tone in zip(lines, tones if not folded else lines, strict=True)]
+    if not folded and not any(block.heads):
+        drawn = drawn[1:]
+    if block.most is not None and len(block.rows) > block.most:
+        drawn.append((f"and {len(block.rows) - block.most} more: see --json", ""))
+    if block.caption:
+        drawn = [_BLANK, (f"{block.caption}:", ""), *((f"  {line}", tone) for line, tone in drawn), _BLANK]
+    yield from drawn

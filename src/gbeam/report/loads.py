@@ -1,0 +1,134 @@
+"""Tables of loads, stress and estimated errors, of motions or of the bodies of a system."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from gbeam.report.blocks import Block, Blocks, Cell, Columns, Facts, Sentence, Value, named, numbered, table
+from gbeam.report.words import known, number, percent, tidy
+from gbeam.results.declared import declarations
+from gbeam.results.errors import ErrorEstimate
+from gbeam.results.parts import margin_words
+
+
+def resting_loads(loads: Facts, of: str = "motion") -> Block:
+    """Loads of the root and stress at rest, in every motion, or `of` every beam."""
+    cells = {of: "name", "force, N": "force", "moment, N m": "moment", "stress, MPa": "stress", "largest in": "place"}
+    cells |= {"margin on yield": "least", "torque from the hub, N m": "beam_torque"}
+    caption = "Of the base on the root, base axes; largest stress anywhere"
+    return table([_at_rest(each) for each in named(loads)], cells, caption, optional=tuple(cells)[3:])
+
+
+def _at_rest(loads: Facts) -> Facts:
+    """Loads at rest without rounding errors, the moment's of a lever, and the stress in words."""
+    low, high = (np.array(loads[key], dtype=float) for key in ("stress_compression", "stress_tension"))
+    force, moment = (float(np.abs(list(loads[key].values())).max()) for key in ("section_force", "section_moment"))
+    sizes = {"force": force, "moment": max(moment, force * loads["stations"][-1])}
+    row = {**loads}
+    for key, size in sizes.items():
+        row[key] = f"({', '.join(f'{each:.5g}' for each in tidy(loads[f'root_{key}'].values(), size))})"
+    if not max(high.max(), -low.min()) > 1e-20:  # rounding, or not known
+        return row | {"stress": None}
+    sign = "tension" if high.max() >= -low.min() else "compression"
+    shares = [share for share in loads.get("margin", ()) if share is not None]
+    return row | {
+        "stress": f"{number(1e-6 * low.min())} to {number(1e-6 * high.max())}",
+        "place": f"{sign}, {number(loads['stations'][int(np.maximum(high, -low).argmax())])} m",
+        "least": margin(min(shares, default=None)),
+    }
+
+
+def loads_table(motions: Facts, of: str = "motion") -> Block:
+    """Largest loads of the root and stress, in every motion, or `of` every beam."""
+    rows = [{"name": name, **each["loads"]} for name, each in motions.items() if "loads" in each]
+    cells: Columns = {
+        of: "name",
+        "root force, N": "root_force.size.max_abs",
+        "at, s": "root_force.size.time_of_max",
+        "root moment, N m": "root_moment.size.max_abs",
+        "at, s ": "root_moment.size.time_of_max",
+        "stress, MPa": "stress.max",
+        "at, s  ": "stress.time_of_max",
+        "margin on yield": lambda each: margin(each.get("margin", {}).get("min")),
+    }
+    stressed = any(known(each.get("stress", {}).get("max")) > 0 for each in rows)  # of extreme fibres
+    caption = f"Largest loads of the root{', and stress anywhere' if stressed else ''}"
+    return table(rows, cells, caption, optional=tuple(cells)[5:], detail=True)
+
+
+def margin(value: float | None) -> Cell:
+    """A margin on yield, which must not be overlooked below zero."""
+    if value is None:
+        return Cell("–")
+    return Cell(margin_words(value).removeprefix("margin on yield "), "bad" if value < 0 else "")
+
+
+def parts_tables(motions: Facts, of: str = "motion") -> tuple[Block, ...]:
+    """Largest stress of meshes, and loads of rigid specimens."""
+    solids, rigid = ({n: each[key] for n, each in motions.items() if key in each} for key in ("solid", "specimen"))
+    return stress_table(solids, of), *specimen_tables(rigid)
+
+
+def stress_table(solids: Facts, of: str = "motion") -> Block:
+    """Largest von Mises stress of a mesh in every motion, or `of` every body, with its place and the least margin."""
+    cells: Columns = {
+        of: "name",
+        "von Mises, MPa": "worst.von_mises",
+        **_place("worst.place"),
+        "node": "worst.node",
+        "at, s": "worst.time:.4g",
+        "material": lambda each: each["worst"]["material"] or "–",
+        "elements differ by": lambda each: percent(each["worst"]["spread"] or math.nan),  # none of one element
+        "least margin on yield": lambda each: (
+            margin(each["nearest_yield"]["margin"]) if each.get("nearest_yield") else "not known"
+        ),
+    }
+    return table(named(solids), cells, "Largest stress, and where it is", optional=("node",))
+
+
+def _place(path: str) -> Columns:
+    return {f"{axis}, mm": f"{path}.{axis}:.4g" for axis in "xyz"}
+
+
+def specimen_tables(rigid: Facts) -> Blocks:
+    """Load at the corners of a rigid specimen in every motion, on its fixture and on its bolts."""
+
+    def spread(each: Facts) -> Value:
+        held = {True: (", accepted", "good"), False: (", NOT accepted", "bad"), None: ("", "")}
+        words, tone = held[each.get("within_limit")]
+        return Cell(f"{100 * known(each['spread']):.3g} %{words}", tone)
+
+    corners: Columns = {
+        "motion": "name",
+        "largest, g": "largest_load.size",
+        **_place("largest_load.place"),
+        "at, s": "largest_load.time",
+        "spread over the specimen": spread,
+        "limit": "spread_limit:%",
+        "on the fixture, N": "force.max_abs",
+        "and, N m": "moment.max_abs",
+    }
+    yield table(named(rigid), corners, "Load at the corners", optional=("limit",))
+    bolts = [{"motion": name, **bolt} for name, each in rigid.items() for bolt in numbered(each["bolts"])]
+    of_bolts: Columns = {"motion": "motion", "bolt": "number", **_place("place")}
+    of_bolts |= {"tension, N": "tension", "shear, N": "shear"}
+    yield table(bolts, of_bolts, "Largest loads of the bolts, alike and without preload")
+
+
+def errors(motions: Facts) -> Blocks:
+    """Estimated errors by their causes, and what is not estimated."""
+    rows = [
+        {"name": name, "of": of, **each["errors"][of]}
+        for name, each in motions.items()
+        for of in (("loads",) if "specimen" in each else ("displacement", "loads", "stress"))
+        if each["errors"][of]["total"] is not None
+    ]
+    causes = {name.replace("_", " "): f"{name}:%" for name, _ in declarations(ErrorEstimate)}
+    yield table(rows, {"motion": "name", "of": "of"} | causes, "Estimated errors, of the largest size", optional=causes)
+    if not rows:
+        yield Sentence("no error estimate", "faint")
+    for name, each in motions.items():
+        if each["errors"].get("note"):
+            yield Sentence(f"{name}: {each['errors']['note']}", "faint")

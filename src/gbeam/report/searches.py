@@ -1,0 +1,284 @@
+"""Reports of searches: sensitivities, fits, optima, shaped commands, and the place of a specimen on a centrifuge."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+from gbeam.figures.description import raised
+from gbeam.report.blocks import (
+    FIGURES,
+    Block,
+    Blocks,
+    Cell,
+    Column,
+    Columns,
+    Facts,
+    Items,
+    Section,
+    Sentence,
+    Value,
+    Verbatim,
+    named,
+    pairs,
+    six,
+    table,
+)
+from gbeam.report.words import known, number, percent
+from gbeam.results.imitation.placement import degrees
+from gbeam.results.imitation.verdict import change, in_g
+from gbeam.results.searches import COMMANDS, GOALS
+
+
+def sensitivity(facts: Facts) -> Blocks:
+    """A table for each measure, those parameters first by which it changes most."""
+    for name, measure in facts["measures"].items():
+        yield Section(f"{name} = {_with_unit(measure)}", (_effects(measure),), titled=True)
+    methods = [each["method"] for each in next(iter(facts["measures"].values()))["parameters"]]
+    exact, error = methods.count("exact"), known(facts["run_error"])
+    of_run = f"; the run's own estimated error: {percent(error)}" if math.isfinite(error) else ""
+    notes = []
+    if exact:
+        notes.append(
+            f"{exact} of {len(methods)} parameters by the exact derivative of the run, its steps held fixed{of_run}."
+        )
+    if exact < len(methods):
+        notes.append("± is how far the differences of second and fourth order are apart.")
+    yield Section("", (FIGURES, Items((*notes, *(f"not varied: {each}" for each in facts["not_varied"])))))
+
+
+def _effects(measure: Facts) -> Block:
+    def change(each: Facts) -> Value:
+        # A figure without a unit is a ratio, and its change one too.
+        by, size = 0.01 * known(each["derivative"]) * known(each["value"]), known(measure["value"])
+        return percent(by / size) if measure["unit"] and size else f"{number(by)} {raised(measure['unit'])}".rstrip()
+
+    columns: Columns = {
+        "of": "path",
+        "value": lambda each: f"{known(each['value']):.6g} {raised(each['unit'])}".rstrip(),
+        "+1 % changes it by": change,
+        "derivative, SI": "derivative",
+        "±": lambda each: number(known(each["error"]), 1),
+        "by": lambda each: f"{each['method']}{' kink' if each['kink'] else ''}",
+    }
+    return table(measure["parameters"], columns, optional=("±",))
+
+
+def _with_unit(figure: Facts) -> str:
+    return f"{number(known(figure['value']))} {raised(figure['unit'])}".rstrip()
+
+
+def _interval(ends: str) -> Column:
+    """Ends of an interval, or that the value lies on the bound of the search."""
+
+    def cell(each: Facts) -> Value:
+        return Cell("on its bound", "bad") if each["at_bound"] else " to ".join(six(end).text for end in each[ends])
+
+    return cell
+
+
+_VALUE: Columns = {"value": "name", "was": "before:.6g", "is": "value:.6g"}
+_UNIT: Columns = {"unit": lambda each: raised(each["unit"])}
+
+
+def fit(facts: Facts) -> Blocks:
+    """A row for each value, its correlation with the others, and what the data leave."""
+    sigma: Columns = {"one sigma": lambda each: f"± {number(known(each['error']), 2)}"}
+    paths = list(facts["parameters"])
+    correlated = [
+        (f"{paths[j]} and {path}", f"{facts['correlation'][k][j]:+.4f}")
+        for k, path in enumerate(paths)
+        for j in range(k)
+        if facts["correlation"][k][j] is not None
+    ]
+    values = table(named(facts["parameters"]), _VALUE | sigma | {"95 %": _interval("interval")} | _UNIT)
+    residuals = {"column": "name", "residual": "noise", "data": "data"}  # which files of 0.3 do not count
+    yield Section("Values", (Sentence(f"fitted to {facts['data']}", "faint"), values))
+    yield pairs(correlated, "correlation of the errors of")
+    yield table(named(facts["columns"]), residuals | _UNIT, "standard deviation of the residual", optional=("data",))
+    yield Section("", (_searches(facts),))
+    yield Section("Data and fit", (FIGURES,))
+
+
+def optimum(facts: Facts) -> Blocks:
+    """The figure before and after, the values, the requirements, and the way to them."""
+
+    def kept(each: Facts) -> Value:
+        return Cell("decides" if each["active"] else "kept", "good") if each["kept"] else Cell("NOT KEPT", "bad")
+
+    goal = facts["minimise"]
+    requirements: Columns = {
+        "requirement": "name",
+        "at least": "low",
+        "at most": "high",
+        "was": "before",
+        "is": "value",
+    }
+    yield Sentence(f"least {goal['name']}: {_with_unit(goal)}, was {number(known(goal['before']))}", "verdict")
+    values = table(named(facts["parameters"]), _VALUE | {"bounds": _interval("bounds")} | _UNIT)
+    yield Section("Values", (values,))
+    limits = table(facts["subject_to"], requirements | _UNIT | {"": kept}, optional=("at least", "at most"))
+    yield Section("Requirements", (limits,))
+    error = known(facts["error_estimate"])
+    of_run = f"; the last run's estimated error is {percent(error)}" if math.isfinite(error) else ""
+    yield Section("", (_searches(facts, of_run),))
+    yield Section("Way to the optimum", (FIGURES,))
+
+
+def _searches(facts: Facts, more: str = "") -> Block:
+    tried, agreed = facts["starts"]["tried"], facts["starts"]["agreed"]
+    several = (f"{agreed} of {tried} searches end at these values",) if tried > 1 else ()
+    return Items((*several, f"{facts['evaluations']} evaluations of the scenario{more}"))
+
+
+def shaped_command(facts: Facts) -> Blocks:
+    """Vibration that each command leaves, the shaped one first."""
+    ((goal, size),) = facts["goal"].items()
+    span = f", for frequencies wrong by up to {percent(facts['robust'])}" if facts["robust"] else ""
+    words = f"{facts['kind']} {GOALS[goal].format(size)} in {number(facts['duration'])} s"
+    columns: Columns = {
+        "command": "name",
+        "leaves, mm": "residual_amplitude:#.3g",
+        f"largest, {raised(COMMANDS[facts['kind']][1])}": "largest",
+        "run": "outcome",
+    }
+    yield Sentence(f"{words}, designed on {facts['design']}, run on {facts['check']}{span}")
+    yield Section("Commands", (table(named(facts["commands"]), columns),))
+    yield FIGURES
+
+
+_PLACES = {"current": "now", "best": "placed", "middle": "at mid-span"}
+_LISTED = 12  # options in a terminal
+
+
+def placement(facts: Facts) -> Blocks:
+    """The best placement and how to apply it, every measure before and after, the simulations, the other options."""
+    parts = facts["measure"]
+    weighted = (f"{weight:g} × {name}" for name, weight in parts.items())
+    measure = " + ".join(weighted if len(parts) > 1 else parts)
+    measure += f" of {facts['point']}" if facts["point"] and {"tip", "vibration"} & parts.keys() else ""
+    nearest = "" if facts["outcome"] == "done" else " (nearest to the limits, which none keeps)"
+    yield Sentence(f"{facts['centrifuge']}, tracking {facts['flight']}: least {measure}{nearest}", "verdict")
+    yield Section("Placement", (pairs(_best(facts)),))
+    if facts["set"]:
+        flags = " ".join(f'--set "{each}"' for each in facts["set"])
+        kept = f"it is written to {facts['written']}" if facts.get("written") else "or place again with --write"
+        yield Sentence("to apply it, add to the command line:")
+        yield Verbatim(flags)
+        yield Sentence(kept, "faint")
+    if facts["message"]:
+        yield Sentence(facts["message"], "" if facts["outcome"] == "done" else "bad")
+    places = _PLACES if facts["fraction_of_length"] else _PLACES | {"middle": "mid-way"}
+    for title, key in (("Mismatch field alone", "mismatch"), ("With smoothing and tracking", "total_error")):
+        yield _measures(facts[key], places, title)
+    yield from _verified(facts, places)
+    refused = Items(tuple(f"cannot: {each}" for each in facts["refused"]))
+    yield Section("Options", (_options(facts["options"], measure), refused))
+
+
+def _best(facts: Facts) -> Iterator[tuple[str, Value]]:
+    share, before, best = facts["fraction_of_length"], facts["before"], facts["options"][0]
+    now = _point(before) if before else f"{1e3 * facts['current_control_point']:.2f} mm"
+    length = f", {share:.4f} of the length" if share else ""
+    yield "control point", f"{_point(facts)} from the root{length} (now {now})"
+    yield "largest load", _largest(best["largest_load"], before and before["largest_load"])
+    yield "mounting", facts["mounting"] + _turned(facts)
+    yield "smoothing", f"{number(1e3 * facts['smoothing'])} ms{_range(facts)}"
+
+
+def _largest(load: Facts, before: Facts | None) -> str:
+    """Largest load anywhere on the specimen as placed, in flight, and as it is mounted now."""
+    if load["machine"] is None:
+        return "not known"
+    now = f"; now {_load(before)}" if before else ""
+    return f"anywhere on the specimen {_load(load)}, {in_g(load['flight'])} in flight{now}"
+
+
+def _load(load: Facts) -> str:
+    place = f" at {load['place_machine']}" if load.get("place_machine") else ""
+    return f"{in_g(known(load['machine']))}{place} ({change(known(load['ratio']))})"
+
+
+def _range(facts: Facts) -> str:
+    """Range that was searched, and whether the best lies at its end."""
+    low, high = facts["smoothing_range"]
+    if low == high:
+        return ""
+    searched = f", of {1e3 * low:.4g} to {1e3 * high:.4g} ms"
+    if facts["smoothing"] > low * (1 + 1e-6):
+        return searched + (": the widest tried" if facts["smoothing"] > high * (1 - 1e-6) else "")
+    share = known(facts["options"][0]["share"])
+    unlimited = "; no limit of the machine forbids less" if share < 1 else ""
+    return f"{searched}: the least tried{unlimited}"
+
+
+def _measures(values: Facts, places: dict[str, str], title: str) -> Block:
+    """Every measure at every place, of flight's peak."""
+
+    def at(place: str) -> Column:
+        return lambda name: _of_peak(values.get(place, {}).get(name))
+
+    cells: Columns = {"of flight's peak": lambda name: name}
+    cells |= {words: at(place) for place, words in places.items()}
+    return table(values.get("best", ()), cells, title)
+
+
+def _verified(facts: Facts, places: dict[str, str]) -> Blocks:
+    checks = facts["verifications"]
+
+    cells = {
+        "control point": "name",
+        "tip, mm": "tip_difference",
+        "vibration, mm": "vibration",
+        f"root {'shear' if facts['fraction_of_length'] else 'force'}, N": "force_difference",
+        "root moment, N m": "moment_difference",
+    }
+    rows = [{**checks[place], "name": words} for place, words in places.items() if place in checks]
+    yield table(rows, cells, "By simulation, largest difference from flight")
+    gain = known(facts["vibration_gain_over_middle"])
+    if math.isfinite(gain):
+        middle = "at mid-span" if facts["fraction_of_length"] else "in the middle of the specimen"
+        yield Sentence(f"{gain:.3g} times less vibration than with the control point {middle}")
+
+
+def _options(options: Sequence[Facts], measure: str) -> Block:
+    def limits(each: Facts) -> Value:
+        words = "; ".join(
+            f"{use['axis']} {use['quantity']} {number(use['used'])} of {number(use['allowed'])} {use['unit']}"
+            for use in each["exceeded"]
+        )
+        if words:
+            return Cell(f"exceeds {words}", "bad")
+        return f"{100 * each['share']:.0f} % of a limit" if each["share"] else ""
+
+    cells: Columns = {
+        "mounting": lambda each: each["mounting"] + _turned(each),
+        "smoothing, ms": "smoothing",
+        "control point, mm": lambda each: _point(each).removesuffix(" mm"),
+        "error": lambda each: _of_peak(each["total_error"]),
+        "largest load, g": "largest_load.machine",
+        "at": lambda each: each["largest_load"].get("place_machine", "").removeprefix("the "),
+        "axis accelerations, rad/s²": lambda each: ", ".join(f"{known(peak):.3g}" for peak in each["accelerations"]),
+        "limits": limits,
+    }
+    caption = f"Options by {measure} with what smoothing and tracking change of the load, best first"
+    return table(options, cells, caption, optional=("largest load, g", "at", "limits"), most=_LISTED)
+
+
+def _of_peak(share: float | None) -> str:
+    """A share of flight's peak; below 1e-8 it is rounding."""
+    if share is None:
+        return "–"
+    return f"{100 * share:.3g} %" if share > 1e-8 else "0 %"
+
+
+def _point(facts: Facts) -> str:
+    """A control point, along x or anywhere."""
+    words = [f"{1e3 * each:.2f}" for each in facts["place"].values()]
+    return f"({', '.join(words)}) mm" if any([*facts["place"].values()][1:]) else f"{words[0]} mm"
+
+
+def _turned(facts: Facts) -> str:
+    """A rotation vector, rad; empty where there is none."""
+    turn = [*facts["turn"].values()]
+    return f", turned by {degrees(turn)}" if any(turn) else ""

@@ -1,0 +1,119 @@
+"""Reports of systems of bodies: at rest, their vibrations, and their responses over time."""
+
+from __future__ import annotations
+
+from gbeam.report.blocks import (
+    FIGURES,
+    Block,
+    Blocks,
+    Facts,
+    Items,
+    Place,
+    Section,
+    Sentence,
+    Value,
+    named,
+    quantities,
+    table,
+)
+from gbeam.report.loads import loads_table, resting_loads, stress_table
+from gbeam.report.steady import ERROR, growing, modes_table
+from gbeam.report.study import HINT, in_words_of, verdicts
+from gbeam.report.words import errors_in_words, known, tidy
+
+
+def system_modes(facts: Facts) -> Blocks:
+    """Modes with the bodies' shares of the kinetic energy."""
+
+    def shares(each: Facts) -> Value:
+        pairs_of = zip(facts["body_names"], each["share"], strict=True)
+        # Bodies of equal shares in their own order, whatever the last digits say.
+        ranked = sorted(pairs_of, key=lambda pair: -round(pair[1], 2))
+        return ", ".join(f"{body} {part:.0%}" for body, part in ranked if part > 0.005)
+
+    yield Sentence(f"{facts['name']} at {facts['time']:.4g} s".lstrip())
+    yield growing(facts, lambda each: "")
+    yield Section("View", (Place("viewer"),))
+    yield modes_table(facts, ERROR | {"kinetic energy": shares})
+    reached = known(facts["reached"])
+    if any(each["frequency"] > reached for each in facts["modes"]):
+        yield Sentence(f"above {reached:.4g} Hz, to which the modes of meshes and matrices reach, upper bounds")
+    if facts["rigid"]:
+        yield Sentence(f"and {facts['rigid']} motion{'' if facts['rigid'] == 1 else 's'} of zero frequency")
+    yield Section("Figures", (FIGURES,))
+
+
+def system_rest(facts: Facts) -> Blocks:
+    """Displacements of the points at rest, and the loads of the ground and of every beam."""
+    yield Section("View", (Place("viewer"),))
+    for name, each in facts["motions"].items():
+        yield Section(f"motion {name} at {each['time']:.4g} s", tuple(_rest(each)), titled=True)
+    yield Section("Figures", (FIGURES,))
+
+
+def _rest(rest: Facts) -> Blocks:
+    cells = {"point": "name", **{f"{axis}, mm": f"displacement.{axis}:.6g" for axis in "xyz"}}
+    yield table(named(rest["points"]), cells)
+    force, moment = ([*rest[key].values()] for key in ("ground_force", "ground_moment"))
+    largest = max(map(abs, force + moment))
+    pair = (", ".join(f"{each:.5g}" for each in tidy(vector, largest)) for vector in (force, moment))
+    yield Sentence("on the ground: force ({}) N, moment ({}) N m".format(*pair))
+    yield resting_loads(rest.get("beams", {}), "beam")
+    yield stress_table(rest.get("solids", {}), "body")
+    yield from errors_of_system(rest["errors"])
+    yield _others(rest, "points", "time", "ground_force", "ground_moment", "beams", "solids", "errors")
+
+
+def _others(facts: Facts, *told: str) -> Block:
+    """The quantities that are not told, for a page."""
+    return Section("", tuple(quantities({key: value for key, value in facts.items() if key not in told})), detail=True)
+
+
+def errors_of_system(errors: Facts) -> Blocks:
+    """Errors of the points' places, and those that every beam brings."""
+    displacement = errors["displacement"]
+    if any(known(each) > 0 for each in displacement.values()):
+        yield Sentence(f"estimated error {errors_in_words(displacement)} of the largest displacement")
+    if errors.get("note"):
+        yield Sentence(errors["note"], "faint")
+    count = len(errors.get("beams", ()))
+    rows = [{key: each[k] for key, each in errors.items() if isinstance(each, list) and each} for k in range(count)]
+    shares = {"shapes and model": "by_beam:%", "root loads": "loads_by_beam:%", "stress": "stress_by_beam:%"}
+    cells = {"beam": "beams", **shares, "beam theory": "theory"}
+    yield table(rows, cells, "Estimated errors that each beam brings, of the largest", optional=tuple(cells)[1:])
+
+
+def system_study(facts: Facts) -> Blocks:
+    """The verdicts on centrifuges, and for every motion points, loads, machine and errors, and all in words."""
+    yield from verdicts(facts)
+    yield Section("Motion", (Place("viewer"),))
+    yield Section("Histories", (Place("figures", HINT),))
+    for name, each in facts["motions"].items():
+        if "points" in each:
+            yield Section(f"motion {name}", tuple(_of_points(each)), titled=True)
+    yield from in_words_of(facts)
+
+
+def system_response(facts: Facts) -> Blocks:
+    """The largest motions of the points, loads, and the error."""
+    yield Sentence(f"{facts['name'] or facts['environment']}: {facts['outcome']}")
+    if facts["message"]:
+        yield Sentence(facts["message"], "bad")
+    yield Section("Motion", (Place("viewer"),))
+    yield from _of_points(facts)
+    yield Items(tuple(facts.get("lines", ())))
+    yield Section("Histories", (FIGURES,))
+
+
+def _of_points(facts: Facts) -> Blocks:
+    residual = f"residual from {known(facts.get('residual_from')):g} s, m"
+    cells = {"point": "name", "moves by, m": "displacement_max", "acceleration, m/s²": "acceleration_max"}
+    yield table(named(facts["points"]), cells | {residual: "residual_size"}, optional=(residual,))
+    yield table(named(facts["coordinates"]), {"coordinate": "name", "at the end": "end"}, detail=True)
+    beams = {name: {"loads": each} for name, each in facts.get("beams", {}).items()}
+    yield loads_table(beams, "beam")
+    yield stress_table(facts.get("solids", {}), "body")
+    yield from errors_of_system(facts["errors"])
+    yield _others(
+        facts, "points", "coordinates", "beams", "solids", "errors", "limits", "name", "environment", "message"
+    )
