@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -115,8 +115,47 @@ class Assembly(Part):
     box_rotation: Floats = quantity("", "rotation from principal axes to axes of the root", "body row axis")
 
 
+class _Placed:
+    """Places of points and coordinates, at one time or over time."""
+
+    points: tuple[str, ...]
+    coordinates: tuple[str, ...]
+    place: Floats
+    q: Floats
+
+    def at(self, point: str) -> Floats:
+        """Return the place of a named point in axes of the ground, (3,) m, or over time (t, 3).
+
+        Parameters
+        ----------
+        point : str
+            ``body.point``; a body's root is its point ``root``.
+
+        Raises
+        ------
+        InputError
+            If there is no such point.
+        """
+        return self.place[..., index_of("point", point, self.points), :]
+
+    def coordinate(self, name: str) -> Any:
+        """Return a coordinate, m or rad, or over time (t,): ``joint.angle``.
+
+        Parameters
+        ----------
+        name : str
+            ``joint.coordinate``, or ``body.q1`` and so on of a flexible body.
+
+        Raises
+        ------
+        InputError
+            If there is no such coordinate.
+        """
+        return self.q[..., index_of("name", name, self.coordinates)]
+
+
 @dataclass(frozen=True, repr=False, eq=False)
-class SystemResponse(Driven, Figured):
+class SystemResponse(_Placed, Driven, Figured):
     """Response of a system over time, at its named points and coordinates.
 
     Examples
@@ -232,21 +271,6 @@ class SystemResponse(Driven, Figured):
     def last(self) -> Floats:
         return self.q[-1]
 
-    def at(self, point: str) -> Floats:
-        """Return the place of a named point in axes of the ground, (t, 3) m.
-
-        Parameters
-        ----------
-        point : str
-            ``body.point``; a body's root is its point ``root``.
-
-        Raises
-        ------
-        InputError
-            If there is no such point.
-        """
-        return self.place[:, index_of("point", point, self.points)]
-
     def reading_at(self, point: str, sensor: Sensor | None = None) -> Floats:
         """Return what an accelerometer at a point reads, (t, 3) m/s².
 
@@ -298,21 +322,6 @@ class SystemResponse(Driven, Figured):
             return self.qd[:, self.coordinates.index(name.removesuffix("_rate"))]
         return self.q[:, index_of("name", name, self.coordinates)]
 
-    def coordinate(self, name: str) -> Floats:
-        """Return a coordinate over time, (t,) m or rad: ``joint.angle``.
-
-        Parameters
-        ----------
-        name : str
-            ``joint.coordinate``, or ``body.q1`` and so on of a flexible body.
-
-        Raises
-        ------
-        InputError
-            If there is no such coordinate.
-        """
-        return self.q[:, index_of("name", name, self.coordinates)]
-
     def __repr__(self) -> str:
         of = f" {self.name!r}" if self.name else ""
         far = {name: value for name, value in zip(self.points, self.largest, strict=True)}
@@ -331,7 +340,7 @@ class SystemResponse(Driven, Figured):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class SystemRest(Figured):
+class SystemRest(_Placed, Figured):
     """Static equilibrium of a system.
 
     Examples
@@ -388,36 +397,6 @@ class SystemRest(Figured):
         "shapes of the beams at rest, by the name of the body", "body", optional=True, name="", key=None,
         default_factory=dict,
     )  # fmt: skip
-
-    def at(self, point: str) -> Floats:
-        """Return the place of a named point in axes of the ground, (3,) m.
-
-        Parameters
-        ----------
-        point : str
-            ``body.point``.
-
-        Raises
-        ------
-        InputError
-            If there is no such point.
-        """
-        return self.place[index_of("point", point, self.points)]
-
-    def coordinate(self, name: str) -> Floats:
-        """Return a coordinate, m or rad.
-
-        Parameters
-        ----------
-        name : str
-            ``joint.angle`` and likewise.
-
-        Raises
-        ------
-        InputError
-            If there is no such coordinate.
-        """
-        return self.q[index_of("name", name, self.coordinates)]
 
     def __repr__(self) -> str:
         size = np.linalg.norm(self.displacement, axis=-1)
