@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from gbeam import Hub, Structure
-from gbeam.mechanics.equations.residuals import OnBase, OnHub
 from gbeam.motion import Base
 
 from .differences import jacobian
@@ -20,13 +19,13 @@ MOUNTED_HUB = Hub(radius=HUB_RADIUS, inertia=HUB_INERTIA, stiffness=30.0, dampin
 
 
 def base_residual(structure: Structure, q: Array, qd: Array, qdd: Array, base: Base, loads: Array) -> Array:
-    return OnBase(structure.equations)(q, qd, qdd, (base, loads))
+    return structure.residual()(q, qd, qdd, (base, loads))
 
 
 def hub_residual(
     structure: Structure, hub: Hub, y: Array, yd: Array, ydd: Array, torque: Array, loads: Array
 ) -> tuple[Array, Array]:
-    residual = OnHub(structure.on_free_hub(hub), hub.mount)
+    residual = structure.residual(hub)
 
     def hub_row(acceleration: Array) -> Array:
         return residual(y, 0 * yd, acceleration, (torque, loads))[0]

@@ -21,6 +21,7 @@ from gbeam.mechanics.equations.linear import (
     damping_matrix,
     rest_modes,
 )
+from gbeam.mechanics.equations.residuals import OnBase, OnHub
 from gbeam.mechanics.equations.virtual_work import LoadHistory, LoadWork
 from gbeam.mechanics.fields.basis import FAMILIES, Counts
 from gbeam.mechanics.fields.projected import Field
@@ -310,6 +311,15 @@ class Structure:
         if self.linear:
             return free_hub(self.coefficients, hub.mount, ground_of(hub), hub_force=self.hub_force)
         return CompleteHub(self.equations, hub.mount, ground_of(hub))  # type: ignore[arg-type]
+
+    def residual(self, hub: Any = None) -> OnBase | OnHub:
+        """The equations as a residual of one form, on a prescribed base or on a free hub.
+
+        Parameters
+        ----------
+        hub : gbeam.Hub, optional
+        """
+        return OnBase(self.equations) if hub is None else OnHub(self.on_free_hub(hub), hub.mount)
 
     def about(self, q: Array) -> tuple[Coefficients, Array]:
         """Coefficients of small departures from coordinates `q` (n,), and the elastic forces there, (n,)."""

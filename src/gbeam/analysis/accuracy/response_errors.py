@@ -20,7 +20,6 @@ from gbeam.arrays.tree import each_leaf
 from gbeam.errors import ComputationError
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.enrichment import Enrichment, Twin, enrichment
-from gbeam.mechanics.equations.residuals import OnBase, OnHub
 from gbeam.mechanics.section_forces import section_forces, sections
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import theory_of
@@ -45,48 +44,43 @@ TOO_FAR = "the solution is too far from the exact model's for an estimate; it is
 
 @dataclass(frozen=True, eq=False)
 class Driven:
-    """The drive of a beam at the times of a solution: its base, or a free hub and the torque on it; and its loads."""
+    """The inputs of a beam at the times of a solution: its base, or the torque on a free hub; and its loads."""
 
-    base: Base | None
-    loads: Floats | None
+    inputs: Any
     hub: Any = None
-    torque: Floats | None = None
 
     @classmethod
     def by(cls, structure: Structure, motion: Any, time: Floats) -> Driven:
         """The drive by a motion and the loads of a structure."""
         loads = None if structure.history is None else np.asarray(structure.history(time))
         if motion.free:
-            return cls(None, loads, motion, np.asarray(motion.torque(time)))
-        return cls(mapped(motion.base(time), np.asarray), loads)
+            return cls((np.asarray(motion.torque(time)), loads), motion)
+        return cls((mapped(motion.base(time), np.asarray), loads))
 
     @property
     def first(self) -> int:
         """Index of the beam's first coordinate among the unknowns."""
         return int(self.hub is not None)
 
+    @property
+    def loads(self) -> Floats | None:
+        """Components of the loads, (t, loads, 6)."""
+        return self.inputs[1]
+
     def at(self, some: Any) -> Driven:
         """The drive at some of the times."""
-        base, loads, torque = each_leaf(lambda leaf: leaf[some], (self.base, self.loads, self.torque))
-        return Driven(base, loads, self.hub, torque)
+        return replace(self, inputs=each_leaf(lambda leaf: leaf[some], self.inputs))
 
     def base_of(self, of: Trajectory) -> Base:
         """Motion of the base in a solution."""
-        if self.hub is None:
-            assert self.base is not None
-            return self.base
-        return mapped(self.hub.mount.base(of.q[:, 0], of.qd[:, 0], of.qdd[:, 0]), np.asarray)
+        base = self.inputs[0] if self.hub is None else self.hub.mount.base(of.q[:, 0], of.qd[:, 0], of.qdd[:, 0])
+        return mapped(base, np.asarray)
 
     def posed(self, structure: Structure) -> Posed:
         """The equations of a structure that is moved so."""
         names = ["hub.angle"] * self.first + [f"{BEAM}.q{k + 1}" for k in range(structure.size)]
-        residual: Any = OnBase(structure.equations)
-        if self.hub is not None:
-            residual = OnHub(structure.on_free_hub(self.hub), self.hub.mount)
-        inputs = self.torque if self.base is None else self.base, self.loads
-        return Posed(
-            residual, lambda some: each_leaf(lambda leaf: leaf[some], inputs), names, partial(self.read, structure)
-        )
+        read = partial(self.read, structure)
+        return Posed(structure.residual(self.hub), lambda some: self.at(some).inputs, names, read)
 
     def read(self, structure: Structure, of: Trajectory) -> Reading:
         """Displacement of the tip (t, 3) m, the root's force and moment (t, 3), and the largest size of the stress over

@@ -15,7 +15,6 @@ from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, finite
 from gbeam.integrate.equations import LinearEquations, NonlinearEquations
-from gbeam.mechanics.equations.residuals import OnBase, OnHub
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base, mapped
 from gbeam.motion.protocol import Motion
@@ -186,40 +185,30 @@ class Problem:
 
 def problem_of(structure: Structure, motion: Motion, start: float, initial: Initial = EQUILIBRIUM) -> Problem:
     """Pose the problem: it starts in relative equilibrium, without vibration, or as `initial` says."""
-    if motion.free:
-        return _on_free_hub(structure, motion, start, initial)
+    hub: Any = motion if motion.free else None
 
-    def drive(t: Array) -> tuple[Base, Any]:
-        return motion.base(t), None if structure.history is None else structure.history(t)
+    def drive(t: Array) -> tuple[Any, Any]:
+        moved = motion.base(t) if hub is None else hub.torque(t)
+        return moved, None if structure.history is None else structure.history(t)
 
     q, qd, stable = start_of(structure, motion, start, initial)
-    if structure.linear:
+    if hub is None and structure.linear:
         c = structure.coefficients
 
-        terms = c.terms
-
-        def features(inputs: tuple[Base, Any]) -> Array:
+        def of(inputs: tuple[Base, Any]) -> tuple[Any, ...]:
             now, loads = inputs
-            return c.features(now.a_WO_B, now.w_WB_B, now.alpha_WB_B, loads)
-
-        def matrices(inputs: tuple[Base, Any]) -> tuple[Array, Array, Array]:
-            return terms.at(features(inputs))
+            return now.a_WO_B, now.w_WB_B, now.alpha_WB_B, loads
 
         # No derivative is taken through the modes: those of equal frequencies have none.
         rest = None if any(map(is_jax, (c.mass, c.damping, c.stiffness))) else (c.damping, c.stiffness)
-        equations = LinearEquations(c.mass, matrices, drive, lambda: terms, features, rest)
+        equations = LinearEquations(
+            c.mass, lambda x: c.at(*of(x)), drive, lambda: c.terms, lambda x: c.features(*of(x)), rest
+        )
         return Problem(equations, q, qd, 0, stable)
-    return Problem(NonlinearEquations(OnBase(structure.equations), drive), q, qd, 0, stable)
-
-
-def _on_free_hub(structure: Structure, hub: Any, start: float, initial: Initial) -> Problem:
-    def drive(t: Array) -> tuple[Array, Any]:
-        return hub.torque(t), None if structure.history is None else structure.history(t)
-
-    q, qd, stable = start_of(structure, hub, start, initial)
-    residual = OnHub(structure.on_free_hub(hub), hub.mount)
-    q, qd = (namespace(x).append(0.0, x) for x in (q, qd))
-    return Problem(NonlinearEquations(residual, drive, vibrates=True), q, qd, 1, stable)
+    residual = structure.residual(hub)
+    if hub is not None:
+        q, qd = (namespace(x).append(0.0, x) for x in (q, qd))
+    return Problem(NonlinearEquations(residual, drive, vibrates=hub is not None), q, qd, residual.first, stable)
 
 
 def start_of(structure: Structure, motion: Any, start: float, initial: Initial) -> tuple[Array, Array, bool]:

@@ -10,7 +10,6 @@ from gbeam.arrays.namespace import is_jax
 from gbeam.errors import ComputationError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.equations.linear import Coefficients
-from gbeam.mechanics.equations.residuals import OnBase
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.bases.base import Base
 from gbeam.numerics.eigen import positive_definite, stability_margin
@@ -75,7 +74,7 @@ def solve_equilibrium(structure: Structure, base: Base, time: float | None = Non
 
     if structure.linear:
         return Equilibrium(jnp.linalg.solve(*structure.coefficients.at(*frozen)[1:]), True)
-    return Equilibrium(resting(OnBase(structure.equations), base, structure.load_values), True)
+    return Equilibrium(resting(structure.residual(), base, structure.load_values), True)
 
 
 @np.errstate(all="ignore")  # a stride may end at coordinates beyond all numbers, and then fails

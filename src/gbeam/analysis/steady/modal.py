@@ -9,7 +9,7 @@ import numpy as np
 
 from gbeam.analysis.steady.frequency_errors import Richer, doubtful, judgeable, unknown_errors
 from gbeam.analysis.steady.operating_point import OperatingPoint, drawn, extent, operating_point
-from gbeam.analysis.system.linear import instabilities, system_modes
+from gbeam.analysis.system.linear import instabilities, largest_component, system_modes
 from gbeam.analysis.system.steady import Drive, steady
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.plausibility import input_warnings
@@ -17,7 +17,6 @@ from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.results.modal import Modes
-from gbeam.results.result import Complex
 from gbeam.results.system import SystemModes
 
 
@@ -36,10 +35,10 @@ def modes_at(
     coordinates, direction = moving.modes[point.first :], point.directions(moving.modes)
     shape = np.moveaxis(structure.station_slopes(point.q) @ coordinates, -1, 0)
     # Turn each shape so that its largest component is 1.
-    largest, turns = _largest(shape), structure.station_twist(point.q)
+    largest, turns = largest_component(shape), structure.station_twist(point.q)
     twist = None if turns is None else (turns @ coordinates).T
     if twist is not None:
-        largest = np.where(np.array(direction) == "twist", _largest(twist * extent(structure)), largest)
+        largest = np.where(np.array(direction) == "twist", largest_component(twist * extent(structure)), largest)
     scale = np.where(largest == 0, 1, largest)
     recovery = structure.recovery
     return Modes(
@@ -61,12 +60,6 @@ def modes_at(
         overdamped=moving.decaying,
         surface=None if recovery is None or not len(moving.value) else recovery.in_modes((coordinates / scale).T),
     )
-
-
-def _largest(shape: Complex) -> Complex:
-    """The component of each mode (k, ...) that is largest."""
-    flat = shape.reshape(len(shape), -1) if shape.size else np.ones((len(shape), 1))
-    return flat[np.arange(len(flat)), np.abs(flat).argmax(axis=1)]
 
 
 @overload

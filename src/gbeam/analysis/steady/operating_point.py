@@ -185,7 +185,7 @@ def beam_acceleration(residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array,
 def on_base(structure: Structure, base: Base, q: Array | None = None, qd: Array | None = None) -> OperatingPoint:
     """Operating point on a base with a frozen motion, in relative equilibrium or with q, qd (n,) given."""
     at, moving, coefficients, rests = placed(structure, base, q, qd)
-    residual = OnBase(structure.equations)
+    residual = structure.residual()
     inputs, still = (base, structure.load_values), np.zeros_like(at)
     qdd = still if rests else beam_acceleration(residual, at, moving, still, inputs)
     return OperatingPoint(structure, residual, at, moving, qdd, inputs, base, coefficients)
@@ -203,13 +203,13 @@ def on_hub(
     """Operating point on a free hub at a rate, rad/s, and acceleration, rad/s², with the torque that they need."""
     base = hub.mount.base(*(np.asarray(float(x)) for x in (angle, rate, acceleration)))
     at, moving, coefficients, rests = placed(structure, base, q, qd)
-    residual = OnHub(structure.on_free_hub(hub), hub.mount)
+    residual = structure.residual(hub)
     y, yd, ydd = (np.append(x, beam) for x, beam in ((angle, at), (rate, moving), (acceleration, 0 * at)))
-    loads = structure.load_values
+    undriven: Any = 0.0, structure.load_values
     if not rests:
-        ydd[1:] = beam_acceleration(residual, y, yd, ydd, (0.0, loads))
-    torque = residual(y, yd, ydd, (0.0, loads))[0]
-    return OperatingPoint(structure, residual, y, yd, ydd, (torque, loads), base, coefficients, hub)
+        ydd[1:] = beam_acceleration(residual, y, yd, ydd, undriven)
+    inputs = residual(y, yd, ydd, undriven)[0], structure.load_values
+    return OperatingPoint(structure, residual, y, yd, ydd, inputs, base, coefficients, hub)
 
 
 def turning_inertia(structure: Structure, hub: Any, q: Array | None = None) -> float:

@@ -43,7 +43,7 @@ def static_errors(point: OperatingPoint) -> tuple[Errors, tuple[str, ...]]:
     if not structure.judged:
         return Errors(note=unjudged(structure)), ()
     loaded = None if structure.load_values is None else np.asarray(structure.load_values)[None]
-    driven, at = Driven(mapped(point.base, lambda x: np.asarray(x)[None]), loaded), _resting(point.q)
+    driven, at = Driven((mapped(point.base, lambda x: np.asarray(x)[None]), loaded)), _resting(point.q)
     more = enrichment(structure, point.base)
     which = driven.along(more, at)
     exact = more.model("exact", directions=which)[0]

@@ -40,6 +40,7 @@ from gbeam.results.system import BeamShape, SystemModes, SystemRest
 
 Array = Any
 Floats = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 
 
 def system_rest(state: SteadySystem, name: str) -> SystemRest:
@@ -93,8 +94,7 @@ def system_modes(state: SteadySystem, moving: Vibrations, time: float, name: str
     """Describe vibrations of a system about a steady state."""
     system, local = state.system, state.local
     shape, turn = (np.einsum("pan,nk->kpa", each, moving.modes) for each in state.slopes_of_frames)
-    flat = shape.reshape(len(shape), math.prod(shape.shape[1:]))
-    largest = flat[np.arange(len(flat)), np.abs(flat).argmax(axis=1)] if flat.size else np.ones(len(shape))
+    largest = largest_component(shape)
     scale = np.where(largest == 0, 1, largest)
     warnings = system.warnings + state.point.sticking(system)
     reduced = [each for each in system.flexible.values() if each.resolved < each.size]
@@ -123,6 +123,12 @@ def system_modes(state: SteadySystem, moving: Vibrations, time: float, name: str
         instabilities=instabilities(state, moving),
         warnings=warnings,
     )
+
+
+def largest_component(shape: Complex) -> Complex:
+    """The component of each mode (k, ...) that is largest."""
+    flat = shape.reshape(len(shape), -1) if shape.size else np.ones((len(shape), 1))
+    return flat[np.arange(len(flat)), np.abs(flat).argmax(axis=1)]
 
 
 def instabilities(point: Steady, moving: Vibrations) -> tuple[Instability, ...]:

@@ -51,4 +51,4 @@ class OnHub:
 
     def base(self, y: Array, yd: Array, ydd: Array, inputs: Any) -> Base:
         """Motion of the base; its acceleration is the specific force where gravity acts."""
-        return self.mount.base(y[0], yd[0], ydd[0])
+        return self.mount.base(y[..., 0], yd[..., 0], ydd[..., 0])
