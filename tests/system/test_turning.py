@@ -210,6 +210,43 @@ def test_newtons_method_goes_in_shares_where_it_fails_at_once() -> None:
     assert steady.margin > 0
 
 
+@pytest.mark.parametrize("joint", ["fixed", "spherical"])
+@pytest.mark.parametrize("held", [True, False])
+def test_steady_states_found_at_once_are_those_found_alone(
+    held: bool, joint: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With their small departures, those of a ball as well, whose Euler parameters are more than its freedoms."""
+    structure = gb.assemble(STRIP, "exact", axial=1, y=2, z=2)
+    turn = (0.0, 0.7, 0.3) if joint == "fixed" else (0.0, 0.1, 0.05)
+    clamp = gb.Joint(joint, "panel", on="bus.rim", turn=turn)
+    system = gb.System({"bus": BUS, "panel": structure}, {"spin": SPIN if held else FREE, "clamp": clamp})
+    drive, rates = Drive(coordinate="spin.angle"), np.linspace(10.0, 60.0, 6).tolist()
+    path = Turning(drive, held)
+    path(system, rates[0])
+    for some in (rates[1:2], rates[2:4], rates[4:]):
+        path.ahead(system, some)
+    monkeypatch.setattr("gbeam.analysis.system.steady.steady", None)  # none is looked for alone
+    states = [path(system, rate) for rate in rates]
+    monkeypatch.undo()
+    for rate, state in zip(rates, states, strict=True):
+        alone = Turning(drive, held)(system, rate)
+        np.testing.assert_allclose(state.point.y, alone.point.y, atol=1e-11)
+        for part, other in zip(state.linear, alone.linear, strict=True):
+            np.testing.assert_allclose(part, other, atol=1e-9 * np.abs(other).max(initial=0.0))
+    assert np.abs(states[-1].point.y).max() > 0.005
+
+
+def test_a_steady_state_that_is_far_is_found_alone() -> None:
+    """Newton's method for several at once takes none but what is near where lower ones lead."""
+    structure = gb.assemble(STRIP, "exact", axial=1, y=2, z=2)
+    swept = gb.Joint("fixed", "panel", on="bus.rim", turn=(0.0, 0.7, 0.3))
+    system = gb.System({"bus": BUS, "panel": structure}, {"spin": SPIN, "clamp": swept})
+    path = Turning(Drive(coordinate="spin.angle"))
+    path(system, 1.0)
+    path.ahead(system, [2.0, 500.0])
+    assert path.equilibria._known(system).keys() == {1.0, 2.0}
+
+
 @pytest.mark.parametrize("held", [True, False])
 def test_a_steady_state_begins_where_lower_ones_lead(held: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     """States are those found from rest, in fewer corrections."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 import dataclasses
 import inspect
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any, TypeVar, dataclass_transform
 
@@ -117,6 +117,15 @@ def each_leaf(function: Callable[[Any], Any], tree: Any) -> Any:
     if isinstance(tree, list | tuple):
         return type(tree)([each_leaf(function, part) for part in tree])
     return function(tree)
+
+
+def together(trees: Sequence[Any]) -> Any:
+    """Stack the arrays of records, tuples, lists and None that are alike, along a first axis."""
+    leaves = [list[Any]() for _ in trees]
+    for kept, tree in zip(leaves, trees, strict=True):
+        each_leaf(kept.append, tree)
+    stacked = iter([np.stack(each) for each in zip(*leaves, strict=True)])
+    return each_leaf(lambda _: next(stacked), trees[0])
 
 
 def register_all(register: Callable[[type], None]) -> None:

@@ -105,7 +105,8 @@ def campbell(diagram: Campbell, title: str = "", unit: tuple[float, str] = (1.0,
     if diagram.critical is not None and diagram.critical.value is not None:
         marks = (Mark(factor * diagram.critical.value, diagram.critical.kind),)
     words, unit_name = declared(Campbell, "frequency")
-    over = f"{declared(Campbell, 'speed')[0]}, {name}"
+    turning = "rate" if diagram.model == "system" else declared(Campbell, "speed")[0]
+    over = f"{turning}, {name}"
     panel = Panel(
         f"{words}, {unit_name}", tuple(lines), x=over, marks=marks, texts=tuple(texts), limits=(0.0, top), height=2.4
     )

@@ -13,7 +13,8 @@ import numpy as np
 
 from gbeam.analysis.accuracy.estimate import LIMIT, apart, fuller, percent, wrong_by
 from gbeam.analysis.steady.frequency_errors import Richer, doubtful, judgeable, unknown_errors
-from gbeam.analysis.steady.stability import critical_speed, turned
+from gbeam.analysis.steady.stability import first_lost_speed, turned
+from gbeam.analysis.system.steady import Turning
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.plausibility import input_warnings
@@ -21,7 +22,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.profiles.profile import Profile
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.eigen import mac, matched
+from gbeam.numerics.eigen import Steady, mac, matched
 from gbeam.progress import Progress, tell
 from gbeam.results.errors import PARTS, ErrorEstimate, FrequencyErrors
 from gbeam.results.modal import Campbell, Crossing
@@ -40,7 +41,12 @@ class _Speed(NamedTuple):
     damping_ratio: Floats
     coordinates: Complex
     mass: Floats
-    direction: tuple[str, ...]
+    state: Steady
+    modes: Complex
+
+    def direction(self, which: Any) -> tuple[str, ...]:
+        """Directions in which some of the modes move most."""
+        return self.state.directions(self.modes[:, which])
 
 
 def _paired(before: _Speed, after: _Speed) -> tuple[np.ndarray, Floats]:
@@ -133,7 +139,8 @@ def campbell(
         raise InputError("to", f"is {end:g} rad/s, from {start:g} rad/s", "give a range of speeds that ascends from 0")
     if modes < 1:
         raise InputError("modes", f"is {modes}", "give 1 or more")
-    lost = critical_speed(structure, motion, turning=turning, upper=end, time=time, name=name, progress=progress)
+    as_known = replace(path, held=True) if isinstance(path, Turning) else None
+    lost = first_lost_speed(structure, motion, turning, end, time, name, progress, as_known)
     # The last speed is short of the critical one, where a frequency is zero.
     last = end if lost.value is None or lost.value <= start else start + (lost.value - start) * (1 - 1e-6)
 
@@ -149,10 +156,12 @@ def campbell(
         moving = moving.oscillating(slice(structure.resolved if isinstance(structure, Structure) else None))
         damping = -moving.value.real / moving.frequency
         mass = state.linear.mass[first:, first:]
-        directions = state.directions(moving.modes)
-        return _Speed(rate, moving.frequency / (2 * np.pi), damping, moving.modes[first:].T, mass, directions)
+        return _Speed(rate, moving.frequency / (2 * np.pi), damping, moving.modes[first:].T, mass, state, moving.modes)
 
-    coarse = [at(float(rate)) for rate in start + (grid - start) * (last - start) / (end - start)]
+    rates = start + (grid - start) * (last - start) / (end - start)
+    if isinstance(path, Turning) and isinstance(structure, System):
+        path.ahead(structure, rates.tolist())
+    coarse = [at(float(rate)) for rate in rates]
     kept = min(modes, len(coarse[0].frequency))
     if not kept:
         held = "; ".join(lost.warnings) or "ask `gbeam modes` what holds or damps it"
@@ -211,7 +220,7 @@ def campbell(
         frequency=frequency,
         damping_ratio=damping,
         mac=alike,
-        direction=coarse[0].direction[:kept],
+        direction=coarse[0].direction(slice(kept)),
         orders=tuple(orders),
         crossings=tuple(sorted(crossings, key=lambda crossing: crossing.speed)),
         critical=lost if lost.value is not None else None,
@@ -261,7 +270,7 @@ def _crossings(
             rate = rates[i] - gap[i] * (rates[i + 1] - rates[i]) / (gap[i + 1] - gap[i])
         speed = at(rate)
         like = int(mac(mode, speed.coordinates, speed.mass)[0].argmax())
-        crossing = Crossing(track, order, float(rate), order * float(rate) / (2 * np.pi), speed.direction[like])
+        crossing = Crossing(track, order, float(rate), order * float(rate) / (2 * np.pi), speed.direction([like])[0])
         slope = 2 * np.pi * (frequency[i + 1] - frequency[i]) / (rates[i + 1] - rates[i])
         crossings.append((crossing, speed.coordinates[like], float(slope)))
     return crossings

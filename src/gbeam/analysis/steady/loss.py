@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from typing import Any, Protocol
@@ -13,6 +13,7 @@ import numpy as np
 from gbeam.analysis.accuracy.estimate import LIMIT, apart, fuller, percent, wrong_by
 from gbeam.analysis.steady.frequency_errors import Richer, among, judgeable, unknown_part
 from gbeam.analysis.system.linear import instabilities
+from gbeam.analysis.system.steady import Loaded, Turning
 from gbeam.errors import ComputationError
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
@@ -41,6 +42,14 @@ def _state(path: Path, of: Any, value: float) -> Steady | None:
         return None
 
 
+def _in_turn(path: Path, of: Any, values: Sequence[float]) -> Iterator[float]:
+    """Values one after the other; a path of systems finds the states at as many as have been looked at at once."""
+    for k, value in enumerate(values):
+        if isinstance(path, Turning | Loaded) and k and not k & (k - 1):
+            path.ahead(of, values[k : 2 * k])
+        yield value
+
+
 def _of_system(path: Path, of: System, value: float) -> tuple[str, ...]:
     """Warnings of a system, and of friction that holds it just below a value."""
     state: Any = _state(path, of, (1 - CLOSE) * value)
@@ -66,7 +75,7 @@ def first_loss_along(
         return Critical(quantity, unit, value, upper, *words, warnings=doubts)
 
     grid = [float(value) for value in np.linspace(0.0, upper, SCAN + 1)]
-    first = next((i for i, value in enumerate(grid) if margin(value) < 0), None)
+    first = next((i for i, value in enumerate(_in_turn(path, of, grid)) if margin(value) < 0), None)
     if first is None:
         why = f"{of.kind} keeps its equilibrium at every {quantity} up to {upper:.4g} {unit}"
         return answer(None, "none", "", why)
@@ -183,12 +192,12 @@ def _lost(
     from scipy.optimize import brentq
 
     low = 0.0
-    for i, share in enumerate(shares):
+    for i, value in enumerate(_in_turn(path, rich, [share * near for share in shares])):
         done = (part[0] + i / len(shares)) / part[1]
         tell(progress, f"errors of the critical value, by {rich.kind} with more shapes", done)
-        if margin(share * near) < 0:
-            return brentq(margin, low, share * near, xtol=CLOSE * near, maxiter=200)
-        low = share * near
+        if margin(value) < 0:
+            return brentq(margin, low, value, xtol=CLOSE * near, maxiter=200)
+        low = value
     return math.inf
 
 

@@ -109,7 +109,22 @@ def critical_speed(
     >>> print(f"{loss.value:.4g} rad/s")
     1148 rad/s
     """
-    path, _ = turned(structure, motion, turning, time, "a critical speed", INSTEAD, name, held=True)
+    return first_lost_speed(structure, motion, turning, upper, time, name, progress)
+
+
+def first_lost_speed(
+    structure: Structure | System,
+    motion: Motion | None,
+    turning: str | None,
+    upper: float | None,
+    time: float,
+    name: str,
+    progress: Progress,
+    path: Path | None = None,
+) -> Critical:
+    """Lowest rate at which an equilibrium is lost, along a path of these that holds the rate, if one is known."""
+    if path is None:
+        path, _ = turned(structure, motion, turning, time, "a critical speed", INSTEAD, name, held=True)
     if upper is not None:
         limit = positive("to", upper, "rad/s")
     elif isinstance(structure, Structure):

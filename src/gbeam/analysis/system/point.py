@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -9,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import namespace
-from gbeam.arrays.tree import each_leaf
+from gbeam.arrays.tree import each_leaf, together
 from gbeam.errors import ComputationError, InputError
 from gbeam.integrate.equations import Trajectory, slopes
 from gbeam.mechanics.tree.equations import SLIP, Inputs, Tree
@@ -21,6 +22,7 @@ Array = Any
 Floats = NDArray[np.float64]
 ITERATIONS = 50
 MASSLESS = 1e-13  # of the largest: a smaller inertia is rounding
+FEW, NEAR = 8, 0.1  # corrections of several states at once, and how far these may lead: m, rad or strain
 SHORTEST = 1 / 64  # share of what is out of balance that is taken away at once
 CLOSE = 1e-12  # of the coordinates: where the next correction would be smaller, they have converged
 
@@ -34,6 +36,11 @@ class Point:
     yd: Floats
     ydd: Floats
     inputs: Inputs
+
+    @property
+    def minimal(self) -> bool:
+        """True if it has as many coordinates as degrees of freedom."""
+        return self.tree.size == self.local.tree.size
 
     @property
     def local(self) -> Point:
@@ -153,6 +160,42 @@ def _newton(tree: Tree, y: Floats, inputs: Inputs, left_over: Floats) -> tuple[F
     return y, k, m, change, False
 
 
+def rested_together(
+    system: System, tree: Tree, each: Sequence[Inputs], starts: Floats
+) -> list[tuple[Point, tuple[Floats, ...]] | None]:
+    """A system's tree at rest under several inputs near starts (t, n) of all coordinates, with K, C and M there; None
+    where Newton's method does not find it near the start.
+    """
+    inputs = together(each)
+    y, begun = starts[:, tree.free], starts[:, tree.free]
+    still, before = np.zeros_like(y), np.full(len(y), np.inf)
+    converged, lost = np.zeros((2, len(y)), dtype=bool)
+    with np.errstate(all="ignore"):  # of states that diverge
+        for _ in range(FEW):
+            left, (k, c, m) = tree(y, still, still, inputs), slopes(tree, y, still, still, inputs)
+            settled = converged  # where the derivatives are those of a state that has converged
+            if (settled | lost).all():
+                break
+            lost = lost | ~np.isfinite(np.concatenate([left[:, None], k], axis=1)).all(axis=(1, 2))
+            change = np.zeros_like(y)
+            for at in np.flatnonzero(~lost).tolist():
+                change[at] = np.linalg.lstsq(k[at], -left[at], rcond=1e-12)[0]
+            size = np.abs(change).max(axis=1, initial=0.0)
+            shrunk = np.where(np.isfinite(before) & (before > 0), np.minimum(size / before, 1.0), 1.0)
+            limit = CLOSE * (1.0 + np.abs(y).max(axis=1, initial=0.0))
+            y, before = np.where(lost[:, None], begun, y + change), size
+            converged = ~lost & (np.minimum(size, 1.0) * shrunk <= limit)
+    near = settled & ~lost & (np.abs(y - begun).max(axis=1, initial=0.0) <= NEAR)
+    points: list[tuple[Point, tuple[Floats, ...]] | None] = [None] * len(y)
+    for at in np.flatnonzero(near).tolist():
+        try:
+            refuse_accelerated(system, tree, left[at], k[at], m[at])
+        except (InputError, ComputationError, np.linalg.LinAlgError):
+            continue
+        points[at] = Point(tree, y[at], still[at], still[at], each[at]), (k[at], c[at], m[at])
+    return points
+
+
 def rested(system: System, tree: Tree, inputs: Inputs, start: Floats | None = None) -> Point:
     """A system's tree at rest in relative equilibrium, joints and bodies; of those that nothing holds, the nearest one
     to a `start` of all coordinates, by default that of the joints, with bodies undeformed. Where Newton's method fails
@@ -171,11 +214,16 @@ def rested(system: System, tree: Tree, inputs: Inputs, start: Floats | None = No
             name = _farthest(system, tree, change)
             problem = f"no place was found in which the system rests: {name} goes on and on; hold what is free"
             raise ComputationError("no equilibrium", problem)
-    refuse_massless(system, m, tree.free)
-    acceleration = np.linalg.solve(m, -tree(y, still, still, inputs))
-    scale = np.abs(np.linalg.solve(m, np.abs(k) @ np.ones(len(y)))).max(initial=1.0)
+    refuse_accelerated(system, tree, tree(y, still, still, inputs), k, m)
+    return Point(tree, y, still, still, inputs)
+
+
+def refuse_accelerated(system: System, tree: Tree, left: Floats, stiffness: Floats, mass: Floats) -> None:
+    """Refuse a state that forces (n,) left over accelerate, or in which some motion moves no mass."""
+    refuse_massless(system, mass, tree.free)
+    acceleration = np.linalg.solve(mass, -left)
+    scale = np.abs(np.linalg.solve(mass, np.abs(stiffness).sum(axis=1))).max(initial=1.0)
     if np.abs(acceleration).max(initial=0.0) > 1e-6 * scale:
         name = _farthest(system, tree, acceleration)
         problem = f"{name} is accelerated, which nothing holds: what nothing holds does not rest"
         raise ComputationError("no equilibrium", problem)
-    return Point(tree, y, still, still, inputs)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.analysis.system.point import Point, rested
+from gbeam.analysis.system.point import Point, rested, rested_together
 from gbeam.constants import BY_STRAINS
 from gbeam.errors import ComputationError, InputError
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.equations import Inputs
+from gbeam.mechanics.tree.equations import Inputs, Tree
 from gbeam.mechanics.tree.frames import Frame, turned_back
 from gbeam.mechanics.tree.signals import deforming
 from gbeam.mechanics.tree.system import System
@@ -85,6 +85,7 @@ class SteadySystem(Steady):
     system: System
     drive: Drive
     point: Point
+    known: tuple[Floats, ...] | None = None  # K, C and M, where they have been found
     zero = RIGID
     first = 0
 
@@ -106,7 +107,7 @@ class SteadySystem(Steady):
     @cached_property
     def linear(self) -> Linear:
         """M, C and K of small departures; a ComputationError where a body's model has no positive mass."""
-        _, k, c, m = self.local.slopes()
+        k, c, m = self.known or self.local.slopes()[1:]
         if not positive_definite(m):
             fix = "give it the exact model, or load it less"
             raise ComputationError(
@@ -124,6 +125,13 @@ class SteadySystem(Steady):
                 moved, size = body.displacement(q[None]), np.abs(body.station_places.r0).max()
                 bent[name] = float(np.abs(moved).max()) / max(float(size), 1e-300)
         return max(bent, key=lambda name: bent[name], default="a body")
+
+    @property
+    def coordinates(self) -> Floats:
+        """All coordinates (n,)."""
+        whole = np.array(self.system.start[0])
+        whole[self.point.tree.free] = self.point.y
+        return whole
 
     @property
     def names(self) -> list[str]:
@@ -229,13 +237,23 @@ class SteadySystem(Steady):
 
 def steady(system: System, drive: Drive, *, held: bool = False, start: Floats | None = None) -> SteadySystem:
     """A system in equilibrium relative to what turns: freely, under the effort that this needs, unless it is held."""
-    tree, inputs = system.tree, drive.inputs(system)
+    tree, inputs = _held(system, drive), drive.inputs(system)
+    return _released(SteadySystem(system, drive, rested(system, tree, inputs, start)), held=held)
+
+
+def _held(system: System, drive: Drive) -> Tree:
+    """The system's tree in which the coordinate that turns is prescribed."""
+    tree = system.tree
     k = system.coordinates.index(drive.coordinate) if drive.coordinate else -1
-    if k < 0 or k in tree.fixed:
-        return SteadySystem(system, drive, rested(system, tree, inputs, start))
-    fixed = rested(system, replace(tree, fixed=(*tree.fixed, k)), inputs, start)
-    if held:
-        return SteadySystem(system, drive, fixed)
+    return tree if k < 0 or k in tree.fixed else replace(tree, fixed=(*tree.fixed, k))
+
+
+def _released(state: SteadySystem, *, held: bool) -> SteadySystem:
+    """The same steady state in which the coordinate that turns is free, unless it is to be held or is prescribed."""
+    system, drive, fixed, tree = state.system, state.drive, state.point, state.system.tree
+    if held or fixed.tree is tree:
+        return state
+    k, inputs = system.coordinates.index(drive.coordinate), fixed.inputs
     assert inputs.prescribed is not None
     whole = [
         fixed.tree.whole(each, prescribed)
@@ -276,25 +294,40 @@ def turning_of(system: System, motion: Motion | None, turning: str | None) -> st
 
 
 class Equilibria:
-    """Workspace of a search: coordinates of steady states by a value with which drives grow. Of the same system the
-    next one begins where those at up to three lower values lead, and takes fewer corrections.
+    """Workspace of a search: steady states, in which what turns is held, by a value with which drives grow. Of the same
+    system the next one begins where those at up to three lower values lead, and takes fewer corrections.
     """
 
     def __init__(self) -> None:
-        self._of: dict[int, tuple[System, dict[float, Floats]]] = {}
+        self._of: dict[int, tuple[System, dict[float, SteadySystem]]] = {}
 
     def steady(self, system: System, value: float, drive: Drive, *, held: bool = False) -> SteadySystem:
         """Return the steady state of a system by its drives at a value."""
-        _, known = self._of.setdefault(id(system), (system, {}))
-        state = steady(system, drive, held=held, start=_continued(known, value))
-        whole = np.array(system.start[0])
-        whole[state.point.tree.free] = state.point.y
-        known[value] = whole
-        return state
+        known = self._known(system)
+        if value not in known:
+            known[value] = steady(system, drive, held=True, start=_continued(known, value))
+        return _released(known[value], held=held)
+
+    def ahead(self, system: System, drives: Mapping[float, Drive]) -> None:
+        """Find steady states by drives at several values at once; where that fails each is left for itself."""
+        known = self._known(system)
+        new = {value: drive for value, drive in drives.items() if value not in known}
+        if not new or not known:
+            return
+        starts = np.array([_continued(known, value) for value in new])
+        tree = _held(system, next(iter(new.values())))
+        points = rested_together(system, tree, [drive.inputs(system) for drive in new.values()], starts)
+        for (value, drive), each in zip(new.items(), points, strict=True):
+            if each is not None:
+                known[value] = SteadySystem(system, drive, each[0], each[1] if each[0].minimal else None)
+
+    def _known(self, system: System) -> dict[float, SteadySystem]:
+        return self._of.setdefault(id(system), (system, {}))[1]
 
 
-def _continued(known: Mapping[float, Floats], value: float) -> Floats | None:
+def _continued(states: Mapping[float, SteadySystem], value: float) -> Floats | None:
     """Polynomial through coordinates at lower values, as far apart as the value is; None where none is known."""
+    known = {each: state.coordinates for each, state in states.items()}
     below: list[float] = []
     for each in sorted(known, reverse=True):
         if each <= value and len(below) < 3 and (not below or below[-1] - each >= value - below[0]):
@@ -317,6 +350,10 @@ class Turning:
     def __call__(self, of: System, rate: float) -> SteadySystem:
         return self.equilibria.steady(of, rate, replace(self.drive, rate=rate), held=self.held)
 
+    def ahead(self, of: System, rates: Iterable[float]) -> None:
+        """Find those at several rates at once."""
+        self.equilibria.ahead(of, {rate: replace(self.drive, rate=rate) for rate in rates})
+
     def refuse_changing(self, system: System, rate: float) -> None:
         """Refuse a system whose equations change as it turns: it has no frequencies."""
         if self(system, rate).changing:
@@ -338,6 +375,10 @@ class Loaded:
 
     def __call__(self, of: System, factor: float) -> SteadySystem:
         return self.equilibria.steady(of, factor, replace(self.drive, factor=factor))
+
+    def ahead(self, of: System, factors: Iterable[float]) -> None:
+        """Find those at several factors at once."""
+        self.equilibria.ahead(of, {factor: replace(self.drive, factor=factor) for factor in factors})
 
     def share(self, system: System) -> float:
         """Stiffness that loads and forces bring, over the system's; if they only bend it, how far, over its extent."""
