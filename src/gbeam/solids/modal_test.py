@@ -91,7 +91,7 @@ class ModalTest(Value):
     @classmethod
     @typed
     def read(cls, path: str | os.PathLike[str], *, modal_mass: ArrayLike | None = None) -> ModalTest:
-        """Read the modes of a universal file (.uff, .unv), data sets 55 beside 15 or 2411, in its units (164), or SI.
+        """Read the modes of a universal file (.uff, .unv), data sets 55 or 2414 beside 15 or 2411, in its units, or SI.
 
         Parameters
         ----------
@@ -114,7 +114,7 @@ class ModalTest(Value):
         """
         model = model_of([path])
         if model.modes is None:
-            raise InputError("path", f"{path} has no modes", "export shapes as data sets 55")
+            raise InputError("path", f"{path} has no modes", "export shapes as data sets 55 or 2414")
         numbers = np.asarray(model.modes["numbers"])
         places, _, _, _ = model.nodes_of(None, np.column_stack([numbers, np.ones_like(numbers)]))
         order = np.argsort(numbers, kind="stable")

@@ -1,4 +1,4 @@
-"""Flexible bodies in files: universal files (data sets 15, 2411 and 55), and standard input data (SID).
+"""Flexible bodies in files: universal files (data sets 15, 2411, 55 and 2414), and standard input data (SID).
 
 Universal files are read by pyuff; standard input data hold Taylor polynomials in the body's coordinates, after
 Wallrapp (1993, 1994).
@@ -15,9 +15,10 @@ import numpy as np
 from gbeam.errors import InputError
 from gbeam.io.models.arrays import Contents
 
-NODES, MODES, UNITS = (15, 2411), 55, 164
+NODES, MODES, RESULTS, UNITS = (15, 2411), 55, 2414, 164
 NORMAL, COMPLEX = 2, (3, 7)  # analysis types
 GLOBAL = (0, 1)  # coordinate systems
+AT_NODES, OF_COMPLEX = 1, (5, 6)  # location of results, types of their numbers
 MOVES = (2, 3)  # data of three translations, and with rotations
 DERIVATIVES = {0: 0, 1: 0, 8: 0, 11: 1, 12: 2}  # of displacements by time: data that are unknown, general, and motions
 
@@ -31,7 +32,7 @@ def read_universal(path: str) -> Contents:
             raise InputError("path", f"{path} ends within a data set", "export it again: it was cut off")
     file = pyuff.UFF(path)
     kinds = [int(kind) for kind in file.get_set_types()]
-    sets = {i: file.read_sets(i) for i, kind in enumerate(kinds) if kind in (*NODES, MODES, UNITS)}
+    sets = {i: file.read_sets(i) for i, kind in enumerate(kinds) if kind in (*NODES, MODES, RESULTS, UNITS)}
     contents: Contents = {}
     numbers, places = np.empty(0, dtype=int), np.empty((0, 3))
     length = mass = 1.0  # units of the file
@@ -43,7 +44,9 @@ def read_universal(path: str) -> Contents:
             new = ~np.isin(more, numbers)
             numbers, places = np.append(numbers, more[new]), np.concatenate([places, at[new]])
             contents |= {"numbers": numbers, "places": places}
-    modes = [sets[i] for i, kind in enumerate(kinds) if kind == MODES]
+    # Results are of many kinds, as of stress beside displacements.
+    results = [_as_mode(sets[i]) for i, kind in enumerate(kinds) if kind == RESULTS and _moves(sets[i])]
+    modes = [sets[i] for i, kind in enumerate(kinds) if kind == MODES] or results
     modes = [each for each in modes if each["analysis_type"] in (NORMAL, *COMPLEX)]
     # Of pairs that are conjugate one tells all.
     modes = [each for each in modes if each["analysis_type"] == NORMAL or complex(each["eig"]).imag >= 0]
@@ -70,6 +73,35 @@ def _nodes(path: str, each: dict[str, Any], length: float) -> tuple[Any, Any]:
             )
     places = length * np.column_stack([each[axis] for axis in "xyz"]).astype(float)
     return np.asarray(each["node_nums"], dtype=int), places
+
+
+def _moves(each: dict[str, Any]) -> bool:
+    """Tell whether a data set of results has a motion of the nodes in a mode."""
+    moves = each["data_characteristic"] in MOVES and each["result_type"] in DERIVATIVES
+    return moves and each["dataset_location"] == AT_NODES and each["analysis_type"] in (NORMAL, *COMPLEX)
+
+
+def _as_mode(each: dict[str, Any]) -> dict[str, Any]:
+    """A data set 2414 by the names of those of a data set 55."""
+    shape = np.array(each["data_at_node"], dtype=float)
+    if each["data_type"] in OF_COMPLEX:
+        shape = shape[:, ::2] + 1j * shape[:, 1::2]
+    _, frequency, _, mass, viscous, hysteretic = (each[f"record12_field{i}"] for i in range(1, 7))
+    real, imaginary, *a = (each[f"record13_field{i}"] for i in range(1, 5))
+    return {
+        "analysis_type": each["analysis_type"],
+        "spec_data_type": each["result_type"],
+        "data_ch": each["data_characteristic"],
+        "node_nums": each["node_nums"],
+        "mode_n": each["record10_field6"],
+        "freq": frequency,
+        "modal_m": mass,
+        "modal_damp_vis": viscous,
+        "modal_damp_his": hysteretic,
+        "eig": complex(real, imaginary),
+        "modal_a": complex(*a),
+        **dict(zip(("r1", "r2", "r3"), shape.T, strict=False)),  # rotations may follow
+    }
 
 
 def _mode(path: str, each: dict[str, Any]) -> dict[str, Any]:
