@@ -108,6 +108,16 @@ def test_derivatives_at_one_state_serve_windows_of_small_motions() -> None:
     assert derivatives(1.0) > 60
 
 
+def test_a_correction_by_new_derivatives_does_not_tell_how_it_shrinks() -> None:
+    """Between states far away derivatives may be much too large, and corrections by them small wherever a step is."""
+
+    def passes(size: float, fresh: bool) -> bool:
+        one, no = np.ones(1), np.zeros(1, dtype=bool)
+        return bool(windows._converged(size * one, 1e-3 * one, one, 0 * one, fresh=no | fresh, quick=no)[0])
+
+    assert passes(1e-11, False) and not passes(1e-11, True) and passes(1e-13, True)
+
+
 def test_a_step_is_factored_again_only_where_its_derivatives_are_new(monkeypatch: pytest.MonkeyPatch) -> None:
     factored: list[int] = []
     states: list[int] = []

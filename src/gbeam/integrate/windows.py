@@ -91,7 +91,7 @@ class _Window:
     """Steps under way, from the `first` on: their states z (t + 1, m, n) and accelerations x (t, s, n), corrected in
     place, and the `slope` of the equations, K, C and M (1 or t, s, 3, n, n), from stages so far `apart`. Rows (5, t) of
     `corrections` are their last size, absolute and of the accelerations, how many there were, how far all since its
-    derivatives were found have moved a step, and the least factor by which one shrank.
+    derivatives were found have moved a step, and the least factor by which one by the same derivatives shrank.
     """
 
     z: Array
@@ -145,9 +145,8 @@ class _Window:
                 self.more = min(self.more + self.more // 2 + 1, LONGEST)
             # By derivatives of another state corrections may shrink slowly without being rounding.
             quick = least <= FAST
-            noise, stalls = np.minimum(rounding, self.most), fresh & (count > 1)
-            good = _converged(size, before, reach, noise, stalls=stalls, quick=quick)
-            least[:] = np.fmin(least, size / np.where(np.isfinite(before), before, np.nan))
+            good = _converged(size, before, reach, np.minimum(rounding, self.most), fresh=fresh, quick=quick)
+            least[:] = np.fmin(least, size / np.where(fresh | np.isinf(before), np.nan, before))
             slow = ~good & (count > 1) & ~(size <= SLOW * before)
             since[:] = np.where(slow, np.inf, since + moved)
             if slow.any():
@@ -403,13 +402,14 @@ def _reach(x: Array) -> Array:
     return largest + EARLIER * np.maximum.accumulate(largest) + TINY
 
 
-def _converged(size: Array, before: Array, reach: Array, noise: Array, *, stalls: Array, quick: Array) -> Array:
+def _converged(size: Array, before: Array, reach: Array, noise: Array, *, fresh: Array, quick: Array) -> Array:
     """True if the last two sizes (t,) of corrections, which shrink by a constant factor, leave no more than a tolerance
-    and rounding. The first one moves states of which it does not know what acts there: it leaves any. Where they
-    stall at less than a part of the accelerations' `reach` (t,), all that is left is rounding; as where they have been
-    quick and no longer are, for the rounding of earlier steps adds to a step's own.
+    and rounding; by `fresh` derivatives the factor is unknown. The first one moves states of which it does not know
+    what acts there: it leaves any. Where they stall at less than a part of the accelerations' `reach` (t,), all that is
+    left is rounding; as where they have been quick and no longer are, for the rounding of earlier steps adds to a
+    step's own.
     """
-    shrunk = size / np.maximum(before, 1e-300)
-    left = np.where(np.isfinite(before), size * np.clip(shrunk, QUICKEST, 1.0), np.inf)
-    ended = stalls & (shrunk > STALLED) | quick & (shrunk > SLOW) & (size <= SUMMED * reach)
+    again, shrunk = np.isfinite(before), size / np.maximum(before, 1e-300)
+    left = np.where(again, size * np.where(fresh, 1.0, np.clip(shrunk, QUICKEST, 1.0)), np.inf)
+    ended = fresh & again & (shrunk > STALLED) | quick & (shrunk > SLOW) & (size <= SUMMED * reach)
     return (left <= TOLERANCE * reach + noise) | (ended & (size <= ROUNDING * reach))
