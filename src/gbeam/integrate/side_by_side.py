@@ -127,7 +127,7 @@ def _linear(runs: Sequence[Run]) -> tuple[Histories, Array]:
     needed = np.unique(np.concatenate(runs[0].parts)).astype(int)
     parts = tuple(tuple(np.searchsorted(needed, part).tolist()) for part in runs[0].parts)
     features = np.stack([run.features[:, needed] for run in runs], axis=-1)
-    lengths = np.stack([run.steps.length for run in runs], axis=-1)
+    lengths = _stacked([run.steps.length for run in runs], axis=-1)
     terms = _stacked([run.alive for run in runs], axis=-1)
     equations: list[Any] = [run.equations for run in runs]
     mass, q, qd = _stacked([(e.mass, run.q, run.qd) for e, run in zip(equations, runs, strict=True)], axis=-1)

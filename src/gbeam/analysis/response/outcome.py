@@ -117,8 +117,10 @@ def _doubtful(c: Coefficients, drive: Drive) -> tuple[Array, Array]:
         terms.append(-slope)
         sizes.append(values)
         most[np.any(values[:, [unsymmetric(each) for each in slope]], axis=1)] = np.inf
-    share = np.linalg.eigvalsh(scale @ symmetric(np.concatenate(terms)) @ scale.T)
     size = np.concatenate(sizes, axis=1)
+    driven = size.any(axis=0)
+    size, term = size[:, driven], symmetric(np.concatenate(terms)[driven])
+    share = np.linalg.eigvalsh(scale @ term @ scale.T)
     taken = np.maximum(size, 0) @ np.maximum(-share[:, 0], 0) + np.maximum(-size, 0) @ np.maximum(share[:, -1], 0)
     large = np.flatnonzero((taken >= 1.0) & (most == 0))
     for block in (large[i : i + _BLOCK] for i in range(0, len(large), _BLOCK)):
