@@ -91,3 +91,14 @@ def test_what_was_not_used_for_longest_goes(tmp_path: Path, monkeypatch: pytest.
     (tmp_path / "file").write_text("")
     monkeypatch.setenv(kept.FOLDER, str(tmp_path / "file" / "below"))  # where nothing can be written
     assert kept.kept("", 3, lambda: 5) == 5
+
+
+def test_a_fit_keeps_none_of_its_trials(tmp_path: Path, assembled: list[int]) -> None:
+    """The reduction of the scenario stays, where each trial would take its room."""
+    frequency = read(tmp_path).rest[0][:3] / (2 * np.pi)
+    taps = tmp_path / "taps.csv"
+    rows = [f"{k},{1.01 * each},0.01" for k, each in enumerate(frequency, 1)]
+    taps.write_text("\n".join(["mode,frequency,damping_ratio", *rows]), encoding="utf-8")
+    fitted = gb.fit(tmp_path / "scenario.toml", taps, ["bodies.arm.material.youngs_modulus"])
+    assert fitted.values[0] == pytest.approx(1.01**2 * 210e9, rel=1e-6)
+    assert len(assembled) > 3 and len(files(tmp_path)) == 1

@@ -5,8 +5,9 @@ from __future__ import annotations
 import hashlib
 import os
 import pickle
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from functools import cache
 from pathlib import Path
 from tempfile import NamedTemporaryFile
@@ -22,6 +23,7 @@ FOLDER = "GBEAM_CACHE"  # environment: the folder that keeps it, or "off"
 WORTH = 1.0  # s: what is computed sooner is not kept
 MOST = 2 * 2**30  # bytes of all files: those unused for longest go
 _ENDING = ".kept"
+_KEEPING = ContextVar("keeping", default=True)
 
 T = TypeVar("T")
 
@@ -37,10 +39,20 @@ def kept(what: str, source: Any, make: Callable[[], T]) -> T:
     began = monotonic()
     with Bar(what, patience=PATIENCE):
         value = make()
-    if file and monotonic() - began > WORTH:
+    if file and _KEEPING.get() and monotonic() - began > WORTH:
         with suppress(OSError):  # a full disk is no error
             _write(file, value)
     return value
+
+
+@contextmanager
+def unkept() -> Iterator[None]:
+    """Keep nothing that is made within, as of the trials of a search, which would take the room of all else."""
+    token = _KEEPING.set(False)
+    try:
+        yield
+    finally:
+        _KEEPING.reset(token)
 
 
 def _folder() -> Path | None:

@@ -8,6 +8,7 @@ smooth, they come from central differences of fourth order, with how far these d
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any
@@ -19,6 +20,7 @@ from gbeam.analysis.environments import study, study_of
 from gbeam.analysis.response.differentiated import Differentiated, Grid, Variant
 from gbeam.analysis.response.simulation import simulate
 from gbeam.errors import ComputationError, GbeamError, InputError
+from gbeam.io.kept import unkept
 from gbeam.mechanics.structure import Structure
 from gbeam.progress import Progress, tell
 from gbeam.results.response import Response
@@ -68,7 +70,7 @@ class Neighbourhood:
         self._about: dict[str, Differentiated] = {}
         self.progress, self.adapt = progress, adapt or (lambda case: case)
         self.values = [each.value for each in parameters] if values is None else [float(value) for value in values]
-        self.case: Any = self.adapt(inquiry.case(self._changes(None, 0.0)))
+        self.case: Any = self._built(None, 0.0)
         # Runs of one beam are differentiated themselves, all other answers by differences.
         self.runs = inquiry.verb == "run" and isinstance(self.case, Case)
         self.answer: Any
@@ -169,7 +171,7 @@ class Neighbourhood:
     def _case(self, k: int, step: float) -> Case:
         each = self.parameters[k]
         try:
-            case = self.adapt(self.inquiry.case(self._changes(k, step)))
+            case = self._built(k, step)
         except GbeamError as error:
             value, word = self.values[k], "less" if step < 0 else "more"
             problem = f"{each.path} = {value:.6g} {each.unit}".rstrip() + f" may not be a little {word}"
@@ -177,6 +179,12 @@ class Neighbourhood:
                 "--with", f"{problem} ({str(error).splitlines()[0]})", "leave it out, or move it off its bound"
             ) from None
         return replace(case, model=self.case.model) if isinstance(case, Case) else case
+
+    def _built(self, k: int | None, step: float) -> Any:
+        """A case; reductions of meshes are kept of the scenario's own alone."""
+        changes = self._changes(k, step)
+        with unkept() if changes else nullcontext():
+            return self.adapt(self.inquiry.case(changes))
 
     def _changes(self, k: int | None, step: float) -> tuple[str, ...]:
         values = [value + (step if i == k else 0.0) for i, value in enumerate(self.values)]
