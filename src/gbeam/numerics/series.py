@@ -9,7 +9,6 @@ from operator import add
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import as_array, namespace
 from gbeam.arrays.tree import record
@@ -185,18 +184,3 @@ def compose(derivatives: Sequence[Any], inner: Series) -> Series:
 
 
 STEP = 1e-30
-
-
-def complex_step(
-    function: Callable[[NDArray[np.complex128]], NDArray[np.complex128]], x: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Jacobian (m, n) of a function of a vector (n,) that is analytic and computes with complex numbers.
-
-    f(x + ih) = f(x) + ih f'(x) − …: the imaginary part holds the derivative to rounding, whatever the step.
-    """
-    columns = []
-    for k in range(len(x)):
-        moved = x.astype(complex)
-        moved[k] += 1j * STEP
-        columns.append(np.imag(function(moved)) / STEP)
-    return np.stack(columns, axis=-1)

@@ -21,7 +21,6 @@ from gbeam.analysis.steady.operating_point import (
 )
 from gbeam.analysis.steady.stability import hub_of
 from gbeam.analysis.system.linear import Strained, frozen, instabilities, linearize_system, named_acceleration
-from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import each_leaf, record
 from gbeam.constants import BY_STRAINS
 from gbeam.errors import InputError, placing_within
@@ -36,9 +35,8 @@ from gbeam.mechanics.section_forces import sections
 from gbeam.mechanics.structure import Sections, Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion import Flight
-from gbeam.motion.bases.base import mapped
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.series import complex_step
+from gbeam.numerics.series import STEP
 from gbeam.results.errors import FrequencyErrors, along
 from gbeam.results.result import Floats
 from gbeam.results.state_space import ACCURATE, Gauge, Signal, StateSpace, import_control
@@ -108,44 +106,41 @@ class Outputs:
     like: Any
 
     def __call__(self, y: Array, yd: Array, ydd: Array, u: Array) -> Array:
-        """Outputs (p,)."""
-        i = self.residual.first
-        q, qd, qdd = y[i:], yd[i:], ydd[i:]
-        inputs = self.inputs(u)
-        base, values = self.residual.base(y, yd, ydd, inputs), inputs[1]
-        now = mapped(base, lambda x: x[None])
-        loads = None if values is None else values[None]
-        _, moment, *carried, a, _ = sections(self.structure, self.outboard, now, q[None], qd[None], qdd[None], loads)
-        xp = namespace(y, a)
-        strain = (xp.concatenate([each[0, self.at] for each in carried], axis=-1) * self.strains).sum(axis=-1)
-        hub = xp.stack([y[0], yd[0]]) if i else xp.zeros(0)
+        """Outputs (t, p) of states (t, n) and inputs (t, m)."""
+        i, inputs = self.residual.first, self.inputs(u)
+        q, qd, qdd = y[:, i:], yd[:, i:], ydd[:, i:]
+        base = self.residual.base(y, yd, ydd, inputs)
+        _, moment, *carried, a, _ = sections(self.structure, self.outboard, base, q, qd, qdd, inputs[1])
+        strain = (np.concatenate([each[:, self.at] for each in carried], axis=-1) * self.strains).sum(axis=-1)
         moved = self.structure.displacement(q)
         # Stations are counted from the first behind the root, which accelerations have as well.
-        named = xp.concatenate([moved[self.points], a[0, self.points + 1]], axis=-1).reshape(-1)
-        strain = xp.concatenate([strain, self.shares @ q])
-        return xp.concatenate([moved[-1], a[0, -1], -moment[0, 0], strain, named, hub])
+        named = np.concatenate([moved[:, self.points], a[:, self.points + 1]], axis=-1).reshape(len(y), -1)
+        strains = strain, q @ self.shares.T
+        return np.concatenate([moved[:, -1], a[:, -1], -moment[:, 0], *strains, named, y[:, :i], yd[:, :i]], axis=-1)
 
     def inputs(self, u: Array) -> Any:
-        """Inputs of the residual in one vector: base or torque, then loads."""
-        parts = iter(np.split(u, np.cumsum([each.size for each in raveled(self.like)])))
-        return each_leaf(lambda leaf: next(parts).reshape(np.shape(leaf)), self.like)
+        """Inputs of the residual in vectors (..., m): base or torque, then loads."""
+        parts = iter(np.split(u, np.cumsum([each.size for each in raveled(self.like)]), axis=-1))
+        return each_leaf(lambda leaf: next(parts).reshape(*u.shape[:-1], *np.shape(leaf)), self.like)
 
     def matrices(self, point: OperatingPoint, u: Array) -> tuple[Array, Array, Array]:
         """Values (p,) at an operating point, their derivatives with respect to (y, ẏ, ÿ, u), and forces (n, m) of u."""
-        state = point.y, point.yd, point.ydd
-        ends = np.cumsum([len(each) for each in state])
-        slopes = complex_step(lambda z: self(*np.split(z, ends)), np.concatenate([*state, u]))
-        return self(*state, u), slopes, -complex_step(lambda x: self.residual(*state, self.inputs(x)), u)
+        state = np.concatenate([point.y, point.yd, point.ydd, u])
+        moved = np.concatenate([state[None] + 0j, state + 1j * STEP * np.eye(len(state))])
+        y, yd, ydd, drive = np.split(moved, len(point.y) * np.arange(1, 4), axis=1)
+        values = self(y, yd, ydd, drive)
+        left = self.residual(y, yd, ydd, self.inputs(drive))[-len(u) :]
+        return values[0].real, values[1:].imag.T / STEP, -left.imag.T / STEP
 
     def rates(self, x: Array, u: Array) -> tuple[Array, Array]:
         """Rate of the state (y, ẏ, and on a base that is not a free hub its angular velocity), and the outputs."""
         i = self.residual.first
         n = self.structure.size + i
         y, yd, rate = x[:n], x[n : 2 * n], x[2 * n :]
-        full = u if i else np.concatenate([u[:3], rate, u[3:]])
-        inputs = each_leaf(lambda leaf: leaf[None], self.inputs(full))
-        ydd = accelerations(self.residual, y[None], yd[None], inputs)[0]
-        return np.concatenate([yd, ydd, u[3:6] if not i else []]), self(y, yd, ydd, full)
+        full = (u if i else np.concatenate([u[:3], rate, u[3:]]))[None]
+        ydd = accelerations(self.residual, y[None], yd[None], self.inputs(full))
+        rates = np.concatenate([yd, ydd[0], u[3:6] if not i else []])
+        return rates, self(y[None], yd[None], ydd, full)[0]
 
 
 def raveled(inputs: Any) -> list[Array]:
@@ -375,12 +370,13 @@ def linearize(
     for i, gauge in enumerate(gauges):
         if gauge.body:
             raise InputError(f"gauges[{i}].body", f"is {gauge.body!r}, and there is one structure", "leave it out")
-    linear = point.linear
-    n = len(linear.mass)
+    linear, n = point.linear, len(point.y)
     measured = outputs_of(structure, point, gauges)
     held = np.concatenate(raveled(point.inputs))
     value, d, forces = measured.matrices(point, held)
-    a, drive, out, through = linear._replace(inputs=forces).state_space(*np.split(d, [n, 2 * n, 3 * n], axis=1))
+    a, drive, out, through = linear._replace(inputs=forces).state_space(
+        *np.split(d, len(linear.mass) * np.arange(1, 4), axis=1)
+    )
     states = coordinate_signals(structure, point.first)
     begun = np.concatenate([point.y, point.yd])
     if not point.first:
