@@ -214,6 +214,7 @@ def simulate_system(
         return _run(richer, settings, richer.start(settings), jumps, progress, chosen.step, what).every(stride)
 
     if settings.estimate and chosen.whole:
+        tell(progress, "errors of shapes and models", 0.0)
         steps = {(name, each): math.nan for name in judged_bodies(system) for each in LOADS}
         steps |= {PLACE: of_steps.displacement, **dict(zip(steps, of_steps.each, strict=False))}
         settled, closed = begin.state == "equilibrium", again if system.controllers else None

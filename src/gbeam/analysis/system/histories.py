@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,6 +23,7 @@ from gbeam.results.solids import SolidStress, Surface
 
 Array = Any
 Floats = NDArray[np.float64]
+ROUNDING = 1e-12  # of the force times the length: a moment that is less is none, and so of forces
 
 
 class Carried(NamedTuple):
@@ -105,7 +107,16 @@ def loads_of(beam: Structure, pieces: list[Carried], time: Floats) -> Loads:
     q, qd, qdd, a, w, alpha = (np.concatenate(each) for each in moving)
     station, force, moment = zip(*hung, strict=True)
     every = Hung(station[0], np.concatenate(force), np.concatenate(moment))
-    return section_forces(beam, BaseMotion(a, w, alpha), q, qd, qdd, time, hung=every)
+    loads = section_forces(beam, BaseMotion(a, w, alpha), q, qd, qdd, time, hung=every)
+    # A joint that is free carries nothing but rounding.
+    force, moment = (np.abs(each).max(axis=(0, 2)) for each in (loads.force, loads.moment))
+    idle = {"force": force * beam.length <= ROUNDING * moment, "moment": moment <= ROUNDING * force * beam.length}
+    kept: dict[str, Any] = {
+        key: np.where(none[:, None], 0.0, getattr(loads, key))
+        for name, none in idle.items()
+        for key in (name, f"section_{name}")
+    }
+    return replace(loads, **kept)
 
 
 def meshes_of(
