@@ -46,7 +46,8 @@ spec.loader.exec_module(comparison)
 
 Call = Callable[[], Any]
 Settings = dict[str, Call]  # by words
-RECORD, WITHIN, TURNS = HERE / "reach.json", 1e-4, 1
+RECORD, WITHIN = HERE / "reach.json", 1e-4
+TURNS, FEW = 5, 8  # of the quickest settings in a plane, where a run takes milliseconds: the least time counts
 SPACE = {  # goal; gbeam's reference, its settings and Exudyn's: numbers of shapes, of elements, and steps, s
     "driven": (10, "driven base in space, torsion", (7, 0.02), [(5, 0.04), (6, 0.02)], [(64, 0.005), (128, 0.0025)]),
     "free hub in space": (
@@ -84,12 +85,12 @@ PARTS = {  # of a call, and functions
 LIMITS = {  # of what misses its goal
     "closed loop": "The law is a function of Python, which three corrections call at each sample, one after another: "
     "each gains four digits of what it measures. A fourth, of the motion alone, gives it all twelve.",
-    "slew, FOAM": "A run of 7 ms is four thousand calls of functions: half of it is the steps, a third what is read "
-    "from them, as peaks, the rest what is asked of hub and settings. The goal is met by cases in batches.",
-    "free hub, FOAM": "Nothing is compiled, so first calls take a fifth of a second: nine corrections of a hundred "
-    "steps in four coordinates are some eight thousand calls of functions, a quarter of them around the steps. "
+    "slew, FOAM": "A run of 5.5 ms is four thousand calls of functions: two fifths are the steps, two fifths what "
+    "is read from them, as peaks, the rest what is asked of hub and settings. The goal is met by cases in batches.",
+    "free hub, FOAM": "Nothing is compiled, so first calls take a fifth of a second: seven corrections of a hundred "
+    "steps in four coordinates are six thousand calls of functions, almost half of them around the steps. "
     "Compiled steps met the goal, and their first call took 2.4 to 5.2 s.",
-    "free hub, exact": "As of FOAM: half of the time are derivatives and corrections of few numbers.",
+    "free hub, exact": "As of FOAM: more than half of the time are derivatives and corrections of few numbers.",
     "first calls": "Nothing is compiled. Of the strip's runs the last has 44,000 steps, which follow its second "
     "vibration in the hub's plane, 1,139 Hz where the hub is held: the torque begins suddenly.",
 }
@@ -125,7 +126,9 @@ def seconds(call: Call) -> float:
     return time.process_time() - began
 
 
-def quickest(settings: Settings, error: Callable[[Any], float], within: float) -> tuple[str, float, list[str]]:
+def quickest(
+    settings: Settings, error: Callable[[Any], float], within: float, turns: int
+) -> tuple[str, float, list[str]]:
     """Words and error of the quickest setting within an error, of the most accurate one where none is; what failed."""
     rows, failed = [], []
     for words, call in settings.items():
@@ -135,24 +138,30 @@ def quickest(settings: Settings, error: Callable[[Any], float], within: float) -
             failed.append(words)
             continue
         rows.append((not reached <= within, seconds(call) if reached <= within else reached, words, reached))
-    return *min(rows)[2:], failed
+    rows.sort()
+    if turns > 1 and not rows[0][0]:  # times of milliseconds scatter: of the quickest once more
+        again = [(words, reached) for far, _, words, reached in rows[:FEW] if not far]
+        rows = sorted((False, min(seconds(settings[words]) for _ in range(turns)), words, e) for words, e in again)
+    return *rows[0][2:], failed
 
 
-def compared(ours: Settings, theirs: Settings, errors: tuple[Any, Any], within: float) -> dict[str, Any]:
+def compared(
+    ours: Settings, theirs: Settings, errors: tuple[Any, Any], within: float, turns: int = 1
+) -> dict[str, Any]:
     """Both codes' quickest settings within an error, their times in turn, and gbeam's profile."""
     (mine, reached, _), (other, away, failed) = (
-        quickest(settings, error, within) for settings, error in zip((ours, theirs), errors, strict=True)
+        quickest(settings, error, within, turns) for settings, error in zip((ours, theirs), errors, strict=True)
     )
-    turns = [(seconds(ours[mine]), seconds(theirs[other])) for _ in range(TURNS)]
-    quick, slow = (min(each) for each in zip(*turns, strict=True))
+    times = [(seconds(ours[mine]), seconds(theirs[other])) for _ in range(turns)]
+    quick, slow = (min(each) for each in zip(*times, strict=True))
     profile = cProfile.Profile(time.process_time)
     profile.runcall(ours[mine])
     stats: Any = pstats.Stats(profile).stats  # type: ignore[attr-defined]
-    times: dict[str, float] = {}
+    within_calls: dict[str, float] = {}
     for (_, _, name), row in stats.items():
-        times[name] = max(row[3], times.get(name, 0.0))
-    whole = max(times.values())
-    shares = {part: round(times[name] / whole, 2) for part, name in PARTS.items() if name in times}
+        within_calls[name] = max(row[3], within_calls.get(name, 0.0))
+    whole = max(within_calls.values())
+    shares = {part: round(within_calls[name] / whole, 2) for part, name in PARTS.items() if name in within_calls}
     rows = {"gbeam": [mine, quick, reached], "Exudyn": [other, slow, away]}
     return {"measured": round(slow / quick, 2), "unit": "times Exudyn", **rows, "failed": failed, "profile": shares}
 
@@ -199,7 +208,7 @@ def in_plane(name: str) -> dict[str, Any]:
 
     ours, theirs = ({str(choice): call(choice) for choice in each} for each in (choices, problem.settings))
     errors = error_of(problem.model), error_of("exact")
-    return {"figure": name, "goal": goal, **compared(ours, theirs, errors, WITHIN)}
+    return {"figure": name, "goal": goal, **compared(ours, theirs, errors, WITHIN, TURNS)}
 
 
 def in_loop(_: str) -> dict[str, Any]:
