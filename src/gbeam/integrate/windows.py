@@ -340,7 +340,7 @@ class _Window:
         """Changes δz (t + 1, m n) of the states by δz₊ = S δz + the defects (t, m n)."""
         count, held = len(defect), self._sampled
         if len(step) > 1 and held is None:
-            return recurrence(np, np.concatenate([step, defect[..., None]], axis=-1), 0 * defect[0])
+            return recurrence(np, np.concatenate([step, defect[..., None]], axis=-1), np.zeros(defect.shape[1]))
         moved = np.zeros((count + 1, defect.shape[1]))
         if held is None:  # sums of powers of one map, each twice as long as the last
             moved[1:], power, reach = defect, step[0].T, 1
