@@ -165,6 +165,26 @@ def test_a_coarser_mesh_under_a_body_answers_as_its_own_system() -> None:
     assert any("the mesh, most of strip; mesh it finer" in each for each in ran.warnings)
 
 
+def test_a_root_without_mass_on_a_hinge_is_said() -> None:
+    """Shapes and modes take nearly all of the moment of inertia about a root, so that energies to second order leave it
+    a negative one at small loads; what grows beyond its own size is no answer. A hub of a twentieth is enough.
+    """
+    arm = solid(block("tetra10", (4, 1, 1), (0.4, 0.05, 0.01))).reduced(modes=4, damping_ratio=0.01).structure
+    small = 0.05 * float(arm.coefficients.second_moment[1, 1])
+    hub = gb.RigidBody(1.0, (small, small, small), points={"seat": (0, 0, 0)})
+    weld, hinge = gb.Joint("fixed", "arm", on="hub.seat"), {"axes": [(0, 1, 0)], "stiffness": 20.0, "initial": 0.3}
+    alone = gb.System({"arm": arm}, {"axis": gb.Joint("revolute", "arm", **hinge)})
+    both = gb.System({"hub": hub, "arm": arm}, {"axis": gb.Joint("revolute", "hub", **hinge), "weld": weld})
+    few, many, with_hub = (
+        gb.simulate(each, duration=time, step=1.25e-4, estimate=False)
+        for each, time in ((alone, 2.5e-4), (alone, 0.1), (both, 0.1))
+    )
+    said = "the model of arm has no positive mass: load it less, or put the mass of what holds it"
+    assert few.outcome == "done" and any(said in each for each in few.warnings)
+    assert many.outcome == "no positive mass" and said in many.message
+    assert with_hub.outcome == "done" and not any("mass" in each for each in with_hub.warnings)
+
+
 def test_errors_of_a_system_are_those_of_more_modes() -> None:
     """Under a body on its end: places and root loads of a strip of one mode, beside one of ten, in a shock."""
     runs = [

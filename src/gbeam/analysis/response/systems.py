@@ -33,18 +33,21 @@ from gbeam.analysis.system.feedback import SystemControllers, loop_of
 from gbeam.analysis.system.histories import Carried, beams_of, deflection, histories, loads_of, meshes_of
 from gbeam.analysis.system.point import Point, started, started_traced
 from gbeam.analysis.system.richer import InputsOf, judged_bodies, read
+from gbeam.analysis.system.steady import MASSLESS, bent_most, massless
 from gbeam.arrays.namespace import holds_jax, namespace
 from gbeam.errors import InputError
 from gbeam.guards.limits import HISTORY_BYTES, STEPS, refuse_more
-from gbeam.integrate.equations import NonlinearEquations, Trajectory
+from gbeam.integrate.equations import NonlinearEquations, Trajectory, slopes
 from gbeam.integrate.sampled import Sampling
 from gbeam.integrate.steps import Corners
+from gbeam.mechanics.tree.bodies import LinearBody
 from gbeam.mechanics.tree.equations import Inputs
 from gbeam.mechanics.tree.steps import continuous
 from gbeam.mechanics.tree.system import System
 from gbeam.motion import Centrifuge
 from gbeam.motion.centrifuge.kinematics import axes_result
 from gbeam.motion.protocol import Motion
+from gbeam.numerics.eigen import positive_definite
 from gbeam.progress import Progress, tell
 from gbeam.results.errors import ErrorEstimate, StepErrors, SystemErrors
 from gbeam.results.parts import Loads
@@ -55,6 +58,7 @@ from gbeam.structure.beam import names_at
 Array = Any
 Floats = NDArray[np.float64]
 LEAST = 500  # steps of the results at least
+LOOKS = 30  # at the mass matrix of a run
 LOADS = "force", "moment", "stress"  # of a beam, whose errors are estimated
 BEYOND = 1e-8  # of a coordinate's range: less beyond a stop is no contact
 
@@ -139,6 +143,20 @@ class Ran(Run):
         places = read(self.posed.system, *self.every(1), ())[PLACE]
         moved = np.asarray((places - places[0]).reshape(len(places), -1))
         return np.zeros_like(moved) if unmoved(np.abs(moved).max(initial=0.0), places) else moved
+
+    @cached_property
+    def without_mass(self) -> float | None:
+        """Time at which a motion is seen to have no kinetic energy, s: energies that end at second order may have none
+        where little inertia but that of deformed bodies is on a joint.
+        """
+        system, every = self.posed.system, self.trajectory
+        if not any(isinstance(link.body, LinearBody) for link in system.tree.links):
+            return None
+        steps = np.unique(np.linspace(0, len(every.time) - 1, LOOKS).astype(int))
+        q, inputs = every.q[steps], self.inputs(system, steps)
+        mass = slopes(system.tree, q, every.qd[steps], np.zeros_like(q), inputs)[2]
+        lost = (step for step, one in zip(steps, mass, strict=True) if not positive_definite(one))
+        return next((float(every.time[step]) for step in lost), None)
 
     @cached_property
     def missed(self) -> tuple[str, ...]:
@@ -356,6 +374,14 @@ def _described(
         message = (
             f"Newton's method failed at {every.time[-1]:.4g} s: give a smaller step, or look for what breaks there"
         )
+    if run.without_mass is not None:
+        free = [system.coordinates[k] for k in system.tree.free]
+        step = int(np.searchsorted(every.time, run.without_mass))
+        words = f"at {run.without_mass:.4g} s, {massless(system, free, every.q[step])}"
+        if not every.whole or bent_most(system, free, every.q)[1] > 1:
+            outcome, message = MASSLESS, words
+        else:
+            warnings += (f"{words}; what moves so grows without bound where steps resolve it",)
     warnings += (*settings.warnings, *yielded)
     warnings += tuple(each for each in doubts(errors, settings.tolerance) if each not in warnings)
     residual: Any = None

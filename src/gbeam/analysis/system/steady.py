@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -33,6 +33,7 @@ from gbeam.numerics.series import STEP
 Array = Any
 Floats = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+MASSLESS = "no positive mass"  # an outcome
 SLIGHT = 1e-6  # of the loads, by which their stiffness is looked at
 SAME, STILL = 1e-6, 1e-9  # of modes' matrices, and m or rad: what changes with the angle changes by more
 TURNS = (0.7, 2.1, 4.4)  # rad, at which the equations are looked at
@@ -78,6 +79,27 @@ class Drive:
         return replace(inputs, prescribed=prescribed if prescribed.size else None)
 
 
+def bent_most(system: System, names: Sequence[str], q: Floats) -> tuple[str, float]:
+    """Name of the flexible body that is bent most at coordinates (k, n), by a model whose energies end at second order,
+    and how far, over its size.
+    """
+    bent = {"a body": 0.0}
+    for name, body in system.bodies.items():
+        if isinstance(body, Structure) and body.kind not in BY_STRAINS:
+            moved, size = body.displacement(q[:, deforming(names, name)]), np.abs(body.station_places.r0).max()
+            bent[name] = float(np.abs(moved).max()) / max(float(size), 1e-300)
+    most = max(bent, key=lambda name: bent[name])
+    return most, bent[most]
+
+
+def massless(system: System, names: Sequence[str], q: Floats) -> str:
+    """Say which body's model leaves a motion about coordinates (n,) without kinetic energy."""
+    most, _ = bent_most(system, names, q[None])
+    exact = "give it the exact model, or " if getattr(system.bodies.get(most), "field", None) is not None else ""
+    fix = f"{exact}load it less, or put the mass of what holds it, a hub or a bearing, on its joint as a rigid body"
+    return f"bent so far, the model of {most} has no positive mass: {fix}"
+
+
 @dataclass(frozen=True, eq=False)
 class SteadySystem(Steady):
     """A system in a steady state, and small departures from it."""
@@ -109,22 +131,8 @@ class SteadySystem(Steady):
         """M, C and K of small departures; a ComputationError where a body's model has no positive mass."""
         k, c, m = self.known or self.local.slopes()[1:]
         if not positive_definite(m):
-            fix = "give it the exact model, or load it less"
-            raise ComputationError(
-                "no positive mass", f"bent so far, the model of {self._bent_most} has no positive mass: {fix}"
-            )
+            raise ComputationError(MASSLESS, massless(self.system, self.names, self.local.y))
         return Linear(m, c, k, np.zeros((len(m), 0)))
-
-    @property
-    def _bent_most(self) -> str:
-        """Name of the flexible body that is bent most, over its size, by a polynomial model."""
-        bent = {}
-        for name, body in self.system.bodies.items():
-            if isinstance(body, Structure) and body.kind not in BY_STRAINS:
-                q = self.local.y[deforming(self.names, name)]
-                moved, size = body.displacement(q[None]), np.abs(body.station_places.r0).max()
-                bent[name] = float(np.abs(moved).max()) / max(float(size), 1e-300)
-        return max(bent, key=lambda name: bent[name], default="a body")
 
     @property
     def coordinates(self) -> Floats:
