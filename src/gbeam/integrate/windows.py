@@ -132,7 +132,7 @@ class _Window:
             self._factor(states)
             size, moved, count, since, least = self.corrections
             fresh, before, far, alone = since == 0, size.copy(), not moved[-1] <= MOVED, len(size) == 1
-            rounding = self._rounding(states) if (moved <= MOVED).any() else 0 * size  # which a large one hides
+            rounding = self._rounding(states) if count.any() else 0 * size  # which a first one hides
             size[:] = self._correct(states, *self.maps)
             count += 1
             if alone:

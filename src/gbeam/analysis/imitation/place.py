@@ -22,7 +22,7 @@ from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
-from gbeam.errors import InputError
+from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
@@ -74,6 +74,8 @@ def verify(
 
     def simulated(motion: Any) -> Response:
         response = simulate(structure, motion, settings)
+        if response.outcome != "done":
+            raise ComputationError(response.outcome, f"a run that verifies the places is no answer: {response.message}")
         return specimen_of(response) if isinstance(response, SystemResponse) else response
 
     in_flight = simulated(flight)

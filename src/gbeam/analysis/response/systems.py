@@ -34,7 +34,7 @@ from gbeam.analysis.system.histories import Carried, beams_of, deflection, histo
 from gbeam.analysis.system.point import Point, started, started_traced
 from gbeam.analysis.system.richer import InputsOf, judged_bodies, read
 from gbeam.analysis.system.steady import MASSLESS, bent_most, massless
-from gbeam.arrays.namespace import holds_jax, namespace
+from gbeam.arrays.namespace import holds_jax, is_jax, namespace
 from gbeam.errors import InputError
 from gbeam.guards.limits import HISTORY_BYTES, STEPS, refuse_more
 from gbeam.integrate.equations import NonlinearEquations, Trajectory, slopes
@@ -150,7 +150,7 @@ class Ran(Run):
         where little inertia but that of deformed bodies is on a joint.
         """
         system, every = self.posed.system, self.trajectory
-        if not any(isinstance(link.body, LinearBody) for link in system.tree.links):
+        if is_jax(every.q) or not any(isinstance(link.body, LinearBody) for link in system.tree.links):
             return None
         steps = np.unique(np.linspace(0, len(every.time) - 1, LOOKS).astype(int))
         q, inputs = every.q[steps], self.inputs(system, steps)
