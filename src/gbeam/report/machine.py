@@ -168,7 +168,7 @@ def _planned(plan: Facts) -> Blocks:
 
 
 def limits(machine: Facts) -> Block:
-    """What is used of each limit, when, and the share of what is allowed."""
+    """Largest use of each limit, its time, and its share of the limit."""
 
     def used(use: Facts) -> Value:
         if use["allowed"] is None or not math.isfinite(use["allowed"]):

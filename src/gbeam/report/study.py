@@ -215,7 +215,7 @@ def verdicts(facts: Facts) -> Blocks:
 
 
 def in_words_of(facts: Facts) -> Blocks:
-    """How every run ended, with its sentences, and every verdict with what it rests on."""
+    """Outcome and sentences of every run, and every verdict with the figures that it rests on."""
     for name, each in facts["motions"].items():
         kind = each.get("environment", name)
         title = f"{name}{'' if kind == name else f' ({kind})'}: {each['outcome']}"

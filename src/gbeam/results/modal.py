@@ -193,7 +193,7 @@ class Campbell(Noted, Figured):
 
     @declared("", "how the equilibrium is lost, as a sentence", role="fact", name=None)
     def critical_speed_reason(self) -> str | None:
-        """How the equilibrium is lost, None where it is not."""
+        """Sentence on the loss of equilibrium, None where there is none."""
         return None if self.critical is None else self.critical.reason
 
     @declared("", "errors of the critical speed", role="part", name=None)

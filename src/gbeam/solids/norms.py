@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -51,12 +50,13 @@ class LargestNorms:
         forms, products = _single(forms[:, i, j]), _single(np.where(i == j, 1, 2) * along[:, i] * along[:, j]).T
         columns, rest, rounding = map(_single, (columns, rest[:, None], SINGLE * np.square(reach)[:, None]))
         middle, apart, cell = _cells(along)
-        for group in _parts(order[FOREMOST:], GROUP):
+        left = order[FOREMOST:]
+        for group in np.array_split(left, -(-len(left) // GROUP)):
             # Maps that are largest in the same cell are likely to be so at the same times.
             group = group[np.argsort((forms[group] @ products[:, middle]).argmax(axis=1), kind="stable")]
             over, over_cells = self.over / unit, np.full(len(middle), np.inf)
             np.minimum.at(over_cells, cell, over)
-            for some in _parts(group, TOGETHER):
+            for some in np.array_split(group, -(-len(group) // TOGETHER)):
                 bounds = rounding[some], rest[some]
                 held = _could_be_largest(forms[some] @ products[:, middle], *bounds, over_cells, columns[some] @ apart)
                 times = np.flatnonzero(held[cell])
@@ -92,11 +92,6 @@ def _cells(q: Floats) -> tuple[Indices, Any, Indices]:
     apart = np.zeros((len(middle), q.shape[1]))
     np.maximum.at(apart, cell, np.abs(q - q[middle[cell]]))
     return middle, _single(apart.T), cell
-
-
-def _parts(some: Indices, size: int) -> Iterator[Indices]:
-    """Parts of indices, none longer than a size."""
-    return (some[start : start + size] for start in range(0, len(some), size))
 
 
 def _single(values: Floats) -> Any:

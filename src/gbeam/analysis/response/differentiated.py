@@ -47,7 +47,7 @@ class Posed:
 
     @property
     def drive(self) -> Any:
-        """What drives it at times (t,)."""
+        """Function of times (t,) that gives its inputs."""
         return self.problem.equations.drive
 
     def driven_as(self, other: Posed) -> bool:

@@ -145,9 +145,9 @@ class Ran(Run):
         return np.zeros_like(moved) if unmoved(np.abs(moved).max(initial=0.0), places) else moved
 
     @cached_property
-    def without_mass(self) -> float | None:
-        """Time at which a motion is seen to have no kinetic energy, s: energies that end at second order may have none
-        where little inertia but that of deformed bodies is on a joint.
+    def without_mass(self) -> int | None:
+        """Step at which a motion is first seen to have no kinetic energy: energies that end at second order may have
+        none where little inertia but that of deformed bodies is on a joint.
         """
         system, every = self.posed.system, self.trajectory
         if is_jax(every.q) or not any(isinstance(link.body, LinearBody) for link in system.tree.links):
@@ -155,8 +155,7 @@ class Ran(Run):
         steps = np.unique(np.linspace(0, len(every.time) - 1, LOOKS).astype(int))
         q, inputs = every.q[steps], self.inputs(system, steps)
         mass = slopes(system.tree, q, every.qd[steps], np.zeros_like(q), inputs)[2]
-        lost = (step for step, one in zip(steps, mass, strict=True) if not positive_definite(one))
-        return next((float(every.time[step]) for step in lost), None)
+        return next((int(step) for step, one in zip(steps, mass, strict=True) if not positive_definite(one)), None)
 
     @cached_property
     def missed(self) -> tuple[str, ...]:
@@ -374,10 +373,9 @@ def _described(
         message = (
             f"Newton's method failed at {every.time[-1]:.4g} s: give a smaller step, or look for what breaks there"
         )
-    if run.without_mass is not None:
+    if (step := run.without_mass) is not None:
         free = [system.coordinates[k] for k in system.tree.free]
-        step = int(np.searchsorted(every.time, run.without_mass))
-        words = f"at {run.without_mass:.4g} s, {massless(system, free, every.q[step])}"
+        words = f"at {every.time[step]:.4g} s, {massless(system, free, every.q[step])}"
         if not every.whole or bent_most(system, free, every.q)[1] > 1:
             outcome, message = MASSLESS, words
         else:

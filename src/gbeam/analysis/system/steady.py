@@ -257,7 +257,7 @@ def _held(system: System, drive: Drive) -> Tree:
 
 
 def _released(state: SteadySystem, *, held: bool) -> SteadySystem:
-    """The same steady state in which the coordinate that turns is free, unless it is to be held or is prescribed."""
+    """Free the coordinate that turns, unless it is to be held or is prescribed."""
     system, drive, fixed, tree = state.system, state.drive, state.point, state.system.tree
     if held or fixed.tree is tree:
         return state
