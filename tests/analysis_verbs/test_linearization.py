@@ -7,11 +7,12 @@ import pytest
 import scipy.io
 
 from gbeam import Beam, Gauge, InputError, Model, Root, assemble
-from gbeam.analysis.control.linearization import linearize, nonlinear_system, outputs_of, raveled
+from gbeam.analysis.control.linearization import linearize, nonlinear_system, outputs_of
 from gbeam.analysis.control.reduction import balanced_truncation, modal_truncation
 from gbeam.analysis.steady.modal import modes
 from gbeam.analysis.steady.operating_point import on_base, on_hub, operating_point
 from gbeam.analysis.steady.static import static
+from gbeam.arrays.tree import leaves_of
 from gbeam.motion import Base, Centrifuge, Flight, Hub, constant
 from gbeam.report import text
 from gbeam.results.facts import json_of
@@ -33,7 +34,8 @@ def test_matrices_are_finite_differences(kind):
     structure = assemble(beam_2009(0.1), Model(kind, 1, 2, 1))
     q = np.random.default_rng(3).normal(size=4) * [1e-4, 0.1, 0.02, 0.1]
     point = on_base(structure, BASE, q)
-    linear, outputs, u = point.linear, outputs_of(structure, point, ()), np.concatenate(raveled(point.inputs))
+    linear, outputs = point.linear, outputs_of(structure, point, ())
+    u = np.concatenate([np.ravel(each) for each in leaves_of(point.inputs)])
     forces = outputs.matrices(point, u)[2]
     state = [np.asarray(x) for x in (point.y, point.yd, point.ydd, u)]
     for which, matrix in ((0, linear.stiffness), (1, linear.velocity), (2, linear.mass), (3, -forces)):

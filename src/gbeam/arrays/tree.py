@@ -119,12 +119,16 @@ def each_leaf(function: Callable[[Any], Any], tree: Any) -> Any:
     return function(tree)
 
 
+def leaves_of(tree: Any) -> list[Any]:
+    """The arrays of records, tuples, lists and None, in order."""
+    leaves = list[Any]()
+    each_leaf(leaves.append, tree)
+    return leaves
+
+
 def together(trees: Sequence[Any]) -> Any:
     """Stack the arrays of records, tuples, lists and None that are alike, along a first axis."""
-    leaves = [list[Any]() for _ in trees]
-    for kept, tree in zip(leaves, trees, strict=True):
-        each_leaf(kept.append, tree)
-    stacked = iter([np.stack(each) for each in zip(*leaves, strict=True)])
+    stacked = iter([np.stack(each) for each in zip(*map(leaves_of, trees), strict=True)])
     return each_leaf(lambda _: next(stacked), trees[0])
 
 

@@ -21,7 +21,7 @@ from gbeam.analysis.steady.operating_point import (
 )
 from gbeam.analysis.steady.stability import hub_of
 from gbeam.analysis.system.linear import Strained, frozen, instabilities, linearize_system, named_acceleration
-from gbeam.arrays.tree import each_leaf, record
+from gbeam.arrays.tree import each_leaf, leaves_of, record
 from gbeam.constants import BY_STRAINS
 from gbeam.errors import InputError, placing_within
 from gbeam.guards.arguments import typed
@@ -120,7 +120,7 @@ class Outputs:
 
     def inputs(self, u: Array) -> Any:
         """Inputs of the residual in vectors (..., m): base or torque, then loads."""
-        parts = iter(np.split(u, np.cumsum([each.size for each in raveled(self.like)]), axis=-1))
+        parts = iter(np.split(u, np.cumsum([np.size(each) for each in leaves_of(self.like)]), axis=-1))
         return each_leaf(lambda leaf: next(parts).reshape(*u.shape[:-1], *np.shape(leaf)), self.like)
 
     def matrices(self, point: OperatingPoint, u: Array) -> tuple[Array, Array, Array]:
@@ -141,13 +141,6 @@ class Outputs:
         ydd = accelerations(self.residual, y[None], yd[None], self.inputs(full))
         rates = np.concatenate([yd, ydd[0], u[3:6] if not i else []])
         return rates, self(y[None], yd[None], ydd, full)[0]
-
-
-def raveled(inputs: Any) -> list[Array]:
-    """The arrays of inputs, each as a vector."""
-    parts: list[Array] = []
-    each_leaf(lambda leaf: parts.append(np.ravel(leaf)), inputs)
-    return parts
 
 
 def coordinate_signals(structure: Structure, first: int) -> tuple[Signal, ...]:
@@ -372,7 +365,7 @@ def linearize(
             raise InputError(f"gauges[{i}].body", f"is {gauge.body!r}, and there is one structure", "leave it out")
     linear, n = point.linear, len(point.y)
     measured = outputs_of(structure, point, gauges)
-    held = np.concatenate(raveled(point.inputs))
+    held = np.concatenate([np.ravel(each) for each in leaves_of(point.inputs)])
     value, d, forces = measured.matrices(point, held)
     a, drive, out, through = linear._replace(inputs=forces).state_space(
         *np.split(d, len(linear.mass) * np.arange(1, 4), axis=1)
