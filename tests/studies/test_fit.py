@@ -147,6 +147,18 @@ def test_a_step_to_what_the_scenario_refuses_is_taken_back(released: Path) -> No
     assert fitted.values[0] == pytest.approx(0.3, rel=1e-6)
 
 
+@pytest.mark.parametrize("lower", [1.0, 0.97])
+def test_a_value_may_end_at_the_edge_of_what_the_scenario_allows(released: Path, lower: float) -> None:
+    """A mass at the tip, and frequencies lower than any place gives: the derivative is of the side that is allowed."""
+    at, heavy = "beam.masses[0].at", 'beam.masses=[{{ at = "{} mm", mass = "50 g" }}]'
+    true = gb.read_scenario(released, [heavy.format(300)])
+    data = written("tip.csv", "mode,frequency", [1, 2], lower * gb.modes(true.assemble()).frequency[:2])
+    fitted = gb.fit(released, data, [at], overrides=[heavy.format(250)])
+    assert 0.299 < fitted.values[0] <= 0.3
+    assert fitted.at_bound[0] and np.isnan(fitted.errors[0])
+    assert fitted.warnings == (f"{at} lies at the edge of what the scenario allows, and has no error",)
+
+
 def test_what_the_data_cannot_tell_is_named(released: Path) -> None:
     data = written("modes.csv", "mode,frequency", [1, 2], [34.0, 213.0])
     with pytest.raises(gb.ComputationError, match=f"cannot tell ({E} and {DENSITY}|{DENSITY} and {E}) apart") as raised:

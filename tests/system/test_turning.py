@@ -109,6 +109,26 @@ def test_what_changes_as_it_turns_is_refused(turning: str | None) -> None:
     assert any("equations with it" in each for each in doubt.warnings) and not gb.modes(along).warnings
 
 
+def test_it_is_refused_where_what_turns_cannot_rest_either() -> None:
+    """A rod on a hinge across gravity, on a cart that nothing holds, which the turning rod would shake."""
+    rod = gb.RigidBody(1.0, (0.0, 0.02, 0.02), centre=(0.3, 0, 0))
+    joints = {
+        "rail": gb.Joint("prismatic", "cart", axes=[(1, 0, 0)]),
+        "pin": gb.Joint("revolute", "rod", on="cart.root", axes=[(0, 1, 0)], initial=0.1, stiffness=5.0),
+    }
+    system = gb.System({"cart": gb.RigidBody(2.0), "rod": rod}, joints, gravity=(0, 0, -9.81))
+    for ask in (gb.campbell, gb.critical_speed):
+        with pytest.raises(gb.InputError, match="change with the angle"):
+            ask(system, turning="pin.angle", **({"end": 5.0} if ask is gb.campbell else {}))
+    # What hangs on the rod is shaken more than the cart, but it is the cart that nothing holds.
+    flap = gb.Joint("revolute", "flap", on="rod.root", axes=[(0, 1, 0)], stiffness=50.0)
+    bodies = {**system.bodies, "flap": gb.RigidBody(0.1, (0.0, 1e-4, 1e-4), centre=(0.05, 0, 0))}
+    spun = gb.System(bodies, {**joints, "pin": replace(joints["pin"], rate=5.0), "flap": flap})
+    with pytest.raises(gb.ComputationError, match=r"rail\.displacement is accelerated") as caught:
+        gb.static(spun)
+    assert caught.value.outcome == "no equilibrium"
+
+
 def test_what_may_turn_is_asked_for_where_it_is_not_the_only_angle() -> None:
     structure = gb.assemble(STRIP, "FOAM", axial=1, y=1, z=1)
     one = panels(structure, FREE, "rim")

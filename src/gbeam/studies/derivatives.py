@@ -68,6 +68,7 @@ class Neighbourhood:
     ) -> None:
         self.inquiry, self.parameters, self.parts = inquiry, parameters, parts
         self._about: dict[str, Differentiated] = {}
+        self.edges: dict[int, int] = {}  # of parameters beyond whose value the scenario refuses a step, and its sign
         self.progress, self.adapt = progress, adapt or (lambda case: case)
         self.values = [each.value for each in parameters] if values is None else [float(value) for value in values]
         self.case: Any = self._built(None, 0.0)
@@ -88,21 +89,27 @@ class Neighbourhood:
     def slopes(self, read: Read, motions: Sequence[str] = (), *, rough: bool = False) -> Slopes:
         """Derivatives of what is read from the answer; other motions than those named are not differentiated.
 
-        Rough ones of differences are of second order, from half of the answers, and have no errors.
+        Rough ones of differences are of second order, from half of the answers, and have no errors; where the scenario
+        refuses one side of a value, which `edges` says, they are of the other.
         """
         if self.runs:
-            return self._of_runs(read, motions or list(self.case.motions))
+            return self._of_runs(read, motions or list(self.case.motions), rough)
         values = read(self.case, self.answer)
         rows = []
         for k, each in enumerate(self.parameters):
             tell(self.progress, each.path, k / len(self.parameters))
             step = self._step(k, _FACTS)
+            if rough:
+                less, more = (read(case, self.inquiry.facts(case)) for case in self._beside(k, step, rough))
+                unknown = np.full(len(values), np.nan)
+                rows.append(((more - less) / (2 * step), unknown, unknown))
+                continue
 
             def at(steps: float, k: int = k, step: float = step) -> Floats:
                 case = self._case(k, steps * step)
                 return read(case, self.inquiry.facts(case))
 
-            rows.append(_differences(at, values, step, rough))
+            rows.append(_differences(at, values, step))
         return _gathered(values, rows, [DIFFERENCE] * len(rows))
 
     def done(self, name: str) -> Response:
@@ -122,7 +129,7 @@ class Neighbourhood:
         self._about[name] = Differentiated(structure, motion, settings, grid, name, **self.parts)
         return self._about[name]
 
-    def _of_runs(self, read: Read, motions: Sequence[str]) -> Slopes:
+    def _of_runs(self, read: Read, motions: Sequence[str], rough: bool) -> Slopes:
         done, structure = {name: self.done(name) for name in motions}, self.case.assemble()
         for name in motions:
             if name not in self._about:
@@ -134,7 +141,7 @@ class Neighbourhood:
         pairs: dict[str, dict[int, Any]] = {name: {} for name in motions}
         jumping, cases = set(), []
         for k, step in enumerate(steps):
-            less, more = (self._case(k, sign * step) for sign in (-1, 1))
+            less, more = self._beside(k, step, rough)
             cases.append((less, more))
             for name in motions:
                 if not self._felt(k, name):
@@ -167,6 +174,23 @@ class Neighbourhood:
             ends = [read(case, study_of(case, side)) for case, side in zip(cases[k], sides, strict=True)]
             rows.append((*_slope(ends[0], values, ends[1], steps[k]), np.full(len(values), np.nan)))
         return _gathered(values, rows, [DIFFERENCE if k in jumping else EXACT for k in range(len(rows))])
+
+    def _beside(self, k: int, step: float, rough: bool) -> tuple[Case, Case]:
+        """Cases with less and with more of a value by a step; rough ones on the side that the scenario allows."""
+        try:
+            less = self._case(k, -step)
+        except InputError:
+            if not rough:
+                raise
+            self.edges[k] = -1
+            return self._case(k, 0.0), self._case(k, 2 * step)
+        try:
+            return less, self._case(k, step)
+        except InputError:
+            if not rough:
+                raise
+            self.edges[k] = 1
+            return self._case(k, -2 * step), self._case(k, 0.0)
 
     def _case(self, k: int, step: float) -> Case:
         each = self.parameters[k]
@@ -248,6 +272,12 @@ class Quantities:
             self._sloped = about, about.slopes(self._read, self._motions, rough=True).slopes
         return self._sloped[1]
 
+    def edges(self, values: Floats) -> tuple[int, ...]:
+        """Parameters whose values lie at the edge of what the scenario allows."""
+        about = self._at(values)[2]
+        self.slopes(values)
+        return tuple(about.edges)
+
     def _at(self, values: Floats) -> tuple[Floats, Floats, Neighbourhood]:
         if self._last is None or not np.array_equal(self._last[0], values):
             self.evaluations += 1
@@ -295,14 +325,10 @@ def _slope(less: Floats, middle: Floats, more: Floats, step: float) -> tuple[Flo
     return (more - less) / (2 * step), np.abs(more - 2 * middle + less) / step
 
 
-def _differences(
-    at: Callable[[float], Floats], middle: Floats, step: float, rough: bool = False
-) -> tuple[Floats, Floats, Floats]:
-    """Central differences of fourth order, or rough of second, the bend, and how far these are away."""
+def _differences(at: Callable[[float], Floats], middle: Floats, step: float) -> tuple[Floats, Floats, Floats]:
+    """Central differences of fourth order, the bend, and how far those of second order are away."""
     inner = at(1.0), at(-1.0)
     slope, bend = _slope(inner[1], middle, inner[0], step)
-    if rough:
-        return slope, bend, np.full(len(middle), np.nan)
     outer = at(2.0), at(-2.0)
     fourth = (8 * (inner[0] - inner[1]) - (outer[0] - outer[1])) / (12 * step)
     return fourth, bend, np.abs(fourth - slope)

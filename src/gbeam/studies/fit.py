@@ -141,7 +141,8 @@ def _described(
 
     fitted, measured = model(solution.values), measurement.values
     count, size = len(measured), len(parameters)
-    at_bound = on_bound(solution.values, limits)
+    at_edge = np.isin(np.arange(size), model.edges(solution.values))
+    at_bound = on_bound(solution.values, limits) | at_edge
     inside = np.flatnonzero(~at_bound)
     variance = float(np.sum(((fitted - measured) * solution.weights) ** 2)) / (count - size)
     spread, condition = np.full((size, size), np.nan), np.nan  # covariance over variance, which may be zero
@@ -174,7 +175,7 @@ def _described(
         modal=measurement.modal,
         evaluations=model.evaluations,
         condition=condition,
-        warnings=tuple(_doubts(parameters, at_bound, correlation, columns)),
+        warnings=tuple(_doubts(parameters, at_bound, at_edge, correlation, columns)),
     )
 
 
@@ -192,11 +193,17 @@ def _columns(measurement: Measurement, fitted: Floats, before: Floats, size: int
 
 
 def _doubts(
-    parameters: Sequence[PhysicalValue], at_bound: Any, correlation: Floats, columns: Sequence[FittedColumn]
+    parameters: Sequence[PhysicalValue],
+    at_bound: Any,
+    at_edge: Any,
+    correlation: Floats,
+    columns: Sequence[FittedColumn],
 ) -> Iterator[str]:
     names = [each.path for each in parameters]
     for k, name in enumerate(names):
-        if at_bound[k]:
+        if at_edge[k]:
+            yield f"{name} lies at the edge of what the scenario allows, and has no error"
+        elif at_bound[k]:
             yield f"{name} lies on its bound: the least squares are beyond, and it has no error"
         for j in range(k):
             if abs(both := float(correlation[k, j])) > _HARDLY:

@@ -331,6 +331,6 @@ _SAMPLES = 501
 def _largest(rate: Profile | None) -> float:
     """Largest rate of a history, rad/s."""
     if rate is None:
-        raise InputError("speeds", "are not given, and no rate is prescribed", "give the largest speed")
+        raise InputError("to", "is missing, and no rate is prescribed", "give the largest speed, such as 60 rpm")
     ends = np.append(np.asarray(rate.breaks), 0.0)
     return float(np.abs(np.asarray(rate(np.linspace(ends.min(), ends.max(), _SAMPLES)))).max())

@@ -37,6 +37,7 @@ from gbeam.structure.beam import Beam
 
 SEARCH_FACTOR = 10.0  # of the lowest natural frequency: how far a search goes by default
 INSTEAD = "ask `gbeam modes` for its frequencies at a time, or `gbeam static` for its shape"
+SLOW = 1e-6  # rad/s
 NOTHING = 1e-12  # of the beam's stiffness: loads that bring less are rounding about none
 
 
@@ -155,7 +156,10 @@ def turned(
         coordinate = turning_of(structure, motion, turning)
         joint, _, angle = coordinate.rpartition(".")
         history = structure.joints[joint].rates.get(angle) if joint else motion.rate  # type: ignore[union-attr]
-        return Turning(Drive(motion, time, coordinate), held), history
+        of_system = Turning(Drive(motion, time, coordinate), held)
+        # By a turn that is slow enough to lose nothing: where the system rests at no larger rate this is why.
+        replace(of_system, held=False).refuse_changing(structure, SLOW)
+        return of_system, history
     structure.require_coordinates()
     if turning is not None:
         raise InputError("turning", "is given of one beam", "leave it out: its hub turns")

@@ -224,6 +224,7 @@ def refuse_accelerated(system: System, tree: Tree, left: Floats, stiffness: Floa
     acceleration = np.linalg.solve(mass, -left)
     scale = np.abs(np.linalg.solve(mass, np.abs(stiffness).sum(axis=1))).max(initial=1.0)
     if np.abs(acceleration).max(initial=0.0) > 1e-6 * scale:
-        name = _farthest(system, tree, acceleration)
+        # Of all that is accelerated with it, what the force left over acts on.
+        name = _farthest(system, tree, left / np.sqrt(np.maximum(np.diag(mass), MASSLESS * np.diag(mass).max())))
         problem = f"{name} is accelerated, which nothing holds: what nothing holds does not rest"
         raise ComputationError("no equilibrium", problem)

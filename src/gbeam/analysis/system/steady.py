@@ -214,7 +214,7 @@ class SteadySystem(Steady):
             return False
         square, modes = symmetric_modes(*(symmetric(each) for each in (self.linear.stiffness, self.linear.mass)))
         rate = np.sqrt(np.abs(square))
-        rate = np.maximum(rate, 1e-6 * rate.max(initial=0.0))
+        rate = np.maximum(rate, 1e-6 * rate.max(initial=0.0) or 1.0)
         left, *at = self._slopes_after(0.0)
         for turn in TURNS:
             beside, *other = self._slopes_after(turn)
