@@ -14,6 +14,8 @@ BIN := .venv/bin
 EXAMPLE := examples/f16_8g_turn.toml
 # Compiled programs are kept here between test runs.
 CACHE := $(CURDIR)/.cache/jax
+# glibc keeps the memory of large arrays for the next ones: what it gives back is zeroed anew for every one.
+KEEPING := MALLOC_MMAP_THRESHOLD_=33554432 MALLOC_TRIM_THRESHOLD_=536870912
 
 # Where this is set, every process that a test starts compiles all of gbeam anew.
 unexport PYTHONDONTWRITEBYTECODE
@@ -29,7 +31,7 @@ demo: .venv/installed
 # The browser tests take the Chromium that is there, or one from npm; where neither can be had they are skipped.
 test: .venv/dev-installed
 	$(BIN)/python .ci/browser.py
-	JAX_COMPILATION_CACHE_DIR=$(CACHE) $(BIN)/pytest -n 2 --dist loadfile
+	JAX_COMPILATION_CACHE_DIR=$(CACHE) $(KEEPING) $(BIN)/pytest -n 2 --dist loadfile
 
 web: web/node_modules/.installed
 	cd web && npm run --silent build && npm test --silent

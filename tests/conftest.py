@@ -7,6 +7,7 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 import warnings
 from collections.abc import Iterator
 from importlib.metadata import version
@@ -27,8 +28,10 @@ hypothesis.settings.register_profile("gbeam", deadline=None)
 hypothesis.settings.load_profile("gbeam")
 # Compiled programs are kept from run to run, in the project's own ignored folder.
 os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(Path(__file__).parents[1] / ".cache" / "jax"))
-# No test reads what another version of it has made.
-os.environ.setdefault("GBEAM_CACHE", "off")
+# Meshes that a test has reduced, others of this run read, in all of its processes; a run begins without any.
+if "GBEAM_CACHE" not in os.environ:
+    REDUCED = tempfile.TemporaryDirectory(prefix="gbeam-reduced-")
+    os.environ["GBEAM_CACHE"] = REDUCED.name
 # Files of figures take most of the time of a command; a test that is about them asks for them.
 os.environ["GBEAM_FIGURES"] = "none"
 # As gbeam has it, in whichever order the tests that differentiate something themselves import JAX and gbeam.

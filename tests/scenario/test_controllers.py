@@ -75,7 +75,7 @@ def test_a_law_is_read_from_a_file(ending: str, tmp_path: Path) -> None:
     """In continuous time as it is, in discrete time with its step; the result runs again from what it holds."""
     file, text = tmp_path / f"law{ending}", FILED.replace("FILE", f"law{ending}")
     named = dict(zip("ABCD", in_series([pid(60.0, 0.0, 220.0, 0.1), notch(2 * np.pi * 4.25, 0.1, 0.3)]), strict=True))
-    short = 'duration = "1 s"\nstep = "5 ms"\nestimate = false'
+    short = 'duration = "0.1 s"\nstep = "5 ms"\nestimate = false'
     (tmp_path / "case.toml").write_text(text.replace('duration = "40 s"', short))
     held = build(loads(POINTING)).system.controllers["pointing"].law
     for step in (0.0, 0.02):
