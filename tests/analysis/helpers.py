@@ -9,7 +9,8 @@ import numpy as np
 
 from gbeam import Beam, Material, Model, Response, Section, Structure, assemble
 from gbeam.results.machine import AxesResult
-from gbeam.results.response import BaseMotion, Peaks
+from gbeam.results.parts import Base
+from gbeam.results.response import Peaks
 
 LENGTH = 0.3
 SECTION = Section.rectangle(0.02, 0.004)
@@ -35,6 +36,6 @@ def made(name: str, time: np.ndarray, tip: np.ndarray, held: np.ndarray | None =
     return Response(
         name=name, environment="flight", model="FOAM", outcome="done", message="", warnings=(), time=time,
         stations=np.array([LENGTH]), displacement=tip[:, None, :], q=np.zeros((n, 1)), qd=np.zeros((n, 1)),
-        base=BaseMotion(none, none, none), peaks=Peaks(np.abs(tip).max(0), np.zeros(3), np.full(3, np.nan)),
+        base=Base(none, none, none), peaks=Peaks(np.abs(tip).max(0), np.zeros(3), np.full(3, np.nan)),
         integrator="newmark", step=0.1, steps=n - 1, error_estimate=0.0, residual_from=np.nan, axes=axes,
     )  # fmt: skip

@@ -11,10 +11,11 @@ from scipy.signal import find_peaks
 
 from gbeam import Comparison, InputError, Response, compare
 from gbeam.analysis.imitation.accounting import History, account
+from gbeam.arrays.tree import each_leaf
 from gbeam.report.machine import accounting_lines as lines
 from gbeam.results.facts import facts_of
 from gbeam.results.machine import AxesResult, LimitUse
-from gbeam.results.response import BaseMotion
+from gbeam.results.parts import Base
 
 from .helpers import LENGTH, made
 
@@ -52,7 +53,7 @@ def alike(load: np.ndarray) -> History:
 
 def flight_of(load: np.ndarray) -> Response:
     """A flight whose tip and root moment go with the load."""
-    return replace(made("flight", TIME, 1e-4 * load), base=BaseMotion(load, ZERO, ZERO))
+    return replace(made("flight", TIME, 1e-4 * load), base=Base(load, ZERO, ZERO))
 
 
 @pytest.fixture(scope="module")
@@ -69,7 +70,7 @@ def pair() -> tuple[Response, Response]:
         ZERO, ZERO, acceleration, target, actual, np.isin(WHICH, (5, 7)), episodes, limits, control_point=0.0,
         idle=IDLE * G,
     )  # fmt: skip
-    spin = replace(made("arm", TIME, 1e-4 * actual), base=BaseMotion(actual, ZERO, ZERO), axes=axes)
+    spin = replace(made("arm", TIME, 1e-4 * actual), base=Base(actual, ZERO, ZERO), axes=axes)
     return flight_of(load), spin
 
 
@@ -129,7 +130,7 @@ def reproduced() -> tuple[Response, Response]:
     high = (TIME > 4.0) & (TIME < 6.0)
     load, actual = (along_z(np.where(high, *each)) for each in ((10.0, 0.5), (9.9, 1.4)))
     axes = AxesResult(ZERO, ZERO, ZERO, actual, actual, ~high, ((0.0, 4.0, "below idle"),), idle=IDLE * G)
-    arm = replace(made("arm", TIME, 1e-4 * actual), base=BaseMotion(actual, ZERO, ZERO), axes=axes)
+    arm = replace(made("arm", TIME, 1e-4 * actual), base=Base(actual, ZERO, ZERO), axes=axes)
     return flight_of(load), arm
 
 
@@ -212,7 +213,7 @@ def test_spread_along_a_specimen_on_an_arm() -> None:
     rate = np.sqrt(np.linalg.norm(arm.axes.actual, axis=1) / radius)  # type: ignore[union-attr]
     inwards = -(rate**2)[:, None] * [1.0, 0.0, 0.0]
     axes = replace(arm.axes, actual=radius * inwards, reference=radius * inwards, control_point=at)  # type: ignore[type-var]
-    base = BaseMotion((radius - at) * inwards, rate[:, None] * [0.0, 0.0, 1.0], ZERO)
+    base = Base((radius - at) * inwards, rate[:, None] * [0.0, 0.0, 1.0], ZERO)
     (peak,) = compare(flight, replace(arm, axes=axes, base=base)).accounting.peaks
     assert peak.spread == pytest.approx((-at / radius, (LENGTH - at) / radius))
     assert peak.spread_flight == (0.0, 0.0)
@@ -257,7 +258,7 @@ def test_spin_up_is_not_the_flight(pair: tuple[Response, Response]) -> None:
         arm,
         time=time,
         displacement=longer(arm.displacement) * np.where(time < 0, 9.0, 1.0)[:, None, None],
-        base=BaseMotion(*map(longer, (arm.base.a_WO_B, arm.base.w_WB_B, arm.base.alpha_WB_B))),
+        base=each_leaf(longer, arm.base),
         axes=replace(axes, not_followed=longer(axes.not_followed), **parts),
     )
     # A peak between the steps of the spin-up is none of the flight's.

@@ -27,7 +27,7 @@ from gbeam import (
 from gbeam.analysis.response.outcome import Drive, lowest_over_time, worst_loss
 from gbeam.analysis.steady.stability import critical_load
 from gbeam.motion import constant
-from gbeam.results.response import BaseMotion
+from gbeam.results.parts import Base
 
 from .helpers import EI, LENGTH, LINE, OMEGA, SECTION, strip
 
@@ -36,13 +36,13 @@ EULER, GREENHILL, BECK = np.pi**2 / 4, 7.8373, 20.051
 AGREES = 5e-3  # of FOAM with four clamped-free shapes
 
 
-def spin(rate: np.ndarray) -> BaseMotion:
+def spin(rate: np.ndarray) -> Base:
     """Rotation about y, in whose plane the strip bends, hub radius 0; an angular acceleration that must not matter."""
     o = np.zeros_like(rate)
-    return BaseMotion(np.stack([o, o, o], 1), np.stack([o, rate, o], 1), np.stack([o, rate, o], 1))
+    return Base(np.stack([o, o, o], 1), np.stack([o, rate, o], 1), np.stack([o, rate, o], 1))
 
 
-def base_of(history: BaseMotion) -> tuple[Any, Any, Any]:
+def base_of(history: Base) -> tuple[Any, Any, Any]:
     return history.a_WO_B, history.w_WB_B, history.alpha_WB_B
 
 
@@ -76,7 +76,7 @@ def test_no_loss_and_loss_from_the_start() -> None:
 def test_foam_does_not_lose_it_on_a_hub() -> None:
     rate, time = np.linspace(0, 5 * OMEGA, 20), np.linspace(0, 1, 20)
     base = spin(rate)
-    on_rim = BaseMotion(np.outer(rate**2, [-LENGTH, 0, 0]), base.w_WB_B, base.alpha_WB_B)
+    on_rim = Base(np.outer(rate**2, [-LENGTH, 0, 0]), base.w_WB_B, base.alpha_WB_B)
     assert worst_loss(strip(), time, on_rim, at_rest(strip(), time)) is None
 
 
@@ -106,7 +106,7 @@ def test_the_growth_is_that_of_one_shape() -> None:
     assert limit is not None
     structure = column("FOAM", Load(LENGTH, force=(-1.5 * limit, 0.0, 0.0)), **one)
     time = np.linspace(0, 0.3, 50)
-    still = BaseMotion(*np.zeros((3, 50, 3)))
+    still = Base(*np.zeros((3, 50, 3)))
     loss = worst_loss(structure, time, still, at_rest(structure, time))
     assert loss is not None and loss.growth == pytest.approx(0.3 * OMEGA * np.sqrt(0.5), rel=1e-6)
     assert (loss.start, loss.end) == (0.0, 0.3)
@@ -175,6 +175,5 @@ def test_a_shaft_above_its_critical_speed_is_held_by_its_spin() -> None:
     base = Flight(x=0.0, rates=vector(x=constant(1.5 * float(structure.rest[0][0])))).base(
         time := np.linspace(0, 1, 20)
     )
-    history = BaseMotion(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
-    assert (lowest_over_time(structure.coefficients, Drive(*base_of(history))) < 0).all()
-    assert worst_loss(structure, time, history, at_rest(structure, time)) is None
+    assert (lowest_over_time(structure.coefficients, Drive(*base_of(base))) < 0).all()
+    assert worst_loss(structure, time, base, at_rest(structure, time)) is None

@@ -10,7 +10,7 @@ import pytest
 from gbeam import Beam, Comparison, InputError, PointMass, Response, assemble, compare, constant, simulate
 from gbeam import Flight as InFlight
 from gbeam.analysis.imitation.accounting import largest_load, points_of
-from gbeam.results.response import BaseMotion
+from gbeam.results.parts import Base
 
 from .helpers import ALUMINIUM, LENGTH, SECTION, made
 
@@ -24,15 +24,13 @@ RADIUS = 1.0  # m, of the arm: to the control point
 def on_an_arm(rate: np.ndarray, at: float, **changes: np.ndarray) -> Response:
     """A specimen along the radius of an arm that turns about z at `rate` (t,), its control point at `at` m."""
     load = -(rate**2 * (RADIUS - at))[:, None] * ALONG_X
-    base = BaseMotion(load, rate[:, None] * ALONG_Z, np.gradient(rate, TIME)[:, None] * ALONG_Z)
+    base = Base(load, rate[:, None] * ALONG_Z, np.gradient(rate, TIME)[:, None] * ALONG_Z)
     return replace(made("arm", TIME, 0 * load + 1e-3), base=base, **changes)
 
 
 def in_flight(load: np.ndarray) -> Response:
     during = TIME >= 0
-    return replace(
-        made("flight", TIME[during], 0 * load[during] + 1e-3), base=BaseMotion(load[during], *2 * [ZERO[during]])
-    )
+    return replace(made("flight", TIME[during], 0 * load[during] + 1e-3), base=Base(load[during], *2 * [ZERO[during]]))
 
 
 @pytest.fixture
@@ -83,7 +81,7 @@ def test_no_point_of_the_specimen_carries_more() -> None:
     """Bases in any motion, a beam and bodies off its axis: against many points, and twice the rigid body's formula."""
     random = np.random.default_rng(7)
     for _ in range(20):
-        base = BaseMotion(*(random.normal(size=(50, 3)) * size for size in (10.0, 5.0, 20.0)))
+        base = Base(*(random.normal(size=(50, 3)) * size for size in (10.0, 5.0, 20.0)))
         bodies = random.normal(size=(2, 3)) * 0.2 + [0.15, 0, 0]
         value, when, place = largest_load(np.arange(50.0), base, points_of(LENGTH, bodies))
         along = np.linspace(0, LENGTH, 31)[:, None] * ALONG_X

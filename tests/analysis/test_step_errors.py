@@ -21,7 +21,6 @@ from gbeam.analysis.response.step_errors import Readings, Run, observed_order
 from gbeam.analysis.response.stepping import answered, refine
 from gbeam.integrate import Trajectory
 from gbeam.mechanics.section_forces import section_forces
-from gbeam.results.response import BaseMotion
 from validation.accuracy import integrators
 
 from .helpers import strip
@@ -119,8 +118,7 @@ def truth(name: str, time: np.ndarray) -> tuple[np.ndarray, Any]:
     c, k, f = equations.matrices(equations.drive(time))
     force = f - (k @ q[..., None] + c @ qd[..., None])[..., 0]
     qdd, base = np.linalg.solve(equations.mass, force.T).T, motion.base(time)
-    history = BaseMotion(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
-    loads = section_forces(structure, history, q, qd, qdd, time, motion=motion)
+    loads = section_forces(structure, base, q, qd, qdd, time, motion=motion)
     return np.asarray(structure.displacement(q)[:, -1]), loads
 
 

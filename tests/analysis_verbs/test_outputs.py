@@ -10,9 +10,9 @@ import pytest
 
 from gbeam import Beam, InputError, Load, Material, Model, Point, PointMass, Root, Section, assemble
 from gbeam.analysis.control.linearization import linearize, nonlinear_system
+from gbeam.arrays.tree import each_leaf
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.motion import Flight, Hub, constant
-from gbeam.results.response import BaseMotion
 from gbeam.results.state_space import Gauge
 
 from ..specimens import COMPLETE
@@ -103,7 +103,7 @@ def carried(kind, base, system, rates):
     at = mount.base(*map(np.asarray, turned))
     q, qd, qdd = system.state[first:half], system.state[half + first : 2 * half], rates[half + first : 2 * half]
     assert ("hub_angle" in states) == bool(first)
-    history = BaseMotion(*(np.asarray(x)[None] for x in (at.a_WO_B, at.w_WB_B, at.alpha_WB_B)))
+    history = each_leaf(lambda x: np.asarray(x)[None], at)
     loads = section_forces(beam, history, q[None], qd[None], qdd[None], np.zeros(1))
     outputs = dict(zip([signal.name for signal in system.outputs], system.output, strict=True))
     for i, axis in enumerate("xyz"):

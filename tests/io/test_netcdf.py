@@ -21,9 +21,9 @@ from gbeam.results.imitation.accounting import Accounting, LoadPeak, NotFollowed
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.imitation.measures import Fatigue, RootHistory, RootLoads, Sizes, Statistics, StressCycles
 from gbeam.results.machine import AxesResult, LimitUse, Shortfall
-from gbeam.results.parts import Loads
+from gbeam.results.parts import Base, Loads
 from gbeam.results.provenance import Provenance
-from gbeam.results.response import BaseMotion, HubResult, Peaks, Response
+from gbeam.results.response import HubResult, Peaks, Response
 from gbeam.results.study import Failure, Study
 
 from ..files import opened
@@ -86,7 +86,7 @@ def _response(name: str, environment: str) -> Response:
         displacement=_random(T, 2, 3),
         q=_random(T, N),
         qd=_random(T, N),
-        base=BaseMotion(_random(T, 3), _random(T, 3), _random(T, 3)),
+        base=Base(_random(T, 3), _random(T, 3), _random(T, 3)),
         peaks=Peaks(_random(3), _random(3), np.full(3, np.nan)),
         integrator="newmark",
         step=0.1,

@@ -27,11 +27,11 @@ from gbeam import (
     static,
 )
 from gbeam.analysis.response.record import influence
+from gbeam.arrays.tree import each_leaf
 from gbeam.mechanics.fields.basis import closed_forms
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.motion import Base
 from gbeam.results.parts import Loads
-from gbeam.results.response import BaseMotion
 
 from ..differences import along, rate
 from ..lagrange import energy_of, hub_kinetic
@@ -54,7 +54,7 @@ SPATIAL = {kind: Model(kind, 1, 2, 2) for kind in ("TLAM", "FOAM", "CFOAM", "exa
 
 def carried(structure: Structure, base: Base, q: np.ndarray, qd: np.ndarray, qdd: np.ndarray, **more: Any) -> Loads:
     """Section forces at one time, or at many: arrays (n,) or (t, n)."""
-    over_time = BaseMotion(*(np.atleast_2d(x) for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
+    over_time = each_leaf(np.atleast_2d, base)
     rows = [np.atleast_2d(x) for x in (q, qd, qdd)]
     loads = section_forces(structure, over_time, *rows, np.zeros(len(rows[0])), **more)
     assert loads is not None

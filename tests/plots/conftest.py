@@ -11,7 +11,8 @@ from gbeam.results.errors import ErrorEstimate, Errors
 from gbeam.results.imitation.accounting import Accounting, LoadPeak, NotFollowed, PeakPair
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.machine import AxesResult, LimitUse
-from gbeam.results.response import BaseMotion, HubResult, Peaks, Response
+from gbeam.results.parts import Base
+from gbeam.results.response import HubResult, Peaks, Response
 from gbeam.results.study import Study
 
 TIME = np.linspace(0, 2, 201)
@@ -32,7 +33,7 @@ def _response(name: str, environment: str, turning: float) -> Response:
         displacement=wave[:, None],
         q=zero,
         qd=zero,
-        base=BaseMotion(zero + np.array([0, 0, 60.0]), zero + np.array([0, turning, 0]), zero),
+        base=Base(zero + np.array([0, 0, 60.0]), zero + np.array([0, turning, 0]), zero),
         peaks=Peaks(np.abs(wave).max(axis=0), TIME[np.abs(wave).argmax(axis=0)], np.array([0.0, 1e-4, 2e-4])),
         integrator="newmark",
         step=1e-3,

@@ -83,7 +83,7 @@ def test_draws_itself(every: dict[str, Any], kind: str) -> None:
 
 def test_parts_print_their_shapes(every: dict[str, Any]) -> None:
     response = every["response"]
-    assert repr(response.base) == "BaseMotion(a_WO_B=(51, 3), w_WB_B=(51, 3), alpha_WB_B=(51, 3))"
+    assert repr(response.base) == "Base(a_WO_B=(51, 3), w_WB_B=(51, 3), alpha_WB_B=(51, 3))"
     assert "section_force=(51, 4, 3)" in repr(response.loads) and len(repr(response.loads)) < 320
     assert "control_point=0.15, warnings=()" in repr(every["plan"].axes)
 

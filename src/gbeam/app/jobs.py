@@ -16,7 +16,7 @@ import signal
 import sys
 import threading
 import traceback
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from datetime import datetime
 from pathlib import Path
@@ -228,7 +228,8 @@ class Jobs:
                 self._unsaved.pop(number)
                 return False
         try:
-            process = await _begun(place, _command(known))
+            arguments = [known["verb"], _SCENARIO, *known["arguments"], "--out", "out", "--report", "--json"]
+            process = await _begun(place, [sys.executable, "-c", LIMITED, str(MEMORY), str(SECONDS), *arguments])
         except OSError as error:
             passes = error.errno in SHORT
             self._note(number, state="queued" if passes else "failed")
@@ -312,12 +313,6 @@ def _last_line(log: Path) -> str:
     return lines[-1][:300] if lines else ""
 
 
-def _command(state: Mapping[str, Any]) -> list[str]:
-    """A verb with its result as a report and as JSON."""
-    arguments = [state["verb"], _SCENARIO, *state["arguments"], "--out", "out", "--report", "--json"]
-    return [sys.executable, "-c", LIMITED, str(MEMORY), str(SECONDS), *arguments]
-
-
 def _state(place: Path, otherwise: str) -> str:
     """End of an answer in a few words, as its report says it."""
     try:
@@ -334,7 +329,9 @@ def _state(place: Path, otherwise: str) -> str:
 
 def _files(place: Path) -> dict[str, Path]:
     """The files of a run by the names under which they are downloaded; its report has one name whatever the verb."""
-    fixed = {name: file for name, inside in DOWNLOADS.items() if _holds(file := place / inside)}
+    fixed = {
+        name: file for name, inside in DOWNLOADS.items() if (file := place / inside).is_file() and file.stat().st_size
+    }
     before = place / _BEFORE / _SCENARIO
     if before.is_file() and _SCENARIO in fixed:
         changed = before.read_bytes() != fixed[_SCENARIO].read_bytes()
@@ -345,11 +342,6 @@ def _files(place: Path) -> dict[str, Path]:
     every = fixed if report is None else fixed | {"report.html": report}
     kinds = KINDS if report else (*KINDS, ".png")  # a report has the figures
     return every | {name: file for name, file in written.items() if name.endswith(kinds)}
-
-
-def _holds(file: Path) -> bool:
-    """True if there is a file that is not empty."""
-    return file.is_file() and file.stat().st_size > 0
 
 
 def _end(process: asyncio.subprocess.Process) -> None:

@@ -34,8 +34,8 @@ from gbeam.figures.description import (
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.machine import AxesResult
-from gbeam.results.parts import Loads
-from gbeam.results.response import BaseMotion, HubResult, PlotHeading, Readings, Response
+from gbeam.results.parts import Base, Loads
+from gbeam.results.response import HubResult, PlotHeading, Readings, Response
 from gbeam.results.result import Floats
 from gbeam.results.study import ModelStudy, Study
 from gbeam.results.system import SystemResponse
@@ -209,7 +209,7 @@ def base(response: Response, title: str = "") -> Figure:
     motion, spans, panels = response.base, stretches(response.axes, response.time), []
     turning = bool(np.any(motion.w_WB_B) or np.any(motion.alpha_WB_B))
     for name in ("a_WO_B", "w_WB_B", "alpha_WB_B") if turning else ("a_WO_B",):
-        values, (words, si) = getattr(motion, name), declared(BaseMotion, name)
+        values, (words, si) = getattr(motion, name), declared(Base, name)
         scale, unit = scale_of(si, values) if name == "a_WO_B" else (1.0, raised(si))
         panel = Panel(f"{words}, {unit}", spans=spans, height=1.0 if turning else 1.6)
         panels.append(components(response.time, scale * values, "xyz", panel))

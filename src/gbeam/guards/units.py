@@ -102,7 +102,10 @@ def quantity(value: object, kind: str) -> float:
         if not unit:
             raise UnitError(f"{shown} has no unit", _no_unit(match[1], expected))
         try:
-            number = _ratio(number) if unit == "dB" and kind == "amplitude ratio" else number * _factor(unit, kind)
+            if unit == "dB" and kind == "amplitude ratio":
+                number = math.inf if number > 6000 else 10.0 ** (number / 20)
+            else:
+                number *= _factor(unit, kind)
         except UnitError as error:
             raise UnitError(f"{shown} {error.problem}", error.hint) from None
     else:
@@ -132,11 +135,6 @@ def in_si(value: Any, kind: str) -> Any:
     if isinstance(value, dict):
         return {key: in_si(each, kind) for key, each in value.items()}
     return value
-
-
-def _ratio(decibels: float) -> float:
-    """Ratio of amplitudes of a level; infinite beyond every number."""
-    return math.inf if decibels > 6000 else 10.0 ** (decibels / 20)
 
 
 def argument(text: str, kind: str) -> float:

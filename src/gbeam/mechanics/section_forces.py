@@ -18,15 +18,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gbeam.arrays.namespace import is_jax, namespace
+from gbeam.arrays.tree import each_leaf
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.fields.vectors import cross, joined, skew, split
 from gbeam.mechanics.structure import Sections, Structure
 from gbeam.mechanics.tree.frames import Frame
 from gbeam.mechanics.tree.system import body_of
-from gbeam.motion.bases.base import Base, mapped
 from gbeam.motion.protocol import Motion
-from gbeam.results.parts import Loads
-from gbeam.results.response import BaseMotion
+from gbeam.results.parts import Base, Loads
 from gbeam.structure.section import extreme_stresses, worst_fibres
 from gbeam.structure.shapes import von_mises
 
@@ -61,7 +60,7 @@ class Carried(NamedTuple):
 
 def section_forces(
     structure: Structure,
-    base: BaseMotion,
+    base: Base,
     q: Array,
     qd: Array,
     qdd: Array,
@@ -82,11 +81,8 @@ def section_forces(
         part = slice(i, i + _BLOCK)
         values = None if applied is None else applied[part]
         on = None if hung is None else hung.during(part)
-        pieces.append(
-            sections(
-                structure, structure.sections, mapped(base, itemgetter(part)), q[part], qd[part], qdd[part], values, on
-            )
-        )
+        at, p, pd, pdd = each_leaf(itemgetter(part), (base, q, qd, qdd))
+        pieces.append(sections(structure, structure.sections, at, p, pd, pdd, values, on))
     force, moment, section_force, section_moment, a, _ = (
         xp.concatenate(part) if len(pieces) > 1 else part[0] for part in zip(*pieces, strict=True)
     )
@@ -110,7 +106,7 @@ def section_forces(
 
 
 def _of_ends(
-    structure: Structure, base: BaseMotion, q: Array, qd: Array, qdd: Array, time: Array, hung: Hung | None
+    structure: Structure, base: Base, q: Array, qd: Array, qdd: Array, time: Array, hung: Hung | None
 ) -> Loads:
     """Loads without stress at the root of constant coefficients, and at the tip, which carries nothing outboard."""
     xp = namespace(q, base.a_WO_B)
@@ -121,7 +117,7 @@ def _of_ends(
     if hung is not None:
         demanded = [each + more.sum(axis=1) for each, more in zip(demanded, (hung.force, hung.moment), strict=True)]
     force, moment = (xp.stack([-each, 0 * each], axis=1) for each in demanded)
-    tip = absolute_accelerations(xp, mapped(base, lambda each: each), *structure.output[-1:].paths(q, qd, qdd))
+    tip = absolute_accelerations(xp, base, *structure.output[-1:].paths(q, qd, qdd))
     unknown = xp.full(force.shape[:2], np.nan)
     return Loads(
         stations=np.append(0.0, structure.stations[-1:]),
@@ -194,10 +190,9 @@ def _sent_out(structure: Structure, count: int, q: Array, qd: Array, qdd: Array)
     return particles.paths(q, qd, qdd), stations.paths(q, qd, qdd), turned
 
 
-def accelerations(structure: Structure, base: BaseMotion, q: Array, qd: Array, qdd: Array) -> Array:
+def accelerations(structure: Structure, base: Base, q: Array, qd: Array, qdd: Array) -> Array:
     """Absolute accelerations (t, s, 3) of the stations (specific force where gravity acts), base axes."""
-    moving = Base(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
-    return absolute_accelerations(namespace(q, base.a_WO_B), moving, *structure.output.paths(q, qd, qdd))
+    return absolute_accelerations(namespace(q, base.a_WO_B), base, *structure.output.paths(q, qd, qdd))
 
 
 def absolute_accelerations(xp: Any, base: Base, r: Array, rd: Array, rdd: Array) -> Array:

@@ -18,7 +18,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
-from gbeam.figures.description import Area, Bars, Figure, Line, Map, Panel, Span
+from gbeam.figures.description import Bars, Figure, Line, Map, Panel, Span
 from gbeam.numerics.samples import thinned, true_runs
 from gbeam.printable import printable
 from gbeam.results.result import Flags, Floats
@@ -193,7 +193,8 @@ def _fill(axes: Axes, panel: Panel, *, first: bool) -> None:
             scale.set_minor_locator(NullLocator())
             scale.set_major_formatter("{x:g}")
     for each in panel.areas:
-        _area(axes, each)
+        look: dict[str, Any] = {"color": PALETTE[each.colour], "alpha": 0.25, "lw": 0, "label": each.label}
+        axes.fill_between(each.x, each.low, each.high, **look)
     for one in panel.lines:
         _line(axes, one, named=panel.named)
     if panel.lines and not any(np.isfinite(one.y).any() for one in panel.lines):
@@ -237,10 +238,6 @@ def _line(axes: Axes, one: Line, *, named: bool) -> None:
     if one.broad:
         look |= {"lw": BROAD, "zorder": 1.9, "solid_capstyle": "butt"}
     line(axes, one.x, one.y, **look)
-
-
-def _area(axes: Axes, area: Area) -> None:
-    axes.fill_between(area.x, area.low, area.high, color=PALETTE[area.colour], alpha=0.25, lw=0, label=area.label)
 
 
 def _bars(axes: Axes, bars: Bars) -> None:

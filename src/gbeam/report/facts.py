@@ -163,12 +163,12 @@ def json_schema_of_results() -> str:
 def reference_of_results() -> str:
     """Return a page with a table of every kind of result."""
     summaries = {name: (kind.__doc__ or "").strip().splitlines()[0] for name, kind in KINDS.items()}
-    return _HEAD + "".join(f"\n## {name}\n\n{summaries[name]}\n\n{_table(kind)}" for name, kind in KINDS.items())
-
-
-def _table(kind: type) -> str:
-    rows = [f"| `{path}` | {'–' if unit in ('', 'unit') else unit} | {words} |" for path, unit, words in _rows(kind)]
-    return "\n".join(["| key | unit | |", "|---|---|---|", *rows, ""])
+    text = _HEAD
+    for name, kind in KINDS.items():
+        text += f"\n## {name}\n\n{summaries[name]}\n\n| key | unit | |\n|---|---|---|\n"
+        for path, unit, words in _rows(kind):
+            text += f"| `{path}` | {'–' if unit in ('', 'unit') else unit} | {words} |\n"
+    return text
 
 
 def _rows(kind: type) -> Iterator[tuple[str, str, str]]:

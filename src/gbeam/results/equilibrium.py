@@ -10,8 +10,7 @@ from gbeam.results.declared import INSIDE, declared, fact, part, quantity
 from gbeam.results.declared import quantity as entry  # a critical value has a field of that name
 from gbeam.results.errors import MODEL, SHAPES, THEORY, TOTAL, UNKNOWN, ErrorEstimate, Errors
 from gbeam.results.facts import at_place
-from gbeam.results.parts import Loads
-from gbeam.results.response import BaseMotion
+from gbeam.results.parts import Base, Loads
 from gbeam.results.result import Figured, Floats, Part, Result, brief
 from gbeam.results.solids import SolidStress, SpecimenLoads, Surface
 
@@ -24,7 +23,7 @@ class Deflection(Figured):
     motion: str = fact("name of the motion", key=None)
     model: str = fact("kind of the model")
     time: float = fact("time at which the motion is frozen", "s")
-    base: BaseMotion = part("motion of the base at that time")
+    base: Base = part("motion of the base at that time")
     stations: Floats = quantity(
         "m", "position along the beam from the root", "station", role="coordinate", note="the last is the tip"
     )

@@ -11,7 +11,7 @@ import numpy as np
 from gbeam.results.declared import declared, fact, part, quantity, rows
 from gbeam.results.equilibrium import Critical
 from gbeam.results.errors import ErrorEstimate, FrequencyErrors, Instability, Noted, Oscillating, totals
-from gbeam.results.response import BaseMotion
+from gbeam.results.parts import Base
 from gbeam.results.result import Complex, Figured, Floats, Part
 from gbeam.results.solids import SurfaceModes
 
@@ -29,7 +29,7 @@ class Modes(Oscillating, Figured):
     motion: str = fact("name of the motion")
     model: str = fact("kind of the model")
     time: float = fact("time at which the motion is frozen", "s")
-    base: BaseMotion = part("motion of the base at that time")
+    base: Base = part("motion of the base at that time")
     gyroscopic: bool = fact("whether Coriolis coupling is in")
     eigenvalue: Complex = quantity(
         "1/s",

@@ -8,11 +8,29 @@ from typing import ClassVar
 
 import numpy as np
 
+from gbeam.arrays.tree import record
 from gbeam.results.declared import BESIDE, INSIDE, declared, fact, part, quantity
 from gbeam.results.result import Floats, Part
 
 _SECTION_AXES = "S: axes of the deformed section"
 UNSTRESSED = 1e-12  # of the strength: a smaller stress is rounding
+
+
+@record
+class Base(Part):
+    """Motion of the base axes B at one time or many, (..., 3): x along the beam, z through its thickness."""
+
+    a_WO_B: Floats = quantity(
+        "m/s^2", "acceleration of the root; specific force where gravity acts", "axis", name="root_acceleration",
+        key="acceleration",
+    )  # fmt: skip
+    w_WB_B: Floats = quantity(
+        "rad/s", "angular velocity of the base", "axis", name="angular_velocity", key="angular_velocity"
+    )
+    alpha_WB_B: Floats = quantity(
+        "rad/s^2", "angular acceleration of the base", "axis", name="angular_acceleration", key="angular_acceleration"
+    )
+    __repr__ = Part.__repr__
 
 
 @dataclass(frozen=True, repr=False, eq=False)

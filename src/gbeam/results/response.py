@@ -19,7 +19,7 @@ from gbeam.numerics.samples import displacement
 from gbeam.results.declared import INSIDE, declared, fact, labels, part, quantity
 from gbeam.results.errors import Errors
 from gbeam.results.machine import AxesResult, Driven
-from gbeam.results.parts import Influence, Loads, Outline, Peaks, VectorPeaks
+from gbeam.results.parts import Base, Influence, Loads, Outline, Peaks, VectorPeaks
 from gbeam.results.result import Figured, Floats, Part, brief
 from gbeam.results.solids import SolidStress, SpecimenLoads, Surface
 
@@ -123,25 +123,6 @@ class Readings(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class BaseMotion(Part):
-    """Motion of the root in base axes, at one instant or over time, (..., 3)."""
-
-    a_WO_B: Floats = quantity(
-        "m/s^2",
-        "acceleration of the root; specific force where gravity acts",
-        "axis",
-        name="root_acceleration",
-        key="acceleration",
-    )
-    w_WB_B: Floats = quantity(
-        "rad/s", "angular velocity of the base", "axis", name="angular_velocity", key="angular_velocity"
-    )
-    alpha_WB_B: Floats = quantity(
-        "rad/s^2", "angular acceleration of the base", "axis", name="angular_acceleration", key="angular_acceleration"
-    )
-
-
-@dataclass(frozen=True, repr=False, eq=False)
 class HubResult(Part):
     """A hub turning about z."""
 
@@ -230,7 +211,7 @@ class Response(Driven, Figured):
         name="coordinate_rates",
         key=None,
     )
-    base: BaseMotion = part("motion of the base", "time", key=None)
+    base: Base = part("motion of the base", "time", key=None)
     peaks: Peaks = part("largest values between all steps", key=INSIDE)
     integrator: str = fact("integrator")
     step: float = fact("time step", "s")

@@ -14,8 +14,8 @@ from gbeam.results.declared import INSIDE, declared, fact, labels, part, quantit
 from gbeam.results.errors import FrequencyErrors, Instability, Oscillating, SystemErrors
 from gbeam.results.facts import at_place
 from gbeam.results.machine import AxesResult, Driven
-from gbeam.results.parts import LoadPeaks, Loads, Outline
-from gbeam.results.response import BaseMotion, Readings, Sensor
+from gbeam.results.parts import Base, LoadPeaks, Loads, Outline
+from gbeam.results.response import Readings, Sensor
 from gbeam.results.result import Complex, Figured, Floats, Part
 from gbeam.results.solids import SolidStress, Surface, SurfaceModes
 
@@ -213,7 +213,7 @@ class SystemResponse(_Placed, Driven, Figured):
         "momentum and energy", key="invariants", name=INSIDE, note="None on a base that moves", default=None
     )
     loop: Loop | None = part("controllers", key="loop", name=INSIDE, note="None without any", default=None)
-    base: BaseMotion | None = part(
+    base: Base | None = part(
         "motion of the ground", "time", key=None, name="ground_", note="None where it rests", default=None
     )
     axes: AxesResult | None = part("motion of a centrifuge", key=INSIDE, optional=True, default=None)

@@ -46,7 +46,8 @@ def _words(source: Source, error: ErrorDetails, path: Path) -> tuple[str, str, M
     if what == "scenario":
         return context["message"], context["hint"], context["mark"], path
     if what == "missing" and isinstance(path[-1], int):  # a tuple of fixed length
-        count = _length(field.annotation if field else None)
+        parts = inside(field.annotation if field else None)
+        count = next((len(get_args(each)) for each in parts if get_origin(each) is tuple), 3)
         return (
             f"has {path[-1]} entries",
             "give three: x, y and z" if count == 3 else f"give {count}",
@@ -169,12 +170,6 @@ def _literals(annotation: Any) -> Iterator[Any]:
     for part in inside(annotation):
         if get_origin(part) is Literal:
             yield from get_args(part)
-
-
-def _length(annotation: Any) -> int:
-    """Number of entries of a tuple of fixed length."""
-    lengths = (len(get_args(each)) for each in inside(annotation) if get_origin(each) is tuple)
-    return next(lengths, 3)
 
 
 def _choices(field: FieldInfo | None) -> tuple[str, list[str]]:

@@ -117,7 +117,8 @@ class _Page:
             quantity = name.partition(_OF)[2].replace("-", " ")
             if quantity:
                 return f"[profile](#profiles) of {quantity}"
-            return f"[{tag_of(self.tables[name])[1] or 'table'}](#{_anchor(self._heading(name))})"
+            anchor = re.sub(r"[^\w\- ]", "", self._heading(name).lower()).replace(" ", "-")  # as GitHub makes it
+            return f"[{tag_of(self.tables[name])[1] or 'table'}](#{anchor})"
         if "enum" in schema or "const" in schema:
             return ", ".join(f'`"{word}"`' for word in schema.get("enum", [schema.get("const")]))
         choices = [each for each in schema.get("anyOf", schema.get("oneOf", [])) if each.get("type") != "null"]
@@ -194,8 +195,3 @@ def _default(value: Any) -> str:
     if value is None or value in ("", [], {}):
         return "–"
     return f"`{json.dumps(value)}`" if not isinstance(value, dict) else "–"
-
-
-def _anchor(heading: str) -> str:
-    """The anchor that GitHub gives a heading."""
-    return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")

@@ -272,7 +272,7 @@ class RigidSpecimen(Value):
         ----------
         time : (t,)
             s.
-        base : BaseMotion
+        base : Base
             Of the root, (t, 3).
         q : (t, 0)
             Coordinates, of which it has none.

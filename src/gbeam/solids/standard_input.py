@@ -106,7 +106,8 @@ def read_sid(
     )
     if damping_ratio is not None:
         return structure
-    ratios = _ratios(terms)
+    frequency, modes = rest_modes(terms.mass, terms.stiffness)
+    ratios = tuple(np.diagonal(modes.T @ terms.damping @ modes) / (2 * frequency))
     return replace(structure, coefficients=terms, damping_ratio=ratios)
 
 
@@ -166,9 +167,3 @@ def _moments(terms: Coefficients) -> Floats:
     half = np.einsum("aai->i", terms.f_ww) / 2
     even = -terms.f_ww + np.eye(3)[..., None] * half
     return even + np.einsum("cab,ci->abi", EPSILON, terms.f_al) / 2
-
-
-def _ratios(terms: Coefficients) -> tuple[float, ...]:
-    """Damping ratios of the modes at rest."""
-    frequency, modes = rest_modes(terms.mass, terms.stiffness)
-    return tuple(np.diagonal(modes.T @ terms.damping @ modes) / (2 * frequency))

@@ -111,7 +111,7 @@ def find(facts: Facts, name: str) -> Keys:
     wanted = f".{name}"
     fits = [path for path in every if f".{path}".endswith(wanted)]
     if not fits:
-        ends = {path[at:] for path in every for at in _starts(path)}
+        ends = {path[at:] for path in every for at in [0, *(dot.end() for dot in re.finditer(r"\.", path))]}
         near = closest(name, sorted(ends, key=lambda end: (abs(end.count(".") - name.count(".")), end)))
         fix = f"did you mean {near!r}?" if near else "list names every figure, with its unit"
         if name.endswith("verdict.accepted"):
@@ -130,14 +130,10 @@ def offered(verb: str, names: Iterable[str], option: str = OPTION) -> None:
         ends = _segments(name)
         if every and '"' not in name and not any(_fits(ends, path) for path in every):
             lasts = (path[-len(ends) :] for path in every)
-            near = closest(name, [".".join(_filled(each, ends[-len(each) :])) for each in lasts])
+            pairs_of = (zip(each, ends[-len(each) :], strict=True) for each in lasts)
+            near = closest(name, [".".join(end if key == "*" else key for key, end in pairs) for pairs in pairs_of])
             fix = f"did you mean {near!r}?" if near else "list names every figure, with its unit"
             raise InputError(option, f"{name!r} is no figure of {verb}", fix)
-
-
-def _filled(keys: Sequence[str], names: Sequence[str]) -> list[str]:
-    """Keys with the names that were written in place of any name."""
-    return [name if key == "*" else key for key, name in zip(keys, names, strict=True)]
 
 
 def _segments(path: str) -> list[str]:
@@ -212,10 +208,6 @@ def _figures(node: Any, keys: Keys = ()) -> Iterator[tuple[Keys, float]]:
 def _is_figure(value: Any) -> bool:
     # A truth is a figure too: 1 where accepted.
     return isinstance(value, (int, float)) or (hasattr(value, "dtype") and getattr(value, "ndim", 1) == 0)
-
-
-def _starts(path: str) -> list[int]:
-    return [0, *(match.end() for match in re.finditer(r"\.", path))]
 
 
 HISTORY = "--history"

@@ -148,7 +148,10 @@ def named(template: Template, names: Sequence[str], option: str) -> list[Physica
 def bounds_of(each: PhysicalValue, bounds: Bounds, option: str) -> tuple[float, float]:
     """Return the bounds given for a value, or a tenth to ten times it; they hold it, as a search begins there."""
     if each.path in bounds:
-        low, high = (_quantity(each, end) for end in bounds[each.path])
+        low, high = (
+            read_quantity("--bounds", end, each.kind, f"of {each.path}: ") if isinstance(end, str) else float(end)
+            for end in bounds[each.path]
+        )
         if not low < high:
             raise InputError("--bounds", f"of {each.path} go from {low:g} to {high:g}", "give the smaller one first")
         if not low <= each.value <= high:
@@ -175,10 +178,6 @@ def with_values(
     template = ScenarioTemplate(base)
     others, every = changed(physical_values(template, paths), values), template.quantities()
     return with_quantities(base.source, {path: (value, every[path][1]) for path, value in others.items()})
-
-
-def _quantity(each: PhysicalValue, text: float | str) -> float:
-    return read_quantity("--bounds", text, each.kind, f"of {each.path}: ") if isinstance(text, str) else float(text)
 
 
 MAX_STARTS = 1000

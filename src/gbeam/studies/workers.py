@@ -199,7 +199,8 @@ def _work(pipe: Connection, functions: bytes) -> None:
             pipe.send(str(error) or type(error).__name__)
             return
         pipe.send("")
-        _import()
+        import gbeam.scenario.build_motion  # noqa: F401  # what is imported where a case needs it
+
         inquiry: Any = None
         while True:
             message = pipe.recv()
@@ -211,12 +212,6 @@ def _work(pipe: Connection, functions: bytes) -> None:
             except Exception:
                 answer = traceback.format_exc()
             pipe.send(answer)
-
-
-def _import() -> None:
-    """Import what is imported where a case needs it."""
-    import gbeam.results.facts  # noqa: F401
-    import gbeam.scenario.build_motion  # noqa: F401
 
 
 def _begin() -> None:

@@ -23,11 +23,10 @@ from gbeam.mechanics.enrichment import Enrichment, Twin, enrichment
 from gbeam.mechanics.section_forces import section_forces, sections
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import theory_of
-from gbeam.motion.bases.base import Base, mapped
+from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
 from gbeam.results.errors import ErrorEstimate, Errors
 from gbeam.results.parts import Loads
-from gbeam.results.response import BaseMotion
 from gbeam.results.result import Floats
 from gbeam.structure.section import extreme_stresses
 
@@ -55,7 +54,7 @@ class Driven:
         loads = None if structure.history is None else np.asarray(structure.history(time))
         if motion.free:
             return cls((np.asarray(motion.torque(time)), loads), motion)
-        return cls((mapped(motion.base(time), np.asarray), loads))
+        return cls((each_leaf(np.asarray, motion.base(time)), loads))
 
     @property
     def first(self) -> int:
@@ -74,7 +73,7 @@ class Driven:
     def base_of(self, of: Trajectory) -> Base:
         """Motion of the base in a solution."""
         base = self.inputs[0] if self.hub is None else self.hub.mount.base(of.q[:, 0], of.qd[:, 0], of.qdd[:, 0])
-        return mapped(base, np.asarray)
+        return each_leaf(np.asarray, base)
 
     def posed(self, structure: Structure) -> Posed:
         """The equations of a structure that is moved so."""
@@ -88,8 +87,7 @@ class Driven:
         """
         base, (q, qd, qdd) = self.base_of(of), (each[:, self.first :] for each in (of.q, of.qd, of.qdd))
         if structure.sections is None:
-            moving = BaseMotion(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
-            ends = section_forces(structure, moving, q, qd, qdd, of.time)
+            ends = section_forces(structure, base, q, qd, qdd, of.time)
             stress = np.full(len(q), np.nan) if structure.recovery is None else structure.recovery.felt(q)
             tip = np.asarray(structure.displacement(q))[:, -1]
             return {PLACE: tip, FORCE: ends.force[:, 0], MOMENT: ends.moment[:, 0], STRESS: stress}

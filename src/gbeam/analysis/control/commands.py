@@ -33,7 +33,8 @@ class Commands:
         self.inertia = plant.inertia if plant.free else 1.0
         rows, aims = self._aims(basis(self.time))
         self.particular: Floats = np.asarray(np.linalg.pinv(rows) @ aims, dtype=np.float64)
-        self.free = _kernel(rows)
+        _, sizes, directions = np.linalg.svd(rows)
+        self.free = np.asarray(directions[int((sizes > 0).sum()) :].T)
 
     def _aims(self, basis: Floats) -> tuple[Floats, Floats]:
         """Rows of linear conditions on the coefficients, and their values."""
@@ -125,11 +126,6 @@ def _smooth(time: Floats, goal: Goal) -> Floats:
     phase = 2 * np.pi * time / goal.duration
     wave = 1 - np.cos(phase) if goal.to_rate else np.sin(phase)
     return np.where((time >= 0) & (time <= goal.duration), wave, 0.0)
-
-
-def _kernel(rows: Floats) -> Floats:
-    _, sizes, directions = np.linalg.svd(rows)
-    return np.asarray(directions[int((sizes > 0).sum()) :].T)
 
 
 def check_goal(plant: Plant, aims: dict[str, float | None], duration: float) -> Goal:

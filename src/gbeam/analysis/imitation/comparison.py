@@ -209,7 +209,9 @@ def compare(
     felt = _felt(runs[0], flight, sensors), _felt(runs[1], centrifuge, sensors)
     if felt[0] is not None and felt[1] is not None and covered.any():
         shock = _shock(time, covered, in_flight(felt[0]), felt[1][during], weights, chosen, sensors, flight, centrifuge)
-    names, growth = _names(flight, centrifuge), in_flight(gradients(flight.base.w_WB_B, flight.base.alpha_WB_B))
+    one, other = (each.name or each.environment for each in (flight, centrifuge))
+    names = one, other if other != one else f"the second {other}"
+    growth = in_flight(gradients(flight.base.w_WB_B, flight.base.alpha_WB_B))
     spun = gradients(centrifuge.base.w_WB_B[during], centrifuge.base.alpha_WB_B[during])
     of_beam, root_load = not len(centrifuge.envelope), in_flight(flight.base.a_WO_B)
     ends = np.array([[length, 0.0, 0.0]]) if of_beam else centrifuge.envelope
@@ -249,11 +251,6 @@ def _of_materials(flight: Response, centrifuge: Response) -> tuple[float, float]
     worst = [None if each.solid is None else each.solid.nearest_yield for each in (flight, centrifuge)]
     one, two = (None if each is None else each.margin for each in worst)
     return None if one is None or two is None else (one, two)
-
-
-def _names(flight: Response, centrifuge: Response) -> tuple[str, str]:
-    first, second = (response.name or response.environment for response in (flight, centrifuge))
-    return first, second if second != first else f"the second {second}"
 
 
 def _largest(values: Floats, covered: Flags) -> Floats:

@@ -103,7 +103,8 @@ def verify(
             step = float(response.time[1] - response.time[0])
             swing -= low_pass(swing, step, CUTOFF * float(mode.frequency) / (2 * np.pi))
             vibration, moved = (
-                _largest(each[:, across]) for each in (swing[compared], comparison.difference[comparison.covered])
+                float(np.linalg.norm(each[:, across], axis=1).max(initial=0.0))
+                for each in (swing[compared], comparison.difference[comparison.covered])
             )
         force, moment = np.nan, np.nan
         if comparison.root is not None:
@@ -111,11 +112,6 @@ def verify(
             force, moment = (float(each[across].max()) for each in (root.force_difference, root.moment_difference))
         verifications.append(Verification(name, float(place[0]), moved, vibration, moment, force))
     return tuple(verifications)
-
-
-def _largest(vectors: Floats) -> float:
-    """Largest size of vectors (t, k)."""
-    return float(np.linalg.norm(vectors, axis=1).max(initial=0.0))
 
 
 _WORTH = 0.02  # of the total error: what another mounting must save at least

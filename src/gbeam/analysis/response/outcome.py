@@ -22,8 +22,7 @@ from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.structure import Structure
 from gbeam.numerics.eigen import eigenvalues, growth_rate, stability_margin, symmetric, unsymmetric
 from gbeam.results.errors import Errors
-from gbeam.results.parts import LoadPeaks, Peaks
-from gbeam.results.response import BaseMotion
+from gbeam.results.parts import Base, LoadPeaks, Peaks
 from gbeam.results.result import Floats
 
 Array = Any
@@ -61,7 +60,7 @@ class Drive(NamedTuple):
         return Drive(*(None if a is None else a + share * (b - a) for a, b in ends))
 
 
-def worst_loss(structure: Structure, time: Array, base: BaseMotion, q: Array) -> Loss | None:
+def worst_loss(structure: Structure, time: Array, base: Base, q: Array) -> Loss | None:
     """Stretch in which a disturbance grows most, about q (t, n) of a complete model unless on its way to stability."""
     c = structure.coefficients
     loads = None if c.loads is None or structure.history is None else structure.history(time)
@@ -169,7 +168,7 @@ def describe(
     structure: Structure,
     problem: Problem,
     trajectory: Trajectory,
-    base: BaseMotion,
+    base: Base,
     peaks: Peaks,
     time: Floats,
     q: Floats,
@@ -184,7 +183,10 @@ def describe(
             (),
         )
     loss = worst_loss(structure, time, base, q)
-    lost = "" if loss is None else _lost(structure, loss)
+    lost = ""
+    if loss is not None:
+        what = "equilibrium is not stable" if loss.flutter else "stiffness is not positive definite"
+        lost = f"{structure.kind}'s {what} from t = {loss.start:.4g} s, where {' and '.join(loss.causes)}"
     particles = structure.field is None  # which have no other model, and no length that bounds how far they move
     if trajectory.stopped and particles:
         cause = f": {lost}" if lost else "; give a smaller response.step"
@@ -230,12 +232,6 @@ def describe(
             f"{structure.length:.4g} m from the root: places to second order in the coordinates may not hold so far"
         )
     return "done", "", tuple(warnings)
-
-
-def _lost(structure: Structure, loss: Loss) -> str:
-    """Say where a run's stability is lost."""
-    what = "equilibrium is not stable" if loss.flutter else "stiffness is not positive definite"
-    return f"{structure.kind}'s {what} from t = {loss.start:.4g} s, where {' and '.join(loss.causes)}"
 
 
 def inaccuracies(structure: Structure, errors: Errors, settings: ResponseSettings) -> tuple[str, ...]:

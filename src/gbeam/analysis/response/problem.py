@@ -10,13 +10,13 @@ import numpy as np
 
 from gbeam.analysis.steady.equilibrium import solve_equilibrium
 from gbeam.arrays.namespace import is_jax, namespace
-from gbeam.arrays.tree import Value
+from gbeam.arrays.tree import Value, each_leaf
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, finite
 from gbeam.integrate.equations import LinearEquations, NonlinearEquations
 from gbeam.mechanics.structure import Structure
-from gbeam.motion.bases.base import Base, mapped
+from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
 
 Array = Any
@@ -217,4 +217,4 @@ def start_of(structure: Structure, motion: Any, start: float, initial: Initial) 
         pulled, o = motion.mount.gravity is not None or structure.history is not None, np.zeros(())
         return initial_state(structure, motion.mount.base(o, o, o) if pulled else None, start, initial)
     base = motion.base(np.array([start]))
-    return initial_state(structure, mapped(base, lambda x: x[0]), start, initial)
+    return initial_state(structure, each_leaf(lambda x: x[0], base), start, initial)

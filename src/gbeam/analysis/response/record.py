@@ -29,7 +29,7 @@ from gbeam.motion.protocol import Motion
 from gbeam.results.errors import ErrorEstimate, Errors, StepErrors
 from gbeam.results.machine import AxesResult
 from gbeam.results.parts import Influence, Loads, Peaks
-from gbeam.results.response import BaseMotion, HubResult, Response
+from gbeam.results.response import HubResult, Response
 from gbeam.results.result import Floats
 from gbeam.structure.beam import names_at
 
@@ -87,7 +87,7 @@ def response_of(
 
     def at(
         of: Trajectory, steps: Any, known: Base | None = None
-    ) -> tuple[tuple[Any, ...], BaseMotion, HubResult | None, Loads | None]:
+    ) -> tuple[tuple[Any, ...], Base, HubResult | None, Loads | None]:
         """Coordinates, base, hub and loads at some of the steps."""
         of = of.at(steps)
         time, q, qd, qdd = of.time, of.q, of.qd, of.qdd
@@ -136,6 +136,9 @@ def response_of(
             from_run += inaccuracies(structure, errors, settings) + effort(settings, len(trajectory.time) - 1, stride)
         from_inputs = input_warnings(structure, motion, name=name, span=(time[0], time[-1]), base=over_time)
         warnings = from_inputs + settings.warnings + from_run + (() if axes is None else axes.warnings)
+    flown = motion.flight if isinstance(motion, Centrifuge) else motion
+    span = settings.start, settings.start + settings.duration
+    whole = flown.part_of(*span) if isinstance(flown, Flight) else None
     return Response(
         name=name,
         environment=motion.kind,
@@ -169,16 +172,14 @@ def response_of(
         initial=str(settings.begin),
         outline=outline_of(structure, motion, time, q[:, beam]) if settings.loads and not traced else None,
         bodies=np.empty((0, 3)) if traced or structure.source is None else structure.source.beam.body_centres,
-        whole=_whole(motion, settings),
+        whole=whole,
         point_acceleration=felt,
         kept_every=settings.kept_every(len(time), float(time[-1] - time[0]) / max(len(time) - 1, 1)),
         **(_recovered(structure, motion, time, over_time, q[:, beam], name) if settings.loads and not traced else {}),
     )
 
 
-def _recovered(
-    structure: Structure, motion: Motion, time: Floats, base: BaseMotion, q: Floats, name: str
-) -> dict[str, Any]:
+def _recovered(structure: Structure, motion: Motion, time: Floats, base: Base, q: Floats, name: str) -> dict[str, Any]:
     """Parts that only the response of a curved beam, a solid or a rigid specimen has."""
     if structure.recovery is None:
         return {} if structure.source is None else {"envelope": structure.source.beam.envelope}
@@ -186,15 +187,9 @@ def _recovered(
     return {"envelope": structure.recovery.envelope, **parts}
 
 
-def _whole(motion: Motion, settings: ResponseSettings) -> tuple[float, float] | None:
-    """First and last time of the whole flight, s, where a run is of a part of it, in flight or on a machine."""
-    flight = motion.flight if isinstance(motion, Centrifuge) else motion
-    return flight.part_of(settings.start, settings.start + settings.duration) if isinstance(flight, Flight) else None
-
-
 def moving(
     motion: Any, time: Floats, y: Array, yd: Array, ydd: Array, base: Base | None = None
-) -> tuple[BaseMotion, HubResult | None]:
+) -> tuple[Base, HubResult | None]:
     """Motion of the root over time, and of the hub if there is one; the `base` where it is known."""
     hub = None
     if motion.free:
@@ -206,4 +201,4 @@ def moving(
         if motion.kind == "hub":
             axis = motion.mount.R_HB[2]
             hub = HubResult(motion.angle(time), base.w_WB_B @ axis, base.alpha_WB_B @ axis)
-    return BaseMotion(base.a_WO_B, base.w_WB_B, base.alpha_WB_B), hub
+    return base, hub

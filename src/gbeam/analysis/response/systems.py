@@ -51,7 +51,6 @@ from gbeam.numerics.eigen import positive_definite
 from gbeam.progress import Progress, tell
 from gbeam.results.errors import ErrorEstimate, StepErrors, SystemErrors
 from gbeam.results.parts import Loads
-from gbeam.results.response import BaseMotion
 from gbeam.results.system import BeamResponse, Invariants, Loop, SystemResponse
 from gbeam.structure.beam import names_at
 
@@ -402,7 +401,7 @@ def _described(
         beams=beams,
         solids=solids,
         surfaces=surfaces,
-        base=None if motion is None else BaseMotion(base.a_WO_B, base.w_WB_B, base.alpha_WB_B),
+        base=base,
         axes=axes_result(motion, time) if isinstance(motion, Centrifuge) else None,
         assembly=assembly_of(system) if settings.loads else None,
         integrator=scheme_of(settings).name,

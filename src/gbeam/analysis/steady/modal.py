@@ -11,6 +11,7 @@ from gbeam.analysis.steady.frequency_errors import Richer, doubtful, judgeable, 
 from gbeam.analysis.steady.operating_point import OperatingPoint, drawn, extent, operating_point
 from gbeam.analysis.system.linear import instabilities, largest_component, system_modes
 from gbeam.analysis.system.steady import Drive, steady
+from gbeam.arrays.tree import each_leaf
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
@@ -45,7 +46,7 @@ def modes_at(
         motion=name,
         model=structure.kind,
         time=time,
-        base=point.frozen,
+        base=each_leaf(np.asarray, point.base),
         gyroscopic=gyroscopic,
         eigenvalue=moving.value,
         direction=direction,

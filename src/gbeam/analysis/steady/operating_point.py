@@ -17,11 +17,10 @@ from gbeam.integrate.equations import slopes
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.equations.residuals import OnBase, OnHub
 from gbeam.mechanics.structure import Structure
-from gbeam.motion.bases.base import Base, mapped
+from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.eigen import Linear, Steady
 from gbeam.results.modal import outermost
-from gbeam.results.response import BaseMotion
 from gbeam.results.result import Complex, Floats
 
 Array = Any
@@ -69,11 +68,6 @@ class OperatingPoint(Steady):
     def loads(self) -> Array | None:
         """Components of the loads, (loads, 6)."""
         return self.inputs[1]
-
-    @property
-    def frozen(self) -> BaseMotion:
-        """The base's motion as a record."""
-        return BaseMotion(*(np.asarray(x) for x in (self.base.a_WO_B, self.base.w_WB_B, self.base.alpha_WB_B)))
 
     @cached_property
     def linear(self) -> Linear:
@@ -144,11 +138,6 @@ def _slopes(residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array, inputs: A
     return k[0], c[0], m[0]
 
 
-def frozen_base(motion: Motion, time: float) -> Base:
-    """Base motion at one time, arrays (3,)."""
-    return mapped(motion.base(np.array([time])), lambda x: np.asarray(x)[0])
-
-
 def steady_base(hub: Any, rate: float) -> Base:
     """Base motion of a hub that turns at a constant rate, rad/s, at angle zero."""
     return hub.mount.base(np.zeros(()), np.asarray(float(rate)), np.zeros(()))
@@ -158,7 +147,9 @@ def held_base(motion: Motion | None, time: float) -> Base:
     """Base motion at one time; that of a free hub held at rest, at angle zero; at rest where there is no motion."""
     if motion is None:
         return REST
-    return steady_base(motion, 0.0) if motion.free else frozen_base(motion, time)
+    if motion.free:
+        return steady_base(motion, 0.0)
+    return each_leaf(lambda x: np.asarray(x)[0], motion.base(np.array([time])))
 
 
 def placed(

@@ -16,6 +16,7 @@ from gbeam.analysis.steady.equilibrium import keeps, solve_equilibrium
 from gbeam.analysis.steady.operating_point import OperatingPoint, on_base, operating_point
 from gbeam.analysis.system.linear import system_rest
 from gbeam.analysis.system.steady import Drive, steady
+from gbeam.arrays.tree import each_leaf
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.integrate.equations import Trajectory
@@ -26,11 +27,10 @@ from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import theory_of
 from gbeam.mechanics.tree.system import System
-from gbeam.motion.bases.base import Base, mapped
+from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.errors import Errors
-from gbeam.results.response import BaseMotion
 from gbeam.results.result import Floats
 from gbeam.results.system import SystemRest
 
@@ -43,7 +43,7 @@ def static_errors(point: OperatingPoint) -> tuple[Errors, tuple[str, ...]]:
     if not structure.judged:
         return Errors(note=unjudged(structure)), ()
     loaded = None if structure.load_values is None else np.asarray(structure.load_values)[None]
-    driven, at = Driven((mapped(point.base, lambda x: np.asarray(x)[None]), loaded)), _resting(point.q)
+    driven, at = Driven((each_leaf(lambda x: np.asarray(x)[None], point.base), loaded)), _resting(point.q)
     more = enrichment(structure, point.base)
     which = driven.along(more, at)
     exact = more.model("exact", directions=which)[0]
@@ -182,8 +182,8 @@ def deflection_at(
     structure: Structure, point: OperatingPoint, motion: Motion | None, time: float, name: str = ""
 ) -> Deflection:
     """The deflection at an operating point."""
-    base, q = point.frozen, np.asarray(point.q)
-    over_time = BaseMotion(*(x[None] for x in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
+    base, q = each_leaf(np.asarray, (point.base, point.q))
+    over_time = each_leaf(lambda x: x[None], base)
     still = np.zeros((1, structure.size))
     displacement = np.asarray(structure.displacement(q))
     loads = section_forces(structure, over_time, q[None], still, still, np.array([time]), motion=motion)

@@ -49,11 +49,6 @@ STEPS = "the steps do not resolve what vibrates; give a smaller step, or damp it
 LOST = 10.0  # times the motion, or the extent of the system: a larger answer of linear equations is none
 
 
-def _extent(place: Floats) -> float:
-    """Largest distance between points (t, p, 3) of a system, m."""
-    return float(np.ptp(place, axis=(0, 1)).max(initial=0.0))
-
-
 def unmoved(size: float, place: Floats) -> bool:
     """True if a displacement is rounding of places (t, p, 3), as where a system rests."""
     return size <= UNMOVED * np.abs(place).max(initial=0.0)
@@ -110,7 +105,8 @@ def system_errors(
         mesh = _by_mesh(system, solved, of, inputs, again, judged, settled=settled)
         theories = theories_of(system)
         lacking = _beyond(system, solved, of, inputs, theories, again, settled=settled) if theories else Lacking()
-    if theories and not lacking.sizes.get(PLACE, math.nan) <= LOST * max(sizes[PLACE], _extent(place)):
+    extent = float(np.ptp(place, axis=(0, 1)).max(initial=0.0))
+    if theories and not lacking.sizes.get(PLACE, math.nan) <= LOST * max(sizes[PLACE], extent):
         lacking = Lacking()
         note = "; ".join(filter(None, (note, LOOP_LOST if again is not None and len(of.time) > 1 else BENT_FAR)))
     by_mesh = None if mesh is None else (mesh, computed)

@@ -17,8 +17,7 @@ from gbeam.mechanics.tree.frames import turned
 from gbeam.mechanics.tree.signals import deforming
 from gbeam.mechanics.tree.steps import parameters_of_all
 from gbeam.mechanics.tree.system import System, stations_of
-from gbeam.results.parts import Loads
-from gbeam.results.response import BaseMotion
+from gbeam.results.parts import Base, Loads
 from gbeam.results.solids import SolidStress, Surface
 
 Array = Any
@@ -107,7 +106,7 @@ def loads_of(beam: Structure, pieces: list[Carried], time: Floats) -> Loads:
     q, qd, qdd, a, w, alpha = (np.concatenate(each) for each in moving)
     station, force, moment = zip(*hung, strict=True)
     every = Hung(station[0], np.concatenate(force), np.concatenate(moment))
-    loads = section_forces(beam, BaseMotion(a, w, alpha), q, qd, qdd, time, hung=every)
+    loads = section_forces(beam, Base(a, w, alpha), q, qd, qdd, time, hung=every)
     # A joint that is free carries nothing but rounding.
     force, moment = (np.abs(each).max(axis=(0, 2)) for each in (loads.force, loads.moment))
     idle = {"force": force * beam.length <= ROUNDING * moment, "moment": moment <= ROUNDING * force * beam.length}

@@ -48,7 +48,8 @@ def read_punch(path: str) -> Contents:
     for name, frame in bulk.rddmig(path, square=True).items():
         contents["matrices"][name.upper()] = frame.to_numpy()
         contents["unknowns"][name.upper()] = np.array(frame.index.to_list(), dtype=int)
-    return contents | _nodes(path) if _has_grids(path) else contents
+    text = Path(path).read_text(encoding="utf-8", errors="replace").upper()
+    return contents | _nodes(path) if any(line.startswith("GRID") for line in text.splitlines()) else contents
 
 
 def read_bulk(path: str) -> Contents:
@@ -63,22 +64,14 @@ def read_superelement(path: str) -> Contents:
     bulk, n2p, *_ = _pyyeti()
     uset = bulk.asm2uset(path, try_rdextrn=True)
     uset = uset[0] if isinstance(uset, tuple) else uset
-    return {"unknowns": {"": _unknowns(uset)}} | _places(uset, n2p)
-
-
-def _has_grids(path: str) -> bool:
-    text = Path(path).read_text(encoding="utf-8", errors="replace").upper()
-    return any(line.startswith("GRID") for line in text.splitlines())
+    rows = np.array(uset.index.to_list(), dtype=int)
+    unknowns = np.where(rows[:, 1:] == 0, np.column_stack([rows[:, 0], 0 * rows[:, 0]]), rows)
+    return {"unknowns": {"": unknowns}} | _places(uset, n2p)
 
 
 def _nodes(path: str) -> Contents:
     bulk, n2p, *_ = _pyyeti()
     return _places(bulk.bulk2uset(path)[0], n2p)
-
-
-def _unknowns(uset: Any) -> Any:
-    rows = np.array(uset.index.to_list(), dtype=int)
-    return np.where(rows[:, 1:] == 0, np.column_stack([rows[:, 0], 0 * rows[:, 0]]), rows)
 
 
 def _places(uset: Any, n2p: Any) -> Contents:

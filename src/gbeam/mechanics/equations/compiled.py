@@ -24,7 +24,8 @@ def resting(residual: Any, base: Base, loads: Array | None) -> Array:
     still = jnp.zeros(residual.equations.size)
 
     def force(q: Array, share: Any) -> Array:
-        part = Base(share * base.a_WO_B, jnp.sqrt(share) * base.w_WB_B, share * base.alpha_WB_B)
+        slower: Any = jnp.sqrt(share)
+        part = Base(share * base.a_WO_B, slower * base.w_WB_B, share * base.alpha_WB_B)
         return residual(q, still, still, (part, None if loads is None else share * loads))
 
     return root(force, still)

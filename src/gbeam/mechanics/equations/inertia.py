@@ -98,7 +98,8 @@ class Bodies:
     def _demanded(self, tangents: Tangents, a: Vector) -> Demanded:
         """Forces and moments at the nodes, and their sums."""
         force, moment = add(mapped(tangents.tdd, self.pairs), scaled(self.first, a)), NONE
-        total = add(_weighted(tangents.tdd, self.first), scaled(self.mass, _alone(a)))
+        alone: Any = tuple(part if absent(part) else part[..., 0] for part in a)
+        total = add(_weighted(tangents.tdd, self.first), scaled(self.mass, alone))
         about = _summed(cross(tangents.t, force))
         turn, push = NONE, NONE
         if self.turning is not None:
@@ -319,12 +320,6 @@ def _components(vectors: Array) -> Vector:
     if is_jax(vectors):
         return x, y, z
     x, y, z = (part if part.any() else 0 for part in (x, y, z))
-    return x, y, z
-
-
-def _alone(vectors: Vector) -> Vector:
-    """Vectors (...) of components (..., 1)."""
-    x, y, z = (part if absent(part) else part[..., 0] for part in vectors)
     return x, y, z
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -222,8 +222,8 @@ class System(Value):
     def __post_init__(self) -> None:
         if not self.bodies:
             raise InputError("bodies", "is empty", "give one body or more")
-        for where, mapping in _named(self):
-            for name in mapping:
+        for where in ("bodies", "joints", "forces", "controllers"):
+            for name in getattr(self, where):
                 if not name.isidentifier() or name == GROUND:
                     raise InputError(f"{where}.{name}", "is no name", "give letters, digits and underscores")
         if self.gravity is not None:
@@ -461,12 +461,6 @@ class System(Value):
             loads,
             namespace(*wrenches).stack(wrenches, axis=-2) if wrenches else None,
         )
-
-
-def _named(system: System) -> Iterator[tuple[str, Mapping[str, Any]]]:
-    """Mappings by name of a system."""
-    for each in ("bodies", "joints", "forces", "controllers"):
-        yield each, getattr(system, each)
 
 
 def stations_of(structure: Structure) -> dict[str, int]:

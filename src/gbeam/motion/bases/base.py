@@ -2,35 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 from gbeam.arrays.namespace import namespace
-from gbeam.arrays.tree import record
-
-
-@record
-class Base:
-    """Motion of the base at one time or many, in base axes B: x along the beam, z through its thickness.
-
-    Parameters
-    ----------
-    a_WO_B : array, shape (..., 3)
-        Acceleration of the root O in the world W, m/s²; where gravity acts, the specific force a − g.
-    w_WB_B : array, shape (..., 3)
-        Angular velocity of B in W, rad/s.
-    alpha_WB_B : array, shape (..., 3)
-        Angular acceleration of B in W, rad/s².
-    """
-
-    a_WO_B: Any
-    w_WB_B: Any
-    alpha_WB_B: Any
-
-
-def mapped(base: Any, function: Callable[[Any], Any]) -> Base:
-    """Apply a function to acceleration, angular velocity and angular acceleration of a base's motion."""
-    return Base(function(base.a_WO_B), function(base.w_WB_B), function(base.alpha_WB_B))
+from gbeam.results.parts import Base as Base
 
 
 def gradient(w_WB_B: Any, alpha_WB_B: Any) -> Any:

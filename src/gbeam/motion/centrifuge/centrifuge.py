@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import as_array, holds_jax, namespace
-from gbeam.arrays.tree import assign, record, static
+from gbeam.arrays.tree import assign, each_leaf, record, static
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, positive, possible, vector
-from gbeam.motion.bases.base import Base, mapped
+from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.flight import Flight
 from gbeam.motion.centrifuge.course import INVERSES, Course, prepare
 from gbeam.motion.centrifuge.inverses.instant import Geometry, Inverse
@@ -219,7 +219,7 @@ class Centrifuge:
     def at_control_point(self, t: Any) -> Base:
         """Motion of the control point at times `t` (s, any shape), axes of the specimen."""
         base = forward(self.axes(t), self.geometry.arm, self.geometry.gravity)
-        return mapped(base, self._felt) if any(self.turn) else base
+        return each_leaf(self._felt, base) if any(self.turn) else base
 
     @property
     def place(self) -> Any:

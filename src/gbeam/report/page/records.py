@@ -16,8 +16,8 @@ from gbeam.results.imitation import measures
 from gbeam.results.imitation.comparison import Comparison, MachinePlan
 from gbeam.results.machine import AxesResult
 from gbeam.results.modal import Campbell, Modes
-from gbeam.results.parts import Loads
-from gbeam.results.response import BaseMotion, HubResult, Response
+from gbeam.results.parts import Base, Loads
+from gbeam.results.response import HubResult, Response
 from gbeam.results.result import Floats
 from gbeam.results.searches import CommandRun, Fit, FittedColumn, Optimum, ShapedCommand
 from gbeam.results.solids import SolidStress, SpecimenLoads
@@ -162,7 +162,7 @@ def _system_response(facts: Facts, v: Facts, **more: Any) -> SystemResponse:
 
 def _response(facts: Facts, v: Facts, name: str) -> Response:
     return _read(
-        Response, facts, v, name=name, base=_read(BaseMotion, {}, v),
+        Response, facts, v, name=name, base=_read(Base, {}, v),
         hub=_read(HubResult, {}, v) if "hub_angle" in v else None,
         axes=_axes(facts, v) if "axis_rate" in v else None,
         loads=_loads(facts.get("loads", {}), v) if "section_force" in v else None,

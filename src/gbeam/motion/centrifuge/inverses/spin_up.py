@@ -59,7 +59,8 @@ class Ramp:
         s = where(s.value < 0, 0.0, where(s.value > 1, 1.0, s))
         none = 0.0 * s
         turned = self.rate * abs(self.steady - self.still)
-        quotient = _quotient(s)
+        # S over s⁵, where S = s⁵ (126 − 420 s + 540 s² − 315 s³ + 70 s⁴) and S' = 630 s⁴ (1 − s)⁴.
+        quotient = 126 - s * (420 - s * (540 - s * (315 - 70 * s)))
         rise = s**5 * quotient
         yaw, roll = none + self.yaw, none + self.roll
         if self.yawed:
@@ -110,11 +111,6 @@ class Ramp:
                 break
             ramp = ramp.of_length(ramp.length * factor * (1 + 1e-4))
         return ramp
-
-
-def _quotient(s: Series) -> Series:
-    """S over s⁵, where S = s⁵ (126 − 420 s + 540 s² − 315 s³ + 70 s⁴) and S' = 630 s⁴ (1 − s)⁴."""
-    return 126 - s * (420 - s * (540 - s * (315 - 70 * s)))
 
 
 def build_ramps(

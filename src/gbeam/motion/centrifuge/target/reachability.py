@@ -176,8 +176,9 @@ def shortfalls(target: Target, arm: float, *, turns: bool = True) -> tuple[Short
     stretches += _below(time, total, idle, "below idle", lambda run: _idle_remedy(total[run], across[run], gravity))
     if gravity:
         least = MIN_TRANSVERSE_LOAD
+        rest = f"across the beam, or track a part of the flight with {MIN_TRANSVERSE_LOAD / STANDARD_GRAVITY:g} g there"
         stretches += _below(
-            time, across, least, "across below gravity", lambda run: _across_remedy(np.min(across[run]))
+            time, across, least, "across below gravity", lambda run: f"add {missing_across(np.min(across[run]))} {rest}"
         )
     return tuple(sorted(stretches, key=lambda stretch: stretch.start))
 
@@ -235,11 +236,6 @@ def _sharp_remedy(width: float | None, load: float) -> str:
         return f'smoothing = "{np.ceil(1e3 * width):.0f} ms" or more is trackable'
     idle = np.ceil(100 * load / UNTOUCHED / STANDARD_GRAVITY) / 100
     return f'no smoothing makes it trackable; idle = "{idle:.2f} g" would hold it'
-
-
-def _across_remedy(least: float) -> str:
-    reachable = MIN_TRANSVERSE_LOAD / STANDARD_GRAVITY
-    return f"add {missing_across(least)} across the beam, or track a part of the flight with {reachable:g} g there"
 
 
 def _below(time: Floats, load: Floats, least: float, reason: str, remedy: Callable[[slice], str]) -> list[Shortfall]:
