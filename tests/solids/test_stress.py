@@ -73,6 +73,27 @@ def test_stress_over_time_is_that_of_each_time() -> None:
     assert "MPa at (" in repr(stress) and "margin on yield not known" in repr(stress)
 
 
+def test_stress_at_the_edge_of_a_clamp_is_left_out() -> None:
+    """There it grows from mesh to mesh; away from it the stated error is more than that to a mesh twice as fine."""
+    strips = [solid(block("hexahedron20", (8 * n, 2 * n, n), (0.2, 0.03, 0.01))) for n in (1, 2, 4)]
+    coarse, alone, fine = (each.reduced(modes=4, damping_ratio=0.01) for each in strips)
+    model = strips[1].reduced(modes=4, damping_ratio=0.01, coarser=coarse)
+    for k, more in ((0, 1.2), (1, 1.1), (2, 1.02)):
+        push = tuple(9.81 * (np.arange(3) == k))
+        rest, unjudged, truth = (gb.static(each.structure, acceleration=push) for each in (model, alone, fine))
+        stress, plain, finest = model.stress(rest), alone.stress(unjudged), fine.stress(truth)
+        assert stress.singular is not None and stress.singular_depth == pytest.approx(0.0315, rel=1e-2)
+        assert plain.singular is None and plain.left_out == "" and plain.worst.von_mises == stress.singular.von_mises
+        assert finest.worst.von_mises > more * stress.singular.von_mises
+        (same,) = np.flatnonzero(np.linalg.norm(finest.nodes - stress.worst.place, axis=1) < 1e-12)
+        error = abs(stress.worst.von_mises / finest.node_von_mises[same] - 1)
+        assert error < rest.errors.stress.mesh < 0.06
+        assert stress.von_mises.max() == stress.worst.von_mises < stress.singular.von_mises
+        assert stress.singular.place[0] < 0.0251 < stress.worst.place[0]
+        assert f"{stress.singular_nodes} nodes" in repr(stress) and "no limit" in repr(stress)
+    assert stress.singular_nodes == (stress.nodes[:, 0] < 0.0251).sum()
+
+
 def test_the_margin_is_least_in_the_weaker_material() -> None:
     """Half of a bar of half the strength, but at the tip's end, where the stress is a half."""
     mesh = block("hexahedron20", (4, 1, 1), (L, B, H))

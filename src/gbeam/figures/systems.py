@@ -162,7 +162,7 @@ def stress(result: SolidStress, title: str = "") -> Figure:
     panel = Panel(f"von Mises stress, {unit}", tuple(lines), levels=levels, zero=True, height=2.0)
     x, y, z = (1e3 * float(each) for each in result.worst.place)
     where = f"at ({x:.4g}, {y:.4g}, {z:.4g}) mm, {result.worst.time:.4g} s{result.worst.apart}"
-    return Figure(title, about, (panel,), (f"largest: {where}",))
+    return Figure(title, about, (panel,), (f"largest: {where}", *filter(None, [result.left_out])))
 
 
 def specimen(result: SpecimenLoads, title: str = "") -> Figure:

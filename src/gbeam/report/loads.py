@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from gbeam.report.blocks import Block, Blocks, Cell, Columns, Facts, Sentence, Value, named, numbered, table
+from gbeam.report.blocks import Block, Blocks, Cell, Columns, Facts, Items, Sentence, Value, named, numbered, table
 from gbeam.report.words import known, number, percent, tidy
 from gbeam.results.declared import declarations
 from gbeam.results.errors import ErrorEstimate
@@ -68,11 +68,13 @@ def margin(value: float | None) -> Cell:
 def parts_tables(motions: Facts, of: str = "motion") -> tuple[Block, ...]:
     """Largest stress of meshes, and loads of rigid specimens."""
     solids, rigid = ({n: each[key] for n, each in motions.items() if key in each} for key in ("solid", "specimen"))
-    return stress_table(solids, of), *specimen_tables(rigid)
+    return *stress_table(solids, of), *specimen_tables(rigid)
 
 
-def stress_table(solids: Facts, of: str = "motion") -> Block:
-    """Largest von Mises stress of a mesh in every motion, or `of` every body, with its place and the least margin."""
+def stress_table(solids: Facts, of: str = "motion") -> Blocks:
+    """Largest von Mises stress of a mesh in every motion, or `of` every body, with its place and the least margin, and
+    what is left out.
+    """
     cells: Columns = {
         of: "name",
         "von Mises, MPa": "worst.von_mises",
@@ -85,7 +87,10 @@ def stress_table(solids: Facts, of: str = "motion") -> Block:
             margin(each["nearest_yield"]["margin"]) if each.get("nearest_yield") else "not known"
         ),
     }
-    return table(named(solids), cells, "Largest stress, and where it is", optional=("node",))
+    yield table(named(solids), cells, "Largest stress, and where it is", optional=("node",))
+    words = tuple(f"{name}: {each['left_out']}" for name, each in solids.items() if each.get("left_out"))
+    if words:
+        yield Items(words)
 
 
 def _place(path: str) -> Columns:

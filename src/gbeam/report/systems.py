@@ -59,7 +59,7 @@ def _rest(rest: Facts) -> Blocks:
     pair = (", ".join(f"{each:.5g}" for each in tidy(vector, largest)) for vector in (force, moment))
     yield Sentence("on the ground: force ({}) N, moment ({}) N m".format(*pair))
     yield resting_loads(rest.get("beams", {}), "beam")
-    yield stress_table(rest.get("solids", {}), "body")
+    yield from stress_table(rest.get("solids", {}), "body")
     yield from errors_of_system(rest["errors"])
     yield _others(rest, "points", "time", "ground_force", "ground_moment", "beams", "solids", "errors")
 
@@ -112,7 +112,7 @@ def _of_points(facts: Facts) -> Blocks:
     yield table(named(facts["coordinates"]), {"coordinate": "name", "at the end": "end"}, detail=True)
     beams = {name: {"loads": each} for name, each in facts.get("beams", {}).items()}
     yield loads_table(beams, "beam")
-    yield stress_table(facts.get("solids", {}), "body")
+    yield from stress_table(facts.get("solids", {}), "body")
     yield from errors_of_system(facts["errors"])
     yield _others(
         facts, "points", "coordinates", "beams", "solids", "errors", "limits", "name", "environment", "message"

@@ -16,6 +16,8 @@ from gbeam.results.declared import declared, fact, labels, part, quantity
 from gbeam.results.parts import margin_words, yield_margin
 from gbeam.results.result import Complex, Figured, Floats, Part
 
+UNLIMITED = "at sharp edges and the edges of clamps the stress of an elastic solid has no limit as the mesh gets finer"
+
 
 @dataclass(frozen=True, repr=False, eq=False)
 class StressAt(Part):
@@ -64,6 +66,10 @@ class SolidStress(Figured):
     nearest_yield: StressAt | None = part(
         "where the margin on yield is least", name="nearest_yield_", optional=True, default=None
     )
+    singular: StressAt | None = part("of nodes that are left out the largest", name="singular_", optional=True,
+                                     note=UNLIMITED, default=None)  # fmt: skip
+    singular_nodes: int = fact("number of nodes that are left out", note=UNLIMITED, default=0)
+    singular_depth: float = fact("largest distance of a node that is left out to one that is judged", "m", default=0.0)
     points: tuple[str, ...] = labels("name of the point", "point", default=())
     point_von_mises: Floats = quantity("Pa", "von Mises stress at the point", "time point", key=None, empty=True)
     point_principal: Floats = quantity(
@@ -96,6 +102,16 @@ class SolidStress(Figured):
         "Pa", "largest von Mises stress over time at the node", "node", key=None, empty=True
     )
 
+    @declared("", "what is left out of the largest stress, and why", role="fact")
+    def left_out(self) -> str:
+        if self.singular is None:
+            return ""
+        return (
+            f"{UNLIMITED}: {self.singular_nodes} nodes, up to "
+            f"{1e3 * self.singular_depth:.3g} mm from the others, are left out, the "
+            f"largest {said(self.singular)}"
+        )
+
     @declared("Pa", "normal stress at the worst place, on the plane where it ranges most", "time", name="worst_normal",
               key=None)  # fmt: skip
     def normal(self) -> Floats:
@@ -120,8 +136,12 @@ class SolidStress(Figured):
         return np.asarray(strain @ np.array([x * x, y * y, z * z, y * z, x * z, x * y]))
 
     @property
-    def lines(self) -> tuple[str, str]:
-        """The largest stress and the least margin in words."""
+    def lines(self) -> tuple[str, ...]:
+        """The largest stress, the least margin and what is left out in words."""
+        return *self._lines, *filter(None, [self.left_out])
+
+    @property
+    def _lines(self) -> tuple[str, str]:
         if self.nearest_yield is None:
             return said(self.worst), "margin on yield not known: no material has a yield_strength"
         assert self.nearest_yield.margin is not None
@@ -132,8 +152,8 @@ class SolidStress(Figured):
         return said(self.worst), f"{words} in {material}{where}"
 
     def __repr__(self) -> str:
-        of, (worst, margin) = f" {self.motion!r}" if self.motion else "", self.lines
-        return self._with_warnings(f"SolidStress{of} ({self.model}): {worst}", margin)
+        of, (worst, *others) = f" {self.motion!r}" if self.motion else "", self.lines
+        return self._with_warnings(f"SolidStress{of} ({self.model}): {worst}", *others)
 
 
 def von_mises(stress: Floats) -> Floats:

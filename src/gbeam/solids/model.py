@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
@@ -15,7 +16,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
-from gbeam.results.solids import SolidStress
+from gbeam.results.solids import SolidStress, von_mises
 from gbeam.solids.elements import mass_matrix
 from gbeam.solids.shape_functions import Indices
 from gbeam.solids.stress import NodalStress, solid_stress
@@ -23,6 +24,12 @@ from gbeam.solids.stress import NodalStress, solid_stress
 if TYPE_CHECKING:
     from gbeam.solids.mesh import SolidMesh
 
+CONVERGING = (
+    0.5  # order in the size of elements, of what is two or three where stress is smooth and below zero where not
+)
+GROWING = 0.05  # order of growing stress: a clamp's edge has 0.3, a sharp corner up to 0.5
+UNLIKE = 0.05  # of the stress: how far elements are apart at least where it is singular, on any mesh
+REFINED = 1.25  # times as large elements at least, to judge that by
 COARSER = 2**0.5  # times as large elements, from where an error of second order is less than the difference
 
 
@@ -151,9 +158,10 @@ def beside(coarser: SolidModel, finer: Structure) -> Structure:
     basis = np.zeros((structure.size, n))
     basis[:known] = turn * np.where(np.diagonal(size) < 0, -1.0, 1.0)
     every = np.pad(basis, ((0, rough.every_shape.shape[-1] - len(basis)), (0, 0)))
+    apart = replace(fine, singular=singular(fine, rough, _static(finer), _static(coarser.structure)))
     # Where both have a node: stress changes fast near those where it is largest.
-    of_both = _nearest(fine, rough, _nearest(rough, fine, fine.felt_at))
-    felt = replace(fine, felt_at=np.unique(of_both))
+    of_both = np.unique(_nearest(fine, rough, np.arange(len(rough.known))))
+    felt = replace(apart, felt_at=fine.most(of_both[~apart.singular[of_both]]))
     nodal = replace(
         rough,
         every_shape=rough.every_shape @ every,
@@ -171,6 +179,77 @@ def beside(coarser: SolidModel, finer: Structure) -> Structure:
     )
     richer = finer.richer and replace(finer.richer, recovery=replace(felt, size=finer.richer.size))
     return replace(finer, recovery=felt, richer=richer, coarser=other)
+
+
+def _static(structure: Structure) -> Floats:
+    """Static answers (n, 6) to unit accelerations and angular accelerations of the base."""
+    c = structure.coefficients
+    return np.linalg.solve(np.asarray(c.stiffness), np.concatenate([c.f_a, c.f_al]).T)
+
+
+def singular(fine: NodalStress, rough: NodalStress, of_fine: Floats, of_rough: Floats) -> NDArray[np.bool_]:
+    """Pairs (p,) of a mesh in elements of a coarser one where the stress of answers (n, l) does not converge.
+
+    There the stress of an element and the mean at its nodes differ as much on both meshes, where their difference falls
+    with the elements' size elsewhere, and somewhere in such a patch of elements stress grows.
+    """
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import cKDTree
+
+    top = von_mises(np.moveaxis(fine.table @ of_fine, 1, 2)).max(axis=0)
+    top = np.where(top > 0, top, np.inf)
+    here, there = _elements(fine, of_fine / top), _elements(rough, of_rough / top)
+    count, (_, inside) = len(there.middle), cKDTree(there.middle).query(here.middle)
+    apart, stress, size = np.zeros((3, count))
+    np.maximum.at(apart, inside, here.apart)
+    np.maximum.at(stress, inside, here.stress)
+    np.maximum.at(size, inside, here.size)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        finer = np.log(there.size / size)
+        order, growth = np.log(there.apart / apart) / finer, np.log(stress / there.stress) / finer
+        unlike = (order < CONVERGING) & (apart > UNLIKE * stress) & (finer > np.log(REFINED))
+    some = np.flatnonzero(unlike)
+    sharing = csr_array(
+        (np.ones(there.pairs.size), (np.repeat(np.arange(count), there.counts), there.pairs)),
+        shape=(count, len(rough.known)),
+    )[some]
+    number, patch = connected_components(sharing @ sharing.T)
+    grows = np.bincount(patch, growth[some] > GROWING, number) > 0
+    left_out = np.zeros(count, dtype=bool)
+    left_out[some[grows[patch]]] = True
+    out = np.zeros(len(fine.known), dtype=bool)
+    out[here.pairs[np.repeat(left_out[inside], here.counts)]] = True
+    return out if not out.all() else ~out
+
+
+class _Elements(NamedTuple):
+    """Elements of a mesh under some answers: of all together the largest von Mises stress (e,) at their nodes, and how
+    far the stress of the element and the mean at its nodes are apart (e,).
+    """
+
+    middle: Floats
+    size: Floats
+    apart: Floats
+    stress: Floats
+    counts: Indices
+    pairs: Indices
+
+
+def _elements(nodal: NodalStress, answers: Floats) -> _Elements:
+    mean, places = nodal.table @ answers, nodal.mesh.points[nodal.node]
+    under = replace(nodal, every_shape=nodal.shapes @ answers, size=answers.shape[1])
+
+    def largest(stress: Floats) -> Floats:
+        return np.asarray(np.linalg.norm(von_mises(np.moveaxis(stress, -2, -1)), axis=-1))
+
+    size, parts = largest(mean), []
+    for pairs, stress in under.elements(nodal.mesh.blocks):
+        box, counts = np.ptp(places[pairs], axis=1), np.full(len(pairs), pairs.shape[1])
+        apart = largest(stress - mean[pairs]).max(axis=1)
+        middle, long = places[pairs].mean(axis=1), np.linalg.norm(box, axis=1)
+        parts.append((middle, long, apart, size[pairs].max(axis=1), counts, pairs.ravel()))
+    return _Elements(*map(np.concatenate, zip(*parts, strict=True)))
 
 
 def _nearest(of: NodalStress, to: NodalStress, pairs: Indices) -> Indices:

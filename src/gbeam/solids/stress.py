@@ -8,6 +8,7 @@ from itertools import product
 from typing import Any, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
@@ -34,7 +35,8 @@ FACES = {
 class NodalStress(Value):
     """Stresses of a mesh by the first `size` of coordinates with shapes (k, 3, n): at all pairs `known` (p,), a node
     and the number of a material of its elements in one, those of unit coordinates (p, 6, n); `felt_at` are the pairs
-    that one of all coordinates stresses most.
+    that one of all coordinates stresses most, and `singular` (p,) those where stress grows without limit as a mesh
+    gets finer.
     """
 
     mesh: Any
@@ -44,6 +46,7 @@ class NodalStress(Value):
     every_table: Floats
     size: int
     felt_at: Indices
+    singular: NDArray[np.bool_]
 
     @classmethod
     def of(cls, mesh: Any, shapes: Floats) -> Self:
@@ -53,16 +56,22 @@ class NodalStress(Value):
         count, names, n = len(mesh.points), _materials(mesh), shapes.shape[-1]
         pairs = [names.index(block.material) * count + np.unique(block.nodes) for block in mesh.blocks]
         known = np.unique(np.concatenate(pairs))
-        empty = cls(mesh, shapes, hull(mesh.points), known, np.empty((0, 6, n)), n, known[:0])
+        none = np.zeros(len(known), dtype=bool)
+        empty = cls(mesh, shapes, hull(mesh.points), known, np.empty((0, 6, n)), n, known[:0], none)
         total, shared = np.zeros((len(known), 6, n)), np.zeros(len(known))
-        for pair, stress in empty._elements(mesh.blocks):
+        for pairs_of, stresses in empty.elements(mesh.blocks):
+            pair, stress = pairs_of.ravel(), stresses.reshape(-1, 6, n)
             some, place = np.unique(pair, return_inverse=True)
             sums = csr_array((np.ones(len(pair)), (place, np.arange(len(pair)))), shape=(len(some), len(pair)))
             total[some] += (sums @ stress.reshape(len(pair), -1)).reshape(len(some), *stress.shape[1:])
             shared[some] += np.bincount(place)
-        table = total / shared[:, None, None]
-        most = np.unique(von_mises(np.moveaxis(table, 1, 2)).argmax(axis=0))
-        return replace(empty, every_table=table, felt_at=most)
+        whole = replace(empty, every_table=total / shared[:, None, None])
+        return replace(whole, felt_at=whole.most(np.arange(len(known))))
+
+    def most(self, pairs: Indices) -> Indices:
+        """Of some pairs those that one of all coordinates stresses most."""
+        sizes = von_mises(np.moveaxis(self.every_table[pairs], 1, 2))
+        return np.asarray(pairs[np.unique(sizes.argmax(axis=0))])
 
     @property
     def shapes(self) -> Floats:
@@ -143,14 +152,13 @@ class NodalStress(Value):
         }
         return skin, left[:, :kept] * sizes[:kept]
 
-    def _elements(self, blocks: Any) -> Iterator[tuple[Indices, Floats]]:
-        """Pairs (m,) and stresses (m, 6, n) at the nodes of the elements of some blocks."""
+    def elements(self, blocks: Any) -> Iterator[tuple[Indices, Floats]]:
+        """Pairs (e, k) and stresses (e, k, 6, n) at the nodes of the elements of some blocks."""
         names, count = _materials(self.mesh), len(self.mesh.points)
         for part in chunks(self.mesh.points, blocks, "stress"):
             pair = np.searchsorted(self.known, names.index(part.block.material) * count + part.nodes)
             outward, stress = extrapolation(part.block.kind), part.stress(self.shapes)
-            at_nodes = np.einsum("kq,eqvn->ekvn", outward, stress, optimize=True)
-            yield pair.ravel(), at_nodes.reshape(-1, *at_nodes.shape[2:])
+            yield pair, np.einsum("kq,eqvn->ekvn", outward, stress, optimize=True)
 
     def spread(self, pair: int, q: Floats) -> float:
         """Difference of the elements at a pair in von Mises stress, as a fraction of that of their mean."""
@@ -160,7 +168,7 @@ class NodalStress(Value):
             for block in self.mesh.blocks
             if block.material == _materials(self.mesh)[number]
         ]
-        parts = [stress[at == pair] @ q for at, stress in self._elements(around)]
+        parts = [stress[at == pair] @ q for at, stress in self.elements(around)]
         mean = float(von_mises(self.table[pair] @ q))
         return float(np.ptp(von_mises(np.concatenate(parts)))) / mean if mean > 0 else 0.0
 
@@ -169,9 +177,17 @@ class NodalStress(Value):
         return np.asarray(np.tensordot(q, self.table[self.felt_at], (1, 2)).reshape(len(q), -1))
 
     def histories(self, q: Floats) -> tuple[Floats, Indices, Floats]:
-        """Largest von Mises stress over time at every pair (p,), when (p,), and over all pairs at every time (t,)."""
-        largest = LargestNorms(deviatoric(self.table), q)
-        return largest.size, largest.when, largest.over
+        """Largest von Mises stress over time at every pair (p,), when (p,), and over all that are not singular at every
+        time (t,).
+        """
+        table, size, when = deviatoric(self.table), np.zeros(len(self.known)), np.zeros(len(self.known), dtype=int)
+        if self.singular.any():
+            apart = LargestNorms(table[:, self.singular], q)
+            size[self.singular], when[self.singular] = apart.size, apart.when
+            table = table[:, ~self.singular]
+        largest = LargestNorms(table, q)
+        size[~self.singular], when[~self.singular] = largest.size, largest.when
+        return size, when, largest.over
 
 
 def _materials(mesh: Any) -> list[str]:
@@ -269,13 +285,15 @@ def ranging(stress: Floats) -> Floats:
 
 def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> SolidStress:
     """Return the stress at coordinates (t, n) at times (t,)."""
+    from scipy.spatial import cKDTree
+
     mesh, of_pair, materials = nodal.mesh, nodal.node, nodal.material
     largest, when, over = nodal.histories(q)
     strengths = np.array([mesh.strengths.get(name, np.inf) for name in materials])
     exponents = np.array([mesh.exponents.get(name, np.nan) for name in materials])
-    worst, kinds = int(largest.argmax()), _materials(mesh)
+    judged, kinds = np.where(nodal.singular, 0.0, largest), _materials(mesh)
     of_kind = (np.flatnonzero(np.array(materials) == name) for name in kinds)
-    foremost = [int(pairs[largest[pairs].argmax()]) for pairs in of_kind]
+    foremost = [int(pairs[judged[pairs].argmax()]) for pairs in of_kind]
 
     def at(pair: int) -> StressAt:
         t, node, strength = int(when[pair]), int(of_pair[pair]), float(strengths[pair])
@@ -290,6 +308,12 @@ def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> S
             yield_strength=strength if np.isfinite(strength) else None,
         )
 
+    singular: dict[str, Any] = {}
+    if nodal.singular.any():
+        without = np.unique(of_pair[nodal.singular])
+        deep = cKDTree(mesh.points[of_pair[~nodal.singular]]).query(mesh.points[without])[0].max()
+        top = int(np.where(nodal.singular, largest, 0.0).argmax())
+        singular = {"singular": at(top), "singular_nodes": len(without), "singular_depth": float(deep)}
     names = mesh.named_points
     chosen = [nodal.pairs_at(name, largest) for name in names]
     tables = np.stack([[nodal.table[pairs].mean(axis=0), nodal.strained(pairs)] for pairs in chosen], axis=1)
@@ -302,8 +326,9 @@ def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> S
     return SolidStress(
         time=time,
         von_mises=over,
-        worst=at(worst),
-        nearest_yield=at(int((largest / strengths).argmax())) if np.isfinite(strengths).any() else None,
+        worst=at(int(judged.argmax())),
+        nearest_yield=at(int((judged / strengths).argmax())) if np.isfinite(strengths).any() else None,
+        **singular,
         points=names,
         point_von_mises=von_mises(stress),
         point_principal=principal(stress),
