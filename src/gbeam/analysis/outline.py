@@ -60,9 +60,7 @@ TIMES = 1500
 
 
 def outline_of(structure: Structure, motion: Motion | None, time: Floats, q: Floats) -> Outline | None:
-    """Return the outline of a response at times `time` (t,) s with coordinates `q` (t, n); None without a beam, and
-    without what carries it where there is no `motion`.
-    """
+    """Return the outline of a response at times (t,) by `q` (t, n); None of no beam, less without a `motion`."""
     if structure.field is None or structure.sections is None or structure.source is None:
         return None
     beam = structure.source.beam

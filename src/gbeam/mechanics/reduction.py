@@ -106,9 +106,7 @@ def reduce(stiffness: Any, mass: Any, loads: Floats, modes: int) -> Reduced:
 
 
 def _dense(stiffness: Floats, mass: Floats) -> tuple[Floats, Floats]:
-    """Inverse eigenvalues, the largest first, of which those of motions without mass are zero, and vectors of unit
-    modal mass, or stiffness.
-    """
+    """Inverse eigenvalues, the largest first, zero without mass, and vectors of unit modal mass, or stiffness."""
     from scipy.linalg import eigh
 
     try:

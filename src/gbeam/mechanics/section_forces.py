@@ -46,9 +46,7 @@ class Hung(NamedTuple):
 
 
 class Carried(NamedTuple):
-    """Forces and moments (t, s, 3) that sections carry, in base and in their own axes, accelerations (or specific
-    forces) there and places.
-    """
+    """Forces and moments (t, s, 3) of sections, in base and own axes; accelerations or specific forces; places."""
 
     force: Array
     moment: Array
@@ -69,9 +67,7 @@ def section_forces(
     motion: Motion | None = None,
     hung: Hung | None = None,
 ) -> Loads:
-    """Loads at the root and the stations for motions of base (t, 3) and beam (t, n), with other bodies `hung` on it; of
-    a structure without sections at the root and the tip.
-    """
+    """Loads at root and stations for base (t, 3) and beam (t, n), with bodies `hung` on it; of matrices at the ends."""
     if structure.sections is None:
         return about_the_hub(_of_ends(structure, base, q, qd, qdd, time, hung), motion, base.alpha_WB_B)
     xp = namespace(q, base.a_WO_B)

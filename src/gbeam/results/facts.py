@@ -177,10 +177,7 @@ def schema_of(tree: Any) -> dict[str, Any]:
 
 
 def unit_at(facts: Any, tree: Any, keys: tuple[str | int, ...]) -> str | None:
-    """Return the unit of the figure at `keys` of the facts of a record whose kind has this tree.
-
-    It is empty where the figure has none, and None where nothing is declared for its place.
-    """
+    """Return the unit of the figure at `keys` of facts of this tree: empty without one, None where none is declared."""
     for word in (key for key in keys if isinstance(key, str)):
         tree = tree.get(word, tree.get(ANY)) if isinstance(tree, dict) else tree
         if tree is None:

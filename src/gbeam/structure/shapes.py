@@ -75,9 +75,7 @@ def round_stresses(diameter: Floats, wall: Floats | None = None) -> Floats:
 
 
 def von_mises(stresses: Floats | None, force: Any, moment: Any) -> Floats:
-    """Largest von Mises stress (t, s) Pa over sections' points, by force N and moment N m (t, s, 3) in their axes; NaN
-    where the shape has no formulas.
-    """
+    """Largest von Mises stress (t, s) Pa of sections by force and moment (t, s, 3); NaN where there are no formulas."""
     carried = np.concatenate([force, moment], axis=-1)
     out = np.full(carried.shape[:2], np.nan)
     if stresses is None:

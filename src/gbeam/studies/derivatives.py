@@ -87,11 +87,7 @@ class Neighbourhood:
             self.answer = inquiry.facts(self.case)
 
     def slopes(self, read: Read, motions: Sequence[str] = (), *, rough: bool = False) -> Slopes:
-        """Derivatives of what is read from the answer; other motions than those named are not differentiated.
-
-        Rough ones of differences are of second order, from half of the answers, and have no errors; where the scenario
-        refuses one side of a value, which `edges` says, they are of the other.
-        """
+        """Derivatives of the answer, in the motions named; rough ones, of half of the answers, have no errors."""
         if self.runs:
             return self._of_runs(read, motions or list(self.case.motions), rough)
         values = read(self.case, self.answer)
@@ -238,9 +234,7 @@ class Neighbourhood:
 
 
 class Quantities:
-    """Quantities of an answer at any values of the parameters, and their derivatives, by the steps and shapes of one
-    `start`; without one each answer has its own.
-    """
+    """Quantities of an answer at any parameters, and derivatives, by steps and shapes of one `start` or of each."""
 
     def __init__(
         self,

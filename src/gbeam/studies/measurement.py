@@ -85,10 +85,7 @@ class Measurement:
         return {"loads": any(each.quantity.startswith(("root_", "strain")) for each in self.columns), "axes": False}
 
     def weights(self, residuals: Floats | None, freed: int) -> Floats:
-        """One over the noise of every datum, (m,), that residuals (m,) show; before there are any, a usual one.
-
-        A history's noise is the same at all times, a frequency's is a share of it.
-        """
+        """One over the noise of the data (m,) by residuals (m,), or usual: even in time, a share of frequencies."""
         weights, first = [], 0
         for each in self.columns:
             part = slice(first, first := first + len(each.values))

@@ -264,10 +264,7 @@ def template_of(
 
 
 def _below(node: Any, kind: str) -> dict[Any, tuple[Any, str]]:
-    """Children of a node by name or number, each with its kind of quantity; none where they are not known.
-
-    An argument that has no kind of its own, such as the level of a profile, has that of what it is an argument of.
-    """
+    """Children of a node by name or number, of their own kind of quantity or of that which they are arguments of."""
     if isinstance(node, (tuple, list)) or np.ndim(node):
         return {k: (each, kind) for k, each in enumerate(node)}
     owner = getattr(node, "owner", type(node).__name__)

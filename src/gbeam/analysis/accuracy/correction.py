@@ -96,9 +96,7 @@ class Departures:
 
     @cached_property
     def vibration(self) -> Vibration:
-        """Modes about the mean, or, where that is unstable, about the start; joints whose equations are not those of
-        their coordinates, by Euler parameters, are held.
-        """
+        """Modes about the mean, or, where unstable, about the start; joints by Euler parameters are held."""
         mass, square, modes = self.m.mean(axis=0), np.zeros(len(self.elastic)), np.eye(len(self.elastic))
         held = ~self.elastic & (np.abs(mass - mass.T).max() > UNSYMMETRIC * np.abs(mass).max())
         inside = np.ix_(~held, ~held)

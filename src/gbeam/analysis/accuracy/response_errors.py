@@ -150,9 +150,7 @@ class Rings(NamedTuple):
 def lacking(
     structure: Structure, driven: Driven, of: Trajectory, computed: Reading, begin: Begin | None, *, straight: bool
 ) -> tuple[Reading, Reading, Rings]:
-    """Read what a solution would be by the exact model with more shapes, and by that with no more than its own, and
-    find what its samples may hide.
-    """
+    """Read a solution by the exact model with more shapes and with as many, and what its samples may hide."""
     more = enrichment(structure, driven.base_of(of))
     count = len(of.time)
     some = np.linspace(0, count - 1, min(count, SCAN)).astype(int)
@@ -221,9 +219,7 @@ def errors_of(
     sizes: Mapping[Quantity, float],
     mesh: tuple[Reading, Reading] | None,
 ) -> Errors:
-    """Errors of a body alone by readings that differ by its shapes, by its model, which a solid has not, and by its
-    mesh.
-    """
+    """Errors of a body alone by readings that differ by its shapes, its model (none of a solid) and its mesh."""
     nothing = negligible(sizes, BEAM, structure.length)
     if sizes[PLACE] <= UNMOVED * structure.length:
         nothing.add(PLACE)

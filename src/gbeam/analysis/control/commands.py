@@ -70,9 +70,7 @@ class Commands:
 
 @dataclass(frozen=True)
 class Vibration:
-    """The modes of a hub at rest: eigenvalues (k,) and the tip's displacement over the excitation ∫ exp(−λt) u dt, (k,)
-    m.
-    """
+    """Modes of a hub at rest: eigenvalues (k,), and the tip's displacement over ∫ exp(−λt) u dt, (k,) m."""
 
     eigenvalue: Complex
     gain: Floats

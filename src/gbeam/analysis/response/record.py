@@ -37,9 +37,7 @@ Array = Any
 
 
 def influence(structure: Structure) -> Influence:
-    """Static answers of the straight beam to uniform, angular (a_y = α_z x, a_z = −α_y x) and centripetal (−ω² x)
-    accelerations.
-    """
+    """Static answers of the straight beam to uniform, angular (α_z x, −α_y x) and centripetal (−ω² x) accelerations."""
     c = structure.coefficients
     linear = np.stack([-c.f_ww[2, 2], c.f_al[2], -c.f_al[1]])
     per_q = structure.station_places.first[-1]

@@ -81,9 +81,7 @@ class Run:
 
 
 def difference(coarse: Floats, fine: Floats, ratio: int) -> float:
-    """Largest length of the difference of histories (t, ..., c) from one start over the largest length; `ratio` fine
-    steps make a coarse one.
-    """
+    """Largest difference of histories (t, ..., c), with `ratio` fine steps to a coarse one, over the largest length."""
     n = min(len(coarse), (len(fine) - 1) // ratio + 1)
     size = np.linalg.norm(fine, axis=-1).max()
     apart = np.linalg.norm(coarse[:n] - fine[: (n - 1) * ratio + 1 : ratio], axis=-1).max()

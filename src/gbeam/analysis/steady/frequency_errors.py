@@ -74,9 +74,7 @@ class More(NamedTuple):
 
 
 class Richer:
-    """Models with more shapes beside a steady state, the fastest of several: of its kinds, exact, of thick beams; and
-    with coarser meshes.
-    """
+    """Models with more shapes beside a steady state: of its kinds, exact, of thick beams; and with coarser meshes."""
 
     def __init__(self, state: OperatingPoint | SteadySystem) -> None:
         of = state.of
@@ -110,9 +108,7 @@ class Richer:
         return share if self.theories else np.nan * share
 
     def references(self, state: Any, coordinates: Complex, *, gyroscopic: bool = True) -> tuple[Floats, Floats, Floats]:
-        """Circular frequencies (k,) by models with more shapes, by exact ones and by coarser meshes; NaN where there
-        are none, or these do not rest.
-        """
+        """Circular frequencies (k,) with more shapes, by exact models and coarser meshes; NaN where none rests."""
 
         def reference(richer: More | None) -> Floats:
             if richer is None:

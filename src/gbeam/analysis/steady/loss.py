@@ -155,9 +155,7 @@ def _in_words(richer: Richer, point: Any, models: Sequence[Any], plates: Mapping
 
 
 def _unseen(critical: Critical, path: Path, structure: Structure | System, progress: Progress) -> tuple[str, ...]:
-    """Warn where a fuller model loses what this one keeps, at halves of the search's end: a beam that twists, or more
-    modes.
-    """
+    """Warn where a fuller model (twist, or more modes) loses what this one keeps, at halves of the search's end."""
     shares = tuple(2.0**-k for k in range(HALVINGS, -1, -1))
     still: Any = path(structure, 0.0)
     richer, lacked = Richer(still), "more modes"

@@ -64,10 +64,7 @@ def channels_of(controllers: dict[str, Feedback]) -> tuple[float, list[Channel]]
 
 
 class Loop:
-    """A plant whose first inputs and outputs are those of controllers, in steps.
-
-    `cut` is a drive whose command does not reach the plant: an input does in its place, the first one.
-    """
+    """A plant whose first inputs and outputs are of controllers, in steps; an input replaces the drive `cut`."""
 
     def __init__(self, plant: StateSpace, step: float, channels: list[Channel], cut: int | None = None) -> None:
         self.plant, self.step, self.channels = plant, step, channels

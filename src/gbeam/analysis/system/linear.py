@@ -168,9 +168,7 @@ def frozen(system: System, motion: Motion | None, time: float, at: str) -> Stead
 
 
 class Strained(NamedTuple):
-    """A gauge on a body: its strain by unit coordinates of a solid (n,), or by unit forces and moments (6,) that a
-    `section` of a beam carries.
-    """
+    """A gauge on a body: its strain by unit coordinates of a solid (n,), or by unit loads (6,) of a `section`."""
 
     body: str
     share: Floats

@@ -80,9 +80,7 @@ class Drive:
 
 
 def bent_most(system: System, names: Sequence[str], q: Floats) -> tuple[str, float]:
-    """Name of the flexible body that is bent most at coordinates (k, n), by a model whose energies end at second order,
-    and how far, over its size.
-    """
+    """Name of the body of second order that is bent most at coordinates (k, n), and how far, over its size."""
     bent = {"a body": 0.0}
     for name, body in system.bodies.items():
         if isinstance(body, Structure) and body.kind not in BY_STRAINS:
@@ -276,9 +274,7 @@ def _released(state: SteadySystem, *, held: bool) -> SteadySystem:
 
 
 def turning_of(system: System, motion: Motion | None, turning: str | None) -> str:
-    """Name of the coordinate that turns: given, or the only prescribed angle, or the only one; empty where the hub
-    below does.
-    """
+    """Name of the coordinate that turns: given, or the only prescribed angle, or the only one; empty for a hub."""
     angles = [
         f"{name}.{each}"
         for name, joint in system.joints.items()

@@ -344,9 +344,7 @@ def _weighted(vectors: Vector, weight: Array) -> Vector:
 
 
 def inertia_of(field: StrainField | SeriesField | Places, mass: Array, line: int = 0, nodes: int = 0) -> Inertia:
-    """Inertia of the particles of a field, of which the first, `line`, are the sections at the nodes of the quadrature,
-    once or several times over.
-    """
+    """Inertia of a field's particles; the first, `line`, are the sections at the nodes, once or several times over."""
     if not isinstance(field, StrainField):
         return Inertia(field, mass, Particles(field, mass))
     offset = field.offset
@@ -364,9 +362,7 @@ def inertia_of(field: StrainField | SeriesField | Places, mass: Array, line: int
 
 
 def _moments(mass: Array, offset: Array, nodes: int, before: int) -> tuple[Array | None, Array | None]:
-    """Moments of inertia about the axis and first moments of sections by their particles, behind `before` nodes of the
-    root; None where they have none.
-    """
+    """Moments of inertia about the axis and first moments of sections, behind `before` nodes of the root, or None."""
     xp = namespace(mass, offset)
 
     def at_nodes(values: Array) -> Array:

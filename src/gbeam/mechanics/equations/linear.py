@@ -43,9 +43,7 @@ class Geometric:
 
 @record
 class LoadTerms:
-    """Generalised forces of unit loads, constant (loads, 6, 6 + n) + slope (loads, 6, 6 + n, n) q: the resultant at the
-    root first.
-    """
+    """Generalised forces of unit loads, (loads, 6, 6 + n) + slope (loads, 6, 6 + n, n) q: the resultant first."""
 
     constant: Array
     slope: Array

@@ -86,9 +86,7 @@ def spaces_of(beam: Beam, rule: Quadrature, counts: Counts) -> tuple[Space, ...]
 
 
 def space(beam: Beam, rule: Quadrature, along: int, counts: Counts) -> Space:
-    """The space of displacements along x, y or z (0, 1, 2), or about x (3); the panels of the rule end at corners and
-    bodies.
-    """
+    """The space of displacements along x, y or z (0, 1, 2), or about x (3); panels end at corners and bodies."""
     first, *others = GROUPS[along]
     families = (first, *(family for family in others if counts[family]))
     section, stiffnesses = beam.section.at(rule.node), beam.stiffnesses(rule.node)

@@ -113,9 +113,7 @@ def between_corners(x: Array, edges: Sequence[float], count: int) -> Array:
 
 
 def polynomials(length: float, counts: Counts, corners: Sequence[float] = ()) -> Families:
-    """Legendre polynomials as strains, and over the length as twist and curvatures, for the exact field; between the
-    `corners` of its line, where the strains jump.
-    """
+    """Legendre polynomials as strains, twist and curvatures of the exact field, between the `corners` of its line."""
     if corners:
 
         def broken(count: int, scale: float) -> Family:

@@ -51,9 +51,7 @@ class Frames:
     angles: Array
 
     def at(self, curvatures: Vector, *, points: bool) -> tuple[Rotation, Rotation]:
-        """Rotations (..., G) of the sections at the nodes and, where they are wanted, (..., p) at the points, by
-        curvatures (..., G).
-        """
+        """Rotations (..., G) at the nodes and, where wanted, (..., p) at the points, by curvatures (..., G)."""
         about = [axis for axis in range(3) if not absent(curvatures[axis])]
         if not about:
             return UNTURNED, UNTURNED

@@ -110,9 +110,7 @@ class Force:
 
 
 class State:
-    """The motion of the frames of a tree at coordinates and rates, all of them, prescribed ones too: of each body's
-    root and of its points, once they are asked for.
-    """
+    """Motion of a tree's frames at all coordinates and rates: of each body's root, and of its points when asked for."""
 
     def __init__(self, tree: Tree, y: Array, yd: Array, ydd: Array, ground: Frame) -> None:
         self.shape = np.broadcast_shapes(y.shape[:-1], yd.shape[:-1], ydd.shape[:-1])
@@ -262,9 +260,7 @@ class Tree:
         return demanded if inputs.efforts is None else demanded - inputs.efforts, ground, on_points
 
     def invariants(self, state: State, gravity: Array) -> tuple[Array, Array, Array]:
-        """Momentum N s and angular momentum N m s about the origin (..., 3), ground's axes, and energy (..., 3) J:
-        kinetic, elastic, of gravity.
-        """
+        """Momentum N s, angular momentum N m s and energy (kinetic, elastic, gravity) J, (..., 3), ground's axes."""
         force = moment = kinetic = elastic = weight = 0.0
         for k, link in enumerate(self.links):
             q, qd, (_, root) = state.q[k], state.qd[k], state.moved(k)

@@ -16,9 +16,7 @@ def gradient(w_WB_B: Any, alpha_WB_B: Any) -> Any:
 
 
 def gradients(w_WB_B: Any, alpha_WB_B: Any) -> Any:
-    """Gradients along x, y and z, in columns, (..., 3, 3) 1/s²: the acceleration at a place is that of the root and
-    their product with it.
-    """
+    """Gradients of the acceleration along x, y and z, in columns, (..., 3, 3) 1/s²: a(r) = a(0) + product with r."""
     xp = namespace(w_WB_B, alpha_WB_B)
     (wx, wy, wz), (alx, aly, alz) = (xp.moveaxis(each, -1, 0) for each in (w_WB_B, alpha_WB_B))
     along_y = xp.stack([wx * wy - alz, -(wz**2 + wx**2), wy * wz + alx], axis=-1)

@@ -32,9 +32,7 @@ _OF_SYSTEMS = {"joints", "forces", "controllers", "system"}
 
 
 def kind_of_scenario(data: Mapping[str, Any]) -> type[Scenario | SystemScenario | SpecimenScenario]:
-    """Table of a scenario as it is written: of one beam, of one other specimen, or of a system of bodies, whose tables
-    are made only then.
-    """
+    """Table of a scenario as written: of one beam, of another specimen, or of a system, made only when needed."""
     if "bodies" not in data and ("beam" in data or {"joints", "forces", "system"}.isdisjoint(data)):
         return Scenario
     from gbeam.scenario.schema.system import SpecimenScenario, SystemScenario

@@ -101,11 +101,7 @@ class QuasiStatic(Inverse):
 
 @record
 class Flat(Inverse):
-    """Yaw makes up for the tangential acceleration: δ = atan((dω1/dt)/ω1²).
-
-    The horizontal load has the reference's direction at all times; its size is high by sqrt(1 + tan²δ),
-    about δ²/2.
-    """
+    """Yaw by δ = atan((dω1/dt)/ω1²) keeps the load's horizontal direction; its size is high by about δ²/2."""
 
     within: ClassVar[float] = math.inf
     unless: ClassVar[str] = ""
