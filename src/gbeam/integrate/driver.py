@@ -77,10 +77,9 @@ def through(
 
 
 def _linear(equations: LinearEquations, scheme: Scheme, q: Any, qd: Any, steps: Steps) -> Iterator[Piece]:
-    z, qdd = linear.start(equations, scheme, steps, q, qd)
-    size, fit = len(steps) if is_jax(qdd) else _LINEAR_CHUNK, added(equations, scheme, steps.longest)
-    count = 3 if scheme.ends or is_jax(qdd) else 2
-    yield *(namespace(qdd).asarray(x)[None] for x in (q, qd, qdd)[:count]), np.array([True])
+    z, state = linear.start(equations, scheme, steps, q, qd)
+    size, fit = len(steps) if is_jax(state[-1]) else _LINEAR_CHUNK, added(equations, scheme, steps.longest)
+    yield *(namespace(state[-1]).asarray(x)[None] for x in state), np.array([True])
     for done in range(0, len(steps), size):
         z, piece = linear.chunk(equations, scheme, z, steps[done : done + size], fit)
         yield *piece, np.ones(len(piece[0]), dtype=bool)

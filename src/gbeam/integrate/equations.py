@@ -60,7 +60,7 @@ class LinearEquations:
     mass: Array
     matrices: Callable[[Any], tuple[Array, Array, Array]]
     drive: Drive
-    terms: Callable[[], LinearTerms] | None = None
+    terms: LinearTerms | None = None
     features: Callable[[Any], Array] | None = None
     rest: tuple[Array, Array] | None = None
 

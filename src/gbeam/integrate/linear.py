@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import namespace
+from gbeam.arrays.namespace import holds_jax, namespace
 from gbeam.integrate.equations import LinearEquations, solved
 from gbeam.integrate.schemes import Scheme, Tableau
 from gbeam.integrate.steps import Steps
@@ -18,10 +18,15 @@ from gbeam.integrate.steps import Steps
 Array = Any
 
 
-def start(equations: LinearEquations, scheme: Scheme, steps: Steps, q: Array, qd: Array) -> tuple[Array, Array]:
-    """The first z (m, n) from an initial state, and the accelerations (n,) that its equations demand."""
-    qdd = equations.accelerations(q[None], qd[None], equations.drive(steps.first[:1]))[0]
-    return scheme.tableau(steps.length[0]).first @ namespace(q, qdd).stack([q, qd, qdd]), qdd
+def start(
+    equations: LinearEquations, scheme: Scheme, steps: Steps, q: Array, qd: Array
+) -> tuple[Array, tuple[Array, ...]]:
+    """The first z (m, n) and q, q̇ and, where the scheme has them or JAX traces them, q̈ (n,) from an initial state."""
+    inputs, first = equations.drive(steps.first[:1]), scheme.tableau(steps.length[0]).first
+    if not (scheme.ends or holds_jax(q, qd, inputs, equations.mass, equations.terms or equations.matrices(inputs))):
+        return first[:, :2] @ np.stack([q, qd]), (q, qd)
+    qdd = equations.accelerations(q[None], qd[None], inputs)[0]
+    return first @ namespace(q, qdd).stack([q, qd, qdd]), (q, qd, qdd)
 
 
 def _sum(weights: Array, values: Array) -> Array:
@@ -86,7 +91,7 @@ def _uncoupled(mass: Array, *at: Array) -> list[Array]:
     """Groups of coordinates that no matrix couples, such as the directions of a beam that does not turn."""
     coupled = (mass != 0) | np.eye(len(mass), dtype=bool)
     for each in at[:2]:
-        coupled = coupled | (each != 0).any(axis=(0, 1))
+        coupled = coupled | each.any(axis=(0, 1))
     coupled = coupled | coupled.T
     for _ in range(len(mass).bit_length()):  # twice as far each time
         coupled = coupled @ coupled

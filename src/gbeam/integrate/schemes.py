@@ -49,11 +49,12 @@ class Tableau:
         """Derivatives of the residuals of stages (t, s n) by their accelerations, J (t, s n, s n), and by the state
         before, L (t, s n, m n), from their slopes K, C and M (1 or t, s, n, n).
         """
-        k, c, m = (each[:, :, :, None, :] for each in (k, c, m))
-        c_q, c_v, w_q, w_v = (each[:, :, None, :, None] for each in (self.c_q, self.c_v, self.w_q, self.w_v))
+        k, c, m = (each[:, :, None] for each in (k, c, m))
+        c_q, c_v, w_q, w_v = (each[..., None, None] for each in (self.c_q, self.c_v, self.w_q, self.w_v))
         (*_, stages, states), n = self.w_q.shape, k.shape[-1]
-        J = c_q * k + c_v * c + np.eye(stages)[:, None, :, None] * m
-        return J.reshape(-1, stages * n, stages * n), (w_q * k + w_v * c).reshape(-1, stages * n, states * n)
+        blocks = c_q * k + c_v * c + np.eye(stages)[..., None, None] * m, w_q * k + w_v * c
+        J, L = (each.swapaxes(2, 3) for each in blocks)
+        return J.reshape(-1, stages * n, stages * n), L.reshape(-1, stages * n, states * n)
 
 
 @dataclass(frozen=True, eq=False)

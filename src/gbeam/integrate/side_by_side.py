@@ -57,11 +57,10 @@ class Run:
         leaves, form = jax.tree.flatten(self.equations.residual)
         return leaves, form
 
-    @cached_property
+    @property
     def terms(self) -> LinearTerms | None:
         """Terms of linear equations that have them."""
-        terms = getattr(self.equations, "terms", None)
-        return None if terms is None else terms()
+        return getattr(self.equations, "terms", None)
 
     @cached_property
     def inputs(self) -> Any:

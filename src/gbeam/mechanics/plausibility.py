@@ -203,12 +203,18 @@ def input_warnings(
     name: str = "",
     span: tuple[float, float] = (0.0, 0.0),
     base: Any = None,
+    rest: Any = None,
 ) -> tuple[str, ...]:
-    """Warn of what is implausible in an analysis's input, the `base` at some times too; not where JAX traces it."""
+    """Warn of what is implausible in an analysis's input, the `base` at some times too; not where JAX traces it. The
+    circular frequencies at `rest` (n,) need not be found again where they are known.
+    """
     if structure.traced or holds_jax(motion):
         return ()
     where = f"motion.{name}" if name else "motion"
-    warnings = [*structure.warnings, *(_frequency(structure) if structure.size else ())]
+    warnings = [*structure.warnings]
+    if structure.size:
+        lowest = float((structure.rest[0] if rest is None else rest)[0])
+        warnings += _frequency(structure, lowest / (2 * np.pi))
     if motion is not None:
         warnings += implausible_values(motion, where, span, base)
         if base is None and motion.kind != "centrifuge" and not motion.free:
@@ -220,8 +226,7 @@ def input_warnings(
     return (*warnings, *_twisting(structure, span), *_on_edge(structure, motion, base, where))
 
 
-def _frequency(structure: Structure) -> Iterator[str]:
-    lowest = float(structure.rest[0][0]) / (2 * np.pi)
+def _frequency(structure: Structure, lowest: float) -> Iterator[str]:
     if not structure.warnings and not SLOWEST <= lowest <= FASTEST:
         yield (
             f"the beam's lowest natural frequency at rest is {lowest:.3g} Hz, outside the plausible {SLOWEST:g} to "

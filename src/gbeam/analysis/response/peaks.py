@@ -124,7 +124,9 @@ def _resolved(time: Floats, q: Floats, qd: Floats) -> Any:
     """True for coordinates (..., t, n) whose ways over two steps change by about as much as their velocity says."""
     way = np.diff(q[..., 2:, :] - q[..., :-2, :], axis=-2)
     said = np.diff((time[2:] - time[:-2])[:, None] * qd[..., 1:-1, :], axis=-2)
-    return ((way - said) ** 2).sum(axis=-2) <= _RESOLVED * (way**2 + said**2).sum(axis=-2)
+    squares = np.einsum("...tn,...tn->...n", way, way) + np.einsum("...tn,...tn->...n", said, said)
+    # Σ(w − s)² <= r (Σw² + Σs²), with the square multiplied out.
+    return (1 - _RESOLVED) * squares <= 2 * np.einsum("...tn,...tn->...n", way, said)
 
 
 def seven_point(time: Floats, values: Floats, at: Indices) -> tuple[Floats, Floats]:

@@ -194,16 +194,15 @@ def problem_of(structure: Structure, motion: Motion, start: float, initial: Init
     q, qd, stable = start_of(structure, motion, start, initial)
     if hub is None and structure.linear:
         c = structure.coefficients
+        terms = c.terms
 
-        def of(inputs: tuple[Base, Any]) -> tuple[Any, ...]:
+        def features(inputs: tuple[Base, Any]) -> Array:
             now, loads = inputs
-            return now.a_WO_B, now.w_WB_B, now.alpha_WB_B, loads
+            return c.features(now.a_WO_B, now.w_WB_B, now.alpha_WB_B, loads)
 
         # No derivative is taken through the modes: those of equal frequencies have none.
         rest = None if any(map(is_jax, (c.mass, c.damping, c.stiffness))) else (c.damping, c.stiffness)
-        equations = LinearEquations(
-            c.mass, lambda x: c.at(*of(x)), drive, lambda: c.terms, lambda x: c.features(*of(x)), rest
-        )
+        equations = LinearEquations(c.mass, lambda x: terms.at(features(x)), drive, terms, features, rest)
         return Problem(equations, q, qd, 0, stable)
     residual = structure.residual(hub)
     if hub is not None:

@@ -96,6 +96,7 @@ def response_of(
         return (time, q, qd, qdd), base, hub, loads
 
     (time, q, qd, qdd), over_time, hub, loads = at(every, slice(None), base)
+    frequencies, _ = structure.rest
     if loads is not None and not traced:
         of_flight = load_peaks(loads.during(flight), lambda steps: at(trajectory, steps)[3], trajectory.time, stride)
         peaks = replace(peaks, loads=of_flight)
@@ -132,7 +133,8 @@ def response_of(
                 alone = [ErrorEstimate(step=step) for step in steps]
                 errors = Errors(alone[0], alone[1], alone[2], settings.not_estimated)
             from_run += inaccuracies(structure, errors, settings) + effort(settings, len(trajectory.time) - 1, stride)
-        from_inputs = input_warnings(structure, motion, name=name, span=(time[0], time[-1]), base=over_time)
+        span = time[0], time[-1]
+        from_inputs = input_warnings(structure, motion, name=name, span=span, base=over_time, rest=frequencies)
         warnings = from_inputs + settings.warnings + from_run + (() if axes is None else axes.warnings)
     flown = motion.flight if isinstance(motion, Centrifuge) else motion
     span = settings.start, settings.start + settings.duration
@@ -163,7 +165,7 @@ def response_of(
         hub=hub,
         axes=axes,
         qdd=qdd[:, beam],
-        frequencies=structure.rest[0],
+        frequencies=frequencies,
         loads=loads,
         influence=influence(structure) if motion.kind == "centrifuge" and straight and not traced else None,
         damping_ratio=structure.damping_ratio,

@@ -52,25 +52,19 @@ NOTHING = 1e-7  # of the other load, over a length of the beam: a force or momen
 
 @dataclass(frozen=True, eq=False)
 class Posed:
-    """A run at the flight's times from a problem's state, ready for any step; `coarse` and `fixed` in s."""
+    """A run at the flight's times from a problem's state, ready for any step; `kept` is that of the results, s."""
 
     structure: Structure
     motion: Motion
     settings: ResponseSettings
     problem: Problem
-    coarse: float
-    fixed: float | None
+    kept: float
     limit: int  # of steps of a run
-
-    @property
-    def kept(self) -> float:
-        """Step of the results, s."""
-        return self.fixed or self.coarse
 
     @cached_property
     def felt(self) -> Corners:
         """Corners and jumps of what drives the run."""
-        times = corners(self.structure, self.motion, self.coarse)
+        times = corners(self.structure, self.motion, self.kept)
         start, end = self.settings.start, self.settings.start + self.settings.duration
         return Corners.of(times, self.problem.equations.drive, start, end)
 
@@ -78,7 +72,7 @@ class Posed:
         """Plan the runs that the settings need."""
         if not self.structure.size:  # nothing is integrated
             return once(self.kept, StepErrors(0.0, 0.0, 0.0))
-        return planned(self.settings, self.coarse, self.fixed, self.limit)
+        return planned(self.settings, self.kept, self.limit)
 
     def steps(self, step: float) -> Steps:
         """Steps of about a length, s; one that does not divide the duration goes beyond the end."""
@@ -95,7 +89,7 @@ class Posed:
 
     def stride(self, step: float) -> int:
         """Number of steps of a length in one of the results, whose times all motions of a study share."""
-        return 1 if self.settings.step is not None else round(self.coarse / step)
+        return 1 if self.settings.step is not None else round(self.kept / step)
 
     def too_far(self, y: Floats) -> int | None:
         """After how many steps a projected field moved by the beam's length, and means nothing; None if it did not."""
@@ -140,18 +134,16 @@ class Posed:
 
 
 def pose(
-    structure: Structure, motion: Motion, settings: ResponseSettings, coarse: float, limit: int
+    structure: Structure, motion: Motion, settings: ResponseSettings, kept: float, limit: int
 ) -> tuple[Posed, int, int]:
     """Pose a run, from a machine's start if that comes before; and how many steps it takes before and after."""
-    step = None if settings.step is None else settings.duration / max(1, round(settings.duration / settings.step))
-    kept = step or coarse
     each = 8.0 * (3 * structure.size + 9 * len(structure.stations))
     most = min(STEPS, int(HISTORY_BYTES / each))
     fix = f"give {most * kept:.3g} s or less, or fewer stations"
     refuse_more("response.duration", "steps", settings.duration / kept, most, each, fix)
     before, after = steps_beyond(motion, settings, kept)
     problem = problem_of(structure, motion, settings.start - before * kept, settings.begin)
-    return Posed(structure, motion, settings, problem, coarse, step, limit), before, after
+    return Posed(structure, motion, settings, problem, kept, limit), before, after
 
 
 def steps_within(structure: Structure, q: Floats, displacement: Floats | None = None) -> int | None:
@@ -256,8 +248,8 @@ def simulate(
     motion = motion.over(settings.start, settings.start + settings.duration)
     if structure.holds_jax or holds_jax(motion):
         return _traced(structure, motion, settings, name)
-    for coarse, limit in first_steps(structure, motion, settings):
-        posed, before, after = pose(structure, motion, settings, coarse, limit)
+    for kept, limit in first_steps(structure, motion, settings):
+        posed, before, after = pose(structure, motion, settings, kept, limit)
         up = _ramp(posed, -before, before, progress, "spinning up")
         if up is not None and not up.whole:
             step, errors = posed.kept, StepErrors()

@@ -55,9 +55,11 @@ def scheme_of(settings: ResponseSettings) -> Scheme:
 
 
 def first_step(structure: Structure, motion: Motion, settings: ResponseSettings) -> float:
-    """Step of the results, s: an even number over the duration, at least 500 and 20 to the lowest period, none longer
-    than the shortest time between corners of motion or loads.
+    """Step of the results, s: the given one, a whole number over the duration; otherwise an even number, at least 500
+    and 20 to the lowest period, none longer than the shortest time between corners of motion or loads.
     """
+    if settings.step is not None:
+        return settings.duration / max(1, round(settings.duration / settings.step))
     period = 2 * math.pi / float(structure.rest[0][0]) if structure.size else 20 * RIGID
     largest = min(period / 20, settings.duration / 500)
     return settings.duration / even_steps(largest, corners(structure, motion, largest), settings)
@@ -120,13 +122,13 @@ def answered(plan: Plan, run: Callable[[float, str], Run]) -> tuple[Run, StepErr
         return chosen, errors
 
 
-def planned(settings: ResponseSettings, coarse: float, step: float | None, most: int = MAX_STEPS) -> Plan:
-    """The runs of some settings: those of an automatic step, by so many steps at most, or of the given one and what its
-    estimate needs.
+def planned(settings: ResponseSettings, step: float, most: int = MAX_STEPS) -> Plan:
+    """The runs of some settings from the step of the results: those of an automatic step, by so many steps at most, or
+    of the given one and what its estimate needs.
     """
     order = scheme_of(settings).order
-    if step is None:
-        return (yield from refine(coarse, order, settings, most))
+    if settings.step is None:
+        return (yield from refine(step, order, settings, most))
     if settings.estimate:
         return (yield from check(step, order))
     return (yield from once(step, StepErrors()))

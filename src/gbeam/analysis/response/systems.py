@@ -214,7 +214,7 @@ def simulate_system(
             point = posed.start(settings)
         _refuse_long(system, settings, settings.step or coarse)
         jumps = posed.jumps(settings, coarse)
-        plan = planned(settings, coarse, settings.step, most)
+        plan = planned(settings, settings.step or coarse, most)
         chosen, of_steps = answered(plan, partial(_run, posed, settings, point, jumps, progress))
         if enough(chosen, of_steps, settings):
             break
