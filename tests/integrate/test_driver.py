@@ -77,6 +77,25 @@ def test_coordinates_that_nothing_couples_move_as_they_would_alone(scheme: Any) 
         np.testing.assert_allclose(built[:, 1:2], second, atol=ROUNDING)
 
 
+@pytest.mark.parametrize("scheme", [newmark(), gauss()], ids=["newmark", "gauss"])
+def test_steps_of_the_same_inputs_share_a_map(scheme: Any) -> None:
+    """A drive that rests from 1 s on, whose equations are asked for once then, and not of every step."""
+    asked, resting = list[int](), lambda t: np.minimum(t, 1.0)
+
+    def matrices(t: Any) -> Any:
+        asked.append(len(t))
+        return VARYING.matrices(t)
+
+    state, options = (np.array([0.1, -0.2]), np.array([0.5, 0.3])), {"step": H, "count": LINEAR_CHUNK}
+    shared = integrate(LinearEquations(VARYING.mass, matrices, resting), scheme, *state, **options)
+    moved = sum(shared.time[:-1] < 1.0)
+    assert len(scheme.offsets) * moved <= max(asked) <= len(scheme.offsets) * (moved + 2) < LINEAR_CHUNK
+    every = LinearEquations(VARYING.mass, lambda t: VARYING.matrices(resting(t)), lambda t: t)
+    alone = integrate(every, scheme, *state, **options)
+    np.testing.assert_allclose(shared.q, alone.q, rtol=0, atol=ROUNDING)
+    np.testing.assert_allclose(shared.qd, alone.qd, rtol=0, atol=ROUNDING)
+
+
 def test_inputs_are_taken_at_the_right_times() -> None:
     """q̈ = F(t) with F a ramp from the start: Newmark is exact for it, Gauss for a quintic too."""
     start, h, count = 3.0, 0.1, 20

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.arrays.namespace import holds_jax, namespace
+from gbeam.arrays.tree import each_leaf, leaves_of
 from gbeam.integrate.equations import LinearEquations, solved
 from gbeam.integrate.schemes import Scheme, Tableau
 from gbeam.integrate.steps import Steps
@@ -49,14 +50,17 @@ def chunk(
     t = scheme.tableau(steps.length[:1] if steps.equal else steps.length)
     count, stages, (m, n) = len(steps), len(scheme.offsets), z.shape
     times = np.stack([steps.times(offset) for offset in scheme.offsets], axis=1)
-    at = equations.matrices(equations.drive(times.ravel()))
+    inputs, which = equations.drive(times.ravel()), slice(None)
+    if steps.equal and not holds_jax(inputs):
+        inputs, which = _distinct(inputs, count)
+    at = equations.matrices(inputs)
     xp, mass = namespace(equations.mass, z, *at), equations.mass + added[0]
-    c, k, f = (xp.reshape(each, (count, stages, *each.shape[1:])) for each in at)
+    c, k, f = (xp.reshape(each, (-1, stages, *each.shape[1:])) for each in at)
     at = c + added[1], k, f
     anew = scheme.ends and not steps.equal
     groups = [np.arange(n)] if xp is not np or anew else _uncoupled(mass, *at)
     answers = [_stages(xp, t, mass, *at, group) for group in groups]
-    maps = answers[0][1] if len(groups) == 1 else np.zeros((count, m, n, m * n + 1))
+    maps = answers[0][1] if len(groups) == 1 else np.zeros((len(c), m, n, m * n + 1))
     if anew:
         ends = _sum(t.end_z, _unit(m, n)) + _sum(t.end_x, answers[0][0])
         maps = _started_anew(equations, scheme, maps, ends, steps)
@@ -64,11 +68,11 @@ def chunk(
         if len(groups) > 1:
             columns = np.append((n * np.arange(m)[:, None] + group).ravel(), m * n)
             maps[:, :, group[:, None], columns] = part
-    every = recurrence(xp, xp.reshape(maps, (count, m * n, m * n + 1)), xp.reshape(z, (-1,)))
+    every = recurrence(xp, xp.reshape(maps, (-1, m * n, m * n + 1))[which], xp.reshape(z, (-1,)))
     states, last, parts = xp.reshape(every[:-1], (count, m, n)), xp.reshape(every[-1], (m, n)), []
     for group, (x, _) in zip(groups, answers, strict=True):
         state = xp.reshape(states if len(groups) == 1 else states[:, :, group], (count, -1, 1))
-        flat = xp.reshape(x, (count, stages * len(group), -1))
+        flat = xp.reshape(x, (len(c), stages * len(group), -1))[which]
         parts.append(xp.reshape((flat[..., :-1] @ state)[..., 0] + flat[..., -1], (count, stages, -1)))
     x = parts[0] if len(groups) == 1 else np.concatenate(parts, axis=-1)[..., np.argsort(np.concatenate(groups))]
     ends = _sum(t.end_z, states) + _sum(t.end_x, x)
@@ -85,6 +89,19 @@ def chunk(
         else:
             qdd = acceleration
     return last, (q, qd, qdd)
+
+
+def _distinct(inputs: Any, count: int) -> tuple[Any, Array]:
+    """Inputs of the steps, of `count`, in which they are not those of the step before, and which of these each has: a
+    base at rest, or turning steadily, has one map for all steps.
+    """
+    leaves = [leaf.reshape(count, -1) for leaf in leaves_of(inputs)]
+    changed = np.append(True, np.any([(leaf[1:] != leaf[:-1]).any(axis=1) for leaf in leaves], axis=0))
+
+    def chosen(leaf: Array) -> Array:
+        return leaf.reshape(count, -1, *leaf.shape[1:])[changed].reshape(-1, *leaf.shape[1:])
+
+    return each_leaf(chosen, inputs), np.cumsum(changed) - 1
 
 
 def _uncoupled(mass: Array, *at: Array) -> list[Array]:
