@@ -192,12 +192,12 @@ def test_a_controller_answers_what_is_lacking() -> None:
         {**system.joints, "spin": spin},
         controllers={
             "point": gb.Feedback(
-                lambda t, y: [-8.0 * y[0] - 4.0 * y[1]], ["spin.angle", "spin.angle_rate"], ["spin.angle"], sample=0.02
+                lambda t, y: [-8.8 * y[0] - 4.4 * y[1]], ["spin.angle", "spin.angle_rate"], ["spin.angle"], sample=0.02
             )
         },
     )
-    response = gb.simulate(held, duration=1.3, step=0.01)
-    truth = gb.simulate(with_more(held).system, duration=1.3, step=0.01, estimate=False)
+    response = gb.simulate(held, duration=0.7, step=0.01)
+    truth = gb.simulate(with_more(held).system, duration=0.7, step=0.01, estimate=False)
     size = np.linalg.norm(response.place - response.place[0], axis=-1).max()
     true = np.linalg.norm(truth.place - response.place, axis=-1).max() / size
     errors = response.errors.displacement
