@@ -44,14 +44,31 @@ def files(folder: Path) -> list[Path]:
     return sorted((folder / "cache").glob("*"))
 
 
-def test_a_second_reading_assembles_nothing(tmp_path: Path, assembled: list[int]) -> None:
-    first, second = read(tmp_path), read(tmp_path)
+def test_a_second_reading_assembles_nothing(
+    tmp_path: Path, assembled: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And reads no mesh: what is kept goes by the content of its file."""
+    first = read(tmp_path)
+    with monkeypatch.context() as without:
+        without.setattr(solids, "mesh_of", None)
+        second = read(tmp_path)
     assert len(assembled) == 1 and first == second and len(files(tmp_path)) == 1
+    assert second.recovery is not None and second.recovery.envelope.shape == first.recovery.envelope.shape
     softer = read(tmp_path, BODY.replace("210 GPa", "105 GPa"))
     assert len(assembled) == 2
     np.testing.assert_allclose(softer.rest[0][:4], first.rest[0][:4] / np.sqrt(2), rtol=1e-9)
     meshio.write(tmp_path / "arm.inp", block("hexahedron20", (4, 1, 1), (0.2, 0.02, 0.011)))
     assert read(tmp_path) != first and len(assembled) == 3
+
+
+def test_a_coarser_mesh_is_read_where_its_own_file_changes(tmp_path: Path, assembled: list[int]) -> None:
+    text = BODY.replace('mesh = "arm.inp"', 'mesh = "arm.inp"\ncoarser = "rough.inp"')
+    meshio.write(tmp_path / "rough.inp", block("hexahedron20", (2, 1, 1), (0.2, 0.02, 0.01)))
+    first = read(tmp_path, text)
+    assert len(assembled) == 2 and read(tmp_path, text) == first and len(assembled) == 2
+    assert read(tmp_path).coarser is None and len(assembled) == 3
+    meshio.write(tmp_path / "rough.inp", block("hexahedron20", (3, 1, 1), (0.2, 0.02, 0.01)))
+    assert read(tmp_path, text) != first and len(assembled) == 5
 
 
 @pytest.mark.parametrize("damage", ["cut", "changed", "empty"])

@@ -16,6 +16,7 @@ from typing import Any, TypeVar
 
 from platformdirs import user_cache_path
 
+from gbeam.guards.limits import BINARY_BYTES
 from gbeam.progress import PATIENCE, Bar
 from gbeam.results.provenance import present
 
@@ -43,6 +44,17 @@ def kept(what: str, source: Any, make: Callable[[], T]) -> T:
         with suppress(OSError):  # a full disk is no error
             _write(file, value)
     return value
+
+
+def content_of(file: str | os.PathLike[str]) -> bytes | None:
+    """SHA-256 of a file's content; nothing of what is no file, or is not read."""
+    try:
+        if not os.path.isfile(file) or os.path.getsize(file) > BINARY_BYTES:
+            return None
+        with open(file, "rb") as content:
+            return hashlib.file_digest(content, "sha256").digest()
+    except OSError:
+        return None
 
 
 @contextmanager

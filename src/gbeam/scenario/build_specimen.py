@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from itertools import product
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,7 +25,8 @@ if TYPE_CHECKING:
 
 def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure | None:
     """The structure of a mesh."""
-    from gbeam.io.kept import kept
+    from gbeam.io.kept import content_of, kept
+    from gbeam.solids.foreign import is_mesh
     from gbeam.solids.mesh import SolidMesh
 
     laws: Any = (
@@ -33,50 +37,70 @@ def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure
     if laws is None or (isinstance(laws, dict) and None in laws.values()):
         return None
 
+    about: dict[str, Any] = {
+        "materials": laws,
+        "clamp": table.clamp,
+        "unit": table.unit,
+        "thickness": table.thicknesses or table.thickness,
+        "points": _points(table),
+        "point_masses": table.masses,
+        "interfaces": table.interfaces,
+        "links": table.links,
+        "carried": {name: _carried(name, each) for name, each in table.carried.items()},
+        "springs": {name: each.model_dump() for name, each in table.springs.items()},
+        "origin": table.origin,
+        "turn": table.turn,
+        "scale": table.scale,
+        "mass_unit": table.mass_unit,
+    }
+    options: dict[str, Any] = {"modes": table.modes, "damping_ratio": table.damping_ratio}
+
     def read(file: str, size: float | None) -> SolidMesh:
         try:
-            return SolidMesh.read(
-                file,
-                materials=laws,
-                clamp=table.clamp,
-                unit=table.unit,
-                thickness=table.thicknesses or table.thickness,
-                element_size=size,
-                points=_points(table),
-                point_masses=table.masses,
-                interfaces=table.interfaces,
-                links=table.links,
-                carried={name: _carried(name, each) for name, each in table.carried.items()},
-                springs={name: each.model_dump() for name, each in table.springs.items()},
-                origin=table.origin,
-                turn=table.turn,
-                scale=table.scale,
-                mass_unit=table.mass_unit,
-            )
+            return SolidMesh.read(file, element_size=size, **about)
         except InputError as error:  # the scenario's own names of what Python calls otherwise
             one = error.where.replace("point_masses", "masses")
             renamed = one.replace("materials", "material", 1) if table.material is not None else one
             renamed = renamed.replace("thickness", "thicknesses", 1) if table.thicknesses else renamed
             raise error.at(renamed) from None
 
-    options: dict[str, Any] = {"modes": table.modes, "damping_ratio": table.damping_ratio}
+    def source(file: str, size: float | None) -> Any:
+        """The file's content and how it is read, or the mesh where it may lie in several files."""
+        content = content_of(file) if is_mesh(file) else None
+        return read(file, size) if content is None else (content, Path(file).name, size, about)
 
-    def reduced(file: str, mesh: SolidMesh, coarser: SolidModel | None = None, rough: Any = None) -> SolidModel:
-        source = mesh, options, rough
-        return kept(f"reducing {file}", source, lambda: mesh.reduced(**options, coarser=coarser))
+    def reduced(file: str, size: float | None, coarser: Callable[[], SolidModel] | None, *sources: Any) -> SolidModel:
+        def make() -> SolidModel:
+            rough = None if coarser is None else coarser()
+            mesh = sources[0] if isinstance(sources[0], SolidMesh) else read(file, size)
+            return mesh.reduced(**options, coarser=rough)
+
+        return kept(f"reducing {file}", (options, *sources), make)
 
     def model() -> Structure:
-        coarser = rough = None
-        if table.coarser is not None or table.coarser_size is not None:
-            file = table.coarser or table.mesh
-            try:
-                rough = read(file, table.coarser_size)
-                coarser = reduced(file, rough)
-            except InputError as error:
-                raise InputError("coarser", f"{error.where} {error.problem}", error.fix) from None
-        return reduced(table.mesh, read(table.mesh, table.element_size), coarser, rough).structure
+        size, of = table.element_size, source(table.mesh, table.element_size)
+        if table.coarser is None and table.coarser_size is None:
+            return reduced(table.mesh, size, None, of).structure
+        file = table.coarser or table.mesh
+        with _of_coarser():
+            rough = source(file, table.coarser_size)
+
+        def coarser() -> SolidModel:
+            with _of_coarser():
+                return reduced(file, table.coarser_size, None, rough)
+
+        return reduced(table.mesh, size, coarser, of, rough).structure
 
     return parts.attempt(where, model)
+
+
+@contextmanager
+def _of_coarser() -> Iterator[None]:
+    """Name the coarser mesh in errors of its own."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError("coarser", f"{error.where} {error.problem}", error.fix) from None
 
 
 def _points(table: schema.SolidBody | system.RigidBody) -> dict[str, Any]:
