@@ -118,6 +118,27 @@ def test_a_correction_by_new_derivatives_does_not_tell_how_it_shrinks() -> None:
     assert passes(1e-11, False) and not passes(1e-11, True) and passes(1e-13, True)
 
 
+WIDE = [{"NEAR": 16, "APART": 64, "FAR": 64, "LATE": 15}, {"NEAR": 16, "APART": 16, "LATE": 10}]
+
+
+@pytest.mark.parametrize("spacing", WIDE)
+@pytest.mark.parametrize("step", [0.05, 0.1])
+def test_no_step_passes_that_leaves_forces(
+    step: float, spacing: dict[str, int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Derivatives so wide apart are far too large: steps, which may fail by them, then leave without being solved."""
+
+    def drive(t: Any) -> Any:
+        return np.stack([40 * np.sin(9 * t), 30 * np.cos(7 * t)], axis=-1)
+
+    for name, value in spacing.items():
+        monkeypatch.setattr(windows, name, value)
+    run = integrate(NonlinearEquations(Swing(), drive), newmark(), *START, step=step, count=60)
+    left = Swing()(run.q, run.qd, run.qdd, drive(run.time))
+    assert len(left) > 15
+    np.testing.assert_allclose(left, 0.0, atol=1e-8 * (np.abs(run.qdd).max() + run.qd.max() ** 2))
+
+
 def test_a_step_is_factored_again_only_where_its_derivatives_are_new(monkeypatch: pytest.MonkeyPatch) -> None:
     factored: list[int] = []
     states: list[int] = []

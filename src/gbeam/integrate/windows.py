@@ -11,7 +11,8 @@ at first like the last, of which the next correction makes the linear response a
 first state serve a whole window until corrections shrink slowly; then they are found at some of the steps that have
 moved since they were, and interpolated between these, until corrections shrink fast for long. Steps that stay far are
 taken out; where the first one does, the window begins anew and shorter, with a single step at last, which takes
-Newton's method proper.
+Newton's method proper. Where derivatives are interpolated, which may be wrong, a step is left only if the residual is
+small beside its forces, too.
 """
 
 from __future__ import annotations
@@ -45,6 +46,7 @@ QUICKEST, STALLED = 0.01, 0.9  # factors of corrections: none is thought to be s
 TOLERANCE, ROUNDING = 1e-12, 1e-6  # of the largest acceleration: error left by the last correction, and where it stalls
 TINY = float(np.finfo(float).tiny)
 CANCELLED = 100 * float(np.finfo(float).eps)  # of the forces at a coordinate, each a sum of many: their rounding
+BALANCED = 1e-9  # of the forces at a step: what is left of them where a correction may be the last
 SUMMED = 1e-10  # of the largest acceleration: rounding, which adds up over steps, where corrections cease to be quick
 SETTLED = 1e-9  # of the largest acceleration: error left by a correction after which samples are taken no more
 GROWN = 10.0  # times the rounding of steps that have converged, which is known, unlike that of iterates that diverge
@@ -89,9 +91,10 @@ def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, 
 
 class _Window:
     """Steps under way, from the `first` on: their states z (t + 1, m, n) and accelerations x (t, s, n), corrected in
-    place, and the `slope` of the equations, K, C and M (1 or t, s, 3, n, n), from stages so far `apart`. Rows (5, t) of
-    `corrections` are their last size, absolute and of the accelerations, how many there were, how far all since its
-    derivatives were found have moved a step, and the least factor by which one by the same derivatives shrank.
+    place, and the `slope` of the equations, K, C and M (1 or t, s, 3, n, n), from stages so far `apart`;
+    `reached` those of a state that was. Rows (5, t) of `corrections` are their last size, absolute and of the
+    accelerations, how many there were, how far all since its derivatives were found have moved a step, and the least
+    factor by which one by the same derivatives shrank.
     """
 
     z: Array
@@ -132,7 +135,8 @@ class _Window:
             self._factor(states)
             size, moved, count, since, least = self.corrections
             fresh, before, far, alone = since == 0, size.copy(), not moved[-1] <= MOVED, len(size) == 1
-            rounding = self._rounding(states) if count.any() else 0 * size  # which a first one hides
+            forces = self._forces(states)
+            rounding = self._rounding(forces) if count.any() else 0 * size  # which a first one hides
             size[:] = self._correct(states, *self.maps)
             count += 1
             if alone:
@@ -146,8 +150,12 @@ class _Window:
             # By derivatives of another state corrections may shrink slowly without being rounding.
             quick = least <= FAST
             good = _converged(size, before, reach, np.minimum(rounding, self.most), fresh=fresh, quick=quick)
+            # Interpolated from states far away, derivatives may be far too large, and corrections by them small.
+            trusted = alone & fresh | (len(self.slope) == 1 and (self.slope == self.reached).all())
+            doubtful = good & ~trusted & ~(_largest(self.left) <= BALANCED * _largest(forces))
+            good &= ~doubtful
             least[:] = np.fmin(least, size / np.where(fresh | np.isinf(before), np.nan, before))
-            slow = ~good & (count > 1) & ~(size <= SLOW * before)
+            slow = ~good & (count > 1) & ~(size <= SLOW * before) | alone & doubtful
             since[:] = np.where(slow, np.inf, since + moved)
             if slow.any():
                 self.apart = APART if self.even else max(self.apart // 2, NEAR)
@@ -265,6 +273,7 @@ class _Window:
 
         if self.slope is None:
             self.slope = self._between(function, states, None)[:, None]
+            self.reached = self.slope[0, 0]
         stale = ~(since < np.inf if self.even and count > 1 else since <= (STALE if count > 1 else MOVED))
         if not stale.any():
             return
@@ -304,12 +313,13 @@ class _Window:
         maps = inverse, answer, step - through.reshape(-1, m * n, m * n)
         self.maps = maps if not done else tuple(map(np.concatenate, zip(self.maps, maps, strict=True)))
 
-    def _rounding(self, states: Array) -> Array:
+    def _forces(self, states: Array) -> Array:
+        """Sizes (t, s n) of the forces that cancel at stages, by derivatives at a state that was reached."""
+        return (np.abs(self.reached) @ np.abs(states).swapaxes(1, 2)).sum(axis=0).T.reshape(len(self.x), -1)
+
+    def _rounding(self, forces: Array) -> Array:
         """Accelerations (t,) left of forces that cancel at stages, which no correction takes away."""
-        (_, stages, n), inverse = self.x.shape, self.maps[0]
-        sizes = np.abs(states).reshape(3, -1, stages, n, 1)
-        forces = (np.abs(np.moveaxis(self.slope, 2, 0)) @ sizes).sum(axis=0).reshape(-1, stages * n)
-        rounding = _largest(CANCELLED * _products(np.abs(inverse), forces))
+        rounding = _largest(CANCELLED * _products(np.abs(self.maps[0]), forces))
         if self.most == np.inf:
             self.most = GROWN * float(rounding.max())
         return rounding
@@ -324,7 +334,8 @@ class _Window:
     def _correct(self, states: Array, inverse: Array, answer: Array, step: Array) -> Array:
         """Correct every step by its stages; returns the sizes of the corrections, (t,)."""
         t, count = self.t, len(self.x)
-        alone = _products(inverse, self.residual(*states, self.inputs).reshape(count, -1))
+        self.left = self.residual(*states, self.inputs).reshape(count, -1)
+        alone = _products(inverse, self.left)
         defect = t.g @ self.z[:-1] + t.d @ (self.x - alone.reshape(self.x.shape)) - self.z[1:]
         moved = self._moved(step, defect.reshape(count, -1))
         change = (alone + _products(answer, moved[:-1])).reshape(self.x.shape)
