@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -141,6 +142,13 @@ def test_a_shell_completes_verbs_options_and_choices(
 def test_a_place_needs_a_motion(gbeam: Call) -> None:
     answer = gbeam("place", EXAMPLES / "robot_arm.toml")
     assert answer.status == 2 and 'motion is missing; add [motion.NAME] with kind = "centrifuge"' in answer.err
+
+
+@pytest.mark.parametrize(("verb", "tree"), [("static", "beam_on_a_station"), ("linearize", "top")])
+def test_what_is_zero_is_printed_as_zero(gbeam: Call, verb: str, tree: str) -> None:
+    """A beam whose load begins at nothing, and one that hangs straight: they had 2e-16 mm, 1e-57 rad and 2e-20 %."""
+    answer = gbeam(verb, EXAMPLES.parent / "fuzz" / "trees" / f"{tree}.toml")
+    assert answer.status == 0 and not re.findall(r"\S*e-(?:1[4-9]|[2-9]\d)\b", answer.out)
 
 
 def test_a_joint_that_turns_has_a_diagram(tmp_path: Path, gbeam: Call, with_figures: None) -> None:

@@ -23,6 +23,11 @@ def test_smooth_step_is_equation_43() -> None:
     np.testing.assert_allclose(slope, np.where(t < 30, 0.1 * (1 - np.cos(2 * np.pi * t / 30)), 0.0), atol=1e-14)
 
 
+def test_a_smooth_step_begins_at_nothing() -> None:
+    """Its rounding was a load of 4e-17 N, and a table of displacements and moments by it."""
+    assert SmoothStep(2.0, 0.1)(0.0) == 0 and SmoothStep(2.0, 0.1)(0.1) == 2.0
+
+
 def test_sine_is_equation_44() -> None:
     t = np.linspace(-2, 12, 57)
     inside = (t >= 0) & (t <= 10)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from gbeam.report.words import columns, stress_words
+from gbeam.report.words import columns, errors_in_words, percent, stress_words, tidy
 
 HEADS = ["value", "was", "is", "unit"]
 ROWS = [["beam.material.youngs_modulus", "7e+10", "6.9e+10", "Pa"], ["beam.length", "0.3", "0.31", "m"]]
@@ -37,3 +37,10 @@ def test_a_table_folds_on_a_narrow_terminal(monkeypatch: pytest.MonkeyPatch) -> 
 )
 def test_rounding_is_no_stress(stress: float, said: str) -> None:
     assert stress_words([0.0, 1.0], [0.0, stress], [0.0, 0.0], 250e6) == said
+
+
+def test_rounding_beside_what_is_of_a_larger_scale_is_zero() -> None:
+    """Of a share the scale is the whole; of a displacement that is a difference of places, these."""
+    assert percent(3e-17) == "0 %" and percent(3e-13) == "3.0e-11 %"
+    assert errors_in_words({"shapes": 0.01, "model": 3e-18, "total": 0.01}) == "1.0 %"
+    assert tidy((1e-18, 1e-12), 1e-12, scale=2.0) == [0.0, 1e-12] and tidy((1e-18,), 1e-18) == [1e-18]

@@ -50,6 +50,8 @@ def test_a_scenario_is_the_system_in_python() -> None:
     assert law == same
     # What it measures is taken from the reference: it pushes back.
     assert law.effort(0.0, np.array([0.1]), law.start)[0] < 0
+    # Its modes are those without the law, which is said.
+    assert any("without its controllers, pointing" in each for each in gb.modes(case.system, errors=False).warnings)
 
 
 def test_a_free_body_is_pointed_in_a_scenario() -> None:
@@ -68,6 +70,12 @@ def test_a_free_body_is_pointed_in_a_scenario() -> None:
 FILED = POINTING[: POINTING.index("law = [")] + 'law = [{ kind = "state-space", file = "FILE" }]' + POINTING[
     POINTING.index("]\n", POINTING.index('kind = "notch"')) + 1 :
 ]  # fmt: skip
+
+
+def test_a_law_that_is_wrong_is_not_one_too_few() -> None:
+    with pytest.raises(ScenarioError, match="unknown choice 'state-spac'") as caught:
+        build(loads(FILED.replace("state-space", "state-spac")))
+    assert "entries" not in str(caught.value)
 
 
 @pytest.mark.parametrize("ending", [".npz", ".mat", ".json"])

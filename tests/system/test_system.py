@@ -106,7 +106,7 @@ def test_bodies_that_are_none_are_refused() -> None:
         gb.modes(gb.System({"rod": ROD}, {"a": gb.Joint("free", "rod")}))
     ball = gb.RigidBody(1.0, (1.0, 1.0, 1.0))
     still = gb.System({"rod": ball}, {"a": gb.Joint("free", "rod")}, gravity=(0, 0, -9.81))
-    with pytest.raises(ComputationError, match="what nothing holds"):
+    with pytest.raises(ComputationError, match=r"a\.z is accelerated, which nothing holds"):
         gb.static(still)
 
 

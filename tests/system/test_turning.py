@@ -129,6 +129,17 @@ def test_it_is_refused_where_what_turns_cannot_rest_either() -> None:
     assert caught.value.outcome == "no equilibrium"
 
 
+def test_what_falls_does_not_rest() -> None:
+    """A free body with a stiff strip: gravity was less than the strip's rounding, and the strip stood upright."""
+    bodies = {"hull": gb.RigidBody(1.2, (0.01, 0.01, 0.02)), "arm": gb.assemble(STRIP, "FOAM", axial=1, y=1, z=1)}
+    joints = {"air": gb.Joint("free", "hull"), "weld": gb.Joint("fixed", "arm", on="hull.root")}
+    for ask in (gb.static, gb.modes):
+        with pytest.raises(gb.ComputationError, match=r"air\.z is accelerated, which nothing holds") as caught:
+            ask(gb.System(bodies, joints, gravity=(0, 0, -9.81)))
+        assert caught.value.outcome == "no equilibrium"
+    assert gb.static(gb.System(bodies, joints)).displacement.max() == 0
+
+
 def test_what_may_turn_is_asked_for_where_it_is_not_the_only_angle() -> None:
     structure = gb.assemble(STRIP, "FOAM", axial=1, y=1, z=1)
     one = panels(structure, FREE, "rim")

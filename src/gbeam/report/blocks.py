@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from gbeam.constants import STANDARD_GRAVITY
-from gbeam.report.words import columns, number, percent
+from gbeam.report.words import columns, number, percent, rounding
 
 Facts = Mapping[str, Any]  # of the JSON, with None for what is not finite
 # Units in which tables have numbers that JSON has in SI.
@@ -96,12 +96,17 @@ FIGURES = Place("figures")
 
 
 def table(
-    rows: Iterable[Any], cells: Mapping[str, Column], caption: str = "", optional: Iterable[str] = (), **more: Any
+    rows: Iterable[Any],
+    cells: Mapping[str, Column],
+    caption: str = "",
+    optional: Iterable[str] = (),
+    scale: float = 0.0,
+    **more: Any,
 ) -> Table:
     """Return a table of columns by their heads; those that are `optional` are left out where no row has a value.
 
     Numbers at paths are in SI: a head such as "stress, MPa" converts them, and rounding errors of the largest in that
-    unit are zero.
+    unit, and of what is of a larger `scale`, are zero.
     """
     forms = ["" if callable(column) else column.partition(":")[2] for column in cells.values()]
     units = ["" if callable(column) else _unit(head) for head, column in cells.items()]
@@ -112,7 +117,7 @@ def table(
 
     def cell(value: Value, form: str, unit: str) -> Cell:
         if unit and isinstance(value, (int, float)):
-            value = 0.0 if abs(value) <= max(1e-10 * sizes[unit], 1e-20) else factor(unit) * value
+            value = 0.0 if abs(value) <= rounding(sizes[unit], scale) else factor(unit) * value
         return _cell(value, form)
 
     drawn = [tuple(map(cell, row, forms, units)) for row in every]

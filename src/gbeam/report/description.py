@@ -75,7 +75,7 @@ def _specimen(case: SpecimenDescription) -> list[str]:
 def _system(case: SystemDescription) -> list[str]:
     bodies = []
     for name, body in case.bodies.items():
-        counted = f", {body.coordinates} coordinates" if body.coordinates else ""
+        counted = f", {body.coordinates} coordinate{'' if body.coordinates == 1 else 's'}" if body.coordinates else ""
         bodies.append(f"{name}: {body.kind}, {body.mass:.4g} kg{counted}; points {', '.join(body.points)}")
     joints = []
     for name, joint in case.joints.items():

@@ -27,7 +27,7 @@ from gbeam.report.blocks import (
     table,
 )
 from gbeam.report.loads import errors, parts_tables, resting_loads
-from gbeam.report.words import errors_in_words, number, percent
+from gbeam.report.words import errors_in_words, number, percent, tidy
 from gbeam.results.equilibrium import CriticalMap
 from gbeam.results.errors import along
 from gbeam.results.state_space import ACCURATE
@@ -190,9 +190,18 @@ SLOWEST = 4  # poles of a loop that are named
 def state_space(facts: Facts) -> Blocks:
     """Signals with their units, the accuracy of the poles, margins of a loop, and what a smaller model leaves out."""
     yield where(facts, f"{len(facts['states'])} states")
-    for signals in ("states", "inputs", "outputs"):
-        cells: Columns = {"name": "name", "unit": lambda each: raised(each["unit"]), "value": "value"}
-        yield Section(signals, (table(facts[signals], cells),), titled=True)
+    signals = ("states", "inputs", "outputs")
+    # Angles are of the scale of a radian, beams' coordinates, which have no unit, of that of lengths.
+    sizes = {"rad": 1.0}
+    for each in (each for name in signals for each in facts[name]):
+        sizes[each["unit"]] = max(sizes.get(each["unit"], 0.0), abs(each["value"]))
+    cells: Columns = {
+        "name": "name",
+        "unit": lambda each: raised(each["unit"]),
+        "value": lambda each: tidy((each["value"],), sizes[each["unit"]], sizes.get("m", 0.0) or 1.0)[0],
+    }
+    for name in signals:
+        yield Section(name, (table(facts[name], cells),), titled=True)
     gauges: Columns = {
         "gauge": lambda each: f"strain_{each['number']}",
         "at": lambda each: ", ".join(filter(None, (each["body"], _station(each["at"])))),

@@ -53,7 +53,8 @@ def system_rest(facts: Facts) -> Blocks:
 
 def _rest(rest: Facts) -> Blocks:
     cells = {"point": "name", **{f"{axis}, mm": f"displacement.{axis}:.6g" for axis in "xyz"}}
-    yield table(named(rest["points"]), cells)
+    places = (abs(each) for point in rest["points"].values() for each in point["place"].values())
+    yield table(named(rest["points"]), cells, scale=max(places, default=0.0))
     force, moment = ([*rest[key].values()] for key in ("ground_force", "ground_moment"))
     largest = max(map(abs, force + moment))
     pair = (", ".join(f"{each:.5g}" for each in tidy(vector, largest)) for vector in (force, moment))

@@ -73,20 +73,26 @@ def percent(share: float) -> str:
     """Write a share in percent; a dash where it is not known."""
     if not math.isfinite(share):
         return "–"
+    (share,) = tidy((share,), 0.0, 1.0)
     return f"{100 * share:.0f} %" if share >= 0.1 else f"{number(100 * share, 2)} %"
 
 
 def errors_in_words(errors: Mapping[str, float | None]) -> str:
     """An error with what it is made of, the largest first: ``0.29 % (model 0.27, shapes 0.01, step 0.002)``."""
-    parts = {name: known(size) for name, size in errors.items() if name != "total"}
-    ranked = sorted(((size, name.replace("_", " ")) for name, size in parts.items() if size > 0), reverse=True)
+    parts = {name.replace("_", " "): known(size) for name, size in errors.items() if name != "total"}
+    ranked = sorted(((size, name) for name, size in parts.items() if size > rounding(0.0, 1.0)), reverse=True)
     shares = ", ".join(f"{name} {number(100 * size, 2)}" for size, name in ranked)
     return f"{percent(known(errors['total']))}{f' ({shares})' if len(ranked) > 1 else ''}"
 
 
-def tidy(values: Iterable[float], size: float) -> list[float]:
-    """Values without the rounding errors of what is `size` large, or of nothing at all."""
-    return [float(value) if abs(value) > max(1e-10 * size, 1e-20) else 0.0 for value in values]
+def rounding(size: float, scale: float = 0.0) -> float:
+    """Largest rounding error beside the largest of its kind, and of differences of what is of a larger scale."""
+    return max(1e-10 * size, 1e-14 * scale, 1e-20)
+
+
+def tidy(values: Iterable[float], size: float, scale: float = 0.0) -> list[float]:
+    """Values without the rounding errors of what is `size` large, or of nothing at all, or of a larger scale."""
+    return [float(value) if abs(value) > rounding(size, scale) else 0.0 for value in values]
 
 
 def stress_words(stations: Any, tension: Any, compression: Any, yield_strength: float | None) -> str:

@@ -187,6 +187,10 @@ def _validated(kind: type[T], source: Source) -> T:
         from gbeam.scenario.explain import explain  # needed only where something is wrong
 
         details = error.errors(include_url=False, include_input=False)
+        # Of a list with a wrong entry only those before it are counted.
+        places = [each["loc"] for each in details]
+        inside = {each[:k] for each in places for k in range(len(each))}
+        details = [each for each in details if each["type"] != "too_short" or each["loc"] not in inside]
         problems = [explain(source, detail) for detail in details[:PROBLEMS]]
         if len(details) > PROBLEMS:
             more = f"has {len(details)} errors, of which {PROBLEMS} are listed"

@@ -13,7 +13,7 @@ import numpy as np
 from gbeam.analysis.accuracy.estimate import LIMIT, apart, fuller, percent, wrong_by
 from gbeam.analysis.steady.frequency_errors import Richer, among, judgeable, unknown_part
 from gbeam.analysis.system.linear import instabilities
-from gbeam.analysis.system.steady import Loaded, Turning
+from gbeam.analysis.system.steady import Loaded, Turning, open_loops
 from gbeam.errors import ComputationError
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
@@ -53,7 +53,7 @@ def _in_turn(path: Path, of: Any, values: Sequence[float]) -> Iterator[float]:
 def _of_system(path: Path, of: System, value: float) -> tuple[str, ...]:
     """Warnings of a system, and of friction that holds it just below a value."""
     state: Any = _state(path, of, (1 - CLOSE) * value)
-    return of.warnings + (() if state is None else state.point.sticking(of))
+    return of.warnings + open_loops(of) + (() if state is None else state.point.sticking(of))
 
 
 def first_loss_along(

@@ -17,7 +17,7 @@ from gbeam.analysis.outline import assembly_of, outline_of
 from gbeam.analysis.system.accuracy import doubts, system_errors
 from gbeam.analysis.system.histories import beams_of, carried, histories, loads_of, meshes_of
 from gbeam.analysis.system.point import Point, started
-from gbeam.analysis.system.steady import Drive, SteadySystem, steady
+from gbeam.analysis.system.steady import Drive, SteadySystem, open_loops, steady
 from gbeam.arrays.tree import each_leaf
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.checks import choice
@@ -76,7 +76,7 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
         displacement=at["place"] - start,
         errors=errors,
         stable=not unstable,
-        warnings=unstable + doubts(errors, LIMIT) + system.warnings,
+        warnings=unstable + doubts(errors, LIMIT) + system.warnings + open_loops(system),
         assembly=assembly_of(system),
         outlines={
             body: outline
@@ -96,7 +96,7 @@ def system_modes(state: SteadySystem, moving: Vibrations, time: float, name: str
     shape, turn = (np.einsum("pan,nk->kpa", each, moving.modes) for each in state.slopes_of_frames)
     largest = largest_component(shape)
     scale = np.where(largest == 0, 1, largest)
-    warnings = system.warnings + state.point.sticking(system)
+    warnings = system.warnings + open_loops(system) + state.point.sticking(system)
     reduced = [each for each in system.flexible.values() if each.resolved < each.size]
     if state.changing:
         warnings += (f"the system turns, and its equations with it: these are modes of the place at {time:g} s",)

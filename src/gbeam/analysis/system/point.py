@@ -24,6 +24,7 @@ ITERATIONS = 50
 MASSLESS = 1e-13  # of the largest: a smaller inertia is rounding
 FEW, NEAR = 8, 0.1  # corrections of several states at once, and how far these may lead: m, rad or strain
 SHORTEST = 1 / 64  # share of what is out of balance that is taken away at once
+HELD = 1e-12  # of the largest stiffness: a smaller one holds nothing
 CLOSE = 1e-12  # of the coordinates: where the next correction would be smaller, they have converged
 
 
@@ -149,7 +150,7 @@ def _newton(tree: Tree, y: Floats, inputs: Inputs, left_over: Floats) -> tuple[F
     still, before = np.zeros(len(y)), 0.0
     for _ in range(ITERATIONS):
         left, k, _, m = Point(tree, y, still, still, inputs).slopes()
-        change = np.asarray(np.linalg.lstsq(k, left_over - left, rcond=1e-12)[0], dtype=np.float64)
+        change = np.asarray(np.linalg.lstsq(k, left_over - left, rcond=HELD)[0], dtype=np.float64)
         size = float(np.abs(change).max(initial=0.0))
         # Steps of a radian at most: a beam far from its equilibrium turns by as much.
         y = y + change / max(1.0, size)
@@ -179,7 +180,7 @@ def rested_together(
             lost = lost | ~np.isfinite(np.concatenate([left[:, None], k], axis=1)).all(axis=(1, 2))
             change = np.zeros_like(y)
             for at in np.flatnonzero(~lost).tolist():
-                change[at] = np.linalg.lstsq(k[at], -left[at], rcond=1e-12)[0]
+                change[at] = np.linalg.lstsq(k[at], -left[at], rcond=HELD)[0]
             size = np.abs(change).max(axis=1, initial=0.0)
             shrunk = np.where(np.isfinite(before) & (before > 0), np.minimum(size / before, 1.0), 1.0)
             limit = CLOSE * (1.0 + np.abs(y).max(axis=1, initial=0.0))
@@ -201,7 +202,8 @@ def rested(system: System, tree: Tree, inputs: Inputs, start: Floats | None = No
     to a `start` of all coordinates, by default that of the joints, with bodies undeformed. Where Newton's method fails
     from there, what is out of balance at the start is taken away in shares.
     """
-    y, still = (system.start[0] if start is None else start)[tree.free], np.zeros(len(tree.free))
+    begun, still = (system.start[0] if start is None else start)[tree.free], np.zeros(len(tree.free))
+    y = begun
     beginning, reached, stride = tree(y, still, still, inputs), 0.0, 1.0
     while reached < 1.0:
         share = min(reached + stride, 1.0)
@@ -211,6 +213,8 @@ def rested(system: System, tree: Tree, inputs: Inputs, start: Floats | None = No
         elif stride > SHORTEST:
             stride /= 4
         else:
+            left, k, _, m = Point(tree, begun, still, still, inputs).slopes()
+            refuse_accelerated(system, tree, left - k @ np.linalg.lstsq(k, left, rcond=HELD)[0], k, m)
             name = _farthest(system, tree, change)
             problem = f"no place was found in which the system rests: {name} goes on and on; hold what is free"
             raise ComputationError("no equilibrium", problem)
@@ -221,10 +225,13 @@ def rested(system: System, tree: Tree, inputs: Inputs, start: Floats | None = No
 def refuse_accelerated(system: System, tree: Tree, left: Floats, stiffness: Floats, mass: Floats) -> None:
     """Refuse a state that forces (n,) left over accelerate, or in which some motion moves no mass."""
     refuse_massless(system, mass, tree.free)
-    acceleration = np.linalg.solve(mass, -left)
-    scale = np.abs(np.linalg.solve(mass, np.abs(stiffness).sum(axis=1))).max(initial=1.0)
-    if np.abs(acceleration).max(initial=0.0) > 1e-6 * scale:
-        # Of all that is accelerated with it, what the force left over acts on.
+    # By forces alone that no stiffness balances: the rounding of a stiff body's is more than gravity.
+    ways, sizes, _ = np.linalg.svd(stiffness)
+    ways = ways[:, sizes <= HELD * sizes.max(initial=0.0)]
+    yields = np.linalg.solve(mass, ways) @ ways.T
+    rounding = np.abs(yields) @ np.abs(stiffness).sum(axis=1)
+    if np.abs(yields @ left).max(initial=0.0) > 1e-6 * max(1.0, 1e-6 * rounding.max(initial=0.0)):
+        # Of all that is accelerated with it the one on which the force left over acts.
         name = _farthest(system, tree, left / np.sqrt(np.maximum(np.diag(mass), MASSLESS * np.diag(mass).max())))
-        problem = f"{name} is accelerated, which nothing holds: what nothing holds does not rest"
+        problem = f"{name} is accelerated, which nothing holds: hold it, or take away what pushes it"
         raise ComputationError("no equilibrium", problem)

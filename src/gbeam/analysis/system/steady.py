@@ -273,6 +273,14 @@ def _released(state: SteadySystem, *, held: bool) -> SteadySystem:
     return SteadySystem(system, drive, Point(tree, y, yd, ydd, inputs))
 
 
+def open_loops(system: System) -> tuple[str, ...]:
+    """Warning of controllers, which act over time only."""
+    if not system.controllers:
+        return ()
+    names = ", ".join(system.controllers)
+    return (f"without its controllers, {names}, as if these were off; `gbeam linearize --loop closed` has them",)
+
+
 def turning_of(system: System, motion: Motion | None, turning: str | None) -> str:
     """Name of the coordinate that turns: given, or the only prescribed angle, or the only one; empty for a hub."""
     angles = [

@@ -190,7 +190,8 @@ def _orders(xp: Any, first: int, last: int, x: Any) -> list[Any]:
     u = xp.clip(x, -0.5, 0.5)
     orders = range(first, last + 1)
     # Orders 0 and 2 need no sine, order 1 no cosine.
-    sine = xp.sin(TURN * u) if 1 in orders or last > 2 else 0.0
+    # At the ends, where a half turn is rounded, the sine is nothing.
+    sine = xp.where(xp.abs(u) < 0.5, xp.sin(TURN * u), 0.0) if 1 in orders or last > 2 else 0.0
     cosine = xp.cos(TURN * u) if (first, last) != (1, 1) else 0.0
     inside = xp.abs(x) < 0.5 if last > 2 else True
     values = []
