@@ -138,6 +138,10 @@ def test_what_falls_does_not_rest() -> None:
             ask(gb.System(bodies, joints, gravity=(0, 0, -9.81)))
         assert caught.value.outcome == "no equilibrium"
     assert gb.static(gb.System(bodies, joints)).displacement.max() == 0
+    # Its run is one of positive masses, which those of Euler parameters are not.
+    fallen = gb.simulate(gb.System(bodies, joints, gravity=(0, 0, -9.81)), duration=0.1)
+    assert fallen.outcome == "done" and not any("positive mass" in each for each in fallen.warnings)
+    assert fallen.at("hull.root")[-1, 2] == pytest.approx(-0.04905, rel=1e-6)
 
 
 def test_what_may_turn_is_asked_for_where_it_is_not_the_only_angle() -> None:

@@ -152,8 +152,12 @@ class Ran(Run):
         if is_jax(every.q) or not any(isinstance(link.body, LinearBody) for link in system.tree.links):
             return None
         steps = np.unique(np.linspace(0, len(every.time) - 1, LOOKS).astype(int))
-        q, inputs = every.q[steps], self.inputs(system, steps)
-        mass = slopes(system.tree, q, every.qd[steps], np.zeros_like(q), inputs)[2]
+        q, qd, still = every.q[steps], every.qd[steps], np.zeros_like(every.q[steps])
+        if Point(system.tree, q[0], qd[0], still[0], self.inputs(system, steps[0])).minimal:
+            mass = slopes(system.tree, q, qd, still, self.inputs(system, steps))[2]
+        else:  # of Euler parameters it is no matrix of energies
+            each = ((q[k], qd[k], still[k], self.inputs(system, step)) for k, step in enumerate(steps))
+            mass = np.array([Point(system.tree, *state).local.slopes()[3] for state in each])
         return next((int(step) for step, one in zip(steps, mass, strict=True) if not positive_definite(one)), None)
 
     @cached_property
