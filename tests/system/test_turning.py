@@ -129,6 +129,24 @@ def test_it_is_refused_where_what_turns_cannot_rest_either() -> None:
     assert caught.value.outcome == "no equilibrium"
 
 
+def test_a_blade_that_flaps_is_asked_for() -> None:
+    """A rod on a hinge 0.2 m off the axis, whose frequency is √(1 + 3 e / 2 L) of the rate and nothing at rest."""
+    rod = gb.RigidBody(1.0, (1e-9, 1 / 12, 1 / 12), centre=(0.5, 0, 0))
+    hinge = gb.Joint("revolute", "flap", on="hub.rim", axes=[(0, 1, 0)])
+    bodies = {"hub": gb.RigidBody(1.0, (1.0, 1.0, 1.0), points={"rim": (0.2, 0, 0)}), "flap": rod, "held": rod}
+    joints = {
+        "shaft": gb.Joint("revolute", "hub", axes=[(0, 0, 1)], rate=gb.constant(10.0)),
+        "hinge": hinge,
+        "spring": replace(hinge, body="held", stiffness=10.0),
+    }
+    from_rest, later = (gb.campbell(gb.System(bodies, joints), start=each, count=2) for each in (0.0, 5.0))
+    assert from_rest.frequency.shape[1] == 1 and later.frequency.shape[1] == 2 and not later.warnings
+    assert from_rest.warnings == (
+        "a motion begins to oscillate as it turns faster, and is not followed from 0 rad/s: begin later",
+    )
+    assert 2 * np.pi * later.frequency[-1].min() == pytest.approx(10 * np.sqrt(1.3), rel=1e-6)
+
+
 def test_what_falls_does_not_rest() -> None:
     """A free body with a stiff strip: gravity was less than the strip's rounding, and the strip stood upright."""
     bodies = {"hull": gb.RigidBody(1.2, (0.01, 0.01, 0.02)), "arm": gb.assemble(STRIP, "FOAM", axial=1, y=1, z=1)}

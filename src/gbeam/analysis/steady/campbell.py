@@ -211,6 +211,9 @@ def campbell(
         doubts = input_warnings(structure, motion, name=name, base=fast)
     warnings = doubts + (() if errors is None else doubtful(errors))
     warnings += doubtful_crossings(crossings, "" if errors is None else errors.theory)
+    if (more := len(coarse[-1].frequency) - len(coarse[0].frequency)) > 0:
+        what = "a motion begins" if more == 1 else f"{more} motions begin"
+        warnings += (f"{what} to oscillate as it turns faster, and is not followed from {start:g} rad/s: begin later",)
     if lost.value is not None:
         warnings += tuple(each for each in lost.warnings if each not in warnings)
     return Campbell(
