@@ -16,7 +16,7 @@ import signal
 import sys
 import threading
 import traceback
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from datetime import datetime
 from pathlib import Path
@@ -228,8 +228,7 @@ class Jobs:
                 self._unsaved.pop(number)
                 return False
         try:
-            arguments = [known["verb"], _SCENARIO, *known["arguments"], "--out", "out", "--report", "--json"]
-            process = await _begun(place, [sys.executable, "-c", LIMITED, str(MEMORY), str(SECONDS), *arguments])
+            process = await _begun(place, _command(known))
         except OSError as error:
             passes = error.errno in SHORT
             self._note(number, state="queued" if passes else "failed")
@@ -311,6 +310,12 @@ def _last_line(log: Path) -> str:
     except FileNotFoundError:
         return ""
     return lines[-1][:300] if lines else ""
+
+
+def _command(state: Mapping[str, Any]) -> list[str]:
+    """A verb with its result as a report and as JSON."""
+    arguments = [state["verb"], _SCENARIO, *state["arguments"], "--out", "out", "--report", "--json"]
+    return [sys.executable, "-c", LIMITED, str(MEMORY), str(SECONDS), *arguments]
 
 
 def _state(place: Path, otherwise: str) -> str:
