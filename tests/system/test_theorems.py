@@ -15,7 +15,7 @@ from gbeam.numerics.series import STEP
 from tests.system.trees import JOINTS, flexible, tree
 
 LINK = st.tuples(
-    st.sampled_from(["rigid", "rigid", "exact", "FOAM", "CFOAM", "fourth-order"]),
+    st.sampled_from(["rigid", "rigid", "exact", "FOAM", "CFOAM", "fourth-order", "particles"]),
     st.sampled_from(JOINTS),
     st.integers(0, 8),
 )

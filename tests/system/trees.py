@@ -23,8 +23,26 @@ JOINTS = ("fixed", "sprung", "revolute", "prismatic", "cylindrical", "universal"
 
 @cache
 def flexible(kind: str) -> gb.Structure:
+    if kind == "particles":
+        return particles()
     shapes = {"twist": 1, "shear_z": 1} if kind in BY_STRAINS else {}
     return gb.assemble(BEAM, kind, axial=1, y=1, z=2, **shapes)
+
+
+def particles() -> gb.Structure:
+    """A block of eight particles whose shapes are at random, which hardly bend it."""
+    rng = np.random.default_rng(7)
+    first, second = 0.3 * rng.normal(size=(8, 3, 3)), 0.1 * rng.normal(size=(8, 3, 3, 3))
+    return gb.Structure.of_particles(
+        np.full(8, 0.2),
+        np.array([[x, y, z] for x in (0.2, 1.0) for y in (-0.2, 0.2) for z in (-0.1, 0.1)]),
+        first,
+        np.diag([40.0, 90.0, 200.0]),
+        second=second + np.swapaxes(second, -1, -2),
+        stations=np.array([0, 7]),
+        turns=0.2 * rng.normal(size=(2, 3, 3)),
+        points=("middle", "tip"),
+    )
 
 
 def rigid(rng: np.random.Generator) -> gb.RigidBody:

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from gbeam.arrays.namespace import namespace
+from gbeam.arrays.namespace import is_traced, namespace
 from gbeam.arrays.tree import record
 from gbeam.mechanics.equations.dalembert import Complete
 from gbeam.mechanics.equations.linear import Coefficients
@@ -23,6 +23,7 @@ from gbeam.mechanics.tree.frames import Frame, Relative, Wrench, cross, turned, 
 from gbeam.mechanics.tree.steps import rotation_by_vector, tangent_back
 
 Array = Any
+THIN = 1e-9  # of the largest moment of inertia: less is none
 
 
 class Acting(NamedTuple):
@@ -215,10 +216,17 @@ class LinearBody:
     Its first and second moments of mass, S = S0 + S1 q + ½ q S2 q and J = J0 + J1 q + ½ q J2 q, and the momentum h_i =
     h0_i + B_ji q_j of its coordinates about the root, are the constant coefficients of its equations on a moving root;
     Lagrange's equations of these energies keep momentum and energy.
+
+    Shapes of a solid take nearly all inertia of a motion with the root. What moves against a free root so moves as fast
+    as the root does, and to second order the two together may have less than no kinetic energy once the body is bent.
+    With `carried` = C0ᵀR0⁻¹C0, C q̇ the momentum and R the inertia of the body about its root, the kinetic energy is
+    that of the rigid motion with all momentum, and of vibration about it: with ½ q̇ᵀ(CᵀR⁻¹C − C0ᵀR0⁻¹C0) q̇ more, of
+    third order in q and q̇, it is positive wherever R is.
     """
 
     coefficients: Coefficients
     points: Points
+    carried: Array | None = None
 
     @property
     def size(self) -> int:
@@ -239,6 +247,12 @@ class LinearBody:
         along = qdd @ c.mass + qd @ c.damping + q @ c.stiffness
         along = along + turned_back(Si, root.a) + turned_back(hi, root.alpha)
         along = along + turned_back(_times(c.gyroscopic, qd) - 0.5 * swelling, root.w)
+        if self.carried is not None:  # the mean motion v, ω that has the momentum of deforming, R (v, ω) = (Ṡ, h)
+            v, w = _mean_motion(c.rigid[0], S, J, Sd, h)
+            swelling = (w[..., None, None, :] @ Ji)[..., 0, :]
+            vd, wd = _mean_motion(c.rigid[0], S, J, Sdd - cross(w, Sd), hd - cross(Sd, v) - turned(swelling, qd))
+            along = along - qdd @ self.carried + turned_back(Si, vd + cross(v, w)) + turned_back(hi, wd)
+            along = along + turned_back(_times(c.gyroscopic, qd) + 0.5 * swelling, w)
         if loads is not None and c.loads is not None:
             forces = c.loads.generalised(q, loads)
             force, moment, along = force - forces[..., :3], moment - forces[..., 3:6], along - forces[..., 6:]
@@ -270,7 +284,38 @@ class LinearBody:
         push = c.rigid[0] * root.v + cross(root.w, S) + Sd
         spin = cross(S, root.v) + turned(J, root.w) + h
         energy = (push * root.v + spin * root.w + Sd * root.v + h * root.w).sum(axis=-1)
-        return (energy + ((qd @ c.mass) * qd).sum(axis=-1)) / 2, Wrench(push, spin)
+        energy = energy + ((qd @ c.mass) * qd).sum(axis=-1)
+        if self.carried is not None:
+            v, w = _mean_motion(c.rigid[0], S, J, Sd, h)
+            energy = energy + (v * Sd + w * h).sum(axis=-1) - ((qd @ self.carried) * qd).sum(axis=-1)
+        return energy / 2, Wrench(push, spin)
+
+
+def carried(of: Coefficients) -> Array | None:
+    """C0ᵀR0⁻¹C0 (n, n); None of particles on a line, about which they have no inertia."""
+    mass, S, J = of.rigid[0], of.rigid[1:4], of.second_moment
+    if not is_traced(J):
+        least, _, most = np.linalg.eigvalsh(_about_centre(mass, S, J))
+        if not least > THIN * most:
+            return None
+    v, w = _mean_motion(mass, S, J, of.f_a.T, of.f_al.T)
+    return of.f_a.T @ v.T + of.f_al.T @ w.T
+
+
+def _about_centre(mass: Array, S: Array, J: Array) -> Array:
+    """Moments of inertia (..., 3, 3) about the centre of mass."""
+    square = (S * S).sum(axis=-1)[..., None, None] * np.eye(3)
+    return J - (square - S[..., :, None] * S[..., None, :]) / mass
+
+
+def _mean_motion(mass: Array, S: Array, J: Array, push: Array, spin: Array) -> tuple[Array, Array]:
+    """Velocity and angular velocity (..., 3) at the root of a rigid body that has a momentum."""
+    centre, inertia = S / mass, _about_centre(mass, S, J)
+    x, y, z = (inertia[..., k, :] for k in range(3))
+    about, across = spin - cross(centre, push), cross(y, z)
+    w = about[..., :1] * across + about[..., 1:2] * cross(z, x) + about[..., 2:] * cross(x, y)
+    w = w / (x * across).sum(axis=-1, keepdims=True)
+    return push / mass - cross(w, centre), w
 
 
 def _times(tensor: Array, q: Array) -> Array:

@@ -25,6 +25,7 @@ from gbeam.mechanics.tree.bodies import (
     PolynomialPoints,
     Rigid,
     StrainedPoints,
+    carried,
     polynomial_points,
 )
 from gbeam.mechanics.tree.control import Feedback
@@ -360,7 +361,7 @@ class System(Value):
 
     def _assembled(self) -> Tree:
         """The equations."""
-        links, at = [], {body: k for k, body in enumerate(self.order)}
+        links, loose, at = [], set[str](), {body: k for k, body in enumerate(self.order)}
         for body in self.order:
             name = self._holding(body)
             joint = self.joints[name]
@@ -369,7 +370,12 @@ class System(Value):
                 holding, on = self.point(f"joints.{name}.on", joint.on)
                 parent = at[holding]
                 refuse_turnless(f"joints.{name}.on", self.bodies[holding], on)
-            links.append(Link(joint.steps, joint.holder, body_of(f"bodies.{body}", self.bodies[body]), parent, on))
+                if holding in loose or isinstance(self.bodies[holding], Structure):
+                    loose.add(body)
+            if len(joint.rates) < len(joint.coordinates):
+                loose.add(body)
+            of = body_of(f"bodies.{body}", self.bodies[body], free=body in loose)
+            links.append(Link(joint.steps, joint.holder, of, parent, on))
         forces = []
         for name, force in self.forces.items():
             body, on = self.point(f"forces.{name}.on", force.on)
@@ -481,8 +487,8 @@ def refuse_turnless(where: str, body: RigidBody | Structure, on: int) -> None:
         raise InputError(where, "is a point of particles, which do not say how it turns", fix)
 
 
-def body_of(where: str, body: RigidBody | Structure) -> Body:
-    """The terms of a body in the equations."""
+def body_of(where: str, body: RigidBody | Structure, *, free: bool = False) -> Body:
+    """The terms of a body in the equations, with those of a solid whose root is free to move."""
     if isinstance(body, RigidBody):
         return body.body
     if not body.hub_force:
@@ -505,5 +511,5 @@ def body_of(where: str, body: RigidBody | Structure) -> Body:
             turn = np.nan_to_num(body.turns[stations])
         points = PolynomialPoints(places.r0, places.first, second, turn, none)
     if isinstance(equations, Coefficients):
-        return LinearBody(equations, points)
+        return LinearBody(equations, points, carried(equations) if free and body.field is None else None)
     return FieldBody(equations, points)
