@@ -34,7 +34,14 @@ def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure
         if table.material is None
         else _material(parts, f"{where}.material", table.material)
     )
-    if laws is None or (isinstance(laws, dict) and None in laws.values()):
+    held = parts.attempt(
+        where,
+        lambda: {
+            "points": _points(table),
+            "carried": {name: _carried(name, each) for name, each in table.carried.items()},
+        },
+    )
+    if held is None or laws is None or (isinstance(laws, dict) and None in laws.values()):
         return None
 
     about: dict[str, Any] = {
@@ -42,16 +49,15 @@ def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure
         "clamp": table.clamp,
         "unit": table.unit,
         "thickness": table.thicknesses or table.thickness,
-        "points": _points(table),
         "point_masses": table.masses,
         "interfaces": table.interfaces,
         "links": table.links,
-        "carried": {name: _carried(name, each) for name, each in table.carried.items()},
         "springs": {name: each.model_dump() for name, each in table.springs.items()},
         "origin": table.origin,
         "turn": table.turn,
         "scale": table.scale,
         "mass_unit": table.mass_unit,
+        **held,
     }
     options: dict[str, Any] = {"modes": table.modes, "damping_ratio": table.damping_ratio}
 
