@@ -16,8 +16,6 @@ from scipy.integrate import cumulative_trapezoid
 
 from gbeam import Hub, SmoothStep, simulate
 from gbeam.errors import InputError
-from gbeam.io.hdf5 import image
-from gbeam.io.layout import Group, Variable
 from gbeam.io.stored import csv_of, read_stored
 from gbeam.results.imitation.accounting import Accounting, LoadPeak, NotFollowed, PeakPair
 from gbeam.results.imitation.comparison import Comparison
@@ -382,10 +380,3 @@ def test_histories_as_text_are_those_of_the_file(study: Study, tmp_path: Path) -
             carried = [[float(row[f"root_section_force_{axis}_N"]) for axis in "xyz"] for row in own]
             np.testing.assert_allclose(carried, response.loads.section_force[:, 0], rtol=1e-8, atol=1e-300)
             assert float(own[-1]["stress_Pa"]) == pytest.approx(response.loads.stress[-1, 0])
-
-
-def test_a_dimension_has_one_length_and_its_own_coordinate() -> None:
-    two, three = (Variable(("x",), np.zeros(n), {}) for n in (2, 3))
-    for wrong in ({"a": two, "b": three}, {"a": two, "x": Variable(("y",), np.zeros(2), {})}):
-        with pytest.raises(ValueError, match=r"[ab] is along x"):
-            image({"": Group(wrong)})

@@ -6,11 +6,11 @@ import io
 import os
 import tempfile
 import zlib
-from collections.abc import Iterator, Mapping
-from itertools import count
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import h5netcdf
 import h5py
 import numpy as np
 
@@ -20,7 +20,6 @@ from gbeam.io.layout import Group, Variable
 from gbeam.printable import storable
 from gbeam.results.provenance import Environment, Provenance, RecordFile
 
-_BARE = b"This is a netCDF dimension but not a netCDF variable.%10d"  # name of the scale of one, with its length
 # Attributes of the format.
 _BOOKKEEPING = {"DIMENSION_LIST", "REFERENCE_LIST", "CLASS", "NAME", "_NCProperties"}
 _BOOKKEEPING |= {"_Netcdf4Dimid", "_Netcdf4Coordinates"}
@@ -54,38 +53,18 @@ def write_whole(path: str | os.PathLike[str], data: bytes, *, private: bool = Fa
 
 
 def image(groups: Mapping[str, Group]) -> bytes:
-    """Bytes of the file, made in memory: HDF5 ends the process where a disk is full as it closes a file.
-
-    By h5py alone: h5netcdf looks for every variable twenty times, and takes three times as long as a short run.
-    """
-    buffer, ids = io.BytesIO(), count()
-    with h5py.File(buffer, "w", libver=("earliest", "v110"), track_order=True) as file:
-        file.attrs["_NCProperties"] = np.bytes_(f"version=2,h5py={h5py.__version__},hdf5={h5py.version.hdf5_version}")
+    """Bytes of the file, made in memory: HDF5 ends the process where a disk is full as it closes a file."""
+    buffer = io.BytesIO()
+    with h5netcdf.File(buffer, "w", libver=("earliest", "v110")) as file:
         for path, group in groups.items():
-            place = file
-            for name in path.split("/") if path else ():
-                place = place[name] if name in place else place.create_group(name, track_order=True)
+            place = file.create_group(path) if path else file
             _describe(place, group.attrs)
-            _fill(place, group.coordinates | group.variables, ids)
+            for name, each in (group.coordinates | group.variables).items():
+                for dim, size in zip(each.dims, each.values.shape, strict=True):
+                    if dim not in place.dimensions:
+                        place.dimensions[dim] = size
+                _create(place, name, each)
     return buffer.getvalue()
-
-
-def _fill(place: h5py.Group, variables: Mapping[str, Variable], ids: Iterator[int]) -> None:
-    """Write a group's variables and its dimensions: coordinates, or scales that are no variables."""
-    sizes: dict[str, int] = {}
-    for name, each in variables.items():
-        for dim, size in zip(each.dims, each.values.shape, strict=True):
-            along = variables[dim].dims if dim in variables else (dim,)
-            if sizes.setdefault(dim, size) != size or along != (dim,):
-                raise ValueError(f"{name} is along {dim}, which has another length, or names a variable along others")
-    nodes = {name: _create(place, name, each) for name, each in variables.items()}
-    scales = {dim: nodes[dim] if dim in nodes else _node(place, dim, (size,), ">f4") for dim, size in sizes.items()}
-    for dim, scale in scales.items():
-        scale.make_scale(dim if dim in nodes else _BARE % sizes[dim])
-        scale.attrs["_Netcdf4Dimid"] = np.int32(next(ids))
-    for name, node in nodes.items():
-        for axis, dim in enumerate(() if name in scales else variables[name].dims):
-            node.dims[axis].attach_scale(scales[dim])
 
 
 def contents(path: str) -> dict[str, Any]:
@@ -122,27 +101,18 @@ def _present(value: Any) -> Any:
     return "" if isinstance(value, h5py.Empty) else value
 
 
-def _create(place: h5py.Group, name: str, variable: Variable) -> h5py.Dataset:
+def _create(place: h5netcdf.Group, name: str, variable: Variable) -> None:
     values = variable.values
-    kind, attrs = values.dtype, variable.attrs
+    kind = values.dtype
     if kind.kind in "OU":
         kind = h5py.string_dtype("utf-8")
         values = np.array([storable(str(each)) for each in values.flat], dtype=object).reshape(values.shape)
     fill = np.nan if values.dtype.kind == "f" else None  # what xarray takes for a missing number
-    node = _node(place, name, values.shape, kind, data=values, fillvalue=fill)
-    _describe(node, attrs if fill is None else {"_FillValue": kind.type(fill)} | attrs)
-    return node
+    _describe(place.create_variable(name, variable.dims, kind, values, fill), variable.attrs)
 
 
-def _node(place: h5py.Group, name: str, shape: tuple[int, ...], kind: Any, **options: Any) -> h5py.Dataset:
-    """A dataset; along a dimension of length zero netCDF lets it grow."""
-    growing = {"maxshape": tuple(size or None for size in shape)} if 0 in shape else {}
-    return place.create_dataset(name, shape, kind, track_order=True, **growing, **options)
-
-
-def _describe(node: h5py.Group | h5py.Dataset, attrs: Mapping[str, Any]) -> None:
-    for key, value in attrs.items():
-        node.attrs[key] = storable(value) if isinstance(value, str) else np.atleast_1d(value)
+def _describe(place: h5netcdf.Group | h5netcdf.Variable, attrs: Mapping[str, Any]) -> None:
+    place.attrs.update({key: storable(value) if isinstance(value, str) else value for key, value in attrs.items()})
 
 
 RECORD = "record_"  # before the flight's name
