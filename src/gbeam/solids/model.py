@@ -24,9 +24,7 @@ from gbeam.solids.stress import NodalStress, solid_stress
 if TYPE_CHECKING:
     from gbeam.solids.mesh import SolidMesh
 
-CONVERGING = (
-    0.5  # order in the size of elements, of what is two or three where stress is smooth and below zero where not
-)
+CONVERGING = 0.5  # order in the elements' size: two or three where stress is smooth, below zero where it is not
 GROWING = 0.05  # order of growing stress: a clamp's edge has 0.3, a sharp corner up to 0.5
 UNLIKE = 0.05  # of the stress: how far elements are apart at least where it is singular, on any mesh
 REFINED = 1.25  # times as large elements at least, to judge that by
@@ -199,19 +197,19 @@ def singular(fine: NodalStress, rough: NodalStress, of_fine: Floats, of_rough: F
 
     top = von_mises(np.moveaxis(fine.table @ of_fine, 1, 2)).max(axis=0)
     top = np.where(top > 0, top, np.inf)
-    here, there = _elements(fine, of_fine / top), _elements(rough, of_rough / top)
-    count, (_, inside) = len(there.middle), cKDTree(there.middle).query(here.middle)
+    small, large = _elements(fine, of_fine / top), _elements(rough, of_rough / top)
+    count, (_, inside) = len(large.middle), cKDTree(large.middle).query(small.middle)
     apart, stress, size = np.zeros((3, count))
-    np.maximum.at(apart, inside, here.apart)
-    np.maximum.at(stress, inside, here.stress)
-    np.maximum.at(size, inside, here.size)
+    np.maximum.at(apart, inside, small.apart)
+    np.maximum.at(stress, inside, small.stress)
+    np.maximum.at(size, inside, small.size)
     with np.errstate(divide="ignore", invalid="ignore"):
-        finer = np.log(there.size / size)
-        order, growth = np.log(there.apart / apart) / finer, np.log(stress / there.stress) / finer
+        finer = np.log(large.size / size)
+        order, growth = np.log(large.apart / apart) / finer, np.log(stress / large.stress) / finer
         unlike = (order < CONVERGING) & (apart > UNLIKE * stress) & (finer > np.log(REFINED))
     some = np.flatnonzero(unlike)
     sharing = csr_array(
-        (np.ones(there.pairs.size), (np.repeat(np.arange(count), there.counts), there.pairs)),
+        (np.ones(large.pairs.size), (np.repeat(np.arange(count), large.counts), large.pairs)),
         shape=(count, len(rough.known)),
     )[some]
     number, patch = connected_components(sharing @ sharing.T)
@@ -219,7 +217,7 @@ def singular(fine: NodalStress, rough: NodalStress, of_fine: Floats, of_rough: F
     left_out = np.zeros(count, dtype=bool)
     left_out[some[grows[patch]]] = True
     out = np.zeros(len(fine.known), dtype=bool)
-    out[here.pairs[np.repeat(left_out[inside], here.counts)]] = True
+    out[small.pairs[np.repeat(left_out[inside], small.counts)]] = True
     return out if not out.all() else ~out
 
 
