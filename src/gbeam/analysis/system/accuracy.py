@@ -42,6 +42,7 @@ Again = Callable[[System], tuple[Trajectory, InputsOf]]
 FEWEST = 3  # times of a response that is judged
 FAR = "shapes and models are not judged: a system with more shapes does not follow"
 
+TOGETHER = "with more shapes of the same models the system does not follow: too few shapes count as the models' error"
 UNKNOWN = "errors by the theory of slender beams are not known: "
 BENT_FAR = UNKNOWN + "thick beams do not follow"
 LOOP_LOST = UNKNOWN + "controllers do not hold the system with more shapes in its beams"
@@ -95,7 +96,12 @@ def system_errors(
                 truth, *alone = (
                     _run(richer(system, each, exact=True).system, again, len(of.time), judged) for each in some
                 )
-                same = truth if exact else _run(richer(system, bases, exact=False).system, again, len(of.time), judged)
+                same = truth
+                if not exact:
+                    try:
+                        same = _run(richer(system, bases, exact=False).system, again, len(of.time), judged)
+                    except ComputationError:
+                        same, note = computed, "; ".join(filter(None, (note, TOGETHER)))
                 # Between a system with more shapes of the same models and the exact one is what the models leave out.
                 shapes, model = (computed, same), (same, truth)
         except (ComputationError, np.linalg.LinAlgError):
@@ -129,22 +135,23 @@ def doubts(errors: SystemErrors, tolerance: float) -> tuple[str, ...]:
     """Warnings of what is wrong by more than a tolerance, and of what is not judged."""
     said = [errors.note] if errors.note else []
     for what, size, each, by_beam in (
-        ("places", "displacement", errors.displacement, errors.by_beam),
-        ("loads", "of them", errors.loads, errors.loads_by_beam),
+        ("places are", "displacement", errors.displacement, errors.by_beam),
+        ("loads are", "of them", errors.loads, errors.loads_by_beam),
+        ("stress is", "of it", errors.stress, errors.stress_by_beam),
     ):
         parts = each.step, each.shapes, each.model, each.beam_theory, each.mesh
         if not any(part > tolerance for part in parts):
             continue
         share = percent(np.nanmax([each.total, each.step]))
         if each.step == np.nanmax(parts):
-            said.append(f"{what} are wrong by an estimated {share} of the largest {size}: {STEPS}")
+            said.append(f"{what} wrong by an estimated {share} of the largest {size}: {STEPS}")
             continue
-        which = int(np.argmax(by_beam))
+        which = int(np.nanargmax(by_beam))
         cause, cure = cause_and_cure(each, errors.theory[which])
         if each.shapes == np.nanmax(parts):
             cure = "raise its model.modes, of a mesh its modes"  # which are given in a system
         said.append(
-            f"{what} are wrong by an estimated {share} of the largest {size}: {cause}, most of {errors.beams[which]}; "
+            f"{what} wrong by an estimated {share} of the largest {size}: {cause}, most of {errors.beams[which]}; "
             f"{cure}"
         )
     return tuple(said)
