@@ -135,23 +135,23 @@ def doubts(errors: SystemErrors, tolerance: float) -> tuple[str, ...]:
     """Warnings of what is wrong by more than a tolerance, and of what is not judged."""
     said = [errors.note] if errors.note else []
     for what, size, each, by_beam in (
-        ("places are", "displacement", errors.displacement, errors.by_beam),
-        ("loads are", "of them", errors.loads, errors.loads_by_beam),
-        ("stress is", "of it", errors.stress, errors.stress_by_beam),
+        ("places are", "the largest displacement", errors.displacement, errors.by_beam),
+        ("loads are", "the largest of them", errors.loads, errors.loads_by_beam),
+        ("stress is", "its largest", errors.stress, errors.stress_by_beam),
     ):
         parts = each.step, each.shapes, each.model, each.beam_theory, each.mesh
         if not any(part > tolerance for part in parts):
             continue
         share = percent(np.nanmax([each.total, each.step]))
         if each.step == np.nanmax(parts):
-            said.append(f"{what} wrong by an estimated {share} of the largest {size}: {STEPS}")
+            said.append(f"{what} wrong by an estimated {share} of {size}: {STEPS}")
             continue
         which = int(np.nanargmax(by_beam))
         cause, cure = cause_and_cure(each, errors.theory[which])
         if each.shapes == np.nanmax(parts):
             cure = "raise its model.modes, of a mesh its modes"  # which are given in a system
         said.append(
-            f"{what} wrong by an estimated {share} of the largest {size}: {cause}, most of {errors.beams[which]}; "
+            f"{what} wrong by an estimated {share} of {size}: {cause}, most of {errors.beams[which]}; "
             f"{cure}"
         )
     return tuple(said)
