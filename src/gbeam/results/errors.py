@@ -68,6 +68,11 @@ class Errors(Part):
         default="",
     )
 
+    def above(self, tolerance: float) -> dict[str, ErrorEstimate]:
+        """Errors that are larger in all, by what they are of."""
+        every = {"tip's displacement": self.displacement, "root's loads": self.loads, "stress": self.stress}
+        return {name: each for name, each in every.items() if each.total > tolerance}
+
     def __repr__(self) -> str:
         parts = {name: getattr(self, name) for name in ("displacement", "loads", "stress")}
         lines = [f"{name}: {part}" for name, part in parts.items()]

@@ -240,9 +240,7 @@ def inaccuracies(structure: Structure, errors: Errors, settings: ResponseSetting
         return ()
     if math.isnan(errors.displacement.step):
         return ("no error could be estimated: the run with twice the step fails; give a smaller step",)
-    quantities = {"tip's displacement": errors.displacement, "root's loads": errors.loads, "stress": errors.stress}
-    above = {name: each for name, each in quantities.items() if each.total > settings.tolerance}
-    if not above:
+    if not (above := errors.above(settings.tolerance)):
         return ()
     name, worst = max(above.items(), key=lambda item: item[1].total)
     cures = {

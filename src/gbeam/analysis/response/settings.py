@@ -52,7 +52,7 @@ class ResponseSettings(Value):
     parameters : mapping of str to float
         The integrator's own: beta and gamma; alpha; rho_inf.
     tolerance : float
-        Largest total error, of displacement and root loads, that passes without a warning; see :attr:`aim`.
+        Largest total error, of displacement, root loads and stress, that passes without a warning; see :attr:`aim`.
     residual_from : float or None
         Time from which the residual vibration is measured, s.
     initial : Initial

@@ -83,9 +83,7 @@ def _sideways(point: OperatingPoint) -> tuple[str, ...]:
 
 def _doubtful(errors: Errors) -> tuple[str, ...]:
     """Warn of an equilibrium that is wrong by more than one in a hundred."""
-    quantities = {"tip's displacement": errors.displacement, "root's loads": errors.loads}
-    above = {name: each for name, each in quantities.items() if each.total > LIMIT}
-    if not above:
+    if not (above := errors.above(LIMIT)):
         return ()
     worst = max(above.values(), key=lambda each: each.total)
     cause, cure = cause_and_cure(worst, errors.theory)

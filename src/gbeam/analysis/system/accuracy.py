@@ -150,10 +150,7 @@ def doubts(errors: SystemErrors, tolerance: float) -> tuple[str, ...]:
         cause, cure = cause_and_cure(each, errors.theory[which])
         if each.shapes == np.nanmax(parts):
             cure = "raise its model.modes, of a mesh its modes"  # which are given in a system
-        said.append(
-            f"{what} wrong by an estimated {share} of {size}: {cause}, most of {errors.beams[which]}; "
-            f"{cure}"
-        )
+        said.append(f"{what} wrong by an estimated {share} of {size}: {cause}, most of {errors.beams[which]}; {cure}")
     return tuple(said)
 
 

@@ -91,8 +91,8 @@ class Response(Table):
     rho_inf: Ratio | None = optional("parameter of generalized-alpha: spectral radius at infinite frequency")
     tolerance: Annotated[float, Quantity("ratio", "positive")] = Field(
         default=1e-2,
-        description="largest total error (step, shapes and model) without a warning; an automatic step aims at a "
-        "third of it, and at 1e-4 at most",
+        description="largest total error, of displacement, root loads and stress, without a warning; an automatic step "
+        "aims at a third of it, and at 1e-4 at most",
     )
     estimate: StrictBool = Field(
         default=True,
