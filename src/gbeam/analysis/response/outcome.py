@@ -260,7 +260,7 @@ def inaccuracies(structure: Structure, errors: Errors, settings: ResponseSetting
         if size > settings.tolerance / 10
     ]
     return (
-        f"the estimated error of the {' and of the '.join(above)}, {percent(worst.total)} of the largest"
+        f"the estimated error of the {', of the '.join(above)}, {percent(worst.total)} of the largest"
         f"{f' (of the {name})' if len(above) > 1 else ''}, is above the tolerance {percent(settings.tolerance)}: "
         f"{', '.join(causes)}{f'; {errors.note}' if errors.note else ''}",
     )

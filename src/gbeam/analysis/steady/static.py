@@ -87,7 +87,7 @@ def _doubtful(errors: Errors) -> tuple[str, ...]:
         return ()
     worst = max(above.values(), key=lambda each: each.total)
     cause, cure = cause_and_cure(worst, errors.theory)
-    sizes = " and ".join(f"the {name} by {percent(each.total)}" for name, each in above.items())
+    sizes = ", ".join(f"the {name} by {percent(each.total)}" for name, each in above.items())
     return (f"estimated to be wrong: {sizes}, mostly from {cause}; {cure}",)
 
 
