@@ -91,16 +91,18 @@ def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, 
 
 class _Window:
     """Steps under way, from the `first` on: their states z (t + 1, m, n) and accelerations x (t, s, n), corrected in
-    place, and the `slope` of the equations, K, C and M (1 or t, s, 3, n, n), from stages so far `apart`;
-    `reached` those of a state that was. Rows (5, t) of `corrections` are their last size, absolute and of the
-    accelerations, how many there were, how far all since its derivatives were found have moved a step, and the least
-    factor by which one by the same derivatives shrank.
+    place, the residual `left` (t, s n), and the `slope` of the equations, K, C and M (1 or t, s, 3, n, n), from stages
+    so far `apart`; `reached` (3, n, n) is that of a state that was. Rows (5, t) of `corrections` are their last size,
+    absolute and of the accelerations, how many there were, how far all since its derivatives were found have moved a
+    step, and the least factor by which one by the same derivatives shrank.
     """
 
     z: Array
     x: Array
     start: Array
     slope: Any
+    reached: Array
+    left: Array
     maps: Any
     corrections: Array
     most: float

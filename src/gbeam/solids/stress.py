@@ -69,7 +69,7 @@ class NodalStress(Value):
         return replace(whole, felt_at=whole.most(np.arange(len(known))))
 
     def most(self, pairs: Indices) -> Indices:
-        """Of some pairs those that one of all coordinates stresses most."""
+        """Choose of some pairs those that one of all coordinates stresses most."""
         sizes = von_mises(np.moveaxis(self.every_table[pairs], 1, 2))
         return np.asarray(pairs[np.unique(sizes.argmax(axis=0))])
 

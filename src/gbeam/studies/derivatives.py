@@ -68,7 +68,7 @@ class Neighbourhood:
     ) -> None:
         self.inquiry, self.parameters, self.parts = inquiry, parameters, parts
         self._about: dict[str, Differentiated] = {}
-        self.edges: dict[int, int] = {}  # of parameters beyond whose value the scenario refuses a step, and its sign
+        self.edges = set[int]()  # parameters on one side of whose value the scenario refuses a step
         self.progress, self.adapt = progress, adapt or (lambda case: case)
         self.values = [each.value for each in parameters] if values is None else [float(value) for value in values]
         self.case: Any = self._built(None, 0.0)
@@ -173,20 +173,17 @@ class Neighbourhood:
 
     def _beside(self, k: int, step: float, rough: bool) -> tuple[Case, Case]:
         """Cases with less and with more of a value by a step; rough ones on the side that the scenario allows."""
-        try:
-            less = self._case(k, -step)
-        except InputError:
-            if not rough:
-                raise
-            self.edges[k] = -1
-            return self._case(k, 0.0), self._case(k, 2 * step)
-        try:
-            return less, self._case(k, step)
-        except InputError:
-            if not rough:
-                raise
-            self.edges[k] = 1
-            return self._case(k, -2 * step), self._case(k, 0.0)
+        ends = []
+        for sign in (-1, 1):
+            try:
+                ends.append(self._case(k, sign * step))
+            except InputError:
+                if not rough:
+                    raise
+                self.edges.add(k)
+                at, beyond = self._case(k, 0.0), self._case(k, -sign * 2 * step)
+                return (at, beyond) if sign < 0 else (beyond, at)
+        return ends[0], ends[1]
 
     def _case(self, k: int, step: float) -> Case:
         each = self.parameters[k]
