@@ -14,6 +14,8 @@ from gbeam.arrays.tree import altered, arguments_of
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
 from gbeam.studies.template import CaseTemplate, ScenarioTemplate, template_of
 
+from ..solids.bodies import block, solid
+
 STEP = gb.SmoothStep(3.0, 2.0)
 FLIGHT = gb.Flight(z=gb.SmoothStep(20.0, 0.1), rates=gb.constant([0.0, 0.0, 0.1]))
 FIXED = ("response.step=2 ms", "response.estimate=false")
@@ -150,3 +152,22 @@ def test_what_a_case_cannot_vary_is_refused_at_its_place(fast: Path) -> None:
         with pytest.raises(gb.InputError) as refused:
             template_of(case, [change])
         assert words in str(refused.value), change
+
+
+def test_a_solid_made_in_python_varies_by_its_motions() -> None:
+    """Its mesh was reduced before, so that no value of it is known; it bends in proportion to the level of a flight."""
+    mesh = solid(block("hexahedron20", (3, 1, 1), (0.1, 0.01, 0.01)))
+    model = mesh.reduced(modes=1, damping_ratio=0.01)
+    motions: dict[str, Any] = {"flight": gb.Flight(z=gb.SmoothStep(20.0, 0.01)), "hub": gb.Hub(radius=0.5, rate=3.0)}
+    case = gb.SpecimenCase("bar", "bar", model.structure, motions, gb.ResponseSettings(0.02))
+    (level,) = (each for each in template_of(case).quantities() if each.endswith("parts[2].level"))
+    swept = gb.sweep(case, {level: [20.0, 40.0]}, ["tip.z"], verb="static", motion="flight", at=0.02)
+    rest = gb.static(model.structure, motions["flight"], 0.02).tip[2]
+    np.testing.assert_allclose(swept.measures["tip.z"], [rest, 2 * rest], rtol=1e-6)  # loads stiffen it
+    slope = gb.sensitivity(case, ["tip.z"], [level], verb="static", motion="flight", at=0.02)
+    assert slope.derivatives[0, 0] == pytest.approx(rest / 20.0, rel=1e-6)
+    limits: dict[str, Any] = {"subject_to": ["tip.z >= -4 um"], "bounds": {level: (1.0, 50.0)}}
+    best = gb.optimise(case, "tip.z", [level], **limits, verb="static", motion="flight", at=0.02)
+    assert best.figure == pytest.approx(50.0 / 20.0 * rest, rel=1e-6)
+    with pytest.raises(gb.InputError, match="bodies is no value that the case gives; choose one of motion, response"):
+        gb.sweep(case, {"bodies.bar.modes": [1.0]}, ["tip.z"], verb="static", motion="flight")

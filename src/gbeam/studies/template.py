@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gbeam.analysis.case import AnyCase, Case, SystemCase
+from gbeam.analysis.case import AnyCase, Case, SpecimenCase, SystemCase
 from gbeam.analysis.system.histories import beams_of
 from gbeam.arrays.tree import altered, arguments_of
 from gbeam.errors import InputError, placing_within
@@ -148,7 +148,7 @@ class _BeamBody:
 class CaseTemplate:
     """A case made in Python, with the members of a ScenarioTemplate; its values are arguments of its objects, in SI."""
 
-    case: Case | SystemCase
+    case: AnyCase
 
     table = None
 
@@ -193,8 +193,10 @@ class CaseTemplate:
     def _tree(self) -> dict[str, Any]:
         case = self.case
         of_all = {"motion": case.motions, "response": case.response}
-        if not isinstance(case, SystemCase):
+        if isinstance(case, Case):
             return {"beam": case.beam, "model": case.model} | of_all
+        if isinstance(case, SpecimenCase):  # which does not hold what its structure was reduced from
+            return of_all
         system = case.system
         bodies: dict[str, Any] = {}
         for name, body in system.bodies.items():
@@ -258,7 +260,7 @@ def template_of(
     scenario: str | os.PathLike[str] | AnyCase, overrides: Sequence[str] = (), *, distributions: bool = False
 ) -> Template:
     """Return the template that a scenario's file or a case is, with changes."""
-    if isinstance(scenario, (Case, SystemCase)) and scenario.scenario is None:
+    if isinstance(scenario, AnyCase) and scenario.scenario is None:
         return CaseTemplate(scenario).changed(tuple(overrides))
     return ScenarioTemplate(scenario_of(scenario, overrides, distributions=distributions))
 
