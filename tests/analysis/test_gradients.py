@@ -21,6 +21,7 @@ from gbeam import (
     Material,
     Model,
     PointMass,
+    Section,
     Sine,
     SmoothStep,
     Sum,
@@ -166,6 +167,38 @@ def test_derivatives_of_a_run_from_a_displaced_tip(kind: str) -> None:
     agree(tip, {"modulus": E, "first": 0.01})
 
 
+SECTIONS: dict[str, tuple[Callable[..., Section], Values]] = {
+    "tapered": (
+        lambda width, thickness: Section.rectangle([width, 0.01], [thickness, 0.5 * thickness], [0.0, 0.3]),
+        {"width": 0.02, "thickness": 0.004},
+    ),
+    "tube": (Section.tube, {"diameter": 0.01, "wall": 0.001}),
+    "general": (
+        lambda area, bent, twisted, sheared: Section.general(
+            area, bent, 3e-9, torsion_constant=twisted, shear_coefficient_y=0.8, shear_coefficient_z=sheared
+        ),
+        {"area": 8e-5, "bent": 1e-10, "twisted": 4e-10, "sheared": 0.8},
+    ),
+}
+
+
+@pytest.mark.parametrize("shape", SECTIONS)
+def test_derivatives_with_respect_to_a_section_that_twists_and_shears(shape: str) -> None:
+    """They failed: torsion constants, shear coefficients and tapers left JAX."""
+    section, at = SECTIONS[shape]
+
+    def tip(at: Values) -> Any:
+        material = Material(2700.0, E, poissons_ratio=at["ratio"])
+        aside = PointMass(0.3, 0.05, offset=(0.0, 0.02, 0.01))
+        beam = Beam(0.3, section(**{k: at[k] for k in at if k != "ratio"}), material, [aside], damping_ratio=0.01)
+        structure = assemble(beam, "FOAM", z=1, twist=1, shear_z=1)
+        how = {"duration": 0.1, "step": 0.005, "initial": "undeformed", "estimate": False, "loads": False}
+        response = simulate(structure, Flight(z=Sine(30.0, 12.0)), **how)
+        return (response.tip[-5:] @ np.array([1.0, 2.0, 3.0]) * 1e3).sum()
+
+    agree(tip, at | {"ratio": 0.33})
+
+
 def test_a_held_target_is_turned_by_the_arms_number() -> None:
     def turned(arm: Any) -> Any:
         flight = Flight(z=Sine(20.0, 1.0))
@@ -181,6 +214,7 @@ def test_a_held_target_is_turned_by_the_arms_number() -> None:
     [
         (lambda x: Beam(x, STRIP, ALUMINIUM), "length is traced by JAX"),
         (lambda x: Beam(0.3, STRIP, ALUMINIUM, [PointMass(x, 0.1)]), r"masses\[0\].at is traced by JAX"),
+        (lambda x: Beam(0.3, Section.of_matrices(x * np.eye(6), np.eye(6))), "stiffness is traced by JAX"),
     ],
 )
 def test_what_places_the_shapes_cannot_be_traced(beam: Any, words: str) -> None:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.arrays.namespace import is_traced
 from gbeam.errors import InputError
 from gbeam.guards.checks import array
 
@@ -25,6 +26,8 @@ TETRAHEDRON = np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)], dtype
 def listed(name: str, value: Any) -> tuple[Matrix, ...]:
     """Matrices, one per station, of an array (6, 6) or (stations, 6, 6)."""
     matrices = array(name, value)
+    if is_traced(matrices):
+        raise InputError(name, "is traced by JAX, and its eigenvalues are looked at", "trace a section of dimensions")
     matrices = matrices[None] if np.ndim(matrices) == 2 else matrices
     if matrices.ndim != 3 or matrices.shape[1:] != (6, 6) or not np.isfinite(matrices).all():
         raise InputError(name, f"is an array {np.shape(value)}", "give (6, 6), or (stations, 6, 6), finite")

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gbeam.arrays.namespace import is_jax, namespace
+from gbeam.arrays.namespace import as_array, is_jax, namespace
 from gbeam.arrays.tree import Value, record, static
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
@@ -23,9 +23,10 @@ Array = NDArray[np.float64]
 
 def _listed(name: str, value: Any) -> tuple[Any, ...]:
     """Values of a dimension, one per station; JAX's stay what they are."""
-    if is_jax(value):
-        return tuple(value) if value.ndim else (value,)
-    return tuple(float(x) for x in np.atleast_1d(array(name, value)))
+    values = array(name, value)
+    if is_jax(values):
+        return tuple(values) if values.ndim else (values,)
+    return tuple(float(x) for x in np.atleast_1d(values))
 
 
 KINDS = {
@@ -293,12 +294,13 @@ class Section(Value):
 
     def torsion_constant(self, x: ArrayLike) -> Array:
         """J at positions `x`, m⁴; NaN where it is not known."""
-        return np.asarray(SHAPES[self.shape].torsion(**self._local(x)))
+        return as_array(SHAPES[self.shape].torsion(**self._local(x)))
 
     def shear_coefficients(self, x: ArrayLike, poissons_ratio: float) -> tuple[Array, Array]:
         """Coefficients of the shear forces k G A γ along y and z at positions `x`, m, for a `poissons_ratio`."""
         y, z = SHAPES[self.shape].shear(poissons_ratio, **self._local(x))
-        return np.broadcast_to(y, np.shape(x)), np.broadcast_to(z, np.shape(x))
+        xp = namespace(y, z)
+        return xp.broadcast_to(y, np.shape(x)), xp.broadcast_to(z, np.shape(x))
 
     def stresses(self, x: ArrayLike) -> Array | None:
         """Stresses (points, 3, 6, s) Pa, normal and shear along two directions, by unit loads at positions `x` (s,), m;
@@ -318,7 +320,7 @@ class Section(Value):
         where = array("x", x)
         if self.shape == MATRICES:
             return {name: between(self.stations, each, where) for name, each in self.dimensions.items()}
-        xp = namespace(*self.dimensions.values(), *(v[0] for v in self.dimensions.values()))
+        xp = namespace(*(each for values in self.dimensions.values() for each in values))
         if self.stations:
             return {k: xp.interp(where, np.asarray(self.stations), xp.asarray(v)) for k, v in self.dimensions.items()}
         return {k: v[0] + xp.zeros(where.shape) for k, v in self.dimensions.items()}
