@@ -5,8 +5,10 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
+import pytest
 from matplotlib.figure import Figure
 
+from gbeam.cli import main
 from gbeam.cli.outputs import write_json
 from gbeam.cli.publication import publish
 from gbeam.plots import save
@@ -41,3 +43,16 @@ def test_a_rerun_removes_the_plots_of_the_run_before_it_and_nothing_else(tmp_pat
     # A command without plots leaves all as it is.
     _publish(tmp_path)
     assert {file.name for file in tmp_path.iterdir()} == {"facts.json", *kept, *plots}
+
+
+def test_what_a_scenario_means_folds_on_a_narrow_terminal(
+    fast: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["check", str(fast)]) == 0
+    plain = capsys.readouterr().out
+    assert max(map(len, plain.splitlines())) > 40  # a file takes any width
+    monkeypatch.setenv("COLUMNS", "40")
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True)
+    assert main(["check", str(fast)]) == 0
+    folded = capsys.readouterr().out
+    assert max(map(len, folded.splitlines())) <= 40 and folded.split() == plain.split()

@@ -6,7 +6,7 @@ import time as clock
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, get_args
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -17,6 +17,7 @@ from gbeam.analysis.response.peaks import vector_peaks
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.system.histories import deflection
+from gbeam.constants import ModelKind
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.assembly import model_of, remade
@@ -31,14 +32,14 @@ from gbeam.results.result import Floats
 from gbeam.results.study import Failure, ModelRow, ModelStudy
 from gbeam.results.system import SystemResponse
 
-REFERENCE = "exact"
+REFERENCE: ModelKind = "exact"
 CONVERGED = (3, 6)  # strain and rotation shapes at least of the reference five digits with them
 # Share of the peak by which its last shapes may move the tip: the error has been up to 12 times that.
 SHAPES_FINE = 1e-5
 PATIENCE = 5.0  # s: what took longer is not run again to time it without compilation
 
 
-def counterpart(model: Model, kind: str) -> Model:
+def counterpart(model: Model, kind: ModelKind) -> Model:
     """The model of another kind with the same shapes; one of strains, as the reference is, with enough of them."""
     axial, y, z = model.counts[:3]
     if KINDS[kind].strains:
@@ -50,7 +51,7 @@ def counterpart(model: Model, kind: str) -> Model:
 @typed
 def compare_models(
     case: Case | SystemCase,
-    kinds: Sequence[str] = tuple(KINDS),
+    kinds: Sequence[ModelKind] = get_args(ModelKind),
     progress: Progress = None,
     *,
     point: str | None = None,
@@ -145,7 +146,7 @@ def _refused(system: System, point: str | None) -> str | None:
     return point
 
 
-def _structure(case: Case | SystemCase, kind: str) -> Structure | System | Failure:
+def _structure(case: Case | SystemCase, kind: ModelKind) -> Structure | System | Failure:
     try:
         if isinstance(case, Case):
             return replace(case, model=counterpart(case.model, kind)).assemble()
@@ -154,7 +155,7 @@ def _structure(case: Case | SystemCase, kind: str) -> Structure | System | Failu
         return Failure("cannot", str(error))
 
 
-def of_kind(system: System, kind: str) -> System:
+def of_kind(system: System, kind: ModelKind) -> System:
     """The system with all of its beams in a model, with their shapes."""
     bodies = {
         name: remade(body, counterpart(model_of(body), kind), body.stations[:-1])

@@ -94,7 +94,10 @@ def show(words: str, facts: Mapping[str, Any], json: bool) -> None:
     """Print a result as JSON, or in words."""
     from gbeam.report import as_json
 
-    print(as_json(facts) if json else printable(words))
+    if json:
+        print(as_json(facts))
+    else:
+        show_lines((line, "") for line in words.split("\n"))
 
 
 _STYLES = {"good": "green", "bad": "bold red", "warning": "yellow", "faint": "dim", "verdict": "bold"}

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gbeam.arrays.namespace import holds_jax, is_jax, namespace
+from gbeam.constants import ModelKind, Shapes
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import NODES, refuse_more
@@ -34,13 +35,13 @@ Array = Any
 @typed
 def assemble(
     beam: Beam,
-    model: Model | str,
+    model: Model | ModelKind,
     stations: ArrayLike = (),
     *,
     axial: int = 0,
     y: int = 0,
     z: int = 0,
-    shapes: str | None = None,
+    shapes: Shapes | None = None,
     twist: int = 0,
     shear_y: int = 0,
     shear_z: int = 0,
@@ -108,7 +109,7 @@ def assembled(
     rule: Quadrature,
     at: Array,
     families: Families | None,
-    shapes: str,
+    shapes: Shapes,
 ) -> Structure:
     """Put a beam into a model with given shapes, quadrature and stations of output (s,) m, the tip last."""
     row = KINDS[kind]
@@ -193,8 +194,9 @@ def at_stations(structure: Structure, stations: ArrayLike) -> Structure:
 def model_of(structure: Structure) -> Model:
     """Return the model of a structure of a beam."""
     assert structure.source is not None
+    kind: Any = structure.kind
     axial, y, z, *others = structure.counts
-    return Model(structure.kind, axial, y, z, structure.source.shapes, False, *others)
+    return Model(kind, axial, y, z, structure.source.shapes, False, *others)
 
 
 def remade(structure: Structure, model: Model, stations: ArrayLike) -> Structure:

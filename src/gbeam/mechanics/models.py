@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import get_args
 
-from gbeam.constants import BY_STRAINS
+from gbeam.constants import BY_STRAINS, ModelKind, Shapes
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.fields.basis import FAMILIES, Counts
@@ -24,8 +25,7 @@ class Kind:
 FIRST, FIRST_STRAINS = (1, 3), (2, 4)  # automatic numbers of shapes along and across the beam
 MOST = 9  # across it
 TORSION = "modes.twist gives a model torsion"
-SHAPES = ("clamped-free", "adapted")
-_ROWS = {
+_ROWS: dict[ModelKind, Kind] = {
     "TLAM": Kind(order=1),
     "FOAM": Kind(),
     "SFOAM": Kind(hub_force=False, axial=False),
@@ -33,7 +33,7 @@ _ROWS = {
     "fourth-order": Kind(order=4, truncated=False),
     "exact": Kind(order=None, truncated=False),
 }
-KINDS = {name: replace(row, strains=name in BY_STRAINS) for name, row in _ROWS.items()}
+KINDS: dict[str, Kind] = {name: replace(row, strains=name in BY_STRAINS) for name, row in _ROWS.items()}
 
 
 @typed
@@ -70,18 +70,18 @@ class Model:
     (1, 0, 3, 2, 0, 0)
     """
 
-    kind: str
+    kind: ModelKind
     axial: int = 0
     y: int = 0
     z: int = 0
-    shapes: str = "clamped-free"
+    shapes: Shapes = "clamped-free"
     automatic: bool = False
     twist: int = 0
     shear_y: int = 0
     shear_z: int = 0
 
     @classmethod
-    def of(cls, kind: str, shapes: str | None = None) -> Model:
+    def of(cls, kind: ModelKind, shapes: Shapes | None = None) -> Model:
         """The model of a kind with the numbers of shapes that a study begins with.
 
         Parameters
@@ -92,7 +92,7 @@ class Model:
         """
         row = KINDS.get(kind, Kind())
         axial, across = FIRST_STRAINS if row.strains else FIRST
-        default = "clamped-free" if row.strains else "adapted"
+        default: Shapes = "clamped-free" if row.strains else "adapted"
         return cls(kind, axial if row.axial else 0, across, across, shapes or default, automatic=True)
 
     def richer(self) -> Model | None:
@@ -104,7 +104,7 @@ class Model:
         return replace(self, axial=axial, y=y, z=z, twist=twist, shear_y=shear_y, shear_z=shear_z)
 
     def __post_init__(self) -> None:
-        for name, value, choices in (("kind", self.kind, tuple(KINDS)), ("shapes", self.shapes, SHAPES)):
+        for name, value, choices in (("kind", self.kind, tuple(KINDS)), ("shapes", self.shapes, get_args(Shapes))):
             if value not in choices:
                 raise InputError(name, f"is {value!r}", f"choose one of {', '.join(choices)}")
         for name, count in zip(FAMILIES, self.counts, strict=True):

@@ -9,6 +9,7 @@ import numpy as np
 
 from gbeam.arrays.namespace import holds_jax, is_jax, namespace
 from gbeam.arrays.tree import Value, record, static
+from gbeam.constants import Shapes
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import implausible, positive
@@ -83,7 +84,7 @@ class Source(Value):
     """The beam that a structure was made of, and which shapes its model has."""
 
     beam: Beam
-    shapes: str
+    shapes: Shapes
 
 
 @record

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.constants import Sampler
 from gbeam.errors import InputError
 from gbeam.guards.limits import refuse_more
 from gbeam.guards.units import NUMBER
@@ -29,7 +30,7 @@ class Cases:
     grid: tuple[Variation, ...]
     drawn: tuple[Variation, ...]
     samples: int
-    sampler: str = "sobol"
+    sampler: Sampler = "sobol"
 
     @property
     def variations(self) -> tuple[Variation, ...]:
@@ -60,7 +61,7 @@ class Cases:
 def read_cases(
     over: Sequence[str],
     samples: int | None = None,
-    sampler: str = "sobol",
+    sampler: Sampler = "sobol",
     seed: int = 0,
     distributions: Mapping[str, Distribution] | None = None,
 ) -> Cases:

@@ -6,7 +6,7 @@ import json
 import os
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from gbeam.analysis.case import Case, SystemCase
 from gbeam.analysis.control.plants import driven, movable
 from gbeam.analysis.control.shaping import profile_of, shape_command
 from gbeam.analysis.model_study import counterpart, of_kind
+from gbeam.constants import ModelKind
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice
@@ -44,7 +45,7 @@ def shape_hub_command(
     duration: float | None = None,
     limit: float = np.inf,
     robust: float = 0.0,
-    check: str = "",
+    check: ModelKind | Literal[""] = "",
     motion: str | None = None,
     joint: str | None = None,
     point: str | None = None,

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.analysis.case import Case, SpecimenCase, SystemCase
+from gbeam.constants import Sampler
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import HISTORY_BYTES, WORKERS, refuse_more
@@ -47,7 +48,7 @@ def sweep(
     options: Mapping[str, Any] | None = None,
     overrides: Sequence[str] = (),
     samples: int | None = None,
-    sampler: str | None = None,
+    sampler: Sampler | None = None,
     seed: int | None = None,
     workers: int = 1,
     scheduler: str | None = None,

@@ -21,8 +21,7 @@ from gbeam.arrays.tree import altered, arguments_of
 from gbeam.errors import InputError, placing_within
 from gbeam.guards.kinds import KINDS, kind_of_argument
 from gbeam.guards.units import read_quantity
-from gbeam.mechanics.assembly import assemble
-from gbeam.mechanics.models import Model
+from gbeam.mechanics.assembly import assemble, model_of
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.joints import COUPLINGS, GROUND, OF_COORDINATES, SLIDES, Joint, kind_of_value
 from gbeam.mechanics.tree.system import RigidBody, System
@@ -130,12 +129,9 @@ class _BeamBody:
 
     owner = "Beam"
 
-    def __init__(self, structure: Structure, beam: Beam, shapes: str) -> None:
-        axial, y, z, *others = structure.counts
+    def __init__(self, structure: Structure, beam: Beam) -> None:
         self.structure = structure
-        self.arguments = (arguments_of(beam) or {}) | {
-            "model": Model(structure.kind, axial, y, z, shapes, False, *others)
-        }
+        self.arguments = (arguments_of(beam) or {}) | {"model": model_of(structure)}
 
     def altered(self, **changes: Any) -> Structure:
         """The structure of other arguments; its stations stay those within the beam."""
@@ -203,7 +199,7 @@ class CaseTemplate:
             if isinstance(body, RigidBody):
                 bodies[name] = body
             elif body.source is not None:  # of particles no value is known
-                bodies[name] = _BeamBody(body, body.source.beam, body.source.shapes)
+                bodies[name] = _BeamBody(body, body.source.beam)
         gravity = {} if system.gravity is None else {"gravity": system.gravity}
         parts = {name: getattr(system, name) for name in ("joints", "forces", "controllers")}
         return {"bodies": bodies} | parts | {"system": gravity} | of_all

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.constants import ToleranceOf
 from gbeam.guards.checks import choice, positive
 from gbeam.motion.centrifuge.kinematics import moved
 from gbeam.numerics.samples import separate_peaks, true_runs
@@ -60,7 +61,7 @@ def account_of(
     during: slice,
     *,
     tolerance: float,
-    tolerance_of: str,
+    tolerance_of: ToleranceOf,
 ) -> Accounting:
     """Account for a flight on a machine, of whose axes the samples `during` the flight are at these times."""
     positive("tolerance", tolerance, "of the flight's load")
@@ -86,7 +87,7 @@ def account(
     machine: History,
     *,
     tolerance: float,
-    tolerance_of: str = "peak",
+    tolerance_of: ToleranceOf = "peak",
     idle: float = 0.0,
     target: Floats | None = None,
     episodes: tuple[tuple[float, float, str], ...] = (),

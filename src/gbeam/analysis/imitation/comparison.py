@@ -10,6 +10,7 @@ from gbeam.analysis.imitation.accounting import History, account_of, largest_loa
 from gbeam.analysis.imitation.fatigue import fatigue
 from gbeam.analysis.imitation.specimen import specimen_of
 from gbeam.analysis.response.peaks import maxima, near_maxima, seven_point, vector_peaks
+from gbeam.constants import ToleranceOf
 from gbeam.errors import InputError, placing_within
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import index_of, positive
@@ -105,7 +106,7 @@ def compare(
     *,
     point: str | None = None,
     tolerance: float = TOLERANCE,
-    tolerance_of: str = "peak",
+    tolerance_of: ToleranceOf = "peak",
     accept: Mapping[str, Limit] | None = None,
     control: Mapping[str, float] | None = None,
     damage_at: str | None = None,

@@ -14,6 +14,7 @@ from gbeam.analysis.imitation.accounting import (
     points_of,
     times_between,
 )
+from gbeam.constants import ToleranceOf
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import SAMPLES, refuse_more
 from gbeam.motion import Centrifuge
@@ -39,7 +40,7 @@ def plan(
     beam: Beam | None = None,
     envelope: Floats | None = None,
     tolerance: float = TOLERANCE,
-    tolerance_of: str = "peak",
+    tolerance_of: ToleranceOf = "peak",
     accept: Mapping[str, Limit] | None = None,
     title: str = "",
 ) -> MachinePlan:

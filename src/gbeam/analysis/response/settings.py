@@ -8,6 +8,7 @@ from typing import TypedDict
 
 from gbeam.analysis.response.problem import Initial, begun
 from gbeam.arrays.tree import Value
+from gbeam.constants import Integrator
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import finite, implausible, positive, possible
@@ -24,7 +25,7 @@ class Settings(TypedDict, total=False):
     duration: float
     start: float
     step: float | None
-    integrator: str | None
+    integrator: Integrator | None
     parameters: Mapping[str, float]
     tolerance: float
     residual_from: float | None
@@ -86,7 +87,7 @@ class ResponseSettings(Value):
     duration: float
     start: float = 0.0
     step: float | None = None
-    integrator: str | None = None
+    integrator: Integrator | None = None
     parameters: Mapping[str, float] = field(default_factory=dict)
     tolerance: float = 1e-2
     residual_from: float | None = None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from cyclopts import Parameter
 
@@ -25,6 +25,7 @@ from gbeam.cli.options import (
 from gbeam.cli.outputs import LIST, deliver, list_figures
 from gbeam.cli.process import Watch, command
 from gbeam.cli.publication import refuse_unwritable
+from gbeam.constants import Sampler
 from gbeam.questions import QUESTIONS, differentiable
 
 
@@ -65,7 +66,7 @@ def sweep(
     options: Any = None,
     samples: Annotated[int | None, Parameter(help='How many are drawn of distributions, "200"; 64 by default.')] = None,
     sampler: Annotated[
-        Literal["sobol", "latin", "random", "saltelli"] | None,
+        Sampler | None,
         Parameter(help="How they are drawn; sobol by default, saltelli for Sobol indices."),
     ] = None,
     seed: Annotated[int | None, Parameter(help='The same seed, "1", draws the same samples.')] = None,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from cyclopts import Parameter
 
@@ -26,6 +26,7 @@ from gbeam.cli.options import (
 )
 from gbeam.cli.outputs import LIST, deliver, list_figures, refuse_changes, write_found
 from gbeam.cli.process import Watch
+from gbeam.constants import ModelKind
 from gbeam.questions import differentiable
 
 
@@ -171,7 +172,7 @@ def shape(
     ] = None,
     robust: Annotated[str, Parameter(help='Share by which all frequencies may be wrong, "20 %".')] = "0",
     check: Annotated[
-        Literal["TLAM", "FOAM", "SFOAM", "CFOAM", "fourth-order", "exact"] | None,
+        ModelKind | None,
         Parameter(help="Model that the commands are run on; the scenario's by default."),
     ] = None,
     motion: MotionName = None,

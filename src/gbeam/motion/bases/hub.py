@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, Self, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gbeam.arrays.namespace import as_array, is_traced, namespace
 from gbeam.arrays.tree import assign, record, static
+from gbeam.constants import Pointing
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import finite, positive, possible
@@ -16,7 +17,7 @@ from gbeam.motion.bases.base import Base
 from gbeam.motion.profiles.combine import as_profile
 from gbeam.motion.profiles.profile import Profile
 
-POINTINGS = ("outward", "inward")
+POINTINGS = get_args(Pointing)
 
 
 @record
@@ -28,7 +29,7 @@ class Mount:
     gravity: Any  # (3,) m/s² in hub axes at hub angle zero, or None
 
     def __init__(
-        self, radius: Any, pointing: str = "outward", setting_angle: Any = 0.0, gravity: Any | None = None
+        self, radius: Any, pointing: Pointing = "outward", setting_angle: Any = 0.0, gravity: Any | None = None
     ) -> None:
         if pointing not in POINTINGS:
             raise InputError("pointing", f"is {pointing!r}", f"choose one of {', '.join(POINTINGS)}")
@@ -135,7 +136,7 @@ class Hub:
         rate: Profile | Any | None = None,
         inertia: Any | None = None,
         torque: Profile | Any | None = None,
-        pointing: str = "outward",
+        pointing: Pointing = "outward",
         setting_angle: Any | None = None,
         gravity: ArrayLike | None = None,
         stiffness: Any = 0.0,

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import as_array, holds_jax, namespace
 from gbeam.arrays.tree import assign, each_leaf, record, static
-from gbeam.constants import STANDARD_GRAVITY
+from gbeam.constants import STANDARD_GRAVITY, InverseName, Mounting, Start
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, positive, possible, vector
@@ -113,14 +113,14 @@ class Centrifuge:
         *,
         arm: Any | None = None,
         control_point: Any,
-        inverse: str = "planned",
+        inverse: InverseName = "planned",
         limits: MachineLimits | Machine | Limits | None = None,
         gravity: bool,
         idle: Any | None = None,
         smoothing: Any | None = 0.0,
-        mounting: str = "upright",
+        mounting: Mounting = "upright",
         turn: Sequence[float] = (0.0, 0.0, 0.0),
-        start: str = "rest",
+        start: Start = "rest",
         spin_up: float | None = None,
         spin_down: float | None = None,
         clip: bool = False,

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.arrays.tree import assign, record
-from gbeam.constants import STANDARD_GRAVITY
+from gbeam.constants import STANDARD_GRAVITY, Start
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, positive
@@ -195,14 +195,14 @@ machines: dict[str, Machine] = {
 }
 
 
-STARTS = ("rest", "pre-yawed", "idle")
+STARTS = get_args(Start)
 
 
 @dataclass(frozen=True)
 class Ends:
     """Beginning and end of a centrifuge's motion, before the flight's first time and after its last: see Centrifuge."""
 
-    start: str = "rest"  # one of STARTS
+    start: Start = "rest"
     spin_up: float | None = None  # from standstill to the flight's first time, s; None: found within the limits
     spin_down: float | None = None  # from its last time to standstill, likewise
 

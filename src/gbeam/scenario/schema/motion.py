@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Field, StrictBool, Tag, create_model, model_validator
 from pydantic_core import PydanticCustomError
 
+from gbeam.constants import InverseName, Mounting, Pointing, Start, ToleranceOf
 from gbeam.results.imitation.criteria import RULES
 from gbeam.scenario.schema.fields import (
     ONE_OR_LIST,
@@ -65,7 +66,7 @@ class Accept(_Limits):  # type: ignore[misc, valid-type]
     tolerance: Share | None = optional(
         "difference from the flight's load within which it counts as followed, as a share; 5 % if left out"
     )
-    tolerance_of: Literal["peak", "instant"] | None = optional(
+    tolerance_of: ToleranceOf | None = optional(
         "what tolerance is a share of. peak: the flight's largest load, as where it is left out; instant: "
         "its load at each time"
     )
@@ -163,7 +164,7 @@ class Centrifuge(Table):
     control_point: Annotated[Annotated[Position, Tag("one")] | Annotated[Place3, Tag("list")], ONE_OR_LIST] = Field(
         description="point of the specimen that feels the flight's load, from the root: along x, or [x, y, z]"
     )
-    inverse: Literal["quasi-static", "flat", "exact", "planned"] = Field(
+    inverse: InverseName = Field(
         default="planned",
         description="how the axis motions are found. planned: the least tracking error within the limits, to 1 % of "
         "the load or a warning; the others do not know the limits. quasi-static: the arm's tangential acceleration is "
@@ -183,7 +184,7 @@ class Centrifuge(Table):
     smoothing: Time = Field(
         default=0.0, description="width of the kernel that rounds the target's corners; 0 leaves them sharp"
     )
-    start: Literal["idle", "rest", "pre-yawed"] = Field(
+    start: Start = Field(
         default="rest",
         description="how the machine's motion begins and ends. rest: it spins up from standstill before the flight "
         "and down to it after the flight, the arm's tangential acceleration ignored; pre-yawed: the same with axis 2 "
@@ -195,7 +196,7 @@ class Centrifuge(Table):
         "in which the arm turns once or more"
     )
     spin_down: Duration | None = optional("time from the flight's last time to standstill; left out, likewise")
-    mounting: Literal["upright", "inverted"] = Field(
+    mounting: Mounting = Field(
         default="upright",
         description="which of the two ways the specimen sits in the gimbals. Under a load across it, its tip points "
         "along the arm's motion (upright) or against it (inverted): docs/mounting.svg",
@@ -245,9 +246,7 @@ class Hub(Table):
     damping: Annotated[float, Quantity("rotational damping", "zero or more")] | None = optional(
         "torsional damper from a free hub to the ground"
     )
-    pointing: Literal["outward", "inward"] = Field(
-        default="outward", description="from the root away from the hub's axis, or towards it"
-    )
+    pointing: Pointing = Field(default="outward", description="from the root away from the hub's axis, or towards it")
     setting_angle: Annotated[float, Quantity("angle")] | None = optional(
         "turn of the section about the beam; at 0, or left out, its y axis lies in the plane of rotation"
     )

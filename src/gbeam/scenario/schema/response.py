@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, StrictBool, field_validator, model_validator
 from pydantic_core import PydanticCustomError
 
+from gbeam.constants import Integrator
 from gbeam.guards.limits import ENTRIES
 from gbeam.scenario.schema.fields import (
     Acceleration,
@@ -82,7 +83,7 @@ class Response(Table):
         "answers of one time are asked for, such as modes"
     )
     step: Step = Field(default="auto", description="time step, or auto")
-    integrator: Literal["newmark", "hht", "generalized-alpha", "gauss"] | None = optional(
+    integrator: Integrator | None = optional(
         "time integrator; left out gauss of systems and on free hubs, newmark otherwise"
     )
     beta: Ratio | None = optional("parameter of newmark")

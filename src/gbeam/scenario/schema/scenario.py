@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 from pydantic import AfterValidator, Field, PrivateAttr, StrictInt, ValidationInfo, model_validator
 from pydantic_core import PydanticCustomError
 
+from gbeam.constants import ModelKind, Sampler, Shapes
 from gbeam.guards.limits import NAME, SHAPES, TITLE
 from gbeam.printable import advise, shortened, unprintable
 from gbeam.questions import QUESTIONS
@@ -42,7 +43,7 @@ class Modes(Table):
 class Model(Table):
     """The model of the beam's deformation."""
 
-    kind: Literal["TLAM", "FOAM", "SFOAM", "CFOAM", "fourth-order", "exact"] = Field(
+    kind: ModelKind = Field(
         description="TLAM: linear, no foreshortening. FOAM: first order with foreshortening. SFOAM: FOAM "
         "without axial coordinates. CFOAM: FOAM's field, complete energy. fourth-order: exact's places to that order, "
         "complete. exact: any rotation"
@@ -51,7 +52,7 @@ class Model(Table):
         "numbers of shapes: { axial, y, z, twist, shear_y, shear_z }; where left out, `run` raises "
         "those of axial, y and z until they are enough"
     )
-    shapes: Literal["clamped-free", "adapted"] | None = optional(
+    shapes: Shapes | None = optional(
         "clamped-free: shapes of the bare uniform beam (for `exact` and `fourth-order`, polynomials); the "
         "default for these two and where `modes` are given. adapted: the modes at rest of this beam with its tapers, "
         "masses and root springs, of which fewer are needed; the default where `modes` are left out"
@@ -76,9 +77,7 @@ class Sweep(Table):
     )
     verb: Verb = Field(default="run", description="whose figures")
     samples: int | None = optional("how many are drawn from distributions; 64", ge=1, strict=True)
-    sampler: Literal["sobol", "latin", "random", "saltelli"] = Field(
-        default="sobol", description="how they are drawn; saltelli for Sobol indices"
-    )
+    sampler: Sampler = Field(default="sobol", description="how they are drawn; saltelli for Sobol indices")
     seed: int = Field(default=0, ge=0, strict=True, description="the same seed draws the same samples")
 
 
