@@ -70,15 +70,13 @@ def _moving(moved: np.ndarray) -> list[int]:
 def coordinates(response: SystemResponse, title: str = "") -> Figure:
     """Describe the joints' coordinates and the efforts of their drives."""
     panels, every = [], named(response)
-    size = max((np.abs(each).max(initial=0.0) for each in every.values()), default=0.0)
-    for name, history in every.items():
+    size = max((np.abs(history).max(initial=0.0) for history, *_ in every.values()), default=0.0)
+    for name, (history, unit, effort) in every.items():
         if 0 < np.abs(history).max(initial=0.0) <= SAME * size:  # rounding
             continue
-        k = response.coordinates.index(name)
-        panels.append(Panel(f"{name}, {'m' if _slides(name) else 'rad'}", (Line(response.time, history),)))
-        effort = response.effort[:, k]
+        panels.append(Panel(f"{name}, {unit}", (Line(response.time, history),)))
         if np.any(effort):
-            scale, unit = scale_of("N" if _slides(name) else "N m", effort)
+            scale, unit = scale_of("N" if unit == "m" else "N m", effort)
             panels.append(Panel(f"drive, {unit}", (Line(response.time, scale * effort),), zero=True))
     return Figure(title, "coordinates of the joints", tuple(panels), outcomes=(response.outcome,))
 

@@ -171,9 +171,12 @@ def comparison_lines(comparison: Comparison) -> Iterator[str]:
 def of_system(response: SystemResponse) -> Iterator[str]:
     """Sentences on joints, loads, energy and the error."""
     every = named_histories(response)
-    size = max((float(np.abs(each).max()) for each in every.values()), default=0.0)
-    ends = tidy([float(each[-1]) for each in every.values()], max(size, float(response.largest.max(initial=0.0))))
-    joints = ", ".join(f"{name} {number(end)}" for name, end in zip(every, ends, strict=True))
+    size = max((float(np.abs(history).max()) for history, *_ in every.values()), default=0.0)
+    at_end = [float(history[-1]) for history, *_ in every.values()]
+    ends = tidy(at_end, max(size, float(response.largest.max(initial=0.0))))
+    joints = ", ".join(
+        f"{name} {number(end)} {unit}" for (name, (_, unit, _)), end in zip(every.items(), ends, strict=True)
+    )
     if joints:
         yield f"at the end {joints}"
     yield from (f"{body}: {largest_loads(each.peaks)}" for body, each in response.beams.items())

@@ -19,6 +19,7 @@ from gbeam.results.response import Readings, Sensor
 from gbeam.results.result import Complex, Figured, Floats, Part
 from gbeam.results.solids import SolidStress, Surface, SurfaceModes
 
+_EULER, _TURNS, _SPINS = ("e0", "e1", "e2", "e3"), ("rx", "ry", "rz"), ("wx", "wy", "wz")  # of balls
 ENERGIES = ("kinetic", "elastic", "gravity")
 _OF_POINTS = {each: each for each in ("place", "velocity", "attitude", "acceleration")} | {"spin": "angular_velocity"}
 
@@ -203,7 +204,7 @@ class SystemResponse(_Placed, Driven, Figured):
         "force N or torque N m of the drive on each coordinate",
         "time coordinate",
         key=None,
-        note="of prescribed coordinates what the motion needs",
+        note="of prescribed coordinates what the motion needs; e1, e2 and e3 have torques in axes of the body",
     )
     ground_force: Floats = quantity("N", "force on the ground", "time axis", key=None, frame="ground")
     ground_moment: Floats = quantity(
@@ -296,9 +297,9 @@ class SystemResponse(_Placed, Driven, Figured):
         Parameters
         ----------
         name : str
-            ``joint.angle``, ``joint.angle_rate``, ``body.point.place_x``, ``velocity_x``, ``attitude_x`` (axes
-            of the ground), ``acceleration_x`` or ``spin_x`` (axes of the point); of a beam ``body.root_force.x``,
-            ``root_moment.x``.
+            ``joint.angle``, ``joint.angle_rate``, of a ball ``joint.rx`` and ``joint.wx``; ``body.point.place_x``,
+            ``velocity_x``, ``attitude_x`` (axes of the ground), ``acceleration_x`` or ``spin_x`` (axes of the point);
+            of a beam ``body.root_force.x``, ``root_moment.x``.
 
         Raises
         ------
@@ -310,14 +311,14 @@ class SystemResponse(_Placed, Driven, Figured):
         if owner in self.points and quantity in _OF_POINTS and axis in tuple("xyz"):
             k = "xyz".index(axis)
             values = getattr(self, _OF_POINTS[quantity])[:, self.points.index(owner)]
-            if quantity == "attitude":
-                from scipy.spatial.transform import Rotation
-
-                values = Rotation.from_quat(values, scalar_first=True).as_rotvec()
-            return np.asarray(values[:, k])
+            return np.asarray((_turned(values) if quantity == "attitude" else values)[:, k])
         body, _, load = owner.rpartition(".")
         if body in self.beams and load in ("root_force", "root_moment") and kind in tuple("xyz"):
             return np.asarray(getattr(self.beams[body].loads, load)[:, "xyz".index(kind)])
+        if f"{owner}.{_EULER[0]}" in self.coordinates and kind in (*_TURNS, *_SPINS):
+            first = self.coordinates.index(f"{owner}.{_EULER[0]}")
+            e, rate = (each[:, first : first + 4] for each in (self.q, self.qd))
+            return _turned(e)[:, _TURNS.index(kind)] if kind in _TURNS else _spun(e, rate)[:, _SPINS.index(kind)]
         if name.endswith("_rate") and name.removesuffix("_rate") in self.coordinates:
             return self.qd[:, self.coordinates.index(name.removesuffix("_rate"))]
         return self.q[:, index_of("name", name, self.coordinates)]
@@ -489,7 +490,30 @@ class SystemModes(Oscillating, Figured):
         return self._with_warnings(*lines)
 
 
-def named(response: SystemResponse) -> Mapping[str, Floats]:
-    """Histories of the joints' coordinates by name, without Euler parameters."""
-    chosen = [k for k, name in enumerate(response.coordinates) if name.rpartition(".")[2][0] not in "qe"]
-    return {response.coordinates[k]: response.q[:, k] for k in chosen}
+def named(response: SystemResponse) -> Mapping[str, tuple[Floats, str, Floats]]:
+    """Histories of the joints' coordinates by name, of balls the rotation vector, each with its unit and the effort."""
+    histories = dict[str, tuple[Floats, str, Floats]]()
+    for k, name in enumerate(response.coordinates):
+        joint, _, tail = name.rpartition(".")
+        if tail == _EULER[0]:
+            turns, efforts = _turned(response.q[:, k : k + 4]), response.effort[:, k + 1 : k + 4]
+            for i, axis in enumerate("xyz"):
+                histories[f"{joint}.r{axis}"] = turns[:, i], "rad", efforts[:, i]
+        elif tail not in _EULER and not tail.startswith("q"):
+            unit = "m" if tail in ("x", "y", "z", "displacement") else "rad"
+            histories[name] = response.q[:, k], unit, response.effort[:, k]
+    return histories
+
+
+def _turned(e: Floats) -> Floats:
+    """Rotation vectors (t, 3) rad, of half a turn at most, of Euler parameters (t, 4) of any size."""
+    from scipy.spatial.transform import Rotation
+
+    return Rotation.from_quat(e, scalar_first=True).as_rotvec()
+
+
+def _spun(e: Floats, rate: Floats) -> Floats:
+    """Angular velocities (t, 3) rad/s, turned axes, of Euler parameters (t, 4) and their rates."""
+    square = (e * e).sum(axis=1, keepdims=True)
+    along = e[:, :1] * rate[:, 1:] - rate[:, :1] * e[:, 1:] - np.cross(e[:, 1:], rate[:, 1:])
+    return np.asarray(2 * along / square)

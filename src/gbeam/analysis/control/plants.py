@@ -228,8 +228,7 @@ class OnJoint:
         """The system at rest where what is driven is held after it has moved so far."""
         name, _, coordinate = self.coordinate.rpartition(".")
         joint = self.system.joints[name]
-        initial = dict(zip(joint.coordinates, joint.start, strict=True))
-        initial = {key: initial[key] + moved * (key == coordinate) for key in initial if key[0] != "e"}
+        initial = {key: value + moved * (key == coordinate) for key, value in joint.first.items()}
         efforts = {key: each for key, each in joint.efforts.items() if key != coordinate}
         held = replace(joint, initial=initial, rate={**joint.rates, coordinate: 0.0}, effort=efforts)
         return steady(replace(self.system, joints={**self.system.joints, name: held}), Drive())

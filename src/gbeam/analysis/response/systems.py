@@ -296,11 +296,12 @@ def _with_ends(motion: Motion | None, settings: ResponseSettings, step: float) -
 
 def _missed_stop(system: System, run: Trajectory) -> tuple[str, ...]:
     """Warn of a stop that a coordinate meets and leaves between two times of a run, which steps may not know."""
-    holders = [(link.holder, np.full(link.body.size, np.inf)) for link in system.tree.links]
-    low, high = (
-        np.concatenate([np.append(sign * getattr(of, side), off) for of, off in holders])[system.tree.free]
-        for side, sign in (("low", -1.0), ("high", 1.0))
-    )
+    stops = dict[str, list[float]]()
+    for name, joint in system.joints.items():
+        of = joint.holder
+        stops |= {f"{name}.{each}": [-low, high] for each, low, high in zip(joint.values, of.low, of.high, strict=True)}
+    free = [system.coordinates[k] for k in system.tree.free]
+    low, high = np.array([stops.get(name, [np.inf, np.inf]) for name in free]).reshape(-1, 2).T
     if not np.isfinite([low, high]).any():
         return ()
     from scipy.interpolate import CubicHermiteSpline  # which takes a while to import

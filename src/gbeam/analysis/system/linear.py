@@ -27,7 +27,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.bodies import Acting
 from gbeam.mechanics.tree.control import signal_names
 from gbeam.mechanics.tree.equations import Inputs, State, Tree
-from gbeam.mechanics.tree.signals import Driven, deforming, drives_of, measurements, signals_of
+from gbeam.mechanics.tree.signals import Driven, deforming, drives_of, local_names, measurements, signals_of
 from gbeam.mechanics.tree.steps import parameters_of_all
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.bases.base import Base
@@ -231,7 +231,8 @@ def linearize_system(
     driving = tuple(Signal(each, every[each].unit) for each in driven)
     a, b, c, d = state.linear._replace(inputs=b).state_space(*out, direct)
     names = state.names
-    states = [Signal(f"{name}{end}", units.get(f"{name}{end}", "")) for end in ("", "_rate") for name in names]
+    per = {"": "", "_rate": "/s"}  # a rotation is that from where the ball is
+    states = [Signal(f"{name}{end}", units.get(name, "") and units[name] + per[end]) for end in per for name in names]
     return StateSpace(
         a=a,
         b=b,
@@ -265,8 +266,7 @@ def _moves_of(system: System, motion: Motion | None) -> dict[str, Driven]:
         for way, kind, unit in ways:
             moves |= {f"base_{kind}_{axis}": Driven(way, k, unit) for k, axis in enumerate("xyz")}
     units = signals_of(system)
-    for k, at in enumerate(system.tree.fixed):
-        name = system.coordinates[at]
+    for k, name in enumerate(local_names(system.coordinates[at] for at in system.tree.fixed)):
         moves[f"{name}_acceleration"] = Driven("prescribed", k, f"{units[name]}/s^2")
     return moves
 
@@ -293,7 +293,8 @@ def _inputs(
     columns, direct = np.zeros((len(names), len(chosen))), np.zeros((read(*now, local.inputs).shape[-1], len(chosen)))
     for k, each in enumerate(chosen):
         if each.way == "effort":
-            columns[names.index(system.coordinates[each.at]), k] = 1.0
+            (name,) = local_names([system.coordinates[each.at]])
+            columns[names.index(name), k] = 1.0
             continue
         moved = _moved(local.inputs, each)
         columns[:, k] = -local.tree(*at, moved).imag / STEP

@@ -57,6 +57,8 @@ class Point:
             sizes = (each for a, b in pairs for each in zip(a.sizes, b.sizes, strict=True))
             kept = np.concatenate([np.arange(size) >= size - less for size, less in sizes])
             inputs = replace(inputs, efforts=inputs.efforts[..., kept])
+        if prescribed is not None:
+            inputs = replace(inputs, prescribed=np.stack([y, yd, ydd])[:, np.array(reduced.fixed, dtype=int)])
         return Point(reduced, y[free], yd[free], ydd[free], inputs)
 
     def slopes(self) -> tuple[Floats, Floats, Floats, Floats]:
@@ -71,14 +73,14 @@ class Point:
 
     def sticking(self, system: System) -> tuple[str, ...]:
         """Warnings of coordinates that friction holds, which small departures see as dampers."""
-        prescribed = self.inputs.prescribed
-        rates = self.yd if prescribed is None else self.tree.whole(self.yd, prescribed[1])
+        state = self.tree.motion(self.y, self.yd, self.ydd, self.inputs)
         said = []
         for name, joint in system.joints.items():
-            for each, friction in zip(joint.coordinates, np.asarray(joint.holder.friction), strict=True):
-                k = system.coordinates.index(f"{name}.{each}")
-                if friction > 0 and k in self.tree.free and abs(rates[k]) < 3 * SLIP:
-                    size = friction / SLIP / np.cosh(rates[k] / SLIP) ** 2
+            k = system.order.index(joint.body)
+            rates = self.tree.links[k].held(state.q[k][:-1], state.qd[k][:-1])[1] if joint.coordinates else ()
+            for each, friction, rate in zip(joint.rate_names, np.asarray(joint.holder.friction), rates, strict=True):
+                if friction > 0 and each not in joint.rates and abs(rate) < 3 * SLIP:
+                    size = friction / SLIP / np.cosh(rate / SLIP) ** 2
                     unit = "N s/m" if each in SLIDES else "N m s/rad"
                     said.append(
                         f"friction of {name}.{each} is a damper of {size:.3g} {unit} for small departures, which "

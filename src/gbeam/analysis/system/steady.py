@@ -16,7 +16,8 @@ from gbeam.errors import ComputationError, InputError
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.equations import Inputs, Tree
 from gbeam.mechanics.tree.frames import Frame, turned_back
-from gbeam.mechanics.tree.signals import deforming
+from gbeam.mechanics.tree.signals import deforming, local_names
+from gbeam.mechanics.tree.steps import turned_on
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.protocol import Motion
@@ -75,7 +76,11 @@ class Drive:
         if self.turn:
             # All that turns goes on for as long as this takes.
             fastest = np.abs(np.append(prescribed[1], self.rate or 0.0)).max()
+            before = prescribed.copy()
             prescribed[0] += prescribed[1] * self.turn / fastest
+            for k, at in enumerate(system.tree.fixed):
+                if system.coordinates[at].endswith(".e0"):
+                    prescribed[:, k : k + 4] = turned_on(before[:, k : k + 4], self.turn / fastest)
         return replace(inputs, prescribed=prescribed if prescribed.size else None)
 
 
@@ -142,9 +147,7 @@ class SteadySystem(Steady):
     @property
     def names(self) -> list[str]:
         """Names of the local coordinates: those of the system, Euler parameters but for the first one as rotations."""
-        turns = {"e1": "rx", "e2": "ry", "e3": "rz"}
-        kept = [each.rpartition(".") for each in self.system.coordinates]
-        local = [f"{head}.{turns.get(tail, tail)}" for head, _, tail in kept if tail != "e0"]
+        local = local_names(self.system.coordinates)
         return [local[k] for k in self.local.tree.free]
 
     @property

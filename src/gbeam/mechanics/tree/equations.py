@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import replace
 from functools import cached_property
 from itertools import accumulate
 from typing import Any
@@ -23,9 +23,9 @@ SLIP = 1e-3  # rad/s or m/s: rate at which friction has 0.76 of its size
 
 @record
 class Holder:
-    """Springs, dampers, friction and stops on the coordinates (k,) of a joint, and the coordinates `ease` of the
-    springs; the stops stand at `low` and `high` and give way by their own stiffness; `coupling` (k, k) is the stiffness
-    between coordinates, or None.
+    """Springs and stops on the values (h,) by which the steps of a joint are held, and dampers and friction on their
+    rates; the springs rest at the values `ease`; the stops stand at `low` and `high` and give way by their own
+    stiffness; `coupling` (h, h) is the stiffness between values, or None.
     """
 
     stiffness: Array
@@ -42,26 +42,19 @@ class Holder:
         """True if a force bends within less than a step, as friction does near rest and a stop where it is met."""
         return bool((self.friction > 0).any() or (self.stop > 0).any())
 
-    def forces(self, q: Array, qd: Array) -> Array:
-        """Forces (..., k) that hold the coordinates."""
-        xp = namespace(q, qd, self.stiffness)
-        held = self.stiffness * (q - self.ease) + self.damping * qd + self.friction * xp.tanh(qd / SLIP)
+    def forces(self, values: Array, rates: Array) -> tuple[Array, Array]:
+        """Forces (..., h) that hold the values, and those that hold the rates."""
+        xp = namespace(values, rates, self.stiffness)
+        pull = self.stiffness * (values - self.ease) + self.stop * self._beyond(values)
         if self.coupling is not None:
-            held = held + (q - self.ease) @ self.coupling
-        return held + self.stop * self._beyond(q)
+            pull = pull + (values - self.ease) @ self.coupling
+        return pull, self.damping * rates + self.friction * xp.tanh(rates / SLIP)
 
-    def stored(self, q: Array) -> Array:
+    def stored(self, values: Array) -> Array:
         """Energy (...) of the springs and stops, J."""
-        moved = q - self.ease
+        moved = values - self.ease
         pull = self.stiffness * moved if self.coupling is None else self.stiffness * moved + moved @ self.coupling
-        return (pull * moved + self.stop * self._beyond(q) ** 2).sum(axis=-1) / 2
-
-    def chosen(self, which: Array) -> Holder:
-        """Holder of some of the coordinates."""
-        parts = {each.name: getattr(self, each.name) for each in fields(self)}
-        coupling = parts.pop("coupling")
-        alone = None if coupling is None else coupling[which][:, which]
-        return Holder(**{name: each[which] for name, each in parts.items()}, coupling=alone)
+        return (pull * moved + self.stop * self._beyond(values) ** 2).sum(axis=-1) / 2
 
     def _beyond(self, q: Array) -> Array:
         xp = namespace(q, self.low)
@@ -71,7 +64,7 @@ class Holder:
 @record
 class Link:
     """A body with the joint that holds it: a chain of steps from point `on` of body `parent`, −1 for the ground, and
-    what holds its coordinates. The root of a body is the point after its others.
+    what holds its coordinates unless it is `loose`. The root of a body is the point after its others.
     """
 
     steps: tuple[Step, ...]
@@ -79,11 +72,33 @@ class Link:
     body: Body
     parent: int = static()
     on: int = static()
+    loose: bool = static()
 
     @property
     def sizes(self) -> tuple[int, ...]:
         """Numbers of coordinates of each step, and of the body."""
         return (*(step.size for step in self.steps), self.body.size)
+
+    def stored(self, q: list[Array], qd: list[Array]) -> Array:
+        """Energy (...) of the joint's springs and stops, J, by coordinates of its steps and rates."""
+        return self.holder.stored(self.held(q, qd)[0])
+
+    def held(self, q: list[Array], qd: list[Array]) -> tuple[Array, Array]:
+        """Values (..., h) by which the joint is held, and rates, by coordinates of its steps."""
+        values, rates = zip(*self._held(q, qd), strict=True)
+        return concatenated(values), concatenated(rates)
+
+    def holding(self, q: list[Array], qd: list[Array]) -> list[Array]:
+        """Forces (..., k) that hold the coordinates of each step."""
+        held = self._held(q, qd)
+        pull, drag = self.holder.forces(*(concatenated(list(each)) for each in zip(*held, strict=True)))
+        sizes = [values.shape[-1] for values, _ in held]
+        parts = [slice(end - size, end) for end, size in zip(accumulate(sizes), sizes, strict=True)]
+        each = zip(self.steps, q, parts, strict=True)
+        return [step.pushed(at, pull[..., part], drag[..., part]) for step, at, part in each]
+
+    def _held(self, q: list[Array], qd: list[Array]) -> list[tuple[Array, Array]]:
+        return [step.held(*state) for step, *state in zip(self.steps, q, qd, strict=True)]
 
 
 @record
@@ -248,9 +263,10 @@ class Tree:
                 of_joint.insert(0, step.rows(*coordinates, wrench))
                 wrench = wrench.brought(by)
             if of_joint:
-                q, qd = (xp.concatenate([each[i] for each in joint], axis=-1) for i in (0, 1))
-                held = link.holder.forces(q, qd)
-                along = concatenated([concatenated(of_joint) + held, along])
+                if not link.loose:
+                    held = link.holding([each[0] for each in joint], [each[1] for each in joint])
+                    of_joint = [demand + force for demand, force in zip(of_joint, held, strict=True)]
+                along = concatenated([*of_joint, along])
             rows.insert(0, along)
             if link.parent < 0:
                 ground = ground + wrench
@@ -267,9 +283,10 @@ class Tree:
             energy, momentum = link.body.moving(q[-1], qd[-1], root)
             push, spin = turned(root.R, momentum.force), turned(root.R, momentum.moment)
             force, moment = force + push, moment + spin + cross(root.p, push)
-            joint = namespace(*q).concatenate(q[:-1], axis=-1) if q[:-1] else q[-1][..., :0]
             kinetic = kinetic + energy
-            elastic = elastic + link.body.stored(q[-1]) + link.holder.stored(joint)
+            elastic = elastic + link.body.stored(q[-1])
+            if not link.loose:
+                elastic = elastic + link.stored(q[:-1], qd[:-1])
             mass, first = link.body.mass_moment(q[-1])
             weight = weight - ((mass * root.p + turned(root.R, first)) * gravity).sum(axis=-1)
         return force, moment, namespace(kinetic, elastic).stack([kinetic, elastic, weight], axis=-1)
@@ -291,8 +308,8 @@ class Tree:
             kept += [True] * link.body.size
             numbers |= {first + int(k): len(numbers) + i for i, k in enumerate(np.flatnonzero(kept))}
             first += len(kept)
-            holder = link.holder.chosen(np.array(kept[: len(kept) - link.body.size], dtype=bool))
-            links.append(replace(link, steps=tuple(steps), holder=holder))
+            links.append(replace(link, steps=tuple(steps)))
         joined = (np.concatenate(each) for each in zip(*states, strict=True))
-        tree = replace(self, links=tuple(links), fixed=tuple(numbers[k] for k in self.fixed))
+        fixed = tuple(numbers[k] for k in self.fixed if k in numbers)
+        tree = replace(self, links=tuple(links), fixed=fixed)
         return tree, *joined  # type: ignore[return-value]

@@ -9,20 +9,32 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.arrays.namespace import as_array, is_jax, namespace
+from gbeam.arrays.namespace import as_array, concatenated, is_jax
 from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, choice, finite, positive, vector
+from gbeam.mechanics.tree.course import Course
 from gbeam.mechanics.tree.equations import Holder
-from gbeam.mechanics.tree.steps import Ball, Placed, Rotation, Slide, Step, about
+from gbeam.mechanics.tree.steps import (
+    Ball,
+    Placed,
+    Rotation,
+    Slide,
+    Step,
+    about,
+    parameter_rates,
+    parameters_of_vector,
+)
 from gbeam.motion.profiles.combine import as_profile
 from gbeam.motion.profiles.profile import Profile
 
+Array = Any
 Floats = NDArray[np.float64]
 GROUND = "ground"
 _EYE = np.eye(3)
 _EASY = ("stiffness", "ease", "damping", "friction", "stop_stiffness")
+OF_RATES = ("initial_rate", "damping", "friction", "rate", "effort")  # keys by the names of rates
 DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")
 SLIDES = ("displacement", "x", "y", "z")  # coordinates in m; others are angles
 # Kinds of what is said of a coordinate: of a displacement, and of an angle.
@@ -60,20 +72,26 @@ class Kind(NamedTuple):
 
     @property
     def given(self) -> tuple[str, ...]:
-        """Coordinates whose values are given by name: all but Euler parameters."""
-        return (*self.sprung, *(name for name in self.names if name not in _BALL))
+        """Names of values: of its coordinates, but of Euler parameters the components of the rotation vector."""
+        names = tuple(name for name in self.names if name not in _BALL)
+        return (*self.sprung, *names, *(_TURN if self.turns else ()))
 
     @property
-    def given_rates(self) -> tuple[str, ...]:
-        """Rates that are given by name."""
-        return self.rates or self.given
+    def turns(self) -> bool:
+        """True if it ends with a ball."""
+        return _BALL[0] in self.names
+
+    def names_in(self, key: str) -> tuple[str, ...]:
+        """Names by which a key is given."""
+        return self.rates if self.rates and key in OF_RATES else self.given
 
 
 def _turns(axes: Floats) -> tuple[Step, ...]:
     return tuple(Rotation(axis[:, None], _EYE) for axis in axes)
 
 
-_BALL, _SPIN, _PLACE = ("e0", "e1", "e2", "e3"), ("wx", "wy", "wz"), ("x", "y", "z")
+_BALL, _PLACE = ("e0", "e1", "e2", "e3"), ("x", "y", "z")
+_TURN, SPIN = ("rx", "ry", "rz"), ("wx", "wy", "wz")
 KINDS: dict[str, Kind] = {
     "fixed": Kind("a clamp, or springs and dampers", lambda axes: (), (), sprung=DIRECTIONS),
     "revolute": Kind("a hinge: one angle", _turns, ("angle",), 1),
@@ -82,8 +100,8 @@ KINDS: dict[str, Kind] = {
         "a slide that turns about its axis", lambda axes: (Slide(axes.T), *_turns(axes)), ("displacement", "angle"), 1
     ),
     "universal": Kind("two angles, one after the other", _turns, ("angle_1", "angle_2"), 2),
-    "spherical": Kind("any rotation", lambda axes: (Ball(),), _BALL, 0, _SPIN),
-    "free": Kind("any motion", lambda axes: (Slide(_EYE), Ball()), (*_PLACE, *_BALL), 0, (*_PLACE, *_SPIN)),
+    "spherical": Kind("any rotation", lambda axes: (Ball(),), _BALL, 0, SPIN),
+    "free": Kind("any motion", lambda axes: (Slide(_EYE), Ball()), (*_PLACE, *_BALL), 0, (*_PLACE, *SPIN)),
 }
 
 
@@ -110,8 +128,10 @@ class Joint(Value):
         Rotation vector of the body's root axes in those of the point where all coordinates are zero, rad.
     initial, initial_rate : float or mapping of str to float
         Coordinates and rates at the start, zero unless given, by name (``angle``, ``displacement``, ``angle_1``,
-        ``angle_2``, ``x``, ``y``, ``z``); of a single coordinate just its value. Rates of a spherical or free joint are
-        ``wx``, ``wy``, ``wz``, axes of the body.
+        ``angle_2``, ``x``, ``y``, ``z``); of a single coordinate just its value. A spherical or free joint turns by the
+        rotation vector ``rx``, ``ry``, ``rz``, of half a turn at most, from where `turn` sets it, at the angular
+        velocity ``wx``, ``wy``, ``wz``, both in axes of the body: `initial`, springs and stops are given by the former,
+        `initial_rate`, `damping`, `friction`, `rate` and `effort` by the latter.
     stiffness, ease, damping, friction : float or mapping of str to float
         Spring, N/m or N m/rad, coordinate at which it has no force, damper, N s/m or N m s/rad, and Coulomb friction, N
         or N m, of each coordinate. A ``fixed`` joint gives way along and about the axes that have a stiffness: ``x``,
@@ -124,7 +144,8 @@ class Joint(Value):
     stop_stiffness : float or mapping of str to float
         Of the stops, N/m or N m/rad.
     rate : Profile or mapping of str to Profile, optional
-        Prescribed rates: such coordinates are no unknowns, and what their drives need is a result.
+        Prescribed rates: such coordinates are no unknowns, and what their drives need is a result. Of ``wx``, ``wy``
+        and ``wz`` all three are prescribed, or none.
     effort : Profile or mapping of str to Profile, optional
         Force or torque of a drive on each coordinate, N or N m.
 
@@ -192,9 +213,31 @@ class Joint(Value):
         return KINDS[self.kind].names
 
     @property
-    def _held(self) -> tuple[str, ...]:
-        """Coordinates whose values are given by name: not Euler parameters, of which no torque is a function."""
-        return tuple(name for name in self.coordinates if name not in _BALL)
+    def values(self) -> tuple[str, ...]:
+        """Names of what its springs hold: its coordinates, of a ball the rotation vector."""
+        return self.coordinates if self.kind == "fixed" else KINDS[self.kind].given
+
+    def numbers(self, rate: str) -> tuple[int, ...]:
+        """Return the numbers, among its coordinates, of what moves at a rate: of a spin those of all Euler parameters.
+
+        Parameters
+        ----------
+        rate : str
+            One of :attr:`rate_names`.
+        """
+        if rate in SPIN:
+            return tuple(self.coordinates.index(each) for each in _BALL)
+        return (self.coordinates.index(rate),)
+
+    def row(self, rate: str) -> int:
+        """Return the number of the equation on which the effort acts that moves it at a rate.
+
+        Parameters
+        ----------
+        rate : str
+            One of :attr:`rate_names`.
+        """
+        return self.numbers(rate)[1 + SPIN.index(rate) if rate in SPIN else 0]
 
     @property
     def rate_names(self) -> tuple[str, ...]:
@@ -210,21 +253,27 @@ class Joint(Value):
         if self.kind == "fixed" and self.coordinates:
             moved, turned = ([k for k in range(3) if DIRECTIONS[first + k] in self.coordinates] for first in (0, 3))
             steps = (Slide(_EYE[:, moved]),) * bool(moved) + (Rotation(_EYE[:, turned], _EYE),) * bool(turned)
-        # The coordinates are in axes of the point; the body is turned after them.
+        # The coordinates are in axes of the point, and the body is turned after them; a ball turns the body's axes.
         before, after = Placed(placed.r, None), Placed(np.zeros(3), placed.R)
         moves, turns = (is_jax(each) or bool(each.any()) for each in map(as_array, (self.at, self.turn)))
-        return (before,) * moves + steps + (after,) * turns
+        last = len(steps) - KINDS[self.kind].turns
+        return (before,) * moves + steps[:last] + (after,) * turns + steps[last:]
+
+    @property
+    def loose(self) -> bool:
+        """True if nothing holds its coordinates."""
+        return all(getattr(self, name) is None for name in (*_EASY, "stops"))
 
     @property
     def holder(self) -> Holder:
-        """Springs, dampers, friction and stops of the coordinates."""
-        values = {name: self._numbers(name, getattr(self, name), self._held, self.coordinates) for name in _EASY}
+        """Springs, dampers, friction and stops of what they hold."""
+        values = {name: self._numbers(name, getattr(self, name)) for name in _EASY}
         for name in ("stiffness", "damping", "friction", "stop_stiffness"):
-            for coordinate, value in zip(self.coordinates, values[name], strict=True):
+            for coordinate, value in zip(self._names(name), values[name], strict=True):
                 positive(f"{name}.{coordinate}", value, "SI", zero=True)
-        low, high = np.full(len(self.coordinates), -np.inf), np.full(len(self.coordinates), np.inf)
-        for coordinate, pair in self._named("stops", self.stops, self._held).items():
-            k = self.coordinates.index(coordinate)
+        low, high = np.full(len(self.values), -np.inf), np.full(len(self.values), np.inf)
+        for coordinate, pair in self._named("stops", self.stops).items():
+            k = self.values.index(coordinate)
             ends = array(f"stops.{coordinate}", pair)
             if ends.shape != (2,) or not ends[0] < ends[1]:
                 unit, of_unit = ("m", ends) if coordinate in SLIDES else ("deg", np.degrees(ends))
@@ -234,8 +283,8 @@ class Joint(Value):
             if not (is_jax(values["stop_stiffness"]) or values["stop_stiffness"][k] > 0):
                 raise InputError("stop_stiffness", "is missing", f"a stop of {coordinate} needs one")
         for name, needed in (("ease", "stiffness"), ("stop_stiffness", "stops")):
-            to = self._named(needed, getattr(self, needed), self._held)
-            for coordinate in self._named(name, getattr(self, name), self._held):
+            to = self._named(needed, getattr(self, needed))
+            for coordinate in self._named(name, getattr(self, name)):
                 if coordinate not in to:
                     fix = f"give {needed} of {coordinate} too, or leave it out"
                     raise InputError(f"{name}.{coordinate}", f"does nothing without {needed}", fix)
@@ -243,16 +292,16 @@ class Joint(Value):
         return Holder(low=low, high=high, stop=values.pop("stop_stiffness"), coupling=coupling, **values)
 
     def _coupling(self, stiffness: Floats) -> Floats | None:
-        """Stiffness (k, k) between coordinates; None without any."""
+        """Stiffness (h, h) between what springs hold; None without any."""
         if self.coupling is None:
             return None
-        names = self.coordinates
+        names = self.values
         if not isinstance(self.coupling, Mapping):
             raise InputError("coupling", f"is {self.coupling!r}", 'name pairs of coordinates, such as {"y-rz": -2e4}')
         coupling = np.zeros((len(names), len(names)))
         for pair, value in self.coupling.items():
             ends = str(pair).split("-")
-            if len(ends) != 2 or ends[0] == ends[1] or not set(ends) <= set(names) - set(_BALL):
+            if len(ends) != 2 or ends[0] == ends[1] or not set(ends) <= set(names):
                 fix = f"give two of {', '.join(names)}" if names else "give the springs of the directions as well"
                 raise InputError(f"coupling.{pair}", "is no pair of coordinates", fix)
             i, j = (names.index(each) for each in ends)
@@ -267,29 +316,42 @@ class Joint(Value):
         return coupling
 
     @property
-    def start(self) -> Floats:
-        """Coordinates at the start."""
-        unit = [1.0 if name == "e0" else 0.0 for name in self.coordinates]
-        for name in self._named("initial", self.initial, self.coordinates):
-            if name in _BALL:
-                raise InputError(f"initial.{name}", "is one of four Euler parameters", "give `turn` for the rotation")
-        return self._numbers("initial", self.initial, self._held, self.coordinates) + np.array(unit)
+    def first(self) -> dict[str, Any]:
+        """Values at the start, by name."""
+        return dict(zip(self.values, self._numbers("initial", self.initial), strict=True))
 
     @property
-    def start_rate(self) -> Floats:
-        """Rates of the coordinates at the start: those of Euler parameters at (1, 0, 0, 0) are half the spin."""
-        values = self._numbers("initial_rate", self.initial_rate, self.rate_names)
-        spin = [k for k, name in enumerate(self.rate_names) if name in _SPIN]
-        if not spin:
+    def start(self) -> Array:
+        """Coordinates at the start."""
+        values = self._numbers("initial", self.initial)
+        if not KINDS[self.kind].turns:
             return values
-        # The spin is given in axes of the body, which the turn sets after the ball.
-        turned = about(self.turn) @ values[np.array(spin)]
-        return namespace(turned).concatenate([values[: spin[0]], np.zeros(1), turned / 2])
+        return concatenated([values[:-3], parameters_of_vector(values[-3:])])
+
+    @property
+    def start_rate(self) -> Array:
+        """Rates of the coordinates at the start."""
+        values = self._numbers("initial_rate", self.initial_rate)
+        if not KINDS[self.kind].turns:
+            return values
+        return concatenated([values[:-3], parameter_rates(self.start[-4:], values[-3:])])
 
     @property
     def rates(self) -> dict[str, Profile]:
         """Profiles of the prescribed rates."""
-        return self._profiles("rate", self.rate)
+        rates = self._profiles("rate", self.rate)
+        spin = [name for name in SPIN if name in rates]
+        if spin and len(spin) < len(SPIN):
+            fix = (
+                "give wx, wy and wz, zero where it does not turn; or a universal or revolute joint, which turns freely"
+            )
+            raise InputError(f"rate.{spin[0]}", "is prescribed without the other two components of the spin", fix)
+        return rates
+
+    @property
+    def course(self) -> Course:
+        """Attitude over time of a ball whose spin is prescribed."""
+        return Course([self.rates[name] for name in SPIN], self.start[-4:])
 
     @property
     def efforts(self) -> dict[str, Profile]:
@@ -300,16 +362,20 @@ class Joint(Value):
         return efforts
 
     def _profiles(self, where: str, values: Any) -> dict[str, Profile]:
-        named = self._named(where, values, self._held)
+        named = self._named(where, values)
         return {name: as_profile(f"{where}.{name}", each) for name, each in named.items()}
 
-    def _numbers(self, where: str, named: Any, names: tuple[str, ...], every: tuple[str, ...] = ()) -> Floats:
-        """Values by some names, of all of `every`: zero where they are not given."""
-        values = {name: finite(f"{where}.{name}", each) for name, each in self._named(where, named, names).items()}
-        return as_array([values.get(name, 0.0) for name in every or names])
+    def _names(self, key: str) -> tuple[str, ...]:
+        return self.rate_names if key in OF_RATES else self.values
 
-    def _named(self, where: str, named: Any, names: tuple[str, ...]) -> dict[str, Any]:
-        """Values by the names of coordinates; of a single coordinate the value alone will do."""
+    def _numbers(self, where: str, named: Any) -> Array:
+        """Values by name: zero where they are not given."""
+        values = {name: finite(f"{where}.{name}", each) for name, each in self._named(where, named).items()}
+        return as_array([values.get(name, 0.0) for name in self._names(where)])
+
+    def _named(self, where: str, named: Any) -> dict[str, Any]:
+        """Values by the names that a key has; of a single one the value alone will do."""
+        names = self._names(where)
         if named is None:
             return {}
         if not isinstance(named, Mapping):

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from gbeam.arrays.namespace import namespace
+from gbeam.arrays.namespace import concatenated, namespace
 from gbeam.mechanics.tree.frames import turned
-from gbeam.mechanics.tree.joints import SLIDES
+from gbeam.mechanics.tree.joints import SLIDES, SPIN
 from gbeam.mechanics.tree.steps import parameters_of_all, vector_of
 
 if TYPE_CHECKING:
@@ -32,13 +32,19 @@ def deforming(names: Sequence[str], body: str) -> list[int]:
     return [k for k, each in enumerate(names) if each.startswith(f"{body}.q")]
 
 
+def local_names(coordinates: Iterable[str]) -> list[str]:
+    """Names of as many coordinates as degrees of freedom: of Euler parameters but the first those of rotations."""
+    turns = {"e1": "rx", "e2": "ry", "e3": "rz"}
+    every = [each.rpartition(".") for each in coordinates]
+    return [f"{head}.{turns.get(tail, tail)}" for head, _, tail in every if tail != "e0"]
+
+
 def drives_of(system: System) -> dict[str, Driven]:
     """Efforts on the coordinates of joints, ``joint.angle``, and components of forces, ``thrust.force_x``, by name."""
     drives = {}
-    for k, each in enumerate(system.coordinates):
-        owner, _, name = each.rpartition(".")
-        if owner in system.joints and name[0] != "e":
-            drives[each] = Driven("effort", k, "N" if name in SLIDES else "N m")
+    rates = [(f"{owner}.{rate}", rate) for owner, joint in system.joints.items() for rate in joint.rate_names]
+    for each, rate in sorted(rates, key=lambda pair: system.row(pair[0])):
+        drives[each] = Driven("effort", system.row(each), "N" if rate in SLIDES else "N m")
     for k, owner in enumerate(system.forces):
         for i, (kind, unit) in enumerate((("force", "N"), ("moment", "N m"))):
             drives |= {f"{owner}.{kind}_{axis}": Driven("wrenches", 3 * i + j, unit, k) for j, axis in enumerate("xyz")}
@@ -48,20 +54,25 @@ def drives_of(system: System) -> dict[str, Driven]:
 def signals_of(system: System) -> dict[str, str]:
     """Names of what may be measured of a system, with their units.
 
-    Of joints: ``joint.angle`` and ``joint.angle_rate`` and likewise; of points their ``place``, ``velocity`` (axes of
+    Of joints: ``joint.angle`` and ``joint.angle_rate`` and likewise, of balls the rotation vector ``joint.rx`` and the
+    angular velocity ``joint.wx``; of points their ``place``, ``velocity`` (axes of
     the ground), ``attitude``, the rotation vector of at most half a turn from the ground's axes to the point's,
     ``acceleration`` and ``spin``, as sensors there read them (axes of the point).
     """
     signals: dict[str, str] = {}
     for name, joint in system.joints.items():
-        for each in joint.coordinates:
-            if each[0] != "e":
-                unit = "m" if each in SLIDES else "rad"
-                signals |= {f"{name}.{each}": unit, f"{name}.{each}_rate": f"{unit}/s"}
+        for value, rate in zip(joint.values, joint.rate_names, strict=True):
+            unit = "m" if value in SLIDES else "rad"
+            signals |= {f"{name}.{value}": unit, f"{name}.{rate_signal(rate)}": f"{unit}/s"}
     units = {"place": "m", "velocity": "m/s", "attitude": "rad", "acceleration": "m/s^2", "spin": "rad/s"}
     for point in system.points:
         signals |= {f"{point}.{kind}_{axis}": unit for kind, unit in units.items() for axis in "xyz"}
     return signals
+
+
+def rate_signal(rate: str) -> str:
+    """Name of the signal of a rate: of a spin that of its component."""
+    return rate if rate in SPIN else f"{rate}_rate"
 
 
 def measurements(system: System, tree: Any, y: Array, yd: Array, ydd: Array, inputs: Any, wanted: Sequence[str]) -> Any:
@@ -78,12 +89,11 @@ def measurements(system: System, tree: Any, y: Array, yd: Array, ydd: Array, inp
     for each in wanted:
         owner, _, kind = each.rpartition(".")
         if owner in system.joints:
-            body = system.order.index(system.joints[owner].body)
-            rate = kind.endswith("_rate")
-            parts = (state.qd if rate else state.q)[body][:-1]
-            names = system.joints[owner].coordinates
-            k = names.index(kind.removesuffix("_rate"))
-            columns.append(xp.broadcast_to(xp.concatenate(parts, axis=-1)[..., k], state.shape))
+            joint = system.joints[owner]
+            body = system.order.index(joint.body)
+            names = [*joint.values, *map(rate_signal, joint.rate_names)]
+            moved = tree.links[body].held(state.q[body][:-1], state.qd[body][:-1])
+            columns.append(xp.broadcast_to(concatenated(list(moved))[..., names.index(kind)], state.shape))
         else:
             name, _, axis = kind.partition("_")
             if (owner, name) not in vectors:

@@ -34,13 +34,34 @@ class Step(Protocol):
         """Forces (..., k) on the coordinates that do the work of a wrench on the frame after it."""
         ...
 
+    def held(self, q: Array, qd: Array) -> tuple[Array, Array]:
+        """Values (..., h) by which springs and stops hold it, and rates by which dampers and friction do."""
+        ...
+
+    def pushed(self, q: Array, by_values: Array, by_rates: Array) -> Array:
+        """Forces (..., k) on the coordinates that do the work of forces (..., h) on these values and rates."""
+        ...
+
     def local(self, q: Array, qd: Array, qdd: Array) -> tuple[Step, Array, Array, Array]:
         """Return the motion with as many coordinates as degrees of freedom, and these with their rates, at others."""
         ...
 
 
+class Minimal:
+    """A motion that has as many coordinates as degrees of freedom, which are held as they are."""
+
+    def held(self, q: Array, qd: Array) -> tuple[Array, Array]:
+        return q, qd
+
+    def pushed(self, q: Array, by_values: Array, by_rates: Array) -> Array:
+        return by_values + by_rates
+
+    def local(self, q: Array, qd: Array, qdd: Array) -> tuple[Any, Array, Array, Array]:
+        return self, q, qd, qdd
+
+
 @record
-class Slide:
+class Slide(Minimal):
     """Displacements along the columns of `axes` (3, k)."""
 
     axes: Array
@@ -55,12 +76,9 @@ class Slide:
     def rows(self, q: Array, qd: Array, qdd: Array, wrench: Wrench) -> Array:
         return wrench.force @ self.axes
 
-    def local(self, q: Array, qd: Array, qdd: Array) -> tuple[Step, Array, Array, Array]:
-        return self, q, qd, qdd
-
 
 @record
-class Rotation:
+class Rotation(Minimal):
     """Rotation by the vector Σ q_i u_i, the columns of `axes` (3, k), after a constant one, R0 (3, 3)."""
 
     axes: Array
@@ -81,15 +99,13 @@ class Rotation:
         phi = q @ self.axes.T
         return tangent_back(phi, wrench.moment) @ self.axes
 
-    def local(self, q: Array, qd: Array, qdd: Array) -> tuple[Step, Array, Array, Array]:
-        return self, q, qd, qdd
-
 
 @record
 class Ball:
     """Any rotation by Euler parameters (e0, e1, e2, e3), of which the size does not matter.
 
-    Their fourth equation keeps the size at one, e·ë + ė·ė + 2 e·ė + (e·e − 1)/2 = 0.
+    Their first equation keeps the size at one, e·ë + ė·ė + 2 e·ė + (e·e − 1)/2 = 0; the others are those of moments
+    about the turned axes. It is held by the rotation vector, of half a turn at most, and by the angular velocity.
     """
 
     @property
@@ -107,16 +123,58 @@ class Ball:
 
     def rows(self, q: Array, qd: Array, qdd: Array, wrench: Wrench) -> Array:
         kept = (q * qdd + qd * qd + 2 * q * qd + q * q / 2).sum(axis=-1, keepdims=True) - 0.5
-        return concatenated([wrench.moment, kept])
+        return concatenated([kept, wrench.moment])
+
+    def held(self, q: Array, qd: Array) -> tuple[Array, Array]:
+        size = namespace(q).sqrt((q * q).sum(axis=-1, keepdims=True))
+        return vector_of(q / size), 2 / size * _outward(q / size, qd)
+
+    def pushed(self, q: Array, by_values: Array, by_rates: Array) -> Array:
+        size = namespace(q).sqrt((q * q).sum(axis=-1, keepdims=True))
+        return concatenated([0 * size, on_body(vector_of(q / size), by_values) + by_rates])
 
     def local(self, q: Array, qd: Array, qdd: Array) -> tuple[Step, Array, Array, Array]:
         # About the vector zero its rates are those of the body: T is one there, and Ṫ φ̇ zero.
         by = self.motion(q, qd, qdd)
-        return Rotation(np.eye(3), by.R), np.zeros(3), by.w, by.alpha
+        return Turning(q / np.sqrt(q @ q)), np.zeros(3), by.w, by.alpha
 
 
 @record
-class Placed:
+class Turning:
+    """Rotation by a vector (..., 3) after unit Euler parameters (4,), held as the ball is by the whole rotation."""
+
+    before: Array
+
+    @property
+    def size(self) -> int:
+        return 3
+
+    @property
+    def _rotation(self) -> Rotation:
+        return Rotation(np.eye(3), rotation_by_parameters(self.before))
+
+    def motion(self, q: Array, qd: Array, qdd: Array) -> Relative:
+        return self._rotation.motion(q, qd, qdd)
+
+    def rows(self, q: Array, qd: Array, qdd: Array, wrench: Wrench) -> Array:
+        return self._rotation.rows(q, qd, qdd, wrench)
+
+    def held(self, q: Array, qd: Array) -> tuple[Array, Array]:
+        _, rate, _ = rotation_by_vector(q, qd, 0 * qd, plane=False)
+        return self._whole(q), rate
+
+    def pushed(self, q: Array, by_values: Array, by_rates: Array) -> Array:
+        return tangent_back(q, on_body(self._whole(q), by_values) + by_rates)
+
+    def local(self, q: Array, qd: Array, qdd: Array) -> tuple[Step, Array, Array, Array]:
+        return self, q, qd, qdd
+
+    def _whole(self, q: Array) -> Array:
+        return vector_of(parameters_after(self.before, parameters_of_vector(q)))
+
+
+@record
+class Placed(Minimal):
     """A constant place r (3,) m and rotation R (3, 3) or None, without coordinates."""
 
     r: Array
@@ -134,14 +192,35 @@ class Placed:
     def rows(self, q: Array, qd: Array, qdd: Array, wrench: Wrench) -> Array:
         return q
 
-    def local(self, q: Array, qd: Array, qdd: Array) -> tuple[Step, Array, Array, Array]:
-        return self, q, qd, qdd
-
 
 def _outward(n: Array, rate: Array) -> Array:
     """G(n) ė: half the angular velocity, turned axes, of unit Euler parameters whose rate is ė."""
     scalar, vector = n[..., :1], n[..., 1:]
     return scalar * rate[..., 1:] - vector * rate[..., :1] - cross(vector, rate[..., 1:])
+
+
+def parameters_after(first: Array, then: Array) -> Array:
+    """Euler parameters (..., 4) of a rotation and then another in the turned axes."""
+    s, v, t, u = first[..., :1], first[..., 1:], then[..., :1], then[..., 1:]
+    return concatenated([s * t - (v * u).sum(axis=-1, keepdims=True), s * u + t * v + cross(v, u)])
+
+
+def parameters_of_vector(phi: Array) -> Array:
+    """Unit Euler parameters (..., 4) of rotation vectors (..., 3), rad."""
+    quarter = (phi * phi).sum(axis=-1, keepdims=True) / 4
+    a, b = functions_of_angle(quarter, plane=True)
+    return concatenated([1 - quarter * b, a * phi / 2])
+
+
+def parameter_rates(e: Array, w: Array) -> Array:
+    """Rates (..., 4) of Euler parameters that turn at w (..., 3) rad/s, turned axes."""
+    return parameters_after(e, concatenated([0 * w[..., :1], w / 2]))
+
+
+def turned_on(state: Array, time: Any) -> Array:
+    """Euler parameters and two derivatives (3, 4) after going on at their angular velocity for a time."""
+    w = 2 * parameters_after(state[0] * np.array([1.0, -1.0, -1.0, -1.0]), state[1])[1:]
+    return parameters_after(state, parameters_of_vector(w * time))
 
 
 def rotation_by_parameters(n: Array) -> Array:
@@ -241,6 +320,17 @@ def tangent_back(phi: Array, moment: Array) -> Array:
     _, b, c, *_ = (each[..., None] for each in functions_of_angle((phi * phi).sum(axis=-1)))
     once = cross(phi, moment)
     return moment + b * once + c * cross(phi, once)
+
+
+def on_body(phi: Array, forces: Array) -> Array:
+    """T⁻ᵀ f: the moment (..., 3) in turned axes that does the work of forces on a rotation vector's components."""
+    s = (phi * phi).sum(axis=-1, keepdims=True)
+    xp, small = namespace(phi), s < SMALL
+    safe = xp.where(small, 1.0, s)
+    a, b = functions_of_angle(safe, plane=True)
+    near = (1 + s / 60 * (1 + s / 42 * (1 + s / 40 * (1 + 5 * s / 198)))) / 12
+    once = cross(phi, forces)
+    return forces - once / 2 + xp.where(small, near, (1 - a / (2 * b)) / safe) * cross(phi, once)
 
 
 def about(v: Any) -> Array:

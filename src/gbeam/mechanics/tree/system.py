@@ -29,6 +29,7 @@ from gbeam.mechanics.tree.bodies import (
     polynomial_points,
 )
 from gbeam.mechanics.tree.control import Feedback
+from gbeam.mechanics.tree.course import Course
 from gbeam.mechanics.tree.equations import Force, Inputs, Link, State, Tree
 from gbeam.mechanics.tree.frames import Frame
 from gbeam.mechanics.tree.joints import GROUND, Joint
@@ -219,6 +220,7 @@ class System(Value):
     controllers: Mapping[str, Feedback] = field(default_factory=dict)
     order: tuple[str, ...] = field(init=False, repr=False, compare=False)
     tree: Tree = field(init=False, repr=False, compare=False)
+    courses: Mapping[str, Course] = field(init=False, repr=False, compare=False)  # of joints whose spin is prescribed
 
     def __post_init__(self) -> None:
         if not self.bodies:
@@ -231,13 +233,15 @@ class System(Value):
             vector("gravity", self.gravity)
         object.__setattr__(self, "order", self._ordered())
         object.__setattr__(self, "tree", self._assembled())
+        spun = [name for name, numbers, _ in self._prescribed if len(numbers) > 1]
+        object.__setattr__(self, "courses", {name: self.joints[name].course for name in spun})
         drives, signals = drives_of(self), signals_of(self)
         for name, controller in self.controllers.items():
             for each in controller.measure:
                 choice(f"controllers.{name}.measure", each, signals)
             for each in controller.drive:
                 choice(f"controllers.{name}.drive", each, drives)
-                if each in self._prescribed:
+                if any(each == f"{joint}.{rate}" for joint, _, rates in self._prescribed for rate in rates):
                     fix = "leave out the rate: what is prescribed is not controlled"
                     raise InputError(f"controllers.{name}.drive", f"is {each!r}, whose rate is prescribed", fix)
 
@@ -354,9 +358,7 @@ class System(Value):
         for body in self.order:
             joint = self._holding(body)
             names += [f"{joint}.{each}" for each in self.joints[joint].coordinates]
-            flexible = self.bodies[body]
-            count = 0 if isinstance(flexible, RigidBody) else flexible.size
-            names += [f"{body}.q{k + 1}" for k in range(count)]
+            names += [f"{body}.q{k + 1}" for k in range(self._size(body))]
         return tuple(names)
 
     def _assembled(self) -> Tree:
@@ -372,28 +374,55 @@ class System(Value):
                 refuse_turnless(f"joints.{name}.on", self.bodies[holding], on)
                 if holding in loose or isinstance(self.bodies[holding], Structure):
                     loose.add(body)
-            if len(joint.rates) < len(joint.coordinates):
+            if len(joint.rates) < len(joint.rate_names):
                 loose.add(body)
             of = body_of(f"bodies.{body}", self.bodies[body], free=body in loose)
-            links.append(Link(joint.steps, joint.holder, of, parent, on))
+            links.append(Link(joint.steps, joint.holder, of, parent, on, joint.loose))
         forces = []
         for name, force in self.forces.items():
             body, on = self.point(f"forces.{name}.on", force.on)
             forces.append(Force(at[body], on, force.follower))
-        fixed = tuple(self.coordinates.index(each) for each in self._prescribed)  # in the order of their histories
-        return Tree(tuple(links), tuple(forces), fixed)
+        fixed = [self._first(name) + k for name, numbers, _ in self._prescribed for k in numbers]
+        return Tree(tuple(links), tuple(forces), tuple(fixed))
+
+    def _first(self, joint: str) -> int:
+        """Number of the first coordinate of a joint, or where it would be."""
+        before = self.order[: self.order.index(self.joints[joint].body)]
+        sizes = (len(self.joints[self._holding(each)].coordinates) + self._size(each) for each in before)
+        return sum(sizes)
+
+    def _size(self, body: str) -> int:
+        flexible = self.bodies[body]
+        return 0 if isinstance(flexible, RigidBody) else flexible.size
+
+    def row(self, name: str) -> int:
+        """Return the number of the equation on which an effort acts.
+
+        Parameters
+        ----------
+        name : str
+            Of the rate at which it moves a joint: ``joint.angle``, or ``joint.wx``.
+        """
+        joint, _, rate = name.rpartition(".")
+        return self._first(joint) + self.joints[joint].row(rate)
 
     @property
-    def _prescribed(self) -> dict[str, tuple[Joint, str]]:
-        return {f"{name}.{each}": (joint, each) for name, joint in self.joints.items() for each in joint.rates}
+    def _prescribed(self) -> list[tuple[str, tuple[int, ...], tuple[str, ...]]]:
+        """Joints by name with the numbers of coordinates that are prescribed together, and the names of their rates."""
+        groups = []
+        for name, joint in self.joints.items():
+            together = dict[tuple[int, ...], list[str]]()
+            for rate in joint.rates:
+                together.setdefault(joint.numbers(rate), []).append(rate)
+            groups += [(name, numbers, tuple(rates)) for numbers, rates in together.items()]
+        return groups
 
     @property
     def start(self) -> tuple[Array, Array]:
         """All coordinates and rates at the start, flexible bodies undeformed."""
         q, qd = [], []
         for body in self.order:
-            joint, flexible = self.joints[self._holding(body)], self.bodies[body]
-            still = np.zeros(0 if isinstance(flexible, RigidBody) else flexible.size)
+            joint, still = self.joints[self._holding(body)], np.zeros(self._size(body))
             q += [joint.start, still]
             qd += [joint.start_rate, still]
         xp = namespace(*q, *qd)
@@ -442,15 +471,19 @@ class System(Value):
             base = motion.base(t)
             ground = Frame(eye, zero, zero, base.w_WB_B, base.a_WO_B, base.alpha_WB_B)
         prescribed, efforts = [], None
-        for joint, name in self._prescribed.values():
-            rate, change = joint.rates[name].derivatives(t)
-            angle = Hub(radius=0.0, rate=joint.rates[name]).angle(t)
-            first = joint.start[joint.coordinates.index(name)]
-            prescribed.append(namespace(first, angle).stack([first + angle, rate, change], axis=-1))
+        for name, numbers, rates in self._prescribed:
+            joint = self.joints[name]
+            if len(numbers) > 1:
+                parts = self.courses[name](t)
+            else:
+                rate, change = joint.rates[rates[0]].derivatives(t)
+                turned = Hub(radius=0.0, rate=joint.rates[rates[0]]).angle(t)
+                parts = tuple(each[..., None] for each in (joint.start[numbers[0]] + turned, rate, change))
+            prescribed.append(namespace(*parts).stack(parts, axis=-2))
         columns = {}
         for name, joint in self.joints.items():
             for each, profile in joint.efforts.items():
-                columns[self.coordinates.index(f"{name}.{each}")] = profile(t)
+                columns[self.row(f"{name}.{each}")] = profile(t)
         if columns:
             none = xp.zeros(shape)
             every = [columns.get(k, none) for k in range(self.tree.size)]
@@ -462,7 +495,7 @@ class System(Value):
         )
         return Inputs(
             ground,
-            namespace(*prescribed).stack(prescribed, axis=-1) if prescribed else None,
+            concatenated(prescribed) if prescribed else None,
             efforts,
             loads,
             namespace(*wrenches).stack(wrenches, axis=-2) if wrenches else None,

@@ -172,7 +172,7 @@ def _joint(name: str, kind: Kind) -> Any:
     fields["at"] = (Place3, Field(default=(0.0, 0.0, 0.0), description="place of the joint from the point: [x, y, z]"))
     fields["turn"] = (Turn3, Field(default=(0.0, 0.0, 0.0), description=turn))
     for key, (type_of, words) in _ABOUT.items():
-        names = kind.given_rates if key == "initial_rate" else kind.given
+        names = kind.names_in(key)
         within = {each: _optional(type_of(kind_of_value(key, each)), words) for each in names}
         if len(names) == 1:
             fields[key] = within[names[0]]

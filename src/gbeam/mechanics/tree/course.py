@@ -1,0 +1,72 @@
+"""Prescribed attitudes: Euler parameters of an angular velocity that is given over time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from gbeam.arrays.namespace import as_array, is_traced, namespace
+from gbeam.mechanics.tree.frames import cross
+from gbeam.mechanics.tree.steps import parameter_rates, parameters_after, parameters_of_vector
+from gbeam.motion.profiles.profile import Profile
+
+Array = Any
+STRIDE, PIECES, HALVINGS = 1e-3, 2000, 8  # s, and pieces of the whole, between knots; and how often these are halved
+EXACT = 1e-12  # rad, by which halves of a piece may differ from the whole
+_ROOT = 15**0.5
+
+
+class Course:
+    """Euler parameters over time, from some at time zero, of the angular velocity that three profiles give, turned
+    axes, rad/s.
+    """
+
+    def __init__(self, rates: Sequence[Profile], start: Array) -> None:
+        self.rates = rates
+        marks = np.append(np.concatenate([np.asarray(rate.breaks) for rate in rates]), 0.0)
+        traced = is_traced(start, *(rate(marks) for rate in rates))
+        step = STRIDE if traced else max(STRIDE, np.ptp(marks) / PIECES)
+        times = np.unique(np.concatenate([*(rate.knots(step) for rate in rates), marks]))
+        turns = self._turned(times[:-1], times[1:])
+        for _ in range(0 if traced else HALVINGS):
+            middle = (times[1:] + times[:-1]) / 2
+            halves = parameters_after(self._turned(times[:-1], middle), self._turned(middle, times[1:]))
+            coarse = np.abs(halves - turns).max(axis=-1) > EXACT
+            if not coarse.any():
+                break
+            times = np.sort(np.append(times, middle[coarse]))
+            turns = self._turned(times[:-1], times[1:])
+        xp, zero = namespace(turns, start), int(np.searchsorted(times, 0.0))
+        since = xp.concatenate([np.array([[1.0, 0.0, 0.0, 0.0]]), turns])
+        reach = 1
+        while reach < len(since):  # products of 2, 4, 8, ... pieces at once
+            since = xp.concatenate([since[:reach], parameters_after(since[:-reach], since[reach:])])
+            reach *= 2
+        back = since[zero] * np.array([1.0, -1.0, -1.0, -1.0])
+        self.times, self.attitudes = times, parameters_after(parameters_after(as_array(start), back), since)
+
+    def __call__(self, t: Any) -> tuple[Array, Array, Array]:
+        """Euler parameters (..., 4) and their first and second derivatives with respect to time at times t (...)."""
+        derivatives = zip(*(rate.derivatives(t) for rate in self.rates), strict=True)
+        w, change = (namespace(*each).stack(each, axis=-1) for each in derivatives)
+        now = as_array(t)
+        xp = namespace(now, self.attitudes)
+        last = xp.maximum(xp.searchsorted(xp.asarray(self.times), now, side="right") - 1, 0)
+        since = self._turned(xp.asarray(self.times)[last], now)
+        e = parameters_after(xp.asarray(self.attitudes)[last], since)
+        rate = parameter_rates(e, w)
+        return e, rate, parameter_rates(rate, w) + parameter_rates(e, change)
+
+    def _turned(self, start: Array, end: Array) -> Array:
+        """Turn (..., 4) from one time to another, by Magnus's series to sixth order."""
+        h = end - start
+        times = start[..., None] + h[..., None] / 2 * (1 + np.array([-1, 0, 1]) * _ROOT / 5)
+        each = [rate(times) for rate in self.rates]
+        w = namespace(*each).stack(each, axis=-1)
+        first, middle, last = (h[..., None] * w[..., k, :] for k in range(3))
+        a, b, c = middle, _ROOT / 3 * (last - first), 10 / 3 * (last - 2 * middle + first)
+        once = cross(b, a)  # the bracket, of rates in turned axes
+        twice = cross(a, 2 * c + once) / 60
+        return parameters_of_vector(a + c / 12 + cross(b + twice, once - 20 * a - c) / 240)
