@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -38,19 +40,34 @@ def droop(
     stiffness = case.beam.material.youngs_modulus * float(case.beam.section.at(0.0).inertia_y)
     return Droop(load=load, tip=load * case.beam.length**3 / (3 * stiffness))
 '''
-CALL = "import sys, question_of_droop; from gbeam.cli import main; sys.exit(main(sys.argv[1:]))"
+# A process that knows the question, and calls the command line with one list of words after the other.
+CALLS = """
+import io, json, sys, contextlib, question_of_droop
+from gbeam.cli import main
+printed = []
+for words in json.loads(sys.argv[1]):
+    with contextlib.redirect_stdout(io.StringIO()) as out:
+        assert main(words) == 0, words
+    printed.append(out.getvalue())
+print(json.dumps(printed))
+"""
 STIFFNESS = 70e9 * 0.02 * 0.004**3 / 12  # N m^2
 TIP = 0.3**3 / (3 * STIFFNESS)  # m of 1 N
 
 
-def python(code: str, *words: object) -> str:
-    """Output of a Python that knows the question."""
+def python(code: str, *words: str) -> Any:
+    """What a Python that knows the question prints, as JSON."""
     answer = subprocess.run(
-        [sys.executable, "-c", code, *map(str, words)], capture_output=True, text=True,
+        [sys.executable, "-c", code, *words], capture_output=True, text=True,
         env=os.environ | {"PYTHONPATH": os.pathsep.join([".", *sys.path])},
     )  # fmt: skip
     assert answer.returncode == 0, answer.stderr
-    return answer.stdout
+    return json.loads(answer.stdout)
+
+
+def called(*commands: str) -> list[str]:
+    """What the command line prints of some commands."""
+    return python(CALLS, json.dumps([shlex.split(each) for each in commands]))
 
 
 @pytest.fixture(autouse=True)
@@ -63,38 +80,46 @@ def droop(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_it_is_a_verb_with_its_options_and_a_report() -> None:
-    facts = json.loads(python(CALL, "droop", "fast.toml", "--load", "2 N", "--json", "--report", "--out", "there"))
+    told, words, its_help, every = called(
+        "droop fast.toml --load '2 N' --json --report --out there", "droop fast.toml", "droop --help", "--help"
+    )
+    facts = json.loads(told)
     assert facts["tip"] == pytest.approx(2 * TIP) and facts["units"] == {"load": "N", "tip": "m"}
     assert json.loads(Path("there/droop.json").read_text(encoding="utf-8"))["tip"] == facts["tip"]
     assert "<td>tip</td>" in Path("there/droop.html").read_text(encoding="utf-8")
-    rows = [line.split(maxsplit=3) for line in python(CALL, "droop", "fast.toml").splitlines()]
+    rows = [line.split(maxsplit=3) for line in words.splitlines()]
     assert rows[0] == ["load", "1.000", "N", "load across the tip"]
     assert rows[1] == ["tip", f"{TIP:#.4g}", "m", "deflection of the tip"]
-    assert 'Across the tip, "1 N".' in python(CALL, "droop", "--help") and "droop" in python(CALL, "--help")
+    assert 'Across the tip, "1 N".' in its_help and "droop" in every
 
 
 def test_it_is_swept_differentiated_and_minimised() -> None:
-    asked = ("fast.toml", "--verb", "droop", "--json", "--out", "out")
-    swept = json.loads(python(CALL, "sweep", *asked, "--over", "beam.length=300 mm, 600 mm", "--measure", "tip"))
+    asked = "fast.toml --verb droop --json --out out"
+    swept, slope, best = map(
+        json.loads,
+        called(
+            f"sweep {asked} --over 'beam.length=300 mm, 600 mm' --measure tip",
+            f"sensitivity {asked} --of tip --with beam.length",
+            f"optimize {asked} --minimise tip --over beam.length --bounds 'beam.length=250 mm:350 mm' "
+            "--set 'motion.spin.control_point=0.2 m'",
+        ),
+    )
     assert swept["measures"]["tip"] == {"unit": "m", "values": pytest.approx([TIP, 8 * TIP])}
-    slope = json.loads(python(CALL, "sensitivity", *asked, "--of", "tip", "--with", "beam.length"))
     (value,) = slope["measures"]["tip"]["parameters"]
     assert value["derivative"] == pytest.approx(3 * TIP / 0.3, rel=1e-6)
-    best = json.loads(
-        python(
-            CALL, "optimize", *asked, "--minimise", "tip", "--over", "beam.length",
-            "--bounds", "beam.length=250 mm:350 mm", "--set", "motion.spin.control_point=0.2 m",
-        )
-    )  # fmt: skip
     assert best["minimise"]["unit"] == "m" and best["minimise"]["value"] == pytest.approx(TIP * (25 / 30) ** 3)
 
 
 def test_it_is_in_the_app_and_in_the_schema() -> None:
-    code = "import json, question_of_droop; from gbeam.app.verbs import offered; print(json.dumps(offered()))"
-    verbs = json.loads(python(code))
+    code = """
+import json, question_of_droop
+from gbeam.app.verbs import offered
+from gbeam.scenario import json_schema
+print(json.dumps([offered(), json.loads(json_schema())]))
+"""
+    verbs, schema = python(code)
     (load,) = [each for each in verbs["droop"]["options"] if each["name"] == "load"]
     assert load["example"] == "1 N"
     (whose,) = [each for each in verbs["sweep"]["options"] if each["name"] == "verb"]
     assert "droop" in whose["choices"]
-    schema = json.loads(python(CALL, "schema"))
     assert "droop" in schema["$defs"]["Sweep"]["properties"]["verb"]["enum"]

@@ -125,7 +125,7 @@ def with_options(*verbs: str) -> Callable[[_Function], _Function]:
     every: list[tuple[str, Any, Any]] = []
     for name, each in known.items():
         said = [text if len(verbs) == 1 else f"Of {' and '.join(of)}: {text}" for text, of in words[name].items()]
-        kind = str | None if each.kind else each.type
+        kind = str | type(each.default) if each.kind else each.type  # a quantity is given as text
         every.append((each.argument, Annotated[kind, Parameter(name=each.flag, help=" ".join(said))], each.default))
     record = Parameter(name="*")(make_dataclass("Options", every, frozen=True, namespace={"__module__": __name__}))
 
