@@ -20,7 +20,7 @@ from gbeam.scenario.text.revise import with_entry
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._()-]{0,99}")
 LARGEST = TEXT_BYTES  # of one file
 MANY = 200  # files
-# What passes: a disk, descriptors or memory that are used up.
+# Errors that pass: a disk, descriptors or memory that are used up.
 SHORT = {errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN}
 
 

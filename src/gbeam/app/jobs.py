@@ -37,7 +37,7 @@ DAMAGED = "damaged"  # state of a run of which nothing else is known
 _STATE, _LOG, _MESSAGES, _ANSWER = "state.json", "progress.txt", "messages.txt", "answer.json"
 _SCENARIO = "scenario.toml"
 _BEFORE = ".before"  # has the scenario as it came, of a verb that writes into it
-# What may be downloaded, by its name there, and where it is; besides, of what the verb writes, files of these kinds.
+# Files that may be downloaded, by name, and their places; besides, of what the verb writes, files of these kinds.
 DOWNLOADS = {
     _SCENARIO: _SCENARIO,
     _ANSWER: _ANSWER,

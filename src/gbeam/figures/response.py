@@ -95,7 +95,7 @@ def models(study: ModelStudy, title: str = "") -> Figure:
 def _displacement(study: Study, axis: int, *, named: bool) -> Panel:
     scale, unit = scale_of("m", *(each.tip[:, axis] for each in study.responses.values()))
     lines = [
-        # What diverged at once is no line.
+        # A run that diverged at once is no line.
         Line(each.time, scale * each.tip[:, axis], name, marks="joined" if len(each.time) == 1 else "", **look)
         for (name, each), look in zip(study.responses.items(), looks(study).values(), strict=True)
     ]
@@ -106,7 +106,7 @@ def _difference(study: Study, compared: Comparison, axis: int, spans: tuple[Span
     difference, covered = compared.difference[:, axis], compared.covered
     held = difference[covered] if covered.any() else difference
     scale, unit = scale_of("m", held)
-    # What happens while the target is held is no difference from flight: it must not set the scale.
+    # A difference from flight while the target is held must not set the scale.
     limits = ends_of(covered, scale * difference)
     beyond = limits is not None and largest(difference) > 1.05 * largest(held)
     title = f"{compared.centrifuge} − {compared.flight}" + (", scaled to the times compared" if beyond else "")

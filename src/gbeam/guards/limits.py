@@ -27,7 +27,7 @@ TITLE = 200  # characters
 NAME = 64  # characters of a motion's name, which becomes a part of file names
 PROBLEMS = 50  # explained at once
 
-# What a scenario asks for.
+# Sizes that a scenario asks for.
 SHAPES = 40  # in one direction: assembling takes a second
 ENTRIES = 1000  # masses, loads, stations of a section or of the output
 NODES = 5000  # of integration along the beam: 12 and four for every shape, between two stations of the section

@@ -53,7 +53,7 @@ psi = pound_force / inch ** 2
 ksi = 1000 * psi
 Msi = 1000000 * psi
 """
-# What a misspelt unit is compared with: the usual spellings, not every prefix of every unit.
+# Units that a misspelt one is compared with: the usual spellings, not every prefix of every unit.
 _SPELLINGS = """
 m mm cm km µm um g kg mg s ms us min h rad mrad deg rev rpm Hz kHz g0 N kN MN W kW MW Pa kPa MPa GPa in ft lb lbf
 psi ksi Msi % watt meter metre millimeter gram kilogram second millisecond minute hour radian degree revolution hertz
@@ -65,7 +65,7 @@ NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)
 # pint's tokenizer drops what it does not know ("5 m$", "5 m # note"), so the letters are checked first.
 _UNIT = re.compile(r"[\w°%()*/^+\-·.⁻⁰¹²³⁴-⁹ ]+")
 
-# What would take for ever to work out: any power but by one digit, a power of a power, two superscripts.
+# Powers that would take for ever to work out: any power but by one digit, a power of a power, two superscripts.
 _POWER = re.compile(r"(?:\^|\*\*)(?!\s*[+-]?\s*[0-9](?![0-9.eE_]|\s*(?:\^|\*\*)))|[⁰¹²³⁴-⁹]{2}")
 
 

@@ -148,6 +148,6 @@ def _response(
     z = pole * step
     even = np.expm1(z) / z
     rising = (even - 1) / z
-    # What changes is filtered: it starts at rest without a history of its own.
+    # The change is filtered: it starts at rest, without a history.
     w = lfilter([step * rising, step * (even - rising)], [1.0, -np.exp(z)], load - load[0], axis=0)
     return np.asarray(((by_place + by_rate * pole) * w).imag / damped + steady * load[0])

@@ -80,7 +80,7 @@ def _words(source: Source, error: ErrorDetails, path: Path) -> tuple[str, str, M
         return "{value} is more than is computed", f"give {context['le']} or less", "value", path
     if what in _NOT_A:
         return f"{spoken(value)} is not {_NOT_A[what][0]}", _NOT_A[what][1], "value", path
-    # What is left: something else where a table belongs.
+    # Otherwise something else stands where a table belongs.
     about = field.description if field else ""
     return f"{spoken(value)} is not a table", f"give a table: {about}", "value", path
 

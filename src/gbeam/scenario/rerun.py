@@ -28,7 +28,7 @@ from gbeam.scenario.text.source import parse
 if TYPE_CHECKING:
     from gbeam.io.stored import Stored
 
-# What the root says of the computation and not of its result.
+# Attributes of the computation, not of its result.
 _ABOUT = {"date", "command", "overrides", "scenario_sha256"}
 _ABOUT |= {"gbeam_version", "python_version", "platform", "dependencies"}
 

@@ -217,7 +217,7 @@ def _together(inquiry: Inquiry, tasks: Sequence[Task]) -> list[Row]:
             posed.append((number, case, structure))
         except Exception as error:
             computed.append(without_figures(number, inquiry.width, error))
-    # What varies in a motion may end a record elsewhere.
+    # A motion that varies may end a record elsewhere.
     one_structure = set(structures) == {()}
     for _, group in groupby(posed, key=lambda each: each[1].response):
         alike = list(group)

@@ -146,7 +146,7 @@ def _run_error(answer: Any, motions: Sequence[str]) -> float:
 
 def _kinks(slopes: Slopes, values: Sequence[float], units: Sequence[str]) -> Flags:
     """Flags of slopes that differ on either side by a share of them, and by more than rounding and bends make."""
-    # What has no unit is a ratio, or one less one, which may be small.
+    # A figure without a unit is a ratio, or one less one, which may be small.
     sizes = np.maximum(np.abs(slopes.values), [0.0 if unit else 1.0 for unit in units])
     size = sizes[:, None] / np.maximum(np.abs(values), 1e-6)
     return np.asarray(slopes.bends > _SHARE * np.abs(slopes.slopes) + _SMOOTH * size)

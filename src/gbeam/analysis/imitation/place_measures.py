@@ -253,7 +253,7 @@ class Answers:
     ) -> tuple[dict[str, Histories], tuple[float, float, float]]:
         """Every measure that the flight's load has any of, and the largest accelerations of the axes, rad/s²."""
         axes, at_c = centrifuge.axes(self.time), centrifuge.at_control_point(self.time)
-        # What the first leaves out is nobody's; what another one does not follow is its error.
+        # No machine answers for times that the first leaves out; times that another one does not follow are its error.
         self.left_out = centrifuge.not_followed(self.time) if self.left_out is None else self.left_out
         covered = ~self.left_out
         if not covered.any():

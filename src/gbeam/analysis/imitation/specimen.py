@@ -44,7 +44,7 @@ def specimen_of(response: SystemResponse) -> Response:
     nothing, solid = np.full(3, math.nan), None
     if response.solids:
         solid = _together(response)
-    # What the ground takes, then the largest stress at the roots; the sections of the beams follow.
+    # The ground, then the largest stress at the roots; the sections of the beams follow.
     tension = [np.max([each.stress_tension[:, 0] for each in chosen], axis=0)[:, None]] if chosen else []
     compression = [np.min([each.stress_compression[:, 0] for each in chosen], axis=0)[:, None]] if chosen else []
     tension += [each.stress_tension for each in chosen]

@@ -81,7 +81,7 @@ class Loop:
         def rows(count: int) -> tuple[Floats, Floats]:
             return np.zeros((count, size)), np.zeros((count, inputs))
 
-        # What is measured, from states and inputs: just before the sample, with the commands that acted then.
+        # Measurements from states and inputs: just before the sample, with the commands that acted then.
         y_x, y_w = rows(len(plant.c))
         y_x[:, :n] = plant.c
         y_w[:, first : first + free] = plant.d[:, m:]

@@ -153,7 +153,7 @@ class Bodies:
             about = add(about, _summed(arm))
         if not still:
             held = add(at.moment, mapped(cross(tangents.t, at.force), back))
-            # What is given to the nodes does other work where these have turned.
+            # Moments on the nodes do other work where these have turned.
             force, moment = cross(at.force, columns.angle[0]), add(cross(held, columns.angle[0]), lever)
             by[..., :n, :n] += self.field.inward(tangents, force, moment)
             by[..., :n, n:] += joined(np, about, (*shape, n))

@@ -128,7 +128,7 @@ def _check_level(record: Samples, size: Floats) -> None:
             # Level at 9.8 and nowhere at 1; a rocket that passes 9.8 g has been at less.
             doubtful = begins > _BEGINS or (other_share > _SOME and level_share < _HARDLY and peak > _PILOTED)
         else:
-            # What is level at 0.1 g either pulls more than 1 g to stay in the air, or is in g.
+            # A flight that is level at 0.1 g either pulls more than 1 g to stay in the air, or is in g.
             doubtful = peak < _NEVER or (other_share > _SOME and (peak < LEVEL[1] or begins_level))
         if doubtful:
             raise InputError(

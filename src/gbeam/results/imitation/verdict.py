@@ -110,7 +110,7 @@ def _time(accounting: Accounting) -> str:
     shares = accounting.shares
     if len(shares) == 1:
         return f"{followed}; the rest is {next(iter(shares))}"
-    # What rounds to nothing is listed among the stretches.
+    # A share that rounds to nothing is listed among the stretches.
     parts = [f"{percent(share)} {reason}" for reason, share in shares.items() if share >= 0.005]
     return f"{followed}, {', '.join(parts)}" if parts else followed
 
