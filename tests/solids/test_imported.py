@@ -7,7 +7,7 @@ from __future__ import annotations
 import shutil
 import subprocess
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -123,6 +123,28 @@ def test_matrices_of_a_beam_fly_as_the_beam() -> None:
     plain = model.reduced(**how, total_mass=mass, centre=(0.15, 0, 0))
     with pytest.raises(gb.InputError, match=r"centre is not that of the matrix, \(0\.15, 0, 0\) m"):
         model.reduced(**how, centre=(0.1, 0, 0))
+
+
+def test_a_system_says_how_large_the_stiffness_is_that_matrices_lack() -> None:
+    """On a body that turns, in every answer, as alone on a hub: of the order of what the beam of them stiffens by."""
+    each, rate, radius = reduced(), 20.0, 0.1
+    model = gb.ImportedModel(each.mass, each.stiffness, each.nodes, each.unknowns)
+    strip = model.reduced(modes=5, damping_ratio=0.01, clamp=[0])
+    hub = gb.RigidBody(1.0, (0.1, 0.1, 0.1), points={"rim": (radius, 0, 0)})
+    spin = gb.Joint("revolute", "hub", axes=[(0, 0, 1)], rate=rate)
+    clamp = gb.Joint("fixed", "strip", on="hub.rim")
+    system = gb.System({"hub": hub, "strip": strip}, {"spin": spin, "clamp": clamp})
+    alone = gb.modes(strip, gb.Hub(radius=radius, rate=rate))
+    shares = []
+    for answer in (alone, gb.modes(system), gb.static(system), gb.simulate(system, duration=0.05, step=1e-3)):
+        said = [line for line in answer.warnings if "the order of" in line]
+        assert [line.startswith("strip: its motion loads") for line in said] == [answer is not alone]
+        shares.append(float(said[0].split("order of ")[1].split(" %")[0]) / 100)
+    assert shares == [shares[0]] * 4
+    frequency = [gb.modes(beam(), gb.Hub(radius=radius, rate=each)).frequency[0] for each in (0.0, rate)]
+    assert 1 / 3 < ((frequency[1] / frequency[0]) ** 2 - 1) / shares[0] < 3
+    still = gb.System({"hub": hub, "strip": strip}, {"spin": replace(spin, rate=0.0), "clamp": clamp})
+    assert not any("the order of" in line for line in gb.modes(still).warnings)
 
 
 def write_mtx(folder: Path, each: Reduced) -> list[Path]:

@@ -221,7 +221,7 @@ def input_warnings(
             base = motion.base(times(motion, span))
         elif base is None and motion.free:
             base = motion.mount.base(*np.zeros((3, 1)))  # type: ignore[attr-defined]
-    warnings += _unstiffened(structure, base, where)
+    warnings += unstiffened(structure, base, where)
     warnings += _without_shapes(structure, base, where, span)
     return (*warnings, *_twisting(structure, span), *_on_edge(structure, motion, base, where))
 
@@ -234,7 +234,7 @@ def _frequency(structure: Structure, lowest: float) -> Iterator[str]:
         )
 
 
-def _unstiffened(structure: Structure, base: Any, where: str) -> Iterator[str]:
+def unstiffened(structure: Structure, base: Any, where: str) -> Iterator[str]:
     """Stiffness in a motion that a structure by matrices lacks, over that which it has.
 
     A load a over its mass bends a cantilever by about a/ω², and bends it by its own angle more or less: the square of

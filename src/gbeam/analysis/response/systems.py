@@ -32,7 +32,7 @@ from gbeam.analysis.system.accuracy import doubts, system_errors, unmoved
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
 from gbeam.analysis.system.histories import Carried, beams_of, deflection, histories, loads_of, meshes_of
 from gbeam.analysis.system.point import Point, started, started_traced
-from gbeam.analysis.system.richer import InputsOf, judged_bodies, read
+from gbeam.analysis.system.richer import InputsOf, judged_bodies, read, stiffness_left_out
 from gbeam.analysis.system.steady import MASSLESS, bent_most, massless
 from gbeam.arrays.namespace import holds_jax, is_jax, namespace
 from gbeam.errors import InputError
@@ -385,7 +385,8 @@ def _described(
         else:
             warnings += (f"{words}; what moves so grows without bound where steps resolve it",)
     warnings += (*settings.warnings, *yielded)
-    warnings += tuple(each for each in doubts(errors, settings.tolerance) if each not in warnings)
+    warnings += tuple(each for each in doubts(errors, settings.tolerance) if each not in warnings) + system.warnings
+    warnings += () if is_jax(every.q) else stiffness_left_out(system, every, run.inputs)
     residual: Any = None
     if settings.residual_from is not None:
         deflected = (deflection(system, each, over_time["q"]) for each in system.points)
@@ -416,6 +417,6 @@ def _described(
         residual_from=math.nan if settings.residual_from is None else settings.residual_from,
         residual_amplitude=residual,
         kept_every=settings.kept_every(len(time), run.step * stride),
-        warnings=warnings + system.warnings,
+        warnings=warnings,
         **over_time,
     )

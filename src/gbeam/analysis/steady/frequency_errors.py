@@ -25,7 +25,6 @@ from gbeam.analysis.system.richer import (
     with_beams,
 )
 from gbeam.analysis.system.steady import SteadySystem
-from gbeam.arrays.tree import each_leaf
 from gbeam.errors import ComputationError
 from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.models import TORSION
@@ -228,8 +227,7 @@ def unknown_errors(of: Structure | System, count: int) -> FrequencyErrors | None
 def _with_more(state: OperatingPoint | SteadySystem, *, exact: bool) -> More:
     """More shapes than a steady state has, in exact models or in models of its own kinds."""
     if isinstance(state, SteadySystem):
-        point = state.point
-        bases = bases_of(state.system, point.standing(), lambda _, __: each_leaf(lambda x: x[None], point.inputs))
+        bases = bases_of(state.system, state.point.standing(), state.point.driven, judged_bodies(state.system))
         rich = richer(state.system, bases, exact=exact)
         return More(rich.system, rich.renamed)
     structure, (_, along_y, along_z, *_) = state.structure, state.structure.counts

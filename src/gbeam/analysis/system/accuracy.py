@@ -83,7 +83,8 @@ def system_errors(
     nothing = set[Quantity]().union(*(negligible(sizes, name, each.length) for name, each in judged.items()))
     if unmoved(sizes[PLACE], place):
         nothing.add(PLACE)
-    bases, exact = bases_of(system, of, inputs), all(each.richer or each.kind == "exact" for each in judged.values())
+    bases = bases_of(system, of, inputs, judged)
+    exact = all(each.richer or each.kind == "exact" for each in judged.values())
     with np.errstate(all="ignore"):
         try:
             if again is None:

@@ -76,7 +76,7 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
         displacement=at["place"] - start,
         errors=errors,
         stable=not unstable,
-        warnings=unstable + doubts(errors, LIMIT) + system.warnings + open_loops(system),
+        warnings=unstable + doubts(errors, LIMIT) + state.warnings + open_loops(system),
         assembly=assembly_of(system),
         outlines={
             body: outline
@@ -96,7 +96,7 @@ def system_modes(state: SteadySystem, moving: Vibrations, time: float, name: str
     shape, turn = (np.einsum("pan,nk->kpa", each, moving.modes) for each in state.slopes_of_frames)
     largest = largest_component(shape)
     scale = np.where(largest == 0, 1, largest)
-    warnings = system.warnings + open_loops(system) + state.point.sticking(system)
+    warnings = state.warnings + open_loops(system) + state.point.sticking(system)
     reduced = [each for each in system.flexible.values() if each.resolved < each.size]
     if state.changing:
         warnings += (f"the system turns, and its equations with it: these are modes of the place at {time:g} s",)
@@ -247,7 +247,7 @@ def linearize_system(
         model="system",
         motion=name,
         time=state.drive.time,
-        warnings=system.warnings + state.point.sticking(system),
+        warnings=state.warnings + state.point.sticking(system),
     )
 
 

@@ -63,13 +63,16 @@ class Point:
 
     def slopes(self) -> tuple[Floats, Floats, Floats, Floats]:
         """The residual (n,) and its derivatives K, C and M (n, n) with respect to y, ẏ and ÿ, by complex steps."""
-        inputs = each_leaf(lambda leaf: leaf[None], self.inputs)
-        k, c, m = slopes(self.tree, self.y[None], self.yd[None], self.ydd[None], inputs)
+        k, c, m = slopes(self.tree, self.y[None], self.yd[None], self.ydd[None], self.driven())
         return self.tree(self.y, self.yd, self.ydd, self.inputs), k[0], c[0], m[0]
 
     def standing(self, time: float = 0.0) -> Trajectory:
         """A trajectory of this state alone."""
         return Trajectory(np.array([time]), self.y[None], self.yd[None], self.ydd[None])
+
+    def driven(self, *_: Any) -> Inputs:
+        """Inputs of that trajectory."""
+        return each_leaf(lambda leaf: leaf[None], self.inputs)
 
     def sticking(self, system: System) -> tuple[str, ...]:
         """Warnings of coordinates that friction holds, which small departures see as dampers."""

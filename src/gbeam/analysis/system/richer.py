@@ -15,6 +15,7 @@ from gbeam.analysis.accuracy.estimate import NO_MESH
 from gbeam.analysis.system.histories import Carried, carried, loads_of
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.enrichment import enrichment
+from gbeam.mechanics.plausibility import unstiffened
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import Theory, theory_of
 from gbeam.mechanics.tree.equations import Inputs
@@ -133,10 +134,18 @@ def read(system: System, of: Trajectory, inputs: InputsOf, bodies: Iterable[str]
     return out
 
 
-def bases_of(system: System, of: Trajectory, inputs: InputsOf) -> dict[str, Base]:
-    """Motions of the roots of the bodies that can be judged, at some of the times (t, 3)."""
+def bases_of(system: System, of: Trajectory, inputs: InputsOf, bodies: Iterable[str]) -> dict[str, Base]:
+    """Motions of the roots of some bodies, at some of the times (t, 3)."""
     some = looked(len(of.time))
     at = of.at(some)
     state = system.tree.motion(at.q, at.qd, at.qdd, inputs(system, some))
     roots = {name: state.roots[k] for k, name in enumerate(system.order)}
-    return {name: Base(roots[name].a, roots[name].w, roots[name].alpha) for name in judged_bodies(system)}
+    return {name: Base(roots[name].a, roots[name].w, roots[name].alpha) for name in bodies}
+
+
+def stiffness_left_out(system: System, of: Trajectory, inputs: InputsOf) -> tuple[str, ...]:
+    """Warnings of how large the stiffness by loads is that bodies by matrices lack, in the motion of their roots."""
+    lacking = [name for name, body in system.flexible.items() if body.unstiffened]
+    bases = bases_of(system, of, inputs, lacking) if lacking else {}
+    said = ((name, unstiffened(system.flexible[name], base, "its motion")) for name, base in bases.items())
+    return tuple(f"{name}: {each}" for name, words in said for each in words)

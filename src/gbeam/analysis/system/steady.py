@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.analysis.system.point import Point, rested, rested_together
+from gbeam.analysis.system.richer import stiffness_left_out
 from gbeam.constants import BY_STRAINS
 from gbeam.errors import ComputationError, InputError
 from gbeam.mechanics.structure import Structure
@@ -118,6 +119,11 @@ class SteadySystem(Steady):
     def of(self) -> System:
         """The system."""
         return self.system
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Doubts about the bodies' models, and what they leave out in this state."""
+        return self.system.warnings + stiffness_left_out(self.system, self.point.standing(), self.point.driven)
 
     @property
     def q(self) -> Floats:
