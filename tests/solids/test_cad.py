@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
+from gbeam.scenario import ScenarioError
 
 from .bodies import STEEL, block, solid
 
@@ -118,6 +119,11 @@ def test_a_scenario_takes_a_shape_and_a_coarser_size(files: dict[str, Path]) -> 
     )
     stated = read(files["bar.step"], element_size=4e-3).reduced(modes=3, damping_ratio=0.01, coarser=coarser).mesh_error
     np.testing.assert_allclose(stated, np.abs(coarser.frequency / finer.frequency - 1), rtol=0.5)
+    text = scenario.read_text(encoding="utf-8")
+    for key, good, bad in (("clamp", '"surface 1"', '"hole"'), ("coarser_size", '"8 mm"', '"3 mm"')):
+        scenario.write_text(text.replace(good, bad), encoding="utf-8")
+        with pytest.raises(ScenarioError, match=f"bodies.bar.{key}: "):
+            gb.read_scenario(scenario)
 
 
 def test_a_size_is_for_shapes_and_a_unit_for_meshes() -> None:

@@ -51,6 +51,8 @@ def test_a_beam_of_nodes_is_the_beam() -> None:
     unit = np.sqrt(EI_Y / MU / L**4)
     flap = [f for f, way in zip(gb.modes(model).frequency, gb.modes(model).direction, strict=True) if way == "z"]
     np.testing.assert_allclose(2 * np.pi * np.array(flap[:2]) / unit, [3.51602, 22.0345], rtol=2e-3)
+    far = gb.ImportedModel(m, k, nodes).reduced(modes=1, damping_ratio=0.01, clamp=[40])
+    assert far.station_places.r0[-1, 0] == pytest.approx(39 / 40 * L)  # the tip is free
     rest = gb.static(model, acceleration=(0.0, 0.0, 5.0))
     assert -rest.tip[2] == pytest.approx(5 * MU * L**4 / 8 / EI_Y, rel=1e-3)
     np.testing.assert_allclose(rest.displacement[0, 2] / rest.tip[2], 17 / 48, rtol=1e-3)

@@ -286,6 +286,16 @@ def test_point_masses_points_and_origin() -> None:
     assert "middle_z" in [each.name for each in system.outputs]
 
 
+def test_the_tip_is_free() -> None:
+    """Of a bar that is held at its far end; and a place of zero is not said by its rounding."""
+    mesh = block("hexahedron20", (4, 1, 1), (L, B, H), groups={"end": lambda x: x[:, 0] == L})
+    held = gb.SolidMesh.read(mesh, materials=STIFF, clamp="end", unit="m", turn=(0.0, 0.0, np.pi))
+    assert held.points[held.stations["tip"]][0] == pytest.approx(-0.875 * L)  # in the middle of an edge
+    model = held.reduced(modes=2, damping_ratio=0.01)
+    pulled = model.stress(gb.static(model.structure, acceleration=(1.0, 0.0, 0.0)))
+    assert "e-1" not in str(pulled)
+
+
 @pytest.mark.parametrize("name", ["solid.msh", "solid.vtu", "solid.bdf", "solid.inp", "solid.vtk", "solid.med"])
 def test_a_mesh_comes_back_from_files(tmp_path: Path, name: str) -> None:
     """Gmsh, VTK, Nastran and Abaqus: two materials by groups of elements, the clamp by nodes or by elements."""

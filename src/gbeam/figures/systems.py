@@ -21,7 +21,7 @@ from gbeam.figures.description import (
 )
 from gbeam.figures.response import carried_along, carried_at_root
 from gbeam.results.result import Floats
-from gbeam.results.solids import SolidStress, SpecimenLoads
+from gbeam.results.solids import SolidStress, SpecimenLoads, place_words
 from gbeam.results.system import ENERGIES, SystemModes, SystemResponse, SystemRest, named
 
 COLOURS = 6
@@ -158,8 +158,7 @@ def stress(result: SolidStress, title: str = "") -> Figure:
         levels = (Level(scale * near.yield_strength, f"yield of {near.material or 'the material'}"),)
     about = of_motion(result.motion, f"von Mises stress, {result.model}")
     panel = Panel(f"von Mises stress, {unit}", tuple(lines), levels=levels, zero=True, height=2.0)
-    x, y, z = (1e3 * float(each) for each in result.worst.place)
-    where = f"at ({x:.4g}, {y:.4g}, {z:.4g}) mm, {result.worst.time:.4g} s{result.worst.apart}"
+    where = f"at {place_words(result.worst.place)}, {result.worst.time:.4g} s{result.worst.apart}"
     return Figure(title, about, (panel,), (f"largest: {where}", *filter(None, [result.left_out])))
 
 

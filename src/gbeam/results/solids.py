@@ -163,11 +163,16 @@ def von_mises(stress: Floats) -> Floats:
     return np.sqrt(squares)
 
 
+def place_words(place: Floats) -> str:
+    """A place in mm, to the nanometre: zero is not its rounding."""
+    x, y, z = 1e3 * np.round(np.asarray(place, dtype=float), 9) + 0.0
+    return f"({x:.4g}, {y:.4g}, {z:.4g}) mm"
+
+
 def said(stress: StressAt) -> str:
     """A stress with its place and time, and how sure the mesh is of it."""
-    x, y, z = (1e3 * float(each) for each in stress.place)
     return (
-        f"von Mises {1e-6 * stress.von_mises:.4g} MPa at ({x:.4g}, {y:.4g}, {z:.4g}) mm, node {stress.node}, at "
+        f"von Mises {1e-6 * stress.von_mises:.4g} MPa at {place_words(stress.place)}, node {stress.node}, at "
         f"{stress.time:.4g} s{stress.apart}"
     )
 
@@ -311,11 +316,10 @@ class SpecimenLoads(Figured):
     def lines(self) -> list[str]:
         """The largest loads in words."""
         worst = self.largest
-        x, y, z = (1e3 * float(each) for each in worst.place)
         held = {None: "", True: ", accepted", False: ", not accepted"}[self.within_limit]
         limit = "" if self.spread_limit is None else f"{held} (limit {100 * self.spread_limit:.3g} %)"
         lines = [
-            f"up to {worst.g:.4g} g at ({x:.4g}, {y:.4g}, {z:.4g}) mm, at {worst.time:.4g} s; spread over the specimen "
+            f"up to {worst.g:.4g} g at {place_words(worst.place)}, at {worst.time:.4g} s; spread over the specimen "
             f"{100 * self.spread_max:.3g} %{limit}",
             f"on the fixture up to {self.force_max:.4g} N and {self.moment_max:.4g} N m",
         ]

@@ -77,8 +77,8 @@ def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure
 
     def reduced(file: str, size: float | None, coarser: Callable[[], SolidModel] | None, *sources: Any) -> SolidModel:
         def make() -> SolidModel:
-            rough = None if coarser is None else coarser()
             mesh = sources[0] if isinstance(sources[0], SolidMesh) else read(file, size)
+            rough = None if coarser is None else coarser()
             return mesh.reduced(**options, coarser=rough)
 
         return kept(f"reducing {file}", (options, *sources), make)
@@ -87,15 +87,16 @@ def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure
         size, of = table.element_size, source(table.mesh, table.element_size)
         if table.coarser is None and table.coarser_size is None:
             return reduced(table.mesh, size, None, of).structure
-        file = table.coarser or table.mesh
-        with _of_coarser():
-            rough = source(file, table.coarser_size)
-
-        def coarser() -> SolidModel:
+        file, key = (table.mesh, "coarser_size") if table.coarser is None else (table.coarser, "coarser")
+        with naming({"coarser": key}):
             with _of_coarser():
-                return reduced(file, table.coarser_size, None, rough)
+                rough = source(file, table.coarser_size)
 
-        return reduced(table.mesh, size, coarser, of, rough).structure
+            def coarser() -> SolidModel:
+                with _of_coarser():
+                    return reduced(file, table.coarser_size, None, rough)
+
+            return reduced(table.mesh, size, coarser, of, rough).structure
 
     return parts.attempt(where, model)
 

@@ -202,7 +202,8 @@ class ImportedModel(Value):
         clamp : sequence of int
             Numbers of the nodes that follow the base; none where the matrices are those of the free nodes alone.
         points : dict of int, optional
-            Numbers of the nodes that are put out, by their names; the ``tip`` is the farthest from the root otherwise.
+            Numbers of the nodes that are put out, by their names; the ``tip`` is the free one farthest from the root
+            otherwise.
         interfaces : sequence of str
             Points with displacements and rotations on which other bodies hang: the static answers to forces and
             moments there come on top, so that the reduction is one by Craig and Bampton.
@@ -240,7 +241,7 @@ class ImportedModel(Value):
         at, unknowns = np.asarray(self.nodes), np.asarray(self.unknowns)
         held = [self._node(f"clamp[{i}]", number) for i, number in enumerate(clamp)]
         named = {name: self._node(f"points.{name}", number) for name, number in (points or {}).items()}
-        named = with_tip(named, at)
+        named = with_tip(named, at, held)
         fields = fields_of(at, unknowns)
         rigid = rigid_motions(fields)
         body = rigid_body(self.mass, rigid)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -115,9 +116,13 @@ def displaced(unknowns: Indices, nodes: int) -> tuple[Indices, Indices]:
     return every, rows[every]
 
 
-def with_tip(points: dict[str, int], at: Floats) -> dict[str, int]:
-    """Nodes of points by name, the tip the last: the one farthest from the root (k, 3) where none is called so."""
-    tip = points.get(TIP, int(np.argmax(np.linalg.norm(at, axis=1))))
+def with_tip(points: dict[str, int], at: Floats, held: Sequence[int] = ()) -> dict[str, int]:
+    """Nodes of points by name, the tip the last: where none is called so, of nodes at (k, 3) that are not held the one
+    farthest from the root.
+    """
+    away = np.linalg.norm(at, axis=1)
+    away[[*held]] = 0.0
+    tip = points.get(TIP, int(away.argmax()))
     return {name: node for name, node in points.items() if name != TIP} | {TIP: tip}
 
 

@@ -156,8 +156,8 @@ class SolidMesh(Value):
         points : dict, optional
             Places of output by name: (x, y, z) in m and base axes, for the nearest node, or a group of one node, of
             shells on the face on whose side the place is, or on that to which the normal of the first element points; a
-            :class:`gbeam.Place` has axes too, in which stress and strain there are put out. The ``tip`` is the node
-            farthest from the root where it is not given.
+            :class:`gbeam.Place` has axes too, in which stress and strain there are put out. The ``tip`` is the
+            free node farthest from the root where it is not given.
         point_masses : dict, optional
             Masses by the name of a point, or of a group over whose nodes it is spread evenly, kg.
         interfaces : dict of str, optional
@@ -227,7 +227,7 @@ class SolidMesh(Value):
             name: _node(at, middles[numbers], name, getattr(place, "at", place), group)
             for name, place in (points or {}).items()
         }
-        tip = named.pop(TIP, int(np.argmax(np.linalg.norm(middles[numbers], axis=1))))
+        tip = named.pop(TIP, int(np.argmax(np.linalg.norm(middles[numbers], axis=1) * ~clamped)))
         weights = np.zeros(len(at))
         for name, mass in (point_masses or {}).items():
             where = f"point_masses.{name}"

@@ -182,8 +182,8 @@ class SolidBody(Reduced):
     )
     points: dict[str, _MeshPoint] = by_name(
         "points of output by name: the place [x, y, z] from the root for the nearest node, or a group of "
-        "one node, or with axes of stress and strain { at, turn }; tip is the node farthest from the root where it is "
-        "not given"
+        "one node, or with axes of stress and strain { at, turn }; tip is the free node farthest from the root where "
+        "it is not given"
     )
     interfaces: dict[str, str] = by_name(
         "groups by the name of a point that moves and turns as their nodes do on average: other bodies "
