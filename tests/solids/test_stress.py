@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -107,6 +108,25 @@ def test_the_margin_is_least_in_the_weaker_material() -> None:
     assert near is not None and near.material == "outer" and near.place[0] == pytest.approx(L / 2)
     assert near.margin == pytest.approx(1e6 / (whole / 2) - 1, rel=1e-4)
     assert f"margin on yield {near.margin:.3g} in outer" in repr(stress)
+
+
+def test_groups_of_one_material_share_their_stress() -> None:
+    """Named by both, the same as of one group; a material that differs in nothing but its strength is another one."""
+    mesh = block("hexahedron20", (4, 1, 1), (L, B, H))
+    mesh.cell_sets = {"inner": [np.arange(2)], "outer": [np.arange(2, 4)]}
+    strong = replace(STIFF, yield_strength=9e6)
+
+    def bent(materials: Any) -> gb.SolidStress:
+        model = solid(mesh, materials, points={"joint": (L / 2, 0.0, H / 2)}).reduced(modes=2, damping_ratio=0)
+        return model.stress(gb.static(model.structure, acceleration=(0.0, 0.0, 10.0)))
+
+    whole, same, apart = (bent(each) for each in (strong, dict.fromkeys(("inner", "outer"), strong),
+                                                  {"inner": strong, "outer": STIFF}))  # fmt: skip
+    assert same.worst.material == "inner, outer" and same.worst.margin == pytest.approx(whole.worst.margin, rel=1e-7)
+    np.testing.assert_allclose(same.point_von_mises, whole.point_von_mises, rtol=1e-7)
+    np.testing.assert_allclose(same.node_von_mises, whole.node_von_mises, atol=1e-7 * whole.worst.von_mises)
+    assert apart.worst.material == "inner"
+    assert abs(apart.point_von_mises[0, 0] / whole.point_von_mises[0, 0] - 1) > 1e-3
 
 
 def test_an_answer_of_another_structure_is_refused() -> None:

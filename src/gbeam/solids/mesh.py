@@ -74,7 +74,7 @@ class SolidMesh(Value):
     stations : dict of int
         Nodes that are put out, by their names; the last is the tip.
     strengths : dict of float
-        Yield strengths of materials by their names, Pa, of those that have one.
+        Yield strengths of materials by the names of their groups, Pa, of those that have one.
     exponents : dict of float
         Exponents of the Wöhler curves of materials by their names.
     turns : dict of (3,)
@@ -135,11 +135,11 @@ class SolidMesh(Value):
         Parameters
         ----------
         source : path or meshio.Mesh
-            A file of Gmsh, Nastran bulk data, Abaqus or CalculiX, VTK or another format of meshio; needs the extra
-            ``mesh``. Tetrahedra of 4 and 10 nodes, hexahedra of 8, 20 and 27 and wedges of 6 and 15 are read, and as
-            shells triangles of 3 and 6 nodes and quadrilaterals of 4, 8 and 9, whose middle is left out; other surfaces
-            and lines only name groups. Nodes without such elements are left out. Or a file of STEP, which Gmsh meshes
-            by tetrahedra of 10 nodes; needs the extra ``gmsh``.
+            A file of Gmsh, Nastran bulk data, Abaqus or CalculiX, VTK, Exodus or another format of meshio; needs the
+            extra ``mesh``. Tetrahedra of 4 and 10 nodes, hexahedra of 8, 20 and 27 and wedges of 6 and 15 are read, and
+            as shells triangles of 3 and 6 nodes and quadrilaterals of 4, 8 and 9, whose middle is left out; other
+            surfaces and lines only name groups. Nodes without such elements are left out. Or a file of STEP, which Gmsh
+            meshes by tetrahedra of 10 nodes; needs the extra ``gmsh``.
         materials : Material, Orthotropic or dict
             Of all elements, or by group: a physical group of Gmsh, a property's number, an element set. Poisson's
             ratio is needed.
@@ -234,7 +234,9 @@ class SolidMesh(Value):
             nodes = np.array([tip if name == TIP else named[name]]) if name in {*named, TIP} else group(where, name)
             weights[nodes] += positive(where, mass, "kg") / len(nodes)
         blocks = _blocks(mesh, at, elements, nodes_of, materials, rotation)
-        kinds = materials if isinstance(materials, Mapping) else {"": materials}
+        by_group = materials if isinstance(materials, Mapping) else {"": materials}
+        names = _names(by_group)
+        kinds = {names[name]: each for name, each in by_group.items()}
         strengths = {name: each.yield_strength for name, each in kinds.items() if each.yield_strength is not None}
         refuse_names(interfaces or {}, named | {TIP: tip})
         hung = {name: group(f"interfaces.{name}", of) for name, of in (interfaces or {}).items()}
@@ -253,7 +255,7 @@ class SolidMesh(Value):
         refuse_folded(solid)
         refuse_loose(solid)
         doubts = [*doubts_of(solid, unit or "that of the file"), *left_out(source, mesh, read)]
-        for name, material in kinds.items():
+        for name, material in by_group.items():
             doubts += implausible_material(f"materials.{name}" if name else "material", material)
         return replace(solid, warnings=tuple(doubts))
 
@@ -430,6 +432,14 @@ def _node(at: Floats, middles: Floats, name: str, place: Any, group: Any) -> int
     return int(nodes[(arms @ (place - middles[nodes[0]]) > MIDDLE * (arms**2).sum(axis=1)).argmax()])
 
 
+def _names(materials: Mapping[str, Material | Orthotropic]) -> dict[str, str]:
+    """Names of materials by those of their groups: of groups of the same material all, for stress is shared by them."""
+    return {
+        name: ", ".join(other for other, alike in materials.items() if alike == each)
+        for name, each in materials.items()
+    }
+
+
 def _blocks(
     mesh: Any, points: Floats, elements: list[Elements], nodes_of: list[Indices], materials: Any, rotation: Floats
 ) -> tuple[Block, ...]:
@@ -439,7 +449,7 @@ def _blocks(
     without = sum(int((owner[each.block][each.which] < 0).sum()) for each in elements)
     if without:
         raise InputError("materials", f"give {without} elements none", "name the groups of all elements")
-    numbers, blocks = numbers_of(mesh), []
+    numbers, names, blocks = numbers_of(mesh), _names(by_group), []
     for m, (name, material) in enumerate(by_group.items()):
         where = f"materials.{name}" if name else "materials"
         try:
@@ -454,5 +464,5 @@ def _blocks(
                 refuse_oblique(where, points, nodes[chosen], kind, along.axes)
             if chosen.any():
                 named = numbers[i][which[chosen]]
-                blocks.append(Block(kind, nodes[chosen], named, name, float(material.density), elasticity))
+                blocks.append(Block(kind, nodes[chosen], named, names[name], float(material.density), elasticity))
     return tuple(blocks)
