@@ -224,6 +224,26 @@ def test_what_is_no_mesh_no_clamp_and_no_metal_is_said(tmp_path: Path) -> None:
     assert "material.youngs_modulus is 70000 Pa" in said and not [each for each in cube.warnings if "material" in each]
 
 
+@pytest.mark.parametrize(
+    "cards",
+    [
+        ("SPC1,3,123,11,12,13,14",),
+        ("SPC1,3,123456,1,THRU,14",),
+        ("SPC1*" + "".join(f"{each:>16}" for each in (3, 123, 11, 12))[3:] + "\n*" + f"{13:>23}{14:>16}",),
+        ("SPC,3,11,123,,12,123456", "SPC,3,13,1234,0.,14,321"),
+    ],
+)  # fmt: skip
+def test_what_a_nastran_file_holds_is_a_group(tmp_path: Path, cards: tuple[str, ...]) -> None:
+    """Where no surface is in it; but not what leaves a way free."""
+    surface = "CQUAD4,6,7,11,12,13,14"
+    (tmp_path / "a.bdf").write_text(BDF.replace(surface, "\n".join(cards)))
+    read = gb.SolidMesh.read(tmp_path / "a.bdf", materials=STEEL, clamp="SPC 3", unit="m")
+    assert read.numbers[read.clamped].tolist() == [11, 12, 13, 14]
+    (tmp_path / "a.bdf").write_text(BDF.replace(surface, "\n".join([*cards, "SPC1,3,12,15"])))
+    with pytest.raises(gb.InputError, match="clamp is 'SPC 3', which is no group of the mesh; choose from 1"):
+        gb.SolidMesh.read(tmp_path / "a.bdf", materials=STEEL, clamp="SPC 3", unit="m")
+
+
 @pytest.mark.parametrize(("name", "text", "clamp"), [("a.inp", INP, "wall"), ("a.bdf", BDF, "7")])
 def test_a_node_has_its_number_in_the_file(tmp_path: Path, name: str, text: str, clamp: str) -> None:
     """The node at which the stress is largest."""
@@ -300,9 +320,29 @@ def test_a_binary_file_of_gmsh_with_a_node_0_is_refused(tmp_path: Path) -> None:
         gb.SolidMesh.read(tmp_path / "a.msh", materials=STEEL, clamp="1", unit="m")
 
 
+def test_wedges_of_15_nodes_that_meshio_lacks_are_said(tmp_path: Path) -> None:
+    """Gmsh's in binary, as it writes them."""
+    gmsh = pytest.importorskip("gmsh")
+    gmsh.initialize(readConfigFiles=False, interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.option.setNumber("Mesh.SecondOrderIncomplete", 1)
+        gmsh.option.setNumber("Mesh.ElementOrder", 2)
+        gmsh.option.setNumber("Mesh.Binary", 1)
+        base = gmsh.model.occ.addRectangle(0, 0, 0, 1, 1)
+        gmsh.model.occ.extrude([(2, base)], 0, 0, 1, numElements=[1], recombine=True)
+        gmsh.model.occ.synchronize()
+        gmsh.model.mesh.generate(3)
+        gmsh.write(str(tmp_path / "a.msh"))
+    finally:
+        gmsh.finalize()
+    with pytest.raises(gb.InputError, match="has wedges of 15 nodes, which meshio lacks; write it for Gmsh as text"):
+        gb.SolidMesh.read(tmp_path / "a.msh", materials=STEEL, clamp="1", unit="m")
+
+
 def test_a_library_that_meshio_needs_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Exodus's, which does not come with it."""
-    monkeypatch.setitem(sys.modules, "netCDF4", None)
-    (tmp_path / "a.e").write_bytes(b"CDF")
-    with pytest.raises(gb.InputError, match='netCDF4 is not installed; install it with: pip install "netCDF4"'):
-        gb.SolidMesh.read(tmp_path / "a.e", materials=STEEL, clamp="wall", unit="m")
+    """MED's."""
+    monkeypatch.setitem(sys.modules, "h5py", None)
+    (tmp_path / "a.med").write_bytes(b"HDF")
+    with pytest.raises(gb.InputError, match='h5py is not installed; install it with: pip install "h5py"'):
+        gb.SolidMesh.read(tmp_path / "a.med", materials=STEEL, clamp="wall", unit="m")

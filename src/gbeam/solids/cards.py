@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import cache
 from itertools import pairwise
 from typing import Any, ClassVar, NamedTuple
 
@@ -13,8 +12,8 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.numerics.eigen import Floats
-from gbeam.solids.shape_functions import DIMENSIONS, SHAPES, Indices, reference, shared_area
-from gbeam.solids.stress import FACES, corners_of
+from gbeam.solids.shape_functions import DIMENSIONS, SHAPES, shared_area
+from gbeam.solids.stress import on_face
 from gbeam.solids.texts import ABAQUS, NASTRAN, TextMesh, alike, ending_of, members, real
 
 Options = Mapping[str, str]
@@ -260,19 +259,10 @@ def _surface(mesh: TextMesh, name: str) -> dict[int, float]:
         for number in members([[part]], mesh.groups):
             kind, on = mesh.elements[number]
             if DIMENSIONS[kind] == 3:
-                on = tuple(on[i] for i in _on_face(kind, int(face[0][1:]) - 1))
+                on = tuple(on[i] for i in on_face(kind, int(face[0][1:]) - 1)[:8])
             elif face and face[0].upper() not in ("SPOS", "SNEG", "S1", "S2"):
                 raise refused(f"surface {name!r}", f"has the edge {face[0]} of a shell", "give its nodes")
             areas = shared_area(SHAPES[2][len(on)], np.array([mesh.nodes[each] for each in on]))
             for node, area in zip(on, areas, strict=True):
                 weights[node] = weights.get(node, 0.0) + area
     return weights
-
-
-@cache
-def _on_face(kind: str, face: int) -> Indices:
-    """Nodes on a face of a solid element: its corners, and the middles of its edges alike."""
-    places, corners = reference(kind), list(FACES[corners_of(kind)][face])
-    middles = (places[corners] + places[np.roll(corners, -1)]) / 2
-    apart = np.abs(places[:, None] - middles).max(axis=2)
-    return np.array([*corners, *(apart.argmin(axis=0) if apart.min(axis=0).max() < 1e-9 else ())])

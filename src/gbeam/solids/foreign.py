@@ -20,6 +20,8 @@ from gbeam.guards.limits import BINARY_BYTES, refuse_large_file
 from gbeam.guards.units import UnitError, quantity
 from gbeam.printable import shortened
 from gbeam.results.result import Floats
+from gbeam.solids.exodus import ENDINGS as EXODUS
+from gbeam.solids.exodus import read_exodus
 from gbeam.solids.shape_functions import KINDS, MED_ORDER, Indices
 from gbeam.solids.shells import points_of
 from gbeam.solids.stress import surface_of
@@ -37,7 +39,7 @@ _CARRYING = re.compile(
 THICKNESS = ("PSHELL", "SHELL SECTION")
 # Ends of the names of files that hold meshes, also of surfaces and of geometry, of which the reader says what lacks.
 MESHES = {
-    ".avs", ".bdf", ".e", ".ex2", ".exo", ".fem", ".inp", ".mdpa", ".med", ".mesh", ".meshb", ".msh", ".nas",
+    *EXODUS, ".avs", ".bdf", ".fem", ".inp", ".mdpa", ".med", ".mesh", ".meshb", ".msh", ".nas",
     ".su2", ".ugrid", ".vtk", ".vtu", ".xdmf", ".cgns", ".iges", ".igs", ".obj", ".ply", ".step", ".stl", ".stp",
 }  # fmt: skip
 _IGES = "IGES, which holds surfaces and not the solid", "export the part as STEP"
@@ -64,6 +66,8 @@ def read_mesh(source: str | os.PathLike[str] | Any) -> Any:
     try:
         if (mesh := text_mesh(source)) is not None:
             return mesh
+        if ending_of(source) in EXODUS:
+            return read_exodus(Path(source))
         import meshio
 
         _refuse_node_0(Path(source))
@@ -78,12 +82,15 @@ def read_mesh(source: str | os.PathLike[str] | Any) -> Any:
         of = "gbeam[mesh]" if error.name == "meshio" else error.name
         raise InputError("", f"{error.name} is not installed", f'install it with: pip install "{of}"') from None
     except (Exception, SystemExit) as error:
+        if error.args == ("wedge15",):
+            fix = "write it for Gmsh as text, or for Nastran, Abaqus, CalculiX or Exodus"
+            raise InputError("mesh", f"{os.fspath(source)} has wedges of 15 nodes, which meshio lacks", fix) from None
         words = shortened(" ".join((said.getvalue() or str(error)).split()), 200)
         if isinstance(error, KeyError):
             noun = "number" if isinstance(error.args[0], int) else "set"
             listed = ending_of(source) in TEXTS
             words = f"{noun} {error.args[0]} is named in it, and is not there" if listed else f"meshio lacks {error}"
-        fix = "give a file of Gmsh, Nastran, Abaqus, CalculiX or VTK, with its ending"
+        fix = "give a file of Gmsh, Nastran, Abaqus, CalculiX, VTK or Exodus, with its ending"
         raise InputError("mesh", f"{os.fspath(source)} cannot be read: {words}", fix) from None
 
 

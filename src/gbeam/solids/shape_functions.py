@@ -75,9 +75,10 @@ SHAPES = {
         20: "hexahedron20", 27: "hexahedron27"},
 }  # fmt: skip
 DIMENSIONS = {kind: dim for dim, kinds in SHAPES.items() for kind in kinds.values()}
-# Nodes in meshio's order, where Nastran and Gmsh have another one.
+# Nodes in meshio's order, where Nastran, Exodus and Gmsh have another one.
 NASTRAN_ORDER = {"hexahedron20": [*range(12), *range(16, 20), *range(12, 16)]}
 NASTRAN_ORDER |= {"wedge15": [*range(9), 12, 13, 14, 9, 10, 11]}
+EXODUS_ORDER = NASTRAN_ORDER | {"hexahedron27": [*NASTRAN_ORDER["hexahedron20"], 23, 24, 25, 26, 21, 22, 20]}
 _OF_GMSH = [*range(8), 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15]
 GMSH_ORDER = {"hexahedron20": _OF_GMSH, "hexahedron27": [*_OF_GMSH, 22, 23, 21, 24, 20, 25, 26]}
 GMSH_ORDER |= {"tetra10": [*range(8), 9, 8], "wedge15": [*range(7), 9, 7, 12, 14, 13, 8, 10, 11]}

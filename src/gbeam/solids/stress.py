@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cache
 from itertools import product
 from typing import Any, Self
 
@@ -16,7 +17,7 @@ from gbeam.results.result import Complex, Floats
 from gbeam.results.solids import SolidStress, StressAt, Surface, SurfaceModes, von_mises
 from gbeam.solids.elements import TENSOR, chunks
 from gbeam.solids.norms import LargestNorms
-from gbeam.solids.shape_functions import KINDS, Indices, extrapolation
+from gbeam.solids.shape_functions import KINDS, Indices, extrapolation, reference
 
 VERTICES, TIMES = 1500, 1000  # of pictures, about
 AROUND = np.array([each for each in product((1.0, 0.0, -1.0), repeat=3) if each > (0.0, 0.0, 0.0)])  # half of all ways
@@ -207,6 +208,15 @@ def hull(points: Floats) -> Floats:
 def corners_of(kind: str) -> int:
     """Number of corners of an element."""
     return 2 * KINDS[kind].shell or {"tetra": 4, "tetra10": 4, "wedge": 6, "wedge15": 6}.get(kind, 8)
+
+
+@cache
+def on_face(kind: str, face: int) -> Indices:
+    """Nodes of a solid element on a face: its corners, and the middles of its edges and of itself that are nodes."""
+    places, corners = reference(kind), list(FACES[corners_of(kind)][face])
+    middles = [*(places[corners] + places[np.roll(corners, -1)]) / 2, places[corners].mean(axis=0)]
+    apart = np.abs(places[:, None] - middles).max(axis=2)
+    return np.array([*corners, *apart.argmin(axis=0)[apart.min(axis=0) < 1e-9]])
 
 
 def outer_triangles(mesh: Any) -> Indices:

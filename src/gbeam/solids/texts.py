@@ -215,6 +215,7 @@ def _read_nastran(mesh: TextMesh, text: str, file: str) -> bool:
             if first[:1] not in ("", "+", "*"):
                 raise ValueError(f"{bare!r} is no card")
             cards[-1] += fields
+    held = dict[str, list[tuple[str, Iterable[int]]]]()
     for word, *row in cards:
         mesh.statements.append(Statement(word, {}, [row]))
         if word in ("GRID", "GRDSET") and row[1] not in ("", "0"):
@@ -224,9 +225,26 @@ def _read_nastran(mesh: TextMesh, text: str, file: str) -> bool:
             mesh.add("node", int(row[0]), tuple(map(real, row[2:5])))
         elif word in CARDS:
             _nastran_element(mesh, word, row)
+        elif word in ("SPC", "SPC1"):
+            held.setdefault(f"SPC {row[0]}", []).extend(_nastran_held(word, row))
         elif word == "INCLUDE":
             _refuse(mesh, mesh.statements[-1])
+    for name, parts in held.items():
+        if all({*"123"} <= {*ways} for ways, _ in parts):  # one that leaves a way free is no clamp
+            mesh.sets[name] = [each for _, some in parts for each in some if each in mesh.nodes]
     return True
+
+
+def _nastran_held(word: str, row: list[str]) -> Iterator[tuple[str, Iterable[int]]]:
+    """Components that a card holds, and of which nodes."""
+    if word == "SPC":
+        yield from ((ways, [int(node)]) for node, ways in (row[1:3], row[4:6]) if node)
+        return
+    ways, *nodes = filter(None, row[1:])
+    if "THRU" in (words := [each.upper() for each in nodes]):
+        yield ways, range(int(nodes[0]), int(nodes[words.index("THRU") + 1]) + 1)
+    else:
+        yield ways, map(int, nodes)
 
 
 def _nastran_element(mesh: TextMesh, word: str, row: list[str]) -> None:

@@ -1,0 +1,124 @@
+"""Meshes in files of Exodus II: netCDF with blocks of elements, sets of nodes, and sets of sides of elements."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from gbeam.solids.shape_functions import DIMENSIONS, EXODUS_ORDER, KINDS, SHAPES, Indices
+from gbeam.solids.stress import corners_of, on_face
+from gbeam.solids.texts import Cells, TextMesh
+
+ENDINGS = (".e", ".ex2", ".exo", ".g", ".gen")
+CLASSIC = b"CDF"  # begins a file of netCDF 3; that of netCDF 4 is one of HDF5
+_READ = re.compile(r"coord[xyz]?|connect\d+|(node|elem)_num_map|(eb|ns|ss)_(names|prop1)|node_ns\d+|(elem|side)_ss\d+")
+_DIMENSIONS = {"HEX": 3, "TET": 3, "WED": 3, "PYR": 3, "SHE": 2, "QUA": 2, "TRI": 2, "BAR": 1, "BEA": 1, "TRU": 1,
+               "EDG": 1, "SPH": 0, "CIR": 0}  # fmt: skip
+# Sides of solids by the faces of Abaqus, by their corners: Exodus has first those that stand on the edges of the base.
+_SIDES = {4: (1, 2, 3, 0), 6: (2, 3, 4, 0, 1), 8: (2, 3, 4, 5, 0, 1)}
+_NOUNS = {"eb": "block", "ns": "node set", "ss": "side set"}
+
+
+class _Variable(NamedTuple):
+    """Values of a variable, and the type of the elements whose nodes they are."""
+
+    values: Any
+    of: str
+
+
+def read_exodus(path: Path) -> TextMesh:
+    """Read a mesh whose groups are its blocks and sets, by their names or as `block 1`, `node set 1`, `side set 1`."""
+    stored, mesh = (_classic if path.read_bytes()[:3] == CLASSIC else _of_hdf5)(path), TextMesh()
+    coordinates = [stored[f"coord{axis}"].values for axis in "xyz" if f"coord{axis}" in stored]
+    places = np.array(coordinates or stored["coord"].values, dtype=float)
+    if len(places) != 3:
+        raise ValueError(f"its nodes have {len(places)} coordinates")
+    mesh.nodes = dict(zip(_numbers(stored, "node", places.shape[1]), places.T.tolist(), strict=True))
+    blocks = dict(_numbered(stored, "connect"))
+    ends = np.cumsum([0, *(len(each.values) for each in blocks.values())])
+    numbers = _numbers(stored, "elem", int(ends[-1]))
+    for (k, (values, of)), first in zip(blocks.items(), ends, strict=False):
+        kind = _kind(of, values.shape[1])
+        nodes = np.asarray(values, dtype=int)[:, EXODUS_ORDER.get(kind, slice(None))] - 1
+        named = np.array(numbers[first : first + len(nodes)], dtype=int)
+        mesh.cells.append(Cells(kind, nodes, DIMENSIONS[kind], named))
+        group = mesh.cell_sets.setdefault(_name(stored, "eb", k), [np.empty(0, dtype=int)] * len(blocks))
+        group[len(mesh.cells) - 1] = np.arange(len(nodes))
+    for k, (values, _) in _numbered(stored, "node_ns"):
+        mesh.point_sets[_name(stored, "ns", k)] = np.unique(values) - 1
+    types = [each.of for each in blocks.values()]
+    for k, (values, _) in _numbered(stored, "elem_ss"):
+        element, side = np.asarray(values, dtype=int) - 1, np.asarray(stored[f"side_ss{k}"].values, dtype=int)
+        block = np.searchsorted(ends, element, side="right") - 1
+        parts = list[Indices]()
+        for i, number in np.unique(np.stack([block, side]), axis=1).T:
+            cells, some = mesh.cells[i], element[(block == i) & (side == number)] - ends[i]
+            parts.append(cells.data[some][:, _on_side(cells.type, types[i], int(number))].ravel())
+        mesh.point_sets.setdefault(_name(stored, "ss", k), np.unique(np.concatenate(parts)))
+    return mesh
+
+
+def _classic(path: Path) -> dict[str, _Variable]:
+    from scipy.io import netcdf_file  # 0.4 s to import
+
+    with netcdf_file(path, mmap=False) as file:
+        chosen = {name: each for name, each in file.variables.items() if _READ.fullmatch(name)}
+        return {
+            name: _Variable(each.data.copy(), _text(getattr(each, "elem_type", b""))) for name, each in chosen.items()
+        }
+
+
+def _of_hdf5(path: Path) -> dict[str, _Variable]:
+    import h5py  # 0.2 s to import
+
+    with h5py.File(path) as file:
+        chosen = {name: each for name, each in file.items() if _READ.fullmatch(name)}
+        return {name: _Variable(each[()], _text(each.attrs.get("elem_type", b""))) for name, each in chosen.items()}
+
+
+def _text(value: Any) -> str:
+    letters = np.ravel(value).tolist()
+    return "".join(each.decode(errors="replace") if isinstance(each, bytes) else each for each in letters).strip("\0 ")
+
+
+def _numbered(stored: Mapping[str, _Variable], prefix: str) -> Iterator[tuple[int, _Variable]]:
+    """Variables of a kind by their numbers."""
+    found = (re.fullmatch(rf"{prefix}(\d+)", name) for name in stored)
+    for k in sorted(int(each[1]) for each in found if each):
+        yield k, stored[f"{prefix}{k}"]
+
+
+def _numbers(stored: Mapping[str, _Variable], noun: str, count: int) -> list[int]:
+    """Numbers of nodes or elements, from 1 where the file says none, or one twice."""
+    given = stored[f"{noun}_num_map"].values.tolist() if f"{noun}_num_map" in stored else []
+    return given if len({*given}) == count else list(range(1, count + 1))
+
+
+def _name(stored: Mapping[str, _Variable], kind: str, k: int) -> str:
+    """Name of a block or a set, the k-th from 1."""
+    given = _text(stored[f"{kind}_names"].values[k - 1]).partition("\0")[0] if f"{kind}_names" in stored else ""
+    number = int(stored[f"{kind}_prop1"].values[k - 1]) if f"{kind}_prop1" in stored else k
+    return given.strip() or f"{_NOUNS[kind]} {number}"
+
+
+def _kind(of: str, count: int) -> str:
+    dim = _DIMENSIONS.get(of[:3].upper())
+    if dim is None or count not in SHAPES[dim]:
+        raise ValueError(f"elements of type {of} with {count} nodes are not known")
+    return SHAPES[dim][count]
+
+
+def _on_side(kind: str, of: str, side: int) -> Any:
+    """Nodes of elements on a side, by its number; all of those that have no sides, or are not computed."""
+    if DIMENSIONS[kind] == 3 and kind in KINDS:
+        return on_face(kind, _SIDES[corners_of(kind)][side - 1])
+    corners = 3 if kind.startswith("triangle") else 4
+    edge = side - 1 - 2 * ("SHELL" in of.upper())  # the first two sides of shells are their faces
+    if DIMENSIONS[kind] != 2 or edge < 0:
+        return slice(None)
+    middle = [corners + edge] if kind[-1].isdigit() else []
+    return [edge, (edge + 1) % corners, *middle]
