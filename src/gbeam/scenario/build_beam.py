@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gbeam.errors import InputError
+from gbeam.errors import InputError, naming
 from gbeam.guards.limits import ENTRIES
 from gbeam.guards.units import UnitError, quantity
 from gbeam.scenario import schema
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from gbeam.structure.attachments import Load
     from gbeam.structure.beam import Beam
     from gbeam.structure.line import Line
+    from gbeam.structure.material import Material
+    from gbeam.structure.section import Section
 
 
 def beam_of(parts: Collector, where: str, table: schema.Beam) -> Beam | None:
@@ -25,12 +27,12 @@ def beam_of(parts: Collector, where: str, table: schema.Beam) -> Beam | None:
     from gbeam.structure.attachments import Point, PointMass, Root
     from gbeam.structure.beam import Beam
     from gbeam.structure.material import Material
-    from gbeam.structure.section import Section
 
-    dimensions = table.section.model_dump(exclude={"shape", "stations"}, exclude_none=True)
-    section = parts.attempt(f"{where}.section", Section.of, table.section.shape, table.section.stations, **dimensions)
     values = None if table.material is None else table.material.model_dump(exclude_none=True)
     material = None if values is None else parts.attempt(f"{where}.material", Material, **values)
+    drawn = isinstance(table.section, schema.Drawn)
+    known = material is not None or not drawn
+    section = parts.attempt(f"{where}.section", _section, table.section, material) if known else None
     masses = []
     for i, body in enumerate(table.masses):
         moments = (body.inertia.x, body.inertia.y, body.inertia.z) if body.inertia else (0.0, 0.0, 0.0)
@@ -50,7 +52,7 @@ def beam_of(parts: Collector, where: str, table: schema.Beam) -> Beam | None:
         Beam,
         line.length if table.length is None else table.length,  # type: ignore[union-attr]
         section,
-        material,
+        None if drawn else material,
         masses,
         table.damping_ratio,
         root,
@@ -59,6 +61,20 @@ def beam_of(parts: Collector, where: str, table: schema.Beam) -> Beam | None:
         table.rotary_inertia,
         line,
     )
+
+
+def _section(table: Any, material: Material | None) -> Section:
+    from gbeam.structure.section import Section
+
+    values = table.model_dump(exclude={"shape", "stations"}, exclude_none=True)
+    if isinstance(table, schema.Drawn):
+        assert material is not None
+        return Section.drawn(values.pop("outline"), material, **values)
+    if values.get("file") is None:
+        return Section.of(table.shape, table.stations, **values)
+    file = values.pop("file")
+    with naming({"path": "file", "paths": "file"}):
+        return Section.read(*((file,) if isinstance(file, str) else file), stations=table.stations, **values)
 
 
 def _line(parts: Collector, where: str, table: schema.Line) -> Line | None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import os
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -14,8 +16,11 @@ from gbeam.arrays.tree import Value, record, static
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive, possible
+from gbeam.structure.drawn import matrices_of
+from gbeam.structure.material import Material
 from gbeam.structure.matrices import between, refuse_impossible
 from gbeam.structure.matrices import listed as matrices
+from gbeam.structure.section_files import read_matrices
 from gbeam.structure.shapes import MATRICES, ROUND, SHAPES
 
 Array = NDArray[np.float64]
@@ -45,7 +50,8 @@ _UNITS = {"area": "m²", "second moment": "m⁴", "shear coefficient": "(a numbe
 class Section(Value):
     """Cross-section of the beam, constant or given at stations and interpolated linearly in its dimensions.
 
-    Build it with :meth:`rectangle`, :meth:`circle`, :meth:`tube`, :meth:`general` or :meth:`of_matrices`.
+    Build it with :meth:`rectangle`, :meth:`circle`, :meth:`tube`, :meth:`general`, :meth:`of_matrices`, :meth:`read` or
+    :meth:`drawn`.
 
     Parameters
     ----------
@@ -265,10 +271,10 @@ class Section(Value):
         """Section by its stiffness and mass matrices, of a beam without a material.
 
         Rows and columns are in the order stretch, shear along y, shear along z, twist, curvature about y, curvature
-        about z, in axes with x along the beam. VABS has the same order; of BECAS, whose z is along the beam, take
-        ``K[np.ix_(order, order)]`` with ``order = [2, 0, 1, 5, 3, 4]``. The axis of the beam is where the matrices are
-        taken: axes of tension, shear and mass may lie beside it. A strain for which a model has no shapes moves nothing
-        and follows the others without a force of its own: held at zero it would stiffen them by their coupling with it.
+        about z, in axes with x along the beam. VABS has the same order; :meth:`read` takes its files and those of
+        BECAS. The axis of the beam is where the matrices are taken: axes of tension, shear and mass may lie beside it.
+        A strain for which a model has no shapes moves nothing and follows the others without a force of its own: held
+        at zero it would stiffen them by their coupling with it.
 
         Parameters
         ----------
@@ -286,6 +292,78 @@ class Section(Value):
             rigid body.
         """
         return cls.of(MATRICES, stations, stiffness=stiffness, mass=mass)
+
+    @classmethod
+    @typed
+    def read(
+        cls,
+        *paths: str | os.PathLike[str],
+        stations: ArrayLike = (),
+        length_unit: str = "m",
+        mass_unit: str = "kg",
+    ) -> Section:
+        """Read a section's matrices from a file of VABS (.K) or BECAS (.out).
+
+        Parameters
+        ----------
+        *paths : path
+            One file, or one per station.
+        stations : array_like
+            Positions from the root, m, of several files; empty for a constant section.
+        length_unit, mass_unit : str
+            Of the program, such as mm and Mg; its unit of time is the second.
+
+        Raises
+        ------
+        InputError
+            If a file has no 6 × 6 stiffness and mass matrices, or they are those of no section.
+        """
+        if not paths:
+            raise InputError("paths", "are missing", "give a file of VABS or BECAS, or one per station")
+        both = [read_matrices(path, length_unit, mass_unit) for path in paths]
+        stiffness, mass = (np.stack(each) for each in zip(*both, strict=True))
+        return cls.of(MATRICES, stations, stiffness=stiffness, mass=mass)
+
+    @classmethod
+    @typed
+    def drawn(
+        cls,
+        outline: ArrayLike,
+        material: Material,
+        *,
+        holes: Sequence[ArrayLike] = (),
+        axis: ArrayLike | None = None,
+        element_size: float | None = None,
+    ) -> Section:
+        """Compute the matrices of a drawn section of one material by sectionproperties (``gbeam[sections]``).
+
+        Parameters
+        ----------
+        outline : array_like
+            (k, 2) corners [y, z] in order, m.
+        material : Material
+            Density, Young's and shear moduli.
+        holes : sequence of array_like
+            Corners of each hole, m.
+        axis : (2,) array_like, optional
+            Where the axis of the beam meets the drawing, [y, z] m; the centroid unless given.
+        element_size : float, optional
+            Edge of the triangles, m; about 400 of them unless given.
+
+        Returns
+        -------
+        Section
+            By matrices, with the axes of tension, shear and mass where they are. It holds the material, and does not
+            warp; stress over it is not known.
+
+        Raises
+        ------
+        InputError
+            If the outline encloses no area or crosses itself, or sectionproperties is not installed.
+        """
+        if element_size is not None:
+            positive("element_size", element_size, "m")
+        return cls.of_matrices(*matrices_of(outline, holes, material, axis, element_size))
 
     def at(self, x: ArrayLike) -> SectionValues:
         """Area, second moments and extreme fibres at positions `x`, m (any shape), of matrices by mass."""

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from gbeam.scenario.schema.beam import Beam as Beam
+from gbeam.scenario.schema.beam import Drawn as Drawn
 from gbeam.scenario.schema.beam import Line as Line
 from gbeam.scenario.schema.beam import Load as Load
 from gbeam.scenario.schema.beam import PointMass as PointMass

@@ -15,12 +15,14 @@ from gbeam.scenario.schema.fields import (
     Areas,
     Density,
     Exponent,
+    File,
     Length,
     Lengths,
     Loc,
     Mass,
     MomentOfInertia,
     Offset,
+    OneOrSome,
     Position,
     Pressure,
     Ratio,
@@ -177,8 +179,45 @@ class ByMatrices(Stations):
     """A section by its stiffness and mass matrices, in SI; rows: stretch, shears y and z, twist, curvatures y and z."""
 
     shape: Literal["matrices"] = Field(description="name of the shape")
-    stiffness: Matrices = Field(description="(6, 6) in N, N m and N m^2, or one per station; VABS has the same order")
-    mass: Matrices = Field(description="(6, 6) of a rigid slice in kg/m, kg and kg m, or one per station")
+    stiffness: Matrices | None = optional(
+        "(6, 6) in N, N m and N m^2, or one per station; VABS has the same order; or file"
+    )
+    mass: Matrices | None = optional("(6, 6) of a rigid slice in kg/m, kg and kg m, or one per station")
+    file: OneOrSome[File] | None = optional(
+        "file of VABS (.K) or BECAS (.out) with both matrices instead, or one per station; relative to the folder of "
+        "the scenario file"
+    )
+    length_unit: str | None = optional("unit of length in the file, such as mm; m where left out. Of time it is s")
+    mass_unit: str | None = optional("unit of mass in the file, such as Mg; kg where left out")
+
+    @model_validator(mode="after")
+    def _one_way(self) -> ByMatrices:
+        ways = {name: getattr(self, name) is not None for name in ("stiffness", "mass", "file")}
+        if ways["file"] and (ways["stiffness"] or ways["mass"]):
+            refuse([(("file",), wrong("is given beside matrices", "keep one of them", mark="key"))])
+        for name in () if ways["file"] else ("stiffness", "mass"):
+            if not ways[name]:
+                hint = "give stiffness and mass, (6, 6) each, or file of VABS or BECAS"
+                refuse([((), wrong(f"{name} is missing", hint, mark="key"))])
+        for name in () if ways["file"] else ("length_unit", "mass_unit"):
+            if getattr(self, name) is not None:
+                refuse([((name,), wrong("is given without a file", "leave it out: matrices are in SI", mark="key"))])
+        return self
+
+
+Corners = Annotated[tuple[tuple[Offset, Offset], ...], Field(min_length=3, max_length=ENTRIES)]
+
+
+class Drawn(Table):
+    """A section of one material by its outline, whose matrices sectionproperties computes: `gbeam[sections]`."""
+
+    shape: Literal["drawn"] = Field(description="name of the shape")
+    outline: Corners = Field(description="corners in order: [ [y, z], ... ]")
+    holes: tuple[Corners, ...] = listed("corners of each hole: [ [ [y, z], ... ] ]")
+    axis: tuple[Offset, Offset] | None = optional(
+        "where the axis of the beam meets the drawing, [y, z]; the centroid where left out"
+    )
+    element_size: Length | None = optional("edge of the triangles; about 400 of them where left out")
 
 
 def _shape(section: Any) -> str | None:
@@ -194,7 +233,8 @@ Section = Annotated[
     | Annotated[Circle, Tag("circle")]
     | Annotated[Tube, Tag("tube")]
     | Annotated[General, Tag("general")]
-    | Annotated[ByMatrices, Tag("matrices")],
+    | Annotated[ByMatrices, Tag("matrices")]
+    | Annotated[Drawn, Tag("drawn")],
     Discriminator(_shape),
 ]
 
