@@ -11,6 +11,9 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import spsolve
 
 import gbeam as gb
+from gbeam.report.page.document import viewer
+from gbeam.report.page.parts import Numbers
+from gbeam.results.facts import json_of
 from gbeam.results.solids import von_mises
 from gbeam.solids.elements import chunks, stiffness_matrix
 from gbeam.solids.shape_functions import KINDS
@@ -84,7 +87,8 @@ def test_stress_at_the_edge_of_a_clamp_is_left_out() -> None:
         rest, unjudged, truth = (gb.static(each.structure, acceleration=push) for each in (model, alone, fine))
         stress, plain, finest = model.stress(rest), alone.stress(unjudged), fine.stress(truth)
         assert stress.singular is not None and stress.singular_depth == pytest.approx(0.0315, rel=1e-2)
-        assert plain.singular is None and plain.left_out == "" and plain.worst.von_mises == stress.singular.von_mises
+        assert plain.singular is None and plain.worst.von_mises == stress.singular.von_mises
+        assert plain.singular_nodes is None and "one mesh does not tell whether the largest is there" in repr(plain)
         assert finest.worst.von_mises > more * stress.singular.von_mises
         (same,) = np.flatnonzero(np.linalg.norm(finest.nodes - stress.worst.place, axis=1) < 1e-12)
         error = abs(stress.worst.von_mises / finest.node_von_mises[same] - 1)
@@ -93,6 +97,29 @@ def test_stress_at_the_edge_of_a_clamp_is_left_out() -> None:
         assert stress.singular.place[0] < 0.0251 < stress.worst.place[0]
         assert f"{stress.singular_nodes} nodes" in repr(stress) and "no limit" in repr(stress)
     assert stress.singular_nodes == (stress.nodes[:, 0] < 0.0251).sum()
+
+
+@pytest.mark.parametrize("verb", ["modes", "static"])
+def test_colours_end_at_the_largest_stress_that_is_judged(verb: str) -> None:
+    """And the view says that it is more at the clamp's edge; with one mesh, which does not tell, they end there."""
+    coarse, fine = (solid(block("hexahedron20", (8 * n, 2 * n, n), (0.2, 0.03, 0.01))) for n in (1, 2))
+    shown, edge = [], []
+    for coarser in (None, coarse.reduced(modes=2, damping_ratio=0.01)):
+        structure = fine.reduced(modes=2, damping_ratio=0.01, coarser=coarser).structure
+        if verb == "modes":
+            facts, data = json_of(gb.modes(structure)), gb.modes(structure).to_xarray()
+            motions = viewer("Modes", facts, {key: each.values for key, each in data.variables.items()}, Numbers())[
+                "modes"
+            ]
+        else:
+            data = gb.static(structure, acceleration=(0, 0, 9.81)).to_xarray()
+            variables = {f"motions/rest/{key}": each.values for key, each in data.variables.items()}
+            motions = viewer("Deflection", {"motions": {"rest": {}}}, variables, Numbers())["scene"]
+        shown.append(motions["motions"][0]["parts"][0]["surface"])
+        edge.append(data["surface_vertices"].values[~data["surface_judged"].values.astype(bool), 0])
+    assert shown[0]["beyond"] is False and not len(edge[0])
+    assert shown[1]["beyond"] is True and len(edge[1]) and edge[1].max() < 0.0251
+    assert 0.5 * shown[0]["largest"] < shown[1]["largest"] < 0.98 * shown[0]["largest"]
 
 
 def test_the_margin_is_least_in_the_weaker_material() -> None:

@@ -39,7 +39,9 @@ export interface Surface {
   shapes: Ref;
   stress: Ref;
   sizes: Ref;
+  /** Stress that is judged; whether it is more at vertices that are not, where it has no limit. */
   largest: number;
+  beyond?: boolean;
 }
 
 /** A body: a beam, or the box of a rigid body and the places of its points, in axes of its root. */

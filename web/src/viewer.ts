@@ -233,7 +233,10 @@ export class Viewer {
     if (colouring !== "none") {
       const stress = colouring === "stress";
       const relative = this.panels.every((panel) => panel.motion.relative);
-      const end = relative ? "largest" : stress ? `${format(largestStress / 1e6)} MPa` : `${format(1e3 * largestDeflection)} mm`;
+      const surfaces = this.panels.flatMap((panel) => panel.motion.parts.flatMap((part) => part.surface ?? []));
+      const more = stress && surfaces.some((each) => each.beyond) ? ", more where it has no limit as the mesh gets finer" : "";
+      const size = relative ? "largest" : stress ? `${format(largestStress / 1e6)} MPa` : `${format(1e3 * largestDeflection)} mm`;
+      const end = `${size}${more}`;
       const bar = element("span", "gbeam-bar");
       bar.style.background = GRADIENT;
       bar.style.borderColor = css(shade(0));

@@ -17,8 +17,10 @@ def resting_loads(loads: Facts, of: str = "motion") -> Block:
     """Loads of the root and stress at rest, in every motion, or `of` every beam."""
     cells = {of: "name", "force, N": "force", "moment, N m": "moment", "stress, MPa": "stress", "largest in": "place"}
     cells |= {"margin on yield": "least", "torque from the hub, N m": "beam_torque"}
-    caption = "Of the base on the root, base axes; largest stress anywhere"
-    return table([_at_rest(each) for each in named(loads)], cells, caption, optional=tuple(cells)[3:])
+    rows = [_at_rest(each) for each in named(loads)]
+    stressed = any(each["stress"] for each in rows)
+    caption = f"Of the base on the root, base axes{'; largest stress anywhere' if stressed else ''}"
+    return table(rows, cells, caption, optional=tuple(cells)[3:])
 
 
 def _at_rest(loads: Facts) -> Facts:
@@ -88,9 +90,10 @@ def stress_table(solids: Facts, of: str = "motion") -> Blocks:
         ),
     }
     yield table(named(solids), cells, "Largest stress, and where it is", optional=("node",))
-    words = tuple(f"{name}: {each['left_out']}" for name, each in solids.items() if each.get("left_out"))
+    words = {name: each["left_out"] for name, each in solids.items() if each.get("left_out")}
+    alike = len(words) == len(solids) and len(set(words.values())) == 1
     if words:
-        yield Items(words)
+        yield Items(tuple(set(words.values()) if alike else (f"{name}: {each}" for name, each in words.items())))
 
 
 def _place(path: str) -> Columns:

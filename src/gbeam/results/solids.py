@@ -17,6 +17,7 @@ from gbeam.results.parts import margin_words, yield_margin
 from gbeam.results.result import Complex, Figured, Floats, Part
 
 UNLIMITED = "at sharp edges and the edges of clamps the stress of an elastic solid has no limit as the mesh gets finer"
+NOT_KNOWN = f"{UNLIMITED}: one mesh does not tell whether the largest is there; give a coarser one beside it"
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -68,7 +69,8 @@ class SolidStress(Figured):
     )
     singular: StressAt | None = part("of nodes that are left out the largest", name="singular_", optional=True,
                                      note=UNLIMITED, default=None)  # fmt: skip
-    singular_nodes: int = fact("number of nodes that are left out", note=UNLIMITED, default=0)
+    singular_nodes: int | None = fact("number of nodes that are left out; not known of one mesh", note=UNLIMITED,
+                                      optional=True, default=None)  # fmt: skip
     singular_depth: float = fact("largest distance of a node that is left out to one that is judged", "m", default=0.0)
     points: tuple[str, ...] = labels("name of the point", "point", default=())
     point_von_mises: Floats = quantity("Pa", "von Mises stress at the point", "time point", key=None, empty=True)
@@ -102,10 +104,10 @@ class SolidStress(Figured):
         "Pa", "largest von Mises stress over time at the node", "node", key=None, empty=True
     )
 
-    @declared("", "what is left out of the largest stress, and why", role="fact")
+    @declared("", "what is left out of the largest stress, and why, or why that is not known", role="fact")
     def left_out(self) -> str:
         if self.singular is None:
-            return ""
+            return NOT_KNOWN if self.singular_nodes is None else ""
         return (
             f"{UNLIMITED}: {self.singular_nodes} nodes, up to "
             f"{1e3 * self.singular_depth:.3g} mm from the others, are left out, the "
@@ -136,12 +138,8 @@ class SolidStress(Figured):
         return np.asarray(strain @ np.array([x * x, y * y, z * z, y * z, x * z, x * y]))
 
     @property
-    def lines(self) -> tuple[str, ...]:
-        """The largest stress, the least margin and what is left out in words."""
-        return *self._lines, *filter(None, [self.left_out])
-
-    @property
-    def _lines(self) -> tuple[str, str]:
+    def lines(self) -> tuple[str, str]:
+        """The largest stress and the least margin in words."""
         if self.nearest_yield is None:
             return said(self.worst), "margin on yield not known: no material has a yield_strength"
         assert self.nearest_yield.margin is not None
@@ -152,8 +150,8 @@ class SolidStress(Figured):
         return said(self.worst), f"{words} in {material}{where}"
 
     def __repr__(self) -> str:
-        of, (worst, *others) = f" {self.motion!r}" if self.motion else "", self.lines
-        return self._with_warnings(f"SolidStress{of} ({self.model}): {worst}", *others)
+        of, (worst, margin) = f" {self.motion!r}" if self.motion else "", self.lines
+        return self._with_warnings(f"SolidStress{of} ({self.model}): {worst}", margin, *filter(None, [self.left_out]))
 
 
 def von_mises(stress: Floats) -> Floats:
@@ -187,6 +185,7 @@ class Skin(Part):
     stress: Floats = quantity(
         "Pa", "stress xx, yy, zz, yz, xz, xy at the vertex", "surface_shape vertex stress_component"
     )
+    judged: NDArray[np.bool_] = quantity("", "whether the largest stress counts the vertex", "vertex", note=UNLIMITED)
 
 
 @dataclass(frozen=True, repr=False, eq=False)

@@ -156,7 +156,8 @@ def beside(coarser: SolidModel, finer: Structure) -> Structure:
     basis = np.zeros((structure.size, n))
     basis[:known] = turn * np.where(np.diagonal(size) < 0, -1.0, 1.0)
     every = np.pad(basis, ((0, rough.every_shape.shape[-1] - len(basis)), (0, 0)))
-    apart = replace(fine, singular=singular(fine, rough, _static(finer), _static(coarser.structure)))
+    without_limit = singular(fine, rough, _static(finer), _static(coarser.structure))
+    apart = replace(fine, singular=without_limit, compared=True)
     # Where both have a node: stress changes fast near those where it is largest.
     of_both = np.unique(_nearest(fine, rough, np.arange(len(rough.known))))
     felt = replace(apart, felt_at=fine.most(of_both[~apart.singular[of_both]]))

@@ -37,7 +37,7 @@ class NodalStress(Value):
     """Stresses of a mesh by the first `size` of coordinates with shapes (k, 3, n): at all pairs `known` (p,), a node
     and the number of a material of its elements in one, those of unit coordinates (p, 6, n); `felt_at` are the pairs
     that one of all coordinates stresses most, and `singular` (p,) those where stress grows without limit as a mesh
-    gets finer.
+    gets finer, as a coarser mesh tells with which it is `compared`.
     """
 
     mesh: Any
@@ -48,6 +48,7 @@ class NodalStress(Value):
     size: int
     felt_at: Indices
     singular: NDArray[np.bool_]
+    compared: bool = False
 
     @classmethod
     def of(cls, mesh: Any, shapes: Floats) -> Self:
@@ -150,6 +151,7 @@ class NodalStress(Value):
             "triangles": triangles,
             "shapes": np.moveaxis(self.shapes[vertices] @ mixed, -1, 0),
             "stress": np.moveaxis(stress @ mixed, -1, 0),
+            "judged": ~self.singular[first[vertices]],
         }
         return skin, left[:, :kept] * sizes[:kept]
 
@@ -318,7 +320,7 @@ def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> S
             yield_strength=strength if np.isfinite(strength) else None,
         )
 
-    singular: dict[str, Any] = {}
+    singular: dict[str, Any] = {"singular_nodes": 0 if nodal.compared else None}
     if nodal.singular.any():
         without = np.unique(of_pair[nodal.singular])
         deep = cKDTree(mesh.points[of_pair[~nodal.singular]]).query(mesh.points[without])[0].max()

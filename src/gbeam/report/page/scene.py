@@ -20,6 +20,7 @@ TIMES = 1500  # of bodies that have no outline of their own
 SIGNS = np.array(np.meshgrid(*[(-1, 1)] * 3)).reshape(3, -1).T  # of a box's corners
 CORNERS = (SIGNS + 1) / 2
 SURFACE = ("vertices", "triangles", "shapes", "stress", "sizes")
+BEYOND = 1e-3  # of the largest stress that is judged: more is said
 MESH = ("shapes", "sizes_real", "sizes_imag")  # of a surface in modes
 _PLACED = ("place", "attitude")  # of the points of a system
 LINE = (("rest", "place"), ("across", "across"))  # of a beam that is not straight, and where an outline has it
@@ -74,7 +75,8 @@ def motion(name: str, environment: str, variables: Variables, numbers: Numbers) 
 def _solid(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple[dict[str, Any], Floats, Floats]:
     """One motion of a solid: its surface in a few shapes; times and displacements (t, v, 3), the largest last."""
     some, at = v["surface_time"], v["surface_vertices"]
-    surface, tip = _surface({key: v[f"surface_{key}"] for key in SURFACE}, v.get("solid_von_mises"), numbers)
+    of = {key.removeprefix("surface_"): each for key, each in v.items() if key.startswith("surface_")}
+    surface, tip = _surface(of, v.get("solid_von_mises"), numbers)
     header = _header(name, environment, [{"surface": surface}], numbers.add(some), _largest(tip))
     header |= _around(at, numbers) | _carried(v, _indices(v["time"], some), at, numbers)
     return header, some, tip
@@ -112,13 +114,17 @@ def _around(places: Floats, numbers: Numbers) -> dict[str, Any]:
 
 
 def _surface(of: Variables, stress: Floats | None, numbers: Numbers) -> tuple[dict[str, Any], Floats]:
-    """A surface in a few shapes, its stress if not over time, and the farthest vertex's displacement (t, 1, 3)."""
+    """A surface in a few shapes, the largest stress that is judged, of the vertices or `stress` over time, and the
+    farthest vertex's displacement (t, 1, 3).
+    """
     few = of["sizes"][:: max(1, len(of["sizes"]) // 100)]
     moved = np.einsum("ts,sva->tva", few, of["shapes"])
-    if stress is None:
-        stress = von_mises(np.einsum("ts,sva->tva", few, of["stress"]))
+    seen = von_mises(np.einsum("ts,sva->tva", few, of["stress"])).max(axis=0)
+    judged = np.broadcast_to(of.get("judged", True), seen.shape).astype(bool)  # older files do not say
+    largest = float(seen[judged].max(initial=0.0) if stress is None else np.max(stress))
     vertex = (moved**2).sum(axis=-1).max(axis=0).argmax()
-    header = {key: numbers.add(of[key]) for key in SURFACE} | {"largest": float(np.max(stress))}
+    header = {key: numbers.add(of[key]) for key in SURFACE} | {"largest": largest}
+    header["beyond"] = bool(seen[~judged].max(initial=0.0) > (1 + BEYOND) * largest)
     return header, np.einsum("ts,sa->ta", of["sizes"], of["shapes"][:, vertex])[:, None]
 
 
@@ -187,7 +193,8 @@ def _system(name: str, environment: str, v: Variables, numbers: Numbers) -> tupl
             tip = of["outline"][:, -1:]
             deflected = tip if _largest(tip) > _largest(deflected) else deflected
         elif f"surface_{body}_vertices" in v:
-            of = {key: v[f"surface_{body}_{key}"] for key in SURFACE}
+            start = f"surface_{body}_"
+            of = {key.removeprefix(start): each for key, each in v.items() if key.startswith(start)}
             of["sizes"] = np.stack([np.interp(some, v[f"{body}_surface_time"], each) for each in of["sizes"].T], axis=1)
             part["surface"], moved = _surface(of, v.get(f"{body}_von_mises"), numbers)
             deflected = moved if _largest(moved) > _largest(deflected) else deflected
