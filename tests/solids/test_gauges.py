@@ -234,6 +234,25 @@ def test_gauges_of_a_scenario_from_the_command_line(scenario: Path, capsys: pyte
     assert "--strain-at is 'gauge'; choose one of bar" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("system", [False, True])
+def test_a_run_says_what_is_at_its_points(
+    scenario: Path, system: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Displacement, what an accelerometer reads, stress and strain of a mesh, alone and in a system."""
+    at = "bar.gauge" if system else "gauge"
+    joint = '[joints.wall]\nkind = "fixed"\nbody = "bar"\n' if system else ""
+    sensor = f'{joint}[sensors."{at}"]\nfrequency = "20 Hz"\n[motion'
+    scenario.write_text(scenario.read_text(encoding="utf-8").replace("[motion", sensor), encoding="utf-8")
+    run = gb.study(gb.read_scenario(scenario)).responses["flight"]
+    stress = run.solids["bar"] if system else run.solid
+    read, strain = run.readings.acceleration[:, 0] / 9.80665, 1e6 * np.abs(stress.strain_at("gauge")).max()
+    assert main(["run", str(scenario), "--out", str(tmp_path / "out")]) == 0
+    lines = [line.split() for line in capsys.readouterr().out.splitlines()]
+    (row,) = [line for line in lines if at in line and len(line) > 4]
+    assert float(row[-1]) == pytest.approx(strain, rel=1e-3) and strain > 10
+    assert float(row[-3]) == pytest.approx(np.linalg.norm(read, axis=1).max(), rel=1e-3)
+
+
 def test_a_bad_place_of_a_gauge_is_read_aloud(scenario: Path) -> None:
     text = scenario.read_text(encoding="utf-8")
     for before, after, place in (

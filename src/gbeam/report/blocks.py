@@ -13,7 +13,15 @@ from gbeam.report.words import columns, number, percent, rounding
 
 Facts = Mapping[str, Any]  # of the JSON, with None for what is not finite
 # Units in which tables have numbers that JSON has in SI.
-_SHOWN = {"mm": 1e3, "ms": 1e3, "MPa": 1e-6, "g": 1 / STANDARD_GRAVITY, "deg": 180 / math.pi, "rpm": 30 / math.pi}
+_SHOWN = {
+    "mm": 1e3,
+    "ms": 1e3,
+    "MPa": 1e-6,
+    "µm/m": 1e6,
+    "g": 1 / STANDARD_GRAVITY,
+    "deg": 180 / math.pi,
+    "rpm": 30 / math.pi,
+}
 
 _NUMERIC = re.compile(r"[-+±–]?\s*\d.*|–?")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -94,6 +95,40 @@ def stress_table(solids: Facts, of: str = "motion") -> Blocks:
     alike = len(words) == len(solids) and len(set(words.values())) == 1
     if words:
         yield Items(tuple(set(words.values()) if alike else (f"{name}: {each}" for name, each in words.items())))
+
+
+# Of the rows of `at_points`.
+READ: Columns = {
+    "accelerometer reads, g": "sensor.size.max_abs",
+    "von Mises, MPa": "solid.von_mises",
+    "strain along x, µm/m": "solid.strain",
+}
+
+
+def at_points(facts: Facts, points: Facts) -> Iterator[Facts]:
+    """Named points of a response with what an accelerometer reads there, and the largest stress and strain of a mesh;
+    those of a system have the names of their bodies before theirs.
+    """
+    for name, each in points.items():
+        body, _, point = name.rpartition(".")
+        solid = facts.get("solids", {}).get(body) if body else facts.get("solid")
+        of_solid = solid["points"].get(point) if solid else None
+        yield {"name": name, **each, "sensor": facts.get("sensors", {}).get(name), "solid": of_solid}
+
+
+def points_table(motions: Facts) -> Block:
+    """Largest values at named points in every motion; nothing where only the tip is one, without a sensor."""
+    rows = [
+        {"motion": name, **row}
+        for name, each in motions.items()
+        for row in at_points(each, {point["name"]: point for point in each["stations"] if point.get("name")})
+    ]
+    rigid = any("specimen" in each for each in motions.values())
+    rows = [row for row in rows if row["sensor"] or not rigid]
+    if all(row["name"] == "tip" and not row["sensor"] for row in rows):
+        return Items(())
+    moves = {} if rigid else {"moves by, mm": "size.max_abs"}
+    return table(rows, {"motion": "motion", "point": "name", **moves, **READ}, "Largest at named points", optional=READ)
 
 
 def _place(path: str) -> Columns:

@@ -21,7 +21,7 @@ from gbeam.report.blocks import (
     Sentence,
     table,
 )
-from gbeam.report.loads import errors, loads_table, parts_tables
+from gbeam.report.loads import errors, loads_table, parts_tables, points_table
 from gbeam.report.machine import (
     ends_line,
     followed,
@@ -200,7 +200,7 @@ def study(facts: Facts) -> Blocks:
     yield from verdicts(facts)
     yield Section("Motion", (Place("viewer"),))
     yield Section("Histories", (Place("figures", HINT),))
-    yield Section("Response", (_tips(motions), loads_table(motions), *parts_tables(motions)))
+    yield Section("Response", (_tips(motions), points_table(motions), loads_table(motions), *parts_tables(motions)))
     for name, each in motions.items():
         if "limits" in each:
             yield Section(f"Machine: {name}", (limits(each), Sentence(followed(each))), titled=True, detail=True)

@@ -6,6 +6,7 @@ from gbeam.report.blocks import (
     FIGURES,
     Block,
     Blocks,
+    Columns,
     Facts,
     Items,
     Place,
@@ -16,7 +17,7 @@ from gbeam.report.blocks import (
     quantities,
     table,
 )
-from gbeam.report.loads import loads_table, resting_loads, stress_table
+from gbeam.report.loads import READ, at_points, loads_table, resting_loads, stress_table
 from gbeam.report.steady import ERROR, growing, modes_table
 from gbeam.report.study import HINT, in_words_of, verdicts
 from gbeam.report.words import errors_in_words, known, tidy
@@ -108,8 +109,9 @@ def system_response(facts: Facts) -> Blocks:
 
 def _of_points(facts: Facts) -> Blocks:
     residual = f"residual from {known(facts.get('residual_from')):g} s, m"
-    cells = {"point": "name", "moves by, m": "displacement_max", "acceleration, m/s²": "acceleration_max"}
-    yield table(named(facts["points"]), cells | {residual: "residual_size"}, optional=(residual,))
+    cells: Columns = {"point": "name", "moves by, m": "displacement_max", "acceleration, m/s²": "acceleration_max"}
+    cells |= READ | {residual: "residual_size"}
+    yield table(at_points(facts, facts["points"]), cells, optional=(*READ, residual))
     yield table(named(facts["coordinates"]), {"coordinate": "name", "at the end": "end"}, detail=True)
     beams = {name: {"loads": each} for name, each in facts.get("beams", {}).items()}
     yield loads_table(beams, "beam")

@@ -127,6 +127,10 @@ class SolidStress(Figured):
     def point_time_of_max(self) -> Floats:
         return self.time[self.point_von_mises.argmax(axis=0)]
 
+    @declared("", "largest size of the normal strain along x of the point's axes", "point", name=None, key="strain")
+    def point_strain_max(self) -> Floats:
+        return np.abs(self.point_strain[..., 0]).max(axis=0)
+
     def strain_at(self, point: str, along: Sequence[float] = (1.0, 0.0, 0.0)) -> Floats:
         """Return what a strain gauge at a named point reads, (t,), as :meth:`gbeam.Response.strain_at` does."""
         station = index_of("point", point, self.points)
