@@ -135,6 +135,17 @@ def test_too_many_unknowns_say_what_they_would_cost() -> None:
     sparse.refuse_cost("mesh", 200_000)
 
 
+def test_a_file_that_is_too_large_says_what_its_mesh_would_cost(tmp_path: Path) -> None:
+    """A file of 2 GB, all of it empty, is not read."""
+    with (tmp_path / "large.inp").open("wb") as file:
+        file.truncate(2 * 10**9)
+    words = (
+        r"mesh has 2 GB, as files of meshes have with some 5e\+07 unknowns, whose factors would take about .*B and .* h"
+    )
+    with pytest.raises(gb.InputError, match=words):
+        solid(tmp_path / "large.inp")
+
+
 def test_more_modes_than_unknowns() -> None:
     with pytest.raises(gb.InputError, match=r"modes is 100, of 72 unknowns; give 1 to 72"):
         solid(mesh()).reduced(modes=100, damping_ratio=0)

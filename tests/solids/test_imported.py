@@ -316,6 +316,12 @@ def test_an_external_superelement_has_the_frequencies_of_its_f06() -> None:
     np.testing.assert_allclose(model.rest[0][:6] / (2 * np.pi), printed, rtol=5e-7)
 
 
+def test_a_file_that_another_names_has_to_lie_beside_it(tmp_path: Path) -> None:
+    shutil.copy(nastran_file("outboard.asm"), tmp_path)
+    with pytest.raises(gb.InputError, match=r"outboard\.asm lacks outboard\.pch; put that beside it"):
+        gb.ImportedModel.read(tmp_path / "outboard.asm", nastran_file("outboard.op4"))
+
+
 def test_an_op2_file_has_the_eigenvalues_of_its_f06() -> None:
     """The modal stiffness in NX Nastran's assemble.op2, and the cycles that assemble.out prints for modes 7 to 12."""
     stiffness = gb.read_matrix(nastran_file("assemble.op2"), "KHH")

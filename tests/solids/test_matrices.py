@@ -178,6 +178,11 @@ def test_files_without_matrices_are_refused(tmp_path: Path) -> None:
         gb.read_matrix(tmp_path / "b.npz")
 
 
+def test_a_file_of_one_node_is_a_matrix(tmp_path: Path) -> None:
+    np.save(tmp_path / "nodes.npy", [[0.1, 0.0, 0.0]])
+    np.testing.assert_array_equal(gb.read_matrix(tmp_path / "nodes.npy"), [[0.1, 0.0, 0.0]])
+
+
 def test_nodes_lie_beside_their_matrices(tmp_path: Path) -> None:
     """As an array of that name in NPZ and MAT files; given twice, or with matrices of two sizes, they are refused."""
     m, k, nodes = frame(3)

@@ -16,8 +16,9 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.guards.checks import positive
-from gbeam.guards.limits import BINARY_BYTES, refuse_large_file
+from gbeam.guards.limits import BINARY_BYTES, in_bytes, refuse_large_file
 from gbeam.guards.units import UnitError, quantity
+from gbeam.numerics.sparse import refuse_cost
 from gbeam.printable import shortened
 from gbeam.results.result import Floats
 from gbeam.solids.exodus import ENDINGS as EXODUS
@@ -48,6 +49,7 @@ _UNREAD = {
     ".igs": _IGES,
     ".cgns": ("CGNS, of which meshio reads no groups", "write it for Gmsh, Nastran, Abaqus, CalculiX or MED"),
 }
+UNKNOWN_BYTES = 40  # of a file as text, of quadratic elements; binary files have 14 to 21, linear elements up to 74
 VERTICES = 20_000  # about: at which groups are still told apart
 GROUPS = 200
 SHEET = 1e-3  # thickness of a shell that is shown, of the size of the mesh
@@ -59,6 +61,8 @@ def read_mesh(source: str | os.PathLike[str] | Any) -> Any:
         return source
     if ending := _UNREAD.get(ending_of(source)):
         raise InputError("mesh", f"{os.fspath(source)} is {ending[0]}", ending[1])
+    if (size := os.path.getsize(source)) > BINARY_BYTES:
+        refuse_cost("mesh", size / UNKNOWN_BYTES, f"has {in_bytes(size)}, as files of meshes have with some")
     refuse_large_file("mesh", source, BINARY_BYTES, "mesh it more coarsely")
     if not os.path.getsize(source):
         raise InputError("mesh", f"{os.fspath(source)} is empty", "write it again")

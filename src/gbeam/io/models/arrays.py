@@ -64,7 +64,7 @@ def read(path: str) -> Contents:
     for key, each in every.items():
         if issparse(each):
             contents["matrices"][key] = sparse_parts(each)
-        elif getattr(each, "ndim", 0) == 2 and each.dtype.kind in "fiu" and min(each.shape) > 1:
+        elif getattr(each, "ndim", 0) == 2 and each.dtype.kind in "fiu" and (min(each.shape) > 1 or len(every) == 1):
             contents["matrices"][key] = each
     if NODES in every and len(every) > 1:
         contents["matrices"].pop(NODES, None)

@@ -209,6 +209,9 @@ def _reading(path: str) -> Contents:
         contents: Contents = getattr(import_module(f"gbeam.io.models.{module}"), name)(path)
     except (MemoryError, InputError):
         raise
+    except FileNotFoundError as error:  # one that this one names, as .asm does .pch
+        problem = f"{path} lacks {os.path.basename(os.fspath(error.filename or 'a file'))}"
+        raise InputError("path", problem, "put that beside it") from None
     except Exception as error:  # of many kinds
         problem = f"{path} cannot be read: {shortened(str(error), 100)}"
         raise InputError("path", problem, "export it again") from None
