@@ -213,7 +213,7 @@ class Given:
                 {
                     "point": None, "tolerance": 0.05, "tolerance_of": "peak", "accept": {"tip": 0.5},
                     "control": {"tip": 1.0},
-                    "damage_at": "tip", "sensors": {"tip": gb.Sensor()},
+                    "damage_at": "tip", "stress_at": "tip", "sensors": {"tip": gb.Sensor()},
                 },
             ),
             "compare_models": ((self.brief,), {"kinds": ("FOAM",), "progress": None, "point": None}),

@@ -12,6 +12,7 @@ from scipy.signal import lsim
 
 import gbeam as gb
 from gbeam.analysis.imitation.fatigue import cyclic_at
+from gbeam.report.study import comparison_lines
 from gbeam.solids.stress import ranging
 
 from .bodies import STIFF, block, solid
@@ -56,6 +57,22 @@ def test_damage_of_a_solid_beam_is_the_beams() -> None:
     for one, other in ((ours.flight, theirs.flight), (ours.machine, theirs.machine)):
         assert one.largest == pytest.approx(other.largest, rel=5e-3)
     assert ours.damage_ratio == pytest.approx(theirs.damage_ratio, rel=5e-3)
+
+
+def test_stress_at_a_point_is_judged_there() -> None:
+    """Half-way by a solid, by the beam and by the beam in a system; anywhere it is that of the clamp."""
+    system = gb.System({"strip": beam()}, {"clamp": gb.Joint("fixed", "strip")})
+    answers = []
+    for pair, more in ((of_solid(), {}), (of_beam(), {}), (runs(system), {"point": "strip.tip"})):
+        at = "strip.half" if more else "half"
+        compared = gb.compare(*pair, stress_at=at, accept={"stress": 0.5}, **more)
+        (judged,), there, anywhere = compared.criteria, compared.peaks["stress_at"], compared.peaks["stress"]
+        assert judged.value == there.ratio - 1 and judged.where.startswith(f"at {at} at ")
+        assert there.flight < 0.4 * anywhere.flight and f"stress at {at}" in " ".join(comparison_lines(compared))
+        answers.append((there.flight, there.machine))
+    assert answers[0] == pytest.approx(answers[1], rel=1e-2) and answers[2] == pytest.approx(answers[1], rel=5e-3)
+    with pytest.raises(gb.InputError, match="stress_at is 'knee'"):
+        gb.compare(*of_beam(), stress_at="knee")
 
 
 def test_left_out_it_is_where_a_solid_is_stressed_most() -> None:

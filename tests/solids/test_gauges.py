@@ -289,9 +289,10 @@ def test_a_scenario_of_a_mesh_is_judged_at_its_points(scenario: Path) -> None:
     assert (srs.name, damage.name, damage.where) == ("srs", "damage", "at gauge")
     assert np.isfinite(srs.value) and np.isfinite(damage.value) and compared.accepted
     assert compared.shock is not None and compared.shock.control == "gauge (50 %), tip (50 %)"
-    scenario.write_text(text.replace('damage_at = "gauge"', 'damage_at = "gouge"'), encoding="utf-8")
-    with pytest.raises(ScenarioError, match="did you mean 'gauge'"):
-        gb.read_scenario(scenario)
+    for key in ("damage_at", "stress_at"):
+        scenario.write_text(text.replace('damage_at = "gauge"', f'{key} = "gouge"'), encoding="utf-8")
+        with pytest.raises(ScenarioError, match="did you mean 'gauge'"):
+            gb.read_scenario(scenario)
     seated = text.replace("[bodies.bar.points]", '[bodies.bar.interfaces]\nseat = "end"\n[bodies.bar.points]')
     scenario.write_text(seated.replace('damage_at = "gauge"', 'damage_at = "seat"'), encoding="utf-8")
     (seat,) = (each for each in gb.study(gb.read_scenario(scenario)).comparisons[0].criteria if each.name == "damage")

@@ -33,7 +33,7 @@ from gbeam.results.description import (
     SpecimenDescription,
     SystemDescription,
 )
-from gbeam.results.imitation.criteria import DISPLACEMENT, STRESS, refuse_unknown
+from gbeam.results.imitation.criteria import AT_POINTS, DISPLACEMENT, STRESS, refuse_unknown
 from gbeam.results.provenance import Provenance
 from gbeam.structure.beam import Beam
 
@@ -249,9 +249,9 @@ class SystemCase(_InEnvironments):
             stressed = [key for key, body in flexible if body.sections is not None or body.recovery is not None]
             lacking = {} if stressed else {STRESS: "no body is a beam or a mesh"}
             refuse_unknown(f"motion.{name}.accept", limits, lacking)
-            if limits.get("damage_at") is not None:
-                where = f"motion.{name}.accept.damage_at"
-                body, _ = self.system.point(where, limits["damage_at"])
+            for key in (each for each in AT_POINTS if limits.get(each) is not None):
+                where = f"motion.{name}.accept.{key}"
+                body, _ = self.system.point(where, limits[key])
                 if body not in stressed:
                     fix = f"choose a point of {', '.join(stressed)}"
                     raise InputError(where, f"is on {body}, which is no beam and no mesh", fix)
@@ -332,11 +332,12 @@ class SpecimenCase(_InEnvironments):
         lacking = {STRESS: f"{self.name} is {'rigid' if rigid else 'no mesh'}"} if rigid or recovery is None else {}
         lacking |= {DISPLACEMENT: f"{self.name} is rigid"} if rigid else {}
         for name, limits in self.accept.items():
-            where, at = f"motion.{name}.accept", limits.get("damage_at")
+            where = f"motion.{name}.accept"
             refuse_unknown(where, limits, lacking)
-            if at is not None and recovery is not None:
-                with naming(f"{where}.damage_at"):
-                    recovery.strain(at, (1.0, 0.0, 0.0))
+            for key in (each for each in AT_POINTS if limits.get(each) is not None):
+                with naming(f"{where}.{key}"):
+                    if recovery is not None:
+                        recovery.strain(limits[key], (1.0, 0.0, 0.0))
 
     def assemble(self, stations: ArrayLike | None = None) -> Structure:
         """Return the structure; its stations are its points.

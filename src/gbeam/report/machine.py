@@ -26,7 +26,7 @@ from gbeam.report.blocks import (
 )
 from gbeam.report.words import known, number, percent, sentence
 from gbeam.results.imitation.accounting import Accounting, PeakPair
-from gbeam.results.imitation.criteria import GOOD, RULES, Judged
+from gbeam.results.imitation.criteria import GOOD, RULES, STRESS_AT, Judged
 from gbeam.results.imitation.verdict import change, in_g
 from gbeam.results.imitation.verdict import percent as share_of
 from gbeam.results.machine import AxesResult, Driven, Shortfall
@@ -135,10 +135,11 @@ def accounting_lines(accounting: Accounting) -> Iterator[str]:
 def peak_lines(peaks: Mapping[str, PeakPair]) -> Iterator[str]:
     """Largest root loads and stress over the flight."""
     words = []
-    for name in ("root_force", "root_moment", "stress"):
+    for name in ("root_force", "root_moment", "stress", STRESS_AT):
         pair, (what, unit) = peaks.get(name, PeakPair()), _QUANTITIES[name].split(", ")
         if math.isfinite(pair.ratio):
             flight, machine = (f"{factor(unit) * each:.4g} {unit}" for each in (pair.flight, pair.machine))
+            what = what.replace("the point", pair.place_flight)
             words.append(f"{what} {flight} in flight, {machine} ({change(pair.ratio)})")
     if words:
         yield f"{'; '.join(words)} on the centrifuge"
@@ -240,6 +241,7 @@ _QUANTITIES = {
     "root_force": "root force, N",
     "root_moment": "root moment, N m",
     "stress": "stress, MPa",
+    STRESS_AT: "stress at the point, MPa",
 }
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.printable import advise
-from gbeam.results.imitation.criteria import RULES
+from gbeam.results.imitation.criteria import AT_POINTS, RULES
 from gbeam.scenario import schema
 from gbeam.scenario.build_beam import beam_of, model_of
 from gbeam.scenario.load import Collector, change, load, placed, provenance
@@ -168,7 +168,7 @@ def _acceptance(
             if key in RULES:
                 parts.attempt(f"motion.{name}.accept", RULES[key].checked, limit)
         named = {f"control.{each}": each for each in limits.get("control", ())}
-        named |= {key: limits[key] for key in ("point", "damage_at") if key in limits}
+        named |= {key: limits[key] for key in ("point", *AT_POINTS) if key in limits}
         parts.errors += [
             InputError(f"motion.{name}.accept.{key}", f"is no point: {each!r}", advise(each, points))
             for key, each in named.items()

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from gbeam.analysis.imitation.accounting import History, account_of, largest_load, largest_pair, points_of
-from gbeam.analysis.imitation.fatigue import fatigue
+from gbeam.analysis.imitation.fatigue import fatigue, stress_at_point
 from gbeam.analysis.imitation.specimen import specimen_of
 from gbeam.analysis.response.peaks import maxima, near_maxima, seven_point, vector_peaks
 from gbeam.constants import ToleranceOf
@@ -18,7 +18,7 @@ from gbeam.motion.bases.base import gradients
 from gbeam.numerics.samples import interpolated, largest_riding_acceleration, low_pass
 from gbeam.results.imitation.accounting import TOLERANCE, PeakPair
 from gbeam.results.imitation.comparison import Comparison
-from gbeam.results.imitation.criteria import Limit, checked_limits
+from gbeam.results.imitation.criteria import STRESS_AT, Limit, checked_limits
 from gbeam.results.imitation.measures import (
     Mismatch,
     RootHistory,
@@ -55,12 +55,12 @@ def _peaks(response: Response, part: slice | Flags, tip: int) -> dict[str, tuple
     samples = {"tip": lambda: vector_peaks(time, response.displacement[part, tip])}
     if response.solid is not None:
         over = response.solid.von_mises[part, None]
-        samples["stress"] = lambda: maxima(time, over, *seven_point(time, over, near_maxima(time, over)))
+        samples["stress"] = lambda: _between_steps(time, over)
     elif response.loads is not None:
         loads = response.loads
         stress = np.concatenate([loads.stress_tension[part], -loads.stress_compression[part]], axis=1)
         if np.isfinite(stress).all():
-            samples["stress"] = lambda: maxima(time, stress, *seven_point(time, stress, near_maxima(time, stress)))
+            samples["stress"] = lambda: _between_steps(time, stress)
     if response.loads is not None:
         carried = response.loads
         samples |= {
@@ -91,6 +91,25 @@ def _peaks(response: Response, part: slice | Flags, tip: int) -> dict[str, tuple
     return {name: peak(name) for name in names if name != "tip" or response.q.shape[1]}  # a rigid one has none
 
 
+def _between_steps(time: Floats, values: Floats) -> tuple[Floats, Floats]:
+    """Largest of values (t, k) that have no derivatives, and their times, (k,)."""
+    return maxima(time, values, *seven_point(time, values, near_maxima(time, values)))
+
+
+def _stresses_at(
+    at: str, flight: Response | SystemResponse, centrifuge: Response | SystemResponse, during: slice
+) -> PeakPair:
+    """Largest stress at a named point over the flight's times in each response; NaN where one has none."""
+    last, largest = centrifuge.time[during][-1], []
+    for response, part in ((flight, flight.time <= last + _ROUNDING * abs(last)), (centrifuge, during)):
+        stress = stress_at_point(response, at)
+        if stress is None or not np.isfinite(stress[part]).all():
+            return PeakPair(place_flight=at, place_machine=at)
+        largest.append([float(each[0]) for each in _between_steps(response.time[part], stress[part, None])])
+    (one, then), (two, when) = largest
+    return PeakPair(one, two, then, when, at, at)
+
+
 CUTOFF = 0.5  # of the lowest natural frequency: trend below, elastic vibration above
 QUALITY = 10.0  # of the oscillators of the shock response spectrum
 _SPECTRUM = 60  # frequencies
@@ -110,6 +129,7 @@ def compare(
     accept: Mapping[str, Limit] | None = None,
     control: Mapping[str, float] | None = None,
     damage_at: str | None = None,
+    stress_at: str | None = None,
     sensors: Mapping[str, Sensor] | None = None,
 ) -> Comparison:
     """Compare the response on a centrifuge with that in the flight it imitates.
@@ -136,6 +156,8 @@ def compare(
     damage_at : str, optional
         Named point whose fatigue damage is compared; by default the root of a beam, and of a solid where its
         von Mises stress is largest; of several beams, solids or materials that where the stress ranges most in flight.
+    stress_at : str, optional
+        Named point whose stress the limit ``stress`` is on, of a solid von Mises'; by default the largest anywhere.
     sensors : mapping of str to Sensor, optional
         Accelerometers by the names of points: the shock response spectra there are of what they read, see
         :meth:`Response.reading_at`, of systems :meth:`SystemResponse.reading_at`.
@@ -227,7 +249,8 @@ def compare(
         rms_difference=_rms(difference, covered),
         peak_flight=_largest(tip_flight, covered),
         peak_centrifuge=_largest(tip_actual, covered),
-        peaks=peak_pairs(flight, centrifuge, during, tips),
+        peaks=peak_pairs(flight, centrifuge, during, tips)
+        | ({} if stress_at is None else {STRESS_AT: _stresses_at(stress_at, *runs, during)}),
         accounting=account_of(
             time, History(root_load, root_load, growth, ends),
             History(machine_root if axes is None else axes.actual[during], machine_root, spun, ends),

@@ -62,7 +62,25 @@ def places_of(response: Response | SystemResponse) -> dict[str, Cyclic]:
 
 def cyclic_at(response: Response | SystemResponse, at: str) -> Cyclic | None:
     """Stress at a named point; None where there is none."""
-    index_of("damage_at", at, response.points)
+    solid, loads, k = stressed_at("damage_at", response, at)
+    if solid is not None:
+        return Cyclic(solid.point_normal[:, k], float(solid.point_exponent[k]))
+    return None if loads is None else _of_section(loads, k)
+
+
+def stress_at_point(response: Response | SystemResponse, at: str) -> Floats | None:
+    """Von Mises stress of a mesh, or normal stress of a beam, at a named point (t,); None where there is none."""
+    solid, loads, k = stressed_at("stress_at", response, at)
+    if solid is not None:
+        return solid.point_von_mises[:, k]
+    return None if loads is None else np.maximum(loads.stress_tension[:, k], -loads.stress_compression[:, k])
+
+
+def stressed_at(
+    where: str, response: Response | SystemResponse, at: str
+) -> tuple[SolidStress | None, Loads | None, int]:
+    """Mesh or beam that has the stress at a named point, and the number of the point or section in it."""
+    index_of(where, at, response.points)
     if isinstance(response, SystemResponse):
         body, _, point = at.partition(".")
         beam, solid = response.beams.get(body), response.solids.get(body)
@@ -70,9 +88,8 @@ def cyclic_at(response: Response | SystemResponse, at: str) -> Cyclic | None:
     else:
         point, solid, loads, names = at, response.solid, response.loads, ("", *response.points)
     if solid is not None and point in solid.points:
-        k = solid.points.index(point)
-        return Cyclic(solid.point_normal[:, k], float(solid.point_exponent[k]))
-    return _of_section(loads, names.index(point)) if loads is not None and point in names else None
+        return solid, None, solid.points.index(point)
+    return (None, loads, names.index(point)) if loads is not None and point in names else (None, None, 0)
 
 
 def _of_section(loads: Loads, section: int) -> Cyclic | None:

@@ -132,7 +132,14 @@ class Accounting(Part):
         return {reason: total[reason] / duration for reason in sorted(total, key=lambda reason: -total[reason])}
 
 
-UNITS = {"largest_load": "m/s^2", "tip": "m", "root_force": "N", "root_moment": "N m", "stress": "Pa"}
+UNITS = {
+    "largest_load": "m/s^2",
+    "tip": "m",
+    "root_force": "N",
+    "root_moment": "N m",
+    "stress": "Pa",
+    "stress_at": "Pa",
+}
 
 
 @dataclass(frozen=True, repr=False, eq=False)

@@ -62,9 +62,9 @@ class Comparison(Judged, Figured):
     peak_centrifuge: Floats = quantity("m", f"largest displacement on the centrifuge {_ACROSS}", "axis")
     peaks: Mapping[str, PeakPair] = rows(
         "largest sizes over the whole flight", "peak", UNITS, name=".",
-        note="of the vectors tip, root_force and root_moment, and of the stress anywhere; largest_load is the base's "
-        "load anywhere on the rigid specimen, on the machine from the beginning of its spin-up to the end of its "
-        "spin-down",
+        note="of the vectors tip, root_force and root_moment, of the stress anywhere and at a point; largest_load is "
+        "the base's load anywhere on the rigid specimen, on the machine from the beginning of its spin-up to the end "
+        "of its spin-down",
     )  # fmt: skip
     accounting: Accounting = part(
         "which parts of the flight's load the machine reproduces, and why not the others", name="."

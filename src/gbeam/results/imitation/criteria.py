@@ -19,7 +19,9 @@ if TYPE_CHECKING:
 
 Limit = float | tuple[float, float]
 Value = tuple[float, str]  # and where it occurs
-OF_RESPONSES = ("point", "control", "damage_at")  # settings of what responds
+STRESS_AT = "stress_at"
+AT_POINTS = ("damage_at", STRESS_AT)  # settings that name a point with a stress
+OF_RESPONSES = ("point", "control", *AT_POINTS)  # settings of what responds
 SETTINGS = ("tolerance", "tolerance_of", *OF_RESPONSES)  # beside the limits in a table of acceptance
 STRESS, DISPLACEMENT = "a stress", "a displacement"  # that not every specimen has
 NOT_ACCEPTED, EXCEEDED = "not accepted", "machine limits exceeded"
@@ -270,6 +272,10 @@ def _change(name: str) -> Callable[[Judged], Iterator[Value]]:
     return values
 
 
+def _stress(judged: Judged) -> Iterator[Value]:
+    return _change(STRESS_AT if STRESS_AT in judged.peaks else "stress")(judged)
+
+
 def _peaks(judged: Judged) -> Iterator[Value]:
     yield 0.0, ""  # there may be none
     for peak in judged.accounting.peaks:
@@ -305,7 +311,8 @@ RULES = {
              needs=DISPLACEMENT),
         Rule("root_force", "largest change of the peak force at the root", "most", 0.05, _change("root_force")),
         Rule("root_moment", "largest change of the peak moment at the root", "most", 0.05, _change("root_moment")),
-        Rule("stress", "largest change of the peak stress", "most", 0.05, _change("stress"), needs=STRESS),
+        Rule("stress", "largest change of the peak stress, anywhere or at stress_at", "most", 0.05, _stress,
+             needs=STRESS),
         Rule(
             "largest_load",
             "largest change of the largest load anywhere on the specimen, which is that of the machine's whole run, "

@@ -82,6 +82,10 @@ class Accept(_Limits):  # type: ignore[misc, valid-type]
         "point whose fatigue damage is that of damage; left out, the root of a beam, and of a solid where "
         "its von Mises stress is largest, of several materials that whose stress ranges most in flight"
     )
+    stress_at: str | None = optional(
+        "point whose stress is that of stress, of a solid von Mises', of a beam the normal stress; left out, the "
+        "largest anywhere"
+    )
 
     @property
     def limits(self) -> dict[str, Any]:
