@@ -297,7 +297,11 @@ def test_a_person_drops_a_mesh_and_clicks_its_clamp(browser: Any, address: str) 
     page.on("pageerror", lambda error: faults.append(str(error)))
     page.goto(address)
     page.wait_for_selector("html[data-gbeam]")
-    page.get_by_label("Scenario, record or mesh").set_input_files(BRACKET)
+    dropped = page.evaluate_handle(
+        """([text, name]) => { const all = new DataTransfer(); all.items.add(new File([text], name)); return all; }""",
+        [BRACKET.read_text(encoding="utf-8"), BRACKET.name],
+    )
+    page.get_by_role("heading", name="Runs").dispatch_event("drop", {"dataTransfer": dropped})
     page.get_by_role("heading", name="Mesh bracket.msh, not used yet").wait_for()
     use, canvas, label = page.get_by_role("button", name="Use this mesh"), page.locator(".skin canvas"), "screwed"
     page.locator(".mesh", has_text="choose the unit").wait_for()

@@ -160,9 +160,10 @@ export class Editor {
     input.type = "file";
     input.addEventListener("change", () => void this.open(input.files));
     label.append(input);
-    row.append(label);
-    this.root.addEventListener("dragover", (e) => e.preventDefault());
-    this.root.addEventListener("drop", (e) => {
+    row.append(label, element("span", "faint", "or drop it on the page"));
+    // Anywhere: a file that the page does not take the browser opens in its place.
+    document.addEventListener("dragover", (e) => e.preventDefault());
+    document.addEventListener("drop", (e) => {
       e.preventDefault();
       void this.open(e.dataTransfer?.files ?? null);
     });
