@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 import pytest
 import scipy.io
@@ -150,6 +151,38 @@ WRITERS: dict[str, Callable[[Path], Any]] = {
     "both.npz": lambda path: np.savez(path, K=SPRINGS, M=np.eye(3), name=np.array("model")),
     "both.mat": lambda path: scipy.io.savemat(path, {"K": sparse.csc_array(SPRINGS), "M": np.eye(3), "count": 3}),
 }
+
+
+def write_mat_7_3(path: Path, fields: dict[str, Any]) -> None:
+    """A structure as MATLAB saves it with -v7.3, which stores matrices by columns."""
+    with h5py.File(path, "w", userblock_size=512) as file:
+        for name, value in fields.items():
+            if sparse.issparse(value):
+                columns = sparse.csc_array(value)
+                group = file.create_group(f"rom/{name}")
+                group.attrs["MATLAB_sparse"] = np.uint64(columns.shape[0])
+                group["data"], group["ir"], group["jc"] = columns.data, columns.indices, columns.indptr
+            else:
+                file[f"rom/{name}"] = value.T
+        file["rom/about"] = np.array([[109]], dtype=np.uint16)
+        file["#refs#/a"] = np.eye(2)
+    with open(path, "r+b") as head:
+        head.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64, HDF5 schema 1.00 .".ljust(124) + b"\0\2IM")
+
+
+def test_matrices_come_from_mat_files_of_version_7_3(tmp_path: Path) -> None:
+    """As from those of version 5, sparse and full, in a structure."""
+    m, k, nodes = frame(4)
+    k[0, 1] = 2e-9 * k.max()  # tells rows from columns, and is no more than rounding
+    fields = {"M": sparse.csc_array(m), "K": k, "nodes": nodes}
+    write_mat_7_3(tmp_path / "new.mat", fields)
+    scipy.io.savemat(tmp_path / "old.mat", {"rom": fields})
+    np.testing.assert_array_equal(gb.read_matrix(tmp_path / "new.mat", "K"), k)
+    new, old = (
+        gb.ImportedModel.read(tmp_path / f"{age}.mat").reduced(modes=3, damping_ratio=0.01, clamp=[0])
+        for age in ("new", "old")
+    )
+    np.testing.assert_array_equal(new.rest[0], old.rest[0])
 
 
 @pytest.mark.parametrize("name", WRITERS)

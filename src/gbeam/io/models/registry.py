@@ -50,7 +50,7 @@ def read_matrix(path: str | os.PathLike[str], name: str = "") -> Any:
     Parameters
     ----------
     path : path
-        NumPy's .npy or .npz, SciPy's sparse .npz, Matrix Market's .mtx, MATLAB's .mat up to version 7, Abaqus's and
+        NumPy's .npy or .npz, SciPy's sparse .npz, Matrix Market's .mtx, MATLAB's .mat, Abaqus's and
         CalculiX's .mtx, .sti and .mas, and by the extra ``nastran`` .op4, .op2 and .pch.
     name : str
         Of the matrix, where the file holds several.
