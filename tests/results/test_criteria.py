@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -99,6 +100,15 @@ def test_what_is_not_known_does_not_pass() -> None:
         "damage unknown (limit 0.111 to 9)",
     ]
     assert unknown.accepted is False
+    none = PeakPair(flight=0.0, machine=1.26749)
+    for machine, words in (
+        (1.26749, "root_moment unknown as flight has none and the machine makes 1.267 N m (limit 50 %)"),
+        (0.0, "root_moment 0 % (limit 50 %)"),
+    ):
+        moments = Imitation({"root_moment": 0.5})
+        moments.peaks = {"root_moment": replace(none, machine=machine)}
+        assert [str(each) for each in moments.criteria] == [words]
+        assert moments.accepted is (machine == 0)
 
 
 def test_states() -> None:

@@ -158,6 +158,10 @@ def test_a_scenario_has_links_too(tmp_path: Path) -> None:
     (tmp_path / "scenario.toml").write_text(SCENARIO.replace("3e-4", "3e-3"))
     with pytest.raises(gb.GbeamError, match=r"bodies.arm.carried.face.inertia: has the principal moments"):
         gb.read_scenario(tmp_path / "scenario.toml")
+    loose = SCENARIO.replace('clamp = "wall"', "clamp = []")
+    (tmp_path / "scenario.toml").write_text(loose)
+    with pytest.raises(gb.GbeamError, match=r"bodies.arm.springs: is (singular|not positive definite)"):
+        gb.read_scenario(tmp_path / "scenario.toml")
 
 
 REFUSED: list[tuple[dict[str, Any], str]] = [

@@ -109,6 +109,8 @@ def _smooth(s: np.ndarray) -> np.ndarray:
         ({"inertia": np.diag([-1.0, 1.0, 1.0])}, "inertia has the principal moments"),
         ({"inertia": [[1, 0.5, 0], [0, 1, 0], [0, 0, 1]]}, "inertia is not symmetric"),
         ({"bolts": [(0, 0, 0), (1, 0, 0)]}, "bolt_axis is missing beside bolts"),
+        ({"bolts": [(0, 0, 0), (1, 0, 0)], "bolt_axis": (0, 0, 0)}, "bolt_axis is zero; give their direction"),
+        ({"bolt_axis": (0, 0, 1)}, "bolt_axis is given without bolts; give their places"),
         ({"bolts": [(0, 0, 0), (1, 0, 0)], "bolt_axis": (0, 0, 1)}, "bolts are 2 on a line, which carry no moment"),
     ],
 )

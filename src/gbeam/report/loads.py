@@ -170,7 +170,7 @@ def errors(motions: Facts) -> Blocks:
     ]
     causes = {name.replace("_", " "): f"{name}:%" for name, _ in declarations(ErrorEstimate)}
     yield table(rows, {"motion": "name", "of": "of"} | causes, "Estimated errors, of the largest size", optional=causes)
-    if not rows:
+    if not rows and not all("specimen" in each for each in motions.values()):
         yield Sentence("no error estimate", "faint")
     for name, each in motions.items():
         if each["errors"].get("note"):

@@ -79,7 +79,8 @@ def solid_of(parts: Collector, where: str, table: schema.SolidBody) -> Structure
         def make() -> SolidModel:
             mesh = sources[0] if isinstance(sources[0], SolidMesh) else read(file, size)
             rough = None if coarser is None else coarser()
-            return mesh.reduced(**options, coarser=rough)
+            with naming({"stiffness": "springs" if table.springs else "clamp"}):
+                return mesh.reduced(**options, coarser=rough)
 
         return kept(f"reducing {file}", (options, *sources), make)
 

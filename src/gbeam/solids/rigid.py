@@ -101,9 +101,12 @@ class RigidSpecimen(Value):
             problem = f"has the principal moments {value[0]:.4g}, {value[1]:.4g} and {value[2]:.4g} kg m²"
             raise InputError("inertia", problem, "none is larger than the sum of the others; is it about the centre?")
         if self.bolts is None:
+            if self.bolt_axis is not None:
+                raise InputError("bolt_axis", "is given without bolts", "give their places, or leave it out")
             return
         if self.bolt_axis is None or not np.any(self.bolt_axis):
-            raise InputError("bolt_axis", "is missing beside bolts", "give their direction, such as (0, 0, 1)")
+            problem = "is missing beside bolts" if self.bolt_axis is None else "is zero"
+            raise InputError("bolt_axis", problem, "give their direction, such as (0, 0, 1)")
         bolts = np.asarray(self.bolts)
         moments = np.linalg.eigvalsh(_second_moments(bolts))
         if not moments[0] > ALIKE * moments[2]:

@@ -96,7 +96,7 @@ def negligible(sizes: Mapping[Quantity, float], body: str, length: float) -> set
 
 def unjudged(structure: Structure) -> str:
     """The errors of a structure that are not judged, in words."""
-    if structure.source is not None:
+    if structure.source is not None or not structure.size:  # of what does not deform nothing is left out
         return ""
     if structure.modes is None:
         return UNKNOWN

@@ -163,7 +163,7 @@ class Rule:
         return (1 / limit, limit) if self.band else (-limit, limit)
 
     def worst(self, judged: Judged, bounds: tuple[float, float]) -> Value:
-        """The value that comes nearest to its bound, or lies furthest beyond, and where; NaN where none is known."""
+        """The value that comes nearest to its bound, or lies furthest beyond, and where; NaN, and why, of none."""
         low, high = bounds
 
         def used(value: Value) -> float:
@@ -174,8 +174,8 @@ class Rule:
                 return math.inf
             return math.log(size) / math.log(high if size > 1 else low)
 
-        known = [value for value in self.values(judged) if not math.isnan(value[0])]
-        return max(known, key=used, default=(math.nan, ""))
+        every = [*self.values(judged), (math.nan, "")]
+        return max((value for value in every if not math.isnan(value[0])), key=used, default=every[0])
 
     def written(self, value: float) -> str:
         """Return a value in its unit."""
@@ -267,7 +267,13 @@ def _change(name: str) -> Callable[[Judged], Iterator[Value]]:
     def values(judged: Judged) -> Iterator[Value]:
         if name in judged.peaks:
             pair = judged.peaks[name]
-            yield pair.ratio - 1, f"at {pair.place_machine} at {pair.time_machine:.2f} s" if pair.place_machine else ""
+            if pair.flight == 0 < pair.machine:
+                from gbeam.results.imitation.accounting import UNITS
+
+                yield math.nan, f"as flight has none and the machine makes {pair.machine:.4g} {UNITS[name]}"
+                return
+            change = 0.0 if pair.machine == pair.flight else pair.ratio - 1
+            yield change, f"at {pair.place_machine} at {pair.time_machine:.2f} s" if pair.place_machine else ""
 
     return values
 
