@@ -117,7 +117,7 @@ def test_samples_are_taken_until_they_settle() -> None:
 
     controller = gb.Feedback(law, NAMES, ["axis.angle"], SAMPLE)
     response = gb.simulate(satellite(controller, angle=0.3), duration=4.0, step=SAMPLE / 2, estimate=False)
-    assert response.loop is not None and len(times) <= 3 * 200
+    assert response.loop is not None and sum(t > 0 for t in times) <= 3 * 199
     states = np.stack([response.q[:-1:2, 0], response.qd[:-1:2, 0]], axis=1)
     np.testing.assert_allclose(response.loop.measured[:-1:2], states, atol=1e-13)
 

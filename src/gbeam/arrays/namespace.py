@@ -74,3 +74,13 @@ def holds_tracer(*records: Any) -> bool:
     """True if an array anywhere in some records is traced by JAX."""
     jax = sys.modules.get("jax")
     return jax is not None and any(isinstance(leaf, jax.core.Tracer) for leaf in jax.tree.leaves(records))
+
+
+def looks_at_traced(error: BaseException) -> bool:
+    """True if an error says that a number was looked at which JAX traces."""
+    jax = sys.modules.get("jax")
+    if jax is None:
+        return False
+    of = jax.errors
+    numbers = of.ConcretizationTypeError, of.TracerArrayConversionError, of.TracerIntegerConversionError
+    return isinstance(error, (*numbers, of.NonConcreteBooleanIndexError))

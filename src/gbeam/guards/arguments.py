@@ -9,7 +9,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from inspect import Parameter, signature
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
-from gbeam.arrays.namespace import has_unit
+from gbeam.arrays.namespace import has_unit, holds_jax, looks_at_traced
 from gbeam.errors import GbeamError, InputError
 from gbeam.guards.kinds import kind_of_argument
 from gbeam.guards.units import BEGINNING, UnitError, in_si
@@ -102,9 +102,17 @@ def typed(function: F) -> F:
         except (AttributeError, LookupError, TypeError, ValueError) as error:
             if not isinstance(error, GbeamError):
                 check(pairs, False)
+                if looks_at_traced(error):
+                    name = next((name for name, value in pairs if _holds_jax(value)), pairs[0][0])
+                    fix = "give numbers: JAX follows motions, structures, systems and simulate with a given step"
+                    raise InputError(name, f"is traced by JAX, and {owner} looks at its numbers", fix) from error
             raise
 
     return call  # type: ignore[return-value]
+
+
+def _holds_jax(value: Any) -> bool:
+    return bool(getattr(value, "holds_jax", False)) or holds_jax(value)
 
 
 def _read(owner: str, name: str, value: Any) -> Any:

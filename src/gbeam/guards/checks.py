@@ -12,7 +12,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from gbeam.arrays.namespace import as_array, is_jax
+from gbeam.arrays.namespace import as_array, is_jax, is_traced
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.printable import closest, shortened
@@ -57,6 +57,12 @@ def array(where: str, value: Any) -> Any:
         return as_array(value)
     except (TypeError, ValueError):
         raise InputError(where, f"is {shortened(repr(value))}", "give numbers in SI") from None
+
+
+def refuse_traced(where: str, value: Any, why: str) -> None:
+    """Raise InputError of a number that JAX traces, and say why it cannot be."""
+    if is_traced(value):
+        raise InputError(where, f"is traced by JAX, and {why}", "give a number")
 
 
 def vector(where: str, value: Any) -> Any:

@@ -86,7 +86,8 @@ def _linear(equations: LinearEquations, scheme: Scheme, q: Any, qd: Any, steps: 
 
 
 def _nonlinear(equations: NonlinearEquations, scheme: Scheme, q: Any, qd: Any, steps: Steps) -> Iterator[Piece]:
-    if holds_tracer(equations.residual, q, qd, equations.drive(steps.first[:1])):
+    controlled = equations.controllers is not None and equations.controllers.traced
+    if controlled or holds_tracer(equations.residual, q, qd, equations.drive(steps.first[:1])):
         return _traced(equations, scheme, q, qd, steps)
     return windows(equations, scheme, np.asarray(q, dtype=float), np.asarray(qd, dtype=float), steps)
 
@@ -96,4 +97,4 @@ def _traced(equations: NonlinearEquations, scheme: Scheme, q: Any, qd: Any, step
 
     run = traced(equations, scheme, q, qd, steps)
     yield *(each[:1] for each in run), np.array([True])
-    yield *(each[1:] for each in run), np.ones(len(steps), dtype=bool)
+    yield *(each[1:][steps.kept] for each in run), np.ones(np.count_nonzero(steps.kept), dtype=bool)

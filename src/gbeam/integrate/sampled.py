@@ -53,6 +53,11 @@ class Controllers(Protocol):
         """Inputs with what is commanded (t, m) added."""
         ...
 
+    @property
+    def traced(self) -> bool:
+        """True if JAX traces one."""
+        ...
+
 
 class Sampling:
     """Samples of controllers, taken at the beginnings of steps, and the commands `held` in every step (t, m): the
@@ -86,6 +91,10 @@ class Sampling:
         asked, limited, after = self.controllers.commanded(c, float(self.steps.begin[step]), measured, state)
         samples[s:] = [(measured, asked, limited, after)]  # those of earlier iterates go
         self.held[since[s] : since[s + 1], self.controllers.drives[c]] = limited
+
+    def sampled(self, c: int) -> tuple[Array, ...]:
+        """Measurements (s, k) and commands (s, m) of a controller, as asked and as limited."""
+        return tuple(map(np.stack, tuple(zip(*self.samples[c], strict=True))[:3]))
 
     def onto(self, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
         """Derivatives (t, n, m) of the residual with respect to what is commanded, at states and inputs (t, ...)."""

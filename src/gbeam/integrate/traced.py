@@ -6,11 +6,12 @@ stages' accelerations x and the derivative L by the state z before it
     δx = −J⁻¹ (δr + L δz),    δz₊ = g δz + d δx,
 
 where δr is the residual's own derivative by what it is made of and by what drives it: JAX traces the residual and this
-recurrence, but neither Newton's method nor the run.
+recurrence, but neither Newton's method nor the run. Commands of controllers, which act in whole steps, add to δr.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import jax
@@ -19,9 +20,11 @@ import numpy as np
 
 import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.arrays.tree import each_leaf
-from gbeam.integrate.equations import Demanded, Fitted, NonlinearEquations, slopes
+from gbeam.integrate.equations import Demanded, Fitted, NonlinearEquations, exact, slopes
+from gbeam.integrate.sampled import Sampling
 from gbeam.integrate.schemes import Scheme, stepped
 from gbeam.integrate.steps import Steps
+from gbeam.integrate.traced_loop import Samples, TracedLoop
 from gbeam.integrate.windows import windows
 
 Array = Any
@@ -30,13 +33,16 @@ Array = Any
 def traced(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, steps: Steps) -> tuple[Array, ...]:
     """q, q̇, q̈ (t + 1, n) at the beginning and the ends of steps; NaN from one that fails on, as their derivatives."""
     ends = [] if scheme.ends else [steps.end]
-    times = np.concatenate([steps.first[:1], *(steps.times(offset) for offset in scheme.offsets), *ends])
+    loop = None if equations.controllers is None else TracedLoop(equations.controllers, steps)
+    sampled = [] if loop is None else [steps.begin]
+    times = np.concatenate([steps.first[:1], *(steps.times(offset) for offset in scheme.offsets), *ends, *sampled])
+    steps = replace(steps, kept=np.ones(len(steps), dtype=bool))
     shape = (len(steps) + 1, len(q))
 
     of_steps = stepped(equations, scheme, steps, len(q))
 
-    def solved(residual: Any, q: Any, qd: Any, driven: Any) -> tuple[Any, ...]:
-        residual, q, qd, driven = jax.tree.map(np.asarray, (residual, q, qd, driven))
+    def solved(residual: Any, q: Any, qd: Any, driven: Any, made: Any) -> Any:
+        residual, q, qd, driven, made = jax.tree.map(np.asarray, (residual, q, qd, driven, made))
         order = np.argsort(times)
 
         def drive(t: Any) -> Any:
@@ -44,30 +50,45 @@ def traced(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, s
             return each_leaf(lambda leaf: leaf[at], driven)
 
         of, out, done = NonlinearEquations(residual, drive), np.full((3, *shape), np.nan), 0
+        if loop is not None:
+            laws = loop.laws_of(made)
+            of = replace(of, controllers=loop.controllers.of(exact(residual), laws), samplings=[])
         with np.errstate(all="ignore"):  # of what is no number
             for *piece, _ in windows(of, scheme, q, qd, steps):
                 out[: len(piece), done : done + len(piece[0])] = piece
                 done += len(piece[0])
             if not scheme.ends:
                 out[2, :done] = Demanded(of, steps, *out[:2])(np.arange(done))
-        return tuple(out)
+        return tuple(out), [] if loop is None else loop.recorded(of.samplings[-1], made)
 
     @jax.custom_jvp
-    def run(residual: Any, q: Array, qd: Array, driven: Any) -> tuple[Array, ...]:
-        result = (jax.ShapeDtypeStruct(shape, float),) * 3
-        return jax.pure_callback(solved, result, residual, q, qd, driven, vmap_method="sequential")
+    def run(residual: Any, q: Array, qd: Array, driven: Any, made: Any) -> Any:
+        result = (jax.ShapeDtypeStruct(shape, float),) * 3, [] if loop is None else loop.shapes
+        return jax.pure_callback(solved, result, residual, q, qd, driven, made, vmap_method="sequential")
 
     @run.defjvp
     def _(primals: Any, tangents: Any) -> Any:
-        every, (residual, _, _, driven), (changed, dq, dqd, redriven) = run(*primals), primals, tangents
-        return every, _changes(scheme, steps, every, (residual, driven), (changed, redriven), dq, dqd)
+        every, (residual, _, _, driven, made), (changed, dq, dqd, redriven, remade) = run(*primals), primals, tangents
+        in_loop = None if loop is None else (loop, made, remade)
+        return every, _changes(scheme, steps, every, (residual, driven), (changed, redriven), dq, dqd, in_loop)
 
-    return run(of_steps, jnp.asarray(q, dtype=float), jnp.asarray(qd, dtype=float), equations.drive(times))
+    made = [] if loop is None else jax.tree.map(lambda leaf: jnp.asarray(leaf, dtype=float), loop.made)
+    start = jnp.asarray(q, dtype=float), jnp.asarray(qd, dtype=float)
+    histories, samples = run(of_steps, *start, equations.drive(times), made)
+    if loop is not None:
+        loop.values = samples
+        equations.samplings.append(loop)
+    return tuple(histories)
 
 
-def _changes(scheme: Scheme, steps: Steps, run: Any, of: Any, changed: Any, dq: Array, dqd: Array) -> tuple[Array, ...]:
-    """Derivatives of a run's q, q̇, q̈ along changes of its residual and drives, and of q, q̇ at the start."""
-    (q, qd, qdd), t = run, scheme.tableau(steps.length)
+def _changes(
+    scheme: Scheme, steps: Steps, results: Any, of: Any, changed: Any, dq: Array, dqd: Array, in_loop: Any
+) -> Any:
+    """Derivatives of a run's q, q̇, q̈ and samples along changes of its residual and drives, of q, q̇ at the start, and of
+    the laws of its controllers.
+    """
+    (run, samples), t = results, scheme.tableau(steps.length)
+    q, qd, qdd = run
     count, n, stages, first = len(steps), q.shape[1], len(scheme.offsets), scheme.tableau(steps.length[0]).first
     x: Array
     z: Array
@@ -83,38 +104,72 @@ def _changes(scheme: Scheme, steps: Steps, run: Any, of: Any, changed: Any, dq: 
     states = tuple(
         jnp.concatenate([*part, *([] if scheme.ends else [each[1:]])]) for part, each in zip(parts, run, strict=True)
     )
+    solved_at, begun = (
+        [jax.tree.map(lambda leaf, some=some: leaf[some], each) for each in (of[1], changed[1])]
+        for some in (slice(len(states[0])), slice(len(states[0]), None))
+    )
+    commands = jnp.zeros((len(states[0]), 0))
+    if in_loop is not None:
+        loop, made, remade = in_loop
+        held = loop.held(samples)
+        commands = jnp.concatenate([0 * held[:1], *[held] * (stages + 1)])
+        follow = loop.changes((of[0], begun[0]), (changed[0], begun[1]), run, made, remade, samples)
+
+    def driven_by(driven: Any, commands: Array) -> Any:
+        return driven if in_loop is None else in_loop[0].controllers.driven(driven, commands)
 
     def host(*arguments: Any) -> Any:
-        (q, qd, qdd), (residual, driven) = jax.tree.map(np.asarray, arguments)
+        (q, qd, qdd), residual, driven, commands = jax.tree.map(np.asarray, arguments)
+        inputs = driven_by(driven, commands)
         with np.errstate(all="ignore"):
-            return tuple(slopes(residual, q, qd, qdd, driven))
+            onto = np.zeros((*q.shape, 0))
+            if in_loop is not None:
+                sampling = Sampling(in_loop[0].controllers, residual, None, steps)
+                onto = sampling.onto(q, qd, qdd, inputs)
+            return (*slopes(residual, q, qd, qdd, inputs), onto)
 
     square = (jax.ShapeDtypeStruct((len(states[0]), n, n), float),) * 3
-    slope = jax.pure_callback(host, square, states, of, vmap_method="sequential")
-    _, direct = jax.jvp(lambda residual, driven: residual(*states, driven), of, changed)
+    wide = jax.ShapeDtypeStruct((len(states[0]), n, commands.shape[1]), float)
+    arguments = states, of[0], solved_at[0], commands
+    *slope, onto = jax.pure_callback(host, (*square, wide), *arguments, vmap_method="sequential")
+    _, direct = jax.jvp(
+        lambda residual, driven: residual(*states, driven_by(driven, commands)),
+        (of[0], solved_at[0]),
+        (changed[0], solved_at[1]),
+    )
 
-    def accelerated(some: slice, dq: Array, dqd: Array) -> Array:
+    def accelerated(some: slice, dq: Array, dqd: Array, du: Array) -> Array:
         k, c, m = (each[some] for each in slope)
         if isinstance(of[0], Fitted):
             c, m = c - of[0].damping, m - of[0].mass
-        left = direct[some] + (k @ dq[..., None] + c @ dqd[..., None])[..., 0]
+        left = direct[some] + (k @ dq[..., None] + c @ dqd[..., None] + onto[some] @ du[..., None])[..., 0]
         return -jnp.linalg.solve(m, left[..., None])[..., 0]
 
     def by_stage(values: Array) -> Array:
         return jnp.moveaxis(values[1 : 1 + stages * count].reshape(stages, count, *values.shape[1:]), 0, 1)
 
-    jacobian, onto = t.jacobians(*map(by_stage, slope))
+    jacobian, by_z = t.jacobians(*map(by_stage, slope))
     inverse = jnp.linalg.inv(jacobian)
+    idle = jnp.zeros(commands.shape[1])
 
-    def step(dz: Array, at: Any) -> Any:
-        inverse, onto, direct, g, d = at
-        dx = -(inverse @ (direct.ravel() + onto @ dz.ravel())).reshape(stages, n)
-        return g @ dz + d @ dx, (dz, dx)
+    def step(carried: Any, at: Any) -> Any:
+        dz, law = carried
+        inverse, by_z, by_command, direct, g, d, sampled = at
+        du, taken = idle, []
+        if in_loop is not None:
+            law, du, taken = follow.step(law, dz, sampled)
+        change = direct.ravel() + by_z @ dz.ravel() + (by_command @ du).ravel()
+        dx = -(inverse @ change).reshape(stages, n)
+        return (g @ dz + d @ dx, law), (dz, dx, du, taken)
 
-    dqdd = accelerated(slice(0, 1), dq[None], dqd[None])
-    _, (dz, dx) = jax.lax.scan(step, first @ jnp.stack([dq, dqd, dqdd[0]]), (inverse, onto, by_stage(direct), t.g, t.d))
+    dqdd = accelerated(slice(0, 1), dq[None], dqd[None], idle[None])
+    begin = first @ jnp.stack([dq, dqd, dqdd[0]]), None if in_loop is None else follow.begin
+    by_step = inverse, by_z, by_stage(onto), by_stage(direct), t.g, t.d, None if in_loop is None else follow.by_step
+    _, (dz, dx, du, taken) = jax.lax.scan(step, begin, by_step)
     ends = t.end_z @ dz + t.end_x @ dx
     changes = ends[:, 0], ends[:, 1]
-    at_ends = dx[:, -1] if scheme.ends else accelerated(slice(-count, None), *changes)
-    begun = dq[None], dqd[None], dqdd
-    return tuple(jnp.concatenate(pair) for pair in zip(begun, (*changes, at_ends), strict=True))
+    at_ends = dx[:, -1] if scheme.ends else accelerated(slice(-count, None), *changes, du)
+    before = dq[None], dqd[None], dqdd
+    histories = tuple(jnp.concatenate(pair) for pair in zip(before, (*changes, at_ends), strict=True))
+    at = [] if in_loop is None else follow.at
+    return histories, [Samples(*(part[k] for part in each)) for each, k in zip(taken, at, strict=True)]

@@ -11,7 +11,7 @@ from gbeam.arrays.tree import Value
 from gbeam.constants import Integrator
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import finite, implausible, positive, possible
+from gbeam.guards.checks import finite, implausible, positive, possible, refuse_traced
 from gbeam.guards.limits import STEPS, refuse_more
 
 FINE = 1e-4
@@ -98,6 +98,8 @@ class ResponseSettings(Value):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "initial", self.begin)
+        for name in ("duration", "start", "step"):
+            refuse_traced(name, getattr(self, name), "the number of steps follows from it")
         possible("duration", "duration", positive("duration", self.duration, "s"))
         positive("tolerance", self.tolerance, "of the largest")
         finite("start", self.start)

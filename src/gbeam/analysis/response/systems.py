@@ -91,10 +91,18 @@ class PosedSystem:
         felt = Corners.of(self.corners(step), self.equations.drive, settings.start, end)
         if self.equations.controllers is None:
             return felt
-        commands = np.unique(np.round(self.equations.controllers.corners(settings.start, end), 12))
+        commands = self.commands(settings).time
         commands = commands[np.abs(commands[:, None] - felt.time).min(axis=1, initial=np.inf) > 1e-9]
         both, jumps = np.append(felt.time, commands), np.append(felt.jump, np.ones(len(commands), dtype=bool))
         return Corners(np.sort(both), jumps[np.argsort(both)])
+
+    def commands(self, settings: ResponseSettings) -> Corners:
+        """Times at which its controllers sample and their commands jump."""
+        if self.equations.controllers is None:
+            return Corners(np.zeros(0), np.zeros(0, dtype=bool))
+        times = self.equations.controllers.corners(settings.start, settings.start + settings.duration)
+        times = np.unique(np.round(times, 12))
+        return Corners(times, np.ones(len(times), dtype=bool))
 
     def run(self, settings: ResponseSettings, q: Array, qd: Array, step: float, **how: Any) -> Ran:
         """Integrate it from coordinates and rates."""
@@ -276,13 +284,11 @@ def _traced(posed: PosedSystem, settings: ResponseSettings, name: str) -> System
     """A run whose values JAX traces: of a given step, without a look at them."""
     if settings.step is None:
         raise InputError("step", "is automatic, and a traced run has no numbers to choose it by", "give a step, s")
-    if posed.system.controllers:
-        fix = "trace the system without them: a law that is sampled is no part of a compiled program"
-        raise InputError("controllers", "are in the loop of a traced run", fix)
     step = settings.duration / max(1, round(settings.duration / settings.step))
     flight, settings = settings, _with_ends(posed.motion, settings, step)
     start = started_traced(posed.system, posed.motion, settings.start, settings.begin.state)
-    ran = posed.run(settings, *start, step)
+    _refuse_long(posed.system, settings, step)
+    ran = posed.run(settings, *start, step, corners=posed.commands(settings))
     return _described(ran, replace(settings, loads=False), 1, SystemErrors(), name, flight)
 
 

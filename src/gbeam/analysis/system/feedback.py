@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cached_property
 from itertools import accumulate, pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.integrate.sampled import NEAR, Sampling
+from gbeam.arrays.namespace import namespace
+from gbeam.integrate.sampled import NEAR
 from gbeam.mechanics.tree.control import Feedback, signal_names
 from gbeam.mechanics.tree.signals import drives_of, measurements, signals_of
 from gbeam.mechanics.tree.system import System
 from gbeam.results.system import Loop
+
+if TYPE_CHECKING:
+    from gbeam.integrate.traced_loop import TracedLaw
 
 Array = Any
 Floats = NDArray[np.float64]
@@ -22,8 +27,8 @@ Floats = NDArray[np.float64]
 class SystemControllers:
     """The controllers of a system: see :class:`gbeam.integrate.sampled.Controllers`."""
 
-    def __init__(self, system: System) -> None:
-        self.system = system
+    def __init__(self, system: System, tree: Any = None, laws: list[TracedLaw] | None = None) -> None:
+        self.system, self.tree, self.traced_laws = system, system.tree if tree is None else tree, laws
         self.every: list[Feedback] = list(system.controllers.values())
         ends = [0, *accumulate(len(each.drive) for each in self.every)]
         self.drives = [slice(*pair) for pair in pairwise(ends)]
@@ -53,7 +58,7 @@ class SystemControllers:
 
     def measured(self, controller: int, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
         """Measurements (t, k) of one controller."""
-        return measurements(self.system, self.system.tree, q, qd, qdd, inputs, self.every[controller].measure)
+        return measurements(self.system, self.tree, q, qd, qdd, inputs, self.every[controller].measure)
 
     def accelerates(self, controller: int) -> bool:
         """Return whether one measures accelerations."""
@@ -61,10 +66,15 @@ class SystemControllers:
 
     def started(self, controller: int) -> Any:
         """State of one at the start."""
-        return self.every[controller].start
+        return self.every[controller].start if self.traced_laws is None else self.traced_laws[controller].start
 
     def commanded(self, controller: int, t: float, measured: Array, state: Any) -> tuple[Array, Array, Any]:
         """Command of one as its law has it and within its limits, and its next state."""
+        if self.traced_laws is not None:
+            law = self.traced_laws[controller]
+            k = int(np.abs(law.times - t).argmin())
+            values = law.function(law.made, law.references[k], t, measured, state)
+            return tuple(map(np.asarray, values))  # type: ignore[return-value]
         each = self.every[controller]
         asked, state = each.effort(t, measured, state)
         return asked, each.limited(asked), state
@@ -74,30 +84,47 @@ class SystemControllers:
         efforts = held @ self.efforts
         changes: dict[str, Any] = {"efforts": efforts if inputs.efforts is None else inputs.efforts + efforts}
         if inputs.wrenches is not None:
-            changes["wrenches"] = inputs.wrenches + np.tensordot(held, self.wrenches, 1)
+            onto = self.wrenches.reshape(len(self.wrenches), -1)
+            changes["wrenches"] = inputs.wrenches + (held @ onto).reshape(*held.shape[:-1], *self.wrenches.shape[1:])
         return replace(inputs, **changes)
 
+    @cached_property
+    def traced(self) -> bool:
+        """True if JAX traces one."""
+        return any(each.traced for each in self.every)
 
-def loop_of(controllers: SystemControllers, sampling: Sampling, time: Floats) -> Loop:
+    def of(self, residual: Any, laws: list[TracedLaw] | None = None) -> SystemControllers:
+        """Controllers that measure by the values of a tree, and command by those of laws."""
+        return SystemControllers(self.system, residual, laws)
+
+    def laws(self, times: list[Floats]) -> list[TracedLaw]:
+        """Laws sampled at times (s,) s each, as JAX traces them."""
+        from gbeam.analysis.system.traced_laws import traced_law
+
+        return [traced_law(*each) for each in zip(self.system.controllers.items(), times, strict=True)]
+
+
+def loop_of(controllers: SystemControllers, sampling: Any, time: Floats) -> Loop:
     """Samples and commands of the controllers, held at times (t,) s."""
     start, slack = sampling.steps.begin[0], NEAR * float(sampling.steps.length.min())
     measured, asked, acting, beyond = [], [], [], []
     for c, (period, delay) in enumerate(controllers.timing):
         taken = np.floor((time + slack - start) / period).astype(int)
         active = np.floor((time + slack - start - delay) / period).astype(int)
-        values, wanted, commands = (np.stack(each) for each in list(zip(*sampling.samples[c], strict=True))[:3])
+        values, wanted, commands = sampling.sampled(c)
         # The last time may be that of a sample which no step has taken.
         taken, last = np.minimum(taken, len(values) - 1), np.clip(active, 0, len(values) - 1)
         measured.append(values[taken])
         asked.append(wanted[taken])
-        beyond.append(np.mean(wanted != commands, axis=0))
-        acting.append(np.where(active[:, None] >= 0, commands[last], 0.0))
+        beyond.append((wanted != commands).mean(axis=0))
+        acting.append(namespace(commands).where(active[:, None] >= 0, commands[last], 0.0))
+    xp = namespace(*asked)
     return Loop(
         measurements=signal_names(controllers.system.controllers, "measure"),
         units=tuple(signals_of(controllers.system)[each] for one in controllers.every for each in one.measure),
         drives=signal_names(controllers.system.controllers, "drive"),
-        measured=np.concatenate(measured, axis=1),
-        asked=np.concatenate(asked, axis=1),
-        applied=np.concatenate(acting, axis=1),
-        saturated=np.concatenate(beyond),
+        measured=xp.concatenate(measured, axis=1),
+        asked=xp.concatenate(asked, axis=1),
+        applied=xp.concatenate(acting, axis=1),
+        saturated=xp.concatenate(beyond),
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import reduce
@@ -12,10 +13,11 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.arrays.namespace import as_array, holds_tracer, is_traced, namespace
 from gbeam.arrays.tree import Value
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import array, positive
+from gbeam.guards.checks import array, positive, refuse_traced
 from gbeam.motion.profiles.combine import as_profile
 
 Floats = NDArray[np.float64]
@@ -85,11 +87,13 @@ class Feedback(Value):
             if name == "drive" and twice:
                 raise InputError(name, f"has {twice[0]!r} twice", "name every drive once")
             object.__setattr__(self, name, names)
+        for name in ("sample", "delay"):
+            refuse_traced(name, getattr(self, name), "steps end by its number")
         positive("sample", self.sample, "s")
         positive("delay", self.delay, "s", zero=True)
         if self.limit is not None:
-            limit = np.asarray(array("limit", self.limit), dtype=float)
-            if limit.shape not in ((), (len(self.drive),)) or not (limit > 0).all():
+            limit = array("limit", self.limit)
+            if limit.shape not in ((), (len(self.drive),)) or not (is_traced(limit) or (limit > 0).all()):
                 raise InputError("limit", f"is {self.limit!r}", f"give one positive size, or {len(self.drive)}")
         references = (
             self.reference if isinstance(self.reference, (list, tuple)) else [self.reference] * len(self.measure)
@@ -127,7 +131,9 @@ class Feedback(Value):
             parts = [getattr(law, name) for name in names]
         if len(parts) != 4:
             raise InputError("law", f"has {len(parts)} parts", "give (A, B, C, D)")
-        a, b, c, d = (np.atleast_2d(np.asarray(array("law", each), dtype=float)) for each in parts)
+        each = [array("law", one) for one in parts]
+        xp = namespace(*filter(is_traced, each))
+        a, b, c, d = (xp.atleast_2d(xp.asarray(one)) for one in each)
         n, m, p = len(a) if a.size else 0, len(self.measure), len(self.drive)
         shapes = {"A": (a, (n, n)), "B": (b, (n, m)), "C": (c, (p, n)), "D": (d, (p, m))}
         for name, (matrix, shape) in shapes.items():
@@ -138,15 +144,32 @@ class Feedback(Value):
         if step is None or step is True or (step and not math.isclose(step, self.sample, rel_tol=1e-9)):
             raise InputError("law", f"has the step {step}", f"give one of {self.sample:g} s, or in continuous time")
         if not step and n:
-            from scipy.signal import cont2discrete
-
-            a, b, c, d, _ = cont2discrete((a, b, c, d), self.sample, method="bilinear")
+            half = self.sample / 2 * a  # Tustin's rule
+            less = np.eye(n) - half
+            a, b = xp.linalg.solve(less, np.eye(n) + half), xp.linalg.solve(less, self.sample * b)
+            c, d = xp.linalg.solve(less.T, c.T).T, d + c @ b / 2
         return a, b, c, d
 
     @property
     def start(self) -> Any:
         """State at the start."""
         return np.zeros(len(self.law[0])) if isinstance(self.law, tuple) else self.state
+
+    @property
+    def traced(self) -> bool:
+        """True if JAX traces its law, limit, reference or state."""
+        parts = [self.limit, self.reference, self.start]
+        if isinstance(self.law, tuple):
+            return holds_tracer(*parts, self.law)
+        if holds_tracer(*parts):
+            return True
+        if "jax" not in sys.modules:
+            return False
+        try:  # what a function refers to shows in what it gives
+            with np.errstate(all="ignore"):
+                return holds_tracer(self.law(0.0, np.zeros(len(self.measure)), *[self.state] * self.stateful))
+        except Exception:  # that it fails is said where it is sampled
+            return False
 
     def effort(self, t: float, measured: Floats, state: Any) -> tuple[Floats, Any]:
         """Return the efforts (m,), before they are limited, and the state at the next sample.
@@ -176,6 +199,9 @@ class Feedback(Value):
             efforts, state = self.law(t, measured, state)
         else:
             efforts = self.law(t, measured)
+        if holds_tracer(efforts):
+            fix = "write jax.numpy.where in place of if"
+            raise InputError("law", f"gives what JAX traces at {t:.6g} s, and nothing of it where all is zero", fix)
         command = np.asarray(efforts).reshape(-1)
         real = command.dtype.kind in "bifu" and command.shape == (len(self.drive),)
         if not real:
@@ -200,7 +226,7 @@ class Feedback(Value):
         """
         if self.limit is None:
             return efforts
-        limit = np.asarray(self.limit)
+        limit = as_array(self.limit)
         return np.minimum(np.maximum(efforts, -limit), limit)  # np.clip takes nearly twice as long
 
 

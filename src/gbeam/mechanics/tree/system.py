@@ -328,7 +328,8 @@ class System(Value):
         driven = [(joint.rates, joint.efforts) for joint in self.joints.values()]
         histories = [force.history for force in self.forces.values()]
         loads = [body.history for body in self.flexible.values()]
-        return holds_jax(self.tree, self.start, self.gravity, driven, histories, loads)
+        controlled = any(each.traced for each in self.controllers.values())
+        return controlled or holds_jax(self.tree, self.start, self.gravity, driven, histories, loads)
 
     @property
     def kind(self) -> str:
