@@ -159,7 +159,7 @@ class ModelRow(Part):
     hub_angle: float = quantity("rad", "angle of a free hub at the end", default=NAN)
     error_estimate: float = quantity("", "total estimated error over the largest displacement", default=NAN)
     steps: int = quantity("", "number of steps", default=0)
-    seconds: float = quantity("s", "time to compute it", note="once compiled", default=NAN)
+    seconds: float = quantity("s", "time to compute it", default=NAN)
     time: Floats = quantity("s", "times of the history", "time", name=None, key=None, empty=True)
     history: Floats = quantity(
         "m",
