@@ -170,7 +170,7 @@ class Tree:
             out[at][:n] = u[of][:n]
             if joint.ball:
                 e, w = q[at][n:], u[of][n:]
-                out[at][n:] = np.concatenate([[-e[1:] @ w], e[0] * w + np.cross(e[1:], w)]) / 2
+                out[at][n:] = np.concatenate([[-e[1:] @ w], e[0] * w + skew(e[1:]) @ w]) / 2
         return out
 
     def frames(self, q: Array, speeds: int) -> list[tuple[Array, Array, Array, Array]]:
@@ -226,7 +226,7 @@ class Tree:
             of_centre = v - skew(arm) @ w
             a = (frame[2] - skew(frame[0] @ body.centre) @ frame[3]).imag @ u / STEP
             spin, alpha = w @ u, frame[3].imag @ u / STEP
-            gyro = inertia @ alpha + np.cross(spin, inertia @ spin)
+            gyro = inertia @ alpha + skew(spin) @ inertia @ spin
             mass += body.mass * of_centre.T @ of_centre + w.T @ inertia @ w
             forces += of_centre.T @ (body.mass * (self.gravity - a)) - w.T @ gyro
             inertial.append((body.mass, p + arm, of_centre, a, inertia, w, gyro))
@@ -236,7 +236,7 @@ class Tree:
             (R, p, v, w), (r, axes) = parts[push.body], self.bodies[push.body].points[push.point]
             force, moment = ((R @ axes @ each) if push.follows else each for each in (push.force, push.moment))
             forces += (v - skew(R @ r) @ w).T @ force + w.T @ moment
-            applied += np.concatenate([force, moment + np.cross(p + R @ r, force)])
+            applied += np.concatenate([force, moment + skew(p + R @ r) @ force])
         for joint, at, of in self.layout():
             for k in range(len(joint.names)):
                 x, rate = q[at.start + k], u[of.start + k]
@@ -253,7 +253,7 @@ class Tree:
         force, moment = -applied[:3], -applied[3:]
         for m, centre, of_centre, a, inertia, w, gyro in inertial:
             needed = m * (a + of_centre @ change - self.gravity)
-            force, moment = force + needed, moment + np.cross(centre, needed) + inertia @ (w @ change) + gyro
+            force, moment = force + needed, moment + skew(centre) @ needed + inertia @ (w @ change) + gyro
         place, velocity = np.array([p for _, p, _, _ in parts]), np.array([v @ u for _, _, v, _ in parts])
         return Motion(change, effort, -force, -moment, place, velocity, energy)
 
