@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from gbeam import motion
 from gbeam.motion import Profile
 from gbeam.motion.bases.flight import body_rates
 from gbeam.motion.records.record import Conditioning, FlightRecord, Rates, read_flight
 from gbeam.scenario import schema
-from gbeam.scenario.load import Collector
 from gbeam.scenario.schema.profile import Record
+
+if TYPE_CHECKING:
+    from gbeam.scenario.load import Collector
 
 
 def flights_and_hubs(parts: Collector, scenario: schema.Environments) -> dict[str, motion.Motion]:

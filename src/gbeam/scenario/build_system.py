@@ -8,23 +8,14 @@ import numpy as np
 
 from gbeam.errors import InputError, placing_within
 from gbeam.io.models.arrays import read_state_space
-from gbeam.mechanics.assembly import assemble
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.control import Feedback, gains, in_series, lead_lag, notch, pid
 from gbeam.mechanics.tree.joints import Joint
 from gbeam.mechanics.tree.system import PointForce, System
-from gbeam.scenario.build_beam import beam_of, model_of
+from gbeam.scenario.bodies import OF_TABLE
 from gbeam.scenario.build_motion import components, profile_of
-from gbeam.scenario.build_specimen import (
-    matrices_of,
-    modal_test_of,
-    rigid_body_of,
-    rigid_of,
-    solid_of,
-    standard_input_of,
-)
 from gbeam.scenario.load import Collector
-from gbeam.scenario.schema import control, specimen
+from gbeam.scenario.schema import control
 from gbeam.scenario.schema import system as schema
 from gbeam.scenario.schema.fields import fields_of
 from gbeam.scenario.schema.profile import Smoothed
@@ -33,7 +24,7 @@ from gbeam.scenario.schema.profile import Smoothed
 def system_of(parts: Collector, scenario: schema.SystemScenario) -> System | None:
     """The system of a scenario; None, with what is wrong collected, where it cannot be made."""
     before = len(parts.errors)
-    bodies = {name: _BODIES[type(each)](parts, f"bodies.{name}", each) for name, each in scenario.bodies.items()}
+    bodies = {name: OF_TABLE[type(each)].build(parts, f"bodies.{name}", each) for name, each in scenario.bodies.items()}
     joints = {name: _joint(parts, f"joints.{name}", each) for name, each in scenario.joints.items()}
     forces = {name: _force(parts, f"forces.{name}", each) for name, each in scenario.forces.items()}
     controllers = {name: _controller(parts, f"controllers.{name}", each) for name, each in scenario.controllers.items()}
@@ -42,26 +33,11 @@ def system_of(parts: Collector, scenario: schema.SystemScenario) -> System | Non
     return parts.attempt("", System, bodies, joints, forces, scenario.system.gravity, controllers)
 
 
-def _beam(parts: Collector, where: str, table: schema.BeamBody) -> Structure | None:
-    beam, model = beam_of(parts, where, table), model_of(parts, f"{where}.model", table.model)
-    return None if beam is None or model is None else parts.attempt(where, assemble, beam, model, table.stations)
-
-
-_BODIES: dict[type, Any] = {
-    schema.RigidBody: rigid_body_of,
-    schema.BeamBody: _beam,
-    specimen.SolidBody: solid_of,
-    specimen.MatricesBody: matrices_of,
-    specimen.StandardInputBody: standard_input_of,
-    specimen.ModalTestBody: modal_test_of,
-}
-_ALONE = _BODIES | {schema.RigidBody: rigid_of}  # as a specimen on the base
-
-
 def specimen_of(parts: Collector, scenario: schema.SpecimenScenario) -> Structure | None:
     """The specimen of a scenario; None, with what is wrong collected, where it cannot be made."""
     name, table = scenario.specimen
-    structure: Structure | None = _ALONE[type(table)](parts, f"bodies.{name}", table)
+    kind = OF_TABLE[type(table)]
+    structure: Structure | None = (kind.alone or kind.build)(parts, f"bodies.{name}", table)
     return structure
 
 

@@ -27,12 +27,12 @@ from gbeam.mechanics.tree.joints import COUPLINGS, GROUND, OF_COORDINATES, SLIDE
 from gbeam.mechanics.tree.system import RigidBody, System
 from gbeam.printable import advise
 from gbeam.results.provenance import Provenance
+from gbeam.scenario.bodies.beam import BeamBody
 from gbeam.scenario.build import build, scenario_of
 from gbeam.scenario.load import change, provenance
 from gbeam.scenario.schema import Centrifuge
 from gbeam.scenario.schema.fields import kind_of, quantities
 from gbeam.scenario.schema.scenario import Sweep as SweepTable
-from gbeam.scenario.schema.system import BeamBody
 from gbeam.scenario.values import Distribution, Path, parse_path, path_text
 from gbeam.structure.beam import Beam
 

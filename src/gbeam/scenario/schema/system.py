@@ -12,92 +12,33 @@ from itertools import combinations
 from operator import or_
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import AfterValidator, ConfigDict, Discriminator, Field, StrictBool, Tag, create_model, model_validator
+from pydantic import ConfigDict, Discriminator, Field, StrictBool, Tag, create_model, model_validator
 from pydantic_core import PydanticCustomError
 
-from gbeam.guards.limits import NAME
 from gbeam.mechanics.tree.joints import COUPLINGS, GROUND, KINDS, SLIDES, Kind, kind_of_value
-from gbeam.printable import shortened
-from gbeam.scenario.schema.beam import Beam
+from gbeam.scenario.bodies import BODIES, OF_TABLE
+from gbeam.scenario.bodies.common import Direction, Name
 from gbeam.scenario.schema.control import Controller
 from gbeam.scenario.schema.fields import (
     Acceleration,
     Loc,
     Place3,
-    Position,
     Quantity,
     Table,
     Turn3,
     Vector,
-    by_name,
-    listed,
     optional,
     refuse,
     wrong,
 )
 from gbeam.scenario.schema.profile import ForceOverTime, MomentOverTime, SpeedOverTime, TurnOverTime
-from gbeam.scenario.schema.scenario import Environments, Model, Titled
-from gbeam.scenario.schema.specimen import (
-    Direction,
-    MatricesBody,
-    ModalTestBody,
-    Point,
-    RigidKeys,
-    SolidBody,
-    StandardInputBody,
-)
-
-
-def _named(name: str) -> str:
-    if not name.isidentifier() or not name.isascii() or len(name) > NAME or name == GROUND:
-        raise wrong(f"{shortened(repr(name))} is not a name", "give letters, digits and underscores", mark="key")
-    return name
-
-
-Name = Annotated[str, AfterValidator(_named)]
-
-
-class RigidBody(RigidKeys):
-    """A rigid body."""
-
-    points: dict[Name, Point] = by_name(
-        "points by name, on which other bodies hang, forces act and output is given: the place [x, y, z] from the "
-        "root, or with axes { at, turn }"
-    )
-
-
-class BeamBody(Beam):
-    """A beam as a body: the keys of [beam], and its model. Its points are its named ones, tip and root."""
-
-    kind: Literal["beam"] = Field(description="kind of the body")
-    model: Model = Field(description="the model of its deformation; modes are to be given: { kind, modes, shapes }")
-    stations: tuple[Position, ...] = listed(
-        "positions from the root of sections with loads and stress, beside those of its points"
-    )
-
-
-# Tables of bodies by their kind: one more is an entry, and its builder one in `gbeam.scenario.build_system`.
-BODIES: dict[str, type[Table]] = {
-    "rigid": RigidBody,
-    "beam": BeamBody,
-    "solid": SolidBody,
-    "matrices": MatricesBody,
-    "standard-input-data": StandardInputBody,
-    "modal-test": ModalTestBody,
-}
-# Keys beside which a kind may be left out.
-_KNOWN_BY = {
-    "mesh": "solid",
-    "matrices": "matrices",
-    "standard_input_data": "standard-input-data",
-    "modal_test": "modal-test",
-}
+from gbeam.scenario.schema.scenario import Environments, Titled
 
 
 def _kind(body: Any) -> str | None:
     if not isinstance(body, Mapping):
         return getattr(body, "kind", None)
-    known = (kind for key, kind in _KNOWN_BY.items() if key in body)
+    known = (name for name, kind in BODIES.items() if kind.known_by and kind.known_by in body)
     kind = body.get("kind", next(known, None))
     return kind if kind is None or isinstance(kind, str) else str(kind)
 
@@ -105,7 +46,8 @@ def _kind(body: Any) -> str | None:
 if TYPE_CHECKING:
     Body = Any
 else:
-    Body = Annotated[reduce(or_, (Annotated[each, Tag(name)] for name, each in BODIES.items())), Discriminator(_kind)]
+    _TABLES = (Annotated[each.table, Tag(name)] for name, each in BODIES.items())
+    Body = Annotated[reduce(or_, _TABLES), Discriminator(_kind)]
 
 
 _OVER_TIME = {"speed": SpeedOverTime, "angular rate": TurnOverTime, "force": ForceOverTime, "torque": MomentOverTime}
@@ -280,13 +222,8 @@ class SystemScenario(Environments, Tree):
     def about_structure(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
         """Errors of keys that are of one beam only."""
         for name, body in self.bodies.items():
-            if isinstance(body, BeamBody) and body.model.modes is None:
-                hint = "add modes = { axial = 1, y = 2, z = 2 }: numbers of shapes of a body are not chosen"
-                yield ("bodies", name, "model"), wrong("modes is missing", hint, mark="key")
-        for name, body in self.bodies.items():
-            for key in body.alone() if isinstance(body, RigidBody) else ():
-                hint = "leave it out, or give points; a rigid body alone, without joints, is a specimen"
-                yield ("bodies", name, key), wrong("is of a specimen alone on its base", hint, mark="key")
+            for place, error in OF_TABLE[type(body)].among(body):
+                yield ("bodies", name, *place), error
         of_tip: list[Loc] = [("response", "stations")] if self.response.stations is not None else []
         initial = self.response.initial
         of_tip += [("response", "initial", key) for key in initial.settings if key != "state"]

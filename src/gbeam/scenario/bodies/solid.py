@@ -1,0 +1,293 @@
+"""A solid of finite elements, by its mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic import Discriminator, Field, Tag, model_validator
+
+from gbeam.errors import InputError, naming, placing_within
+from gbeam.scenario.bodies.common import Direction, Inertia, PlaceOfBody, Reduced, placed, points_of
+from gbeam.scenario.bodies.kind import BodyKind
+from gbeam.scenario.schema.beam import Material
+from gbeam.scenario.schema.fields import (
+    ONE_OR_LIST,
+    Density,
+    Exponent,
+    File,
+    Length,
+    Mass,
+    Place3,
+    Pressure,
+    Quantity,
+    Ratio,
+    Table,
+    Turn3,
+    by_name,
+    optional,
+    refuse,
+    wrong,
+)
+
+if TYPE_CHECKING:
+    from gbeam.mechanics.structure import Structure
+    from gbeam.mechanics.tree.system import RigidBody
+    from gbeam.scenario.load import Collector
+    from gbeam.solids.mesh import SolidMesh
+    from gbeam.solids.model import SolidModel
+
+_Moduli = tuple[Pressure, Pressure, Pressure]
+
+
+class Orthotropic(Table):
+    """Linear elastic material with three planes of symmetry, such as a laminate."""
+
+    density: Density = Field(description="mass per volume")
+    youngs_moduli: _Moduli = Field(description="along its axes 1, 2 and 3")
+    poissons_ratios: tuple[Ratio, Ratio, Ratio] = Field(
+        description="nu12, nu23 and nu13: contraction along the second axis by a pull along the first"
+    )
+    shear_moduli: _Moduli = Field(description="G12, G23 and G13")
+    axes: tuple[Direction, Direction] = Field(
+        default=((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)), description="directions of its axes 1 and 2, in axes of the mesh"
+    )
+
+
+def _symmetry(material: Any) -> str:
+    keys = material if isinstance(material, Mapping) else getattr(material, "model_fields_set", ())
+    several = {"youngs_moduli", "poissons_ratios", "shear_moduli"}
+    return "isotropic" if several.isdisjoint(keys) else "orthotropic"
+
+
+SolidMaterial = Annotated[
+    Annotated[Material, Tag("isotropic")] | Annotated[Orthotropic, Tag("orthotropic")], Discriminator(_symmetry)
+]
+_Groups = Annotated[Annotated[str, Tag("one")] | Annotated[tuple[str, ...], Tag("list")], ONE_OR_LIST]
+_MeshPoint = Annotated[
+    Annotated[str, Tag("one")] | Annotated[Place3, Tag("list")] | Annotated[PlaceOfBody, Tag("table")],
+    Discriminator(placed),
+]
+
+
+class Carried(Table):
+    """A body that a rigid link carries, its root in the middle of the link's nodes."""
+
+    mass: Mass = Field(description="mass")
+    centre: Place3 = Field(
+        default=(0.0, 0.0, 0.0), description="centre of mass from the middle of the link's nodes: [x, y, z]"
+    )
+    inertia: Inertia = Field(
+        default=(0.0, 0.0, 0.0),
+        description="moments about the centre of mass and the axes of the base, or three rows of the tensor",
+    )
+
+
+_Spring = Annotated[float, Quantity("stiffness", "zero or more")]
+_TurnSpring = Annotated[float, Quantity("rotational stiffness", "zero or more")]
+
+
+class SpringStiffness(Table):
+    """Stiffness along and about the axes of the base."""
+
+    x: _Spring = Field(default=0.0, description="along x")
+    y: _Spring = Field(default=0.0, description="along y")
+    z: _Spring = Field(default=0.0, description="along z")
+    rx: _TurnSpring = Field(default=0.0, description="about x")
+    ry: _TurnSpring = Field(default=0.0, description="about y")
+    rz: _TurnSpring = Field(default=0.0, description="about z")
+
+
+class Spring(Table):
+    """A spring in the middle of the nodes of a rigid link."""
+
+    between: Annotated[tuple[str, ...], Field(min_length=1, max_length=2)] = Field(
+        description="names of two links, or of one that the spring holds to the base"
+    )
+    stiffness: SpringStiffness = Field(description="{ x, y, z, rx, ry, rz }, those left out are zero")
+
+
+class SolidBody(Reduced):
+    """A solid of finite elements, by its mesh."""
+
+    kind: Literal["solid"] = Field(default="solid", description="kind of the body; may be left out beside mesh")
+    mesh: File = Field(
+        description="file of Gmsh, Nastran bulk data, Abaqus, CalculiX, VTK, Exodus or another format of meshio, "
+        'relative to the folder of the scenario file; needs pip install "gbeam[mesh]"; or of STEP, which Gmsh meshes, '
+        'with pip install "gbeam[gmsh]"'
+    )
+    unit: str | None = optional('unit of the coordinates in the mesh, such as "mm"; STEP files say theirs')
+    mass_unit: str | None = optional(
+        'unit of mass in a file of Nastran, Abaqus or CalculiX, such as "Mg" beside mm, N and s: with it '
+        "the file's masses, rigid links and springs are read"
+    )
+    thickness: Length | None = optional(
+        "of all triangles and quadrilaterals of a mesh without solids, which are shells by it"
+    )
+    thicknesses: dict[str, Length] = by_name(
+        "of the shells of each group, by its name or number, instead of thickness; in a mesh with solids "
+        "other surfaces only name groups"
+    )
+    element_size: Length | None = optional("largest edge of the elements by which STEP files are meshed")
+    material: SolidMaterial | None = optional(
+        "of all elements: { density, youngs_modulus, poissons_ratio, yield_strength }, or orthotropic "
+        "{ density, youngs_moduli, poissons_ratios, shear_moduli, axes }"
+    )
+    materials: dict[str, SolidMaterial] = by_name(
+        "of the elements of each group, by its name or number, instead of material"
+    )
+    clamp: _Groups = Field(description="name of the group whose nodes follow the base or the joint, or a list of them")
+    masses: dict[str, Mass] = by_name(
+        "masses by the name of a point, or of a group over whose nodes each is spread evenly"
+    )
+    points: dict[str, _MeshPoint] = by_name(
+        "points of output by name: the place [x, y, z] from the root for the nearest node, or a group of "
+        "one node, or with axes of stress and strain { at, turn }; tip is the free node farthest from the root where "
+        "it is not given"
+    )
+    interfaces: dict[str, str] = by_name(
+        "groups by the name of a point that moves and turns as their nodes do on average: other bodies "
+        "hang on it, and it is put out"
+    )
+    links: dict[str, _Groups] = by_name(
+        "rigid links by name: a group, or a list of them, whose nodes move together as one rigid body"
+    )
+    carried: dict[str, Carried] = by_name(
+        "bodies by the name of the rigid link that carries each: { mass, centre, inertia }"
+    )
+    springs: dict[str, Spring] = by_name(
+        "springs by name, between two rigid links or one and the base: { between, stiffness }"
+    )
+    origin: Place3 = Field(
+        default=(0.0, 0.0, 0.0), description="the root in the mesh, whose acceleration the motion gives: [x, y, z]"
+    )
+    turn: Turn3 = Field(
+        default=(0.0, 0.0, 0.0), description="rotation vector of the mesh's axes in those of the base: [x, y, z]"
+    )
+    scale: tuple[Exponent, Exponent, Exponent] = Field(
+        default=(1.0, 1.0, 1.0),
+        description="factors of the mesh's coordinates, such as [1, 1, 1.25] for a board a quarter thicker",
+    )
+    coarser_size: Length | None = optional("element_size of a coarser mesh, by which the mesh's error is estimated")
+    coarser: File | None = optional(
+        "file of a coarser mesh with the same groups, by which the mesh's error is estimated"
+    )
+
+    @model_validator(mode="after")
+    def _one_way(self) -> SolidBody:
+        if (self.material is None) == (not self.materials):
+            single = self.material is not None
+            problem = "is given beside material" if single else "material is missing"
+            hint = "keep one of them" if single else "add material = { density, youngs_modulus, poissons_ratio }"
+            refuse([(("materials",) if single else (), wrong(problem, hint, mark="key"))])
+        if self.thickness is not None and self.thicknesses:
+            refuse([(("thicknesses",), wrong("is given beside thickness", "keep one of them", mark="key"))])
+        return self
+
+
+def _body(parts: Collector, where: str, table: SolidBody) -> Structure | None:
+    """The structure of a mesh."""
+    from gbeam.io.kept import content_of, kept
+    from gbeam.solids.foreign import is_mesh
+    from gbeam.solids.mesh import SolidMesh
+
+    laws: Any = (
+        {name: _material(parts, f"{where}.materials.{name}", each) for name, each in table.materials.items()}
+        if table.material is None
+        else _material(parts, f"{where}.material", table.material)
+    )
+    held = parts.attempt(
+        where,
+        lambda: {
+            "points": points_of(table),
+            "carried": {name: _carried(name, each) for name, each in table.carried.items()},
+        },
+    )
+    if held is None or laws is None or (isinstance(laws, dict) and None in laws.values()):
+        return None
+
+    about: dict[str, Any] = {
+        "materials": laws,
+        "clamp": table.clamp,
+        "unit": table.unit,
+        "thickness": table.thicknesses or table.thickness,
+        "point_masses": table.masses,
+        "interfaces": table.interfaces,
+        "links": table.links,
+        "springs": {name: each.model_dump() for name, each in table.springs.items()},
+        "origin": table.origin,
+        "turn": table.turn,
+        "scale": table.scale,
+        "mass_unit": table.mass_unit,
+        **held,
+    }
+    options: dict[str, Any] = {"modes": table.modes, "damping_ratio": table.damping_ratio}
+
+    def read(file: str, size: float | None) -> SolidMesh:
+        try:
+            return SolidMesh.read(file, element_size=size, **about)
+        except InputError as error:  # the scenario's own names of what Python calls otherwise
+            one = error.where.replace("point_masses", "masses")
+            renamed = one.replace("materials", "material", 1) if table.material is not None else one
+            renamed = renamed.replace("thickness", "thicknesses", 1) if table.thicknesses else renamed
+            raise error.at(renamed) from None
+
+    def source(file: str, size: float | None) -> Any:
+        """The file's content and how it is read, or the mesh where it may lie in several files."""
+        content = content_of(file) if is_mesh(file) else None
+        return read(file, size) if content is None else (content, Path(file).name, size, about)
+
+    def reduced(file: str, size: float | None, coarser: Callable[[], SolidModel] | None, *sources: Any) -> SolidModel:
+        def make() -> SolidModel:
+            mesh = sources[0] if isinstance(sources[0], SolidMesh) else read(file, size)
+            rough = None if coarser is None else coarser()
+            with naming({"stiffness": "springs" if table.springs else "clamp"}):
+                return mesh.reduced(**options, coarser=rough)
+
+        return kept(f"reducing {file}", (options, *sources), make)
+
+    def model() -> Structure:
+        size, of = table.element_size, source(table.mesh, table.element_size)
+        if table.coarser is None and table.coarser_size is None:
+            return reduced(table.mesh, size, None, of).structure
+        file, key = (table.mesh, "coarser_size") if table.coarser is None else (table.coarser, "coarser")
+        with naming({"coarser": key}):
+            with _of_coarser():
+                rough = source(file, table.coarser_size)
+
+            def coarser() -> SolidModel:
+                with _of_coarser():
+                    return reduced(file, table.coarser_size, None, rough)
+
+            return reduced(table.mesh, size, coarser, of, rough).structure
+
+    return parts.attempt(where, model)
+
+
+@contextmanager
+def _of_coarser() -> Iterator[None]:
+    """Name the coarser mesh in errors of its own."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError("coarser", f"{error.where} {error.problem}", error.fix) from None
+
+
+def _carried(name: str, table: Carried) -> RigidBody:
+    """A body on a rigid link."""
+    from gbeam.mechanics.tree.system import RigidBody
+
+    with placing_within(f"carried.{name}"):
+        return RigidBody(table.mass, table.inertia, table.centre)
+
+
+def _material(parts: Collector, where: str, table: Any) -> Any:
+    from gbeam.structure.material import Material, Orthotropic
+
+    kind = Orthotropic if isinstance(table, Orthotropic) else Material
+    return parts.attempt(where, kind, **table.model_dump(exclude_none=True))
+
+
+BODY = BodyKind(SolidBody, _body, known_by="mesh")
