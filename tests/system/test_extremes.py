@@ -210,3 +210,18 @@ def test_a_law_that_leaves_all_bounds_is_a_failed_computation(law: object) -> No
 def test_a_drive_is_named_once() -> None:
     with pytest.raises(gb.InputError, match=r"has 'hinge\.angle' twice"):
         gb.Feedback(lambda t, y: y, ["hinge.angle"], ["hinge.angle", "hinge.angle"], sample=0.01)
+
+
+def test_frequencies_without_an_error_say_why() -> None:
+    """A stout peg carries a strip: stiffness that is 1e12 times as large may hide what holds the strip."""
+    steel, aluminium = gb.Material(7850.0, 210e9, poissons_ratio=0.3), gb.Material(2700.0, 70e9, poissons_ratio=0.33)
+    peg = gb.Beam(0.01, gb.Section.circle(0.005), steel, damping_ratio=0.01)
+    strip = gb.Beam(1.0, gb.Section.rectangle(0.02, 0.002), aluminium, damping_ratio=0.01)
+    bodies = {
+        "peg": gb.assemble(peg, "exact", axial=1, y=2, z=2, twist=1),
+        "strip": gb.assemble(strip, "exact", y=2, z=3),
+    }
+    joints = {"root": gb.Joint("fixed", "peg"), "clamp": gb.Joint("fixed", "strip", "peg.tip")}
+    errors = gb.modes(gb.System(bodies, joints, gravity=(0, 0, -9.81))).errors
+    assert errors is not None
+    assert errors.total[0] < 0.1 or "no place was found" in errors.note

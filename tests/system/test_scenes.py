@@ -90,3 +90,17 @@ def test_a_page_and_a_file_show_what_a_notebook_shows(question: object, tmp_path
         assert motion["time"]["shape"] == [1] and motion["largest"] > 0.01
         assert {part["frame"]["shape"][0] for part in motion["parts"]} == {1}
         assert facts(result)["motions"]["ground"]["points"] and "motions/ground/hangs_on" in variables_of(result)
+
+
+def test_a_page_of_flexible_bodies_alone_shows_one_by_matrices(tmp_path: object) -> None:
+    """A mass on springs carries a strip: no body has a box."""
+    nodes, moved = [[0.0, 0.0, 0.0], [0.3, 0.0, 0.0]], np.eye(6)
+    moved[1, 5], moved[2, 4] = 0.3, -0.3  # of the second node by the first
+    stretch, mass = np.hstack([-moved, np.eye(6)]), np.diag([1.0, 1.0, 1.0, 0.01, 0.01, 0.01])
+    stiffness = stretch.T @ np.diag([2e3, 3e3, 4e3, 50.0, 60.0, 70.0]) @ stretch
+    model = gb.ImportedModel(np.kron(np.eye(2), mass), stiffness, nodes)
+    block = model.reduced(modes=3, damping_ratio=0.01, clamp=[0], points={"end": 1}, interfaces=["end"])
+    joints = {"root": gb.Joint("fixed", "block"), "clamp": gb.Joint("fixed", "strip", "block.end")}
+    bodies = {"block": block, "strip": gb.assemble(STRIP, "exact", axial=0, y=1, z=2)}
+    response = gb.simulate(gb.System(bodies, joints, gravity=(0, 0, -3.0)), duration=0.1, step=1e-3, estimate=False)
+    assert "strip" in report_of(response)

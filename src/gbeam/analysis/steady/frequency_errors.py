@@ -100,6 +100,8 @@ class Richer:
         mesh = np.abs(rough / frequency - 1)
         total = total + np.nan_to_num(by_theory.shares) + (0.0 if self.rough is None else mesh)
         note = unknown_part(state.of)
+        if not note and len(frequency) and np.isnan(total).all():
+            note = "with more shapes no place was found in which it rests"
         return FrequencyErrors(shapes, self.of_model(model), by_theory.shares, mesh, total, *by_theory[1:], note)
 
     def of_model(self, share: Any) -> Any:

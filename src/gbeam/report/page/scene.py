@@ -203,7 +203,7 @@ def _system(name: str, environment: str, v: Variables, numbers: Numbers) -> tupl
         else:
             others = [i for i, each in enumerate(points) if each.startswith(f"{body}.") and i != root]
             part["points"] = [turn[0].inv().apply(place[0, i] - at[0]).tolist() for i in others]
-            if np.isfinite(v["box"][k]).all():
+            if "box" in v and np.isfinite(v["box"][k]).all():  # no variable where all are flexible
                 size, centre, rotation = (v[key][k] for key in ("box", "box_centre", "box_rotation"))
                 part["box"] = {
                     "size": size.tolist(),
