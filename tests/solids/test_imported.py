@@ -127,9 +127,8 @@ def test_matrices_of_a_beam_fly_as_the_beam() -> None:
 
 def test_a_system_says_how_large_the_stiffness_is_that_matrices_lack() -> None:
     """On a body that turns, in every answer, as alone on a hub: of the order of what the beam of them stiffens by."""
-    each, rate, radius = reduced(), 20.0, 0.1
-    model = gb.ImportedModel(each.mass, each.stiffness, each.nodes, each.unknowns)
-    strip = model.reduced(modes=5, damping_ratio=0.01, clamp=[0])
+    rate, radius = 20.0, 0.1
+    strip = read_whole().reduced(modes=5, damping_ratio=0.01, clamp=[0])
     hub = gb.RigidBody(1.0, (0.1, 0.1, 0.1), points={"rim": (radius, 0, 0)})
     spin = gb.Joint("revolute", "hub", axes=[(0, 0, 1)], rate=rate)
     clamp = gb.Joint("fixed", "strip", on="hub.rim")
@@ -220,6 +219,12 @@ def test_a_beam_comes_back_from_files(tmp_path: Path, name: str) -> None:
     compare(gb.ImportedModel.read(*write(tmp_path, reduced())), rtol)
 
 
+def read_whole() -> gb.ImportedModel:
+    """The beam with its tip."""
+    each = reduced()
+    return gb.ImportedModel(each.mass, each.stiffness, each.nodes, each.unknowns)
+
+
 def test_fields_of_simscape_are_read(tmp_path: Path) -> None:
     """One interface frame, the root, and modes, which do not say where their mass is; a structure of MATLAB's too."""
     stiffness = np.pad(beam().coefficients.stiffness, ((6, 0), (6, 0)))
@@ -232,6 +237,13 @@ def test_fields_of_simscape_are_read(tmp_path: Path) -> None:
         compare(read, 1e-11)
         model = read.reduced(modes=5, damping_ratio=0, clamp=[1])
         assert any("do not say where the mass of their modes is" in said for said in model.warnings)
+        # Its only node is at the root: the even beam's length is that of its mass.
+        assert model.length == pytest.approx(0.3, rel=1e-3)
+        assert "the tip, node 1, is clamped and stays at 0" in model.warnings
+        push = gb.Flight(acceleration=constant(np.array([50.0, 0, 0])))
+        stated = [line for line in gb.modes(model, push).warnings if "the order of" in line]
+        whole = read_whole().reduced(modes=5, damping_ratio=0, clamp=[0], points={"tip": 1})
+        assert stated == [line for line in gb.modes(whole, push).warnings if "the order of" in line]
 
 
 def test_units_of_length_and_mass(tmp_path: Path) -> None:

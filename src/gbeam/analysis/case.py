@@ -415,6 +415,7 @@ def describe(case: Case | SpecimenCase | SystemCase) -> Description | SpecimenDe
     structure, settings = case.assemble(), case.response
     span = case.start, case.start + (0.0 if settings is None else settings.duration)
     doubts = [input_warnings(structure, motion, name=name, span=span) for name, motion in case.motions.items()]
+    doubts = doubts or [input_warnings(structure)]
     if isinstance(case, SpecimenCase):
         total, *moment = (float(each) for each in structure.coefficients.rigid[:4])
         return SpecimenDescription(

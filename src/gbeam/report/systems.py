@@ -72,7 +72,7 @@ def _others(facts: Facts, *told: str) -> Block:
 
 
 def errors_of_system(errors: Facts) -> Blocks:
-    """Errors of the points' places, and those that every beam brings."""
+    """Errors of the points' places, and those that every body brings."""
     displacement = errors["displacement"]
     if any(known(each) > 0 for each in displacement.values()):
         yield Sentence(f"estimated error {errors_in_words(displacement)} of the largest displacement")
@@ -81,8 +81,8 @@ def errors_of_system(errors: Facts) -> Blocks:
     count = len(errors.get("beams", ()))
     rows = [{key: each[k] for key, each in errors.items() if isinstance(each, list) and each} for k in range(count)]
     shares = {"shapes and model": "by_beam:%", "root loads": "loads_by_beam:%", "stress": "stress_by_beam:%"}
-    cells = {"beam": "beams", **shares, "beam theory": "theory"}
-    yield table(rows, cells, "Estimated errors that each beam brings, of the largest", optional=tuple(cells)[1:])
+    cells = {"body": "beams", **shares, "beam theory": "theory"}
+    yield table(rows, cells, "Estimated errors that each body brings, of the largest", optional=tuple(cells)[1:])
 
 
 def system_study(facts: Facts) -> Blocks:

@@ -29,6 +29,7 @@ from gbeam.solids.matrices import (
     compare_mass,
     displaced,
     every_unknown,
+    extent_of,
     fields_of,
     left_out,
     mass_of_nodes,
@@ -39,6 +40,7 @@ from gbeam.solids.matrices import (
     turned,
     with_tip,
 )
+from gbeam.structure.attachments import TIP
 
 LOADS = ("a_x", "a_y", "a_z", "alpha_x", "alpha_y", "alpha_z", "w_xx", "w_yy", "w_zz", "w_xy", "w_yz", "w_zx")
 
@@ -251,6 +253,9 @@ class ImportedModel(Value):
         free = (unknowns[:, 1] == OWN) | ~np.isin(unknowns[:, 0], held)
         attached = self._attached(interfaces, named)
         loads = np.concatenate([-(self.mass @ fields), attached], axis=1)
+        length = extent_of(at, body)
+        tip = self._number(named[TIP])
+        still = [f"the tip, node {tip}, is clamped and stays at 0"] if named[TIP] in held else []
         reduction = reduce(self.stiffness[free][:, free], self.mass[free][:, free], loads[free], modes)
         every = np.zeros((len(free), len(reduction.stiffness)))
         every[free] = reduction.shapes
@@ -266,12 +271,12 @@ class ImportedModel(Value):
                 terms,
                 *particles,
                 Places(at[list(named.values())], first),
-                length=float(np.linalg.norm(at, axis=1).max()),
+                length=length,
                 turns=turns,
                 damping_ratio=damping_ratio,
                 points=tuple(named),
                 kind=kind,
-                warnings=(*doubts, *more),
+                warnings=(*doubts, *more, *still),
                 unstiffened=bool(doubts or more),
                 modes=modes,
             )
@@ -285,6 +290,9 @@ class ImportedModel(Value):
             some = f"from {numbers.min()} to {numbers.max()}"
             raise InputError(where, f"is {number}, which is no node", f"give the number of one, {some}")
         return int(which[0])
+
+    def _number(self, node: int) -> int:
+        return int(np.asarray(self.numbers)[node])
 
     def _attached(self, interfaces: Sequence[str], named: Mapping[str, int]) -> Floats:
         """Unit forces and moments (u, 6 i) on the interfaces."""
@@ -307,10 +315,8 @@ class ImportedModel(Value):
                 if way != OWN:
                     moved[i, way - 1] = shapes[row]
             if not np.isfinite(moved[i, :3]).all():
-                name = np.asarray(self.numbers)[node]
-                raise InputError(
-                    "points", f"has node {name}, which lacks a displacement", "name one that has all three"
-                )
+                problem = f"has node {self._number(node)}, which lacks a displacement"
+                raise InputError("points", problem, "name one that has all three")
         return moved[:, :3], moved[:, 3:]
 
     def _terms(

@@ -94,6 +94,14 @@ def rigid_body(mass: Any, rigid: Floats) -> Floats:
     return np.array([total, *first, *pairs])
 
 
+def extent_of(at: Floats, body: Floats) -> float:
+    """How far a structure reaches from the root, m: its farthest node (k, 3); where its mass is beyond all of them, as
+    of one interface and modes, the length of an even beam with the radius of gyration of the body (10,).
+    """
+    far, gyration = float(np.linalg.norm(at, axis=1).max()), float(np.sqrt(body[4:7].sum() / body[0]))
+    return far if far >= gyration else 3**0.5 * gyration
+
+
 def refuse_held(stiffness: Any, rigid: Floats) -> None:
     """Refuse a stiffness that resists rigid motion: it is held, or its nodes lie elsewhere."""
     force, sum_of = np.abs(stiffness @ rigid), abs(stiffness) @ np.abs(rigid)
