@@ -104,6 +104,7 @@ _MARKS: dict[str, dict[str, Any]] = {
     "rings": {"marker": "o", "ms": 4, "mfc": "none", "mec": "black", "mew": 0.8, "ls": ""},
 }
 _SCREEN = 100  # dots per inch
+_HEAD = 88  # characters of a heading on a line
 _ROW = 110  # letters in a row of a legend
 _LABEL = 15  # letters of a label in an inch of a panel's height
 # Colour and hatch of what is shaded, which tells them apart in print; of a machine's limit by its name.
@@ -168,7 +169,7 @@ def draw(described: Figure) -> Shown:
     """Draw a figure."""
     with style():
         heights = [panel.height for panel in described.panels]
-        title = printable(described.heading)
+        title = "\n".join(textwrap.fill(line, _HEAD) for line in printable(described.heading).split("\n"))
         size = WIDTH, PANEL * sum(heights) + 0.15 * len(heights) + 0.4 + 0.18 * title.count("\n")
         figure = Shown(figsize=size, layout="constrained")
         FigureCanvasAgg(figure)
