@@ -139,6 +139,25 @@ def test_a_force_at_a_point_is_driven_and_reported() -> None:
     assert 0 < loop.saturated[1] < 1 and np.abs(loop.applied[:, :2]).max() <= 0.015
 
 
+def test_what_a_section_carries_is_measured() -> None:
+    """As a strain gauge at the clamp: the moment is that of the response, and of the closed loop that is linearised."""
+    names = [*NAMES, "panel.root.moment_y"]
+    law = gb.Feedback(gains([[-80.0, -150.0, 0.02]]), names, ["axis.angle"], SAMPLE, 0.5 * SAMPLE)
+    system = satellite(law, angle=1e-5)
+    response = gb.simulate(system, initial="undeformed", duration=2.0, step=SAMPLE / 8, estimate=False)
+    assert response.loop is not None and response.loop.units == ("rad", "rad/s", "N m")
+    moment = response.beams["panel"].loads.section_moment[:, 0, 1]
+    np.testing.assert_allclose(response.loop.measured[8:-1:8, 2], moment[8:-1:8], atol=1e-9 * np.abs(moment).max())
+    closed = gb.linearize(system, loop="closed", outputs=["axis.angle", "panel.root.moment_y"])
+    state, angles = np.zeros(len(closed.a)), []
+    state[0] = 1e-5
+    for _ in range(101):
+        angles.append((closed.c @ state)[0])
+        state = closed.a @ state
+    np.testing.assert_allclose(response.coordinate("axis.angle")[::8], angles, atol=1e-5 * 1e-5)
+    assert closed.outputs[1].unit == "N m"
+
+
 def pointed(turn: tuple[float, ...], spin: tuple[float, ...] = (0.0, 0.0, 0.0), gain: float = 2.0) -> gb.System:
     """A free rigid body whose attitude and spin are fed back to a torque in its axes: a star tracker and a gyro."""
     names = [f"bus.root.{each}_{axis}" for each in ("attitude", "spin") for axis in "xyz"]
@@ -227,5 +246,7 @@ def test_names_and_laws_that_do_not_fit_are_refused() -> None:
     control = pytest.importorskip("control")
     with pytest.raises(gb.InputError, match="has the step"):
         gb.Feedback(control.ss(*lead(), 0.1), NAMES, ["axis.angle"], SAMPLE)
+    with pytest.raises(gb.InputError, match="as many poles as zeros"):
+        gb.Feedback(control.tf([1.0, 0.0], [1.0]), NAMES[:1], ["axis.angle"], SAMPLE)
     transfer = gb.Feedback(control.tf([1.0], [0.1, 1.0]), NAMES[:1], ["axis.angle"], SAMPLE)
     assert transfer.law[0].shape == (1, 1)

@@ -44,14 +44,20 @@ def of_matrices(at: Values) -> Any:
 
 
 def of_functions(at: Values) -> Any:
-    """PI with a state of its own on the axis, and a jet at the tip with another time between samples."""
+    """PI with a state of its own on the axis, and a jet at the tip, by a gauge too, of other samples."""
 
     def integral(t: float, y: Any, state: Any) -> tuple[Any, Any]:
         return -at["gain"] * y[:1] - 150.0 * y[1:] - state["sum"], {"sum": state["sum"] + at["rise"] * y[:1]}
 
     loops = (
         gb.Feedback(integral, NAMES, ["axis.angle"], SAMPLE, SAMPLE, state={"sum": np.ones(1) * at["sum"]}),
-        gb.Feedback(lambda t, y: -at["push"] * y, ["panel.tip.velocity_y"], ["jet.force_y"], 1.5 * SAMPLE, 0.01),
+        gb.Feedback(
+            lambda t, y: -at["push"] * (y[:1] + 1e-3 * y[1:]),
+            ["panel.tip.velocity_y", "panel.root.moment_y"],
+            ["jet.force_y"],
+            1.5 * SAMPLE,
+            0.01,
+        ),
     )
     return figure(satellite(50.0, 0.1, *loops))
 
@@ -120,6 +126,18 @@ def test_laws_that_cannot_be_traced_are_refused(law: Any, words: str) -> None:
 def test_numbers_that_are_looked_at_cannot_be_traced(question: Any, words: str) -> None:
     with pytest.raises(gb.InputError, match=words):
         jax.grad(question)(0.1)
+
+
+def test_what_a_traced_beam_carries_cannot_be_measured() -> None:
+    def looped(modulus: Any) -> Any:
+        section = gb.Section.rectangle(0.5, 0.02)
+        panel = gb.assemble(gb.Beam(3.0, section, gb.Material(2700.0, modulus), damping_ratio=0.005), "FOAM", z=1)
+        law = gb.Feedback(lambda t, y: -y, ["panel.root.moment_y"], ["axis.angle"], SAMPLE)
+        axis = gb.Joint("revolute", "panel", axes=[(0, 1, 0)])
+        return figure(gb.System({"panel": panel}, {"axis": axis}, controllers={"c": law}))
+
+    with pytest.raises(gb.InputError, match=r"has 'panel\.root\.moment_y' of a beam that JAX traces"):
+        jax.grad(looped)(70e9)
 
 
 def test_a_law_in_continuous_time_is_sampled_by_tustins_rule() -> None:

@@ -98,10 +98,14 @@ class Sampling:
 
     def onto(self, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
         """Derivatives (t, n, m) of the residual with respect to what is commanded, at states and inputs (t, ...)."""
+        return self._by_command(self.residual, q, qd, qdd, inputs)
+
+    def _by_command(self, function: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
+        """Derivatives (t, k, m) of a function (t, k) of states and inputs (t, ...) by what is commanded."""
         count = self.held.shape[1]
         units = np.broadcast_to(1j * STEP * np.eye(count)[:, None], (count, len(q), count))
-        values = self.residual(q, qd, qdd, self.controllers.driven(inputs, units))
-        return np.moveaxis(values.imag, 0, -1) / STEP
+        values = function(q, qd, qdd, self.controllers.driven(inputs, units))
+        return np.moveaxis(np.broadcast_to(values, (count, *values.shape[-2:])).imag, 0, -1) / STEP
 
     def measured(self, c: int, q: Array, qd: Array, inputs: Any) -> Array:
         """Measurements (t, k) of a controller by the states at its samples, and inputs with the commands before."""
@@ -114,7 +118,8 @@ class Sampling:
         """
         accelerates = self.controllers.accelerates(c)
         qdd = accelerations(self.residual, q, qd, inputs) if accelerates else 0 * q
-        by_place, by_rate, by_change = slopes(partial(self.controllers.measured, c), q, qd, qdd, inputs)
+        measured = partial(self.controllers.measured, c)
+        by_place, by_rate, by_change = slopes(measured, q, qd, qdd, inputs)
         slope = np.concatenate([by_place, by_rate], axis=-1)
         if not accelerates:
             return slope, None
@@ -122,7 +127,8 @@ class Sampling:
         k, damping, mass = slopes(self.residual, q, qd, qdd, inputs)
         rest = np.concatenate([k, damping, self.onto(q, qd, qdd, inputs)], axis=-1)
         change = by_change @ solved(mass, -rest)
-        return slope + change[..., : slope.shape[-1]], change[..., slope.shape[-1] :]
+        direct = self._by_command(measured, q, qd, qdd, inputs)
+        return slope + change[..., : slope.shape[-1]], change[..., slope.shape[-1] :] + direct
 
 
 def sampling_of(equations: NonlinearEquations, steps: Steps) -> Sampling | None:

@@ -20,7 +20,8 @@ from gbeam.analysis.steady.operating_point import (
     steady_base,
 )
 from gbeam.analysis.steady.stability import hub_of
-from gbeam.analysis.system.linear import Strained, frozen, instabilities, linearize_system, named_acceleration
+from gbeam.analysis.system.gauges import Strained
+from gbeam.analysis.system.linear import frozen, instabilities, linearize_system, named_acceleration
 from gbeam.arrays.tree import each_leaf, leaves_of, record
 from gbeam.constants import BY_STRAINS
 from gbeam.errors import InputError, placing_within

@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.arrays.namespace import namespace
+from gbeam.analysis.system.gauges import read_signals
+from gbeam.arrays.namespace import holds_jax, namespace
+from gbeam.errors import InputError
 from gbeam.integrate.sampled import NEAR
 from gbeam.mechanics.tree.control import Feedback, signal_names
-from gbeam.mechanics.tree.signals import drives_of, measurements, signals_of
+from gbeam.mechanics.tree.signals import carried_of, drives_of, signals_of
 from gbeam.mechanics.tree.system import System
 from gbeam.results.system import Loop
 
@@ -58,11 +60,12 @@ class SystemControllers:
 
     def measured(self, controller: int, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
         """Measurements (t, k) of one controller."""
-        return measurements(self.system, self.tree, q, qd, qdd, inputs, self.every[controller].measure)
+        return read_signals(self.system, self.tree, self.every[controller].measure, q, qd, qdd, inputs)
 
     def accelerates(self, controller: int) -> bool:
-        """Return whether one measures accelerations."""
-        return any(".acceleration_" in each for each in self.every[controller].measure)
+        """Return whether one measures accelerations, or what sections carry, which follows from them."""
+        felt = carried_of(self.system)
+        return any(".acceleration_" in each or each in felt for each in self.every[controller].measure)
 
     def started(self, controller: int) -> Any:
         """State of one at the start."""
@@ -101,6 +104,11 @@ class SystemControllers:
         """Laws sampled at times (s,) s each, as JAX traces them."""
         from gbeam.analysis.system.traced_laws import traced_law
 
+        for name, each in self.system.controllers.items():
+            for signal in {*each.measure} & carried_of(self.system).keys():
+                if holds_jax(self.system.bodies[signal.partition(".")[0]]):
+                    fix = "trace what else there is, or measure acceleration"
+                    raise InputError(f"controllers.{name}.measure", f"has {signal!r} of a beam that JAX traces", fix)
         return [traced_law(*each) for each in zip(self.system.controllers.items(), times, strict=True)]
 
 
@@ -118,10 +126,10 @@ def loop_of(controllers: SystemControllers, sampling: Any, time: Floats) -> Loop
         asked.append(wanted[taken])
         beyond.append((wanted != commands).mean(axis=0))
         acting.append(namespace(commands).where(active[:, None] >= 0, commands[last], 0.0))
-    xp = namespace(*asked)
+    xp, units = namespace(*asked), signals_of(controllers.system) | carried_of(controllers.system)
     return Loop(
         measurements=signal_names(controllers.system.controllers, "measure"),
-        units=tuple(signals_of(controllers.system)[each] for one in controllers.every for each in one.measure),
+        units=tuple(units[each] for one in controllers.every for each in one.measure),
         drives=signal_names(controllers.system.controllers, "drive"),
         measured=xp.concatenate(measured, axis=1),
         asked=xp.concatenate(asked, axis=1),

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,22 +15,19 @@ from numpy.typing import NDArray
 from gbeam.analysis.accuracy.estimate import LIMIT
 from gbeam.analysis.outline import assembly_of, outline_of
 from gbeam.analysis.system.accuracy import doubts, system_errors
-from gbeam.analysis.system.histories import beams_of, carried, histories, loads_of, meshes_of
+from gbeam.analysis.system.gauges import Strained, read_signals
+from gbeam.analysis.system.histories import beams_of, histories, loads_of, meshes_of
 from gbeam.analysis.system.point import Point, started
 from gbeam.analysis.system.steady import Drive, SteadySystem, open_loops, steady
-from gbeam.arrays.tree import each_leaf
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.checks import choice
 from gbeam.integrate.equations import Trajectory
-from gbeam.mechanics.section_forces import sections
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.bodies import Acting
 from gbeam.mechanics.tree.control import signal_names
-from gbeam.mechanics.tree.equations import Inputs, State, Tree
-from gbeam.mechanics.tree.signals import Driven, deforming, drives_of, local_names, measurements, signals_of
+from gbeam.mechanics.tree.equations import Inputs
+from gbeam.mechanics.tree.signals import Driven, carried_of, deforming, drives_of, local_names, signals_of
 from gbeam.mechanics.tree.steps import parameters_of_all
 from gbeam.mechanics.tree.system import System
-from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.eigen import Steady, Vibrations
 from gbeam.numerics.series import STEP
@@ -167,25 +164,6 @@ def frozen(system: System, motion: Motion | None, time: float, at: str) -> Stead
     return SteadySystem(system, drive, started(system, motion, time, "equilibrium"))
 
 
-class Strained(NamedTuple):
-    """A gauge on a body: its strain by unit coordinates of a solid (n,), or by unit loads (6,) of a `section`."""
-
-    body: str
-    share: Floats
-    section: int | None = None
-
-    def read(self, system: System, state: State, acting: list[list[Acting]], inputs: Inputs) -> Array:
-        """Strain (t,) in a motion (t,) of a tree."""
-        k, body = system.order.index(self.body), system.bodies[self.body]
-        if self.section is None:
-            return state.q[k][-1] @ self.share
-        assert isinstance(body, Structure) and body.sections is not None
-        q, qd, qdd, a, w, alpha, hung = carried(system, state, self.body, acting)
-        loads = sections(body, body.sections, Base(a, w, alpha), q, qd, qdd, inputs.loads[k], hung)
-        of_section = [each[:, self.section] for each in (loads.section_force, loads.section_moment)]
-        return np.concatenate(of_section, axis=-1) @ self.share
-
-
 def linearize_system(
     state: SteadySystem,
     *,
@@ -221,11 +199,11 @@ def linearize_system(
     driven = _default_inputs(system, state.drive.motion) if inputs is None else inputs
     for each in driven:
         choice("inputs", each, every)
-    units = signals_of(system) | dict.fromkeys(strained, "1")
+    units = signals_of(system) | carried_of(system) | dict.fromkeys(strained, "1")
     wanted = [*_default_outputs(system), *strained] if outputs is None else [*outputs]
     for each in wanted:
         choice("outputs", each, units)
-    read = partial(_measured, system, local.tree, wanted, strained)
+    read = partial(read_signals, system, local.tree, wanted, strained=strained)
     values, out = _outputs(local, read)
     b, direct = _inputs(system, local, state.names, [every[each] for each in driven], read)
     driving = tuple(Signal(each, every[each].unit) for each in driven)
@@ -311,30 +289,6 @@ def _moved(inputs: Inputs, by: Driven) -> Inputs:
     values: Any = np.array(getattr(inputs, by.way), dtype=complex)
     values[which, by.at] += 1j * STEP
     return replace(inputs, **{by.way: values})
-
-
-def _measured(
-    system: System,
-    tree: Tree,
-    wanted: Sequence[str],
-    strained: Mapping[str, Strained],
-    y: Array,
-    yd: Array,
-    ydd: Array,
-    inputs: Inputs,
-) -> Array:
-    """Values (t, k) of outputs, gauges among them, at unknown coordinates (t, n)."""
-    signals = [each for each in wanted if each not in strained]
-    values = np.zeros((len(y), len(wanted)), dtype=complex)
-    values[:, [each not in strained for each in wanted]] = measurements(system, tree, y, yd, ydd, inputs, signals)
-    if len(signals) < len(wanted):
-        inputs = each_leaf(lambda leaf: np.broadcast_to(leaf, (len(y), *leaf.shape)), inputs)
-        state = tree.motion(y, yd, ydd, inputs)
-        *_, acting = tree.demanded(state, inputs)
-        for k, each in enumerate(wanted):
-            if each in strained:
-                values[:, k] = strained[each].read(system, state, acting, inputs)
-    return values
 
 
 def _outputs(local: Point, read: Callable[..., Any]) -> tuple[Floats, tuple[Floats, Floats, Floats]]:

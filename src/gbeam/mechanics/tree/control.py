@@ -39,7 +39,8 @@ class Feedback(Value):
         are) is sampled by Tustin's rule, one in discrete time has the step `sample`.
     measure : sequence of str
         Measurements by name, as the outputs of :func:`gbeam.linearize`: ``joint.angle``, ``joint.angle_rate``,
-        ``body.point.place_x``, ``velocity_x``, ``attitude_x``, ``acceleration_x``, ``spin_x``. Accelerations are those
+        ``body.point.place_x``, ``velocity_x``, ``attitude_x``, ``acceleration_x``, ``spin_x``, and of a section of a
+        beam ``force_x``, ``moment_y``, by which a strain gauge there is known. Accelerations and these are those
         just before the sample. The attitude is the rotation vector from the ground's axes to the point's, rad, with the
         same components in both; at half a turn it jumps to that of the shorter way.
     drive : sequence of str
@@ -121,7 +122,11 @@ class Feedback(Value):
         if hasattr(law, "num"):
             import control
 
-            law = control.ss(law)
+            try:
+                law = control.ss(law)
+            except ValueError as error:
+                fix = "give as many poles as zeros or more: a rate is measured, or smoothed by s/(1 + s T)"
+                raise InputError("law", f"cannot be made of states: {error}", fix) from error
         parts = law
         if not isinstance(law, (tuple, list)):
             names = ("A", "B", "C", "D") if hasattr(law, "A") else ("a", "b", "c", "d")

@@ -75,6 +75,16 @@ def rate_signal(rate: str) -> str:
     return rate if rate in SPIN else f"{rate}_rate"
 
 
+CARRIED = {"force": "N", "moment": "N m"}  # by a section, axes of its own
+
+
+def carried_of(system: System) -> dict[str, str]:
+    """Names of what sections of beams carry, as gauges there know it, with their units: ``strip.root.moment_y``."""
+    beams = [name for name in system.order if getattr(system.bodies[name], "sections", None) is not None]
+    points = [f"{name}.{point}" for name in beams for point in system.points_of(name)]
+    return {f"{each}.{kind}_{axis}": unit for each in points for kind, unit in CARRIED.items() for axis in "xyz"}
+
+
 def measurements(system: System, tree: Any, y: Array, yd: Array, ydd: Array, inputs: Any, wanted: Sequence[str]) -> Any:
     """Values (..., k) of what is measured, at unknown coordinates of the tree or of one local to it."""
     xp, state, columns = namespace(y, inputs.ground.a), tree.motion(y, yd, ydd, inputs), []

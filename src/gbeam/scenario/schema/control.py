@@ -89,7 +89,7 @@ class Controller(Table):
         min_length=1,
         max_length=ENTRIES,
         description='what is sampled: "joint.angle", "joint.angle_rate", "body.point.place_x", velocity_x, '
-        "attitude_x (rotation vector, rad), acceleration_x, spin_x",
+        "attitude_x (rotation vector, rad), acceleration_x, spin_x, of a section of a beam force_x, moment_y",
     )
     drive: tuple[str, ...] = Field(
         min_length=1, max_length=ENTRIES, description='efforts: "joint.angle", "force.force_x", "force.moment_z"'

@@ -173,7 +173,8 @@ class PointForce(Table):
     @model_validator(mode="after")
     def _any(self) -> PointForce:
         if self.force is None and self.moment is None:
-            refuse([((), wrong("the force is missing", 'give force or moment, such as force = { z = "5 N" }'))])
+            fix = 'give force or moment, such as force = { z = "5 N" }, or { z = 0 } where a controller drives it'
+            refuse([((), wrong("the force is missing", fix))])
         return self
 
 
