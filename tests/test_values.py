@@ -8,6 +8,7 @@ from dataclasses import is_dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import jax
 import numpy as np
 import pytest
 
@@ -89,6 +90,24 @@ def test_what_is_made_of_equal_values_is_equal(given: Given, tmp_path: Path) -> 
 def test_a_case_is_shown_on_one_line(given: Given) -> None:
     named = replace(given.case, title="a panel")
     assert repr(named) == "Case('a panel', FOAM, {flight: flight, spin: centrifuge}, 0.5 s)"
+
+
+@pytest.mark.parametrize("name", [name for name in PUBLIC if isinstance(getattr(gb, name), type)])
+def test_objects_are_shown_on_one_short_line(given: Given, name: str) -> None:
+    args, keywords = given.calls()[name]
+    text = repr(getattr(gb, name)(*args, **keywords))
+    assert text.startswith(f"{name}(") and "\n" not in text and len(text) < 300
+
+
+def test_objects_are_shown_by_what_is_not_as_by_default(given: Given) -> None:
+    strip = "Section(shape='rectangle', width=0.02, thickness=0.004)"
+    assert repr(given.beam.section) == strip
+    assert repr(given.beam) == f"Beam(length=0.3, section={strip}, material={given.beam.metal!r}, damping_ratio=0.01)"
+    assert repr(gb.tabulated(np.arange(9.0), np.zeros(9))) == "PiecewiseLinear(times=<9 numbers>, values=<9 numbers>)"
+    assert repr(gb.SmoothStep(1.0, 2.0)) == "SmoothStep(level=1, duration=2)"
+    shown: list[str] = []
+    jax.grad(lambda level: shown.append(repr(gb.SmoothStep(level, 2.0))) or level)(1.0)
+    assert shown == ["SmoothStep(level=traced, duration=2)"]
 
 
 def test_another_number_makes_another_value(given: Given) -> None:

@@ -20,6 +20,7 @@ from gbeam.arrays.namespace import is_traced
 
 _T = TypeVar("_T")
 _records: list[type] = []
+_FEW, _WIDEST = 6, 60  # numbers of an array that are printed; letters of an argument
 _register: Callable[[type], None] | None = None
 
 
@@ -29,9 +30,16 @@ def static(**options: Any) -> Any:
 
 
 class Value:
-    """A dataclass, with ``eq=False``, that compares by its fields, arrays number by number."""
+    """A dataclass, with ``eq=False``, that compares by its fields, arrays number by number, and prints on one line."""
 
     __slots__ = ()
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        cls.__repr__ = cls.__repr__  # type: ignore[method-assign]  # else a dataclass gets one of all its numbers
+
+    def __repr__(self) -> str:
+        return shown(self)
 
     def __eq__(self, other: object) -> bool:
         return _same(self, other) if type(other) is type(self) else NotImplemented
@@ -44,8 +52,9 @@ class Value:
 @dataclass_transform(frozen_default=True, field_specifiers=(static, dataclasses.field))
 def record(cls: type[_T]) -> type[_T]:
     """Make a class a frozen dataclass, a pytree, equal by its fields; an own ``__init__`` uses :func:`assign`."""
-    record_type = dataclasses.dataclass(frozen=True, eq=False, init="__init__" not in cls.__dict__)(cls)
-    for method in (Value.__eq__, __hash__):
+    written = {name: name in cls.__dict__ for name in ("__init__", "__repr__")}
+    record_type = dataclasses.dataclass(frozen=True, eq=False, init=not written["__init__"], repr=False)(cls)
+    for method in (Value.__eq__, __hash__, *(() if written["__repr__"] else (Value.__repr__,))):
         setattr(record_type, method.__name__, method)
     _records.append(record_type)
     if _register is not None:
@@ -102,6 +111,37 @@ def altered(value: Any, **changes: Any) -> Any:
     if hasattr(value, "altered"):
         return value.altered(**changes)
     return type(value)(**{**(arguments_of(value) or {}), **changes})
+
+
+def shown(value: Any) -> str:
+    """An object on one line, by the arguments that are not as they are by default."""
+    told = arguments_of(value)
+    if told is None:
+        return f"{type(value).__name__}(…)"
+    usual = {name: each.default for name, each in inspect.signature(type(value)).parameters.items()}
+    for each in dataclasses.fields(value):
+        if each.default_factory is not dataclasses.MISSING:
+            usual[each.name] = each.default_factory()
+    parts = [f"{name}={_short(each)}" for name, each in told.items() if not _same(each, usual.get(name, usual))]
+    return f"{type(value).__name__}({', '.join(parts)})"
+
+
+def _short(value: Any) -> str:
+    """A value in some words: many numbers by their count, an object that takes more by its name."""
+    if is_traced(value):
+        return "traced"
+    if hasattr(value, "dtype"):
+        return _short(value.tolist()) if np.size(value) <= _FEW else f"<{' x '.join(map(str, value.shape))} numbers>"
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, (list, tuple)):
+        text = f"({', '.join(map(_short, value))}{',' if len(value) == 1 else ''})"
+        return text if len(text) <= _WIDEST else f"<{len(value)}>"
+    if isinstance(value, dict):
+        text = f"{{{', '.join(f'{key}: {_short(each)}' for key, each in value.items())}}}"
+        return text if len(text) <= _WIDEST else f"{{{', '.join(map(str, value))}}}"
+    text = repr(value)
+    return text if len(text) <= _WIDEST else f"{type(value).__name__}(…)"
 
 
 def each_leaf(function: Callable[[Any], Any], tree: Any) -> Any:
