@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
+from gbeam.report import text
 
 ROD = gb.RigidBody(1.0, (0.0, 1 / 12, 1 / 12), centre=(0.5, 0, 0), points={"end": (1, 0, 0)})
 DOWN = (0.0, 0.0, -9.81)
@@ -225,3 +226,14 @@ def test_frequencies_without_an_error_say_why() -> None:
     errors = gb.modes(gb.System(bodies, joints, gravity=(0, 0, -9.81))).errors
     assert errors is not None
     assert errors.total[0] < 0.1 or "no place was found" in errors.note
+
+
+def test_what_does_not_move_is_zero() -> None:
+    """A flight along a strip on a sprung hinge bends nothing: what its steps leave is rounding, and not said."""
+    beam = gb.Beam(0.25, gb.Section.rectangle(0.02, 0.003), gb.Material(2700.0, 70e9), damping_ratio=0.01)
+    hinge = gb.Joint("universal", "strip", axes=[(0, 1, 0), (0, 0, 1)], stiffness={"angle_1": 40.0, "angle_2": 60.0})
+    system = gb.System({"strip": gb.assemble(beam, "FOAM", axial=0, y=2, z=2)}, {"hinge": hinge})
+    flight = gb.Flight(x=gb.trapezoid(49.0, jerk=49.0, start=0.2, hold=0.5))
+    response = gb.simulate(system, flight, duration=1.0, step=2e-3, estimate=False)
+    assert response.largest.max() == 0
+    assert "at the end hinge.angle_1 0 rad, hinge.angle_2 0 rad" in text(response)

@@ -266,9 +266,11 @@ def _options(options: Sequence[Facts], measure: str) -> Block:
 
 
 def _of_peak(share: float | None) -> str:
-    """A share of flight's peak; below 1e-8 it is rounding."""
+    """A share of flight's peak; below 1e-8 it is rounding, and above 1e8 flight's peak is."""
     if share is None:
         return "–"
+    if share > 1e8:
+        return "none in flight"
     return f"{100 * share:.3g} %" if share > 1e-8 else "0 %"
 
 

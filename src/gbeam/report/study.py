@@ -173,7 +173,8 @@ def of_system(response: SystemResponse) -> Iterator[str]:
     every = named_histories(response)
     size = max((float(np.abs(history).max()) for history, *_ in every.values()), default=0.0)
     at_end = [float(history[-1]) for history, *_ in every.values()]
-    ends = tidy(at_end, max(size, float(response.largest.max(initial=0.0))))
+    scale = float(np.abs(response.place).max(initial=0.0))
+    ends = tidy(at_end, max(size, float(response.largest.max(initial=0.0))), scale)
     joints = ", ".join(
         f"{name} {number(end)} {unit}" for (name, (_, unit, _)), end in zip(every.items(), ends, strict=True)
     )

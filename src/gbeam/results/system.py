@@ -20,6 +20,7 @@ from gbeam.results.result import Complex, Figured, Floats, Part
 from gbeam.results.solids import SolidStress, Surface, SurfaceModes
 
 _EULER, _TURNS, _SPINS = ("e0", "e1", "e2", "e3"), ("rx", "ry", "rz"), ("wx", "wy", "wz")  # of balls
+_ROUNDING = 1e-16  # of the places: a displacement that is less is none
 ENERGIES = ("kinetic", "elastic", "gravity")
 _OF_POINTS = {each: each for each in ("place", "velocity", "attitude", "acceleration")} | {"spin": "angular_velocity"}
 
@@ -262,7 +263,8 @@ class SystemResponse(_Placed, Driven, Figured):
         "m", "displacement of the point from its place at the start, the largest", "point", key="displacement_max"
     )
     def largest(self) -> Floats:
-        return np.linalg.norm(self.place - self.place[0], axis=-1).max(axis=0)
+        moved = np.linalg.norm(self.place - self.place[0], axis=-1).max(axis=0)
+        return np.where(moved <= _ROUNDING * np.abs(self.place).max(initial=0.0), 0.0, moved)
 
     @declared("m/s^2", "acceleration, the largest", "point", key="acceleration_max")
     def largest_acceleration(self) -> Floats:
