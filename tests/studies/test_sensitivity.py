@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
+from gbeam.report import text
 from gbeam.scenario.load import loads
 from gbeam.studies.derivatives import Neighbourhood
 from gbeam.studies.evaluate import Inquiry
@@ -39,6 +40,9 @@ def test_powers_of_a_static_deflection_and_of_a_frequency(fast: Path) -> None:
     slender = {"verb": "modes", "motion": "flight", "overrides": ["beam.rotary_inertia=false"]}
     modes = gb.sensitivity(fast, ["modes[0].frequency"], parameters[:4], **slender)
     assert list(relative(modes, "modes[0].frequency").values()) == pytest.approx([0.5, -0.5, -2, 1], abs=1e-9)
+    rows = {line.split()[0]: line.split() for line in text(modes).splitlines() if line.strip()}
+    slope = modes.derivatives[0, modes.parameters.index(E)]
+    assert f"{slope:.4g}"[:4] in " ".join(rows[E])  # beside those of lengths, 1e12 times as large, it is no rounding
     assert "youngs_modulus" not in repr(modes).split("by")[1].split(",")[0]  # the length matters most
 
 

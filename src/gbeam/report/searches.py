@@ -57,7 +57,7 @@ def _effects(measure: Facts) -> Block:
         "of": "path",
         "value": lambda each: f"{known(each['value']):.6g} {raised(each['unit'])}".rstrip(),
         "+1 % changes it by": change,
-        "derivative, SI": "derivative",
+        "derivative, SI": lambda each: number(known(each["derivative"])),  # of many units: each has its own size
         "±": lambda each: number(known(each["error"]), 1),
         "by": lambda each: f"{each['method']}{' kink' if each['kink'] else ''}",
     }
