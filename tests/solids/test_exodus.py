@@ -86,7 +86,8 @@ def parts(kind: str) -> dict[str, tuple[Any, str]]:
         "connect1": (cells[: inner.sum()], TYPES[kind]), "connect2": (cells[inner.sum() :], TYPES[kind]),
         "eb_names": (named(["root", ""]), ""), "eb_prop1": (np.array([10, 20]), ""),
         "ns_names": (named(["held"]), ""), "ns_prop1": (np.array([1]), ""), "node_ns1": (wall + 1, ""),
-        "ss_prop1": (np.array([7]), ""), "elem_ss1": (element, ""), "side_ss1": (side, ""),
+        "ss_prop1": (np.array([7, 8]), ""), "elem_ss1": (element, ""), "side_ss1": (side, ""),
+        "elem_ss2": (side[:0], ""), "side_ss2": (side[:0], ""), "ss_names": (named(["", "none"]), ""),
         "node_num_map": (100 + np.arange(len(points)), ""), "elem_num_map": (500 + np.arange(len(cells)), ""),
     }  # fmt: skip
 
@@ -105,7 +106,7 @@ def test_blocks_are_materials_and_sets_clamps(tmp_path: Path, kind: str, classic
         read = gb.SolidMesh.read(path, materials=materials, clamp=clamp, unit="m")
         np.testing.assert_allclose(read.reduced(modes=3, damping_ratio=0).frequency, truth, rtol=1e-8)
         assert read.numbers.min() == 100 and min(each.numbers.min() for each in read.blocks) == 500
-    with pytest.raises(gb.InputError, match="choose from held, side set 7, root, block 20"):
+    with pytest.raises(gb.InputError, match="choose from held, side set 7, none, root, block 20"):
         gb.SolidMesh.read(path, materials=materials, clamp="wall", unit="m")
 
 

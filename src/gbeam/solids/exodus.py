@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.solids.shape_functions import DIMENSIONS, EXODUS_ORDER, KINDS, SHAPES, Indices
+from gbeam.solids.shape_functions import DIMENSIONS, EXODUS_ORDER, KINDS, SHAPES
 from gbeam.solids.stress import corners_of, on_face
 from gbeam.solids.texts import Cells, TextMesh
 
@@ -54,7 +54,7 @@ def read_exodus(path: Path) -> TextMesh:
     for k, (values, _) in _numbered(stored, "elem_ss"):
         element, side = np.asarray(values, dtype=int) - 1, np.asarray(stored[f"side_ss{k}"].values, dtype=int)
         block = np.searchsorted(ends, element, side="right") - 1
-        parts = list[Indices]()
+        parts = [np.empty(0, dtype=int)]
         for i, number in np.unique(np.stack([block, side]), axis=1).T:
             cells, some = mesh.cells[i], element[(block == i) & (side == number)] - ends[i]
             parts.append(cells.data[some][:, _on_side(cells.type, types[i], int(number))].ravel())
@@ -87,22 +87,22 @@ def _text(value: Any) -> str:
 
 def _numbered(stored: Mapping[str, _Variable], prefix: str) -> Iterator[tuple[int, _Variable]]:
     """Variables of a kind by their numbers."""
-    found = (re.fullmatch(rf"{prefix}(\d+)", name) for name in stored)
-    for k in sorted(int(each[1]) for each in found if each):
+    matches = (re.fullmatch(rf"{prefix}(\d+)", name) for name in stored)
+    for k in sorted(int(each[1]) for each in matches if each):
         yield k, stored[f"{prefix}{k}"]
 
 
 def _numbers(stored: Mapping[str, _Variable], noun: str, count: int) -> list[int]:
     """Numbers of nodes or elements, from 1 where the file says none, or one twice."""
-    given = stored[f"{noun}_num_map"].values.tolist() if f"{noun}_num_map" in stored else []
-    return given if len({*given}) == count else list(range(1, count + 1))
+    listed = stored[f"{noun}_num_map"].values.tolist() if f"{noun}_num_map" in stored else []
+    return listed if len({*listed}) == count else list(range(1, count + 1))
 
 
 def _name(stored: Mapping[str, _Variable], kind: str, k: int) -> str:
     """Name of a block or a set, the k-th from 1."""
-    given = _text(stored[f"{kind}_names"].values[k - 1]).partition("\0")[0] if f"{kind}_names" in stored else ""
+    stated = _text(stored[f"{kind}_names"].values[k - 1]).partition("\0")[0] if f"{kind}_names" in stored else ""
     number = int(stored[f"{kind}_prop1"].values[k - 1]) if f"{kind}_prop1" in stored else k
-    return given.strip() or f"{_NOUNS[kind]} {number}"
+    return stated.strip() or f"{_NOUNS[kind]} {number}"
 
 
 def _kind(of: str, count: int) -> str:
