@@ -71,9 +71,9 @@ RUNS = {
     "satellite": (space_beams.satellite_ours, space_beams.satellite_theirs),
 }
 PLANE = {
-    "slew, FOAM": (60, [Choice(0, 3, "clamped-free", "gauss", step) for step in (0.2, 0.25)]),
-    "free hub, FOAM": (12, [Choice(0, 3, "adapted", "gauss", step) for step in (0.125, 0.2)]),
-    "free hub, exact": (8, [Choice(0, 4, "clamped-free", "gauss", step) for step in (0.1, 0.2)]),
+    "slew, FOAM": (60, [Choice(0, 3, "clamped-free", "gauss", step) for step in (0.25, 0.3)]),
+    "free hub, FOAM": (12, [Choice(0, 3, "adapted", "gauss", step) for step in (0.2, 0.25)]),
+    "free hub, exact": (8, [Choice(0, 3, "adapted", "gauss", step) for step in (0.2, 0.25)]),
 }
 PARTS = {  # of a call, and functions
     "corrections": "_correct",
