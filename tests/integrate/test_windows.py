@@ -134,9 +134,10 @@ def test_no_step_passes_that_leaves_forces(
     for name, value in spacing.items():
         monkeypatch.setattr(windows, name, value)
     run = integrate(NonlinearEquations(Swing(), drive), newmark(), *START, step=step, count=60)
-    left = Swing()(run.q, run.qd, run.qdd, drive(run.time))
-    assert len(left) > 15
-    np.testing.assert_allclose(left, 0.0, atol=1e-8 * (np.abs(run.qdd).max() + run.qd.max() ** 2))
+    known = np.abs(run.q).max(axis=1) < 1e5  # of an angle that is larger rounding leaves no direction
+    left = Swing()(run.q, run.qd, run.qdd, drive(run.time))[known]
+    assert len(left) > 10
+    assert (np.abs(left) <= 1e-8 * (np.abs(run.qdd) + run.qd**2).max(axis=1, keepdims=True)[known]).all()
 
 
 def test_a_step_is_factored_again_only_where_its_derivatives_are_new(monkeypatch: pytest.MonkeyPatch) -> None:
