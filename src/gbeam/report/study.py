@@ -184,7 +184,7 @@ def of_system(response: SystemResponse) -> Iterator[str]:
         shares = zip(response.loop.drives, response.loop.saturated, strict=True)
         limited = (f"{drive} limited at {100 * share:.3g} % of the samples" for drive, share in shares)
         yield "; ".join(limited)
-    yield from (f"{body}: {largest_loads(each.peaks)}" for body, each in response.beams.items())
+    yield from (f"{body}: {largest_loads(each.peaks)}" for body, each in response.beams.items() if each.peaks)
     yield from (f"{body}: {line}" for body, each in response.solids.items() for line in each.lines)
     kept = response.invariants
     if kept is not None:

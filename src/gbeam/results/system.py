@@ -75,7 +75,9 @@ class BeamResponse(Part):
     """One beam of a system over time: what its sections carry, in axes of its root, and the largest of it."""
 
     loads: Loads = part("internal loads at the root and the stations", key=None, name=INSIDE)
-    peaks: LoadPeaks = part("largest values between all steps", key=INSIDE, name=INSIDE)
+    peaks: LoadPeaks | None = part(
+        "largest values between all steps", key=INSIDE, name=INSIDE, note="None where a run is traced"
+    )
     outline: Outline | None = part(
         "its shape at some of the times, axes of its root", key=None, name=INSIDE, default=None
     )

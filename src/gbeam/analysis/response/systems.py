@@ -289,7 +289,7 @@ def _traced(posed: PosedSystem, settings: ResponseSettings, name: str) -> System
     start = started_traced(posed.system, posed.motion, settings.start, settings.begin.state)
     _refuse_long(posed.system, settings, step)
     ran = posed.run(settings, *start, step, corners=posed.commands(settings))
-    return _described(ran, replace(settings, loads=False), 1, SystemErrors(), name, flight)
+    return _described(ran, settings, 1, SystemErrors(), name, flight)
 
 
 def _with_ends(motion: Motion | None, settings: ResponseSettings, step: float) -> ResponseSettings:
@@ -352,7 +352,7 @@ def _described(
 ) -> SystemResponse:
     """Describe a run at every `stride`-th of its steps; its residual is of the flight's times."""
     every, system, motion = run.trajectory, run.posed.system, run.posed.motion
-    time = every.time[::stride]
+    time, traced = every.time[::stride], is_jax(every.q)
     over_time, along = run.histories(slice(None, None, stride), loads=settings.loads)
     beams, yielded = dict[str, BeamResponse](), []
     for body, loads in along.items():
@@ -361,14 +361,15 @@ def _described(
         def between(steps: Any, body: str = body) -> Loads:
             return run.histories(steps, loads=True)[1][body]
 
-        peaks = load_peaks(loads, between, every.time, stride)
+        peaks = None if traced else load_peaks(loads, between, every.time, stride)
         first = system.coordinates.index(f"{body}.q1")
         q = over_time["q"][:, first : first + beam.size]
-        names = () if beam.source is None else names_at(beam.source.beam, beam.stations)
-        beams[body] = BeamResponse(loads, peaks, outline_of(beam, None, time, q), names)
-        yielded += yielding(beams[body].peaks, f" of {body}")
+        names = () if traced or beam.source is None else names_at(beam.source.beam, beam.stations)
+        beams[body] = BeamResponse(loads, peaks, None if traced else outline_of(beam, None, time, q), names)
+        yielded += yielding(peaks, f" of {body}")
     kind = "ground" if motion is None else motion.kind
-    solids, surfaces = meshes_of(system, time, over_time["q"], name, kind) if settings.loads else ({}, {})
+    drawn = settings.loads and not traced
+    solids, surfaces = meshes_of(system, time, over_time["q"], name, kind) if drawn else ({}, {})
     invariants = None
     if motion is None:
         invariants = Invariants(*(over_time.pop(key) for key in ("momentum", "angular_momentum", "energy")))
@@ -415,7 +416,7 @@ def _described(
         surfaces=surfaces,
         base=base,
         axes=axes_result(motion, time) if isinstance(motion, Centrifuge) else None,
-        assembly=assembly_of(system) if settings.loads else None,
+        assembly=assembly_of(system) if drawn else None,
         integrator=scheme_of(settings).name,
         step=run.step,
         steps=len(every.time) - 1,

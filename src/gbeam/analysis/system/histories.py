@@ -103,15 +103,16 @@ def carried(system: System, state: State, name: str, acting: list[list[Acting]])
 def loads_of(beam: Structure, pieces: list[Carried], time: Floats) -> Loads:
     """Loads along a beam at times (t,) s, whose pieces follow one another."""
     *moving, hung = zip(*pieces, strict=True)
-    q, qd, qdd, a, w, alpha = (np.concatenate(each) for each in moving)
+    xp = namespace(*moving[0])
+    q, qd, qdd, a, w, alpha = (xp.concatenate(each) for each in moving)
     station, force, moment = zip(*hung, strict=True)
-    every = Hung(station[0], np.concatenate(force), np.concatenate(moment))
+    every = Hung(station[0], xp.concatenate(force), xp.concatenate(moment))
     loads = section_forces(beam, Base(a, w, alpha), q, qd, qdd, time, hung=every)
     # A joint that is free carries nothing but rounding.
-    force, moment = (np.abs(each).max(axis=(0, 2)) for each in (loads.force, loads.moment))
+    force, moment = (xp.abs(each).max(axis=(0, 2)) for each in (loads.force, loads.moment))
     idle = {"force": force * beam.length <= ROUNDING * moment, "moment": moment <= ROUNDING * force * beam.length}
     kept: dict[str, Any] = {
-        key: np.where(none[:, None], 0.0, getattr(loads, key))
+        key: xp.where(none[:, None], 0.0, getattr(loads, key))
         for name, none in idle.items()
         for key in (name, f"section_{name}")
     }
