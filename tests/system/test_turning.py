@@ -124,7 +124,7 @@ def test_it_is_refused_where_what_turns_cannot_rest_either() -> None:
     flap = gb.Joint("revolute", "flap", on="rod.root", axes=[(0, 1, 0)], stiffness=50.0)
     bodies = {**system.bodies, "flap": gb.RigidBody(0.1, (0.0, 1e-4, 1e-4), centre=(0.05, 0, 0))}
     spun = gb.System(bodies, {**joints, "pin": replace(joints["pin"], rate=5.0), "flap": flap})
-    with pytest.raises(gb.ComputationError, match=r"rail\.displacement is accelerated") as caught:
+    with pytest.raises(gb.ComputationError, match=r"rail\.displacement is accelerated by what turns") as caught:
         gb.static(spun)
     assert caught.value.outcome == "no equilibrium"
 
@@ -147,17 +147,16 @@ def test_a_blade_that_flaps_is_asked_for() -> None:
     assert 2 * np.pi * later.frequency[-1].min() == pytest.approx(10 * np.sqrt(1.3), rel=1e-6)
 
 
-def test_what_falls_does_not_rest() -> None:
+def test_what_falls_is_said_to_be_accelerated() -> None:
     """A free body with a stiff strip: gravity was less than the strip's rounding, and the strip stood upright."""
     bodies = {"hull": gb.RigidBody(1.2, (0.01, 0.01, 0.02)), "arm": gb.assemble(STRIP, "FOAM", axial=1, y=1, z=1)}
     joints = {"air": gb.Joint("free", "hull"), "weld": gb.Joint("fixed", "arm", on="hull.root")}
+    falls = gb.System(bodies, joints, gravity=(0, 0, -9.81))
     for ask in (gb.static, gb.modes):
-        with pytest.raises(gb.ComputationError, match=r"air\.z is accelerated, which nothing holds") as caught:
-            ask(gb.System(bodies, joints, gravity=(0, 0, -9.81)))
-        assert caught.value.outcome == "no equilibrium"
+        assert [str(each) for each in ask(falls).accelerated] == ["air.z by -9.81 m/s²"]
     assert gb.static(gb.System(bodies, joints)).displacement.max() == 0
     # Its run is one of positive masses, which those of Euler parameters are not.
-    fallen = gb.simulate(gb.System(bodies, joints, gravity=(0, 0, -9.81)), duration=0.1)
+    fallen = gb.simulate(falls, duration=0.1)
     assert fallen.outcome == "done" and not any("positive mass" in each for each in fallen.warnings)
     assert fallen.at("hull.root")[-1, 2] == pytest.approx(-0.04905, rel=1e-6)
 

@@ -43,6 +43,7 @@ ZERO = 1e-11  # of the largest eigenvalue: a smaller one is rounding about zero
 RIGID = 1e-7  # likewise of systems, in which motions that nothing holds are the roots of rounding
 # Of a mode's frequency: a base that speeds up, once frozen, feeds or drains a mode by 1e-7, and means nothing by it.
 FLUTTER = 1e-6
+NONE = 1e-13  # of the largest stiffness: a smaller one is none
 EQUAL = 1e-9  # of an eigenvalue: two that differ by less are one
 UNSYMMETRIC = 1e-9  # of K: above it the loads follow the beam
 
@@ -57,6 +58,39 @@ def eigenvalues(
 ) -> tuple[Complex, Complex]:
     """Eigenvalues λ and modes of M ÿ + C ẏ + K y = 0, matrices (n, n)."""
     damping = velocity if gyroscopic else (velocity + velocity.T) / 2
+    free, held = _apart(mass, damping, stiffness)
+    value, mode = _moving(*(held.T @ each @ held for each in (mass, damping, stiffness)))
+    mode = held @ mode
+    if free.shape[1]:
+        # What is free follows: λ² a + Nᵀ K N a = −Nᵀ (λ C + K) y, by thrust that turns with the body in Nᵀ K N.
+        pull = free.T @ (value * (damping @ mode) + stiffness @ mode)
+        inertia = value[:, None, None] ** 2 * np.eye(free.shape[1]) + free.T @ stiffness @ free
+        inertia[value == 0] = np.eye(free.shape[1])  # of a motion that stays, which no force answers
+        mode = mode - free @ np.linalg.solve(inertia, pull.T[..., None])[..., 0].T
+    weight = np.sqrt(np.einsum("ik,ij,jk->k", mode.conj(), mass, mode).real)
+    return value, mode / weight
+
+
+def _apart(mass: Floats, damping: Floats, stiffness: Floats) -> tuple[Floats, Floats]:
+    """Motions of a free body (n, d), on which and on whose rates no force depends but those on motions among them, and
+    others, orthogonal to them in M, whose rows are a problem of their own; all in columns. They are found one after the
+    other: a body that turns with its thrust is accelerated by it, and by nothing else.
+    """
+    held: Any = np.linalg.inv(np.linalg.cholesky(symmetric(mass))).T
+    free = held[:, :0]
+    while held.shape[1]:
+        k, c = (held.T @ each @ held for each in (stiffness, damping))
+        size = np.abs(k).max()
+        _, sizes, ways = np.linalg.svd(np.concatenate([k / (size or 1.0), c / np.sqrt(size or 1.0)]))
+        loose = sizes <= NONE
+        if not loose.any():
+            break
+        free, held = np.concatenate([free, held @ ways[loose].T], axis=1), held @ ways[~loose].T
+    return free, held if free.shape[1] else np.eye(len(mass))
+
+
+def _moving(mass: Floats, damping: Floats, stiffness: Floats) -> tuple[Complex, Complex]:
+    """Eigenvalues and modes of motions of which none is free."""
     # In modes of the symmetric part, each scaled by its own frequency, all blocks are of the size of the frequencies:
     # the raw companion matrix loses half the digits of the low ones.
     square, basis = symmetric_modes(symmetric(stiffness), symmetric(mass))
@@ -64,14 +98,12 @@ def eigenvalues(
     scale = np.maximum(np.sqrt(np.abs(square)), 1e-6 * reference or 1.0)
     k, c = basis.T @ stiffness @ basis, basis.T @ damping @ basis
     n = len(square)
-    moving = np.abs(k).max(axis=0, initial=0.0) > 1e-13 * reference**2
+    moving = np.abs(k).max(axis=0, initial=0.0) > NONE * reference**2
     a = np.block([[np.zeros((n, n)), np.diag(scale)], [-k / scale, -c]])
     keep = np.concatenate([moving, np.ones(n, dtype=bool)])
     value, vector = np.linalg.eig(a[np.ix_(keep, keep)])
     # The velocities hold a mode also where its coordinate was dropped.
-    mode = basis @ vector[-n:]
-    weight = np.sqrt(np.einsum("ik,ij,jk->k", mode.conj(), mass, mode).real)
-    return value, mode / weight
+    return value, basis @ vector[len(vector) - n :]
 
 
 class Linear(NamedTuple):
@@ -167,7 +199,7 @@ def stability_margin(mass: Floats, velocity: Floats, stiffness: Floats, zero: fl
         square = symmetric_modes(symmetric(stiffness), symmetric(mass))[0]
         return float(square[0] + zero * np.abs(square).max())
     value, _ = eigenvalues(mass, velocity, stiffness)
-    return float((growth_limit(value, np.abs(value).max()) - value.real).min())
+    return float((growth_limit(value, np.abs(value).max()) - value.real).min()) if value.size else 0.0
 
 
 class Steady:
@@ -220,7 +252,7 @@ def matched(alike: Floats) -> tuple[NDArray[np.intp], Floats]:
 def growth_rate(mass: Floats, velocity: Floats, stiffness: Floats) -> float:
     """Real part of the eigenvalue that grows fastest, 1/s; zero where none grows."""
     value, _ = eigenvalues(mass, velocity, stiffness)
-    return float(value.real.max(where=value.real > growth_limit(value, np.abs(value).max()), initial=0.0))
+    return float(value.real.max(where=value.real > growth_limit(value, np.abs(value).max(initial=0.0)), initial=0.0))
 
 
 def mac(first: Complex, second: Complex, mass: Floats) -> Floats:

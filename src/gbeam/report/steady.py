@@ -89,6 +89,13 @@ def modes_table(facts: Facts, more: Mapping[str, Column]) -> Block:
     return Section("Modes", (table(numbered(facts["modes"]), cells, optional=tuple(ERROR)), *noted(facts)))
 
 
+def evenly(facts: Facts) -> Blocks:
+    """Say what a steady state accelerates."""
+    each = ", ".join(f"{one['coordinate']} by {one['acceleration']:.4g} m/s²" for one in facts.get("accelerated", ()))
+    if each:
+        yield Sentence(f"accelerated evenly, in axes of the ground: {each}; all else rests")
+
+
 def growing(facts: Facts, which: Callable[[Facts], str]) -> Block:
     return Items(
         tuple(
@@ -190,6 +197,7 @@ SLOWEST = 4  # poles of a loop that are named
 def state_space(facts: Facts) -> Blocks:
     """Signals with their units, the accuracy of the poles, margins of a loop, and what a smaller model leaves out."""
     yield where(facts, f"{len(facts['states'])} states")
+    yield from evenly(facts)
     signals = ("states", "inputs", "outputs")
     # Angles are of the scale of a radian, beams' coordinates, which have no unit, of that of lengths.
     sizes = {"rad": 1.0}

@@ -18,7 +18,7 @@ from gbeam.report.blocks import (
     table,
 )
 from gbeam.report.loads import READ, at_points, loads_table, resting_loads, stress_table
-from gbeam.report.steady import ERROR, growing, modes_table
+from gbeam.report.steady import ERROR, evenly, growing, modes_table
 from gbeam.report.study import HINT, in_words_of, verdicts
 from gbeam.report.words import errors_in_words, known, tidy
 
@@ -33,6 +33,7 @@ def system_modes(facts: Facts) -> Blocks:
         return ", ".join(f"{body} {part:.0%}" for body, part in ranked if part > 0.005)
 
     yield Sentence(f"{facts['name']} at {facts['time']:.4g} s".lstrip())
+    yield from evenly(facts)
     yield growing(facts, lambda each: "")
     yield Section("View", (Place("viewer"),))
     yield modes_table(facts, ERROR | {"kinetic energy": shares})
@@ -53,6 +54,7 @@ def system_rest(facts: Facts) -> Blocks:
 
 
 def _rest(rest: Facts) -> Blocks:
+    yield from evenly(rest)
     cells = {"point": "name", **{f"{axis}, mm": f"displacement.{axis}:.6g" for axis in "xyz"}}
     places = (abs(each) for point in rest["points"].values() for each in point["place"].values())
     yield table(named(rest["points"]), cells, scale=max(places, default=0.0))
@@ -63,7 +65,7 @@ def _rest(rest: Facts) -> Blocks:
     yield resting_loads(rest.get("beams", {}), "beam")
     yield from stress_table(rest.get("solids", {}), "body")
     yield from errors_of_system(rest["errors"])
-    yield _others(rest, "points", "time", "ground_force", "ground_moment", "beams", "solids", "errors")
+    yield _others(rest, "points", "time", "ground_force", "ground_moment", "beams", "solids", "errors", "accelerated")
 
 
 def _others(facts: Facts, *told: str) -> Block:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.results.declared import declared, fact, labels, part, quantity
+from gbeam.results.declared import declared, fact, labels, part, quantity, rows
 from gbeam.results.result import Complex, Floats, Part
 
 PARTS = ("shapes", "model", "beam_theory", "mesh", "total")
@@ -118,7 +118,8 @@ class SystemErrors(Part):
     note: str = fact(UNKNOWN, default="")
 
     def __repr__(self) -> str:
-        alone = (f"{name} {100 * each:.2g} %" for name, each in zip(self.beams, self.by_beam, strict=True))
+        pairs_of = zip(self.beams, self.by_beam, strict=True)
+        alone = (f"{name} {100 * each:.2g} %" for name, each in pairs_of if not math.isnan(each))
         named = ("displacement", "loads", "stress") if self.beams else ("displacement",)
         lines = [f"{each}: {getattr(self, each)}" for each in named]
         lines.insert(1, ", ".join(alone))
@@ -210,6 +211,28 @@ class Instability(Part):
 
     def __str__(self) -> str:
         return f"{self.kind} {along(self.direction)}, growing with {self.growth_rate:.4g} 1/s"
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Accelerated(Part):
+    """A coordinate that a steady state accelerates evenly: the strains are constant in axes that move with it."""
+
+    coordinate: str = labels("name of the coordinate", key="")
+    acceleration: float = quantity("m/s^2", "acceleration, of a free joint in axes of the ground")
+
+    def __str__(self) -> str:
+        return f"{self.coordinate} by {self.acceleration:.4g} m/s²"
+
+
+def accelerated() -> Any:
+    """Declare the field of a result about a steady state that says what is accelerated."""
+    words = "coordinates that are accelerated evenly, where all else rests"
+    return rows(words, "accelerated", name="accelerated_", optional=True, default=())
+
+
+def evenly(every: tuple[Accelerated, ...]) -> list[str]:
+    """Line on what is accelerated; none where all rests."""
+    return [f"accelerated evenly: {', '.join(map(str, every))}"] if every else []
 
 
 class Oscillating(Noted):

@@ -15,7 +15,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import vector
 from gbeam.results.declared import INSIDE, declared, fact, labels, part, quantity, rows
-from gbeam.results.errors import FrequencyErrors, Noted
+from gbeam.results.errors import Accelerated, FrequencyErrors, Noted, accelerated, evenly
 from gbeam.results.result import Complex, Floats, Part, Result
 
 ACCURATE = 0.01  # error of a frequency that is within what a design takes for accurate
@@ -166,6 +166,7 @@ class StateSpace(Noted, Result):
     margins: tuple[Margin, ...] = rows(
         "margins of the loop at every drive of a controller", "drive", name="margin_", optional=True, default=()
     )
+    accelerated: tuple[Accelerated, ...] = accelerated()
     truncation: Truncation | None = part("what a smaller model leaves out", name="truncation_", default=None)
 
     @declared("", "names of the states", "state_of", role="labels", key=None)
@@ -292,7 +293,7 @@ class StateSpace(Noted, Result):
 
     def __repr__(self) -> str:
         of = f" of {self.model}" if self.model else ""
-        counts = [
+        counts = evenly(self.accelerated) + [
             f"{len(signals)} {what} ({', '.join(each.name for each in signals[:4])}{', …' if len(signals) > 4 else ''})"
             for what, signals in (("states", self.states), ("inputs", self.inputs), ("outputs", self.outputs))
         ]

@@ -11,7 +11,15 @@ import numpy as np
 
 from gbeam.guards.checks import index_of
 from gbeam.results.declared import INSIDE, declared, fact, labels, part, quantity, rows
-from gbeam.results.errors import FrequencyErrors, Instability, Oscillating, SystemErrors
+from gbeam.results.errors import (
+    Accelerated,
+    FrequencyErrors,
+    Instability,
+    Oscillating,
+    SystemErrors,
+    accelerated,
+    evenly,
+)
 from gbeam.results.facts import at_place
 from gbeam.results.machine import AxesResult, Driven
 from gbeam.results.parts import Base, LoadPeaks, Loads, Outline
@@ -392,6 +400,7 @@ class SystemRest(_Placed, Figured):
     def carried(self) -> Mapping[str, Loads]:
         return {name: replace(at_place(each, 0), stations=each.stations) for name, each in self.loads.items()}
 
+    accelerated: tuple[Accelerated, ...] = accelerated()
     errors: SystemErrors = part(
         "of places, root loads and stress, as fractions of the largest", name=None, default_factory=SystemErrors
     )
@@ -408,6 +417,7 @@ class SystemRest(_Placed, Figured):
         most = int(size.argmax())
         force = ", ".join(f"{each:.4g}" for each in self.ground_force)
         lines = [f"SystemRest: {self.points[most]} moves by {size[most]:.4g} m", f"force on the ground ({force}) N"]
+        lines += evenly(self.accelerated)
         total = self.errors.displacement.total
         lines += [f"estimated error {100 * total:.2g} %"] if self.errors.beams and math.isfinite(total) else []
         return self._with_warnings(*lines)
@@ -415,7 +425,7 @@ class SystemRest(_Placed, Figured):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class SystemModes(Oscillating, Figured):
-    """Small vibrations of a system about a place in which it rests, ascending in frequency.
+    """Small vibrations of a system about a steady state: a place in which it rests, or is accelerated evenly.
 
     Examples
     --------
@@ -444,6 +454,7 @@ class SystemModes(Oscillating, Figured):
     share: Floats = quantity("", "share of the body in the kinetic energy", "mode body")
     place: Floats = quantity("m", "place of the point at rest", "point axis", key=None, frame="ground")
     rigid: int = fact("number of motions of zero frequency, left out")
+    accelerated: tuple[Accelerated, ...] = accelerated()
     errors: FrequencyErrors | None = part(
         "errors of the frequencies",
         "mode",
@@ -490,6 +501,7 @@ class SystemModes(Oscillating, Figured):
                 "one motion of zero frequency is" if self.rigid == 1 else f"{self.rigid} motions of zero frequency are"
             )
             lines.append(f"{count} left out")
+        lines += evenly(self.accelerated)
         lines += map(str, self.instabilities)
         return self._with_warnings(*lines)
 

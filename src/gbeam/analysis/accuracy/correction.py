@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from gbeam.integrate.driver import integrate
 from gbeam.integrate.equations import LinearEquations, Trajectory, slopes
 from gbeam.integrate.schemes import gauss
+from gbeam.numerics.balance import balanced, loose
 from gbeam.numerics.eigen import UNSYMMETRIC, symmetric, symmetric_modes
 from gbeam.results.result import Floats
 
@@ -135,8 +136,8 @@ class Departures:
     def answer(self, residual: Floats, start: State | None = None) -> Correction:
         """The response to −R, (t, n), from a state, or from where bodies rest; at one time at rest."""
         if len(self.time) == 1:
-            still = np.zeros_like(residual)
-            return Correction(np.linalg.lstsq(self.k[0], -residual[0], rcond=1e-12)[0][None], still, still)
+            displaced, faster = balanced(residual[0], self.k[0], self.m[0], loose(self.k[0], self.c[0]))
+            return Correction(displaced[None], np.zeros_like(residual), faster[None])
         square, modes, kept = self.vibration
         phi, stiff = modes[:, kept], modes[:, ~kept]
         k, c, m = (phi.T @ each @ phi for each in (self.k, self.c, self.m))

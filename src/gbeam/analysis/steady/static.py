@@ -128,7 +128,8 @@ def static(
     Parameters
     ----------
     structure : Structure or System
-        From :func:`gbeam.assemble`; shape and loads are given at its stations. A system rests in its joints too.
+        From :func:`gbeam.assemble`; shape and loads are given at its stations. A system rests in its joints too, but
+        for what slides freely, as a free body that falls or is pushed: it is accelerated evenly, `accelerated`.
     motion : Flight, Centrifuge or Hub, optional
         Without one the base is at rest, or accelerates as given.
     time : float

@@ -93,11 +93,12 @@ def system_errors(
                 )
                 shapes, model = (few, truth), (computed, few)
             else:
-                some = [bases, *({name: bases[name]} for name in bases if len(bases) > 1)]
-                truth, *alone = (
-                    _run(richer(system, each, exact=True).system, again, len(of.time), judged) for each in some
-                )
-                same = truth
+                same = truth = _run(richer(system, bases, exact=True).system, again, len(of.time), judged)
+                alone = [
+                    _alone(richer(system, {name: each}, exact=True).system, again, len(of.time), truth)
+                    for name, each in bases.items()
+                    if len(bases) > 1
+                ]
                 if not exact:
                     try:
                         same = _run(richer(system, bases, exact=False).system, again, len(of.time), judged)
@@ -147,7 +148,7 @@ def doubts(errors: SystemErrors, tolerance: float) -> tuple[str, ...]:
         if each.step == np.nanmax(parts):
             said.append(f"{what} wrong by an estimated {share} of {size}: {STEPS}")
             continue
-        which = int(np.nanargmax(by_beam))
+        which = int(np.nan_to_num(by_beam).argmax())
         cause, cure = cause_and_cure(each, errors.theory[which])
         if each.shapes == np.nanmax(parts):
             cure = "raise its model.modes, of a mesh its modes"  # which are given in a system
@@ -161,6 +162,16 @@ def _run(system: System, again: Again, count: int, bodies: Iterable[str]) -> Rea
     if len(ran.time) < count:
         raise ComputationError("not converged", "the richer system has no response")
     return read(system, ran, inputs, bodies)
+
+
+def _alone(system: System, again: Again, count: int, truth: Reading) -> Reading:
+    """Readings of a system in which one body is richer, of those in the true one; NaN where it comes to no answer, as
+    a craft that the others keep in balance.
+    """
+    try:
+        return _run(system, again, count, [name for name, _ in truth if name])
+    except ComputationError:
+        return {key: np.nan * each for key, each in truth.items()}
 
 
 def _by_mesh(

@@ -227,6 +227,7 @@ def closed_loop(
         model=plant.model,
         motion=plant.motion,
         time=plant.time,
+        accelerated=plant.accelerated,
         step=step,
         margins=tuple(margins),
         warnings=plant.warnings + unstable,

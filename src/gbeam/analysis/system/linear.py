@@ -16,7 +16,7 @@ from gbeam.analysis.accuracy.estimate import LIMIT
 from gbeam.analysis.outline import assembly_of, outline_of
 from gbeam.analysis.system.accuracy import doubts, system_errors
 from gbeam.analysis.system.gauges import Strained, read_signals
-from gbeam.analysis.system.histories import beams_of, histories, loads_of, meshes_of
+from gbeam.analysis.system.histories import ROUNDING, beams_of, histories, loads_of, meshes_of
 from gbeam.analysis.system.point import Point, started
 from gbeam.analysis.system.steady import Drive, SteadySystem, open_loops, steady
 from gbeam.errors import ComputationError, InputError
@@ -62,6 +62,12 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
     def again(of: System) -> tuple[Trajectory, Any]:
         return state.richer(of).point.standing(time), inputs
 
+    # What nothing holds leaves on the ground the rounding of its inertia.
+    moving = point.tree.motion(point.y, point.yd, point.ydd, point.inputs)
+    parts = zip(point.tree.links, moving.q, moving.roots, strict=True)
+    pushed = sum(float(link.body.mass_moment(q[-1])[0] * np.linalg.norm(root.a)) for link, q, root in parts)
+    for key, size in ("ground_force", pushed), ("ground_moment", pushed * np.abs(at["place"]).max(initial=0.0)):
+        at[key] = np.where(np.abs(at[key]) > ROUNDING * size, at[key], 0.0)
     start = begun["place"][0]
     solids, surfaces = meshes_of(system, np.array([time]), resting["q"], name, "rest")
     errors = system_errors(system, point.standing(time), inputs, again, {}, settled=True, start=start)
@@ -72,6 +78,7 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
         coordinates=system.coordinates,
         displacement=at["place"] - start,
         errors=errors,
+        accelerated=state.accelerated,
         stable=not unstable,
         warnings=unstable + doubts(errors, LIMIT) + state.warnings + open_loops(system),
         assembly=assembly_of(system),
@@ -116,6 +123,7 @@ def system_modes(state: SteadySystem, moving: Vibrations, time: float, name: str
             for body, each in system.bodies.items()
             if isinstance(each, Structure) and each.recovery is not None and len(moving.value)
         },
+        accelerated=state.accelerated,
         rigid=len(local.y) - len(moving.value) - (len(moving.diverging) + len(moving.decaying)) // 2,
         instabilities=instabilities(state, moving),
         warnings=warnings,
@@ -225,6 +233,7 @@ def linearize_system(
         model="system",
         motion=name,
         time=state.drive.time,
+        accelerated=state.accelerated,
         warnings=state.warnings + state.point.sticking(system),
     )
 

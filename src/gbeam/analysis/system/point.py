@@ -15,8 +15,10 @@ from gbeam.errors import ComputationError, InputError
 from gbeam.integrate.equations import Trajectory, slopes
 from gbeam.mechanics.tree.equations import SLIP, Inputs, Tree
 from gbeam.mechanics.tree.joints import SLIDES
+from gbeam.mechanics.tree.signals import local_names
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
+from gbeam.numerics.balance import HELD, balanced, carried, loose, pulled
 
 Array = Any
 Floats = NDArray[np.float64]
@@ -24,7 +26,7 @@ ITERATIONS = 50
 MASSLESS = 1e-13  # of the largest: a smaller inertia is rounding
 FEW, NEAR = 8, 0.1  # corrections of several states at once, and how far these may lead: m, rad or strain
 SHORTEST = 1 / 64  # share of what is out of balance that is taken away at once
-HELD = 1e-12  # of the largest stiffness: a smaller one holds nothing
+NONE = 1e-6  # m/s² or rad/s²: a smaller acceleration is rounding
 CLOSE = 1e-12  # of the coordinates: where the next correction would be smaller, they have converged
 
 
@@ -150,20 +152,27 @@ def started_traced(system: System, motion: Motion | None, time: float, initial: 
     return y + elastic * root(left, jnp.zeros(len(free))), yd
 
 
-def _newton(tree: Tree, y: Floats, inputs: Inputs, left_over: Floats) -> tuple[Floats, Floats, Floats, Floats, bool]:
-    """Coordinates at rest where so much is out of balance, stiffness and mass, the last change, and if it is none."""
-    still, before = np.zeros(len(y)), 0.0
+def _newton(point: Point, left_over: Floats) -> tuple[Point, tuple[Floats, ...], Floats, bool]:
+    """The point at rest where so much is out of balance, with K, C and M, the last change, and if it is none."""
+    before, tree, sliding = 0.0, point.tree, point.tree.sliding
+    left, k, c, m = point.slopes() if sliding.any() else (left_over, *np.zeros((3, len(sliding), len(sliding))))
+    which = sliding & loose(k, c)
+    point = replace(point, ydd=point.ydd + pulled(left - left_over, m, which))
     for _ in range(ITERATIONS):
-        left, k, _, m = Point(tree, y, still, still, inputs).slopes()
-        change = np.asarray(np.linalg.lstsq(k, left_over - left, rcond=HELD)[0], dtype=np.float64)
+        left, k, c, m = point.slopes()
+        change, _ = balanced(left - left_over, k, m, which)
         size = float(np.abs(change).max(initial=0.0))
         # Steps of a radian at most: a beam far from its equilibrium turns by as much.
-        y = y + change / max(1.0, size)
+        point = replace(point, y=point.y + change / max(1.0, size))
+        # With other accelerations than those of the forces a body that turns with all that pushes it would change them.
+        left = tree(point.y, point.yd, point.ydd, point.inputs) if which.any() else left
+        point = replace(point, ydd=point.ydd + pulled(left - left_over, m, which))
         # The next correction is smaller by what this one is smaller than the last one, at least.
-        if min(size, 1.0) * min(size / before if before else 1.0, 1.0) <= CLOSE * (1.0 + np.abs(y).max(initial=0.0)):
-            return y, k, m, change, True
+        limit = CLOSE * (1.0 + np.abs(point.y).max(initial=0.0))
+        if min(size, 1.0) * min(size / before if before else 1.0, 1.0) <= limit:
+            return point, (k, c, m), change, True
         before = size
-    return y, k, m, change, False
+    return point, (k, c, m), change, False
 
 
 def rested_together(
@@ -172,20 +181,27 @@ def rested_together(
     """A system's tree at rest under several inputs near starts (t, n) of all coordinates, with K, C and M there; None
     where Newton's method does not find it near the start.
     """
-    inputs = together(each)
+    inputs, sliding = together(each), tree.sliding
     y, begun = starts[:, tree.free], starts[:, tree.free]
-    still, before = np.zeros_like(y), np.full(len(y), np.inf)
+    still, ydd, before = np.zeros_like(y), np.zeros_like(y), np.full(len(y), np.inf)
     converged, lost = np.zeros((2, len(y)), dtype=bool)
     with np.errstate(all="ignore"):  # of states that diverge
-        for _ in range(FEW):
-            left, (k, c, m) = tree(y, still, still, inputs), slopes(tree, y, still, still, inputs)
+        which = np.zeros(y.shape, dtype=bool)
+        for count in range(FEW):
+            if sliding.any():
+                if not count:
+                    k, c, m = slopes(tree, y, still, ydd, inputs)
+                    which = sliding & np.array([loose(*each) for each in zip(k, c, strict=True)])
+                left = tree(y, still, ydd, inputs)
+                ydd = ydd + [pulled(*each) for each in zip(left, m, which, strict=True)]
+            left, (k, c, m) = tree(y, still, ydd, inputs), slopes(tree, y, still, ydd, inputs)
             settled = converged  # where the derivatives are those of a state that has converged
             if (settled | lost).all():
                 break
             lost = lost | ~np.isfinite(np.concatenate([left[:, None], k], axis=1)).all(axis=(1, 2))
             change = np.zeros_like(y)
             for at in np.flatnonzero(~lost).tolist():
-                change[at] = np.linalg.lstsq(k[at], -left[at], rcond=HELD)[0]
+                change[at], _ = balanced(left[at], k[at], m[at], which[at])
             size = np.abs(change).max(axis=1, initial=0.0)
             shrunk = np.where(np.isfinite(before) & (before > 0), np.minimum(size / before, 1.0), 1.0)
             limit = CLOSE * (1.0 + np.abs(y).max(axis=1, initial=0.0))
@@ -194,49 +210,69 @@ def rested_together(
     near = settled & ~lost & (np.abs(y - begun).max(axis=1, initial=0.0) <= NEAR)
     points: list[tuple[Point, tuple[Floats, ...]] | None] = [None] * len(y)
     for at in np.flatnonzero(near).tolist():
+        slope = k[at], c[at], m[at]
         try:
-            refuse_accelerated(system, tree, left[at], k[at], m[at])
+            points[at] = _steady(system, Point(tree, y[at], still[at], ydd[at], each[at]), slope), slope
         except (InputError, ComputationError, np.linalg.LinAlgError):
             continue
-        points[at] = Point(tree, y[at], still[at], still[at], each[at]), (k[at], c[at], m[at])
     return points
 
 
 def rested(system: System, tree: Tree, inputs: Inputs, start: Floats | None = None) -> Point:
-    """A system's tree at rest in relative equilibrium, joints and bodies; of those that nothing holds, the nearest one
-    to a `start` of all coordinates, by default that of the joints, with bodies undeformed. Where Newton's method fails
-    from there, what is out of balance at the start is taken away in shares.
+    """A system's tree in relative equilibrium: joints and bodies rest, and what slides freely is accelerated evenly.
+
+    Of places that nothing holds it is the nearest one to a `start` of all coordinates, by default that of the joints,
+    with bodies undeformed. Where Newton's method fails from there, what is out of balance at the start is taken away
+    in shares.
     """
-    begun, still = (system.start[0] if start is None else start)[tree.free], np.zeros(len(tree.free))
-    y = begun
-    beginning, reached, stride = tree(y, still, still, inputs), 0.0, 1.0
+    still = np.zeros(len(tree.free))
+    begun = point = Point(tree, (system.start[0] if start is None else start)[tree.free], still, still, inputs)
+    beginning, reached, stride = tree(begun.y, still, still, inputs), 0.0, 1.0
     while reached < 1.0:
         share = min(reached + stride, 1.0)
-        moved, k, m, change, converged = _newton(tree, y, inputs, (1.0 - share) * beginning)
+        moved, slope, change, converged = _newton(point, (1.0 - share) * beginning)
         if converged:
-            y, reached, stride = moved, share, 2 * stride
+            point, reached, stride = moved, share, 2 * stride
         elif stride > SHORTEST:
             stride /= 4
         else:
-            left, k, _, m = Point(tree, begun, still, still, inputs).slopes()
-            refuse_accelerated(system, tree, left - k @ np.linalg.lstsq(k, left, rcond=HELD)[0], k, m)
+            _steady(system, begun, begun.slopes()[1:])
             name = _farthest(system, tree, change)
             problem = f"no place was found in which the system rests: {name} goes on and on; hold what is free"
             raise ComputationError("no equilibrium", problem)
-    refuse_accelerated(system, tree, tree(y, still, still, inputs), k, m)
-    return Point(tree, y, still, still, inputs)
+    return _steady(system, point, slope)
 
 
-def refuse_accelerated(system: System, tree: Tree, left: Floats, stiffness: Floats, mass: Floats) -> None:
-    """Refuse a state that forces (n,) left over accelerate, or in which some motion moves no mass."""
-    refuse_massless(system, mass, tree.free)
+def _steady(system: System, point: Point, slope: Sequence[Floats]) -> Point:
+    """A point without accelerations of rounding, by K, C and M there; one that forces left over accelerate otherwise,
+    or in which some motion moves no mass, is refused.
+    """
+    tree, (k, c, m) = point.tree, slope
+    refuse_massless(system, m, tree.free)
+    which = tree.sliding & loose(k, c)
+    left, k = carried(m, which, tree(point.y, point.yd, point.ydd, point.inputs), k)
     # By forces alone that no stiffness balances: the rounding of a stiff body's is more than gravity.
-    ways, sizes, _ = np.linalg.svd(stiffness)
+    ways, sizes, _ = np.linalg.svd(k)
     ways = ways[:, sizes <= HELD * sizes.max(initial=0.0)]
-    yields = np.linalg.solve(mass, ways) @ ways.T
-    rounding = np.abs(yields) @ np.abs(stiffness).sum(axis=1)
-    if np.abs(yields @ left).max(initial=0.0) > 1e-6 * max(1.0, 1e-6 * rounding.max(initial=0.0)):
-        # Of all that is accelerated with it the one on which the force left over acts.
-        name = _farthest(system, tree, left / np.sqrt(np.maximum(np.diag(mass), MASSLESS * np.diag(mass).max())))
-        problem = f"{name} is accelerated, which nothing holds: hold it, or take away what pushes it"
-        raise ComputationError("no equilibrium", problem)
+    yields = np.linalg.solve(m, ways) @ ways.T
+    rounding = np.abs(yields) @ np.abs(k).sum(axis=1)
+    if np.abs(yields @ left).max(initial=0.0) > NONE * max(1.0, 1e-6 * rounding.max(initial=0.0)):
+        raise ComputationError("no equilibrium", _unheld(system, point.local))
+    return replace(point, ydd=np.where(np.abs(point.ydd) > NONE, point.ydd, 0.0))
+
+
+def _unheld(system: System, local: Point) -> str:
+    """Say which coordinate is accelerated, and by which force or moment."""
+    left, k, c, m = local.slopes()
+    left, k = carried(m, local.tree.sliding & loose(k, c), left, k)
+    left = left - k @ np.linalg.lstsq(k, left, rcond=HELD)[0]
+    # Of all that is accelerated with it the one on which the force left over acts.
+    at = int(np.abs(left / np.sqrt(np.diag(m))).argmax())
+    name = local_names(system.coordinates)[local.tree.free[at]]
+    joint, _, kind = name.rpartition(".")
+    size = f"{abs(left[at]):.4g} {'N' if kind in SLIDES else 'N m'}"
+    if joint in system.joints and kind in ("rx", "ry", "rz") and system.joints[joint].kind == "free":
+        about = f"{kind[1]} of {system.joints[joint].body}.root"
+        fix = "push in line with the mass centre, balance the moment, or hold it"
+        return f"{joint} is turned ever faster by {size} about {about} through the mass centre: {fix}"
+    return f"{name} is accelerated by {size}, which nothing holds: hold it, or take away what pushes it"

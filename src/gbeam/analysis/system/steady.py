@@ -22,6 +22,7 @@ from gbeam.mechanics.tree.steps import turned_on
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.protocol import Motion
+from gbeam.numerics.balance import balanced, loose
 from gbeam.numerics.eigen import (
     RIGID,
     Linear,
@@ -31,6 +32,7 @@ from gbeam.numerics.eigen import (
     symmetric_modes,
 )
 from gbeam.numerics.series import STEP
+from gbeam.results.errors import Accelerated
 
 Array = Any
 Floats = NDArray[np.float64]
@@ -157,6 +159,14 @@ class SteadySystem(Steady):
         return [local[k] for k in self.local.tree.free]
 
     @property
+    def accelerated(self) -> tuple[Accelerated, ...]:
+        """Coordinates that are accelerated evenly; none where others are accelerated too."""
+        ydd = self.local.ydd
+        pairs = zip(self.names, ydd, strict=True)
+        steadily = not ydd[~self.local.tree.sliding].any()
+        return tuple(Accelerated(name, float(each)) for name, each in pairs if each and steadily)
+
+    @property
     def frames(self) -> list[Frame]:
         """Motions of all points."""
         return self.local.tree.motion(self.local.y, self.local.yd, self.local.ydd, self.local.inputs).every_point
@@ -223,9 +233,10 @@ class SteadySystem(Steady):
         rate = np.sqrt(np.abs(square))
         rate = np.maximum(rate, 1e-6 * rate.max(initial=0.0) or 1.0)
         left, *at = self._slopes_after(0.0)
+        which = self.local.tree.sliding & loose(*at[:2])
         for turn in TURNS:
             beside, *other = self._slopes_after(turn)
-            moved = np.linalg.lstsq(at[0], beside - left, rcond=1e-12)[0]
+            moved = np.append(*balanced(beside - left, at[0], at[2], which))
             # K, C and M in modes of unit mass, over their frequencies.
             parts = zip(at, other, (1.0, 0.5, 0.0), strict=True)
             changes = [modes.T @ (b - a) @ modes / np.outer(rate, rate) ** power for a, b, power in parts]
@@ -253,7 +264,12 @@ class SteadySystem(Steady):
 def steady(system: System, drive: Drive, *, held: bool = False, start: Floats | None = None) -> SteadySystem:
     """A system in equilibrium relative to what turns: freely, under the effort that this needs, unless it is held."""
     tree, inputs = _held(system, drive), drive.inputs(system)
-    return _released(SteadySystem(system, drive, rested(system, tree, inputs, start)), held=held)
+    state = SteadySystem(system, drive, rested(system, tree, inputs, start))
+    if state.accelerated and state.changing:
+        names = " and ".join(each.coordinate for each in state.accelerated)
+        problem = f"{names} is accelerated by what turns, and not evenly: hold it, or take away what pushes it"
+        raise ComputationError("no equilibrium", problem)
+    return _released(state, held=held)
 
 
 def _held(system: System, drive: Drive) -> Tree:

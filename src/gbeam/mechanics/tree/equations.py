@@ -13,7 +13,7 @@ from gbeam.arrays.namespace import concatenated, namespace
 from gbeam.arrays.tree import record, static
 from gbeam.mechanics.tree.bodies import Acting, Body
 from gbeam.mechanics.tree.frames import Frame, Wrench, cross, turned, turned_back
-from gbeam.mechanics.tree.steps import Step
+from gbeam.mechanics.tree.steps import Placed, Slide, Step
 
 Array = Any
 
@@ -196,6 +196,22 @@ class Tree:
     def free(self) -> Array:
         """Indices of the coordinates that are unknown."""
         return np.delete(np.arange(self.size), self.fixed)
+
+    @property
+    def sliding(self) -> Array:
+        """Flags of the unknown coordinates by which no equation changes unless a force depends on them: slides, one
+        after the other from the ground, that meet no stop.
+        """
+        flags, straight = list[bool](), {-1: True}
+        for body, link in enumerate(self.links):
+            even, first = straight[link.parent], 0
+            for step in link.steps:
+                stops = link.holder.stop[first : first + step.size]
+                flags += (stops == 0).tolist() if even and isinstance(step, Slide) else [False] * step.size
+                even, first = even and isinstance(step, Slide | Placed), first + step.size
+            flags += [False] * link.body.size
+            straight[body] = even and not link.body.size
+        return np.array(flags, dtype=bool)[self.free]
 
     def parted(self, y: Array) -> list[list[Array]]:
         """Coordinates of each link: of each step of its joint, then of its body."""

@@ -1,0 +1,179 @@
+"""Steady states of what nothing holds: bodies that fall, or that a thrust accelerates evenly, and modes about them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.polynomial import legendre
+from numpy.typing import NDArray
+
+import gbeam as gb
+from gbeam.analysis.system.steady import Drive, steady
+from gbeam.results.facts import json_of
+
+LENGTH, WIDTH, THICKNESS, DENSITY, MODULUS = 2.0, 0.02, 0.004, 2700.0, 70e9
+EA, EI = MODULUS * WIDTH * THICKNESS, MODULUS * WIDTH * THICKNESS**3 / 12
+LINEAR = DENSITY * WIDTH * THICKNESS  # kg/m
+UNIT = np.sqrt(EI / LINEAR) / LENGTH**2  # rad/s
+FLUTTER = 109.69  # T L²/EI at which the lowest two frequencies meet, by `frequencies`; 109.9 in Beal (1965)
+FREE = gb.Joint("free", "rod")
+
+
+def rod(kind: str, z: int) -> gb.Structure:
+    section = gb.Section.rectangle(width=WIDTH, thickness=THICKNESS)
+    beam = gb.Beam(LENGTH, section, gb.Material(DENSITY, MODULUS), damping_ratio=0.0)
+    return gb.assemble(beam, kind, axial=2, y=0, z=z)
+
+
+def rocket(kind: str, load: float) -> gb.System:
+    """A uniform rod that a thrust T at its end pushes along itself, with load = T L²/EI."""
+    thrust = gb.PointForce("rod.root", force=(load * EI / LENGTH**2, 0, 0), follower=True)
+    return gb.System({"rod": rod(kind, 8)}, {"air": FREE}, forces={"thrust": thrust})
+
+
+def frequencies(load: float, count: int = 14) -> NDArray[np.complex128]:
+    """ω L² √(μ/EI) of a free-free rod under a follower thrust, by Galerkin's method with Legendre polynomials.
+
+    ∫ μ ẅ v + EI w'' v'' − T (1 − x/L) w' v' dx = T w'(0) v(0), all over L.
+    """
+    at, weight = legendre.leggauss(40)
+    share = (1 - at) / 2
+    eye = np.eye(count)
+    value, slope, bend = (
+        2**k * np.array([legendre.legval(at, legendre.legder(each, k) if k else each) for each in eye])
+        for k in range(3)
+    )
+    end = np.array([legendre.legval(-1.0, each) for each in eye])
+    turn = 2 * np.array([legendre.legval(-1.0, legendre.legder(each)) for each in eye])
+    mass, stiffness, thrust = (each * weight / 2 @ each.T for each in (value, bend, slope * np.sqrt(share)))
+    square = np.linalg.eigvals(np.linalg.solve(mass, stiffness - load * (thrust + np.outer(end, turn))))
+    square = square[np.abs(square) > 1e-2]
+    return np.asarray(np.sqrt(square[np.argsort(square.real)].astype(complex)))
+
+
+@pytest.mark.parametrize("kind", ["FOAM", "exact"])
+def test_a_rod_under_thrust_is_pressed_as_it_is_accelerated(kind: str) -> None:
+    """It carries T (1 − x/L) and is shorter by T L/2EA."""
+    thrust = 2.5 * EI / LENGTH**2
+    rest = gb.static(rocket(kind, 2.5))
+    (faster,) = rest.accelerated
+    assert faster.coordinate == "air.x" and faster.acceleration == pytest.approx(thrust / LINEAR / LENGTH, rel=1e-9)
+    shorter = rest.at("rod.root")[0] - rest.at("rod.tip")[0] + LENGTH
+    assert shorter == pytest.approx(thrust * LENGTH / 2 / EA, rel=1e-2)
+    loads = rest.loads["rod"]
+    assert loads.section_force[0, :, 0] == pytest.approx(thrust * (loads.stations / LENGTH - 1), abs=1e-2 * thrust)
+    assert not rest.ground_force.any() and not rest.ground_moment.any() and rest.stable
+    assert json_of(rest)["accelerated"] == [{"coordinate": "air.x", "acceleration": faster.acceleration}]
+    assert f"accelerated evenly: {faster}" in str(rest)
+
+
+@pytest.mark.parametrize("kind", ["FOAM", "exact"])
+@pytest.mark.parametrize("load", [0.0, 2.5, 50.0, 100.0])
+def test_frequencies_of_a_rod_under_thrust(kind: str, load: float) -> None:
+    moving = gb.modes(rocket(kind, load), errors=False)
+    truth = frequencies(load)[:2]
+    assert moving.rigid == 6 and moving.stable and not truth.imag.any()
+    assert np.abs(moving.eigenvalue[:2]) / UNIT == pytest.approx(truth.real, rel=2e-3)
+    plant = gb.linearize(rocket(kind, load), outputs=["rod.tip.place_z"])
+    assert plant.frequency[:2] == pytest.approx(moving.frequency[:2], rel=1e-9)
+    assert plant.accelerated == () if load == 0 else plant.accelerated[0].coordinate == "air.x"
+
+
+def test_modes_of_a_rod_under_thrust_solve_its_equations() -> None:
+    """Its free motions too: (λ² M + λ C + K) φ = 0 of the whole system."""
+    state = steady(rocket("exact", 50.0), Drive())
+    mass, velocity, stiffness, _ = state.linear
+    for value, mode in zip(state.moving.value, state.moving.modes.T, strict=True):
+        left = value**2 * mass @ mode + value * velocity @ mode + stiffness @ mode
+        assert np.abs(left).max() < 1e-9 * np.abs(value**2 * mass @ mode).max()
+
+
+def test_a_rod_flutters_under_thrust() -> None:
+    """Where the truth's frequencies meet those of the model do: 109.69, that is 0.2 % below Beal's 109.9."""
+    assert not frequencies(FLUTTER - 0.02)[:2].imag.any() and frequencies(FLUTTER + 0.02)[:2].imag.any()
+    below, above = (gb.modes(rocket("exact", load), errors=False) for load in (0.999 * FLUTTER, 1.002 * FLUTTER))
+    assert below.stable and [each.kind for each in above.instabilities] == ["flutter"]
+    grown = frequencies(112.0)[:2]
+    (fluttering,) = gb.modes(rocket("exact", 112.0), errors=False).instabilities
+    assert fluttering.growth_rate / UNIT == pytest.approx(np.abs(grown.imag).max(), rel=0.02)
+
+
+@pytest.mark.parametrize("kind", ["FOAM", "exact"])
+def test_what_falls_is_not_deformed(kind: str) -> None:
+    bodies = {"hull": gb.RigidBody(1.2, (0.01, 0.01, 0.02)), "rod": rod(kind, 4)}
+    joints = {"air": gb.Joint("free", "hull", turn=(0.0, 0.4, 0.0)), "weld": gb.Joint("fixed", "rod", on="hull.root")}
+    falls, floats = (gb.System(bodies, joints, gravity=g) for g in ((0, 0, -9.81), None))
+    rest = gb.static(falls)
+    assert np.abs(rest.displacement).max() < 1e-12 and rest.stable
+    assert [str(each) for each in rest.accelerated] == ["air.z by -9.81 m/s²"]
+    assert np.abs(rest.loads["rod"].section_moment).max() < 1e-9
+    assert not gb.static(floats).accelerated
+    moving, beside = (gb.modes(each, errors=False) for each in (falls, floats))
+    assert moving.rigid == beside.rigid == 6
+    assert moving.frequency == pytest.approx(beside.frequency, rel=1e-9)
+    assert moving.accelerated == rest.accelerated or str(moving.accelerated[0]) == str(rest.accelerated[0])
+
+
+def craft(kind: str, *rotors: str, thrust: float) -> gb.System:
+    """A hub of 1 kg with two arms, at whose tips rotors push."""
+    arm, half = rod(kind, 3), (0, 0, np.pi)
+    return gb.System(
+        {"hub": gb.RigidBody(1.0, (0.01, 0.01, 0.02)), "right": arm, "left": arm},
+        {
+            "air": gb.Joint("free", "hub"),
+            "clamp": gb.Joint("fixed", "right", on="hub.root"),
+            "other": gb.Joint("fixed", "left", on="hub.root", turn=half),
+        },
+        gravity=(0, 0, -9.81),
+        forces={name: gb.PointForce(f"{name}.tip", force=(0, 0, thrust), follower=True) for name in rotors},
+    )
+
+
+@pytest.mark.parametrize("kind", ["FOAM", "exact"])
+def test_a_craft_on_two_rotors(kind: str) -> None:
+    """Its tips rise by F L³/3EI − μ (a + g) L⁴/8EI, it climbs by ½ a t², and is not deformed further."""
+    thrust, mass = 0.15, 1.0 + 2 * LINEAR * LENGTH
+    felt = 2 * thrust / mass
+    system = craft(kind, "right", "left", thrust=thrust)
+    rest = gb.static(system)
+    (climb,) = rest.accelerated
+    assert climb.coordinate == "air.z" and climb.acceleration == pytest.approx(felt - 9.81, rel=1e-4)
+    sag = thrust * LENGTH**3 / 3 / EI - LINEAR * felt * LENGTH**4 / 8 / EI
+    assert rest.at("right.tip")[2] == pytest.approx(sag, rel=2e-3) and rest.errors.displacement.total < 2e-3
+    response = gb.simulate(system, duration=0.2, step=2e-3)
+    elastic = [k for k, name in enumerate(response.coordinates) if ".q" in name]
+    assert np.abs(response.q[:, elastic] - rest.q[elastic]).max() < 1e-9 * np.abs(rest.q[elastic]).max()
+    assert response.at("hub.root")[-1, 2] == pytest.approx(climb.acceleration * 0.02, rel=1e-6)
+
+
+def test_a_moment_leaves_no_steady_state() -> None:
+    with pytest.raises(
+        gb.ComputationError, match=r"air is turned ever faster by (\S+) N m about y of hub.root"
+    ) as said:
+        gb.static(craft("FOAM", "right", thrust=0.15))
+    assert said.value.outcome == "no equilibrium"
+    # The arm of the force from the hub, which is the mass centre but for what bends.
+    assert float(str(said.value).split(" faster by ")[1].split()[0]) == pytest.approx(0.15 * LENGTH, rel=1e-2)
+
+
+def carts(**more: object) -> gb.System:
+    rail = gb.Joint("prismatic", "front", axes=[(1, 0, 0)], effort=6.0, **more)  # type: ignore[arg-type]
+    coupling = gb.Joint("prismatic", "back", on="front.root", axes=[(1, 0, 0)], stiffness=50.0)
+    return gb.System({"front": gb.RigidBody(2.0), "back": gb.RigidBody(1.0)}, {"rail": rail, "coupling": coupling})
+
+
+def test_carts_on_a_rail() -> None:
+    """One pulls the other by a spring, a = F/(m + M), x = −m a/k, ω² = k (1/m + 1/M); and both free are two answers."""
+    rest, moving = gb.static(carts()), gb.modes(carts())
+    assert [str(each) for each in rest.accelerated] == ["rail.displacement by 2 m/s²"]
+    assert rest.coordinate("coupling.displacement") == pytest.approx(-0.04, rel=1e-12)
+    assert 2 * np.pi * moving.frequency == pytest.approx([np.sqrt(75.0)], rel=1e-12) and moving.rigid == 1
+    loose = gb.Joint("prismatic", "back", on="front.root", axes=[(1, 0, 0)])
+    both = gb.static(gb.System(carts().bodies, {**carts().joints, "coupling": loose}))
+    assert [each.acceleration for each in both.accelerated] == pytest.approx([3.0, -3.0], rel=1e-12)
+
+
+@pytest.mark.parametrize("more", [{"damping": 1.0}, {"friction": 1.0}, {"stops": (-1.0, 1.0), "stop_stiffness": 1e5}])
+def test_what_does_not_go_on_evenly_is_refused(more: dict[str, object]) -> None:
+    with pytest.raises(gb.ComputationError, match=r"rail\.displacement is accelerated by 6 N, which nothing holds"):
+        gb.static(carts(**more))
