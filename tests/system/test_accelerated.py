@@ -177,3 +177,17 @@ def test_carts_on_a_rail() -> None:
 def test_what_does_not_go_on_evenly_is_refused(more: dict[str, object]) -> None:
     with pytest.raises(gb.ComputationError, match=r"rail\.displacement is accelerated by 6 N, which nothing holds"):
         gb.static(carts(**more))
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_small_departures_of_a_spinning_body_are_in_its_axes(axis: int) -> None:
+    """λ² = −Ω² (J − J₁)(J − J₂)/(J₁ J₂) about a principal axis; a tilt that stays turns by −Ω."""
+    inertia, rate = (1.0, 1.5, 2.0), 3.0
+    body = gb.RigidBody(1.0, inertia)
+    spun = gb.Joint("free", "rod", turn=(0.3, 0.2, -0.5), initial_rate={f"w{'xyz'[axis]}": rate})
+    poles = gb.linearize(gb.System({"rod": body}, {"air": spun}), at="start").eigenvalue
+    one, *others = np.roll(inertia, -axis)
+    square = -(rate**2) * (one - others[0]) * (one - others[1]) / np.prod(others)
+    for truth in (1j * rate, np.sqrt(complex(square))):
+        assert np.abs(poles - truth).min() < 1e-6 * rate and np.abs(poles + truth).min() < 1e-6 * rate
+    assert np.sort(np.abs(poles))[:8] == pytest.approx(0, abs=1e-6)

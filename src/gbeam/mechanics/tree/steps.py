@@ -12,7 +12,7 @@ import numpy as np
 
 from gbeam.arrays.namespace import as_array, concatenated, namespace
 from gbeam.arrays.tree import record
-from gbeam.mechanics.tree.frames import Relative, Wrench, cross, product
+from gbeam.mechanics.tree.frames import Relative, Wrench, cross, product, turned_back
 
 Array = Any
 SMALL = 0.05  # rad²: below it functions of an angle's square are their Taylor series, to rounding
@@ -134,34 +134,36 @@ class Ball:
         return concatenated([0 * size, on_body(vector_of(q / size), by_values) + by_rates])
 
     def local(self, q: Array, qd: Array, qdd: Array) -> tuple[Step, Array, Array, Array]:
-        # About the vector zero its rates are those of the body: T is one there, and Ṫ φ̇ zero.
         by = self.motion(q, qd, qdd)
-        return Turning(q / np.sqrt(q @ q)), np.zeros(3), by.w, by.alpha
+        return Turning(q / np.sqrt(q @ q), by.w, by.alpha), np.zeros(3), by.w, by.alpha
 
 
 @record
 class Turning:
-    """Rotation by a vector (..., 3) after unit Euler parameters (4,), held as the ball is by the whole rotation."""
+    """Rotation by a vector φ (..., 3) from axes that turn on at `spin` and `faster` (3,), rad/s and rad/s², after unit
+    Euler parameters (4,), held as the ball is by the whole rotation. Its rates are φ̇ + spin, those of the body where φ
+    is zero: departures from a steady spin are departures in the body's axes.
+    """
 
     before: Array
+    spin: Array
+    faster: Array
 
     @property
     def size(self) -> int:
         return 3
 
-    @property
-    def _rotation(self) -> Rotation:
-        return Rotation(np.eye(3), rotation_by_parameters(self.before))
-
     def motion(self, q: Array, qd: Array, qdd: Array) -> Relative:
-        return self._rotation.motion(q, qd, qdd)
+        R, w, alpha = rotation_by_vector(q, qd - self.spin, qdd - self.faster, plane=False)
+        spin, faster = (turned_back(R, each + 0 * q) for each in (self.spin, self.faster))
+        R = product(rotation_by_parameters(self.before), R)
+        return Relative(0 * q, None, None, R, w + spin, alpha + faster + cross(spin, w))
 
     def rows(self, q: Array, qd: Array, qdd: Array, wrench: Wrench) -> Array:
-        return self._rotation.rows(q, qd, qdd, wrench)
+        return tangent_back(q, wrench.moment)
 
     def held(self, q: Array, qd: Array) -> tuple[Array, Array]:
-        _, rate, _ = rotation_by_vector(q, qd, 0 * qd, plane=False)
-        return self._whole(q), rate
+        return self._whole(q), self.motion(q, qd, 0 * qd).w
 
     def pushed(self, q: Array, by_values: Array, by_rates: Array) -> Array:
         return tangent_back(q, on_body(self._whole(q), by_values) + by_rates)
