@@ -191,3 +191,15 @@ def test_small_departures_of_a_spinning_body_are_in_its_axes(axis: int) -> None:
     for truth in (1j * rate, np.sqrt(complex(square))):
         assert np.abs(poles - truth).min() < 1e-6 * rate and np.abs(poles + truth).min() < 1e-6 * rate
     assert np.sort(np.abs(poles))[:8] == pytest.approx(0, abs=1e-6)
+
+
+def test_a_spin_that_is_left_out_is_said() -> None:
+    """Of what goes on turning by itself: not of a pendulum, which swings about its rest whatever its rate."""
+    body = gb.RigidBody(1.0, (1.0, 1.5, 2.0), centre=(0.1, 0, 0))
+    spun = gb.System({"rod": body}, {"air": gb.Joint("free", "rod", initial_rate={"wz": 1.0, "x": 5.0})})
+    hinge = gb.Joint("revolute", "rod", axes=[(0, 1, 0)], initial=np.pi / 2, initial_rate=1.0)
+    swings = gb.System({"rod": body}, {"pin": hinge}, gravity=(0, 0, -9.81))
+    for ask in (gb.static, gb.modes):
+        (said,) = ask(spun).warnings
+        assert said.startswith("as if air did not turn, as at the start") and not ask(swings).warnings
+    assert not gb.linearize(spun, at="start").warnings

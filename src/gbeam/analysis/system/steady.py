@@ -17,12 +17,13 @@ from gbeam.errors import ComputationError, InputError
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.equations import Inputs, Tree
 from gbeam.mechanics.tree.frames import Frame, turned_back
+from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.signals import deforming, local_names
 from gbeam.mechanics.tree.steps import turned_on
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.balance import balanced, loose
+from gbeam.numerics.balance import balanced, carried, loose
 from gbeam.numerics.eigen import (
     RIGID,
     Linear,
@@ -125,7 +126,25 @@ class SteadySystem(Steady):
     @property
     def warnings(self) -> tuple[str, ...]:
         """Doubts about the bodies' models, and what they leave out in this state."""
-        return self.system.warnings + stiffness_left_out(self.system, self.point.standing(), self.point.driven)
+        left_out = stiffness_left_out(self.system, self.point.standing(), self.point.driven)
+        return self.system.warnings + left_out + self._held_spin
+
+    @property
+    def _held_spin(self) -> tuple[str, ...]:
+        """Warning of what turns at the start, goes on turning by itself, and rests in this state."""
+        tree, names = self.local.tree, self.names
+        rates = self.system.tree.local(*self.system.start, 0 * self.system.start[0])[2][tree.free]
+        if self.point.yd.any() or not rates.any():
+            return ()
+        k, c, m = self.local.slopes()[1:]
+        (held,) = carried(m, tree.sliding & loose(k, c), k)
+        goes_on = np.abs(held).max(axis=0) <= STILL * np.abs(held).max() if held.any() else np.ones(len(m), dtype=bool)
+        pairs = zip(names, goes_on & (rates != 0), strict=True)
+        turning = dict.fromkeys(
+            each.rpartition(".")[0] for each, on in pairs if on and each.rpartition(".")[2] not in SLIDES
+        )
+        words = f'{" and ".join(turning)} did not turn, as at the start: gb.linearize(at="start") is about that motion'
+        return (f"as if {words}",) if turning else ()
 
     @property
     def q(self) -> Floats:
