@@ -53,7 +53,7 @@ MOST_MAPS = 30_000  # of the 65,530 memory maps that a process may have by defau
 
 
 def pytest_collection_finish() -> None:
-    """What has been imported and collected stays: do not look through it again."""
+    """Keep all that was imported and collected, and do not look through it again."""
     gc.collect()
     gc.freeze()
 

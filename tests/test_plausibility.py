@@ -1,4 +1,4 @@
-"""What is implausible is warned of by every verb and in every result; what is impossible is refused."""
+"""Every verb and every result warns of implausible input; the impossible is refused."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def beam(length: float = 0.3, section: gb.Section = STRIP, metal: gb.Material = 
 
 
 def doubts(result: gb.Deflection) -> list[str]:
-    """What it warns of its input; one shape is too few besides, and the exact beam may have no equilibrium."""
+    """Its warnings of its input; one shape is too few besides, and the exact beam may have no equilibrium."""
     of_error = "estimated to be wrong", "shapes and model are not judged", "a beam that twists would not stay"
     return [each for each in result.warnings if not each.startswith(of_error) and "twists under it" not in each]
 

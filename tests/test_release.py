@@ -1,4 +1,4 @@
-"""What a release says of itself is the same in every place that says it."""
+"""Every place that describes a release says the same of it."""
 
 from __future__ import annotations
 

@@ -56,7 +56,7 @@ TIP = 0.3**3 / (3 * STIFFNESS)  # m of 1 N
 
 
 def python(code: str, *words: str) -> Any:
-    """What a Python that knows the question prints, as JSON."""
+    """Output of a Python that knows the question, which is JSON."""
     answer = subprocess.run(
         [sys.executable, "-c", code, *words], capture_output=True, text=True,
         env=os.environ | {"PYTHONPATH": os.pathsep.join([".", *sys.path])},
@@ -66,7 +66,7 @@ def python(code: str, *words: str) -> Any:
 
 
 def called(*commands: str) -> list[str]:
-    """What the command line prints of some commands."""
+    """Outputs of some commands of the command line."""
     return python(CALLS, json.dumps([shlex.split(each) for each in commands]))
 
 

@@ -1,4 +1,4 @@
-"""What is left out means the same in a file and in Python."""
+"""Values that are left out are the same in a file and in Python."""
 
 from __future__ import annotations
 

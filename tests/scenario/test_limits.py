@@ -1,4 +1,4 @@
-"""What a scenario may cost is limited before it is read, parsed or allocated; the message says what it would take."""
+"""The cost of a scenario is limited before it is read, parsed or allocated; the message says what it would take."""
 
 from __future__ import annotations
 

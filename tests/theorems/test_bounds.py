@@ -1,4 +1,4 @@
-"""What Rayleigh, Cauchy and Weyl say of frequencies: more mass, more shapes, more stiffness, more speed."""
+"""Frequencies by Rayleigh, Cauchy and Weyl: more mass, more shapes, more stiffness, more speed."""
 
 from __future__ import annotations
 

@@ -97,7 +97,7 @@ def by_statics(beam: gb.Beam, gauge: gb.Gauge, a: np.ndarray) -> np.ndarray:
 def test_strain_of_a_linear_model_is_that_of_statics(
     kind: str, beam: gb.Beam, a: np.ndarray, places: np.ndarray
 ) -> None:
-    """What a beam that is held at its root alone carries needs no shape: statics knows it."""
+    """The loads of a beam held at its root alone need no shape: statics knows them."""
     gauges = gauges_of(beam, places)
     structure = gb.assemble(beam, kind, axial=1, y=2, z=2, shapes="adapted")
     flight = gb.Flight(x=gb.constant(a[0]), y=gb.constant(a[1]), z=gb.constant(a[2]))

@@ -79,7 +79,7 @@ def test_a_spin_about_the_beam_is_seen_from_outside_as_none(beam: Beam, share: f
 @theorem
 @given(angle=numbers(-3.0, 3.0), by=numbers(-3.0, 3.0), gravity=vectors(10.0), rate=numbers(-5.0, 5.0))
 def test_turning_gravity_with_the_hub(angle: float, by: float, gravity: np.ndarray, rate: float) -> None:
-    """What a base feels depends on the angle between gravity and the hub alone."""
+    """The load on a base depends on the angle between gravity and the hub alone."""
     R = np.array([[np.cos(by), -np.sin(by), 0.0], [np.sin(by), np.cos(by), 0.0], [0.0, 0.0, 1.0]])
     first, second = (
         Hub(radius=0.7, inertia=1.0, gravity=g, setting_angle=0.4).mount.base(

@@ -34,7 +34,7 @@ def test_stress_in_a_fillet_is_calculixs() -> None:
 
 
 def test_stress_in_a_fillet_converges_and_is_not_left_out() -> None:
-    """What is left out is at the clamp, whose edge is sharp; two meshes have five and ten elements along the fillet."""
+    """Nodes are left out at the sharp edge of the clamp; two meshes have five and ten elements along the fillet."""
     coarser = bar((3, 5, 5, 3, 1)).reduced(modes=2, damping_ratio=0.0)
     model = bar(COARSE).reduced(modes=2, damping_ratio=0.0, coarser=coarser)
     fine = next(row for row in ROWS if row["source"] != ROWS[0]["source"] and row["case"] == f"spun at {SLOW:g} rad/s")
