@@ -131,7 +131,8 @@ def _short(value: Any) -> str:
     if is_traced(value):
         return "traced"
     if hasattr(value, "dtype"):
-        return _short(value.tolist()) if np.size(value) <= _FEW else f"<{' x '.join(map(str, value.shape))} numbers>"
+        few = hasattr(value, "tolist") and np.size(value) <= _FEW  # a sparse matrix has none
+        return _short(value.tolist()) if few else f"<{' x '.join(map(str, value.shape))} numbers>"
     if isinstance(value, float):
         return f"{value:.6g}"
     if isinstance(value, (list, tuple)):
