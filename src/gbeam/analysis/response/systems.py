@@ -32,7 +32,7 @@ from gbeam.analysis.system.accuracy import doubts, system_errors, unmoved
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
 from gbeam.analysis.system.histories import Carried, beams_of, deflection, histories, loads_of, meshes_of
 from gbeam.analysis.system.point import Point, started, started_traced
-from gbeam.analysis.system.richer import InputsOf, judged_bodies, read, stiffness_left_out
+from gbeam.analysis.system.richer import InputsOf, judged_bodies, read, stiffness_left_out, turning
 from gbeam.analysis.system.steady import MASSLESS, bent_most, massless
 from gbeam.arrays.namespace import holds_jax, is_jax, namespace
 from gbeam.errors import InputError
@@ -146,8 +146,9 @@ class Ran(Run):
 
     @cached_property
     def moved(self) -> Floats:
-        """Displacements of all points, side by side, (t, 3 p) m."""
-        places = read(self.posed.system, *self.every(1), ())[PLACE]
+        """Displacements of all points, and of three on each body whose points do not turn, side by side, (t, 3 p) m."""
+        system, every = self.posed.system, self.every(1)
+        places = np.concatenate([read(system, *every, ())[PLACE], turning(system, *every)], axis=1)
         moved = np.asarray((places - places[0]).reshape(len(places), -1))
         return np.zeros_like(moved) if unmoved(np.abs(moved).max(initial=0.0), places) else moved
 

@@ -19,7 +19,7 @@ from gbeam.mechanics.plausibility import unstiffened
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import Theory, theory_of
 from gbeam.mechanics.tree.equations import Inputs
-from gbeam.mechanics.tree.system import System, stations_of
+from gbeam.mechanics.tree.system import RigidBody, System, stations_of
 from gbeam.motion.bases.base import Base
 
 Floats = NDArray[np.float64]
@@ -132,6 +132,25 @@ def read(system: System, of: Trajectory, inputs: InputsOf, bodies: Iterable[str]
         out |= {(name, "force"): loads.root_force, (name, "moment"): loads.root_moment}
         out |= {(name, "stress"): stress, (name, "sheared"): sheared.max(axis=1)}
     return out
+
+
+def turning(system: System, of: Trajectory, inputs: InputsOf) -> Floats:
+    """Places (t, 3 k, 3) m from the root, ground's axes, of three points at the radius of gyration of each rigid body
+    that has no points beside its root, which do not show how it turns.
+    """
+    radii = dict[int, float]()
+    for k, name in enumerate(system.order):
+        body = system.bodies[name]
+        if isinstance(body, RigidBody) and not np.any(body.body.places) and body.mass > 0:
+            about_root = np.trace(body.tensor) / (2 * body.mass) + np.square(body.centre).sum()
+            radii[k] = float(np.sqrt(about_root))
+    turned = list[Floats]()
+    for some in pieces(len(of.time), system.tree.size) if radii else ():
+        at = of.at(some)
+        roots = system.tree.motion(at.q, at.qd, 0 * at.q, inputs(system, some)).roots
+        axes = [radius * np.swapaxes(roots[k].R, -1, -2) for k, radius in radii.items()]
+        turned.append(np.concatenate([np.broadcast_to(each, (len(at.q), 3, 3)) for each in axes], axis=1))
+    return np.concatenate(turned) if turned else np.zeros((len(of.time), 0, 3))
 
 
 def bases_of(system: System, of: Trajectory, inputs: InputsOf, bodies: Iterable[str]) -> dict[str, Base]:
