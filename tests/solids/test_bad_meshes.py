@@ -152,9 +152,10 @@ def test_more_modes_than_unknowns() -> None:
 
 
 def test_what_is_no_mesh(tmp_path: Path) -> None:
-    (tmp_path / "solid.msh").write_text("garbage", encoding="utf-8")
-    with pytest.raises(gb.InputError, match=r"mesh .*solid\.msh cannot be read: .*; give a file of Gmsh"):
-        solid(tmp_path / "solid.msh")
+    for text in (b"garbage", b"$MeshFormat\n4.1 1 8\n\1\0\0\0\n$EndMeshFormat\n$Nodes\n"):
+        (tmp_path / "solid.msh").write_bytes(text)
+        with pytest.raises(gb.InputError, match=r"mesh .*solid\.msh cannot be read: \w.+; give a file of Gmsh"):
+            solid(tmp_path / "solid.msh")
     lacking = "*NODE\n1, 0, 0, 0\n*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n"
     (tmp_path / "solid.inp").write_text(lacking, encoding="utf-8")
     with pytest.raises(gb.InputError, match=r"mesh has element 1 on node 2, which is not in solid\.inp"):

@@ -89,7 +89,7 @@ def read_mesh(source: str | os.PathLike[str] | Any) -> Any:
         if error.args == ("wedge15",):
             fix = "write it for Gmsh as text, or for Nastran, Abaqus, CalculiX or Exodus"
             raise InputError("mesh", f"{os.fspath(source)} has wedges of 15 nodes, which meshio lacks", fix) from None
-        words = shortened(" ".join((said.getvalue() or str(error)).split()), 200)
+        words = shortened(" ".join((said.getvalue() or str(error)).split()) or "it breaks off", 200)
         if isinstance(error, KeyError):
             noun = "number" if isinstance(error.args[0], int) else "set"
             listed = ending_of(source) in TEXTS
