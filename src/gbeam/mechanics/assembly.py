@@ -27,7 +27,8 @@ from gbeam.mechanics.structure import Sections, Source, Structure
 from gbeam.motion.profiles.piecewise import constant
 from gbeam.structure.attachments import TIP
 from gbeam.structure.beam import Beam
-from gbeam.structure.matrices import TETRAHEDRON, body_of, condensed, radii
+from gbeam.structure.matrices import condensed
+from gbeam.structure.matrices import particles as particles_of_slices
 
 Array = Any
 
@@ -134,7 +135,13 @@ def assembled(
     station, mass, offset = particles_of(beam, rule, rotary=beam.rotary_inertia)
     off_axis = namespace(offset) is not np or offset.any()
     line = len(station) - sum(len(body.particles()[0]) for body in beam.masses)
-    inertia = inertia_of(field.points(station, offset if off_axis else None), mass, line, len(rule.node))
+    inertia = inertia_of(
+        field.points(station, offset if off_axis else None),
+        mass,
+        line,
+        len(rule.node),
+        symmetric=beam.material is not None,
+    )
     stiffness = stiffness_of(beam, rule, strains)
     history = _history(beam)
     work, loaded_at = None, np.zeros(0, int)
@@ -246,16 +253,14 @@ TRIANGLE = np.sqrt(2) * np.array([(np.cos(angle), np.sin(angle)) for angle in 2 
 
 def particles_of(beam: Beam, rule: Quadrature, *, rotary: bool) -> tuple[Array, Array, Array]:
     """Point, mass kg and offset m from the axis of every particle of the beam and its bodies; the sections, which come
-    first, are one each, three where they have `rotary` inertia, or four of a mass matrix.
+    first, are one each, three where they have `rotary` inertia, or more of a mass matrix.
     """
     nodes, section = len(rule.node), beam.section.at(rule.node)
     line = beam.density * section.area * rule.weight
     station, mass, offset = [np.arange(nodes)], [line], [np.zeros((nodes, 3))]
     if beam.material is None:
-        slices = beam.section.matrices(rule.node)[1]
-        arms = TETRAHEDRON if rotary else np.zeros((1, 3))
-        station, mass = station * len(arms), [line / len(arms)] * len(arms)
-        offset = [body_of(slices)[1] + radii(slices) @ arm for arm in arms]
+        shares, places = particles_of_slices(beam.section.matrices(rule.node)[1], rotary=rotary)
+        station, mass, offset = station * len(shares), [*(line * shares)], [*places]
     elif rotary:
         xp = namespace(line, section.area, section.inertia_y, section.inertia_z)
         gyration = [xp.sqrt(moment / section.area) for moment in (section.inertia_z, section.inertia_y)]
@@ -278,8 +283,9 @@ def stiffness_of(beam: Beam, rule: Quadrature, strains: Array) -> Array:
     if beam.material is None:
         shaped = [k for k in range(6) if strains[k].any()]
         matrix = condensed(beam.section.matrices(rule.node)[0], shaped)
-        forces = np.einsum("g,gab,bgj->agj", rule.weight, matrix, strains[shaped])
-        parts = [np.einsum("agi,agj->ij", strains[shaped], forces)]
+        einsum = namespace(matrix).einsum
+        forces = einsum("g,gab,bgj->agj", rule.weight, matrix, strains[shaped])
+        parts = [einsum("agi,agj->ij", strains[shaped], forces)]
     else:
         parts = [
             shapes.T @ ((rigidity * rule.weight)[:, None] * shapes)

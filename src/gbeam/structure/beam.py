@@ -184,7 +184,8 @@ class Beam(Value):
         and curvatures about y and z; GJ is NaN where the torsion constant is not known; the diagonal of matrices.
         """
         if self.material is None:
-            return tuple(np.moveaxis(np.diagonal(self.section.matrices(x)[0], axis1=-2, axis2=-1), -1, 0))
+            stiffness = self.section.matrices(x)[0]
+            return tuple(stiffness[..., k, k] for k in range(6))
         axial, about_y, about_z = self.rigidities(x)
         shear, area, ratio = self.material.rigidity, self.section.at(x).area, self.material.ratio
         in_shear = (shear * area * k for k in self.section.shear_coefficients(x, ratio))
@@ -210,7 +211,8 @@ def fibre_strain(beam: Beam, at: Any, force: Any, moment: Any, y: Any, z: Any) -
     """Normal strain, (..., s), at places (y, z) m in a beam's sections `at` (s,) m, by what these carry."""
     if beam.material is None:
         carried = namespace(force, moment).concatenate([force, moment], axis=-1)[..., None]
-        strain = np.linalg.inv(beam.section.matrices(at)[0]) @ carried
+        stiffness = beam.section.matrices(at)[0]
+        strain = namespace(stiffness).linalg.inv(stiffness) @ carried
         return strain[..., 0, 0] + strain[..., 4, 0] * z - strain[..., 5, 0] * y
     axial, along_z, along_y = beam.rigidities(at)
     return force[..., 0] / axial + moment[..., 1] * z / along_z - moment[..., 2] * y / along_y

@@ -12,32 +12,35 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.arrays.namespace import is_traced
+from gbeam.arrays.namespace import is_jax, is_traced, namespace
 from gbeam.errors import InputError
 from gbeam.guards.checks import array
 
 Array = NDArray[np.float64]
-Matrix = tuple[tuple[float, ...], ...]
+Matrix = Any  # tuples of numbers, or an array that JAX traces
 CLOSE = 1e-3  # of the largest alike entry: tables are printed with four digits
 # Particles in place of a section that has second moments about three axes, in radii of gyration.
 TETRAHEDRON = np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)], dtype=float)
+LATTICE = np.concatenate([np.zeros((1, 3)), np.eye(3), -np.eye(3), 1 - np.eye(3)])
+UPPER = np.triu_indices(3)
 
 
 def listed(name: str, value: Any) -> tuple[Matrix, ...]:
     """Matrices, one per station, of an array (6, 6) or (stations, 6, 6)."""
     matrices = array(name, value)
-    if is_traced(matrices):
-        raise InputError(name, "is traced by JAX, and its eigenvalues are looked at", "trace a section of dimensions")
+    traced = is_traced(matrices)
     matrices = matrices[None] if np.ndim(matrices) == 2 else matrices
-    if matrices.ndim != 3 or matrices.shape[1:] != (6, 6) or not np.isfinite(matrices).all():
+    if matrices.ndim != 3 or matrices.shape[1:] != (6, 6) or not (traced or np.isfinite(matrices).all()):
         raise InputError(name, f"is an array {np.shape(value)}", "give (6, 6), or (stations, 6, 6), finite")
+    if traced:
+        return tuple(matrices)
     return tuple(tuple(map(tuple, matrix.tolist())) for matrix in matrices)
 
 
 def refuse_impossible(dimensions: dict[str, tuple[Any, ...]]) -> None:
     """Raise InputError where a matrix is not symmetric, no energy belongs to it, or no mass."""
     for name, matrices in dimensions.items():
-        for i, matrix in enumerate(np.asarray(matrices)):
+        for i, matrix in enumerate(() if is_traced(*matrices) else np.asarray(matrices)):
             place = f"{name}[{i}]" if len(matrices) > 1 else name
             size = np.sqrt(np.abs(np.outer(np.diag(matrix), np.diag(matrix))))
             if not (np.abs(matrix - matrix.T) <= CLOSE * size + 1e-300).all():
@@ -73,13 +76,13 @@ def _refuse_no_body(place: str, matrix: Array) -> None:
 
 def body_of(matrix: Any) -> tuple[Any, Any, Any]:
     """Mass kg/m, centre m and second moments ∫ r rᵀ dm about the centre, kg m, of mass matrices (..., 6, 6)."""
-    mass = matrix[..., 0, 0]
+    xp, mass = namespace(matrix), matrix[..., 0, 0]
     z = (matrix[..., 0, 4] - matrix[..., 1, 3]) / 2 / mass
     y = (matrix[..., 2, 3] - matrix[..., 0, 5]) / 2 / mass
     x = (matrix[..., 1, 5] - matrix[..., 2, 4]) / 2 / mass
-    centre = np.stack([x, y, z], axis=-1)
-    about = (matrix[..., 3:, 3:] + np.swapaxes(matrix[..., 3:, 3:], -1, -2)) / 2
-    second = np.trace(about, axis1=-2, axis2=-1)[..., None, None] / 2 * np.eye(3) - about
+    centre = xp.stack([x, y, z], axis=-1)
+    about = (matrix[..., 3:, 3:] + xp.swapaxes(matrix[..., 3:, 3:], -1, -2)) / 2
+    second = xp.trace(about, axis1=-2, axis2=-1)[..., None, None] / 2 * np.eye(3) - about
     return mass, centre, second - mass[..., None, None] * centre[..., :, None] * centre[..., None, :]
 
 
@@ -92,29 +95,50 @@ def radii(matrix: Any) -> Any:
     return vector * np.sqrt(np.maximum(value, 0))[..., None, :]
 
 
+def particles(matrix: Any, *, rotary: bool) -> tuple[Any, Any]:
+    """Shares of the mass (k, g) and places m (k, g, 3) of particles in place of slices (g, 6, 6)."""
+    mass, centre, second = body_of(matrix)
+    xp = namespace(mass)
+    if not rotary:
+        return xp.ones((1, len(mass))), centre[None]
+    if not is_jax(mass):
+        arms = np.moveaxis(radii(matrix) @ TETRAHEDRON.T, -1, 0)
+        return np.full(arms.shape[:2], 1 / len(arms)), centre + arms
+    # A root has no derivative where a moment is zero, as along x in a slice: such moments move mass between places.
+    square = xp.trace(second, axis1=-2, axis2=-1) / mass
+    square = xp.where(square > 0, square, 1.0)
+    about = second[:, *UPPER] / (mass * square)[:, None]
+    moments = xp.concatenate([xp.ones((len(mass), 1)), xp.zeros((len(mass), 3)), about], axis=1)
+    products = LATTICE[:, UPPER[0]] * LATTICE[:, UPPER[1]]
+    of_places = np.linalg.inv(np.column_stack([np.ones(len(LATTICE)), LATTICE, products]).T)
+    return of_places @ moments.T, centre + LATTICE[:, None] * xp.sqrt(square)[:, None]
+
+
 def between(stations: tuple[float, ...], matrices: tuple[Matrix, ...], x: Any) -> Array:
     """Matrices (..., 6, 6) at positions, linear between the stations."""
-    values, at = np.asarray(matrices), np.asarray(x, dtype=float)
+    xp = namespace(*matrices)
+    values, at = xp.asarray(matrices), np.asarray(x, dtype=float)
     if not stations:
-        return np.broadcast_to(values[0], (*at.shape, 6, 6))
+        return xp.broadcast_to(values[0], (*at.shape, 6, 6))
     i = np.clip(np.searchsorted(stations, at) - 1, 0, len(stations) - 2)
     low, high = np.asarray(stations)[i], np.asarray(stations)[i + 1]
     share = np.clip((at - low) / (high - low), 0, 1)[..., None, None]
-    return np.asarray((1 - share) * values[i] + share * values[i + 1])
+    return xp.asarray((1 - share) * values[i] + share * values[i + 1])
 
 
 def condensed(stiffness: Array, kept: list[int]) -> Array:
     """Stiffness (..., k, k) of some strains, the others of which follow without a force of their own."""
     if len(kept) == 6:
         return stiffness
-    some = np.linalg.inv(stiffness)[..., kept, :][..., kept]
-    return np.asarray(np.linalg.inv(some))
+    xp = namespace(stiffness)
+    some = xp.linalg.inv(stiffness)[..., kept, :][..., kept]
+    return xp.asarray(xp.linalg.inv(some))
 
 
 def values(stiffness: Array, mass: Array) -> tuple[Array, ...]:
     """Mass, and its second moments ∫z² dm and ∫y² dm about the centre, as of a material of unit density; no fibres."""
     line, _, second = body_of(mass)
-    unknown = np.full_like(line, np.nan)
+    unknown = np.full(line.shape, np.nan)
     return line, second[..., 2, 2], second[..., 1, 1], unknown, unknown
 
 

@@ -343,8 +343,12 @@ def _weighted(vectors: Vector, weight: Array) -> Vector:
     return x, y, z
 
 
-def inertia_of(field: StrainField | SeriesField | Places, mass: Array, line: int = 0, nodes: int = 0) -> Inertia:
-    """Inertia of a field's particles; the first, `line`, are the sections at the nodes, once or several times over."""
+def inertia_of(
+    field: StrainField | SeriesField | Places, mass: Array, line: int = 0, nodes: int = 0, *, symmetric: bool = False
+) -> Inertia:
+    """Inertia of a field's particles; the first, `line`, are the sections at the nodes, once or several times over,
+    with principal axes y and z and their centres on the axis where they are `symmetric`.
+    """
     if not isinstance(field, StrainField):
         return Inertia(field, mass, Particles(field, mass))
     offset = field.offset
@@ -354,14 +358,17 @@ def inertia_of(field: StrainField | SeriesField | Places, mass: Array, line: int
     on_axis, off_axis = np.flatnonzero(~beside), np.flatnonzero(beside)
     c, held = field.cumulative[on_axis], mass[on_axis]
     turning, aside = None, None
-    if offset is not None and (line > nodes or not is_jax(offset)) and line:
-        turning, aside = _moments(mass[:line], offset[:line], nodes, field.strains.shape[1] - nodes)
+    if offset is not None and line and not (symmetric and line == nodes):
+        before = field.strains.shape[1] - nodes
+        turning, aside = _moments(mass[:line], offset[:line], nodes, before, symmetric=symmetric)
     points = field[off_axis] if len(off_axis) else field.points(off_axis)
     pairs, first = c.T @ (held[:, None] * c), c.T @ held
     return Inertia(field, mass, Bodies(points, mass[off_axis], held.sum(), pairs, first, turning, aside))
 
 
-def _moments(mass: Array, offset: Array, nodes: int, before: int) -> tuple[Array | None, Array | None]:
+def _moments(
+    mass: Array, offset: Array, nodes: int, before: int, *, symmetric: bool
+) -> tuple[Array | None, Array | None]:
     """Moments of inertia about the axis and first moments of sections, behind `before` nodes of the root, or None."""
     xp = namespace(mass, offset)
 
@@ -370,13 +377,15 @@ def _moments(mass: Array, offset: Array, nodes: int, before: int) -> tuple[Array
 
     squares = at_nodes(mass[:, None] * offset**2)
     principal = squares.sum(axis=0) - squares
-    if is_jax(principal):  # shapes of sections that can be traced are symmetric
+    if symmetric:
         return principal, None
+    products = at_nodes(-mass[:, None] * offset * xp.roll(offset, -1, axis=1))
+    aside = at_nodes(mass[:, None] * offset)
+    if is_jax(principal):
+        return xp.concatenate([principal, products]), aside
     size = principal.max(initial=0.0)
     if size == 0:
         return None, None
-    products = at_nodes(-mass[:, None] * offset * np.roll(offset, -1, axis=1))
-    aside = at_nodes(mass[:, None] * offset)
     coupled, beside = (np.abs(each).max() > NOTHING * most for each, most in ((products, size), (aside, mass.max())))
     turning = np.concatenate([principal, products]) if coupled else principal
     return turning, aside if beside else None
