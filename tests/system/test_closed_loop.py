@@ -7,28 +7,96 @@ from typing import Any
 import control
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
 import gbeam as gb
+from gbeam.mechanics.tree.control import gains
 from tests.system.test_feedback import NAMES, SAMPLE, lead, satellite
 
+# Controllers at 3/2 of the sample, the second of which feels the commands at once.
+OTHERS: list[list[gb.Feedback]] = [
+    [],
+    [gb.Feedback(gains([[-5.0, -15.0]]), NAMES, ["jet.moment_z"], 1.5 * SAMPLE, 0.7 * SAMPLE)],
+    [gb.Feedback(gains([[-1.0]]), ["panel.tip.acceleration_z"], ["axis.angle"], 1.5 * SAMPLE)],
+]
 
+
+@pytest.mark.parametrize("others", OTHERS)
 @pytest.mark.parametrize("delay", [0.0, 0.5 * SAMPLE, SAMPLE, 2.25 * SAMPLE])
-def test_a_small_motion_follows_the_closed_loop(delay: float) -> None:
-    """From sample to sample the response is A^k x, of the plant, the law and the commands that are still to act."""
-    system = satellite(gb.Feedback(lead(), NAMES, ["axis.angle"], SAMPLE, delay), angle=1e-5)
+def test_a_small_motion_follows_the_closed_loop(delay: float, others: list[gb.Feedback]) -> None:
+    """From period to period the response is A^k x, of the plant, the laws and the commands that are still to act."""
+    system = satellite(gb.Feedback(lead(), NAMES, ["axis.angle"], SAMPLE, delay), *others, angle=1e-5)
     closed = gb.linearize(system, loop="closed", outputs=["axis.angle", "panel.tip.place_y"])
-    response = gb.simulate(system, initial="undeformed", duration=4.0, step=SAMPLE / 8, estimate=False)
+    samples = 3 if others else 1
+    assert closed.step == pytest.approx(samples * SAMPLE, rel=1e-12)
+    response = gb.simulate(system, initial="undeformed", duration=4.2, step=SAMPLE / 16, estimate=False)
     state, angles = np.zeros(len(closed.a)), []
     state[0] = 1e-5
-    for _ in range(201):
+    for _ in range(210 // samples + 1):
         angles.append(closed.c @ state)
         state = closed.a @ state
     size = np.abs(angles).max(axis=0)
-    moved = response.at("panel.tip")[::8, 1]
-    np.testing.assert_allclose(response.coordinate("axis.angle")[::8], np.array(angles)[:, 0], atol=2e-5 * size[0])
-    np.testing.assert_allclose(moved, np.array(angles)[:, 1], atol=2e-5 * size[1])
-    slowest = closed.eigenvalue[0]
-    assert slowest.real < 0 and closed.step == SAMPLE
+    slow = np.searchsorted(response.time, closed.step * np.arange(len(angles)) - 1e-9)
+    moved = response.at("panel.tip")[slow, 1]
+    np.testing.assert_allclose(response.coordinate("axis.angle")[slow], np.array(angles)[:, 0], atol=5e-6 * size[0])
+    np.testing.assert_allclose(moved, np.array(angles)[:, 1], atol=5e-6 * size[1])
+    assert others or closed.eigenvalue[0].real < 0
+
+
+def ticked(inertia: float, laws: list[tuple[float, float, int, int]]) -> Any:
+    """Factors z over a period of 350 ms of a hub under PD laws (kp, kd, sample, delay in ticks of 5 ms), by ticks."""
+    over = expm(0.005 * np.array([[0, 1, 0], [0, 0, 1 / inertia], [0, 0, 0]]))
+    sizes = [2, *(delay + 1 for *_, delay in laws)]
+    states = np.eye(sum(sizes))
+    for tick in range(70):
+        x, *pasts = np.split(states, np.cumsum(sizes)[:-1])
+        torque = np.zeros(len(states))
+        for k, (kp, kd, sample, delay) in enumerate(laws):
+            asked = -kp * x[0] - kd * x[1] if tick % sample == 0 else pasts[k][0]
+            torque += (asked, *pasts[k])[delay]
+            pasts[k] = np.array([asked, *pasts[k][:-1]])
+        states = np.concatenate([over[:2, :2] @ x + np.outer(over[:2, 2], torque), *pasts])
+    return np.linalg.eigvals(states)
+
+
+def test_two_rates_have_the_poles_of_the_map_over_their_common_period() -> None:
+    """PD at 50 and 70 ms, late by 20 and 105 ms: by hand in ticks of 5 ms, and as a long run decays."""
+    laws = [(1.2, 3.0, 10, 4), (0.6, 2.0, 14, 21)]
+    options = [(gains([[-kp, -kd]]), NAMES, ["axis.angle"], 0.005 * s, 0.005 * d) for kp, kd, s, d in laws]
+    axis = gb.Joint("revolute", "hub", axes=[(0, 0, 1)], initial=1e-3)
+    controllers = {f"c{k}": gb.Feedback(*each) for k, each in enumerate(options)}
+    system = gb.System({"hub": gb.RigidBody(1.0, (2.0, 2.0, 2.0))}, {"axis": axis}, controllers=controllers)
+    closed = gb.linearize(system, loop="closed")
+    assert closed.step == pytest.approx(0.35, rel=1e-12) and len(closed.a) == 2 + 1 + 2
+    z = np.exp(0.35 * closed.eigenvalue)
+    expected = ticked(2.0, laws)
+    expected = expected[np.argsort(-np.abs(expected))][: len(z)]
+    for each in expected:
+        assert np.abs(z - each).min() < 1e-12
+    response = gb.simulate(system, initial="undeformed", duration=10.5, step=0.05, estimate=False)
+    late = np.interp([9.8, 10.15, 10.5], response.time, response.coordinate("axis.angle"))
+    np.testing.assert_allclose(late[1:] / late[:-1], expected[0].real, rtol=1e-6)
+
+
+def test_margins_of_two_rates_are_those_of_the_drive_that_is_sampled_once() -> None:
+    """With its gain grown by the margin the closed loop is at its limit; the other's gain changes with time."""
+
+    def laws(factor: float) -> list[gb.Feedback]:
+        slow = tuple(each * (factor if k > 1 else 1.0) for k, each in enumerate(lead()))
+        fast = gb.Feedback(gains([[-10.0, -20.0]]), NAMES, ["axis.angle"], SAMPLE)
+        return [fast, gb.Feedback(slow, NAMES, ["axis.angle"], 3 * SAMPLE)]
+
+    closed = gb.linearize(satellite(*laws(1.0)), loop="closed")
+    (margin,) = closed.margins
+    assert margin.drive == "c1: axis.angle" and closed.step == pytest.approx(3 * SAMPLE, rel=1e-12)
+    assert closed.warnings[-1] == "no margins of c0: axis.angle, sampled more than once in the common period of 60 ms"
+    limit = gb.linearize(satellite(*laws(margin.gain)), loop="closed").eigenvalue[0]
+    assert limit.real == pytest.approx(0.0, abs=1e-5) and closed.eigenvalue[0].real < -1e-3
+    assert abs(limit.imag) == pytest.approx(2 * np.pi * margin.gain_frequency, rel=1e-4)
+    cut = gb.linearize(satellite(*laws(1.0)), loop="c1: axis.angle")
+    assert cut.step == closed.step and len(cut.inputs) == 1
+    with pytest.raises(gb.InputError, match=r"c0: axis.angle, sampled 3 times in the common period of 60 ms"):
+        gb.linearize(satellite(*laws(1.0)), loop="c0: axis.angle")
 
 
 @pytest.mark.parametrize("delay", [0, 1, 2])
@@ -85,7 +153,8 @@ def test_two_controllers_at_one_rate_and_what_is_refused() -> None:
     assert [each.drive for each in two.margins] == ["c0: axis.angle", "c1: axis.angle"]
     refused: list[tuple[Any, str, str]] = [
         ([gb.Feedback(lambda t, y: -y[:1], NAMES, ["axis.angle"], SAMPLE)], "closed", "is a function"),
-        ([gb.Feedback(half, NAMES, ["axis.angle"], s) for s in (0.01, 0.02)], "closed", "beside 0.01 s"),
+        ([gb.Feedback(half, NAMES, ["axis.angle"], s) for s in (0.01, 0.0101234)], "closed", "beside 0.01 s"),
+        ([gb.Feedback(half, NAMES, ["axis.angle"], s) for s in (0.01, 10.0)], "closed", "at most 1,000 samples"),
         ([], "closed", "'closed'"),
     ]
     for laws, loop, problem in refused:

@@ -162,7 +162,9 @@ class StateSpace(Noted, Result):
     errors: FrequencyErrors | None = part(
         "errors of these frequencies", "pole", name=None, note="None where there is no estimate", default=None
     )
-    step: float = fact("time between samples", "s", note="0 in continuous time", default=0.0)
+    step: float = fact(
+        "time between samples", "s", note="of several their common period; 0 in continuous time", default=0.0
+    )
     margins: tuple[Margin, ...] = rows(
         "margins of the loop at every drive of a controller", "drive", name="margin_", optional=True, default=()
     )

@@ -308,9 +308,10 @@ def linearize(
     at : str
         Of a system: ``rest``, where it rests, or ``start``, the motion at its start.
     loop : str
-        Of a system with controllers: ``open``, the plant alone; ``closed``, all of it from sample to sample, with its
-        references as further inputs and the margins at every drive; or the name of a controller and its drive, such as
-        ``pointing: axis.angle``: the loop that is cut there, with negative feedback.
+        Of a system with controllers: ``open``, the plant alone; ``closed``, all of it from sample to sample, of several
+        sample times over their common period, with its references as further inputs and the margins at every drive
+        that is sampled once in it; or the name of a controller and such a drive, ``pointing: axis.angle``: the loop
+        that is cut there, with negative feedback.
     name : str
         Of the motion.
 

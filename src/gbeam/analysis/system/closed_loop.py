@@ -1,15 +1,17 @@
 """A linear plant with the sampled controllers of a system around it: closed, or cut at one drive; its margins.
 
-Commands are held from sample to sample and act after their delay; the plant between samples is exact, by the matrix
-exponential. With a delay of m samples and a part f of one, x⁺ = Φ(T) x + Φ(T − f) Γ(f) u_{k−m−1} + Γ(T − f) u_{k−m}:
-the states are those of the plant at samples, those of the laws, and the commands that are still to act.
+Commands are held from sample to sample and act after their delay; the plant between these events is exact, by the
+matrix exponential. The map over the common period of all samples is the product of the maps from event to event: the
+states are those of the plant, those of the laws, and the commands that act or are still to act, all as the period
+begins; its inputs are held over it.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from itertools import pairwise
+from fractions import Fraction
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -24,7 +26,8 @@ from gbeam.results.state_space import Margin, Signal, StateSpace
 Array = Any
 Floats = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-WHOLE = 1e-9  # of a sample: a shorter part of one is none
+SAMPLES = 1000  # of all controllers in their common period, at most
+FINEST = 10**9  # parts of a step by which a delay is known
 ROUNDING = 1e-6  # of z about one, where two motions of zero frequency meet
 GRID = 2000  # frequencies, evenly in their logarithm, besides those about each pole
 DECADES = 5  # below Nyquist's frequency
@@ -38,102 +41,105 @@ class Channel(NamedTuple):
     driven: slice
     measured: slice
     sign: float
-    late: int
-    part: float
+    samples: int  # in the common period
+    late: int  # whole steps of its delay
+    part: Fraction  # of a step, the rest of it
 
 
 def channels_of(controllers: dict[str, Feedback]) -> tuple[float, list[Channel]]:
-    """The step, s, and the controllers of a system, drives and measurements one after the other."""
-    step = next(iter(controllers.values())).sample
-    channels, drive, measure = [], 0, 0
+    """The common period, s, and the controllers of a system, drives and measurements one after the other."""
+    unit = next(iter(controllers.values())).sample
+    ratios, common = list[Fraction](), Fraction(1)
     for name, each in controllers.items():
-        where = f"controllers.{name}"
         if not isinstance(each.law, tuple):
             fix = "give matrices, or a system of python-control"
-            raise InputError(f"{where}.law", "is a function, which has no transfer function", fix)
-        if not math.isclose(each.sample, step, rel_tol=1e-9):
-            fix = f"sample all controllers every {step:g} s"
-            raise InputError(f"{where}.sample", f"is {each.sample:g} s beside {step:g} s", fix)
-        late, part = divmod(each.delay / step + WHOLE, 1.0)
-        part = step * (part - WHOLE) if part > 2 * WHOLE else 0.0
+            raise InputError(f"controllers.{name}.law", "is a function, which has no transfer function", fix)
+        ratios.append(Fraction(each.sample / unit).limit_denominator(SAMPLES))
+        common = Fraction(math.lcm(*(r.numerator for r in ratios)), math.gcd(*(r.denominator for r in ratios)))
+        near = math.isclose(ratios[-1], each.sample / unit, rel_tol=1e-9)
+        if not near or sum(common / r for r in ratios) > SAMPLES:
+            problem = f"is {each.sample:.10g} s beside {unit:.10g} s: no common period has at most {SAMPLES:,} samples"
+            raise InputError(f"controllers.{name}.sample", problem, "choose times in the ratio of small whole numbers")
+    channels, drive, measure = [], 0, 0
+    for each, ratio in zip(controllers.values(), ratios, strict=True):
+        late, part = divmod(Fraction(each.delay / each.sample).limit_denominator(FINEST), 1)
         ends = drive + len(each.drive), measure + len(each.measure)
         sign = 1.0 if each.reference is None else -1.0
-        channels.append(Channel(each.law, slice(drive, ends[0]), slice(measure, ends[1]), sign, int(late), part))
+        places = slice(drive, ends[0]), slice(measure, ends[1])
+        channels.append(Channel(each.law, *places, sign, int(common / ratio), late, part))
         drive, measure = ends
-    return step, channels
+    return unit * float(common), channels
 
 
-class Loop:
-    """A plant whose first inputs and outputs are of controllers, in steps; an input replaces the drive `cut`."""
+class Loop(NamedTuple):
+    """A plant and its controllers over a period: next states, outputs and last commands from states and inputs."""
 
-    def __init__(self, plant: StateSpace, step: float, channels: list[Channel], cut: int | None = None) -> None:
-        self.plant, self.step, self.channels = plant, step, channels
-        m = channels[-1].driven.stop
-        k = channels[-1].measured.stop
-        n, free = len(plant.a), plant.b.shape[1] - m
-        laws = [len(each.law[0]) for each in channels]
-        held = [each.late + 1 for each in channels for _ in range(each.driven.stop - each.driven.start)]
-        ends = np.cumsum([n, *laws, *held])
-        size, first = int(ends[-1]), 0 if cut is None else 1
-        inputs = first + free + k
-        past = [slice(*pair) for pair in pairwise(ends[len(laws) :])]  # of each drive: u_{k−1}, u_{k−2} and so on
+    a: Floats
+    b: Floats
+    y: tuple[Floats, Floats]
+    command: tuple[Floats, Floats]
 
-        def rows(count: int) -> tuple[Floats, Floats]:
-            return np.zeros((count, size)), np.zeros((count, inputs))
 
-        # Measurements from states and inputs: just before the sample, with the commands that acted then.
-        y_x, y_w = rows(len(plant.c))
-        y_x[:, :n] = plant.c
-        y_w[:, first : first + free] = plant.d[:, m:]
-        for i in range(m):
-            y_x[:, past[i].stop - 1] += plant.d[:, i]
-        u_x, u_w = rows(m)
-        a, b = rows(size)
-        for each, start, count in zip(channels, ends, laws, strict=False):
+Over = Callable[[Fraction], tuple[Floats, Floats]]
+
+
+def over_parts(plant: StateSpace, period: float) -> Over:
+    """Φ and Γ of a plant over parts of a period, s."""
+    n, count = plant.b.shape
+    block = np.zeros((n + count, n + count))
+    block[:n, :n], block[:n, n:] = plant.a, plant.b
+
+    @cache
+    def over(part: Fraction) -> tuple[Floats, Floats]:
+        whole = expm(block * (period * float(part)))
+        return whole[:n, :n], whole[:n, n:]
+
+    return over
+
+
+def loop_of(plant: StateSpace, channels: list[Channel], over: Over, cut: int | None = None) -> Loop:
+    """A plant whose first inputs and outputs are of controllers; an input replaces the drive `cut`."""
+    m, k = channels[-1].driven.stop, channels[-1].measured.stop
+    free, first = plant.b.shape[1] - m, 0 if cut is None else 1
+    held = [each.late + 1 for each in channels for _ in range(each.driven.stop - each.driven.start)]
+    ends = np.cumsum([len(plant.a), *(len(each.law[0]) for each in channels), *held])
+    size = int(ends[-1])
+    # Rows of all that changes, from the states and the inputs as the period begins.
+    every = np.eye(size + first + free + k)
+    inputs, references = every[size + first : size + first + free], every[size + first + free :]
+    x, *others = np.split(every[:size], ends[:-1])
+    laws, waiting = others[: len(channels)], [list(each) for each in others[len(channels) :]]  # the last one acts
+    commands = np.zeros((m, len(every)))
+
+    def measured() -> Floats:
+        acting = np.array([each[-1] for each in waiting])
+        return np.asarray(plant.c @ x + plant.d[:, :m] @ acting + plant.d[:, m:] @ inputs)
+
+    y = measured()
+    # At one time all samples come before any command begins to act.
+    events = sorted(
+        ((j + (each.part if acts else 0)) * Fraction(1, each.samples), acts, c)
+        for c, each in enumerate(channels)
+        for j in range(each.samples)
+        for acts in (False, True)
+    )
+    for (time, acts, c), end in zip(events, [*(event[0] for event in events[1:]), Fraction(1)], strict=True):
+        each = channels[c]
+        if acts:
+            for queue in waiting[each.driven]:
+                queue.pop()
+        else:
             la, lb, lc, ld = each.law
-            error_x, error_w = (each.sign * part[each.measured] for part in (y_x, y_w))
-            error_w = error_w.copy()
-            error_w[:, first + free :][:, each.measured] += np.eye(each.measured.stop - each.measured.start)
-            state = slice(start, start + count)
-            a[state] = lb @ error_x
-            a[state, state] += la
-            b[state] = lb @ error_w
-            u_x[each.driven], u_w[each.driven] = ld @ error_x, ld @ error_w
-            u_x[each.driven, state] += lc
-        self.command = u_x.copy(), u_w.copy()
-        if cut is not None:
-            u_x[cut], u_w[cut] = 0.0, np.eye(inputs)[0]
-        whole, into = self._over(step)
-        a[:n, :n] = whole
-        b[:n, first : first + free] = into[:, m:]
-        for i in range(m):
-            each = next(one for one in channels if one.driven.start <= i < one.driven.stop)
-            over, late = self._over(step - each.part)
-            if each.part:
-                a[:n, past[i].start + each.late] += over @ self._over(each.part)[1][:, i]
-            if each.late:
-                a[:n, past[i].start + each.late - 1] += late[:, i]
-            else:
-                a[:n] += np.outer(late[:, i], u_x[i])
-                b[:n] += np.outer(late[:, i], u_w[i])
-            a[past[i].start], b[past[i].start] = u_x[i], u_w[i]
-            for j in range(past[i].start + 1, past[i].stop):
-                a[j, j - 1] = 1.0
-        self.a, self.b, self.y = a, b, (y_x, y_w)
-
-    @property
-    def growth(self) -> float:
-        """Rate of what grows fastest, 1/s; zero where nothing grows."""
-        size = float(np.abs(np.linalg.eigvals(self.a)).max())
-        return math.log(size) / self.step if size > 1 + ROUNDING else 0.0
-
-    def _over(self, time: float) -> tuple[Floats, Floats]:
-        """Φ and Γ over a time, s."""
-        n, count = self.plant.b.shape
-        block = np.zeros((n + count, n + count))
-        block[:n, :n], block[:n, n:] = self.plant.a, self.plant.b
-        over = expm(block * time)
-        return over[:n, :n], over[:n, n:]
+            error = each.sign * measured()[each.measured] + references[each.measured]
+            commands[each.driven], laws[c] = lc @ laws[c] + ld @ error, la @ laws[c] + lb @ error
+            for i in range(each.driven.start, each.driven.stop):
+                waiting[i].insert(0, every[size] if i == cut else commands[i].copy())
+        if end > time:
+            whole, into = over(end - time)
+            x = whole @ x + into[:, :m] @ np.array([queue[-1] for queue in waiting]) + into[:, m:] @ inputs
+    after = np.concatenate([x, *laws, *(np.array(queue) for queue in waiting)])
+    (a, b), of_y, of_commands = ((each[:, :size], each[:, size:]) for each in (after, y, commands))
+    return Loop(a, b, of_y, of_commands)
 
 
 def response_at(loop: tuple[Floats, Floats, Floats, Floats], step: float, w: Any) -> Complex:
@@ -186,15 +192,24 @@ def closed_loop(
     step, channels = channels_of(controllers)
     drives, measured = signal_names(controllers, "drive"), signal_names(controllers, "measure")
     aims = [Signal(name, signal.unit) for name, signal in zip(measured, plant.outputs, strict=False)]
-    m = len(drives)
-    loops = [Loop(plant, step, channels, cut=k) for k in range(m)]
-    loop = Loop(plant, step, channels) if cut is None else loops[drives.index(cut)]
+    m, over, period = len(drives), over_parts(plant, step), f"the common period of {1e3 * step:.4g} ms"
+    # The gain of a loop that is cut changes with time where it is sampled more than once in the period.
+    counts = dict(zip(drives, (each.samples for each in channels for _ in drives[each.driven]), strict=True))
+    if cut is not None and counts[cut] > 1:
+        problem = f"cuts {cut}, sampled {counts[cut]} times in {period}, whose gain changes with time"
+        raise InputError("loop", problem, "ask for 'closed'")
+    loops = {name: loop_of(plant, channels, over, cut=k) for k, name in enumerate(drives) if counts[name] == 1}
+    loop = loop_of(plant, channels, over) if cut is None else loops[cut]
     margins = []
-    for k, each in enumerate(loops):
-        c, d = (-part[k : k + 1] for part in each.command)
-        margins.append(margin_of(drives[k], (each.a, each.b[:, :1], c, d[:, :1]), step))
-    growth = loop.growth if cut is None else 0.0
-    unstable = (f"the closed loop is not stable: it grows with {growth:.4g} 1/s",) if growth > 0 else ()
+    for name, each in loops.items():
+        c, d = (-part[drives.index(name)][None] for part in each.command)
+        margins.append(margin_of(name, (each.a, each.b[:, :1], c, d[:, :1]), step))
+    warnings = plant.warnings
+    if several := [name for name in drives if counts[name] > 1]:
+        warnings += (f"no margins of {', '.join(several)}, sampled more than once in {period}",)
+    size = float(np.abs(np.linalg.eigvals(loop.a)).max())
+    if cut is None and size > 1 + ROUNDING:
+        warnings += (f"the closed loop is not stable: it grows with {math.log(size) / step:.4g} 1/s",)
     names = [f"{name}.state_{i + 1}" for name, one in controllers.items() for i in range(len(one.law[0]))]
     late = [
         f"{drives[i]}, {j + 1} before"
@@ -230,5 +245,5 @@ def closed_loop(
         accelerated=plant.accelerated,
         step=step,
         margins=tuple(margins),
-        warnings=plant.warnings + unstable,
+        warnings=warnings,
     )
