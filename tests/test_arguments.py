@@ -83,6 +83,7 @@ class Given:
 
     def calls(self) -> dict[str, tuple[tuple[Any, ...], dict[str, Any]]]:
         base = self.flight.base(0.0)
+        origin = self.case.scenario
         columns = ("time_s", "n_x_g", "-n_y_g", "-n_z_g", "g")
         settings = {"duration": 0.1, "step": 5e-3, "estimate": False}
         beam = (0.3, self.beam.section, self.beam.material)
@@ -102,15 +103,15 @@ class Given:
             ),
             "Case": (
                 ("case", self.beam, gb.Model("FOAM", z=1), {"flight": self.still}, self.settings),
-                {"tracks": {}, "stations": (0.1,), "accept": {}, "sensors": {"tip": gb.Sensor()}},
+                {"tracks": {}, "stations": (0.1,), "accept": {}, "sensors": {"tip": gb.Sensor()}, "read_from": origin},
             ),
             "SpecimenCase": (
                 ("case", "strip", self.structure, {"flight": self.still}, self.settings),
-                {"tracks": {}, "accept": {}, "sensors": {"tip": gb.Sensor()}},
+                {"tracks": {}, "accept": {}, "sensors": {"tip": gb.Sensor()}, "read_from": origin},
             ),
             "SystemCase": (
                 ("case", gb.System({"bar": self.bar}, {"hinge": self.hinge}), {}, self.settings),
-                {"tracks": {}, "accept": {}, "sensors": {"bar.root": gb.Sensor()}},
+                {"tracks": {}, "accept": {}, "sensors": {"bar.root": gb.Sensor()}, "read_from": origin},
             ),
             "Centrifuge": (
                 (self.still,),

@@ -5,7 +5,7 @@ response is computed.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import InitVar, dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, overload
 
 import numpy as np
@@ -39,6 +39,7 @@ from gbeam.structure.beam import Beam
 
 if TYPE_CHECKING:
     from gbeam.results.response import Sensor
+    from gbeam.scenario.load import AnyScenario
     from gbeam.scenario.schema.scenario import Scenario
     from gbeam.scenario.schema.system import SpecimenScenario, SystemScenario
 
@@ -50,6 +51,13 @@ class _InEnvironments(Value):
     motions: Mapping[str, Motion]
     response: ResponseSettings | None
     no_beam: ClassVar[tuple[str, str]] = ("", "")  # why it is none, and what to ask in place of what is of one beam
+
+    def __post_init__(self, read_from: AnyScenario | None) -> None:
+        if read_from is not None and not hasattr(type(read_from), "model_fields"):  # pydantic's, not imported for it
+            fix = "leave it out: read_scenario gives it"
+            raise InputError("read_from", f"is of type {type(read_from).__name__}", fix)
+        # By another name than the field's, so that dataclasses.replace leaves it behind.
+        object.__setattr__(self, "scenario", read_from)
 
     def __repr__(self) -> str:
         motions = ", ".join(f"{name}: {each.kind}" if each else name for name, each in self.environments.items())
@@ -122,11 +130,13 @@ class Case(_InEnvironments):
         Of the scenario; results of the whole case have it.
     sensors : mapping of str to Sensor
         Accelerometers by the names of points, whose readings results have.
+    read_from : Scenario, optional
+        The scenario that these are the objects of.
 
     Attributes
     ----------
     scenario : Scenario or None
-        The scenario that the case was read from; None of one that is made, or changed, in Python.
+        What it was read from; None of a case that is made, or changed, in Python.
 
     Examples
     --------
@@ -147,7 +157,7 @@ class Case(_InEnvironments):
     accept: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     provenance: Provenance | None = None
     sensors: Mapping[str, Sensor] = field(default_factory=dict)
-    # Not an argument, so that dataclasses.replace leaves it behind.
+    read_from: InitVar[Scenario | None] = None
     scenario: Scenario | None = field(default=None, init=False, repr=False, compare=False)
 
     def assemble(self, stations: ArrayLike | None = None) -> Structure:
@@ -197,11 +207,13 @@ class SystemCase(_InEnvironments):
         Of the scenario; results of the whole case have it.
     sensors : mapping of str to Sensor
         Accelerometers by the names of points, whose readings results have.
+    read_from : SystemScenario, optional
+        The scenario that these are the objects of.
 
     Attributes
     ----------
     scenario : SystemScenario or None
-        The scenario that the case was read from; None of one that is made, or changed, in Python.
+        What it was read from; None of a case that is made, or changed, in Python.
 
     Raises
     ------
@@ -224,13 +236,15 @@ class SystemCase(_InEnvironments):
     accept: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     provenance: Provenance | None = None
     sensors: Mapping[str, Sensor] = field(default_factory=dict)
+    read_from: InitVar[SystemScenario | None] = None
     scenario: SystemScenario | None = field(default=None, init=False, repr=False, compare=False)
     no_beam = (
         "make a system",
         "ask for run, static, modes, campbell, critical-speed or linearize, or sweep these; or give one [beam]",
     )
 
-    def __post_init__(self) -> None:
+    def __post_init__(self, read_from: AnyScenario | None) -> None:
+        super().__post_init__(read_from)
         for name, motion in self.motions.items():
             if motion.free:
                 fix = "give it as a body on a revolute joint"
@@ -290,11 +304,13 @@ class SpecimenCase(_InEnvironments):
         Of the scenario; results of the whole case have it.
     sensors : mapping of str to Sensor
         Accelerometers by the names of points, whose readings results have.
+    read_from : SpecimenScenario, optional
+        The scenario that these are the objects of.
 
     Attributes
     ----------
     scenario : SpecimenScenario or None
-        The scenario that the case was read from; None of one that is made, or changed, in Python.
+        What it was read from; None of a case that is made, or changed, in Python.
 
     Raises
     ------
@@ -317,13 +333,15 @@ class SpecimenCase(_InEnvironments):
     accept: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     provenance: Provenance | None = None
     sensors: Mapping[str, Sensor] = field(default_factory=dict)
+    read_from: InitVar[SpecimenScenario | None] = None
     scenario: SpecimenScenario | None = field(default=None, init=False, repr=False, compare=False)
     no_beam = (
         "is no beam",
         "ask for run, static, modes, campbell, critical-speed, linearize, plan or fit, or sweep these; or give a beam",
     )
 
-    def __post_init__(self) -> None:
+    def __post_init__(self, read_from: AnyScenario | None) -> None:
+        super().__post_init__(read_from)
         for name, motion in self.motions.items():
             if motion.free and not self.structure.size:
                 fix = "give the hub a rate: the motion of a rigid specimen follows from it alone"

@@ -92,11 +92,11 @@ def build(scenario: AnyScenario, *, ahead: bool = False) -> AnyCase:
         accept=accept,
         provenance=provenance(scenario),
         sensors=sensors,
+        read_from=scenario,
         **structure,
     )
     if case is None:
         raise placed(scenario, parts.errors)
-    object.__setattr__(case, "scenario", scenario)
     return case
 
 
