@@ -14,6 +14,7 @@ from gbeam.questions import QUESTIONS, Needs
 
 SATELLITE = "examples/satellite_two_panels.toml"
 SHORT = ["response.duration=0.5 s", "response.step=5 ms", "response.estimate=false"]
+SWING = gb.SmoothStep(0.1, 0.5)
 
 
 def made() -> gb.SystemCase:
@@ -88,6 +89,38 @@ def test_a_fit_finds_what_was_measured(modal: bool, tmp_path: Path, monkeypatch:
         monkeypatch.setattr(f"gbeam.{judge}", None)
     fit = gb.fit(gb.read_scenario(SATELLITE, SHORT), data, [path])
     assert fit.values[0] == pytest.approx(true, rel=1e-4) and fit.before[0] == 100.0
+
+
+def swung(clamp: float = 900.0, rate: Any = SWING) -> gb.SystemCase:
+    """A panel in a springy clamp on a wheel that is brought to a rate."""
+    section, metal = gb.Section.rectangle(width=0.004, thickness=0.03), gb.Material(2700.0, 70e9)
+    panel = gb.assemble(gb.Beam(1.0, section, metal, damping_ratio=0.001), "FOAM", y=2)
+    joints = {
+        "axis": gb.Joint("revolute", "wheel", axes=[(0, 0, 1)], rate=rate),
+        "clamp": gb.Joint("fixed", "panel", on="wheel.root", stiffness={"rz": clamp}),
+    }
+    system = gb.System({"wheel": gb.RigidBody(1.0, (1.0, 1.0, 1.0)), "panel": panel}, joints)
+    return gb.SystemCase("swung", system, {}, gb.ResponseSettings(1.5))
+
+
+def test_a_fit_takes_a_system_made_in_python(tmp_path: Path) -> None:
+    taps, frequency = tmp_path / "taps.csv", gb.modes(swung(900.0).system).frequency[:2]
+    np.savetxt(taps, np.stack([[1, 2], frequency], 1), delimiter=",", header="mode,frequency", comments="")
+    fit = gb.fit(swung(1000.0), taps, ["joints.clamp.stiffness.rz"])
+    assert fit.before == (1000.0,) and fit.values[0] == pytest.approx(900.0, rel=1e-6)
+    with pytest.raises(gb.InputError, match="names 2 values for 2 data"):
+        gb.fit(swung(), taps, ["joints.clamp.stiffness.rz", "bodies.panel.length"])
+
+
+def test_a_command_is_shaped_for_a_joint_of_a_system_made_in_python() -> None:
+    command = gb.shape_hub_command(swung())
+    assert (command.motion, command.goal, command.duration) == ("axis.angle", SWING.level, 0.5)
+    profile = gb.SplineProfile(command.duration, command.coefficients)
+    turned = [gb.study(swung(rate=rate)).responses["ground"] for rate in (SWING, profile)]
+    plain, shaped = (np.ptp(each.signal("clamp.rz")[each.time > 0.5]) for each in turned)
+    assert shaped < 0.01 * plain
+    with pytest.raises(gb.InputError, match=r"joint is .axis.; choose one of axis\.angle"):
+        gb.shape_hub_command(swung(), angle=0.1, joint="axis")
 
 
 def test_errors_that_no_figure_needs_are_not_computed() -> None:
