@@ -152,7 +152,9 @@ def test_two_controllers_at_one_rate_and_what_is_refused() -> None:
     np.testing.assert_allclose(two.eigenvalue[:6], one.eigenvalue[:6], rtol=1e-7)
     assert [each.drive for each in two.margins] == ["c0: axis.angle", "c1: axis.angle"]
     refused: list[tuple[Any, str, str]] = [
-        ([gb.Feedback(lambda t, y: -y[:1], NAMES, ["axis.angle"], SAMPLE)], "closed", "is a function"),
+        ([gb.Feedback(lambda t, y: -np.sign(y[:1]), NAMES, ["axis.angle"], SAMPLE)], "closed", "in proportion"),
+        ([gb.Feedback(lambda t, y: np.abs(y[:1]), NAMES, ["axis.angle"], SAMPLE)], "closed", "in proportion"),
+        ([gb.Feedback(lambda t, y: [2.0], NAMES, ["axis.angle"], SAMPLE)], "closed", "asks for 2 N m of axis.angle"),
         ([gb.Feedback(half, NAMES, ["axis.angle"], s) for s in (0.01, 0.0101234)], "closed", "beside 0.01 s"),
         ([gb.Feedback(half, NAMES, ["axis.angle"], s) for s in (0.01, 10.0)], "closed", "at most 1,000 samples"),
         ([], "closed", "'closed'"),
@@ -160,3 +162,52 @@ def test_two_controllers_at_one_rate_and_what_is_refused() -> None:
     for laws, loop, problem in refused:
         with pytest.raises(gb.InputError, match=problem):
             gb.linearize(satellite(*laws), loop=loop)
+
+
+def test_a_function_is_linearised_where_it_asks_for_nothing() -> None:
+    """With a state as its matrices; curved by its slope where the system rests, or else without an error."""
+    a, b, c, d = lead()
+    a, b, c, d = gb.Feedback((a, b, c, d), NAMES, ["axis.angle"], SAMPLE).law
+
+    def function(t: float, y: Any, state: Any) -> Any:
+        return np.sinh(c @ state + d @ y), a @ state + b @ np.tan(y)
+
+    def curved(t: float, y: Any) -> Any:
+        return -50.0 * np.tanh(2 * y[:1]) - 150.0 * y[1:]
+
+    def aside(t: float, y: Any) -> Any:
+        return curved(t, y - (0.3, 0.0))
+
+    options: Any = {"measure": NAMES, "drive": ["axis.angle"], "sample": SAMPLE, "delay": 0.5 * SAMPLE}
+    linear = gb.Feedback(gains([[-100.0, -150.0]]), **options)
+    referred = gb.Feedback(lambda t, e: -curved(t, e), reference=[0.3, 0.0], **options)
+    pairs = [
+        (gb.Feedback(function, state=np.zeros(2), **options), gb.Feedback(lead(), **options), 0.0),
+        (gb.Feedback(curved, **options), linear, -0.5),
+        (gb.Feedback(aside, **options), linear, 0.3),
+        (referred, linear, 0.3),
+        (referred, linear, 0.0),
+    ]
+    for law, matrices, angle in pairs:
+        one, other = (gb.linearize(satellite(each, angle=angle), loop="closed") for each in (law, matrices))
+        np.testing.assert_allclose(one.a, other.a, rtol=0, atol=1e-7 * np.abs(other.a).max())
+        assert one.margins[0].gain == pytest.approx(other.margins[0].gain, rel=1e-6)
+
+
+def test_a_run_under_curved_laws_of_two_rates_decays_by_the_poles() -> None:
+    def quick(t: float, y: Any) -> Any:
+        return -1.8 * np.tanh(y[:1]) - 5.0 * np.sinh(y[1:])
+
+    def slow(t: float, y: Any, state: Any) -> Any:
+        return -0.2 * y[:1] - state, state + 0.05 * (np.sin(y[1:]) - state)
+
+    controllers = {
+        "quick": gb.Feedback(quick, NAMES, ["axis.angle"], 0.05, 0.02),
+        "slow": gb.Feedback(slow, NAMES, ["axis.angle"], 0.07, 0.105, state=np.zeros(1)),
+    }
+    axis = gb.Joint("revolute", "hub", axes=[(0, 0, 1)], initial_rate=1e-4)
+    system = gb.System({"hub": gb.RigidBody(1.0, (2.0, 2.0, 2.0))}, {"axis": axis}, controllers=controllers)
+    response = gb.simulate(system, initial="undeformed", duration=21.0, step=0.05, estimate=False)
+    late = np.interp([20.3, 20.65, 21.0], response.time, response.coordinate("axis.angle"))
+    slowest = np.exp(0.35 * gb.linearize(system, loop="closed").eigenvalue[0])
+    np.testing.assert_allclose(late[1:] / late[:-1], slowest, rtol=1e-6)

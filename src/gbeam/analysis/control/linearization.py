@@ -311,7 +311,8 @@ def linearize(
         Of a system with controllers: ``open``, the plant alone; ``closed``, all of it from sample to sample, of several
         sample times over their common period, with its references as further inputs and the margins at every drive
         that is sampled once in it; or the name of a controller and such a drive, ``pointing: axis.angle``: the loop
-        that is cut there, with negative feedback.
+        that is cut there, with negative feedback. Laws that are functions have their slopes where they ask for nothing:
+        where the system rests, or else at no error.
     name : str
         Of the motion.
 
@@ -327,7 +328,8 @@ def linearize(
     ------
     InputError
         If the beam has no damping ratio, a gauge lies off the beam or at no point of a mesh, a rate is asked of a
-        motion without a hub, or a time of a hub that swings.
+        motion without a hub, or a time of a hub that swings; of a loop, if its controllers have no common period, or a
+        law has no slope, such as a relay.
     ComputationError
         If there is no relative equilibrium.
 

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
+from gbeam.analysis.system.linear_laws import linear_law
 from gbeam.errors import InputError
 from gbeam.mechanics.tree.control import Feedback, signal_names
 from gbeam.results.state_space import Margin, Signal, StateSpace
@@ -46,14 +47,11 @@ class Channel(NamedTuple):
     part: Fraction  # of a step, the rest of it
 
 
-def channels_of(controllers: dict[str, Feedback]) -> tuple[float, list[Channel]]:
-    """The common period, s, and the controllers of a system, drives and measurements one after the other."""
+def channels_of(plant: StateSpace, controllers: dict[str, Feedback]) -> tuple[float, list[Channel]]:
+    """The common period, s, and the controllers of a plant, whose drives and measurements come one after the other."""
     unit = next(iter(controllers.values())).sample
     ratios, common = list[Fraction](), Fraction(1)
     for name, each in controllers.items():
-        if not isinstance(each.law, tuple):
-            fix = "give matrices, or a system of python-control"
-            raise InputError(f"controllers.{name}.law", "is a function, which has no transfer function", fix)
         ratios.append(Fraction(each.sample / unit).limit_denominator(SAMPLES))
         common = Fraction(math.lcm(*(r.numerator for r in ratios)), math.gcd(*(r.denominator for r in ratios)))
         near = math.isclose(ratios[-1], each.sample / unit, rel_tol=1e-9)
@@ -61,12 +59,13 @@ def channels_of(controllers: dict[str, Feedback]) -> tuple[float, list[Channel]]
             problem = f"is {each.sample:.10g} s beside {unit:.10g} s: no common period has at most {SAMPLES:,} samples"
             raise InputError(f"controllers.{name}.sample", problem, "choose times in the ratio of small whole numbers")
     channels, drive, measure = [], 0, 0
-    for each, ratio in zip(controllers.values(), ratios, strict=True):
+    for (name, each), ratio in zip(controllers.items(), ratios, strict=True):
         late, part = divmod(Fraction(each.delay / each.sample).limit_denominator(FINEST), 1)
         ends = drive + len(each.drive), measure + len(each.measure)
         sign = 1.0 if each.reference is None else -1.0
         places = slice(drive, ends[0]), slice(measure, ends[1])
-        channels.append(Channel(each.law, *places, sign, int(common / ratio), late, part))
+        law = linear_law(name, each, plant.time, plant.output[places[1]], plant.inputs[places[0]])
+        channels.append(Channel(law, *places, sign, int(common / ratio), late, part))
         drive, measure = ends
     return unit * float(common), channels
 
@@ -167,7 +166,8 @@ def margin_of(name: str, loop: tuple[Floats, Floats, Floats, Floats], step: floa
               if (each := response_at(loop, step, x)[0]).real < 0]  # fmt: skip
     if gains[-1].real < 0:  # real at Nyquist's frequency
         turned.append((highest, -1 / gains[-1].real))
-    ones = crossings(np.log(np.abs(gains)), lambda g: math.log(abs(g)))
+    with np.errstate(divide="ignore"):  # where there is no gain at all
+        ones = crossings(np.log(np.abs(gains)), lambda g: math.log(abs(g)))
     phases = [(x, float(np.angle(-response_at(loop, step, x)[0]))) for x in ones]
     above = min(((k, x) for x, k in turned if k > 1), default=(math.inf, math.nan))
     below = max((k for _, k in turned if k < 1), default=0.0)
@@ -189,7 +189,7 @@ def closed_loop(
     plant: StateSpace, controllers: dict[str, Feedback], outputs: Sequence[int], cut: str | None
 ) -> StateSpace:
     """A plant and its controllers in steps: closed, or cut at a drive, with the margins at every drive."""
-    step, channels = channels_of(controllers)
+    step, channels = channels_of(plant, controllers)
     drives, measured = signal_names(controllers, "drive"), signal_names(controllers, "measure")
     aims = [Signal(name, signal.unit) for name, signal in zip(measured, plant.outputs, strict=False)]
     m, over, period = len(drives), over_parts(plant, step), f"the common period of {1e3 * step:.4g} ms"
@@ -210,13 +210,16 @@ def closed_loop(
     size = float(np.abs(np.linalg.eigvals(loop.a)).max())
     if cut is None and size > 1 + ROUNDING:
         warnings += (f"the closed loop is not stable: it grows with {math.log(size) / step:.4g} 1/s",)
-    names = [f"{name}.state_{i + 1}" for name, one in controllers.items() for i in range(len(one.law[0]))]
+    names = [
+        f"{name}.state_{i + 1}" for name, one in zip(controllers, channels, strict=True) for i in range(len(one.law[0]))
+    ]
     late = [
         f"{drives[i]}, {j + 1} before"
         for each in channels
         for i in range(each.driven.start, each.driven.stop)
         for j in range(each.late + 1)
     ]
+    begun = [np.ravel(one.start) for one in controllers.values() if one.stateful]
     states = plant.states + tuple(Signal(each, "") for each in (*names, *late))
     chosen = list(outputs)
     if cut is None:
@@ -236,7 +239,7 @@ def closed_loop(
         states=states,
         inputs=inputs,
         outputs=signals,
-        state=np.concatenate([plant.state, np.zeros(len(states) - len(plant.states))]),
+        state=np.concatenate([plant.state, *begun, np.zeros(len(late))]),
         input=np.zeros(len(inputs)),
         output=value,
         model=plant.model,
