@@ -226,7 +226,8 @@ def modes_about(mass: np.ndarray, stiffness: np.ndarray) -> np.ndarray:
     """Squares of the frequencies by which three samples of equations are followed."""
     time = 0.1 * np.arange(len(stiffness))
     masses = np.broadcast_to(mass, stiffness.shape)
-    return Departures(time, time, stiffness, 0 * stiffness, masses, np.ones(len(mass), dtype=bool)).vibration.square
+    elastic = np.ones(len(mass), dtype=bool)
+    return Departures(time, time, stiffness, 0 * stiffness, masses, elastic, ~elastic).vibration.square
 
 
 def test_modes_of_a_beam_that_is_unstable_on_the_average_are_those_of_its_start() -> None:

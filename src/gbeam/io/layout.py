@@ -206,11 +206,16 @@ def _attribute(value: Any) -> Any:
 
 
 def _columns(every: list[Group], dims: tuple[str, ...]) -> Group:
-    """One variable of each name along a further dimension; of words, what were attributes."""
+    """One variable of each name along a further dimension, NaN or empty where one has none; of words, what were
+    attributes.
+    """
     group = Group()
-    for name, first in every[0].variables.items() if every else ():
-        values = np.stack([each.variables[name].values for each in every])
-        units = {each.variables[name].attrs.get("units") for each in every}
+    for name in dict.fromkeys(name for each in every for name in each.variables):
+        some = [each.variables.get(name) for each in every]
+        first, *others = (each for each in some if each is not None)
+        none = np.full_like(first.values, "" if np.asarray(first.values).dtype.kind == "U" else np.nan)
+        values = np.stack([none if each is None else each.values for each in some])
+        units = {each.attrs.get("units") for each in (first, *others)}
         mixed = {"units": "mixed"} if len(units) > 1 else {}
         group.variables[name] = Variable((*dims, *first.dims), values, first.attrs | mixed)
     if every and "" in every[0].coordinates:

@@ -9,11 +9,24 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 HELD = 1e-12  # of the largest stiffness: a smaller one holds nothing
+SAME = 1e-8  # of what a rotation changes where nothing is accelerated anew: less is rounding
 
 
 def loose(stiffness: Floats, velocity: Floats) -> NDArray[np.bool_]:
     """Flags of the coordinates on which, and on whose rates, no force depends, by K and C (n, n)."""
     return np.asarray(~(stiffness.any(axis=0) | velocity.any(axis=0)))
+
+
+def turning_on(k: Floats, mass: Floats, faster: Floats, which: NDArray[np.bool_], turn: NDArray[np.bool_]) -> bool:
+    """True if a rotation, by its three flags, changes nothing but accelerations `faster` (n,) of coordinates `which`,
+    and its own as they turn on with it; where these are in balance, by K and M (n, n).
+    """
+    (held,) = carried(mass, which, k)
+    size = np.abs(k) + np.abs(k - held)
+    alpha = faster[turn]
+    moved = np.linalg.solve(mass, k)[turn][:, turn] - np.cross(alpha, np.eye(3)).T
+    alone = np.abs(held[:, turn]).max() <= SAME * size[:, turn].max()
+    return bool(alone and np.abs(moved).max() <= SAME * (1.0 + np.abs(alpha).max()))
 
 
 def carried(mass: Floats, which: NDArray[np.bool_], *forces: Floats) -> tuple[Floats, ...]:
@@ -32,5 +45,6 @@ def pulled(residual: Floats, mass: Floats, which: NDArray[np.bool_]) -> Floats:
 def balanced(residual: Floats, stiffness: Floats, mass: Floats, which: NDArray[np.bool_]) -> tuple[Floats, Floats]:
     """Displacements and accelerations (n,) that answer a residual (n,): accelerations of some coordinates."""
     left, k = carried(mass, which, residual, stiffness)
+    k[:, which] = 0.0  # of slides already; a rotation that changes nothing else keeps its angle
     change: Any = np.linalg.lstsq(k, -left, rcond=HELD)[0]
     return change, pulled(residual + stiffness @ change, mass, which)

@@ -29,7 +29,7 @@ from gbeam.report.blocks import (
 from gbeam.report.loads import errors, parts_tables, resting_loads
 from gbeam.report.words import errors_in_words, number, percent, tidy
 from gbeam.results.equilibrium import CriticalMap
-from gbeam.results.errors import along
+from gbeam.results.errors import Accelerated, along
 from gbeam.results.state_space import ACCURATE
 
 RESTING = 1e-9  # rad/s: a smaller rate of a base is a profile's rounding
@@ -91,9 +91,13 @@ def modes_table(facts: Facts, more: Mapping[str, Column]) -> Block:
 
 def evenly(facts: Facts) -> Blocks:
     """Say what a steady state accelerates."""
-    each = ", ".join(f"{one['coordinate']} by {one['acceleration']:.4g} m/s²" for one in facts.get("accelerated", ()))
-    if each:
-        yield Sentence(f"accelerated evenly, in axes of the ground: {each}; all else rests")
+    every = [Accelerated(**one) for one in facts.get("accelerated", ())]
+    slides, turns = (
+        ", ".join(str(one) for one in every if math.isnan(one.acceleration) == turn) for turn in (False, True)
+    )
+    parts = [f"in axes of the ground: {slides}"] * bool(slides) + [f"about axes of its root: {turns}"] * bool(turns)
+    if parts:
+        yield Sentence(f"accelerated evenly, {', '.join(parts)}; all else rests")
 
 
 def growing(facts: Facts, which: Callable[[Facts], str]) -> Block:

@@ -215,12 +215,22 @@ class Instability(Part):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Accelerated(Part):
-    """A coordinate that a steady state accelerates evenly: the strains are constant in axes that move with it."""
+    """A coordinate that a steady state accelerates evenly: the strains are constant in axes that move with it.
+
+    Of a body that is turned ever faster they are those of the instant at which it begins to turn.
+    """
 
     coordinate: str = labels("name of the coordinate", key="")
-    acceleration: float = quantity("m/s^2", "acceleration, of a free joint in axes of the ground")
+    acceleration: float = quantity(
+        "m/s^2", "acceleration, of a free joint in axes of the ground", optional=True, default=math.nan
+    )
+    angular_acceleration: float = quantity(
+        "rad/s^2", "angular acceleration about an axis of the body's root", optional=True, default=math.nan
+    )
 
     def __str__(self) -> str:
+        if math.isnan(self.acceleration):
+            return f"{self.coordinate} by {self.angular_acceleration:.4g} rad/s²"
         return f"{self.coordinate} by {self.acceleration:.4g} m/s²"
 
 

@@ -27,6 +27,7 @@ State = tuple[Floats, Floats]  # coordinates and rates, (n,) each
 PLACE: Quantity = ("", "place")
 LOOKED = 61  # times at which M, C and K are found; between them they are straight lines
 RESOLVED = 2.5  # rad between two samples: a mode that turns faster follows statically
+PARAMETERS = tuple(f".e{k}" for k in range(4))  # ends of the names of a ball's unknowns
 AT_ONCE = 20_000  # numbers of a state's frames computed together, times coordinates
 
 
@@ -80,7 +81,7 @@ class Vibration(NamedTuple):
 @dataclass(frozen=True, eq=False)
 class Departures:
     """Small departures from a solution at equal intervals of time: K, C and M (k, n, n) at the times `at` that are
-    looked at, and which of the unknowns are of bodies (n,).
+    looked at, and which of the unknowns are of bodies, and of balls that a state of rest turns ever faster (n,).
     """
 
     time: Floats
@@ -89,6 +90,7 @@ class Departures:
     c: Floats
     m: Floats
     elastic: NDArray[np.bool_]
+    turned: NDArray[np.bool_]
 
     @property
     def interval(self) -> float:
@@ -136,7 +138,8 @@ class Departures:
     def answer(self, residual: Floats, start: State | None = None) -> Correction:
         """The response to −R, (t, n), from a state, or from where bodies rest; at one time at rest."""
         if len(self.time) == 1:
-            displaced, faster = balanced(residual[0], self.k[0], self.m[0], loose(self.k[0], self.c[0]))
+            which = loose(self.k[0], self.c[0]) | self.turned
+            displaced, faster = balanced(residual[0], self.k[0], self.m[0], which)
             return Correction(displaced[None], np.zeros_like(residual), faster[None])
         square, modes, kept = self.vibration
         phi, stiff = modes[:, kept], modes[:, ~kept]
@@ -210,7 +213,10 @@ class Within(NamedTuple):
         at = self.of.at(chosen)
         elastic = np.array([".q" in name for name in self.more.names], dtype=bool)
         k, c, m = slopes(more.residual, at.q, at.qd, at.qdd, more.inputs(chosen))
-        return Departures(self.of.time, at.time, k, c, m, elastic)
+        balls = [name.rpartition(".")[0] if name.endswith(PARAMETERS) else "" for name in self.more.names]
+        faster = {ball for ball, each in zip(balls, at.qdd.any(axis=0), strict=True) if ball and each}
+        turned = np.array([ball in faster for ball in balls], dtype=bool)
+        return Departures(self.of.time, at.time, k, c, m, elastic, turned)
 
     def moved(self, by: Correction) -> Reading:
         """Read the solution with a correction added."""

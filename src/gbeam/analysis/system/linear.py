@@ -212,7 +212,8 @@ def linearize_system(
     for each in wanted:
         choice("outputs", each, units)
     read = partial(read_signals, system, local.tree, wanted, strained=strained)
-    values, out = _outputs(local, read)
+    values, (by_y, by_yd, by_ydd) = _outputs(local, read)
+    out = by_y - by_ydd @ state.follows, by_yd, by_ydd
     b, direct = _inputs(system, local, state.names, [every[each] for each in driven], read)
     driving = tuple(Signal(each, every[each].unit) for each in driven)
     a, b, c, d = state.linear._replace(inputs=b).state_space(*out, direct)

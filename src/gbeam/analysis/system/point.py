@@ -18,7 +18,7 @@ from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.signals import local_names
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.balance import HELD, balanced, carried, loose, pulled
+from gbeam.numerics.balance import HELD, balanced, carried, loose, pulled, turning_on
 
 Array = Any
 Floats = NDArray[np.float64]
@@ -152,12 +152,33 @@ def started_traced(system: System, motion: Motion | None, time: float, initial: 
     return y + elastic * root(left, jnp.zeros(len(free))), yd
 
 
+def adrift(point: Point) -> NDArray[np.bool_]:
+    """Flags of the coordinates that are accelerated at rest: slides from the ground on, and balls after them with
+    which all turns on.
+    """
+    tree, turning = point.tree, point.tree.turning
+    which = tree.sliding
+    if not which.any() and not turning:
+        return which
+    left, k, c, m = point.slopes()
+    which = which & loose(k, c)
+    if not turning:
+        return which
+    every = np.any([which, *turning], axis=0)
+    local = replace(point, ydd=point.ydd + pulled(left, m, every)).local
+    _, k, c, m = local.slopes()
+    turns = local.tree.turning
+    every = np.any([local.tree.sliding & loose(k, c), *turns], axis=0)
+    free = [not c[:, turn].any() and turning_on(k, m, local.ydd, every, turn) for turn in turns]
+    return np.any([which, *(turn for turn, each in zip(turning, free, strict=True) if each)], axis=0)
+
+
 def _newton(point: Point, left_over: Floats) -> tuple[Point, tuple[Floats, ...], Floats, bool]:
     """The point at rest where so much is out of balance, with K, C and M, the last change, and if it is none."""
-    before, tree, sliding = 0.0, point.tree, point.tree.sliding
-    left, k, c, m = point.slopes() if sliding.any() else (left_over, *np.zeros((3, len(sliding), len(sliding))))
-    which = sliding & loose(k, c)
-    point = replace(point, ydd=point.ydd + pulled(left - left_over, m, which))
+    before, tree, which = 0.0, point.tree, adrift(point)
+    if which.any():
+        left, _, _, m = point.slopes()
+        point = replace(point, ydd=point.ydd + pulled(left - left_over, m, which))
     for _ in range(ITERATIONS):
         left, k, c, m = point.slopes()
         change, _ = balanced(left - left_over, k, m, which)
@@ -249,8 +270,10 @@ def _steady(system: System, point: Point, slope: Sequence[Floats]) -> Point:
     """
     tree, (k, c, m) = point.tree, slope
     refuse_massless(system, m, tree.free)
-    which = tree.sliding & loose(k, c)
-    left, k = carried(m, which, tree(point.y, point.yd, point.ydd, point.inputs), k)
+    (left,) = carried(m, tree.sliding & loose(k, c), tree(point.y, point.yd, point.ydd, point.inputs))
+    which = adrift(point)
+    (k,) = carried(m, which, k)
+    k[:, which] = 0.0
     # By forces alone that no stiffness balances: the rounding of a stiff body's is more than gravity.
     ways, sizes, _ = np.linalg.svd(k)
     ways = ways[:, sizes <= HELD * sizes.max(initial=0.0)]
@@ -258,7 +281,11 @@ def _steady(system: System, point: Point, slope: Sequence[Floats]) -> Point:
     rounding = np.abs(yields) @ np.abs(k).sum(axis=1)
     if np.abs(yields @ left).max(initial=0.0) > NONE * max(1.0, 1e-6 * rounding.max(initial=0.0)):
         raise ComputationError("no equilibrium", _unheld(system, point.local))
-    return replace(point, ydd=np.where(np.abs(point.ydd) > NONE, point.ydd, 0.0))
+    # Of a ball all or none: what turns it about one axis is not the rounding of another.
+    faster = np.abs(point.ydd) > NONE
+    for turn in tree.turning:
+        faster |= turn & faster[turn].any()
+    return replace(point, ydd=np.where(faster, point.ydd, 0.0))
 
 
 def _unheld(system: System, local: Point) -> str:

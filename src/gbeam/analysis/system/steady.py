@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.analysis.system.point import Point, rested, rested_together
+from gbeam.analysis.system.point import NONE, Point, adrift, rested, rested_together
 from gbeam.analysis.system.richer import stiffness_left_out
 from gbeam.constants import BY_STRAINS
 from gbeam.errors import ComputationError, InputError
@@ -23,7 +23,7 @@ from gbeam.mechanics.tree.steps import turned_on
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.balance import balanced, carried, loose
+from gbeam.numerics.balance import balanced, carried
 from gbeam.numerics.eigen import (
     RIGID,
     Linear,
@@ -127,7 +127,7 @@ class SteadySystem(Steady):
     def warnings(self) -> tuple[str, ...]:
         """Doubts about the bodies' models, and what they leave out in this state."""
         left_out = stiffness_left_out(self.system, self.point.standing(), self.point.driven)
-        return self.system.warnings + left_out + self._held_spin
+        return self.system.warnings + left_out + self._held_spin + self._spun_up
 
     @property
     def _held_spin(self) -> tuple[str, ...]:
@@ -136,8 +136,9 @@ class SteadySystem(Steady):
         rates = self.system.tree.local(*self.system.start, 0 * self.system.start[0])[2][tree.free]
         if self.point.yd.any() or not rates.any():
             return ()
-        k, c, m = self.local.slopes()[1:]
-        (held,) = carried(m, tree.sliding & loose(k, c), k)
+        k, _, m = self.local.slopes()[1:]
+        (held,) = carried(m, self.adrift, k)
+        held[:, self.adrift] = 0.0
         goes_on = np.abs(held).max(axis=0) <= STILL * np.abs(held).max() if held.any() else np.ones(len(m), dtype=bool)
         pairs = zip(names, goes_on & (rates != 0), strict=True)
         turning = dict.fromkeys(
@@ -145,6 +146,28 @@ class SteadySystem(Steady):
         )
         words = f'{" and ".join(turning)} did not turn, as at the start: gb.linearize(at="start") is about that motion'
         return (f"as if {words}",) if turning else ()
+
+    @property
+    def _spun_up(self) -> tuple[str, ...]:
+        """Warnings of joints that begin to turn ever faster, by which moment, and for how long they hardly turn."""
+        if self.point.yd.any():
+            return ()
+        said, tree, names = [], self.local.tree, self.names
+        turns = [each for each in tree.turning if self.follows[each].any()]
+        mass = self.local.slopes()[3] if turns else np.zeros((0, 0))
+        for turn in turns:
+            alpha, slides = self.local.ydd[turn], tree.sliding & self.adrift
+            moment = carried(mass, slides, mass)[0][turn][:, turn] @ alpha
+            size, rate = np.linalg.norm(moment), np.linalg.norm(alpha)
+            about = ", ".join(f"{each + 0.0:.3g}" for each in np.round(moment / size, 3))
+            joint = names[int(np.flatnonzero(turn)[0])].rpartition(".")[0]
+            where = f"({about}) of {self.system.joints[joint].body}.root"
+            said.append(
+                f"{joint} begins to turn ever faster: {size:.4g} N m about {where} accelerate it by {rate:.4g} rad/s², "
+                f"and this is the state at that instant, which lasts while it has hardly turned: by 1° in "
+                f"{np.sqrt(2 * np.deg2rad(1) / rate):.3g} s"
+            )
+        return tuple(said)
 
     @property
     def q(self) -> Floats:
@@ -162,7 +185,24 @@ class SteadySystem(Steady):
         k, c, m = self.known or self.local.slopes()[1:]
         if not positive_definite(m):
             raise ComputationError(MASSLESS, massless(self.system, self.names, self.local.y))
-        return Linear(m, c, k, np.zeros((len(m), 0)))
+        return Linear(m, c, k - m @ self.follows, np.zeros((len(m), 0)))
+
+    @cached_property
+    def adrift(self) -> NDArray[np.bool_]:
+        """Flags of the local coordinates that are accelerated, or would be."""
+        kept = [not self.system.coordinates[k].endswith(".e0") for k in self.point.tree.free]
+        return adrift(self.point)[kept]
+
+    @cached_property
+    def follows(self) -> Floats:
+        """Derivative of the accelerations ÿ with respect to y, signs turned, by which they turn on with the body that
+        they turn ever faster.
+        """
+        by = np.zeros((len(self.local.y), len(self.local.y)))
+        for turn in self.local.tree.turning if not self.point.yd.any() else ():
+            if self.adrift[turn].all():
+                by[np.ix_(turn, turn)] = np.cross(self.local.ydd[turn], np.eye(3)).T
+        return by
 
     @property
     def coordinates(self) -> Floats:
@@ -180,10 +220,15 @@ class SteadySystem(Steady):
     @property
     def accelerated(self) -> tuple[Accelerated, ...]:
         """Coordinates that are accelerated evenly; none where others are accelerated too."""
-        ydd = self.local.ydd
-        pairs = zip(self.names, ydd, strict=True)
-        steadily = not ydd[~self.local.tree.sliding].any()
-        return tuple(Accelerated(name, float(each)) for name, each in pairs if each and steadily)
+        ydd, slides = self.local.ydd, self.local.tree.sliding
+        if not ydd.any() or ydd[~(slides if self.point.yd.any() else slides | self.adrift)].any():
+            return ()
+        pairs = zip(self.names, ydd.tolist(), slides, strict=True)
+        return tuple(
+            Accelerated(name, each) if slide else Accelerated(name, angular_acceleration=each)
+            for name, each, slide in pairs
+            if abs(each) > NONE
+        )
 
     @property
     def frames(self) -> list[Frame]:
@@ -252,10 +297,9 @@ class SteadySystem(Steady):
         rate = np.sqrt(np.abs(square))
         rate = np.maximum(rate, 1e-6 * rate.max(initial=0.0) or 1.0)
         left, *at = self._slopes_after(0.0)
-        which = self.local.tree.sliding & loose(*at[:2])
         for turn in TURNS:
             beside, *other = self._slopes_after(turn)
-            moved = np.append(*balanced(beside - left, at[0], at[2], which))
+            moved = np.append(*balanced(beside - left, at[0], at[2], self.adrift))
             # K, C and M in modes of unit mass, over their frequencies.
             parts = zip(at, other, (1.0, 0.5, 0.0), strict=True)
             changes = [modes.T @ (b - a) @ modes / np.outer(rate, rate) ** power for a, b, power in parts]

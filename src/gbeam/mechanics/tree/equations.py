@@ -13,7 +13,7 @@ from gbeam.arrays.namespace import concatenated, namespace
 from gbeam.arrays.tree import record, static
 from gbeam.mechanics.tree.bodies import Acting, Body
 from gbeam.mechanics.tree.frames import Frame, Wrench, cross, turned, turned_back
-from gbeam.mechanics.tree.steps import Placed, Slide, Step
+from gbeam.mechanics.tree.steps import Ball, Placed, Slide, Step, Turning
 
 Array = Any
 
@@ -212,6 +212,19 @@ class Tree:
             flags += [False] * link.body.size
             straight[body] = even and not link.body.size
         return np.array(flags, dtype=bool)[self.free]
+
+    @property
+    def turning(self) -> list[Array]:
+        """Flags of the unknown coordinates of each ball that follows such slides, or the ground, and meets no stop."""
+        flags, straight, first = list[Array](), {-1: True}, 0
+        for body, link in enumerate(self.links):
+            even = straight[link.parent]
+            for step in link.steps:
+                if even and isinstance(step, Ball | Turning) and not link.holder.stop.any():
+                    flags.append((first <= self.free) & (self.free < first + step.size))
+                even, first = even and isinstance(step, Slide | Placed), first + step.size
+            straight[body], first = even and not link.body.size, first + link.body.size
+        return [each for each in flags if each.any()]
 
     def parted(self, y: Array) -> list[list[Array]]:
         """Coordinates of each link: of each step of its joint, then of its body."""
