@@ -284,9 +284,9 @@ def _carried(name: str, table: Carried) -> RigidBody:
 
 
 def _material(parts: Collector, where: str, table: Any) -> Any:
-    from gbeam.structure.material import Material, Orthotropic
+    from gbeam.structure import material
 
-    kind = Orthotropic if isinstance(table, Orthotropic) else Material
+    kind = material.Orthotropic if isinstance(table, Orthotropic) else material.Material
     return parts.attempt(where, kind, **table.model_dump(exclude_none=True))
 
 
