@@ -213,7 +213,7 @@ def _columns(every: list[Group], dims: tuple[str, ...]) -> Group:
     for name in dict.fromkeys(name for each in every for name in each.variables):
         some = [each.variables.get(name) for each in every]
         first, *others = (each for each in some if each is not None)
-        none = np.full_like(first.values, "" if np.asarray(first.values).dtype.kind == "U" else np.nan)
+        none = np.full(np.shape(first.values), "" if np.asarray(first.values).dtype.kind in "UO" else np.nan)
         values = np.stack([none if each is None else each.values for each in some])
         units = {each.attrs.get("units") for each in (first, *others)}
         mixed = {"units": "mixed"} if len(units) > 1 else {}

@@ -24,7 +24,7 @@ def turning_on(k: Floats, mass: Floats, faster: Floats, which: NDArray[np.bool_]
     (held,) = carried(mass, which, k)
     size = np.abs(k) + np.abs(k - held)
     alpha = faster[turn]
-    moved = np.linalg.solve(mass, k)[turn][:, turn] - np.cross(alpha, np.eye(3)).T
+    moved = pulled(k, mass, which)[turn][:, turn] + np.cross(alpha, np.eye(3)).T
     alone = np.abs(held[:, turn]).max() <= SAME * size[:, turn].max()
     return bool(alone and np.abs(moved).max() <= SAME * (1.0 + np.abs(alpha).max()))
 
@@ -36,7 +36,7 @@ def carried(mass: Floats, which: NDArray[np.bool_], *forces: Floats) -> tuple[Fl
 
 
 def pulled(residual: Floats, mass: Floats, which: NDArray[np.bool_]) -> Floats:
-    """Accelerations (n,) of some coordinates alone, for which nothing of a residual (n,) is left on them."""
+    """Accelerations (n, ...) of some coordinates alone, for which nothing of a residual (n, ...) is left on them."""
     faster = np.zeros_like(residual)
     faster[which] = -np.linalg.pinv(mass[which][:, which]) @ residual[which]
     return faster
