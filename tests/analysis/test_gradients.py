@@ -207,13 +207,14 @@ def by_matrices(at: Values, kind: Any) -> Structure:
     """A beam that couples stretch, twist and bending, with the mass beside its axis and half as much of all at the tip;
     its slices are as thick as "lengthwise" says.
     """
-    xp, turned = namespace(*at.values()), at["turned"]
+    xp = namespace(*at.values())
     coupled = np.zeros((6, 6))
     coupled[4, [0, 3]] = 1000.0, 1.4
     stiffness = xp.diag(xp.stack([at["stretched"], 1e6, 1e6, at["twisted"], at["bent"], 170.0])) + coupled + coupled.T
     arm, each = at["aside"] * np.array([0.0, 2.0, 1.0]), at["mass"] * np.eye(3)
     lever = xp.cross(arm, np.eye(3))  # the rows are c × e, of m [c]×ᵀ
-    about = xp.diag(xp.stack([3 * turned - at.get("lengthwise", 0.0), turned, 2 * turned]))
+    about = at["turned"] * np.array([[3.0, 0.0, 0.0], [0.0, 1.0, 0.3], [0.0, 0.3, 2.0]])
+    about = about - at.get("lengthwise", 0.0) * np.diag([1.0, 0.0, 0.0])
     mass = xp.block([[each, at["mass"] * lever], [at["mass"] * lever.T, about + at["mass"] * lever @ lever.T]])
     both = (xp.stack([matrix, 0.5 * matrix]) for matrix in (stiffness, mass))
     beam = Beam(0.3, Section.of_matrices(*both, stations=[0.0, 0.3]), damping_ratio=0.01, rotary_inertia=True)
