@@ -14,7 +14,7 @@ from gbeam.errors import InputError
 from gbeam.guards.checks import index_of, vector
 from gbeam.results.declared import declared, fact, labels, part, quantity
 from gbeam.results.parts import margin_words, yield_margin
-from gbeam.results.result import Complex, Figured, Floats, Part
+from gbeam.results.result import Complex, Figured, Flags, Floats, Part
 
 UNLIMITED = "at sharp edges and the edges of clamps the stress of an elastic solid has no limit as the mesh gets finer"
 NOT_KNOWN = f"{UNLIMITED}: one mesh does not tell whether the largest is there; give a coarser one beside it"
@@ -189,7 +189,7 @@ class Skin(Part):
     stress: Floats = quantity(
         "Pa", "stress xx, yy, zz, yz, xz, xy at the vertex", "surface_shape vertex stress_component"
     )
-    judged: NDArray[np.bool_] = quantity("", "whether the largest stress counts the vertex", "vertex", note=UNLIMITED)
+    judged: Flags = quantity("", "whether the largest stress counts the vertex", "vertex", note=UNLIMITED)
 
 
 @dataclass(frozen=True, repr=False, eq=False)
