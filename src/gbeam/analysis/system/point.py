@@ -152,16 +152,12 @@ def started_traced(system: System, motion: Motion | None, time: float, initial: 
     return y + elastic * root(left, jnp.zeros(len(free))), yd
 
 
-def adrift(point: Point) -> NDArray[np.bool_]:
-    """Flags of the coordinates that are accelerated at rest: slides from the ground on, and balls after them with
-    which all turns on.
+def adrift(point: Point, left: Floats, slope: Sequence[Floats]) -> NDArray[np.bool_]:
+    """Flags of the coordinates that are accelerated at rest, by the residual, K, C and M there: slides from the ground
+    on, and balls after them with which all turns on.
     """
-    tree, turning = point.tree, point.tree.turning
-    which = tree.sliding
-    if not which.any() and not turning:
-        return which
-    left, k, c, m = point.slopes()
-    which = which & loose(k, c)
+    tree, turning, (k, c, m) = point.tree, point.tree.turning, slope
+    which = np.asarray(tree.sliding & loose(k, c))
     if not turning:
         return which
     every = np.any([which, *turning], axis=0)
@@ -175,10 +171,11 @@ def adrift(point: Point) -> NDArray[np.bool_]:
 
 def _newton(point: Point, left_over: Floats) -> tuple[Point, tuple[Floats, ...], Floats, bool]:
     """The point at rest where so much is out of balance, with K, C and M, the last change, and if it is none."""
-    before, tree, which = 0.0, point.tree, adrift(point)
-    if which.any():
-        left, _, _, m = point.slopes()
-        point = replace(point, ydd=point.ydd + pulled(left - left_over, m, which))
+    before, tree, which = 0.0, point.tree, point.tree.sliding
+    if which.any() or tree.turning:
+        left, *slope = point.slopes()
+        which = adrift(point, left, slope)
+        point = replace(point, ydd=point.ydd + pulled(left - left_over, slope[-1], which))
     for _ in range(ITERATIONS):
         left, k, c, m = point.slopes()
         change, _ = balanced(left - left_over, k, m, which)
@@ -270,10 +267,11 @@ def _steady(system: System, point: Point, slope: Sequence[Floats]) -> Point:
     """
     tree, (k, c, m) = point.tree, slope
     refuse_massless(system, m, tree.free)
-    (left,) = carried(m, tree.sliding & loose(k, c), tree(point.y, point.yd, point.ydd, point.inputs))
-    which = adrift(point)
-    (k,) = carried(m, which, k)
-    k[:, which] = 0.0
+    which, left = tree.sliding & loose(k, c), tree(point.y, point.yd, point.ydd, point.inputs)
+    turned = any(np.abs(point.ydd[turn]).max() > NONE for turn in tree.turning)
+    every = adrift(point, left, slope) if turned else which
+    (left,), (k,) = carried(m, which, left), carried(m, every, k)
+    k[:, every] = 0.0
     # By forces alone that no stiffness balances: the rounding of a stiff body's is more than gravity.
     ways, sizes, _ = np.linalg.svd(k)
     ways = ways[:, sizes <= HELD * sizes.max(initial=0.0)]

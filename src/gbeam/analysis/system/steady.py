@@ -191,7 +191,8 @@ class SteadySystem(Steady):
     def adrift(self) -> NDArray[np.bool_]:
         """Flags of the local coordinates that are accelerated, or would be."""
         kept = [not self.system.coordinates[k].endswith(".e0") for k in self.point.tree.free]
-        return adrift(self.point)[kept]
+        left, *slope = self.point.slopes()
+        return adrift(self.point, left, slope)[kept]
 
     @cached_property
     def follows(self) -> Floats:
@@ -200,7 +201,7 @@ class SteadySystem(Steady):
         """
         by = np.zeros((len(self.local.y), len(self.local.y)))
         for turn in self.local.tree.turning if not self.point.yd.any() else ():
-            if self.adrift[turn].all():
+            if self.local.ydd[turn].any() and self.adrift[turn].all():
                 by[np.ix_(turn, turn)] = np.cross(self.local.ydd[turn], np.eye(3)).T
         return by
 
@@ -221,7 +222,7 @@ class SteadySystem(Steady):
     def accelerated(self) -> tuple[Accelerated, ...]:
         """Coordinates that are accelerated evenly; none where others are accelerated too."""
         ydd, slides = self.local.ydd, self.local.tree.sliding
-        if not ydd.any() or ydd[~(slides if self.point.yd.any() else slides | self.adrift)].any():
+        if ydd[~slides].any() and (self.point.yd.any() or ydd[~(slides | self.adrift)].any()):
             return ()
         pairs = zip(self.names, ydd.tolist(), slides, strict=True)
         return tuple(
