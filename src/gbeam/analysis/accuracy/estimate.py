@@ -84,11 +84,13 @@ NO_MESH = "the mesh is not judged"
 UNKNOWN = "shapes and model are not judged: it is neither a beam, a mesh nor matrices"
 
 
-def negligible(sizes: Mapping[Quantity, float], body: str, length: float) -> set[Quantity]:
-    """Quantities of a body whose largest sizes are rounding, such as the normal stress under a torque alone."""
+def negligible(sizes: Mapping[Quantity, float], body: str, length: float, inertia: float = 0.0) -> set[Quantity]:
+    """Quantities of a body whose largest sizes are rounding, such as the normal stress under a torque alone, or the
+    loads of a root that is free, beside the inertia force of the body, N.
+    """
     least = {
-        "force": sizes[body, "moment"] / length,
-        "moment": sizes[body, "force"] * length,
+        "force": max(sizes[body, "moment"] / length, inertia),
+        "moment": max(sizes[body, "force"], inertia) * length,
         "stress": sizes.get((body, "sheared"), 0.0),
     }
     return {(body, what) for what, each in least.items() if sizes[body, what] <= NOTHING * each}

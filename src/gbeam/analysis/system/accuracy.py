@@ -80,10 +80,12 @@ def system_errors(
     place = computed[PLACE]
     sizes = {key: largest(each) for key, each in computed.items()}
     sizes[PLACE] = float(np.linalg.norm(place - (place[0] if start is None else start), axis=-1).max())
-    nothing = set[Quantity]().union(*(negligible(sizes, name, each.length) for name, each in judged.items()))
+    bases, nothing = bases_of(system, of, inputs, judged), set[Quantity]()
+    for name, each in judged.items():
+        inertia = each.coefficients.rigid[0] * largest(bases[name].a_WO_B)
+        nothing |= negligible(sizes, name, each.length, inertia)
     if unmoved(sizes[PLACE], place):
         nothing.add(PLACE)
-    bases = bases_of(system, of, inputs, judged)
     exact = all(each.richer or each.kind == "exact" for each in judged.values())
     with np.errstate(all="ignore"):
         try:
