@@ -85,9 +85,9 @@ PARTS = {  # of a call, and functions
 LIMITS = {  # of what misses its goal
     "closed loop": "The law is a function of Python, which three corrections call at each sample, one after another: "
     "each gains four digits of what it measures. A fourth, of the motion alone, gives it all twelve.",
-    "slew, FOAM": "A run of 5 ms is 3,700 calls of functions: a third are the steps, two fifths what is read from "
+    "slew, FOAM": "A run of 4 to 5 ms is 3,500 calls of functions: a third are the steps, two fifths what is read from "
     "them, as peaks, the rest what is asked of hub and settings. The goal is met by cases in batches.",
-    "free hub, FOAM": "Nothing is compiled, so first calls take a fifth of a second: seven corrections of a hundred "
+    "free hub, FOAM": "Nothing is compiled, so first calls take a fifth of a second: seven corrections of eighty "
     "steps in four coordinates are six thousand calls of functions, almost half of them around the steps. "
     "Compiled steps met the goal, and their first call took 2.4 to 5.2 s.",
     "free hub, exact": "As of FOAM: more than half of the time are derivatives and corrections of few numbers.",

@@ -26,7 +26,8 @@ from gbeam.results.result import Floats
 
 MAX_STEPS = 4_000_000
 LOADS_STEPS = 50_000  # at most, where it is the loads that need them
-FEW = 5_000, 20_000  # steps, with which a third of the tolerance is enough where the periods ask for more than the last
+MANY = 20_000  # steps: where the periods ask for more, fewer are tried before
+FEW = 5_000, 20_000, 40_000  # steps that are tried, with which a third of the tolerance is enough
 ONE_CORNER = 1e-6  # of the duration: corners nearer to one another are one
 JUMPS = 2, 3, 4, 6, 8, 12, 16  # into how many a step is divided; a check takes four, three or two of the new ones
 BENT = 4  # into how many at most where a law bends, for errors to be seen to fall
@@ -82,7 +83,7 @@ def steps_to_try(
     `corners` gives the times that steps of a length should not pass unseen, s.
     """
     tries = [(step, most)]
-    if settings.step is None and step < settings.duration / FEW[-1]:
+    if settings.step is None and step < settings.duration / MANY:
         for count in FEW[::-1]:
             bends = corners(settings.duration / count)
             few = settings.duration / even_steps(settings.duration / count, bends, settings)
