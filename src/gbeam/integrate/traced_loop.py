@@ -117,7 +117,7 @@ class TracedLoop:
         return jnp.concatenate(parts, axis=1)
 
     def changes(self, of: Any, changed: Any, run: Any, made: Any, remade: Any, samples: list[Samples]) -> _Changes:
-        """How the samples along a run follow changes of residual and drives at the beginnings of steps, and of laws."""
+        """Changes of the samples along a run with those of residual and drives where steps begin, and of laws."""
         held = self.held(samples)
         before = jnp.concatenate([0 * held[:1], held[:-1]])
         every = zip(self.at, self.laws_of(made), self.laws_of(remade), samples, strict=True)
@@ -193,7 +193,7 @@ class _Changes:
         return list(zip(self.starts, rings, strict=True)), jnp.zeros(sum(sizes))
 
     def step(self, carried: Any, dz: Array, at: Any) -> tuple[Any, Array, Any]:
-        """What is carried on, the change of the commands that act, and those of what was sampled, at one step."""
+        """States and rings after a step, the change of the commands that act in it, and those of its samples."""
         every, before = carried
         after, acting, sampled = [], [], []
         for (state, ring), (taken, active, by_z, by_command, y, by_y, by_state, direct) in zip(every, at, strict=True):

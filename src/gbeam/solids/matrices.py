@@ -95,8 +95,8 @@ def rigid_body(mass: Any, rigid: Floats) -> Floats:
 
 
 def extent_of(at: Floats, body: Floats) -> float:
-    """How far a structure reaches from the root, m: its farthest node (k, 3); where its mass is beyond all of them, as
-    of one interface and modes, the length of an even beam with the radius of gyration of the body (10,).
+    """Reach of a structure from the root, m: its farthest node (k, 3); where its mass is beyond all of them, as of one
+    interface and modes, the length of an even beam with the radius of gyration of the body (10,).
     """
     far, gyration = float(np.linalg.norm(at, axis=1).max()), float(np.sqrt(body[4:7].sum() / body[0]))
     return far if far >= gyration else 3**0.5 * gyration

@@ -394,7 +394,7 @@ def _described(
             warnings += (f"{words}; what moves so grows without bound where steps resolve it",)
     warnings += (*settings.warnings, *yielded)
     warnings += tuple(each for each in doubts(errors, settings.tolerance) if each not in warnings) + system.warnings
-    warnings += () if is_jax(every.q) else stiffness_left_out(system, every, run.inputs)
+    warnings += () if traced else stiffness_left_out(system, every, run.inputs)
     residual: Any = None
     if settings.residual_from is not None:
         deflected = (deflection(system, each, over_time["q"]) for each in system.points)

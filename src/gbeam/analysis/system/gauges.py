@@ -1,4 +1,4 @@
-"""What gauges read: strains and what sections of beams carry, among the other measurements of a system."""
+"""Readings of gauges, strains and loads of sections of beams, among the other measurements of a system."""
 
 from __future__ import annotations
 
@@ -63,7 +63,8 @@ def read_signals(
     strained: Mapping[str, Strained] | None = None,
 ) -> Array:
     """Values (..., k) of measurements, gauges among them, at unknown coordinates (..., n) and inputs, broadcast."""
-    gauges = {**(strained or {}), **{each: carrying(system, each) for each in wanted if each in carried_of(system)}}
+    felt = carried_of(system)
+    gauges = {**(strained or {}), **{each: carrying(system, each) for each in wanted if each in felt}}
     plain = measurements(system, tree, y, yd, ydd, inputs, [each for each in wanted if each not in gauges])
     if plain.shape[-1] == len(wanted):
         return plain

@@ -1,4 +1,4 @@
-"""What several kinds of bodies have in common."""
+"""Parts of tables that several kinds of bodies share."""
 
 from __future__ import annotations
 
