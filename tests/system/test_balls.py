@@ -131,6 +131,35 @@ def test_small_departures_under_torques_and_prescribed_spin() -> None:
     assert {each.unit for each in turning.inputs} == {"rad/s^2"}
 
 
+def test_small_departures_under_a_torque_that_turns_with_the_body() -> None:
+    """λ² = −k/J along it and −k/J θ/2 (cot θ/2 ± i) across: springs alike about all axes, at rest at θ = τ/k."""
+    k, inertia, angle = 3.0, 0.2, 0.9
+    axis = np.array([0.36, 0.48, 0.8])
+    torque = {f"w{each}": k * angle * share for each, share in zip("xyz", axis, strict=True)}
+    system = on_ball(gb.RigidBody(2.0, (inertia,) * 3), stiffness=dict.fromkeys(SPRINGS, k), effort=torque)
+    across = angle / 2 * (1 / np.tan(angle / 2) + 1j)
+    moving = gb.modes(system, errors=False)
+    for poles in (gb.linearize(system).eigenvalue, moving.eigenvalue):
+        for square in -k / inertia * np.array([1.0, across, np.conj(across)]):
+            assert np.abs(poles**2 - square).min() < 1e-9 * np.abs(square)
+    assert [each.kind for each in moving.instabilities] == ["flutter"]
+
+
+def test_a_torque_on_a_free_body_is_a_moment_that_follows_its_root() -> None:
+    beam = gb.Beam(1.0, gb.Section.rectangle(0.02, 0.004), gb.Material(2700, 70e9), damping_ratio=0.0)
+    bodies = {"hub": BODY, "rod": gb.assemble(beam, "exact", axial=1, y=2, z=2)}
+    clamp, torque = gb.Joint("fixed", "rod", on="hub.root"), (0.02, 0.05, -0.03)
+    driven = gb.Joint("free", "hub", effort=dict(zip(("wx", "wy", "wz"), torque, strict=True)))
+    moment = gb.PointForce("hub.root", moment=torque, follower=True)
+    by_effort = gb.System(bodies, {"air": driven, "clamp": clamp})
+    by_moment = gb.System(bodies, {"air": gb.Joint("free", "hub"), "clamp": clamp}, forces={"push": moment})
+    rest, beside = gb.static(by_effort), gb.static(by_moment)
+    assert rest.at("rod.tip") == pytest.approx(beside.at("rod.tip"), rel=1e-9)
+    assert [each.coordinate for each in rest.accelerated] == [each.coordinate for each in beside.accelerated]
+    pair = [gb.modes(each, errors=False) for each in (by_effort, by_moment)]
+    assert pair[0].rigid == pair[1].rigid == 6 and pair[0].frequency == pytest.approx(pair[1].frequency, rel=1e-9)
+
+
 def test_one_component_alone_is_not_prescribed() -> None:
     with pytest.raises(gb.InputError, match=r"rate.wz.*without the other two components.*give wx, wy and wz"):
         gb.Joint("spherical", "rod", rate={"wz": 1.0})

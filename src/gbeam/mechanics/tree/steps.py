@@ -142,7 +142,8 @@ class Ball:
 class Turning:
     """Rotation by a vector φ (..., 3) from axes that turn on at `spin` and `faster` (3,), rad/s and rad/s², after unit
     Euler parameters (4,), held as the ball is by the whole rotation. Its rates are φ̇ + spin, those of the body where φ
-    is zero: departures from a steady spin are departures in the body's axes.
+    is zero: departures from a steady spin are departures in the body's axes. Its rows are moments about the turned
+    axes, as the ball's are, so that what drives it turns on with the body.
     """
 
     before: Array
@@ -160,13 +161,13 @@ class Turning:
         return Relative(0 * q, None, None, R, w + spin, alpha + faster + cross(spin, w))
 
     def rows(self, q: Array, qd: Array, qdd: Array, wrench: Wrench) -> Array:
-        return tangent_back(q, wrench.moment)
+        return wrench.moment
 
     def held(self, q: Array, qd: Array) -> tuple[Array, Array]:
         return self._whole(q), self.motion(q, qd, 0 * qd).w
 
     def pushed(self, q: Array, by_values: Array, by_rates: Array) -> Array:
-        return tangent_back(q, on_body(self._whole(q), by_values) + by_rates)
+        return on_body(self._whole(q), by_values) + by_rates
 
     def local(self, q: Array, qd: Array, qdd: Array) -> tuple[Step, Array, Array, Array]:
         return self, q, qd, qdd
