@@ -47,7 +47,7 @@ def straight(x: Any) -> Any:
     return np.zeros((len(x), 3))
 
 
-class Given:
+class Samples:
     """Arguments with which the public functions can be called."""
 
     def __init__(self, folder: Path) -> None:
@@ -339,8 +339,8 @@ class Given:
 
 
 @pytest.fixture(scope="module")
-def given(tmp_path_factory: pytest.TempPathFactory) -> Given:
-    return Given(tmp_path_factory.mktemp("given"))
+def samples(tmp_path_factory: pytest.TempPathFactory) -> Samples:
+    return Samples(tmp_path_factory.mktemp("samples"))
 
 
 def called(function: Callable[..., Any], *args: Any, **keywords: Any) -> Any:
@@ -350,12 +350,12 @@ def called(function: Callable[..., Any], *args: Any, **keywords: Any) -> Any:
 
 @pytest.mark.parametrize("name", PUBLIC)
 def test_every_public_function_refuses_objects_of_the_wrong_type(
-    given: Given, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    samples: Samples, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """An InputError that names the argument; never what an attribute or an operator says that is not there."""
     monkeypatch.chdir(tmp_path)  # a sweep's store may have any name
     function = getattr(gb, name)
-    args, keywords = given.calls()[name]
+    args, keywords = samples.calls()[name]
     if name != "rerun":
         called(function, *args, **keywords)
     names = [each.name for each in signature(function).parameters.values() if each.kind is not Parameter.VAR_KEYWORD]
@@ -437,11 +437,11 @@ INSTEAD: dict[str, dict[str, Any]] = {  # of what stands in the calls of above
 
 
 @pytest.mark.parametrize("name", [*PUBLIC, *SHAPES, *(f"{name} instead" for name in INSTEAD)])
-def test_no_number_loses_its_unit(given: Given, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_number_loses_its_unit(samples: Samples, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of 20 mm NumPy takes 20, and texts of numbers are read as metres."""
     monkeypatch.chdir(tmp_path)
     name, _, instead = name.partition(" ")
-    args, keywords = SHAPES[name] if name in SHAPES else ((), INSTEAD[name]) if instead else given.calls()[name]
+    args, keywords = SHAPES[name] if name in SHAPES else ((), INSTEAD[name]) if instead else samples.calls()[name]
     function = attrgetter(name)(gb)
     names = [*signature(function).parameters]
     problems = []
@@ -477,10 +477,10 @@ MADE = [*SHAPES, *(name for name in PUBLIC if isinstance(getattr(gb, name), type
 
 @pytest.mark.parametrize("name", [*MADE, *(f"{name} instead" for name in INSTEAD if name != "vector")])
 @pytest.mark.parametrize("how", ["text", "pint"])
-def test_a_quantity_is_read_as_scenarios_read_it(given: Given, name: str, how: str) -> None:
+def test_a_quantity_is_read_as_scenarios_read_it(samples: Samples, name: str, how: str) -> None:
     """Texts with a unit and pint's quantities make what the numbers in SI make."""
     name, _, instead = name.partition(" ")
-    args, keywords = SHAPES[name] if name in SHAPES else ((), INSTEAD[name]) if instead else given.calls()[name]
+    args, keywords = SHAPES[name] if name in SHAPES else ((), INSTEAD[name]) if instead else samples.calls()[name]
     function = attrgetter(name)(gb)
     places = [*zip(signature(function).parameters, args, strict=False), *keywords.items()]
 
@@ -538,16 +538,16 @@ def documented(thing: Any) -> dict[str, str]:
 
 
 @pytest.mark.parametrize("name", ["flight", "hub", "centrifuge", "profile", "section", "beam", "particles"])
-def test_nor_do_those_that_methods_are_given(given: Given, name: str) -> None:
+def test_nor_do_those_that_methods_are_given(samples: Samples, name: str) -> None:
     mass, time = np.ones(1), 0.5
     places: tuple[Any, ...] = (np.zeros((1, 3)), np.ones((1, 3, 1)), np.eye(1))
     call: Callable[[Any], Any] = {
-        "flight": lambda unit: given.flight.over(0.0, time * unit),
-        "hub": lambda unit: given.hub.over(0.0, time * unit),
-        "centrifuge": lambda unit: given.centrifuge.over(0.0, time * unit),
+        "flight": lambda unit: samples.flight.over(0.0, time * unit),
+        "hub": lambda unit: samples.hub.over(0.0, time * unit),
+        "centrifuge": lambda unit: samples.centrifuge.over(0.0, time * unit),
         "profile": lambda unit: gb.constant(1.0)(time * unit),
-        "section": lambda unit: given.beam.section.at(np.array([time]) * unit),
-        "beam": lambda unit: given.beam.rigidities(np.array([time]) * unit),
+        "section": lambda unit: samples.beam.section.at(np.array([time]) * unit),
+        "beam": lambda unit: samples.beam.rigidities(np.array([time]) * unit),
         "particles": lambda unit: gb.Structure.of_particles(mass * unit, *places, second=np.zeros((1, 3, 1, 1))),
     }[name]
     call(1)
@@ -610,24 +610,24 @@ def test_how_a_unit_is_refused(call: Callable[[], Any], words: str) -> None:
          "span is (1.0,); give a list of 2 numbers"),
     ],
 )  # fmt: skip
-def test_what_is_said_of_them(given: Given, call: Callable[[Given], Any], words: str) -> None:
+def test_what_is_said_of_them(samples: Samples, call: Callable[[Samples], Any], words: str) -> None:
     with pytest.raises(gb.InputError) as refused:
-        call(given)
+        call(samples)
     assert str(refused.value).startswith(words)
 
 
-def test_what_looks_like_a_number_is_one(given: Given) -> None:
+def test_what_looks_like_a_number_is_one(samples: Samples) -> None:
     jnp = pytest.importorskip("jax.numpy")
     for seconds in (0, np.float32(0.0), np.int64(0), np.zeros(()), jnp.zeros(()), Decimal(0)):
-        gb.static(given.structure, given.still, time=seconds)
-    gb.campbell(given.structure, given.hub, speeds=np.linspace(0, 1, 3), orders=range(1, 3), count=np.int64(3))
+        gb.static(samples.structure, samples.still, time=seconds)
+    gb.campbell(samples.structure, samples.hub, speeds=np.linspace(0, 1, 3), orders=range(1, 3), count=np.int64(3))
     gb.Section.rectangle([0.02, jnp.array(0.02)], 0.004, stations=(0.0, 0.3))
 
 
-def test_a_mistake_inside_is_not_blamed_on_an_argument(given: Given, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_mistake_inside_is_not_blamed_on_an_argument(samples: Samples, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("gbeam.analysis.steady.static.operating_point", None)
     with pytest.raises(TypeError, match="NoneType"):
-        gb.static(given.structure, given.still, time=0.0)
+        gb.static(samples.structure, samples.still, time=0.0)
 
 
 def test_the_keywords_of_a_response_are_its_settings() -> None:

@@ -15,12 +15,12 @@ import pytest
 import gbeam as gb
 
 from .solids.bodies import block, solid
-from .test_arguments import PUBLIC, Given, called
+from .test_arguments import PUBLIC, Samples, called
 
 
 @pytest.fixture(scope="module")
-def given(tmp_path_factory: pytest.TempPathFactory) -> Given:
-    return Given(tmp_path_factory.mktemp("given"))
+def samples(tmp_path_factory: pytest.TempPathFactory) -> Samples:
+    return Samples(tmp_path_factory.mktemp("samples"))
 
 
 def state(value: Any, path: str = "") -> dict[str, bytes]:
@@ -49,11 +49,11 @@ def values(*some: Any) -> list[Any]:
 
 @pytest.mark.parametrize("name", [name for name in PUBLIC if name != "rerun"])  # which takes a file, not a value
 def test_no_public_function_changes_what_it_is_given(
-    given: Given, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    samples: Samples, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Its arguments keep every attribute; they and its answer are pickled and copied, and stay equal to the copies."""
     monkeypatch.chdir(tmp_path)
-    args, keywords = given.calls()[name]
+    args, keywords = samples.calls()[name]
     before, copies = state((args, keywords)), [copy.deepcopy(each) for each in values(args, keywords)]
     answer = called(getattr(gb, name), *args, **keywords)
     assert state((args, keywords)) == before
@@ -66,8 +66,8 @@ def test_no_public_function_changes_what_it_is_given(
         assert repr(each) and state(each) == whole
 
 
-def test_results_stay_what_they_are_when_they_are_shown(given: Given, tmp_path: Path) -> None:
-    for result in (*given.responses, gb.study(given.case), gb.compare(*given.responses)):
+def test_results_stay_what_they_are_when_they_are_shown(samples: Samples, tmp_path: Path) -> None:
+    for result in (*samples.responses, gb.study(samples.case), gb.compare(*samples.responses)):
         before = state(result)
         result.to_xarray()
         result.plot()
@@ -76,33 +76,35 @@ def test_results_stay_what_they_are_when_they_are_shown(given: Given, tmp_path: 
         assert state(result) == before
 
 
-def test_what_is_made_of_equal_values_is_equal(given: Given, tmp_path: Path) -> None:
+def test_what_is_made_of_equal_values_is_equal(samples: Samples, tmp_path: Path) -> None:
     """Made twice, after all else was done with the first; and another number makes another value."""
-    again = Given(tmp_path)
-    names = [name for name, value in vars(given).items() if values(value) and name != "case"]
+    again = Samples(tmp_path)
+    names = [name for name, value in vars(samples).items() if values(value) and name != "case"]
     assert {"beam", "structure", "column", "centrifuge", "free_hub", "settings", "responses", "system"} <= {*names}
     for name in names:
-        assert getattr(again, name) == getattr(given, name), name
-    assert replace(again.case, provenance=None) == replace(given.case, provenance=None)  # of two files
-    assert hash(again.structure) == hash(given.structure) and hash(again.beam) == hash(given.beam)
+        assert getattr(again, name) == getattr(samples, name), name
+    assert replace(again.case, provenance=None) == replace(samples.case, provenance=None)  # of two files
+    assert hash(again.structure) == hash(samples.structure) and hash(again.beam) == hash(samples.beam)
 
 
-def test_a_case_is_shown_on_one_line(given: Given) -> None:
-    named = replace(given.case, title="a panel")
+def test_a_case_is_shown_on_one_line(samples: Samples) -> None:
+    named = replace(samples.case, title="a panel")
     assert repr(named) == "Case('a panel', FOAM, {flight: flight, spin: centrifuge}, 0.5 s)"
 
 
 @pytest.mark.parametrize("name", [name for name in PUBLIC if isinstance(getattr(gb, name), type)])
-def test_objects_are_shown_on_one_short_line(given: Given, name: str) -> None:
-    args, keywords = given.calls()[name]
+def test_objects_are_shown_on_one_short_line(samples: Samples, name: str) -> None:
+    args, keywords = samples.calls()[name]
     text = repr(getattr(gb, name)(*args, **keywords))
     assert text.startswith(f"{name}(") and "\n" not in text and len(text) < 300
 
 
-def test_objects_are_shown_by_what_is_not_as_by_default(given: Given) -> None:
+def test_objects_are_shown_by_what_is_not_as_by_default(samples: Samples) -> None:
     strip = "Section(shape='rectangle', width=0.02, thickness=0.004)"
-    assert repr(given.beam.section) == strip
-    assert repr(given.beam) == f"Beam(length=0.3, section={strip}, material={given.beam.metal!r}, damping_ratio=0.01)"
+    assert repr(samples.beam.section) == strip
+    assert (
+        repr(samples.beam) == f"Beam(length=0.3, section={strip}, material={samples.beam.metal!r}, damping_ratio=0.01)"
+    )
     assert repr(gb.tabulated(np.arange(9.0), np.zeros(9))) == "PiecewiseLinear(times=<9 numbers>, values=<9 numbers>)"
     assert repr(gb.SmoothStep(1.0, 2.0)) == "SmoothStep(level=1, duration=2)"
     shown: list[str] = []
@@ -110,37 +112,37 @@ def test_objects_are_shown_by_what_is_not_as_by_default(given: Given) -> None:
     assert shown == ["SmoothStep(level=traced, duration=2)"]
 
 
-def test_another_number_makes_another_value(given: Given) -> None:
-    response = given.responses[0]
-    assert replace(response, step=0.5 * response.step) != response != given.responses[1]
+def test_another_number_makes_another_value(samples: Samples) -> None:
+    response = samples.responses[0]
+    assert replace(response, step=0.5 * response.step) != response != samples.responses[1]
     moved = response.displacement.copy()
     moved[-1, -1, -1] += 1e-12
     assert replace(response, displacement=moved) != response
-    thicker = replace(given.beam, section=gb.Section.rectangle(0.02, 0.0041))
-    assert thicker != given.beam and gb.assemble(thicker, "FOAM", axial=0, y=1, z=1) != given.structure
+    thicker = replace(samples.beam, section=gb.Section.rectangle(0.02, 0.0041))
+    assert thicker != samples.beam and gb.assemble(thicker, "FOAM", axial=0, y=1, z=1) != samples.structure
     assert gb.Load(0.1, force=np.array([0.0, 0.0, 1.0])) == gb.Load(0.1, force=np.array([0.0, 0.0, 1.0]))
     assert gb.Load(0.1, force=np.array([0.0, 0.0, 1.0])) != gb.Load(0.1, force=np.array([0.0, 0.0, 2.0]))
 
 
 @pytest.mark.parametrize("kind", ["TLAM", "SFOAM", "CFOAM", "exact"])
-def test_a_structure_of_every_model_keeps_its_fields_alone(given: Given, kind: str) -> None:
-    structure = gb.assemble(given.beam, kind, axial=int(kind in ("CFOAM", "exact")), y=0, z=2)
+def test_a_structure_of_every_model_keeps_its_fields_alone(samples: Samples, kind: str) -> None:
+    structure = gb.assemble(samples.beam, kind, axial=int(kind in ("CFOAM", "exact")), y=0, z=2)
     before = state(structure)
-    gb.simulate(structure, given.still, duration=0.05, step=5e-3)
-    gb.modes(structure, given.hub)
-    gb.static(structure, given.still)
+    gb.simulate(structure, samples.still, duration=0.05, step=5e-3)
+    gb.modes(structure, samples.hub)
+    gb.static(structure, samples.still)
     assert state(structure) == before
 
 
-def test_a_machine_keeps_its_fields_alone(given: Given) -> None:
+def test_a_machine_keeps_its_fields_alone(samples: Samples) -> None:
     """Planned, with or without a span: nothing is written into it when its motion is needed."""
     options: dict[str, Any] = {"arm": 3.3, "control_point": 0.2, "gravity": False, "start": "idle"}
-    machine = gb.Centrifuge(given.flight, idle=5.0, **options)
+    machine = gb.Centrifuge(samples.flight, idle=5.0, **options)
     waiting = machine.over(0.0, 0.3, ahead=False)
     before = state((machine, waiting))
     first, second = waiting.extent, waiting.axes(0.2)
     waiting.usage()
-    gb.simulate(given.structure, machine, duration=0.3, step=5e-3, estimate=False)
+    gb.simulate(samples.structure, machine, duration=0.3, step=5e-3, estimate=False)
     assert state((machine, waiting)) == before and (waiting.extent, waiting.axes(0.2)) == (first, second)
     prepared = machine.over(0.0, 0.3)
     assert prepared == machine.over(0.0, 0.3) == pickle.loads(pickle.dumps(prepared)) != waiting
@@ -157,36 +159,36 @@ def kept(before: Any, calls: list[Any]) -> None:
         assert repr(each) and state(each) == inside
 
 
-def test_a_system_with_a_controller_keeps_its_fields_alone(given: Given) -> None:
-    law = gb.Feedback(given.law, ["hinge.angle"], ["hinge.angle"], 0.01)
-    joints = {"hinge": replace(given.hinge, stiffness={"angle": 5.0}), "root": gb.Joint("fixed", "panel", "bar.end")}
-    bodies = {"bar": given.bar, "panel": given.structure}
+def test_a_system_with_a_controller_keeps_its_fields_alone(samples: Samples) -> None:
+    law = gb.Feedback(samples.law, ["hinge.angle"], ["hinge.angle"], 0.01)
+    joints = {"hinge": replace(samples.hinge, stiffness={"angle": 5.0}), "root": gb.Joint("fixed", "panel", "bar.end")}
+    bodies = {"bar": samples.bar, "panel": samples.structure}
     system = gb.System(bodies, joints, controllers={"law": law})
     settings = gb.ResponseSettings(duration=0.05, step=5e-3, integrator="gauss")
-    case = gb.SystemCase("swing", system, {"flight": given.still}, settings)
+    case = gb.SystemCase("swing", system, {"flight": samples.still}, settings)
     kept(
         system,
         [
-            lambda: gb.simulate(system, given.still, settings),
-            lambda: gb.static(system, given.still),
-            lambda: gb.modes(system, given.still),
+            lambda: gb.simulate(system, samples.still, settings),
+            lambda: gb.static(system, samples.still),
+            lambda: gb.modes(system, samples.still),
             lambda: gb.linearize(system, inputs=["hinge.angle"]),
             lambda: gb.study(case),
         ],
     )
 
 
-def test_a_solid_and_a_specimen_keep_their_fields_alone(given: Given) -> None:
+def test_a_solid_and_a_specimen_keep_their_fields_alone(samples: Samples) -> None:
     mesh = solid(block("hexahedron20", (3, 1, 1), (0.1, 0.01, 0.01)))
     model = mesh.reduced(modes=2, damping_ratio=0.01)
     kept(mesh, [lambda: mesh.reduced(modes=2, damping_ratio=0.01)])
     kept(
         model,
         [
-            lambda: model.stress(gb.static(model.structure, given.still)),
-            lambda: gb.simulate(model.structure, given.still, given.settings),
+            lambda: model.stress(gb.static(model.structure, samples.still)),
+            lambda: gb.simulate(model.structure, samples.still, samples.settings),
             lambda: gb.modes(model.structure),
         ],
     )
     box = gb.RigidSpecimen.box(1.0, (0.1, 0.1, 0.1), (0.0, 0.0, 0.0))
-    kept(box, [lambda: box.loads(given.flight, 0.3, sample=0.01)])
+    kept(box, [lambda: box.loads(samples.flight, 0.3, sample=0.01)])

@@ -27,7 +27,7 @@ def strip(kind: str = "FOAM", counts: tuple[int, int, int] = (0, 0, 2), damping_
     return assemble(beam, Model(kind, *counts))
 
 
-def made(name: str, time: np.ndarray, tip: np.ndarray, held: np.ndarray | None = None) -> Response:
+def of_tip(name: str, time: np.ndarray, tip: np.ndarray, held: np.ndarray | None = None) -> Response:
     """A response of which only the tip's history matters, and where a centrifuge's target was held."""
     n, none = len(time), np.zeros((len(time), 3))
     axes: Any = None

@@ -17,7 +17,7 @@ from gbeam.results.facts import facts_of
 from gbeam.results.machine import AxesResult, LimitUse
 from gbeam.results.parts import Base
 
-from .helpers import LENGTH, made
+from .helpers import LENGTH, of_tip
 
 DATA = Path(__file__).parents[2] / "examples" / "data"
 G = 9.80665
@@ -53,7 +53,7 @@ def alike(load: np.ndarray) -> History:
 
 def flight_of(load: np.ndarray) -> Response:
     """A flight whose tip and root moment go with the load."""
-    return replace(made("flight", TIME, 1e-4 * load), base=Base(load, ZERO, ZERO))
+    return replace(of_tip("flight", TIME, 1e-4 * load), base=Base(load, ZERO, ZERO))
 
 
 @pytest.fixture(scope="module")
@@ -70,7 +70,7 @@ def pair() -> tuple[Response, Response]:
         ZERO, ZERO, acceleration, target, actual, np.isin(WHICH, (5, 7)), episodes, limits, control_point=0.0,
         idle=IDLE * G,
     )  # fmt: skip
-    spin = replace(made("arm", TIME, 1e-4 * actual), base=Base(actual, ZERO, ZERO), axes=axes)
+    spin = replace(of_tip("arm", TIME, 1e-4 * actual), base=Base(actual, ZERO, ZERO), axes=axes)
     return flight_of(load), spin
 
 
@@ -130,7 +130,7 @@ def reproduced() -> tuple[Response, Response]:
     high = (TIME > 4.0) & (TIME < 6.0)
     load, actual = (along_z(np.where(high, *each)) for each in ((10.0, 0.5), (9.9, 1.4)))
     axes = AxesResult(ZERO, ZERO, ZERO, actual, actual, ~high, ((0.0, 4.0, "below idle"),), idle=IDLE * G)
-    arm = replace(made("arm", TIME, 1e-4 * actual), base=Base(actual, ZERO, ZERO), axes=axes)
+    arm = replace(of_tip("arm", TIME, 1e-4 * actual), base=Base(actual, ZERO, ZERO), axes=axes)
     return flight_of(load), arm
 
 

@@ -63,13 +63,13 @@ def test_error_of_too_few_shapes_is_stated(shapes: int) -> None:
     few, many = (
         gb.assemble(specimen, "FOAM", z=n, shapes=how) for n, how in ((shapes, "clamped-free"), (8, "adapted"))
     )
-    found, truth = (gb.simulate(each, load, duration=0.2, step=2e-4) for each in (few, many))
-    error = np.linalg.norm(truth.tip - found.tip, axis=1).max() / np.linalg.norm(found.tip, axis=1).max()
-    assert found.errors.displacement.shapes == pytest.approx(error, rel=0.2)
-    moment = np.linalg.norm(truth.loads.root_moment - found.loads.root_moment, axis=1).max()
-    moment /= np.linalg.norm(found.loads.root_moment, axis=1).max()
-    assert found.errors.loads.shapes == pytest.approx(moment, rel=0.5)
-    assert any("too few shapes" in warning for warning in found.warnings) == (found.error_estimate > 0.01)
+    response, truth = (gb.simulate(each, load, duration=0.2, step=2e-4) for each in (few, many))
+    error = np.linalg.norm(truth.tip - response.tip, axis=1).max() / np.linalg.norm(response.tip, axis=1).max()
+    assert response.errors.displacement.shapes == pytest.approx(error, rel=0.2)
+    moment = np.linalg.norm(truth.loads.root_moment - response.loads.root_moment, axis=1).max()
+    moment /= np.linalg.norm(response.loads.root_moment, axis=1).max()
+    assert response.errors.loads.shapes == pytest.approx(moment, rel=0.5)
+    assert any("too few shapes" in warning for warning in response.warnings) == (response.error_estimate > 0.01)
 
 
 @pytest.mark.parametrize(("integrator", "tolerance"), [("newmark", 1e-2), ("gauss", 5e-4)])
@@ -82,20 +82,20 @@ def test_error_of_a_mode_that_the_results_do_not_resolve_is_stated(integrator: s
     period = 2 * np.pi / 229.69
     load = gb.Flight(z=gb.trapezoid(30.0, jerk=600.0 / period, start=0.5 * period, hold=5 * period))
     few, many = (gb.assemble(specimen, "FOAM", z=n, shapes="adapted") for n in (2, 8))
-    found = gb.simulate(few, load, duration=12 * period, integrator=integrator, tolerance=tolerance)
-    interval = found.time[1] - found.time[0]
+    response = gb.simulate(few, load, duration=12 * period, integrator=integrator, tolerance=tolerance)
+    interval = response.time[1] - response.time[0]
     assert 17.55 * 229.69 * interval > RESOLVED  # of the third mode
     finer = 36
     truth = gb.simulate(many, load, duration=12 * period, step=interval / finer, integrator="gauss", estimate=False)
     errors = [
         np.linalg.norm(theirs[::finer] - ours, axis=1).max() / np.linalg.norm(ours, axis=1).max()
         for ours, theirs in (
-            (found.loads.root_force, truth.loads.root_force),
-            (found.loads.root_moment, truth.loads.root_moment),
+            (response.loads.root_force, truth.loads.root_force),
+            (response.loads.root_moment, truth.loads.root_moment),
         )
     ]
-    assert found.errors.loads.slender == pytest.approx(max(errors), rel=0.3)
-    assert found.errors.loads.shapes > 5 * found.errors.loads.step
+    assert response.errors.loads.slender == pytest.approx(max(errors), rel=0.3)
+    assert response.errors.loads.shapes > 5 * response.errors.loads.step
 
 
 @pytest.mark.parametrize(
@@ -138,22 +138,22 @@ def test_a_run_that_bends_far_states_what_shapes_and_theory_lack() -> None:
         few = (axial, z, thick) == (1, 3, False)
         return gb.simulate(body, load, duration=1.0, step=2e-3, integrator="gauss", estimate=few)
 
-    found = run(1, 3)
-    size = np.linalg.norm(found.tip, axis=1).max()
+    response = run(1, 3)
+    size = np.linalg.norm(response.tip, axis=1).max()
     more, thick = (
-        np.linalg.norm(each.tip - found.tip, axis=1).max() / size for each in (run(3, 7), run(1, 3, thick=True))
+        np.linalg.norm(each.tip - response.tip, axis=1).max() / size for each in (run(3, 7), run(1, 3, thick=True))
     )
     assert size > 0.9 and more > 1.5e-3 and thick > 1.5e-3
-    assert found.errors.displacement.shapes == pytest.approx(more, rel=0.02)
-    assert found.errors.displacement.beam_theory == pytest.approx(thick, rel=0.02)
+    assert response.errors.displacement.shapes == pytest.approx(more, rel=0.02)
+    assert response.errors.displacement.beam_theory == pytest.approx(thick, rel=0.02)
 
 
 def test_errors_of_step_shapes_and_model_add_up() -> None:
     """The total is no less than the step's and that against the exact model with more shapes together."""
-    found = gb.simulate(
+    response = gb.simulate(
         gb.assemble(appendage(), "FOAM", axial=1, y=2), gb.Flight(y=gb.Sine(3.0, 4.0)), duration=5.0, step=0.1
     )
-    for part in (found.errors.displacement, found.errors.loads):
+    for part in (response.errors.displacement, response.errors.loads):
         assert part.step > 2 * part.model > 0.01  # all are seen
         assert part.model - part.shapes <= part.slender - part.step <= part.model + part.shapes
 
@@ -161,8 +161,8 @@ def test_errors_of_step_shapes_and_model_add_up() -> None:
 def test_a_solution_far_from_the_exact_models_has_a_bound(monkeypatch: pytest.MonkeyPatch) -> None:
     """2 (v/L)² is the largest law of its class: docs/theory.md."""
 
-    def nothing(*given: Any, **more: Any) -> Any:
-        *readings, rings = lacking(*given, **more)
+    def nothing(*arguments: Any, **more: Any) -> Any:
+        *readings, rings = lacking(*arguments, **more)
         return *({key: np.nan * each for key, each in one.items()} for one in readings), rings
 
     structure = gb.assemble(beam(), "FOAM", axial=1, y=3)
@@ -181,9 +181,9 @@ def test_exact_with_one_shape_says_so() -> None:
     appendage = gb.Beam(
         8.0, gb.Section.general(7.2968e-5, 8.2189e-9, 8.2189e-9), gb.Material(2766.7, 6.8952e10), damping_ratio=0.0
     )
-    found = gb.simulate(gb.assemble(appendage, "exact", axial=1, y=1), hub, duration=5.0, step=0.02)
-    assert found.errors.displacement.shapes > 0.2 and found.errors.displacement.model == 0.0
-    assert any("too few shapes" in warning for warning in found.warnings)
+    response = gb.simulate(gb.assemble(appendage, "exact", axial=1, y=1), hub, duration=5.0, step=0.02)
+    assert response.errors.displacement.shapes > 0.2 and response.errors.displacement.model == 0.0
+    assert any("too few shapes" in warning for warning in response.warnings)
 
 
 def test_a_complete_residual_at_many_times_is_the_compiled_one() -> None:
@@ -337,7 +337,7 @@ def test_a_critical_speed_states_its_error() -> None:
         gb.Material(2766.7, 6.8952e10),
         [gb.PointMass(8.0, 0.5)],
     )
-    found = gb.critical_speed(gb.assemble(mast, "TLAM", axial=1, y=2), gb.Hub(radius=0.5))
-    assert found.errors.shapes == pytest.approx(found.value / 1.93645 - 1, rel=0.02)
-    assert np.isinf(found.errors.model)
-    assert any("TLAM's own: the exact model keeps its equilibrium" in each for each in found.warnings)
+    speed = gb.critical_speed(gb.assemble(mast, "TLAM", axial=1, y=2), gb.Hub(radius=0.5))
+    assert speed.errors.shapes == pytest.approx(speed.value / 1.93645 - 1, rel=0.02)
+    assert np.isinf(speed.errors.model)
+    assert any("TLAM's own: the exact model keeps its equilibrium" in each for each in speed.warnings)

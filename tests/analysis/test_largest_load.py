@@ -12,7 +12,7 @@ from gbeam import Flight as InFlight
 from gbeam.analysis.imitation.accounting import largest_load, points_of
 from gbeam.results.parts import Base
 
-from .helpers import ALUMINIUM, LENGTH, SECTION, made
+from .helpers import ALUMINIUM, LENGTH, SECTION, of_tip
 
 G = 9.80665
 TIME = np.linspace(-2.0, 4.0, 601)
@@ -25,12 +25,14 @@ def on_an_arm(rate: np.ndarray, at: float, **changes: np.ndarray) -> Response:
     """A specimen along the radius of an arm that turns about z at `rate` (t,), its control point at `at` m."""
     load = -(rate**2 * (RADIUS - at))[:, None] * ALONG_X
     base = Base(load, rate[:, None] * ALONG_Z, np.gradient(rate, TIME)[:, None] * ALONG_Z)
-    return replace(made("arm", TIME, 0 * load + 1e-3), base=base, **changes)
+    return replace(of_tip("arm", TIME, 0 * load + 1e-3), base=base, **changes)
 
 
 def in_flight(load: np.ndarray) -> Response:
     during = TIME >= 0
-    return replace(made("flight", TIME[during], 0 * load[during] + 1e-3), base=Base(load[during], *2 * [ZERO[during]]))
+    return replace(
+        of_tip("flight", TIME[during], 0 * load[during] + 1e-3), base=Base(load[during], *2 * [ZERO[during]])
+    )
 
 
 @pytest.fixture

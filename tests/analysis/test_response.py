@@ -30,7 +30,7 @@ from gbeam import (
 )
 
 from ..specimens import TIP, appendage
-from .helpers import ALUMINIUM, EI, LENGTH, LINE, OMEGA, SECTION, made, strip
+from .helpers import ALUMINIUM, EI, LENGTH, LINE, OMEGA, SECTION, of_tip, strip
 
 HONEST = 3.0  # factor within which an error estimate brackets the error
 PERIOD = 2 * np.pi / OMEGA
@@ -238,7 +238,7 @@ def test_result_carries_what_plots_need() -> None:
     np.testing.assert_allclose(result.base.a_WO_B[:, 2], RAMP(result.time))
     assert (result.model, result.environment, result.integrator, result.step) == ("FOAM", "flight", "newmark", 1e-3)
     assert result.hub is None and result.axes is None
-    assert made("x", result.time, result.tip).tip.shape == (n, 3)
+    assert of_tip("x", result.time, result.tip).tip.shape == (n, 3)
 
 
 def test_a_start_that_no_beam_would_keep_is_warned_of() -> None:
@@ -251,7 +251,7 @@ def test_a_start_that_no_beam_would_keep_is_warned_of() -> None:
     for share, expected in ((0.5, False), (10.0, True)):
         flight = Flight(x=constant(share * critical))
         answer = simulate(structure, flight, ResponseSettings(duration=0.1, step=0.01))
-        assert any("not stable" in it for it in answer.warnings) == expected
+        assert any("not stable" in warning for warning in answer.warnings) == expected
 
 
 @pytest.mark.parametrize("kind", ["base", "load"])

@@ -122,26 +122,26 @@ def truth(name: str, time: np.ndarray) -> tuple[np.ndarray, Any]:
     return np.asarray(structure.displacement(q)[:, -1]), loads
 
 
-def apart(found: np.ndarray, reference: np.ndarray) -> float:
+def apart(values: np.ndarray, reference: np.ndarray) -> float:
     """Largest length of the difference of two vectors' histories, over the largest length."""
-    return float(np.linalg.norm(found - reference, axis=-1).max() / np.linalg.norm(reference, axis=-1).max())
+    return float(np.linalg.norm(values - reference, axis=-1).max() / np.linalg.norm(reference, axis=-1).max())
 
 
-def judge(found: Response, name: str) -> None:
-    tip, loads = truth(name, found.time)
-    assert found.loads is not None
-    error, estimate = apart(found.tip, tip), found.errors.displacement.step
+def judge(response: Response, name: str) -> None:
+    tip, loads = truth(name, response.time)
+    assert response.loads is not None
+    error, estimate = apart(response.tip, tip), response.errors.displacement.step
     assert error <= BOUND * estimate
     force, moment = (
         apart(mine[:, 0], reference[:, 0])
         for mine, reference in (
-            (found.loads.section_force, loads.section_force),
-            (found.loads.section_moment, loads.section_moment),
+            (response.loads.section_force, loads.section_force),
+            (response.loads.section_moment, loads.section_moment),
         )
     )
-    assert max(force, moment) <= BOUND * found.errors.loads.step
-    stress = apart(found.loads.stress[..., None], loads.stress[..., None])
-    assert stress <= BOUND * found.errors.stress.step
+    assert max(force, moment) <= BOUND * response.errors.loads.step
+    stress = apart(response.loads.stress[..., None], loads.stress[..., None])
+    assert stress <= BOUND * response.errors.stress.step
 
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)

@@ -35,10 +35,10 @@ def test_engine_orders():
     structure = assemble(slender(1e3, chord=2.0), Model("FOAM", 0, 2, 4))
     diagram = campbell(structure, HUB, end=6.0, count=12, modes=2, orders=(2, 3))
     assert diagram.crossings
-    for it in diagram.crossings:
-        assert it.frequency == pytest.approx(it.order * it.speed / (2 * np.pi), rel=1e-12)
-        there = modes(structure, Hub(radius=0.0, rate=constant(it.speed)), 0.0)
-        assert np.abs(there.frequency / it.frequency - 1).min() < 1e-8
+    for crossing in diagram.crossings:
+        assert crossing.frequency == pytest.approx(crossing.order * crossing.speed / (2 * np.pi), rel=1e-12)
+        spinning = modes(structure, Hub(radius=0.0, rate=constant(crossing.speed)), 0.0)
+        assert np.abs(spinning.frequency / crossing.frequency - 1).min() < 1e-8
 
 
 @pytest.mark.parametrize(("kind", "counts"), [("FOAM", (0, 2, 2)), ("TLAM", (0, 3, 3))])

@@ -75,7 +75,7 @@ def test_becks_two_modes_meet():
         for share in (0.99999, 1.001)
     )
     assert close.stable and 2 * np.pi * close.frequency[:2] == pytest.approx(BECK_FREQUENCY, rel=1e-2)
-    assert [it.kind for it in beyond.instabilities] == ["flutter"]
+    assert [each.kind for each in beyond.instabilities] == ["flutter"]
 
 
 def test_leipholz():

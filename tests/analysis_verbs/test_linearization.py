@@ -59,7 +59,7 @@ def test_a_free_hub_keeps_its_momentum():
 
 def test_state_space_of_a_free_hub():
     system = linearize(SOFT, FREE_2009, gauges=[Gauge(0.0, y=0.01)])
-    assert [it.name for it in system.inputs] == ["torque"]
+    assert [each.name for each in system.inputs] == ["torque"]
     assert system.states[0] == Signal("hub_angle", "rad")
     # A slow torque turns hub and beam as one rigid body.
     angle = system.select(outputs=("hub_angle",))
@@ -76,7 +76,7 @@ def test_state_space_of_a_free_hub():
 def test_springs_at_the_root_are_states_with_their_own_units():
     beam = Beam(8.0, BOX, ALUMINIUM, damping_ratio=0.0, root=Root(rotation_y=500.0, translation_z=2e4))
     system = linearize(assemble(beam, Model("FOAM", 0, 0, 1)), HUB_2009, rate=1.0)
-    assert [(it.name, it.unit) for it in system.states[:6]] == [
+    assert [(each.name, each.unit) for each in system.states[:6]] == [
         ("q_z_1", "m"),
         ("q_root_translation_z", "m"),
         ("q_root_rotation_y", "rad"),
@@ -89,7 +89,7 @@ def test_springs_at_the_root_are_states_with_their_own_units():
 def test_state_space_of_a_turning_base_has_its_rate():
     system = linearize(structure_2009("FOAM", 1, 3, mass=0.1, damping=0.01), HUB_2009, rate=2.0)
     # The rate about x moves nothing in the plane, but the tip's accelerometer feels it.
-    assert [it.name for it in system.states[-2:]] == ["base_rate_x", "base_rate_z"]
+    assert [each.name for each in system.states[-2:]] == ["base_rate_x", "base_rate_z"]
     assert system.a.shape == (10, 10) and system.b.shape == (10, 6)
     faster = linearize(structure_2009("FOAM", 1, 3, mass=0.1, damping=0.01), HUB_2009, rate=2.0001)
     stretch = (faster.output - system.output)[0] / 1e-4

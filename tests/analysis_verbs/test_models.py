@@ -32,11 +32,11 @@ def call(tmp_path, monkeypatch, capsys):
     Path("slew.toml").write_text(SCENARIO, encoding="utf-8")
 
     def run(*changes):
-        status = main(["models", "slew.toml", "--json", *(word for it in changes for word in ("--set", it))])
+        status = main(["models", "slew.toml", "--json", *(word for row in changes for word in ("--set", row))])
         said = capsys.readouterr()
         assert "Traceback" not in said.err
         told = json.loads(said.out)
-        return status, {it["model"]: it for it in told.get("rows", ())}, said.err
+        return status, {row["model"]: row for row in told.get("rows", ())}, said.err
 
     return run
 
@@ -53,7 +53,7 @@ def test_tlam_beyond_its_critical_speed_says_so_in_its_row(call):
 def test_a_step_too_coarse_is_said_of_exact(call):
     status, rows, _ = call("response.step=0.2 s")
     assert status == 0
-    assert any("above the tolerance" in it for it in rows["exact"]["warnings"])
+    assert any("above the tolerance" in warning for warning in rows["exact"]["warnings"])
 
 
 def test_models_that_do_not_fit_the_scenario_do_not_end_the_study(call):

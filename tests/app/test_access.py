@@ -43,8 +43,8 @@ def test_the_address_gives_a_strict_cookie_once(site: Site) -> None:
     ],
 )
 def test_strangers_are_refused(site: Site, headers: dict[str, str], status: int) -> None:
-    own = {"x-gbeam-key": site.opened["x-gbeam-key"]} if status == 401 else site.opened
-    answer = site.call("GET", API, {**own, **headers})
+    key = {"x-gbeam-key": site.opened["x-gbeam-key"]} if status == 401 else site.opened
+    answer = site.call("GET", API, {**key, **headers})
     assert answer.status_code == status
     if status == 401:
         assert site.call("GET", "/?token=wrong", headers).status_code == 401

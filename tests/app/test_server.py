@@ -144,9 +144,9 @@ def test_the_queue_waits_for_descriptors(start: Start, tmp_path: Path) -> None:
     taken += QUICK.format(code="print('{}')")
     taken += """
 from gbeam.app import server
-made = server.create_app
+create = server.create_app
 def create_app(folder):
-    app = made(folder)
+    app = create(folder)
     @app.get("/api/take")
     def take():
         try:

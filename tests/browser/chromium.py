@@ -45,9 +45,9 @@ def arguments(program: Path) -> list[str]:
 
 def environment(program: Path) -> dict[str, str]:
     """With the libraries and fonts that come with the one from npm."""
-    here = program.parent
-    own = {"LD_LIBRARY_PATH": str(here / "lib"), "FONTCONFIG_PATH": str(here)} if program == INSTALLED else {}
-    return {**os.environ, **own}
+    folder = program.parent
+    variables = {"LD_LIBRARY_PATH": str(folder / "lib"), "FONTCONFIG_PATH": str(folder)} if program == INSTALLED else {}
+    return {**os.environ, **variables}
 
 
 def watch(page: Any) -> list[str]:

@@ -68,7 +68,7 @@ KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
 
 
 @pytest.fixture(scope="session")
-def made(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+def report_of(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
     """Make a report of some kind by the command line, once."""
 
     @cache
@@ -85,15 +85,15 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
 
 
 @pytest.fixture(scope="session")
-def report(made: Callable[[str], Path]) -> Path:
+def report(report_of: Callable[[str], Path]) -> Path:
     """The report of a run of half a second."""
-    return made("run")
+    return report_of("run")
 
 
 @pytest.fixture(scope="session", params=KINDS)
-def any_report(request: pytest.FixtureRequest, made: Callable[[str], Path]) -> Path:
+def any_report(request: pytest.FixtureRequest, report_of: Callable[[str], Path]) -> Path:
     """A report of each kind."""
-    return made(request.param)
+    return report_of(request.param)
 
 
 @pytest.fixture

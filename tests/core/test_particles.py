@@ -143,12 +143,12 @@ def blade(tip: float = 0.0, elements: int = 24) -> Structure:
     moved = np.zeros((elements, len(s), size))
     stiffness, pushed, spun = np.zeros((3, size, size))
     for k in range(elements):
-        own = slice(2 * k, 2 * k + 4)
-        moved[k, :, own] = np.transpose(shape)
-        stiffness[own, own] += (curve * weight * h) @ curve.T
+        ends = slice(2 * k, 2 * k + 4)
+        moved[k, :, ends] = np.transpose(shape)
+        stiffness[ends, ends] += (curve * weight * h) @ curve.T
         # Tension of the mass outboard: an acceleration of the root pushes it, a spin pulls it out.
-        pushed[own, own] -= (slope * weight * h * (1 - x[k] + tip)) @ slope.T
-        spun[own, own] += (slope * weight * h * ((1 - x[k] ** 2) / 2 + tip)) @ slope.T
+        pushed[ends, ends] -= (slope * weight * h * (1 - x[k] + tip)) @ slope.T
+        spun[ends, ends] += (slope * weight * h * ((1 - x[k] ** 2) / 2 + tip)) @ slope.T
     first = np.zeros((elements * len(s) + 1, 3, size))
     first[:-1, 2] = moved.reshape(-1, size)
     first[-1, 2, -2] = 1.0

@@ -44,10 +44,10 @@ def test_tangent_is_the_derivative_of_the_discrete_solution(make: Callable[[], S
     def run(p: Any) -> Any:
         return through(forced(*p), scheme, *start, steps)
 
-    own = forced(*p)
+    equations = forced(*p)
 
     def system(t: Any, q: Any, qd: Any) -> Any:
-        c, k, _ = own.matrices(own.drive(t))
+        c, k, _ = equations.matrices(equations.drive(t))
         forces = np.zeros((*q.shape, 3))
         forces[:, 0, 0] = -q[:, 0]
         forces[..., 1] = -(qd @ np.array([[1.0, -0.2], [-0.2, 0.5]]))

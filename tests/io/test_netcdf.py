@@ -336,9 +336,9 @@ def test_a_group_opens_alone(file: Path) -> None:
 def test_a_file_is_replaced_whole_or_not_at_all(
     study: Study, file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    own = tmp_path / file.name
-    own.write_bytes(file.read_bytes())
-    before = own.read_bytes()
+    path = tmp_path / file.name
+    path.write_bytes(file.read_bytes())
+    before = path.read_bytes()
 
     def fail(*_: object, **__: object) -> None:
         raise OSError(28, "No space left on device")
@@ -346,11 +346,11 @@ def test_a_file_is_replaced_whole_or_not_at_all(
     with monkeypatch.context() as patched:
         patched.setattr(h5py.Group, "create_dataset", fail)
         with pytest.raises(OSError, match="No space"):
-            study.save(own)
-    assert own.read_bytes() == before
-    assert os.listdir(own.parent) == [own.name]
-    replace(study, title="another").save(own)
-    assert opened(own).attrs["title"] == "another"
+            study.save(path)
+    assert path.read_bytes() == before
+    assert os.listdir(path.parent) == [path.name]
+    replace(study, title="another").save(path)
+    assert opened(path).attrs["title"] == "another"
 
 
 @pytest.mark.parametrize("content", [None, b"not netCDF"])
@@ -367,16 +367,16 @@ def test_histories_as_text_are_those_of_the_file(study: Study, tmp_path: Path) -
     rows = list(csv.DictReader(csv_of(read_stored(tmp_path / "x.nc")).splitlines()))
     assert len(rows) == sum(len(response.time) for response in study.responses.values())
     for name, response in study.responses.items():
-        own = [row for row in rows if row["motion"] == name]
-        np.testing.assert_allclose([float(row["time_s"]) for row in own], response.time, rtol=1e-8)
-        tip = [[float(row[f"tip_{axis}_m"]) for axis in "xyz"] for row in own]
+        lines = [row for row in rows if row["motion"] == name]
+        np.testing.assert_allclose([float(row["time_s"]) for row in lines], response.time, rtol=1e-8)
+        tip = [[float(row[f"tip_{axis}_m"]) for axis in "xyz"] for row in lines]
         np.testing.assert_allclose(tip, response.tip, rtol=1e-8, atol=1e-300)
         if response.axes is None:
-            assert own[0]["axis_rate_1_rad_per_s"] == ""
+            assert lines[0]["axis_rate_1_rad_per_s"] == ""
         else:
-            rates = [float(row["axis_rate_2_rad_per_s"]) for row in own]
+            rates = [float(row["axis_rate_2_rad_per_s"]) for row in lines]
             np.testing.assert_allclose(rates, response.axes.rate[:, 1], rtol=1e-8)
         if response.loads is not None:
-            carried = [[float(row[f"root_section_force_{axis}_N"]) for axis in "xyz"] for row in own]
+            carried = [[float(row[f"root_section_force_{axis}_N"]) for axis in "xyz"] for row in lines]
             np.testing.assert_allclose(carried, response.loads.section_force[:, 0], rtol=1e-8, atol=1e-300)
-            assert float(own[-1]["stress_Pa"]) == pytest.approx(response.loads.stress[-1, 0])
+            assert float(lines[-1]["stress_Pa"]) == pytest.approx(response.loads.stress[-1, 0])

@@ -227,8 +227,8 @@ class FromRest:
 
     def base(self, t: Any) -> Base:
         load, rate, spin, o = self.jerk * t, np.sqrt(self.jerk * t / ARM), np.sqrt(self.jerk / (ARM * t)) / 2, 0 * t
-        here = Base(np.stack([-ARM * spin, o, load], -1), np.stack([o, rate, o], -1), np.stack([o, spin, o], -1))
-        return moved(here, np.array([-MIDDLE, 0.0, 0.0]))
+        middle = Base(np.stack([-ARM * spin, o, load], -1), np.stack([o, rate, o], -1), np.stack([o, spin, o], -1))
+        return moved(middle, np.array([-MIDDLE, 0.0, 0.0]))
 
 
 @pytest.mark.parametrize("jerk", [4.0, 8.0, 10.0])

@@ -41,9 +41,9 @@ def f16() -> Centrifuge:
 
 def test_root_has_the_control_points_motion_moved() -> None:
     turning, t = machine(), np.linspace(0, 12, 61)
-    root, here = turning.base(t), turning.actual(t)
+    root, actual = turning.base(t), turning.actual(t)
     back = moved(root, [XC, 0.0, 0.0])
-    np.testing.assert_allclose(back.a_WO_B, here, atol=1e-11)
+    np.testing.assert_allclose(back.a_WO_B, actual, atol=1e-11)
     scalar = turning.base(3.0)
     np.testing.assert_allclose(scalar.a_WO_B, root.a_WO_B[15], atol=1e-12)
 
@@ -85,9 +85,9 @@ def test_like_scenarios_share_one_compiled_function() -> None:
     traces = []
 
     @jax.jit
-    def base(given: Centrifuge, t: np.ndarray) -> object:
+    def base(machine: Centrifuge, t: np.ndarray) -> object:
         traces.append(1)
-        return given.base(t)
+        return machine.base(t)
 
     t = np.linspace(0, 12, 11)
     for arm, mounting, level in ((3.3, "upright", 10.0), (5.0, "inverted", 10.0), (5.0, "upright", 9.9)):
@@ -168,8 +168,8 @@ def test_an_example_machine_tells_its_arm_limits_and_idle() -> None:
     assert spin.geometry.arm == example.arm and spin.idle == example.idle
     assert spin.episodes()[0].reason == "below idle"  # the flight begins with no load
     assert {use.axis for use in spin.usage() if np.isfinite(use.allowed)} == {"axis 1", "axis 2", "axis 3"}
-    own = Centrifuge(TRAPEZOID, arm=4.0, limits=example, idle=2 * G, **options)
-    assert own.geometry.arm == 4.0 and own.idle == 2 * G
+    longer = Centrifuge(TRAPEZOID, arm=4.0, limits=example, idle=2 * G, **options)
+    assert longer.geometry.arm == 4.0 and longer.idle == 2 * G
 
 
 def test_altered_changes_what_is_named_and_nothing_else() -> None:

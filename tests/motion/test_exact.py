@@ -77,12 +77,12 @@ def test_a_rounded_trapezoid_up_and_down_is_tracked_to_5e_7(width: float) -> Non
 def test_smooth_step_and_rates() -> None:
     spin = machine(vector(z=Sum((constant(2 * G), SmoothStep(8 * G, 4.0, 1.0)))), (0.0, 8.0))
     t, h = np.linspace(0.5, 7.5, 141), 1e-5
-    reference, actual, here, _ = seen(spin, t)
+    reference, actual, axes, _ = seen(spin, t)
     assert np.abs(actual - reference).max() < 5e-7 * 10 * G
     before, after = seen(spin, t - h)[2], seen(spin, t + h)[2]
     for value, rate in (("rate1", "acceleration1"), ("angle2", "rate2"), ("rate2", "acceleration2")):
         finite = (getattr(after, value) - getattr(before, value)) / (2 * h)
-        np.testing.assert_allclose(getattr(here, rate), finite, atol=1e-6)
+        np.testing.assert_allclose(getattr(axes, rate), finite, atol=1e-6)
 
 
 @pytest.mark.parametrize(("frequency", "arm", "possible"), [(0.5, 3.3, True), (1.0, 3.3, False), (0.5, 15.0, False)])

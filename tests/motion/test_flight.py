@@ -37,7 +37,7 @@ def test_components_are_profiles_or_numbers_and_vectors_go_by_name() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "where", "words"),
+    ("arguments", "where", "words"),
     [
         ({}, "acceleration", "give x, y or z"),
         ({"z": 1.0, "acceleration": (0.0, 0.0, 1.0)}, "z", "beside acceleration"),
@@ -47,7 +47,7 @@ def test_components_are_profiles_or_numbers_and_vectors_go_by_name() -> None:
         ({"z": np.nan}, "z", "finite"),
     ],
 )
-def test_what_is_no_flight_is_refused(given: dict[str, Any], where: str, words: str) -> None:
+def test_what_is_no_flight_is_refused(arguments: dict[str, Any], where: str, words: str) -> None:
     with pytest.raises(InputError, match=words) as caught:
-        Flight(**given)
+        Flight(**arguments)
     assert caught.value.where == where

@@ -73,7 +73,7 @@ def test_numbers_stand_for_constant_profiles_and_order_does_not_matter() -> None
 
 
 @pytest.mark.parametrize(
-    ("given", "where", "words"),
+    ("arguments", "where", "words"),
     [
         ({"rate": 1.0, "torque": 2.0, "inertia": 3.0}, "torque", "beside rate"),
         ({"torque": 2.0}, "inertia", "is missing"),
@@ -82,9 +82,9 @@ def test_numbers_stand_for_constant_profiles_and_order_does_not_matter() -> None
         ({"pointing": "up"}, "pointing", "outward, inward"),
     ],
 )
-def test_what_does_not_go_together_is_refused(given: dict[str, object], where: str, words: str) -> None:
+def test_what_does_not_go_together_is_refused(arguments: dict[str, object], where: str, words: str) -> None:
     with pytest.raises(InputError, match=words) as caught:
-        Hub(radius=0.5, **given)  # type: ignore[arg-type]
+        Hub(radius=0.5, **arguments)  # type: ignore[arg-type]
     assert caught.value.where == where
 
 

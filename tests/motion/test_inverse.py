@@ -113,10 +113,10 @@ def test_quasi_static_errs_along_the_beam_by_the_tangential_acceleration() -> No
 @pytest.mark.parametrize("inverse", sorted(INVERSES))
 def test_rates_are_the_derivatives_of_the_angles(inverse: str, gravity: bool) -> None:
     machine, h = centrifuge(swinging(), inverse, gravity), 1e-5
-    before, here, after = (seen(machine, T + s)[2] for s in (-h, 0, h))
+    before, axes, after = (seen(machine, T + s)[2] for s in (-h, 0, h))
     for value, rate in (
         ("rate1", "acceleration1"), ("angle2", "rate2"), ("rate2", "acceleration2"),
         ("angle3", "rate3"), ("rate3", "acceleration3"),
     ):  # fmt: skip
         finite = (getattr(after, value) - getattr(before, value)) / (2 * h)
-        np.testing.assert_allclose(getattr(here, rate), finite, atol=2e-7)
+        np.testing.assert_allclose(getattr(axes, rate), finite, atol=2e-7)

@@ -56,7 +56,7 @@ def test_jerks_are_the_derivatives_of_the_accelerations() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "where"),
+    ("limits", "where"),
     [
         (MachineLimits(AxisLimit(rate=0.0)), "limits.axis1.rate"),
         (MachineLimits(axis3=AxisLimit(jerk=-1.0)), "limits.axis3.jerk"),
@@ -64,9 +64,9 @@ def test_jerks_are_the_derivatives_of_the_accelerations() -> None:
         (MachineLimits(inertia=0.0), "limits.inertia"),
     ],
 )
-def test_impossible_limits_are_refused(given: MachineLimits, where: str) -> None:
+def test_impossible_limits_are_refused(limits: MachineLimits, where: str) -> None:
     with pytest.raises(InputError) as caught:
-        Limits(given)
+        Limits(limits)
     assert caught.value.where == where
 
 

@@ -278,13 +278,13 @@ def test_equal_machines_share_a_plan_and_a_load_of_another_kind_has_its_own() ->
     pulls = [trapezoid(20.0, jerk=20.0, start=1.0, hold=1.0) for _ in range(3)]
     own_profile = tree.record(type("UserProfile", (type(pulls[2]),), {}))  # of no module
     object.__setattr__(pulls[2], "__class__", own_profile)
-    first, second, own = (
+    first, second, other = (
         Centrifuge(
             Flight(z=pull), gravity=False, limits=SPECIMEN, arm=R, control_point=0.15, idle=IDLE, span=(0.0, 5.0)
         )
         for pull in pulls
     )
-    assert first.course is not None and second.course is not None and own.course is not None
-    assert first.course.inverse is second.course.inverse and first.course.inverse is not own.course.inverse
+    assert first.course is not None and second.course is not None and other.course is not None
+    assert first.course.inverse is second.course.inverse and first.course.inverse is not other.course.inverse
     t = times(first, 0.1)
-    np.testing.assert_array_equal(first.base(t).a_WO_B, own.base(t).a_WO_B)
+    np.testing.assert_array_equal(first.base(t).a_WO_B, other.base(t).a_WO_B)

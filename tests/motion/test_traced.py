@@ -103,7 +103,7 @@ def test_what_is_solved_for_numerically_says_so() -> None:
     machine = centrifuge(3 * G, inverse="exact", idle=2 * G)
     other = machine.altered(control_point=0.21)
     step = jax.tree.map(jnp.subtract, other, machine)
-    slope = jax.jit(lambda *along: jax.jvp(lambda made: made.base(FEW).a_WO_B, *along)[1])((machine,), (step,))
+    slope = jax.jit(lambda *along: jax.jvp(lambda moved: moved.base(FEW).a_WO_B, *along)[1])((machine,), (step,))
     np.testing.assert_allclose(slope, other.base(FEW).a_WO_B - machine.base(FEW).a_WO_B, atol=1e-9)
 
 

@@ -105,9 +105,9 @@ def test_several_runs_have_each_the_peaks_that_they_have_alone() -> None:
     times, between = quintic_hermite(t, runs[0], runs[1], runs[2], at)
     together = maxima(t, sizes, times, np.abs(between), at)
     for k in range(4):
-        own = near_maxima(t, sizes[k])
-        np.testing.assert_array_equal(own, at[at // len(t) == k] - k * len(t))
-        times, between = quintic_hermite(t, *(each[k] for each in runs), own)
+        by_itself = near_maxima(t, sizes[k])
+        np.testing.assert_array_equal(by_itself, at[at // len(t) == k] - k * len(t))
+        times, between = quintic_hermite(t, *(each[k] for each in runs), by_itself)
         for ours, alone in zip(together, maxima(t, sizes[k], times, np.abs(between)), strict=True):
             np.testing.assert_array_equal(ours[k], alone)
 

@@ -36,7 +36,7 @@ def test_every_value_belongs_to_a_peak_and_peaks_are_apart(seed: int) -> None:
         assert lowest < dip * min(walk[one], walk[two]) or lowest <= floor
         assert first.stop <= second.start
     for i in np.flatnonzero(walk > floor):
-        (own,) = (top for top, part in answer if part.start <= i < part.stop)
-        assert walk[own] >= walk[i]
+        (peak,) = (top for top, part in answer if part.start <= i < part.stop)
+        assert walk[peak] >= walk[i]
         between = (walk[min(i, p) : max(i, p) + 1].min() for p in tops if walk[p] >= walk[i])
         assert any(lowest > floor and lowest >= dip * walk[i] for lowest in between)

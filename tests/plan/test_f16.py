@@ -29,14 +29,14 @@ def planned(*overrides: str) -> MachinePlan:
     return plan("centrifuge", build_machines(loaded)["centrifuge"])
 
 
-def error(made: MachinePlan) -> tuple[float, float]:
+def error(machine_plan: MachinePlan) -> tuple[float, float]:
     """Largest and rms in the turn, m/s²."""
-    size = made.axes.tracking_error[(made.time > TURN[0]) & (made.time < TURN[1])]
+    size = machine_plan.axes.tracking_error[(machine_plan.time > TURN[0]) & (machine_plan.time < TURN[1])]
     return float(size.max()), float(np.sqrt(np.mean(size**2)))
 
 
-def used(made: MachinePlan, axis: str, quantity: str) -> float:
-    return next(use.used for use in made.axes.limits if (use.axis, use.quantity) == (axis, quantity))
+def used(machine_plan: MachinePlan, axis: str, quantity: str) -> float:
+    return next(use.used for use in machine_plan.axes.limits if (use.axis, use.quantity) == (axis, quantity))
 
 
 @pytest.mark.parametrize(

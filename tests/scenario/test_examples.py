@@ -67,6 +67,6 @@ def test_schema_describes_every_field() -> None:
 
 def _references(node: Any) -> set[str]:
     if isinstance(node, dict):
-        own = {value for key, value in node.items() if key == "$ref"}
-        return own.union(*map(_references, node.values()))
+        references = {value for key, value in node.items() if key == "$ref"}
+        return references.union(*map(_references, node.values()))
     return set().union(*map(_references, node)) if isinstance(node, list) else set()

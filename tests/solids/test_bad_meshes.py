@@ -84,10 +84,10 @@ BAD: list[tuple[Callable[[], Any], dict[str, Any], str]] = [
 ]
 
 
-@pytest.mark.parametrize(("made", "given", "words"), BAD)
-def test_bad_meshes_are_refused(made: Callable[[], Any], given: dict[str, Any], words: str) -> None:
+@pytest.mark.parametrize(("write", "arguments", "words"), BAD)
+def test_bad_meshes_are_refused(write: Callable[[], Any], arguments: dict[str, Any], words: str) -> None:
     with pytest.raises(gb.InputError, match=words):
-        gb.SolidMesh.read(made(), **({"materials": STEEL, "clamp": "wall", "unit": "m"} | given))
+        gb.SolidMesh.read(write(), **({"materials": STEEL, "clamp": "wall", "unit": "m"} | arguments))
 
 
 def test_materials_that_overlap_or_leave_out_are_refused() -> None:
@@ -214,10 +214,10 @@ def test_what_is_no_mesh_no_clamp_and_no_metal_is_said(tmp_path: Path) -> None:
     with pytest.raises(gb.InputError, match=r"^mesh .*empty\.msh is empty; write it again"):
         gb.SolidMesh.read(tmp_path / "empty.msh", materials=STEEL, clamp="wall", unit="m")
     (tmp_path / "a.inp").write_text(INP + "*NSET, NSET=every\nwall\n15, 16, 17, 18\n")
-    given: dict[str, Any] = {"materials": STEEL, "clamp": "wall", "unit": "m"}
+    arguments: dict[str, Any] = {"materials": STEEL, "clamp": "wall", "unit": "m"}
     with pytest.raises(gb.InputError, match="clamp holds all 8 nodes; name the surface that is screwed on"):
-        gb.SolidMesh.read(tmp_path / "a.inp", **(given | {"clamp": "every"}))
-    cube = gb.SolidMesh.read(tmp_path / "a.inp", **given)
+        gb.SolidMesh.read(tmp_path / "a.inp", **(arguments | {"clamp": "every"}))
+    cube = gb.SolidMesh.read(tmp_path / "a.inp", **arguments)
     same = cube.reduced(modes=1, damping_ratio=0.0)
     for ratio, place in (2.0, "damping_ratio"), ([0.02] * 9 + [1.5], r"damping_ratio\[9\]"):
         with pytest.raises(gb.InputError, match=f"{place} is .*; give a ratio of critical damping from 0 up to 1"):
@@ -230,7 +230,9 @@ def test_what_is_no_mesh_no_clamp_and_no_metal_is_said(tmp_path: Path) -> None:
     )
     with pytest.raises(gb.InputError, match="coarser has 8 nodes, and the mesh 8; give one with larger elements"):
         cube.reduced(modes=1, damping_ratio=0.0, coarser=same)
-    slips = gb.SolidMesh.read(tmp_path / "a.inp", **(given | {"materials": gb.Material(2.7, 70e3, poissons_ratio=0.3)}))
+    slips = gb.SolidMesh.read(
+        tmp_path / "a.inp", **(arguments | {"materials": gb.Material(2.7, 70e3, poissons_ratio=0.3)})
+    )
     said = " ".join(slips.warnings)
     assert "material.density is 2.7 kg/m^3, outside the plausible" in said and "did you mean 2.7 g/cm^3?" in said
     assert "material.youngs_modulus is 70000 Pa" in said and not [each for each in cube.warnings if "material" in each]

@@ -66,10 +66,10 @@ def test_stress_at_a_point_is_judged_there() -> None:
     for pair, more in ((of_solid(), {}), (of_beam(), {}), (runs(system), {"point": "strip.tip"})):
         at = "strip.half" if more else "half"
         compared = gb.compare(*pair, stress_at=at, accept={"stress": 0.5}, **more)
-        (judged,), there, anywhere = compared.criteria, compared.peaks["stress_at"], compared.peaks["stress"]
-        assert judged.value == there.ratio - 1 and judged.where.startswith(f"at {at} at ")
-        assert there.flight < 0.4 * anywhere.flight and f"stress at {at}" in " ".join(comparison_lines(compared))
-        answers.append((there.flight, there.machine))
+        (judged,), stress, anywhere = compared.criteria, compared.peaks["stress_at"], compared.peaks["stress"]
+        assert judged.value == stress.ratio - 1 and judged.where.startswith(f"at {at} at ")
+        assert stress.flight < 0.4 * anywhere.flight and f"stress at {at}" in " ".join(comparison_lines(compared))
+        answers.append((stress.flight, stress.machine))
     assert answers[0] == pytest.approx(answers[1], rel=1e-2) and answers[2] == pytest.approx(answers[1], rel=5e-3)
     with pytest.raises(gb.InputError, match="stress_at is 'knee'"):
         gb.compare(*of_beam(), stress_at="knee")

@@ -191,10 +191,10 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
 ]
 
 
-@pytest.mark.parametrize(("given", "words"), REFUSED)
-def test_links_that_cannot_be_are_refused(given: dict[str, Any], words: str) -> None:
+@pytest.mark.parametrize(("arguments", "words"), REFUSED)
+def test_links_that_cannot_be_are_refused(arguments: dict[str, Any], words: str) -> None:
     with pytest.raises(gb.InputError, match=words):
-        strip(**given)
+        strip(**arguments)
 
 
 def test_what_springs_do_not_hold_is_refused() -> None:

@@ -62,10 +62,10 @@ def with_bodies(
         bending = EI * tip[2] - square * (j * tip[1] + m * d * centre)
         rows = [first, second, shear, bending]
         if at is not None:
-            here, none = waves(at, beta, LENGTH) * power, np.zeros(4)
+            shape, none = waves(at, beta, LENGTH) * power, np.zeros(4)
             rows = [np.append(row, none) for row in rows[:2]] + [np.append(none, row) for row in rows[2:]]
-            rows += [np.append(here[k], -here[k]) for k in range(3)]
-            rows.append(np.append(EI * here[3] + square * mass * here[0], -EI * here[3]))
+            rows += [np.append(shape[k], -shape[k]) for k in range(3)]
+            rows.append(np.append(EI * shape[3] + square * mass * shape[0], -EI * shape[3]))
         scaled = np.array([row / np.abs(row).max() for row in rows])
         return float(np.linalg.det(scaled))
 

@@ -38,8 +38,8 @@ def test_a_case_has_the_figures_of_its_own_run(fast: Path) -> None:
 def test_bytes_depend_neither_on_the_company_nor_on_the_workers_nor_on_the_store(fast: Path) -> None:
     over = {LEVEL: "2 g:8 g:40"}  # more than stand together
 
-    def bytes_of(found: gb.Sweep) -> list[bytes]:
-        return [found.measures[name].tobytes() for name in MEASURES]
+    def bytes_of(sweep: gb.Sweep) -> list[bytes]:
+        return [sweep.measures[name].tobytes() for name in MEASURES]
 
     whole = gb.sweep(fast, over, MEASURES, overrides=FIXED, store="there")
     lines = Path("there/cases.jsonl").read_text(encoding="utf-8").splitlines(keepends=True)
@@ -78,11 +78,11 @@ def test_each_case_of_a_batch_that_fails_is_computed_once(fast: Path, monkeypatc
     monkeypatch.setattr("gbeam.studies.evaluate.simulate_batch", failing)
     answer = rows(whole, tasks)
     assert [row.case for row in answer] == list(range(11)) and sorted(computed) == [*range(200, 206), *range(207, 211)]
-    for row, own in zip(answer, alone, strict=True):
+    for row, single in zip(answer, alone, strict=True):
         if row.case == 6:
             assert row.outcome == "failed" and row.message == "RuntimeError: case 6 fails"
         else:
-            assert row == own and row.outcome == "done"
+            assert row == single and row.outcome == "done"
 
 
 def test_what_no_measure_needs_changes_no_digit(fast: Path) -> None:

@@ -125,13 +125,13 @@ def test_modes_are_fitted_with_the_options_of_their_question(released: Path, gbe
 
 def test_errors_and_intervals_of_few_data_are_those_of_linear_least_squares(released: Path) -> None:
     """Every frequency goes as the root of the stiffness: by hand, with n − 1 in the variance and Student's quantile."""
-    own = gb.modes(gb.read_scenario(released).assemble(), gb.read_scenario(released).motions["flight"]).frequency
-    measured = own * [1.004, 0.999]
+    frequency = gb.modes(gb.read_scenario(released).assemble(), gb.read_scenario(released).motions["flight"]).frequency
+    measured = frequency * [1.004, 0.999]
     fitted = gb.fit(released, written("modes.csv", "mode,frequency [Hz]", [1, 2], measured), [E])
     weights = 1 / measured  # a frequency's noise is a share of it
-    root = (weights**2 * own * measured).sum() / (weights**2 * own**2).sum()
-    variance = (((measured - root * own) * weights) ** 2).sum() / (2 - 1)
-    error = np.sqrt(variance / (weights**2 * own**2).sum()) * 2 * root * 70e9
+    root = (weights**2 * frequency * measured).sum() / (weights**2 * frequency**2).sum()
+    variance = (((measured - root * frequency) * weights) ** 2).sum() / (2 - 1)
+    error = np.sqrt(variance / (weights**2 * frequency**2).sum()) * 2 * root * 70e9
     assert fitted.values[0] == pytest.approx(70e9 * root**2, rel=1e-7)
     assert fitted.errors[0] == pytest.approx(error, rel=1e-4)
     assert fitted.intervals[0] - fitted.values[0] == pytest.approx(12.7062 * error * np.array([-1, 1]), rel=1e-4)

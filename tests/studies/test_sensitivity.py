@@ -26,9 +26,9 @@ LEVEL, ARM = "motion.flight.acceleration.z.level", "motion.spin.arm"
 AGREES = 1e-5
 
 
-def relative(found: gb.Sensitivity, measure: str) -> dict[str, float]:
+def relative(sensitivity: gb.Sensitivity, measure: str) -> dict[str, float]:
     """p/f ∂f/∂p by parameter."""
-    return dict(zip(found.parameters, found.relative[found.measures.index(measure)], strict=True))
+    return dict(zip(sensitivity.parameters, sensitivity.relative[sensitivity.measures.index(measure)], strict=True))
 
 
 def test_powers_of_a_static_deflection_and_of_a_frequency(fast: Path) -> None:
@@ -164,12 +164,12 @@ def test_positions_at_the_tip_move_with_the_length(fast: Path) -> None:
     assert list(relative(slopes, "flight.tip.z").values()) == pytest.approx([1, 2], abs=1e-3)
 
 
-@pytest.mark.parametrize("made", [False, True], ids=["of a file", "made"])
-def test_positions_at_the_tip_of_a_body_move_with_its_length(made: bool) -> None:
+@pytest.mark.parametrize("in_python", [False, True], ids=["of a file", "in Python"])
+def test_positions_at_the_tip_of_a_body_move_with_its_length(in_python: bool) -> None:
     """A strip of line density ρ with a mass m has √(E I / ρ L⁴) times a function of m / ρ L."""
     arm: Any = "examples/robot_arm.toml"
     still = ["system.gravity=[0, 0, 0]"]
-    if made:
+    if in_python:
         arm, still = replace(gb.read_scenario(arm, still), title="made"), []
     of, by = "modes[0].frequency", ["bodies.strip.length", "bodies.strip.material.density"]
     by_length, by_density = relative(gb.sensitivity(arm, [of], by, verb="modes", overrides=still), of).values()

@@ -39,9 +39,9 @@ def test_a_command_does_what_the_slew_does_and_its_scenario_leaves_what_it_says(
     plots = {f"{name}.{kind}" for name in ("shaping", "robustness") for kind in ("png", "svg")}
     assert names == {"shaping.nc", "command.json"} | plots
     # The smooth step of the scenario is that of the comparison, and its table the command.
-    own, shaped = (gb.study(gb.read_scenario(each)).responses["slew"] for each in (slewing, "shaped/command.json"))
-    after = own.time >= 6.0
-    amplitude = np.ptp(own.tip[after, 1]) / 2
+    smooth, shaped = (gb.study(gb.read_scenario(each)).responses["slew"] for each in (slewing, "shaped/command.json"))
+    after = smooth.time >= 6.0
+    amplitude = np.ptp(smooth.tip[after, 1]) / 2
     assert amplitude > 0.3 * left["smooth-step"] and shaped.residual_from == 6.0
     assert shaped.peaks.residual_amplitude[1] < left["shaped"] + 1e-3 * left["smooth-step"]
 

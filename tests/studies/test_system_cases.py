@@ -17,7 +17,7 @@ SHORT = ["response.duration=0.5 s", "response.step=5 ms", "response.estimate=fal
 SWING = gb.SmoothStep(0.1, 0.5)
 
 
-def made() -> gb.SystemCase:
+def satellite() -> gb.SystemCase:
     """The example as if it were made in Python."""
     return replace(gb.read_scenario(SATELLITE, SHORT), title="made")
 
@@ -34,22 +34,23 @@ def made() -> gb.SystemCase:
 def test_a_sweep_of_a_case_is_that_of_its_file(over: str) -> None:
     options: dict[str, Any] = {"verb": "modes"}
     name = "modes[0].frequency"
-    of_case, of_file = (gb.sweep(each, [over], [name], **options) for each in (made(), SATELLITE))
+    of_case, of_file = (gb.sweep(each, [over], [name], **options) for each in (satellite(), SATELLITE))
     np.testing.assert_allclose(of_case.measures[name], of_file.measures[name], rtol=1e-9)
     assert np.ptp(of_case.measures[name]) > 0 and of_case.parameters[0].unit == of_file.parameters[0].unit
 
 
 def test_other_studies_of_a_case() -> None:
     measure, path = "modes[0].frequency", "joints.hinge_right.stiffness"
-    sensitivity = gb.sensitivity(made(), [measure], [path], verb="modes")
+    sensitivity = gb.sensitivity(satellite(), [measure], [path], verb="modes")
     up, down = (
-        gb.sweep(made(), [f"{path}={value}"], [measure], verb="modes").measures[measure][0] for value in (101.0, 99.0)
+        gb.sweep(satellite(), [f"{path}={value}"], [measure], verb="modes").measures[measure][0]
+        for value in (101.0, 99.0)
     )
     assert sensitivity.derivatives[0, 0] == pytest.approx((up - down) / 2, rel=1e-3)
-    optimum = gb.optimise(made(), measure, [path], bounds={path: (50.0, 150.0)}, verb="modes")
+    optimum = gb.optimise(satellite(), measure, [path], bounds={path: (50.0, 150.0)}, verb="modes")
     assert optimum.values[0] == pytest.approx(50.0, rel=1e-3)
     with pytest.raises(gb.InputError, match="is no value that the case gives"):
-        gb.sweep(made(), ["bodies.bus.weight=1, 2"], [measure], verb="modes")
+        gb.sweep(satellite(), ["bodies.bus.weight=1, 2"], [measure], verb="modes")
 
 
 def test_histories_are_what_sensors_read() -> None:
@@ -124,7 +125,7 @@ def test_a_command_is_shaped_for_a_joint_of_a_system_made_in_python() -> None:
 
 
 def test_errors_that_no_figure_needs_are_not_computed() -> None:
-    case = made()
+    case = satellite()
     judged, plain = (QUESTIONS["modes"].answer(case, needs=Needs(errors=each)) for each in (True, False))
     np.testing.assert_array_equal(judged.frequency, plain.frequency)
     assert np.isfinite(judged.error_estimate).all() and np.isnan(plain.error_estimate).all()
@@ -144,7 +145,7 @@ def test_options_of_a_question_are_those_of_its_sweeps_and_searches() -> None:
         "hinge": gb.Joint("revolute", "panel", on="bus.root", axes=[(0, 1, 0)], stiffness=5.0),
     }
     panel = gb.assemble(strip, "FOAM", axial=1, y=2, z=2)
-    case = replace(made(), system=gb.System({"bus": gb.RigidBody(1.0, (1.0, 1.0, 1.0)), "panel": panel}, joints))
+    case = replace(satellite(), system=gb.System({"bus": gb.RigidBody(1.0, (1.0, 1.0, 1.0)), "panel": panel}, joints))
     by, options = "joints.hinge.stiffness", {"turning": "spin.angle", "to": "60 rpm"}
     with pytest.raises(gb.InputError, match="turning is missing"):
         gb.sweep(case, [f"{by}=5"], ["speed[1]"], verb="campbell", options={"to": "60 rpm"})
@@ -169,7 +170,7 @@ def test_options_of_a_question_are_those_of_its_sweeps_and_searches() -> None:
 def test_a_system_has_figures_that_are_meant_where_none_is_named() -> None:
     by = ["joints.hinge_right.stiffness"]
     of_file = gb.sensitivity(SATELLITE, parameters=by, overrides=SHORT)
-    of_case = gb.sweep(made(), [f"{by[0]}=100"])
+    of_case = gb.sweep(satellite(), [f"{by[0]}=100"])
     assert tuple(of_case.measures) == of_file.measures and np.isfinite(of_file.figures).all()
     assert of_file.measures[:2] == (
         "motions.ground.points.right.tip.displacement_max",

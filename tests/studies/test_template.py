@@ -22,7 +22,7 @@ FIXED = ("response.step=2 ms", "response.estimate=false")
 
 
 @pytest.mark.parametrize(
-    "made",
+    "value",
     [
         gb.Hub(radius=0.5, rate=STEP),
         gb.Hub(radius=0.5, rate=STEP, inertia=3.0, pointing="inward", setting_angle=0.3, gravity=[0.0, -9.81, 0.0]),
@@ -35,12 +35,12 @@ FIXED = ("response.step=2 ms", "response.estimate=false")
         gb.Section.general(1e-4, 1e-9, 2e-9),
         PiecewiseLinear([0.0, 1.0, 2.0], [0.0, 5.0, 1.0]),
     ],
-    ids=lambda made: type(made).__name__,
+    ids=lambda value: type(value).__name__,
 )
-def test_an_object_is_made_again_from_its_arguments(made: Any) -> None:
-    arguments = arguments_of(made)
+def test_an_object_is_made_again_from_its_arguments(value: Any) -> None:
+    arguments = arguments_of(value)
     assert arguments is not None
-    assert altered(made) == made
+    assert altered(value) == value
 
 
 def by_hand(file: Path, *changes: str) -> gb.Case:

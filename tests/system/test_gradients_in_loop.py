@@ -108,8 +108,8 @@ def test_a_loop_that_leaves_all_bounds_has_no_derivative() -> None:
 )
 def test_laws_that_cannot_be_traced_are_refused(law: Any, words: str) -> None:
     def looped(k: Any) -> Any:
-        given = {"sample": SAMPLE} | law(k)
-        return figure(satellite(50.0, 0.1, gb.Feedback(measure=NAMES, drive=["axis.angle"], **given)))
+        arguments = {"sample": SAMPLE} | law(k)
+        return figure(satellite(50.0, 0.1, gb.Feedback(measure=NAMES, drive=["axis.angle"], **arguments)))
 
     with pytest.raises(gb.InputError, match=words):
         jax.grad(looped)(0.02)

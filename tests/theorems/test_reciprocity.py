@@ -20,10 +20,10 @@ def test_influence(beam: Beam, places: np.ndarray, first: np.ndarray, second: np
     across = np.array([0.0, 1.0, 1.0])
     forces = [1e-3 * (f + 0.1) * across for f in (first, second)]
 
-    def moved(force: np.ndarray, here: float, there: float) -> np.ndarray:
-        load = Load(here, force=tuple(force))
+    def moved(force: np.ndarray, at_load: float, at_point: float) -> np.ndarray:
+        load = Load(at_load, force=tuple(force))
         loaded = Beam(beam.length, beam.section, beam.material, beam.masses, beam.damping_ratio, beam.root, [load])
-        structure = assemble(loaded, Model("FOAM", 1, 4, 4), [there])
+        structure = assemble(loaded, Model("FOAM", 1, 4, 4), [at_point])
         return structure.displacement(solve_equilibrium(structure, base).q)[0]
 
     none = np.zeros(3)
@@ -50,5 +50,5 @@ def test_transfer_functions(beam: Beam, share: float, speed: float, way: np.ndar
             1j * share * scale * np.eye(len(plant.a)) - plant.a, plant.b[:, columns]
         ) + plant.d[np.ix_(rows, columns)]  # fmt: skip
 
-    there, back = transfer(speed * scale), transfer(-speed * scale)
-    np.testing.assert_allclose(there, back.T, atol=1e-9 * np.abs(there).max(), rtol=0)
+    forward, back = transfer(speed * scale), transfer(-speed * scale)
+    np.testing.assert_allclose(forward, back.T, atol=1e-9 * np.abs(forward).max(), rtol=0)

@@ -45,11 +45,11 @@ def test_turning_the_world_about_the_beam(
     structure = assemble(beam, Model(kind, *EXACT))
     scale, R = first_frequency(beam), about_x(angle)
     motion = a, 0.2 * scale * w, 0.02 * scale**2 * al
-    here, there = (
+    as_is, turned = (
         structure.displacement(solve_equilibrium(structure, Base(*(turn @ x for x in motion))).q)[-1]
         for turn in (np.eye(3), R)
     )
-    np.testing.assert_allclose(there, R @ here, atol=1e-9 * np.linalg.norm(here))
+    np.testing.assert_allclose(turned, R @ as_is, atol=1e-9 * np.linalg.norm(as_is))
 
 
 @theorem
@@ -103,8 +103,8 @@ def test_mirror(beam: Beam, a: np.ndarray, w: np.ndarray, al: np.ndarray) -> Non
     motion = a, 0.2 * scale * w, 0.02 * scale**2 * al
     structures = (assemble(each, Model("FOAM", 2, 3, 3)) for each in (beam, mirrored))
     bases = Base(*motion), Base(*(s * x for s, x in zip((polar, axial, axial), motion, strict=True)))
-    here, there = (s.displacement(solve_equilibrium(s, b).q)[-1] for s, b in zip(structures, bases, strict=True))
-    np.testing.assert_allclose(there, polar * here, atol=1e-10 * np.linalg.norm(here))
+    as_is, reflected = (s.displacement(solve_equilibrium(s, b).q)[-1] for s, b in zip(structures, bases, strict=True))
+    np.testing.assert_allclose(reflected, polar * as_is, atol=1e-10 * np.linalg.norm(as_is))
 
 
 @few
@@ -160,8 +160,8 @@ def test_time_reversal(scheme: object, beam: Beam, a: np.ndarray, w: np.ndarray,
 
     small = beam.length * np.array([1e-5, 0.02, 0.01, 0.02, 0.01])
     q, qd = start[:5] * small, start[5:] * small * scale
-    there, speed = run(q, qd, 1.0)
-    back, against = run(there, -speed, -1.0)
-    size = max(np.abs(there).max(), np.abs(q).max(), 1e-9 * beam.length)
+    at_end, speed = run(q, qd, 1.0)
+    back, against = run(at_end, -speed, -1.0)
+    size = max(np.abs(at_end).max(), np.abs(q).max(), 1e-9 * beam.length)
     np.testing.assert_allclose(back, q, atol=1e-8 * size)
     np.testing.assert_allclose(against, -qd, atol=1e-8 * max(np.abs(speed).max(), np.abs(qd).max(), size * scale))

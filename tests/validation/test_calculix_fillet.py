@@ -27,9 +27,9 @@ def test_stress_in_a_fillet_is_calculixs() -> None:
     assert von_mises(fitted(model, np.asarray(rest.q)))[fillet].max() == pytest.approx(coarse["reference"], rel=1e-4)
     recovery = model.structure.recovery
     assert isinstance(recovery, NodalStress)
-    own = von_mises(recovery.table @ rest.q)[fillet].max()
-    assert own == pytest.approx(coarse["ours"], rel=1e-6)
-    assert own > coarse["reference"] > fine["reference"]
+    ours = von_mises(recovery.table @ rest.q)[fillet].max()
+    assert ours == pytest.approx(coarse["ours"], rel=1e-6)
+    assert ours > coarse["reference"] > fine["reference"]
     assert fine["ours"] == pytest.approx(fine["reference"], rel=NODES)
 
 

@@ -67,8 +67,8 @@ def test_kept_results_are_explained(name: str) -> None:
 
 def test_every_module_is_listed() -> None:
     folders = (page.ROOT / "validation" / folder for folder in ("codes", "published", "accuracy"))
-    there = {f"{folder.name}.{path.stem}" for folder in folders for path in folder.glob("*.py")}
-    assert {name for name in there if has_rows(name)} == set(MODULES)
+    modules = {f"{folder.name}.{path.stem}" for folder in folders for path in folder.glob("*.py")}
+    assert {name for name in modules if has_rows(name)} == set(MODULES)
 
 
 def has_rows(name: str) -> bool:

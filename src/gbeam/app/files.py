@@ -39,7 +39,7 @@ def regular(folder: Path, name: str) -> Path:
     return file
 
 
-def made(folder: Path) -> Path:
+def ensured(folder: Path) -> Path:
     """Make a folder for its owner only, unless it is there."""
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     return folder
@@ -63,7 +63,7 @@ def store(folder: Path, name: str, content: bytes) -> Path:
         raise InputError(
             name, f"has more than {LARGEST // 2**20} MiB", "cut or resample the record, or mesh more coarsely"
         )
-    if len(names(made(folder))) >= MANY:
+    if len(names(ensured(folder))) >= MANY:
         raise InputError(name, f"is one too many: {MANY} files are kept", f"delete some in {folder}")
     write(file, content)
     return file

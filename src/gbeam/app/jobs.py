@@ -22,7 +22,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from gbeam.app.files import SHORT, made, names, private, regular, write
+from gbeam.app.files import SHORT, ensured, names, private, regular, write
 from gbeam.app.verbs import verbs
 from gbeam.errors import InputError
 from gbeam.guards.processes import LIMITED
@@ -99,14 +99,14 @@ class Jobs:
         now = datetime.now()  # in the order of their names they are run
         number = f"{now:%Y%m%d-%H%M%S}-{now.microsecond:05x}{secrets.randbelow(0x1000):03x}"
         facts = {"title": title, "verb": verb, "case": case, "changes": changes, "arguments": list(arguments)}
-        new = made(self.folder / f".new-{number}")
+        new = ensured(self.folder / f".new-{number}")
         try:
             for record in records:
                 write(new / record.name, record.read_bytes())
             scenario = text.encode("utf-8")
             write(new / _SCENARIO, scenario)  # whatever the records are called
             if "--write" in arguments:
-                write(made(new / _BEFORE) / _SCENARIO, scenario)
+                write(ensured(new / _BEFORE) / _SCENARIO, scenario)
             write(new / _STATE, json.dumps({"state": "queued", **facts}).encode())
             with self._lock:
                 known = self.list()

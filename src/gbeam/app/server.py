@@ -232,7 +232,7 @@ def serve(folder: Path, port: int, announce: Callable[[str], None]) -> None:
     """Serve the app on 127.0.0.1 until it is interrupted; `announce` the address once it is there."""
     import uvicorn
 
-    with alone(files.made(folder) / ".lock", "--folder", "open the address that it printed, or name another folder"):
+    with alone(files.ensured(folder) / ".lock", "--folder", "open the address that it printed, or name another folder"):
         try:
             opened = listening(port)
         except OSError as error:

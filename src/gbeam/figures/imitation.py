@@ -1,4 +1,4 @@
-"""Why a centrifuge's response differs from the flight's: root loads, slow and fast parts, the mismatch, the spectra."""
+"""Differences of a centrifuge's response from the flight's: root loads, slow and fast parts, mismatch, spectra."""
 
 from __future__ import annotations
 

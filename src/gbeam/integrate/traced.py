@@ -41,8 +41,8 @@ def traced(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, s
 
     of_steps = stepped(equations, scheme, steps, len(q))
 
-    def solved(residual: Any, q: Any, qd: Any, driven: Any, made: Any) -> Any:
-        residual, q, qd, driven, made = jax.tree.map(np.asarray, (residual, q, qd, driven, made))
+    def solved(residual: Any, q: Any, qd: Any, driven: Any, inputs: Any) -> Any:
+        residual, q, qd, driven, inputs = jax.tree.map(np.asarray, (residual, q, qd, driven, inputs))
         order = np.argsort(times)
 
         def drive(t: Any) -> Any:
@@ -51,7 +51,7 @@ def traced(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, s
 
         of, out, done = NonlinearEquations(residual, drive), np.full((3, *shape), np.nan), 0
         if loop is not None:
-            laws = loop.laws_of(made)
+            laws = loop.laws_of(inputs)
             of = replace(of, controllers=loop.controllers.of(exact(residual), laws), samplings=[])
         with np.errstate(all="ignore"):  # of what is no number
             for *piece, _ in windows(of, scheme, q, qd, steps):
@@ -59,22 +59,26 @@ def traced(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, s
                 done += len(piece[0])
             if not scheme.ends:
                 out[2, :done] = Demanded(of, steps, *out[:2])(np.arange(done))
-        return tuple(out), [] if loop is None else loop.recorded(of.samplings[-1], made)
+        return tuple(out), [] if loop is None else loop.recorded(of.samplings[-1], inputs)
 
     @jax.custom_jvp
-    def run(residual: Any, q: Array, qd: Array, driven: Any, made: Any) -> Any:
+    def run(residual: Any, q: Array, qd: Array, driven: Any, inputs: Any) -> Any:
         result = (jax.ShapeDtypeStruct(shape, float),) * 3, [] if loop is None else loop.shapes
-        return jax.pure_callback(solved, result, residual, q, qd, driven, made, vmap_method="sequential")
+        return jax.pure_callback(solved, result, residual, q, qd, driven, inputs, vmap_method="sequential")
 
     @run.defjvp
     def _(primals: Any, tangents: Any) -> Any:
-        every, (residual, _, _, driven, made), (changed, dq, dqd, redriven, remade) = run(*primals), primals, tangents
-        in_loop = None if loop is None else (loop, made, remade)
+        every, (residual, _, _, driven, inputs), (changed, dq, dqd, redriven, by_inputs) = (
+            run(*primals),
+            primals,
+            tangents,
+        )
+        in_loop = None if loop is None else (loop, inputs, by_inputs)
         return every, _changes(scheme, steps, every, (residual, driven), (changed, redriven), dq, dqd, in_loop)
 
-    made = [] if loop is None else jax.tree.map(lambda leaf: jnp.asarray(leaf, dtype=float), loop.made)
+    inputs = [] if loop is None else jax.tree.map(lambda leaf: jnp.asarray(leaf, dtype=float), loop.inputs)
     start = jnp.asarray(q, dtype=float), jnp.asarray(qd, dtype=float)
-    histories, samples = run(of_steps, *start, equations.drive(times), made)
+    histories, samples = run(of_steps, *start, equations.drive(times), inputs)
     if loop is not None:
         loop.values = samples
         equations.samplings.append(loop)
@@ -110,10 +114,10 @@ def _changes(
     )
     commands = jnp.zeros((len(states[0]), 0))
     if in_loop is not None:
-        loop, made, remade = in_loop
+        loop, inputs, by_inputs = in_loop
         held = loop.held(samples)
         commands = jnp.concatenate([0 * held[:1], *[held] * (stages + 1)])
-        follow = loop.changes((of[0], begun[0]), (changed[0], begun[1]), run, made, remade, samples)
+        follow = loop.changes((of[0], begun[0]), (changed[0], begun[1]), run, inputs, by_inputs, samples)
 
     def driven_by(driven: Any, commands: Array) -> Any:
         return driven if in_loop is None else in_loop[0].controllers.driven(driven, commands)

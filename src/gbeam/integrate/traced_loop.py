@@ -22,14 +22,14 @@ Array = Any
 
 
 class TracedLaw(NamedTuple):
-    """A law as a function of what it is `made` of, the references of a sample, its time, its measurements and the state
+    """A law as a function of its parameters, the references of a sample, its time, its measurements and the state
     of the law (x,), that gives the command as asked and as limited and the next state; samples are at `times` (s,) s,
     with references (s, k), and the first state is `start` (x,).
     """
 
     times: Any
     function: Any
-    made: Any
+    parameters: Any
     references: Array
     start: Array
 
@@ -73,13 +73,13 @@ class TracedLoop:
         self.values: list[Samples] = []
 
     @property
-    def made(self) -> list[tuple[Any, Array, Array]]:
-        """Arrays that the laws are made of."""
-        return [(law.made, law.references, law.start) for law in self.laws]
+    def inputs(self) -> list[tuple[Any, Array, Array]]:
+        """Parameters, references and first state of each law."""
+        return [(law.parameters, law.references, law.start) for law in self.laws]
 
-    def laws_of(self, made: Any) -> list[TracedLaw]:
-        """The laws made of other arrays."""
-        return [TracedLaw(law.times, law.function, *each) for law, each in zip(self.laws, made, strict=True)]
+    def laws_of(self, inputs: Any) -> list[TracedLaw]:
+        """The laws with other parameters, references and first states."""
+        return [TracedLaw(law.times, law.function, *each) for law, each in zip(self.laws, inputs, strict=True)]
 
     @property
     def shapes(self) -> list[Samples]:
@@ -92,10 +92,10 @@ class TracedLoop:
             for at, m, law in zip(self.at, sizes, self.laws, strict=True)
         ]
 
-    def recorded(self, sampling: Sampling, made: Any) -> list[Samples]:
+    def recorded(self, sampling: Sampling, inputs: Any) -> list[Samples]:
         """Arrays of the samples that were taken; NaN of the others."""
         every = []
-        for shapes, taken, (*_, start) in zip(self.shapes, sampling.samples, made, strict=True):
+        for shapes, taken, (*_, start) in zip(self.shapes, sampling.samples, inputs, strict=True):
             arrays = Samples(*(np.full(each.shape, np.nan) for each in shapes))
             before = [start, *(after for *_, after in taken[:-1])]
             for k, ((*values, _), state) in enumerate(zip(taken, before, strict=False)):
@@ -116,11 +116,11 @@ class TracedLoop:
         ]
         return jnp.concatenate(parts, axis=1)
 
-    def changes(self, of: Any, changed: Any, run: Any, made: Any, remade: Any, samples: list[Samples]) -> _Changes:
+    def changes(self, of: Any, changed: Any, run: Any, inputs: Any, by_inputs: Any, samples: list[Samples]) -> _Changes:
         """Changes of the samples along a run with those of residual and drives where steps begin, and of laws."""
         held = self.held(samples)
         before = jnp.concatenate([0 * held[:1], held[:-1]])
-        every = zip(self.at, self.laws_of(made), self.laws_of(remade), samples, strict=True)
+        every = zip(self.at, self.laws_of(inputs), self.laws_of(by_inputs), samples, strict=True)
         parts = [
             self._along(c, of, changed, [part[at] for part in run[:2]], before[at], at) + self._through(law, by, values)
             for c, (at, law, by, values) in enumerate(every)
@@ -158,16 +158,16 @@ class TracedLoop:
         that of the state at the start.
         """
 
-        def whole(made: Any, references: Array, y: Array, state: Array, t: Array) -> Array:
-            return jnp.concatenate(law.function(made, references, t, y, state))
+        def whole(parameters: Any, references: Array, y: Array, state: Array, t: Array) -> Array:
+            return jnp.concatenate(law.function(parameters, references, t, y, state))
 
         sampled, each = (values.measured, values.state, law.times), (None, 0, 0, 0, 0)
-        by_y, by_state = jax.vmap(jax.jacfwd(whole, (2, 3)), each)(law.made, law.references, *sampled)
+        by_y, by_state = jax.vmap(jax.jacfwd(whole, (2, 3)), each)(law.parameters, law.references, *sampled)
 
-        def direct(made: Any, references: Array) -> Array:
-            return jax.vmap(whole, each)(made, references, *sampled)
+        def direct(parameters: Any, references: Array) -> Array:
+            return jax.vmap(whole, each)(parameters, references, *sampled)
 
-        _, change = jax.jvp(direct, (law.made, law.references), (by.made, by.references))
+        _, change = jax.jvp(direct, (law.parameters, law.references), (by.parameters, by.references))
         return by_y, by_state, change, by.start
 
 

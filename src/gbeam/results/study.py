@@ -19,7 +19,7 @@ from gbeam.results.system import SystemResponse
 
 @dataclass(frozen=True)
 class Failure:
-    """Why there is no whole response in an environment: the outcome, such as diverged, and what happened."""
+    """Reason for no whole response in an environment: the outcome, such as diverged, and what happened."""
 
     outcome: str = fact("the outcome, such as diverged")
     message: str = fact("what happened")
@@ -73,7 +73,7 @@ class Answers(Figured):
 
     @property
     def unfinished(self) -> Mapping[str, Failure]:
-        """Why not every environment is done, by name."""
+        """Failures of the environments that are not done, by name."""
         cut = {name: Failure(r.outcome, r.message) for name, r in self.responses.items() if r.outcome != "done"}
         return {**cut, **self.failures}
 

@@ -78,7 +78,7 @@ def choices(verb: str) -> dict[str, Entry]:
 
 
 def _message(answer: Any) -> str:
-    """Why an answer in some motions is none, or which limits it does not keep."""
+    """Reasons for no answer in some motions, or the limits that it does not keep."""
     if isinstance(answer, tuple):
         reasons = {each.name: each.message or each.refusal for each in answer if hasattr(each, "refusal")}
     elif hasattr(answer, "unfinished"):

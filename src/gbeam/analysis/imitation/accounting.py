@@ -144,7 +144,7 @@ def _apart(one: Floats, other: Floats) -> Floats:
 
 
 def _reasons(time: Floats, low: Flags, held: Flags, episodes: tuple[tuple[float, float, str], ...]) -> Codes:
-    """Why the load would not be followed at each time, as an index of `_NAMES`."""
+    """Reason for which the load would not be followed at each time, as an index of `_NAMES`."""
     codes = np.full(len(time), _NAMES.index(_CORNER))
     for start, end, why in episodes:
         inside = (time >= start) & (time <= end)

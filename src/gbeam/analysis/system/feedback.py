@@ -76,7 +76,7 @@ class SystemControllers:
         if self.traced_laws is not None:
             law = self.traced_laws[controller]
             k = int(np.abs(law.times - t).argmin())
-            values = law.function(law.made, law.references[k], t, measured, state)
+            values = law.function(law.parameters, law.references[k], t, measured, state)
             return tuple(map(np.asarray, values))  # type: ignore[return-value]
         each = self.every[controller]
         asked, state = each.effort(t, measured, state)

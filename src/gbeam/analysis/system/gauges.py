@@ -76,8 +76,8 @@ def read_signals(
     shape = np.broadcast_shapes(ground.a.shape[:-1], *(each.shape[:-1] for each in (y, yd, ydd)), *leading)
 
     def flat(leaf: Array, rank: int) -> Array:
-        own = leaf.shape[leaf.ndim - rank :]
-        return xp.broadcast_to(leaf, (*shape, *own)).reshape(-1, *own)
+        trailing = leaf.shape[leaf.ndim - rank :]
+        return xp.broadcast_to(leaf, (*shape, *trailing)).reshape(-1, *trailing)
 
     y, yd, ydd = (flat(each, 1) for each in (y, yd, ydd))
     frame = {each.name: flat(getattr(ground, each.name), 2 if each.name == "R" else 1) for each in fields(ground)}

@@ -28,18 +28,18 @@ def traced_law(named: tuple[str, Feedback], times: NDArray[np.float64]) -> Trace
         sign, values = -1.0, [profile(times) for profile in each.reference]
     references = namespace(*values).stack(values, axis=-1)
     if isinstance(each.law, tuple):
-        law, made, start = _linear, each.law, each.start
+        law, parameters, start = _linear, each.law, each.start
     else:
         start, restored = ravel_pytree(each.state)
-        law, made = _of_function(f"controllers.{name}.law", each, start, restored)
-    return TracedLaw(times, partial(_commanded, law, sign), (made, limit), references, start)
+        law, parameters = _of_function(f"controllers.{name}.law", each, start, restored)
+    return TracedLaw(times, partial(_commanded, law, sign), (parameters, limit), references, start)
 
 
 def _commanded(
-    law: Any, sign: float, made: Any, references: Array, t: Any, y: Array, state: Array
+    law: Any, sign: float, parameters: Any, references: Array, t: Any, y: Array, state: Array
 ) -> tuple[Array, ...]:
     """The command as asked and as limited, and the next state."""
-    parts, limit = made
+    parts, limit = parameters
     asked, after = law(parts, t, references + sign * y, state)
     limited = asked
     if limit:

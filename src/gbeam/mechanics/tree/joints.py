@@ -71,7 +71,7 @@ class Kind(NamedTuple):
     sprung: tuple[str, ...] = ()
 
     @property
-    def given(self) -> tuple[str, ...]:
+    def value_names(self) -> tuple[str, ...]:
         """Names of values: of its coordinates, but of Euler parameters the components of the rotation vector."""
         names = tuple(name for name in self.names if name not in _BALL)
         return (*self.sprung, *names, *(_TURN if self.turns else ()))
@@ -83,7 +83,7 @@ class Kind(NamedTuple):
 
     def names_in(self, key: str) -> tuple[str, ...]:
         """Names by which a key is given."""
-        return self.rates if self.rates and key in OF_RATES else self.given
+        return self.rates if self.rates and key in OF_RATES else self.value_names
 
 
 def _turns(axes: Floats) -> tuple[Step, ...]:
@@ -215,7 +215,7 @@ class Joint(Value):
     @property
     def values(self) -> tuple[str, ...]:
         """Names of what its springs hold: its coordinates, of a ball the rotation vector."""
-        return self.coordinates if self.kind == "fixed" else KINDS[self.kind].given
+        return self.coordinates if self.kind == "fixed" else KINDS[self.kind].value_names
 
     def numbers(self, rate: str) -> tuple[int, ...]:
         """Return the numbers, among its coordinates, of what moves at a rate: of a spin those of all Euler parameters.

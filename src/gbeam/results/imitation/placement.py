@@ -182,7 +182,7 @@ class Placement(Result):
 
     @declared("", "why none is allowed, or why placing saves little", role="fact")
     def message(self) -> str:
-        """Why none is allowed and which comes nearest; or why placing saves little, and what dominates."""
+        """Reason for which none is allowed, and which comes nearest; or placing saves little, and what dominates."""
         best, before = self.best, self.before
         if self.outcome != "done":
             broken = "; ".join(str(use) for use in best.exceeded)

@@ -122,17 +122,17 @@ def _joint(name: str, kind: Kind) -> Any:
             title = f"{name}_{key}".title().replace("_", "")
             table = _table(Coordinates, title, f"{words[0].upper()}{words[1:]}, by coordinate.", within)
             fields[key] = _optional(table, f"{words}: {{ {', '.join(names)} }}")
-    if len(kind.given) > 1:
+    if len(kind.value_names) > 1:
         words = "stiffness between two coordinates"
         within = {
             f"{one}_{two}": (Annotated[float, Quantity(COUPLINGS[(one in SLIDES) + (two in SLIDES)])] | None,
                              optional(words, alias=f"{one}-{two}"))
-            for one, two in combinations(kind.given, 2)
+            for one, two in combinations(kind.value_names, 2)
         }  # fmt: skip
         table = _table(
             Coordinates, f"{name}_coupling".title().replace("_", ""), "Coupling, by two coordinates.", within
         )
-        first = "-".join(kind.given[:2])
+        first = "-".join(kind.value_names[:2])
         fields["coupling"] = _optional(table, f"{words} that have springs, by both names: {{ {first}, ... }}")
     return _table(Table, name.title(), f"{kind.words[0].upper()}{kind.words[1:]}.", fields)
 
