@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
-HELD = 1e-12  # of the largest stiffness: a smaller one holds nothing
+HELD = 1e-12  # of the largest stiffness, scaled: a smaller one holds nothing
 SAME = 1e-8  # of what a rotation changes where nothing is accelerated anew: less is rounding
 
 
@@ -42,9 +42,38 @@ def pulled(residual: Floats, mass: Floats, which: NDArray[np.bool_]) -> Floats:
     return faster
 
 
+def rooted(mass: Floats) -> Floats:
+    """Roots (n,) of the inertia that each coordinate moves, by M (n, n); one of those that move none."""
+    root = np.sqrt(np.abs(mass).max(axis=1, initial=0.0))
+    return np.asarray(np.where(root > 0, root, 1.0))
+
+
+def scales(stiffness: Floats, mass: Floats) -> Floats:
+    """Sizes (n,) of displacements in which stiffness is judged: of unit kinetic energy, and the smaller the stiffer."""
+    unit = 1.0 / rooted(mass)
+    square = np.abs(np.diag(stiffness)) * unit**2  # rad²/s² of each alone
+    # What is stiffer than the geometric mean of the stiffest and 1/s² counts as that, so that it hides nothing soft.
+    ceiling = max(1.0, float(np.sqrt(square.max(initial=0.0))))
+    return np.asarray(unit * np.sqrt(np.minimum(1.0, ceiling / np.maximum(square, 1.0))))
+
+
+def answered(stiffness: Floats, mass: Floats, forces: Floats) -> Floats:
+    """Least displacements (n,) by K and M, scaled, that forces (n,) cause where something holds them."""
+    size = scales(stiffness, mass)
+    answer: Any = np.linalg.lstsq(size[:, None] * stiffness * size, size * forces, rcond=HELD)[0]
+    return np.asarray(size * answer)
+
+
+def unheld(stiffness: Floats, mass: Floats) -> Floats:
+    """Orthogonal directions (n, k) of the forces that no stiffness balances, by K and M, scaled."""
+    size = scales(stiffness, mass)
+    ways, sizes, _ = np.linalg.svd(size[:, None] * stiffness * size)
+    return np.linalg.qr(size[:, None] * ways[:, sizes <= HELD * sizes.max(initial=0.0)])[0]
+
+
 def balanced(residual: Floats, stiffness: Floats, mass: Floats, which: NDArray[np.bool_]) -> tuple[Floats, Floats]:
     """Displacements and accelerations (n,) that answer a residual (n,): accelerations of some coordinates."""
     left, k = carried(mass, which, residual, stiffness)
     k[:, which] = 0.0  # of slides already; a rotation that changes nothing else keeps its angle
-    change: Any = np.linalg.lstsq(k, -left, rcond=HELD)[0]
+    change = answered(k, mass, -left)
     return change, pulled(residual + stiffness @ change, mass, which)

@@ -18,7 +18,7 @@ from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.signals import local_names
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.balance import HELD, balanced, carried, loose, pulled, turning_on
+from gbeam.numerics.balance import answered, balanced, carried, loose, pulled, rooted, turning_on, unheld
 
 Array = Any
 Floats = NDArray[np.float64]
@@ -96,8 +96,7 @@ class Point:
 
 def refuse_massless(system: System, mass: Floats, free: NDArray[np.int64]) -> None:
     """Refuse a system in which some motion of the coordinates moves no mass."""
-    scale = np.sqrt(np.abs(mass).max(axis=1, initial=0.0))
-    scale = np.where(scale > 0, scale, 1.0)
+    scale = rooted(mass)
     _, sizes, rows = np.linalg.svd(mass / np.outer(scale, scale))
     if sizes.size and sizes[-1] <= MASSLESS * sizes[0]:
         name = system.coordinates[free[np.abs(rows[-1]).argmax()]]
@@ -273,8 +272,7 @@ def _steady(system: System, point: Point, slope: Sequence[Floats]) -> Point:
     (left,), (k,) = carried(m, which, left), carried(m, every, k)
     k[:, every] = 0.0
     # By forces alone that no stiffness balances: the rounding of a stiff body's is more than gravity.
-    ways, sizes, _ = np.linalg.svd(k)
-    ways = ways[:, sizes <= HELD * sizes.max(initial=0.0)]
+    ways = unheld(k, m)
     yields = np.linalg.solve(m, ways) @ ways.T
     rounding = np.abs(yields) @ np.abs(k).sum(axis=1)
     if np.abs(yields @ left).max(initial=0.0) > NONE * max(1.0, 1e-6 * rounding.max(initial=0.0)):
@@ -290,7 +288,7 @@ def _unheld(system: System, local: Point) -> str:
     """Say which coordinate is accelerated, and by which force or moment."""
     left, k, c, m = local.slopes()
     left, k = carried(m, local.tree.sliding & loose(k, c), left, k)
-    left = left - k @ np.linalg.lstsq(k, left, rcond=HELD)[0]
+    left = left - k @ answered(k, m, left)
     # Of all that is accelerated with it the one on which the force left over acts.
     at = int(np.abs(left / np.sqrt(np.diag(m))).argmax())
     name = local_names(system.coordinates)[local.tree.free[at]]
