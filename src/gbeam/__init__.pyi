@@ -62,7 +62,7 @@ from gbeam.motion.profiles.pulse import SplineProfile as SplineProfile
 from gbeam.motion.records.record import read_record as read_record
 from gbeam.results.cases import Sensitivity as Sensitivity
 from gbeam.results.cases import Sweep as Sweep
-from gbeam.results.imitation.comparison import Comparison as Comparison
+from gbeam.results.comparison import Comparison as Comparison
 from gbeam.results.response import Response as Response
 from gbeam.results.response import Sensor as Sensor
 from gbeam.results.searches import Fit as Fit

@@ -17,10 +17,10 @@ from gbeam.printable import advise
 
 if TYPE_CHECKING:
     from gbeam.analysis.case import AnyCase
+    from gbeam.results.comparison import MachinePlan
     from gbeam.results.equilibrium import Critical, Deflection
-    from gbeam.results.imitation.comparison import MachinePlan
-    from gbeam.results.imitation.placement import Placement
     from gbeam.results.modal import Campbell, Modes
+    from gbeam.results.placement import Placement
     from gbeam.results.study import Study, SystemStudy
     from gbeam.results.system import SystemModes, SystemRest
 
@@ -106,7 +106,7 @@ class Question:
     @property
     def records(self) -> tuple[type, ...]:
         """Kind of record that answers of a beam, and that of a system where one is; each motion's where several do."""
-        from gbeam.results.kinds import KINDS
+        from gbeam.results.study import KINDS
 
         written = self.answer.__annotations__["return"]
         if isinstance(written, type):
@@ -344,7 +344,7 @@ def plan(
 ) -> tuple[MachinePlan, ...]:
     """Plans of all centrifuges, or one."""
     from gbeam.analysis.imitation.plan import plan
-    from gbeam.results.imitation.criteria import judging
+    from gbeam.results.criteria import judging
 
     named = None if motion is None else motion_of(case.motions, motion)
     machines = [name for name, m in case.motions.items() if m.kind == CENTRIFUGE and named in (None, name)]

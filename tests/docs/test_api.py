@@ -31,7 +31,7 @@ def test_every_module_of_results_with_records_is_on_the_page_of_results() -> Non
     listed = set(re.findall(r"^\.\. automodule:: ([\w.]+)$", PAGES["results"], re.MULTILINE))
     # The one record of comparisons is public, and declarations are no result.
     others = {
-        "gbeam.results.imitation.comparison",
+        "gbeam.results.comparison",
         "gbeam.results.declared",
         "gbeam.results.facts",
     }

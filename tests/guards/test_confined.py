@@ -110,7 +110,7 @@ def test_the_server_of_the_app_opens_no_such_file_itself(tmp_path: Path, monkeyp
     import scipy.io
 
     from gbeam.app import documents
-    from gbeam.io.stored import read_stored
+    from gbeam.io.netcdf import read_stored
 
     acceleration = FLIGHT.splitlines()[-1]
     values = {"t": TIME, "az": np.ones(len(TIME))}

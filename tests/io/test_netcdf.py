@@ -16,11 +16,11 @@ from scipy.integrate import cumulative_trapezoid
 
 from gbeam import Hub, SmoothStep, simulate
 from gbeam.errors import InputError
-from gbeam.io.stored import csv_of, read_stored
-from gbeam.results.imitation.accounting import Accounting, LoadPeak, NotFollowed, PeakPair
-from gbeam.results.imitation.comparison import Comparison
-from gbeam.results.imitation.measures import Fatigue, RootHistory, RootLoads, Sizes, Statistics, StressCycles
+from gbeam.io.netcdf import csv_of, read_stored
+from gbeam.results.accounting import Accounting, LoadPeak, NotFollowed, PeakPair
+from gbeam.results.comparison import Comparison
 from gbeam.results.machine import AxesResult, LimitUse, Shortfall
+from gbeam.results.measures import Fatigue, RootHistory, RootLoads, Sizes, Statistics, StressCycles
 from gbeam.results.parts import Base, Loads
 from gbeam.results.provenance import Provenance
 from gbeam.results.response import HubResult, Peaks, Response

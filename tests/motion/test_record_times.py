@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from gbeam import Flight, InputError, read_record, smoothed, trapezoid
-from gbeam.io.tables.table import read_clock
+from gbeam.io.table import read_clock
 from gbeam.motion.records.record import Conditioning, FlightRecord, Rates, read_flight
 
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"

@@ -18,11 +18,11 @@ from gbeam import InputError
 from gbeam.analysis.imitation.place import place
 from gbeam.analysis.imitation.place_measures import Choice
 from gbeam.cli import main
-from gbeam.cli.verbs.centrifuge import parse
+from gbeam.cli.centrifuge import parse
 from gbeam.motion import AxisLimit, MachineLimits
 from gbeam.numerics.minimise import coarse, refine
-from gbeam.results.imitation.placement import MEASURES, Candidate, Placement
 from gbeam.results.machine import LimitUse
+from gbeam.results.placement import MEASURES, Candidate, Placement
 
 from ..scenarios import FLIGHT, SPECIMEN, SPIN, model, response
 

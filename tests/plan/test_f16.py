@@ -9,7 +9,7 @@ import pytest
 
 from gbeam.analysis.imitation.plan import plan
 from gbeam.cli import main
-from gbeam.results.imitation.comparison import MachinePlan
+from gbeam.results.comparison import MachinePlan
 from gbeam.scenario import build_machines, loads
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "f16_8g_turn.toml"

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from gbeam.results.accounting import Accounting, LoadPeak, NotFollowed, PeakPair
+from gbeam.results.comparison import Comparison
 from gbeam.results.errors import ErrorEstimate, Errors
-from gbeam.results.imitation.accounting import Accounting, LoadPeak, NotFollowed, PeakPair
-from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.machine import AxesResult, LimitUse
 from gbeam.results.parts import Base
 from gbeam.results.response import HubResult, Peaks, Response

@@ -20,10 +20,10 @@ from gbeam.figures import figures_of, imitation, response, steady
 from gbeam.figures.description import Figure as Described
 from gbeam.plots import draw, write_figures
 from gbeam.plots.draw import BROAD
+from gbeam.results.comparison import Comparison, MachinePlan
 from gbeam.results.equilibrium import Deflection
-from gbeam.results.imitation.comparison import Comparison, MachinePlan
-from gbeam.results.imitation.measures import Mismatch, RootHistory, RootLoads, Shock
 from gbeam.results.machine import LimitUse
+from gbeam.results.measures import Mismatch, RootHistory, RootLoads, Shock
 from gbeam.results.parts import Loads
 from gbeam.results.study import Study
 

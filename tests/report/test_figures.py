@@ -17,9 +17,9 @@ from gbeam.plots import draw
 from gbeam.report.page.parts import COLUMNS, FITTING, Numbers, drawn
 from gbeam.report.page.result import report_of, report_of_file
 from gbeam.results.cases import Indices, Parameter, Statistics
-from gbeam.results.imitation.comparison import Comparison
-from gbeam.results.imitation.measures import Mismatch, RootHistory, RootLoads, Shock, Sizes
-from gbeam.results.imitation.measures import Statistics as Apart
+from gbeam.results.comparison import Comparison
+from gbeam.results.measures import Mismatch, RootHistory, RootLoads, Shock, Sizes
+from gbeam.results.measures import Statistics as Apart
 from gbeam.results.result import Result
 from gbeam.results.study import Study
 

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import gbeam as gb
+from gbeam.results.accounting import Accounting
 from gbeam.results.cases import Parameter, Sensitivity, Sweep
-from gbeam.results.imitation.accounting import Accounting
-from gbeam.results.imitation.comparison import MachinePlan
-from gbeam.results.imitation.placement import Candidate, Placement
+from gbeam.results.comparison import MachinePlan
 from gbeam.results.machine import AxesResult, LimitUse
+from gbeam.results.placement import Candidate, Placement
 from gbeam.results.searches import CommandRun, Fit, FittedColumn, Optimum, Requirement, ShapedCommand
 from gbeam.results.study import ModelRow, ModelStudy, SystemStudy
 

@@ -15,8 +15,8 @@ from gbeam.report.facts import facts, json_schema_of_results, reference_of_resul
 from gbeam.report.page.result import report_of_file
 from gbeam.report.words import as_json
 from gbeam.results.facts import paths_of, tree_of
-from gbeam.results.kinds import KINDS
 from gbeam.results.result import Figured
+from gbeam.results.study import KINDS
 
 PAGE = Path(__file__).parents[2] / "docs" / "results.md"
 # One value, a table of options, or matrices: nothing of them is a curve.

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from gbeam.results.imitation.criteria import RULES, SETTINGS
+from gbeam.results.criteria import RULES, SETTINGS
 from gbeam.scenario import ScenarioError, build, loads
 from gbeam.scenario.schema.motion import Accept
 

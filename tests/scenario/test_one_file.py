@@ -21,7 +21,7 @@ from typing import Any, Literal
 
 from pydantic import Field
 
-from gbeam.scenario.bodies.kind import BodyKind
+from gbeam.scenario.bodies.common import BodyKind
 from gbeam.scenario.schema.fields import Length, Mass, Table
 
 

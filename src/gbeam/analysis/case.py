@@ -24,6 +24,7 @@ from gbeam.mechanics.tree.joints import GROUND, Joint
 from gbeam.mechanics.tree.system import RigidBody, System
 from gbeam.motion import Flight
 from gbeam.motion.protocol import Motion
+from gbeam.results.criteria import AT_POINTS, DISPLACEMENT, STRESS, refuse_unknown
 from gbeam.results.description import (
     BodyOfSystem,
     ControllerOfSystem,
@@ -33,7 +34,6 @@ from gbeam.results.description import (
     SpecimenDescription,
     SystemDescription,
 )
-from gbeam.results.imitation.criteria import AT_POINTS, DISPLACEMENT, STRESS, refuse_unknown
 from gbeam.results.provenance import Provenance
 from gbeam.structure.beam import Beam
 

@@ -17,8 +17,8 @@ from gbeam.analysis.response.simulation import simulate
 from gbeam.errors import ComputationError, InputError, placing_within
 from gbeam.guards.arguments import typed
 from gbeam.progress import Progress, tell
-from gbeam.results.imitation.comparison import Comparison
-from gbeam.results.imitation.criteria import judging
+from gbeam.results.comparison import Comparison
+from gbeam.results.criteria import judging
 from gbeam.results.parts import Extremes, VectorPeaks
 from gbeam.results.response import Readings, Response, Sensor
 from gbeam.results.study import Failure, Study, SystemStudy

@@ -26,7 +26,7 @@ from gbeam.app.files import SHORT, ensured, names, private, regular, write
 from gbeam.app.verbs import verbs
 from gbeam.errors import InputError
 from gbeam.guards.processes import LIMITED
-from gbeam.results.imitation.criteria import GOOD
+from gbeam.results.criteria import GOOD
 
 ID = re.compile(r"\d{8}-\d{6}-[0-9a-f]{8}")
 MEMORY = 16 * 2**30  # bytes of address space, of which compiled programs reserve far more than they use

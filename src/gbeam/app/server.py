@@ -25,7 +25,7 @@ from gbeam.app.jobs import Jobs
 from gbeam.errors import GbeamError, InputError
 from gbeam.guards.limits import SCENARIO_BYTES
 from gbeam.guards.processes import alone
-from gbeam.io.stored import csv_of, read_stored
+from gbeam.io.netcdf import csv_of, read_stored
 from gbeam.scenario.text.source import parse
 
 _KINDS = {".js": "text/javascript", ".css": "text/css", ".html": "text/html; charset=utf-8"}

@@ -110,7 +110,7 @@ def _app(chosen: str) -> App:
     for verb, about in verbs().items():
         # The help of the chosen verb is its own docstring, which says more.
         file, _ = _FILES.get(verb, ("questions", ""))
-        called = f"gbeam.cli.verbs.{file}:{verb.replace('-', '_')}"
+        called = f"gbeam.cli.{file}:{verb.replace('-', '_')}"
         app.command(called, name=verb, help=None if verb == chosen else about)
     app.register_install_completion_command(help="Let the shell complete verbs and options: bash, zsh or fish.")
     return app

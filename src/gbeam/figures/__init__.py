@@ -13,8 +13,8 @@ from gbeam.errors import InputError
 from gbeam.figures import imitation, response, steady, studies, systems
 from gbeam.figures.description import Figure
 from gbeam.results.cases import PROBABILITY, Sensitivity, Sweep
+from gbeam.results.comparison import Comparison, MachinePlan
 from gbeam.results.equilibrium import CriticalMap, Deflection
-from gbeam.results.imitation.comparison import Comparison, MachinePlan
 from gbeam.results.machine import AxesResult
 from gbeam.results.modal import Campbell, Modes
 from gbeam.results.response import Response

@@ -11,8 +11,8 @@ from typing import Any, Literal
 import numpy as np
 
 from gbeam.constants import STANDARD_GRAVITY
+from gbeam.results.accounting import Accounting
 from gbeam.results.declared import declarations
-from gbeam.results.imitation.accounting import Accounting
 from gbeam.results.machine import AxesResult
 from gbeam.results.result import Flags, Floats
 

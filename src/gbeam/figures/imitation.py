@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from gbeam.figures.description import FLIGHT, Figure, Line, Panel, ends_of, imitating, moving, scale_of, stretches
-from gbeam.results.imitation.comparison import Comparison
-from gbeam.results.imitation.measures import Shock
+from gbeam.results.comparison import Comparison
+from gbeam.results.measures import Shock
 from gbeam.results.result import Floats
 
 _BENDS = (0, 2, 1)  # axis of the root's moment that bends along each axis; about x it twists

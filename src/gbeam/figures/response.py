@@ -31,8 +31,8 @@ from gbeam.figures.description import (
     scale_of,
     stretches,
 )
+from gbeam.results.comparison import Comparison
 from gbeam.results.equilibrium import Deflection
-from gbeam.results.imitation.comparison import Comparison
 from gbeam.results.machine import AxesResult
 from gbeam.results.parts import Base, Loads
 from gbeam.results.response import HubResult, PlotHeading, Readings, Response

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.io import savemat
 
 from gbeam.printable import storable
-from gbeam.results.imitation.comparison import MachinePlan
+from gbeam.results.comparison import MachinePlan
 from gbeam.results.machine import Commands
 from gbeam.results.provenance import Provenance
 from gbeam.results.result import part_words

@@ -51,7 +51,7 @@ def _unnamed(facts: Facts, words: Mapping[str, str] | None) -> Iterable[Block]:
 def lines_of(kind: type, facts: Facts, **options: Any) -> list[tuple[str, str]]:
     """Return the lines that a terminal shows of a kind of result, from its JSON, each with its tone."""
     from gbeam.results.facts import paths_of
-    from gbeam.results.kinds import tree_of_answers  # of every kind, which `gbeam check` does without
+    from gbeam.results.study import tree_of_answers  # of every kind, which `gbeam check` does without
 
     title = [Sentence(facts["title"], "verdict")] if facts.get("title") and kind.__name__ in _TITLED else []
     words = {path: each.words for path, each in paths_of(tree_of_answers(kind))}

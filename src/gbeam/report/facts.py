@@ -10,15 +10,14 @@ from typing import Any
 
 from gbeam.report.words import as_json
 from gbeam.results.cases import Sweep
+from gbeam.results.comparison import Comparison, MachinePlan
 from gbeam.results.declared import declarations
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.facts import facts_of, json_of, paths_of, schema_of
-from gbeam.results.imitation.comparison import Comparison, MachinePlan
-from gbeam.results.kinds import KINDS, by_motion, tree_of_answers
 from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response
 from gbeam.results.result import Result
-from gbeam.results.study import Reproduction, Study, SystemStudy
+from gbeam.results.study import KINDS, Reproduction, Study, SystemStudy, by_motion, tree_of_answers
 from gbeam.results.system import SystemResponse, SystemRest
 
 VERSION = 1  # of the keys: raised where one changes or goes

@@ -25,10 +25,9 @@ from gbeam.report.blocks import (
     table,
 )
 from gbeam.report.words import known, number, percent, sentence
-from gbeam.results.imitation.accounting import Accounting, PeakPair
-from gbeam.results.imitation.criteria import GOOD, RULES, STRESS_AT, Judged
-from gbeam.results.imitation.verdict import change, in_g
-from gbeam.results.imitation.verdict import percent as share_of
+from gbeam.results.accounting import Accounting, PeakPair, change, in_g
+from gbeam.results.accounting import percent as share_of
+from gbeam.results.criteria import GOOD, RULES, STRESS_AT, Judged
 from gbeam.results.machine import AxesResult, Driven, Shortfall
 from gbeam.results.result import Floats
 

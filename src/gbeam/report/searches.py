@@ -25,8 +25,8 @@ from gbeam.report.blocks import (
     table,
 )
 from gbeam.report.words import known, number, percent
-from gbeam.results.imitation.placement import degrees
-from gbeam.results.imitation.verdict import change, in_g
+from gbeam.results.accounting import change, in_g
+from gbeam.results.placement import degrees
 from gbeam.results.searches import COMMANDS, GOALS
 
 

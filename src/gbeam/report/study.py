@@ -34,11 +34,11 @@ from gbeam.report.machine import (
     verdict,
 )
 from gbeam.report.words import errors_in_words, known, largest_loads, number, percent, sentence, tidy
+from gbeam.results.accounting import metres
+from gbeam.results.accounting import percent as share_of
+from gbeam.results.comparison import Comparison
+from gbeam.results.criteria import RULES
 from gbeam.results.facts import facts_of
-from gbeam.results.imitation.comparison import Comparison
-from gbeam.results.imitation.criteria import RULES
-from gbeam.results.imitation.verdict import metres
-from gbeam.results.imitation.verdict import percent as share_of
 from gbeam.results.response import Response
 from gbeam.results.system import SystemResponse
 from gbeam.results.system import named as named_histories

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.results.criteria import BROKEN, EXCEEDED, NOT_ACCEPTED
 from gbeam.results.declared import BESIDE, declared, fact, labels, quantity, rows
-from gbeam.results.imitation.criteria import BROKEN, EXCEEDED, NOT_ACCEPTED
 from gbeam.results.result import Figured, Flags, Floats, Part
 
 CONFIDENCE = 0.95

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.printable import advise
-from gbeam.results.imitation.criteria import AT_POINTS, RULES
+from gbeam.results.criteria import AT_POINTS, RULES
 from gbeam.scenario import schema
 from gbeam.scenario.build_beam import beam_of, model_of
 from gbeam.scenario.load import Collector, change, load, placed, provenance

@@ -12,7 +12,7 @@ from gbeam.guards.units import UnitError, quantity
 from gbeam.scenario import schema
 
 if TYPE_CHECKING:
-    from gbeam.io.tables.table import Table
+    from gbeam.io.table import Table
     from gbeam.mechanics.models import Model
     from gbeam.scenario.load import Collector
     from gbeam.structure.attachments import Load

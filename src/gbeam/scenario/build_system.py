@@ -15,7 +15,6 @@ from gbeam.mechanics.tree.system import PointForce, System
 from gbeam.scenario.bodies import OF_TABLE
 from gbeam.scenario.build_motion import components, profile_of
 from gbeam.scenario.load import Collector
-from gbeam.scenario.schema import control
 from gbeam.scenario.schema import system as schema
 from gbeam.scenario.schema.fields import fields_of
 from gbeam.scenario.schema.profile import Smoothed
@@ -60,7 +59,7 @@ def _force(parts: Collector, where: str, table: schema.PointForce) -> PointForce
     return parts.attempt(where, PointForce, table.on, follower=table.follower, **built)
 
 
-def _controller(parts: Collector, where: str, table: control.Controller) -> Feedback | None:
+def _controller(parts: Collector, where: str, table: schema.Controller) -> Feedback | None:
     reference = [0.0] * len(table.measure) if table.reference is None else list(table.reference)
     limit = None if table.limit is None else list(table.limit)
 
@@ -70,9 +69,9 @@ def _controller(parts: Collector, where: str, table: control.Controller) -> Feed
     return parts.attempt(where, controller)
 
 
-def _law(table: control.Controller) -> Any:
+def _law(table: schema.Controller) -> Any:
     """The laws of a controller in series; one in discrete time, with its step, alone."""
-    single = control.PID, control.LeadLag, control.Notch
+    single = schema.PID, schema.LeadLag, schema.Notch
     for k, law in enumerate(table.law):
         if isinstance(law, single) and (len(table.measure) > 1 or len(table.drive) > 1):
             fix = "name one measurement and one effort, or give gains or a state-space"
@@ -91,7 +90,7 @@ def _law(table: control.Controller) -> Any:
         raise InputError("law", "has matrices that do not fit one another", fix) from None
 
 
-def _matrices(k: int, law: control.Matrices) -> Any:
+def _matrices(k: int, law: schema.Matrices) -> Any:
     """Matrices of a table or of its file; with a step where they are of discrete time."""
     if law.file is None:
         return tuple(np.array(getattr(law, name), dtype=float, ndmin=2) for name in "abcd")
@@ -101,9 +100,9 @@ def _matrices(k: int, law: control.Matrices) -> Any:
 
 
 _LAWS: dict[type, Any] = {
-    control.Gains: lambda _, law: gains(law.gains),
-    control.PID: lambda _, law: pid(law.kp, law.ki, law.kd, law.smoothing),
-    control.LeadLag: lambda _, law: lead_lag(law.gain, law.zero, law.pole),
-    control.Notch: lambda _, law: notch(law.frequency, law.depth, law.damping),
-    control.Matrices: _matrices,
+    schema.Gains: lambda _, law: gains(law.gains),
+    schema.PID: lambda _, law: pid(law.kp, law.ki, law.kd, law.smoothing),
+    schema.LeadLag: lambda _, law: lead_lag(law.gain, law.zero, law.pole),
+    schema.Notch: lambda _, law: notch(law.frequency, law.depth, law.damping),
+    schema.Matrices: _matrices,
 }

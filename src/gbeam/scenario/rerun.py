@@ -26,7 +26,7 @@ from gbeam.scenario.text.overrides import override
 from gbeam.scenario.text.source import parse
 
 if TYPE_CHECKING:
-    from gbeam.io.stored import Stored
+    from gbeam.io.netcdf import Stored
 
 # Attributes of the computation, not of its result.
 _ABOUT = {"date", "command", "overrides", "scenario_sha256"}
@@ -67,7 +67,7 @@ def rerun(path: str | os.PathLike[str]) -> Reproduction:
     >>> gb.rerun(path).reproduced
     True
     """
-    from gbeam.io.stored import read_stored
+    from gbeam.io.netcdf import read_stored
 
     before = read_stored(path)
     if not is_run(facts_of(before)):
@@ -104,7 +104,7 @@ def origin_of(path: str | os.PathLike[str], stored: Stored) -> Provenance:
 def run_again(path: str | os.PathLike[str], before: Stored) -> Reproduction:
     """Compute the responses of a file again."""
     from gbeam.analysis.environments import study
-    from gbeam.io.stored import stored
+    from gbeam.io.netcdf import stored
 
     origin = origin_of(path, before)
     with TemporaryDirectory(prefix="gbeam-") as folder:

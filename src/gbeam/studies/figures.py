@@ -33,7 +33,7 @@ KIND = ""  # key of the kind of answers in facts; no figure's path begins so
 def answer_facts(answer: Any, title: str = "") -> Facts:
     """The facts of an answer with what has a name by its name: comparisons, and the limits of machines."""
     from gbeam.results.facts import json_of
-    from gbeam.results.kinds import by_motion
+    from gbeam.results.study import by_motion
 
     several = isinstance(answer, tuple)
     facts = by_motion(answer, title) if several else json_of(answer)
@@ -55,9 +55,9 @@ def answer_facts(answer: Any, title: str = "") -> Facts:
 @cache  # by kind, whose declarations do not change; nobody writes into it
 def tree_of_figures(kind: type) -> dict[str, Any]:
     """The figures of answers of a kind, each at its place in the facts."""
+    from gbeam.results.criteria import RULES
     from gbeam.results.facts import ANY, Entry
-    from gbeam.results.imitation.criteria import RULES
-    from gbeam.results.kinds import tree_of_answers
+    from gbeam.results.study import tree_of_answers
 
     tree = tree_of_answers(kind)
     for motion in tree.get("motions", {}).values():

@@ -16,7 +16,7 @@ from gbeam.analysis.control.linearization import surface_gauge
 from gbeam.errors import InputError
 from gbeam.guards.kinds import KINDS
 from gbeam.guards.units import read_quantity
-from gbeam.io.tables.table import Table
+from gbeam.io.table import Table
 from gbeam.motion.records.text import read_text
 from gbeam.printable import advise
 from gbeam.results.response import Response

@@ -17,7 +17,7 @@ from gbeam.guards.arguments import typed
 from gbeam.guards.kinds import KINDS
 from gbeam.guards.units import read_quantity
 from gbeam.progress import Progress
-from gbeam.results.imitation.criteria import BROKEN
+from gbeam.results.criteria import BROKEN
 from gbeam.results.result import Floats
 from gbeam.results.searches import Optimum, Requirement
 from gbeam.results.study import Study

@@ -13,7 +13,7 @@ from gbeam.constants import ToleranceOf
 from gbeam.guards.checks import choice, positive
 from gbeam.motion.centrifuge.kinematics import moved
 from gbeam.numerics.samples import separate_peaks, true_runs
-from gbeam.results.imitation.accounting import TOLERANCE_OF, Accounting, LoadPeak, NotFollowed, PeakPair, Preload
+from gbeam.results.accounting import TOLERANCE_OF, Accounting, LoadPeak, NotFollowed, PeakPair, Preload
 from gbeam.results.machine import AxesResult
 from gbeam.results.result import Flags, Floats
 

@@ -16,10 +16,10 @@ from gbeam.guards.arguments import typed
 from gbeam.guards.checks import index_of, positive
 from gbeam.motion.bases.base import gradients
 from gbeam.numerics.samples import interpolated, largest_riding_acceleration, low_pass
-from gbeam.results.imitation.accounting import TOLERANCE, PeakPair
-from gbeam.results.imitation.comparison import Comparison
-from gbeam.results.imitation.criteria import STRESS_AT, Limit, checked_limits
-from gbeam.results.imitation.measures import (
+from gbeam.results.accounting import TOLERANCE, PeakPair
+from gbeam.results.comparison import Comparison
+from gbeam.results.criteria import STRESS_AT, Limit, checked_limits
+from gbeam.results.measures import (
     Mismatch,
     RootHistory,
     RootLoads,

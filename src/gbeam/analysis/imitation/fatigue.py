@@ -9,7 +9,7 @@ import numpy as np
 from gbeam.analysis.response.peaks import turning_points
 from gbeam.guards.checks import index_of
 from gbeam.mechanics.tree.system import ROOT
-from gbeam.results.imitation.measures import Fatigue, StressCycles
+from gbeam.results.measures import Fatigue, StressCycles
 from gbeam.results.parts import Loads
 from gbeam.results.response import Response
 from gbeam.results.result import Floats

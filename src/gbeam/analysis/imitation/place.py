@@ -31,8 +31,8 @@ from gbeam.motion import Base, Centrifuge, Flight
 from gbeam.motion.centrifuge.limits import exceeded
 from gbeam.numerics.minimise import least, refine
 from gbeam.numerics.samples import interpolated, low_pass
-from gbeam.results.imitation.criteria import BROKEN
-from gbeam.results.imitation.placement import MEASURES, Candidate, Placement, Verification, degrees
+from gbeam.results.criteria import BROKEN
+from gbeam.results.placement import MEASURES, Candidate, Placement, Verification, degrees
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.system import SystemResponse

@@ -21,9 +21,9 @@ from gbeam.motion import Centrifuge
 from gbeam.motion.bases.base import gradients
 from gbeam.motion.centrifuge.kinematics import axes_result, axis_angles
 from gbeam.motion.protocol import implausible_motion
-from gbeam.results.imitation.accounting import TOLERANCE, PeakPair
-from gbeam.results.imitation.comparison import MachinePlan
-from gbeam.results.imitation.criteria import BROKEN, Limit, checked_limits
+from gbeam.results.accounting import TOLERANCE, PeakPair
+from gbeam.results.comparison import MachinePlan
+from gbeam.results.criteria import BROKEN, Limit, checked_limits
 from gbeam.results.machine import Commands
 from gbeam.results.result import Floats
 from gbeam.structure.beam import Beam

@@ -10,7 +10,7 @@ import numpy as np
 
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
-from gbeam.io.tables.table import Table
+from gbeam.io.table import Table
 
 # Per quantity, the units that a scenario may name and their size in SI.
 UNITS: dict[str, dict[str, float]] = {

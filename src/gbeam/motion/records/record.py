@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import BINARY_BYTES, SAMPLES, refuse_large_file, refuse_more
-from gbeam.io.tables.binary import is_binary, read_binary
-from gbeam.io.tables.table import NO_COLUMN, Clock, Table
+from gbeam.io.binary import is_binary, read_binary
+from gbeam.io.table import NO_COLUMN, Clock, Table
 from gbeam.motion.bases.conditioning import FEWEST, Floats, filtered, spikes, without_spikes
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
 from gbeam.motion.records.columns import UNITS, load_factors, mirrored, refuse_other_kinds, unit_of

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import BINARY_BYTES, TEXT_BYTES, in_bytes, refuse_large_file
-from gbeam.io.tables.table import Clock, Column, Table, is_clock
+from gbeam.io.table import Clock, Column, Table, is_clock
 from gbeam.motion.bases.conditioning import FEWEST, UNEVEN
 from gbeam.motion.records.columns import UNITS, is_unit
 

@@ -18,7 +18,7 @@ from gbeam.numerics.samples import thinned
 from gbeam.printable import printable
 from gbeam.report.blocks import Block, Cell, Items, Place, Sentence, Table, Verbatim
 from gbeam.report.words import number, sentence
-from gbeam.results.imitation.criteria import GOOD
+from gbeam.results.criteria import GOOD
 from gbeam.results.result import Floats
 
 

@@ -9,11 +9,11 @@ from typing import Any, TypeVar
 import numpy as np
 
 from gbeam.figures import Describe, figures_of
+from gbeam.results import measures
 from gbeam.results.cases import BOUNDS, ORDERS, Indices, Parameter, Sensitivity, Statistics, Sweep
+from gbeam.results.comparison import Comparison, MachinePlan
 from gbeam.results.declared import INSIDE, NAMES, Declaration, annotation, declarations, record_in
 from gbeam.results.equilibrium import Critical, CriticalMap, Deflection
-from gbeam.results.imitation import measures
-from gbeam.results.imitation.comparison import Comparison, MachinePlan
 from gbeam.results.machine import AxesResult
 from gbeam.results.modal import Campbell, Modes
 from gbeam.results.parts import Base, Loads

@@ -14,8 +14,7 @@ import numpy as np
 from gbeam.errors import InputError
 from gbeam.figures import Describe, figures_of
 from gbeam.guards.limits import parse_json, read_json
-from gbeam.io.netcdf import FACTS, groups_of
-from gbeam.io.stored import read_stored
+from gbeam.io.netcdf import FACTS, groups_of, read_stored
 from gbeam.report.facts import facts, origin_json, whole
 from gbeam.report.page.document import html, viewer
 from gbeam.report.page.parts import Numbers

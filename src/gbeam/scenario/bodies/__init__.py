@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 from pkgutil import iter_modules
 
-from gbeam.scenario.bodies.kind import BodyKind
+from gbeam.scenario.bodies.common import BodyKind
 
 _MODULES = (import_module(f"{__name__}.{each.name}") for each in iter_modules(__path__))
 _EVERY: list[BodyKind] = [module.BODY for module in _MODULES if hasattr(module, "BODY")]

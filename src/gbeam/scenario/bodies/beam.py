@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 from pydantic import Field
 from pydantic_core import PydanticCustomError
 
-from gbeam.scenario.bodies.kind import BodyKind
+from gbeam.scenario.bodies.common import BodyKind
 from gbeam.scenario.schema.beam import Beam
 from gbeam.scenario.schema.fields import Loc, Position, listed, wrong
 from gbeam.scenario.schema.scenario import Model

@@ -1,9 +1,9 @@
-"""Parts of tables that several kinds of bodies share."""
+"""A kind of body, its table and the objects of the core that it makes; parts that several of their tables share."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Annotated, Any
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, get_args
 
 import numpy as np
 from pydantic import AfterValidator, Discriminator, Field, StrictInt, Tag
@@ -12,6 +12,31 @@ from gbeam.guards.limits import ENTRIES, NAME
 from gbeam.mechanics.tree.joints import GROUND
 from gbeam.printable import shortened
 from gbeam.scenario.schema.fields import MomentOfInertia, Place3, Quantity, Ratio, Ratios, Table, Turn3, wrong
+
+if TYPE_CHECKING:
+    from pydantic_core import PydanticCustomError
+
+    from gbeam.scenario.schema.fields import Loc
+
+
+class BodyKind(NamedTuple):
+    """A kind of body.
+
+    It has the table, with the name of the kind in ``kind``; a builder of the body of a system, by the collector of
+    errors, the place and the table; one of the specimen alone on a base, where that is another object; the key
+    beside which ``kind`` may be left out; and the errors of a table that is one body among others.
+    """
+
+    table: type[Table]
+    build: Callable[[Any, str, Any], Any]
+    alone: Callable[[Any, str, Any], Any] | None = None
+    known_by: str = ""
+    among: Callable[[Any], Iterable[tuple[Loc, PydanticCustomError]]] = lambda table: ()
+
+    @property
+    def name(self) -> str:
+        """Name of the kind."""
+        return str(get_args(self.table.model_fields["kind"].annotation)[0])
 
 
 def _named(name: str) -> str:

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import Field, StrictInt
 
 from gbeam.errors import naming
-from gbeam.scenario.bodies.common import Inertia, NodePoints, Reduced, inertia_of
-from gbeam.scenario.bodies.kind import BodyKind
+from gbeam.scenario.bodies.common import BodyKind, Inertia, NodePoints, Reduced, inertia_of
 from gbeam.scenario.schema.fields import File, Mass, OneOrSome, Place3, optional
 
 if TYPE_CHECKING:

@@ -10,8 +10,7 @@ from pydantic import Field, model_validator
 
 from gbeam.errors import InputError, naming
 from gbeam.guards.limits import ENTRIES
-from gbeam.scenario.bodies.common import Direction, NodePoints
-from gbeam.scenario.bodies.kind import BodyKind
+from gbeam.scenario.bodies.common import BodyKind, Direction, NodePoints
 from gbeam.scenario.schema.fields import File, Mass, OneOrSome, Place3, Quantity, Ratios, Table, optional, refuse, wrong
 
 if TYPE_CHECKING:

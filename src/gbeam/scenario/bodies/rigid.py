@@ -12,8 +12,7 @@ from pydantic_core import PydanticCustomError
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import ENTRIES
-from gbeam.scenario.bodies.common import Direction, Inertia, Name, Point, inertia_of, points_of
-from gbeam.scenario.bodies.kind import BodyKind
+from gbeam.scenario.bodies.common import BodyKind, Direction, Inertia, Name, Point, inertia_of, points_of
 from gbeam.scenario.schema.fields import Exponent, Loc, Mass, Offset, Place3, Table, by_name, optional, wrong
 
 if TYPE_CHECKING:

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from gbeam.errors import InputError, naming, placing_within
-from gbeam.scenario.bodies.common import Direction, Inertia, PlaceOfBody, Reduced, placed, points_of
-from gbeam.scenario.bodies.kind import BodyKind
+from gbeam.scenario.bodies.common import BodyKind, Direction, Inertia, PlaceOfBody, Reduced, placed, points_of
 from gbeam.scenario.schema.beam import Material
 from gbeam.scenario.schema.fields import (
     ONE_OR_LIST,

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Literal
 from pydantic import Field
 
 from gbeam.errors import naming
-from gbeam.scenario.bodies.common import NodePoints
-from gbeam.scenario.bodies.kind import BodyKind
+from gbeam.scenario.bodies.common import BodyKind, NodePoints
 from gbeam.scenario.schema.fields import File, Ratios, Table, optional
 
 if TYPE_CHECKING:

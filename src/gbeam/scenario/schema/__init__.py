@@ -21,9 +21,9 @@ from gbeam.scenario.schema.profile import Listed as Listed
 from gbeam.scenario.schema.profile import Sine as Sine
 from gbeam.scenario.schema.profile import SmoothStep as SmoothStep
 from gbeam.scenario.schema.profile import Trapezoid as Trapezoid
-from gbeam.scenario.schema.response import Response as Response
 from gbeam.scenario.schema.scenario import Environments as Environments
 from gbeam.scenario.schema.scenario import Model as Model
+from gbeam.scenario.schema.scenario import Response as Response
 from gbeam.scenario.schema.scenario import Scenario as Scenario
 
 if TYPE_CHECKING:

@@ -156,7 +156,7 @@ class Quantity:
 
 
 def _is_clock(text: str) -> bool:
-    from gbeam.io.tables.table import is_clock  # not needed, nor imported, where there is no such key
+    from gbeam.io.table import is_clock  # not needed, nor imported, where there is no such key
 
     return is_clock(text)
 

@@ -8,7 +8,7 @@ from pydantic import Discriminator, Field, StrictBool, Tag, create_model, model_
 from pydantic_core import PydanticCustomError
 
 from gbeam.constants import InverseName, Mounting, Pointing, Start, ToleranceOf
-from gbeam.results.imitation.criteria import RULES
+from gbeam.results.criteria import RULES
 from gbeam.scenario.schema.fields import (
     ONE_OR_LIST,
     Acceleration,

@@ -1,4 +1,4 @@
-"""[bodies], [joints], [forces] and [system]: a tree of bodies in place of one beam.
+"""[bodies], [joints], [forces], [controllers] and [system]: a tree of bodies in place of one beam.
 
 Tables of joints follow from the kinds of joint that there are: by the names of their coordinates they know which are
 displacements and which are angles, and so the units of everything about them.
@@ -7,7 +7,7 @@ displacements and which are angles, and so the units of everything about them.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from functools import reduce
+from functools import partial, reduce
 from itertools import combinations
 from operator import or_
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -15,16 +15,21 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import ConfigDict, Discriminator, Field, StrictBool, Tag, create_model, model_validator
 from pydantic_core import PydanticCustomError
 
+from gbeam.guards.limits import ENTRIES
 from gbeam.mechanics.tree.joints import COUPLINGS, GROUND, KINDS, SLIDES, Kind, kind_of_value
 from gbeam.scenario.bodies import BODIES, OF_TABLE
 from gbeam.scenario.bodies.common import Direction, Name
-from gbeam.scenario.schema.control import Controller
 from gbeam.scenario.schema.fields import (
     Acceleration,
+    Duration,
+    File,
     Loc,
     Place3,
     Quantity,
+    Ratio,
+    Sign,
     Table,
+    Time,
     Turn3,
     Vector,
     optional,
@@ -53,12 +58,11 @@ else:
 _OVER_TIME = {"speed": SpeedOverTime, "angular rate": TurnOverTime, "force": ForceOverTime, "torque": MomentOverTime}
 
 
-def _number(kind: str) -> Any:
-    return Annotated[float, Quantity(kind)]
+def _number(kind: str, sign: Sign = "any") -> Any:
+    return Annotated[float, Quantity(kind, sign)]
 
 
-def _size(kind: str) -> Any:
-    return Annotated[float, Quantity(kind, "zero or more")]
+_size = partial(_number, sign="zero or more")
 
 
 def _pair(kind: str) -> Any:
@@ -129,9 +133,8 @@ def _joint(name: str, kind: Kind) -> Any:
                              optional(words, alias=f"{one}-{two}"))
             for one, two in combinations(kind.value_names, 2)
         }  # fmt: skip
-        table = _table(
-            Coordinates, f"{name}_coupling".title().replace("_", ""), "Coupling, by two coordinates.", within
-        )
+        title = f"{name}_coupling".title().replace("_", "")
+        table = _table(Coordinates, title, "Coupling, by two coordinates.", within)
         first = "-".join(kind.value_names[:2])
         fields["coupling"] = _optional(table, f"{words} that have springs, by both names: {{ {first}, ... }}")
     return _table(Table, name.title(), f"{kind.words[0].upper()}{kind.words[1:]}.", fields)
@@ -142,6 +145,100 @@ if TYPE_CHECKING:  # type checkers make no tables
     Joint = Any
 else:
     Joint = Annotated[reduce(or_, _JOINTS), Discriminator("kind")]
+
+
+_Rate = Annotated[float, Quantity("angular rate", "positive")]
+_Rows = tuple[tuple[Ratio, ...], ...]
+_SI = "in SI units of effort and measurement"
+
+
+class Gains(Table):
+    """State feedback: every effort is a sum of gains times errors."""
+
+    kind: Literal["gains"] = Field(description="kind of the law")
+    gains: _Rows = Field(min_length=1, description=f"a row for every effort, a gain for every measurement, {_SI}")
+
+
+class PID(Table):
+    """Proportional, integral and derivative gain of one error."""
+
+    kind: Literal["pid"] = Field(description="kind of the law")
+    kp: Ratio = Field(default=0.0, description=f"proportional gain, {_SI}")
+    ki: Ratio = Field(default=0.0, description=f"integral gain, {_SI} s")
+    kd: Ratio = Field(default=0.0, description=f"derivative gain, {_SI}/s")
+    smoothing: Duration | None = optional("time constant of the filter of the derivative: needed with kd")
+
+    @model_validator(mode="after")
+    def _filtered(self) -> PID:
+        if self.kd and self.smoothing is None:
+            refuse([((), wrong("smoothing is missing", 'a derivative needs a filter: smoothing = "50 ms"'))])
+        return self
+
+
+class LeadLag(Table):
+    """Lead or lag: gain (1 + s/zero)/(1 + s/pole) of one error."""
+
+    kind: Literal["lead-lag"] = Field(description="kind of the law")
+    gain: Ratio = Field(description=f"gain at rest, {_SI}")
+    zero: _Rate = Field(description="zero, such as 1 Hz")
+    pole: _Rate = Field(description="pole: above the zero a lead, below it a lag")
+
+
+class Notch(Table):
+    """A notch at a vibration: a gain of one but near its frequency."""
+
+    kind: Literal["notch"] = Field(description="kind of the law")
+    frequency: _Rate = Field(description="of the notch, such as 4.2 Hz")
+    depth: Ratio = Field(description="gain at the frequency, such as 0.1")
+    damping: Annotated[float, Quantity("ratio", "positive")] = Field(description="half the width over the frequency")
+
+
+class Matrices(Table):
+    """A law with states of its own: x' = A x + B e, efforts = C x + D e, by rows or from a file."""
+
+    kind: Literal["state-space"] = Field(description="kind of the law")
+    file: File | None = optional(
+        "file of matrices A, B, C, D: .npz, .mat or .json, relative to the scenario's folder; with dt, Ts "
+        "or step, s, above zero it is in discrete time, and then the only law"
+    )
+    a: _Rows | None = optional("A, by rows, in continuous time")
+    b: _Rows | None = optional("B, by rows: a column for every measurement")
+    c: _Rows | None = optional("C, by rows: a row for every effort")
+    d: _Rows | None = optional("D, by rows")
+
+    @model_validator(mode="after")
+    def _one_way(self) -> Matrices:
+        matrices = [name for name in "abcd" if getattr(self, name) is not None]
+        if self.file is not None and matrices:
+            refuse([((matrices[0],), wrong("is given beside file", "give the matrices or their file", mark="key"))])
+        if self.file is None and len(matrices) < 4:
+            lacking = next(name for name in "abcd" if name not in matrices)
+            refuse([((), wrong(f"{lacking} is missing", 'give a, b, c and d, or file = "controller.mat"'))])
+        return self
+
+
+Law = Annotated[Gains | PID | LeadLag | Notch | Matrices, Discriminator("kind")]
+
+
+class Controller(Table):
+    """A controller that samples measurements and holds its efforts; its laws act on reference less measurement."""
+
+    measure: tuple[str, ...] = Field(
+        min_length=1,
+        max_length=ENTRIES,
+        description='what is sampled: "joint.angle", "joint.angle_rate", "body.point.place_x", velocity_x, '
+        "attitude_x (rotation vector, rad), acceleration_x, spin_x, of a section of a beam force_x, moment_y",
+    )
+    drive: tuple[str, ...] = Field(
+        min_length=1, max_length=ENTRIES, description='efforts: "joint.angle", "force.force_x", "force.moment_z"'
+    )
+    law: tuple[Law, ...] = Field(min_length=1, description="laws one after the other: [{ kind, ... }, ...]")
+    sample: Duration = Field(description="time between samples")
+    delay: Time = Field(default=0.0, description="time from a sample until its efforts act")
+    limit: tuple[Annotated[float, Quantity("ratio", "positive")], ...] | None = optional(
+        "largest size of every effort, N or N m: [20]"
+    )
+    reference: tuple[Ratio, ...] | None = optional("aim of every measurement, in SI units; zero unless given: [0.5, 0]")
 
 
 class PointForces(Vector):

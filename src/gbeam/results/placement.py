@@ -6,8 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from gbeam.results.accounting import PeakPair
 from gbeam.results.declared import INSIDE, declared, fact, part, quantity, rows
-from gbeam.results.imitation.accounting import PeakPair
 from gbeam.results.machine import LimitUse
 from gbeam.results.result import Part, Result
 

@@ -60,7 +60,7 @@ def plan(
         raise InputError("--sample", f"is {sample}", 'give a positive time, such as "5 ms"')
 
     from gbeam.analysis.imitation import plan as analysis
-    from gbeam.results.imitation.criteria import judging
+    from gbeam.results.criteria import judging
 
     origin = provenance(environments, command())
     tables = {name: table for name, table in environments.motion.items() if isinstance(table, schema.Centrifuge)}

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from gbeam.errors import InputError
 from gbeam.guards.limits import ELEMENTS, refuse_more
 from gbeam.guards.processes import confined
-from gbeam.io.tables.table import Column, Table, array_columns
+from gbeam.io.table import Column, Table, array_columns
 
 if TYPE_CHECKING:
     import h5py

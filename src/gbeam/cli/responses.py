@@ -158,7 +158,7 @@ _ABOUT = {"provenance", "files", "seconds", "written", "lines"}  # of the comput
 
 
 def _of_netcdf(file: Path) -> Reproduction:
-    from gbeam.io.stored import read_stored
+    from gbeam.io.netcdf import read_stored
     from gbeam.scenario.rerun import facts_of, is_run, origin_of, run_again
 
     stored = read_stored(file)

@@ -14,8 +14,8 @@ from gbeam.errors import InputError, placing_within
 from gbeam.results.declared import declared, quantity
 
 if TYPE_CHECKING:
-    from gbeam.results.imitation.accounting import Accounting, PeakPair
-    from gbeam.results.imitation.measures import Fatigue, Shock
+    from gbeam.results.accounting import Accounting, PeakPair
+    from gbeam.results.measures import Fatigue, Shock
 
 Limit = float | tuple[float, float]
 Value = tuple[float, str]  # and where it occurs
@@ -268,7 +268,7 @@ def _change(name: str) -> Callable[[Judged], Iterator[Value]]:
         if name in judged.peaks:
             pair = judged.peaks[name]
             if pair.flight == 0 < pair.machine:
-                from gbeam.results.imitation.accounting import UNITS
+                from gbeam.results.accounting import UNITS
 
                 yield math.nan, f"as flight has none and the machine makes {pair.machine:.4g} {UNITS[name]}"
                 return

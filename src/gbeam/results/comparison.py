@@ -8,12 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gbeam.results.accounting import UNITS, Accounting, PeakPair, verdict
+from gbeam.results.criteria import Judged, Limit, state_of
 from gbeam.results.declared import INSIDE, declared, fact, part, quantity, rows
-from gbeam.results.imitation.accounting import UNITS, Accounting, PeakPair
-from gbeam.results.imitation.criteria import Judged, Limit, state_of
-from gbeam.results.imitation.measures import Fatigue, Mismatch, RootLoads, Shock, Statistics
-from gbeam.results.imitation.verdict import verdict
 from gbeam.results.machine import AxesResult, Driven
+from gbeam.results.measures import Fatigue, Mismatch, RootLoads, Shock, Statistics
 from gbeam.results.parts import yield_margin
 from gbeam.results.result import Figured, Flags, Floats
 

@@ -1,1 +1,0 @@
-"""Verbs of the command line, a file for those that are alike: read, call, print."""

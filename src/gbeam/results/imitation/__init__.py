@@ -1,1 +1,0 @@
-"""Results of an imitation: peaks and stretches accounted for, differences, damage, verdict, placement."""
