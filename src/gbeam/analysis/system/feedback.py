@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.analysis.system.gauges import read_signals
-from gbeam.arrays.namespace import holds_jax, namespace
+from gbeam.arrays.namespace import holds_jax, looks_at_traced, namespace
 from gbeam.errors import InputError
 from gbeam.integrate.sampled import NEAR
-from gbeam.mechanics.tree.control import Feedback, signal_names
-from gbeam.mechanics.tree.signals import carried_of, drives_of, signals_of
+from gbeam.mechanics.tree.control import Feedback, signal_names, within
+from gbeam.mechanics.tree.signals import carried_of, drives_of, measurable
 from gbeam.mechanics.tree.system import System
 from gbeam.results.system import Loop
 
@@ -102,14 +102,12 @@ class SystemControllers:
 
     def laws(self, times: list[Floats]) -> list[TracedLaw]:
         """Laws sampled at times (s,) s each, as JAX traces them."""
-        from gbeam.analysis.system.traced_laws import traced_law
-
         for name, each in self.system.controllers.items():
             for signal in {*each.measure} & carried_of(self.system).keys():
                 if holds_jax(self.system.bodies[signal.partition(".")[0]]):
                     fix = "trace what else there is, or measure acceleration"
                     raise InputError(f"controllers.{name}.measure", f"has {signal!r} of a beam that JAX traces", fix)
-        return [traced_law(*each) for each in zip(self.system.controllers.items(), times, strict=True)]
+        return [_traced_law(*each) for each in zip(self.system.controllers, self.every, times, strict=True)]
 
 
 def loop_of(controllers: SystemControllers, sampling: Any, time: Floats) -> Loop:
@@ -126,7 +124,7 @@ def loop_of(controllers: SystemControllers, sampling: Any, time: Floats) -> Loop
         asked.append(wanted[taken])
         beyond.append((wanted != commands).mean(axis=0))
         acting.append(namespace(commands).where(active[:, None] >= 0, commands[last], 0.0))
-    xp, units = namespace(*asked), signals_of(controllers.system) | carried_of(controllers.system)
+    xp, units = namespace(*asked), measurable(controllers.system)
     return Loop(
         measurements=signal_names(controllers.system.controllers, "measure"),
         units=tuple(units[each] for one in controllers.every for each in one.measure),
@@ -136,3 +134,62 @@ def loop_of(controllers: SystemControllers, sampling: Any, time: Floats) -> Loop
         applied=xp.concatenate(acting, axis=1),
         saturated=xp.concatenate(beyond),
     )
+
+
+def _traced_law(name: str, each: Feedback, times: Floats) -> TracedLaw:
+    """A controller's law at the times of its samples (s,) s, as a function that JAX traces of all it is made of."""
+    from jax.flatten_util import ravel_pytree
+
+    from gbeam.integrate.traced_loop import TracedLaw
+
+    sign, values = 1.0, [np.zeros(len(times)) for _ in each.measure]
+    if each.reference is not None:
+        sign, values = -1.0, [profile(times) for profile in each.reference]
+    references = namespace(*values).stack(values, axis=-1)
+    if isinstance(each.law, tuple):
+        law, parameters, start = _linear, each.law, each.start
+    else:
+        start, restored = ravel_pytree(each.state)
+        law, parameters = _of_function(f"controllers.{name}.law", each, start, restored)
+
+    def commanded(parameters: Any, references: Array, t: Any, y: Array, state: Array) -> tuple[Array, ...]:
+        parts, limit = parameters
+        asked, after = law(parts, t, references + sign * y, state)
+        return asked, within(limit, asked), after
+
+    return TracedLaw(times, commanded, (parameters, each.limit), references, start)
+
+
+def _linear(parts: Any, _: Any, error: Array, state: Array) -> tuple[Array, Array]:
+    a, b, c, d = parts
+    return c @ state + d @ error, a @ state + b @ error
+
+
+def _of_function(where: str, each: Feedback, start: Array, restored: Any) -> tuple[Any, Any]:
+    """A controller's function of the values that it refers to, and these values."""
+    import jax
+    import jax.numpy as jnp
+    from jax.flatten_util import ravel_pytree
+
+    count = len(each.drive)
+
+    def plain(t: Any, error: Array, state: Array) -> tuple[Array, Array]:
+        if each.stateful:
+            efforts, after = each.law(t, error, restored(state))
+            return jnp.asarray(efforts, dtype=float).reshape(-1), ravel_pytree(after)[0].astype(float)
+        return jnp.asarray(each.law(t, error), dtype=float).reshape(-1), state
+
+    example = 0.0, jnp.zeros(len(each.measure)), start
+    try:
+        law, parts = jax.closure_convert(plain, *example)
+        efforts, after = jax.eval_shape(plain, *example)
+    except Exception as error:
+        if not looks_at_traced(error):
+            raise
+        fix = "write it with jax.numpy, and jax.numpy.where in place of if"
+        raise InputError(where, "looks at numbers that JAX traces", fix) from error
+    if efforts.shape != (count,) or after.shape != start.shape:
+        problem = f"gives {efforts.shape[0]} efforts and a state of {after.shape[0]} numbers"
+        raise InputError(where, problem, f"give {count}, and {start.shape[0]}")
+    compiled = jax.jit(lambda parts, t, error, state: law(t, error, state, *parts))
+    return compiled, parts

@@ -25,7 +25,7 @@ from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.control import signal_names
 from gbeam.mechanics.tree.equations import Inputs
-from gbeam.mechanics.tree.signals import Driven, carried_of, deforming, drives_of, local_names, signals_of
+from gbeam.mechanics.tree.signals import Driven, deforming, drives_of, local_names, measurable, signals_of
 from gbeam.mechanics.tree.steps import parameters_of_all
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
@@ -207,7 +207,7 @@ def linearize_system(
     driven = _default_inputs(system, state.drive.motion) if inputs is None else inputs
     for each in driven:
         choice("inputs", each, every)
-    units = signals_of(system) | carried_of(system) | dict.fromkeys(strained, "1")
+    units = measurable(system) | dict.fromkeys(strained, "1")
     wanted = [*_default_outputs(system), *strained] if outputs is None else [*outputs]
     for each in wanted:
         choice("outputs", each, units)

@@ -85,6 +85,11 @@ def carried_of(system: System) -> dict[str, str]:
     return {f"{each}.{kind}_{axis}": unit for each in points for kind, unit in CARRIED.items() for axis in "xyz"}
 
 
+def measurable(system: System) -> dict[str, str]:
+    """Names of all that controllers may measure and outputs may be, with their units."""
+    return signals_of(system) | carried_of(system)
+
+
 def measurements(system: System, tree: Any, y: Array, yd: Array, ydd: Array, inputs: Any, wanted: Sequence[str]) -> Any:
     """Values (..., k) of what is measured, at unknown coordinates of the tree or of one local to it."""
     xp, state, columns = namespace(y, inputs.ground.a), tree.motion(y, yd, ydd, inputs), []

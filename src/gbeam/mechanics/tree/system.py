@@ -33,7 +33,7 @@ from gbeam.mechanics.tree.course import Course
 from gbeam.mechanics.tree.equations import Force, Inputs, Link, State, Tree
 from gbeam.mechanics.tree.frames import Frame
 from gbeam.mechanics.tree.joints import GROUND, Joint
-from gbeam.mechanics.tree.signals import carried_of, drives_of, signals_of
+from gbeam.mechanics.tree.signals import drives_of, measurable
 from gbeam.mechanics.tree.steps import about
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.profiles.combine import as_profile
@@ -235,7 +235,7 @@ class System(Value):
         object.__setattr__(self, "tree", self._assembled())
         spun = [name for name, numbers, _ in self._prescribed if len(numbers) > 1]
         object.__setattr__(self, "courses", {name: self.joints[name].course for name in spun})
-        drives, signals = drives_of(self), signals_of(self) | carried_of(self)
+        drives, signals = drives_of(self), measurable(self)
         for name, controller in self.controllers.items():
             for each in controller.measure:
                 choice(f"controllers.{name}.measure", each, signals)
