@@ -34,7 +34,7 @@ from exudyn_choices import PROBLEMS, Choice, Problem
 
 import gbeam as gb
 from gbeam.analysis.response.batch import TOGETHER
-from gbeam.integrate import lanes
+from gbeam.integrate import side_by_side
 
 spec = importlib.util.spec_from_file_location("comparison", os.path.join(HERE, "exudyn.py"))
 assert spec is not None and spec.loader is not None
@@ -116,15 +116,15 @@ def peak_flops() -> float:
 def steps_of(choice: Choice, problem: Problem) -> None:
     """Print what a compiled step of the linear equations takes."""
     seen: list[Any] = []
-    original = lanes.steps
+    original = side_by_side.taken_together
 
     def watched(*values: Any, **how: Any) -> Any:
         seen.append((values, how))
         return original(*values, **how)
 
-    lanes.steps = watched  # type: ignore[assignment]
+    side_by_side.taken_together = watched  # type: ignore[assignment]
     seconds(problem, choice, TOGETHER)
-    lanes.steps = original
+    side_by_side.taken_together = original
     values, how = seen[0]
     steps, together = values[-1], values[0].shape[-1]
     times = []

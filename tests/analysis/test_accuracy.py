@@ -11,7 +11,7 @@ import gbeam as gb
 from gbeam.analysis.accuracy.correction import RESOLVED, Departures, Within
 from gbeam.analysis.accuracy.response_errors import Driven, lacking
 from gbeam.integrate.equations import Trajectory
-from gbeam.motion.bases.base import Base
+from gbeam.results.parts import Base
 
 from ..differences import jacobian
 from ..lagrange import quickly_compiled

@@ -18,8 +18,8 @@ from scipy.integrate._ivp import dop853_coefficients as dop853
 
 from gbeam import Structure
 from gbeam.integrate.newton import accelerations
+from gbeam.mechanics.equations.dalembert import OnHub
 from gbeam.mechanics.equations.inertia import Bodies, Particles, inertia_of
-from gbeam.mechanics.equations.residuals import OnHub
 from gbeam.motion import Base
 
 from ..differences import along, jacobian, rate

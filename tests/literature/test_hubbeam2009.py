@@ -27,8 +27,8 @@ from gbeam import (
     simulate,
 )
 from gbeam.arrays.jax_setup import with_slope
+from gbeam.mechanics.equations.dalembert import OnHub
 from gbeam.mechanics.equations.linear import Coefficients
-from gbeam.mechanics.equations.residuals import OnHub
 from validation.published.hubbeam2009 import HUB_INERTIA, HUB_RADIUS, LENGTH, Paper
 from validation.published.specimens import pulse, slew
 from validation.published.tables import TABLE_2

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.motion.bases.base import Base
 from gbeam.motion.centrifuge.kinematics import moved
+from gbeam.results.parts import Base
 
 LOAD = gb.Sum((gb.constant(20.0), gb.trapezoid(30.0, jerk=25.0, start=1.0, hold=2.0)))
 TURN = gb.Flight(x=gb.trapezoid(15.0, jerk=20.0, start=0.5, hold=1.5), y=gb.constant(12.0), z=LOAD)

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 import gbeam as gb
+from gbeam.analysis.imitation.accounting import gradients
 from gbeam.analysis.imitation.place import place
 from gbeam.analysis.imitation.place_measures import Choice, choice_of
 from gbeam.analysis.imitation.specimen import Specimen
 from gbeam.cli import main
-from gbeam.motion.bases.base import gradients
 from gbeam.questions import QUESTIONS
 from gbeam.report import text as describe
 
@@ -95,8 +95,9 @@ def test_static_answers_are_those_of_equilibrium() -> None:
     )  # fmt: skip
     structure = gb.assemble(beam, "exact", axial=1, y=2, z=2, twist=2)
     specimen = Specimen.of(structure, NOW)
+    from gbeam.analysis.imitation.accounting import gradients
     from gbeam.analysis.steady.equilibrium import solve_equilibrium
-    from gbeam.motion.bases.base import Base, gradients
+    from gbeam.results.parts import Base
 
     rng = np.random.default_rng(26)
     for _ in range(3):

@@ -23,7 +23,7 @@ from gbeam import (
     read_scenario,
     study,
 )
-from gbeam.mechanics.equations.residuals import OnHub
+from gbeam.mechanics.equations.dalembert import OnHub
 from gbeam.structure.attachments import Load
 
 from ..differences import rate

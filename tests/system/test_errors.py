@@ -11,7 +11,7 @@ import pytest
 
 import gbeam as gb
 from gbeam.analysis.system.richer import Richer, judged_beams, richer
-from gbeam.motion.bases.base import Base
+from gbeam.results.parts import Base
 
 STRIP = gb.Beam(1.0, gb.Section.rectangle(0.04, 0.004), gb.Material(2700.0, 70e9), damping_ratio=0.01)
 SOFT = replace(STRIP, section=gb.Section.rectangle(0.04, 0.001))

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 import gbeam as gb
-from gbeam.motion.bases.base import gradients
+from gbeam.analysis.imitation.accounting import gradients
 from gbeam.results.solids import von_mises
 from gbeam.solids.elements import chunks, mass_matrix
 from validation.codes.calculix_solid import DAMPING, SMALL, moved, solid

@@ -13,7 +13,7 @@ from itertools import zip_longest
 import numpy as np
 
 from gbeam import Hub, Response, ResponseSettings, Sine, SmoothStep, constant, critical_speed, modes, simulate
-from gbeam.mechanics.equations.residuals import OnHub
+from gbeam.mechanics.equations.dalembert import OnHub
 from validation.published.hubbeam2009 import HUB_RADIUS, LENGTH, Paper
 from validation.published.specimens import FREE_HUB, appendage, hub_beam, pulse, slew
 from validation.published.tables import CRITICAL_2009, TABLE_2

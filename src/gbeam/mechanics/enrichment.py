@@ -16,7 +16,7 @@ from gbeam.mechanics.fields.basis import Array, Counts, Families, Family, Quadra
 from gbeam.mechanics.fields.strains import STRAINS, strain_field
 from gbeam.mechanics.models import KINDS
 from gbeam.mechanics.structure import Structure
-from gbeam.motion.bases.base import Base
+from gbeam.results.parts import Base
 from gbeam.structure.beam import Beam
 
 LEVELS = (2, 3, 3, 2)  # of the sequence, along x, y, z, and about x

@@ -13,7 +13,7 @@ from gbeam.constants import Shapes
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import implausible, positive
-from gbeam.mechanics.equations.dalembert import Complete, CompleteHub, FreeHub, free_hub, ground_of
+from gbeam.mechanics.equations.dalembert import Complete, CompleteHub, FreeHub, OnBase, OnHub, free_hub, ground_of
 from gbeam.mechanics.equations.inertia import Inertia
 from gbeam.mechanics.equations.linear import (
     Coefficients,
@@ -22,7 +22,6 @@ from gbeam.mechanics.equations.linear import (
     damping_matrix,
     rest_modes,
 )
-from gbeam.mechanics.equations.residuals import OnBase, OnHub
 from gbeam.mechanics.equations.virtual_work import LoadHistory, LoadWork
 from gbeam.mechanics.fields.basis import FAMILIES, Counts
 from gbeam.mechanics.fields.projected import Field

@@ -5,7 +5,6 @@ end)``; a hub that is `free` to turn has a torque in place of a motion.
 """
 
 from gbeam.constants import STANDARD_GRAVITY as STANDARD_GRAVITY
-from gbeam.motion.bases.base import Base as Base
 from gbeam.motion.bases.flight import Flight as Flight
 from gbeam.motion.bases.hub import Hub as Hub
 from gbeam.motion.centrifuge.centrifuge import Centrifuge as Centrifuge
@@ -33,3 +32,4 @@ from gbeam.motion.profiles.pulse import Sine as Sine
 from gbeam.motion.profiles.pulse import SmoothStep as SmoothStep
 from gbeam.motion.protocol import Motion as Motion
 from gbeam.motion.records.record import read_record as read_record
+from gbeam.results.parts import Base as Base

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import holds_jax
 from gbeam.guards.checks import implausible
-from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.flight import Flight
+from gbeam.results.parts import Base
 from gbeam.results.result import part_words
 
 

@@ -16,11 +16,10 @@ from gbeam.arrays.tree import Value, record, static
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive, possible
-from gbeam.structure.drawn import matrices_of
 from gbeam.structure.material import Material
 from gbeam.structure.matrices import between, refuse_impossible
 from gbeam.structure.matrices import listed as matrices
-from gbeam.structure.section_files import read_matrices
+from gbeam.structure.section_files import matrices_of, read_matrices
 from gbeam.structure.shapes import MATRICES, ROUND, SHAPES
 
 Array = NDArray[np.float64]

@@ -23,10 +23,9 @@ from gbeam.mechanics.enrichment import Enrichment, Twin, enrichment
 from gbeam.mechanics.section_forces import section_forces, sections
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import theory_of
-from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
 from gbeam.results.errors import ErrorEstimate, Errors
-from gbeam.results.parts import Loads
+from gbeam.results.parts import Base, Loads
 from gbeam.results.result import Floats
 from gbeam.structure.section import extreme_stresses
 

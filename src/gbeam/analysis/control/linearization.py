@@ -29,7 +29,7 @@ from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice
 from gbeam.integrate.equations import accelerations
 from gbeam.mechanics.assembly import at_stations
-from gbeam.mechanics.equations.residuals import OnBase, OnHub
+from gbeam.mechanics.equations.dalembert import OnBase, OnHub
 from gbeam.mechanics.fields.basis import FAMILIES
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import sections

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.arrays.namespace import namespace
 from gbeam.constants import ToleranceOf
 from gbeam.guards.checks import choice, positive
 from gbeam.motion.centrifuge.kinematics import moved
@@ -252,3 +253,15 @@ def largest_load(time: Floats, base: Any, points: Mapping[str, Floats], origin: 
 def largest_pair(flight: Largest, machine: Largest) -> PeakPair:
     """Pair the largest loads of both."""
     return PeakPair(flight[0], machine[0], flight[1], machine[1], flight[2], machine[2])
+
+
+def gradients(w_WB_B: Any, alpha_WB_B: Any) -> Any:
+    """Gradients of the acceleration along x, y and z, in columns, (..., 3, 3) 1/s²: a(r) = a(0) + product with r; along
+    x they are 2020 (4).
+    """
+    xp = namespace(w_WB_B, alpha_WB_B)
+    (wx, wy, wz), (alx, aly, alz) = (xp.moveaxis(each, -1, 0) for each in (w_WB_B, alpha_WB_B))
+    along_x = xp.stack([-(wy**2 + wz**2), wx * wy + alz, wx * wz - aly], axis=-1)
+    along_y = xp.stack([wx * wy - alz, -(wz**2 + wx**2), wy * wz + alx], axis=-1)
+    along_z = xp.stack([wx * wz + aly, wy * wz - alx, -(wx**2 + wy**2)], axis=-1)
+    return xp.stack([along_x, along_y, along_z], axis=-1)

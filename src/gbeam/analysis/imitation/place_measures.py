@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from gbeam.analysis.imitation.accounting import gradients
 from gbeam.analysis.imitation.specimen import Answer, Specimen
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.stepping import RIGID, even_steps
@@ -19,7 +20,6 @@ from gbeam.guards.checks import choice
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion import Flight
-from gbeam.motion.bases.base import gradients
 from gbeam.motion.centrifuge.centrifuge import MOUNTINGS, Centrifuge, rotation_of
 from gbeam.motion.centrifuge.course import INVERSES
 from gbeam.motion.protocol import SAMPLES

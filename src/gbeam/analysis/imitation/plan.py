@@ -9,6 +9,7 @@ import numpy as np
 from gbeam.analysis.imitation.accounting import (
     History,
     account_of,
+    gradients,
     largest_load,
     largest_pair,
     points_of,
@@ -18,7 +19,6 @@ from gbeam.constants import ToleranceOf
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import SAMPLES, refuse_more
 from gbeam.motion import Centrifuge
-from gbeam.motion.bases.base import gradients
 from gbeam.motion.centrifuge.kinematics import axes_result, axis_angles
 from gbeam.motion.protocol import implausible_motion
 from gbeam.results.accounting import TOLERANCE, PeakPair

@@ -25,7 +25,7 @@ from gbeam.integrate.equations import LinearEquations, Trajectory, accelerations
 from gbeam.integrate.schemes import Scheme, added, stepped
 from gbeam.integrate.steps import Corners, Steps, fitted
 from gbeam.integrate.tangent import System, tangent
-from gbeam.mechanics.equations.residuals import OnBase
+from gbeam.mechanics.equations.dalembert import OnBase
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.centrifuge.kinematics import axes_result
 from gbeam.motion.protocol import Motion

@@ -16,8 +16,8 @@ from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, finite
 from gbeam.integrate.equations import LinearEquations, NonlinearEquations
 from gbeam.mechanics.structure import Structure
-from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
+from gbeam.results.parts import Base
 
 Array = Any
 STATES = ("equilibrium", "undeformed")

@@ -22,13 +22,12 @@ from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import accelerations, section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.motion import Centrifuge
-from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.flight import Flight
 from gbeam.motion.centrifuge.kinematics import axes_result
 from gbeam.motion.protocol import Motion
 from gbeam.results.errors import ErrorEstimate, Errors, StepErrors
 from gbeam.results.machine import AxesResult
-from gbeam.results.parts import Influence, Loads, Peaks
+from gbeam.results.parts import Base, Influence, Loads, Peaks
 from gbeam.results.response import HubResult, Response
 from gbeam.results.result import Floats
 from gbeam.structure.beam import names_at

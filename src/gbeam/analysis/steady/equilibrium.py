@@ -11,8 +11,8 @@ from gbeam.errors import ComputationError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.structure import Structure
-from gbeam.motion.bases.base import Base
 from gbeam.numerics.eigen import positive_definite, stability_margin
+from gbeam.results.parts import Base
 
 Array = Any
 _ITERATIONS = 30  # of Newton's method

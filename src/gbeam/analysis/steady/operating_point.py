@@ -14,13 +14,13 @@ from gbeam.analysis.steady.equilibrium import equilibrium_about, expanded
 from gbeam.arrays.tree import each_leaf
 from gbeam.errors import ComputationError, InputError
 from gbeam.integrate.equations import slopes
+from gbeam.mechanics.equations.dalembert import OnBase, OnHub
 from gbeam.mechanics.equations.linear import Coefficients
-from gbeam.mechanics.equations.residuals import OnBase, OnHub
 from gbeam.mechanics.structure import Structure
-from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.eigen import Linear, Steady
 from gbeam.results.modal import outermost
+from gbeam.results.parts import Base
 from gbeam.results.result import Complex, Floats
 
 Array = Any

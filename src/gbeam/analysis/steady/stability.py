@@ -25,13 +25,13 @@ from gbeam.mechanics.models import Model
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
-from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.profiles.profile import Profile
 from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress, tell
 from gbeam.results.equilibrium import Critical, CriticalMap, MapErrors
 from gbeam.results.errors import ErrorEstimate
+from gbeam.results.parts import Base
 from gbeam.structure.attachments import PointMass
 from gbeam.structure.beam import Beam
 

@@ -27,10 +27,10 @@ from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import theory_of
 from gbeam.mechanics.tree.system import System
-from gbeam.motion.bases.base import Base
 from gbeam.motion.protocol import Motion
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.errors import Errors
+from gbeam.results.parts import Base
 from gbeam.results.result import Floats
 from gbeam.results.system import SystemRest
 

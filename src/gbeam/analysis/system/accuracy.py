@@ -34,8 +34,8 @@ from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import Theory
 from gbeam.mechanics.tree.system import System
-from gbeam.motion.bases.base import Base
 from gbeam.results.errors import ErrorEstimate, SystemErrors
+from gbeam.results.parts import Base
 
 Floats = NDArray[np.float64]
 Again = Callable[[System], tuple[Trajectory, InputsOf]]

@@ -17,7 +17,7 @@ from gbeam.mechanics.tree.bodies import Acting
 from gbeam.mechanics.tree.equations import Inputs, State, Tree
 from gbeam.mechanics.tree.signals import CARRIED, carried_of, measurements
 from gbeam.mechanics.tree.system import System, stations_of
-from gbeam.motion.bases.base import Base
+from gbeam.results.parts import Base
 
 Array = Any
 Floats = NDArray[np.float64]

@@ -20,7 +20,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import Theory, theory_of
 from gbeam.mechanics.tree.equations import Inputs
 from gbeam.mechanics.tree.system import RigidBody, System, stations_of
-from gbeam.motion.bases.base import Base
+from gbeam.results.parts import Base
 
 Floats = NDArray[np.float64]
 IntArray = NDArray[np.int_]

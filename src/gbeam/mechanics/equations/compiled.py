@@ -9,7 +9,7 @@ import jax
 import jax.numpy as jnp
 
 from gbeam.arrays.jax_setup import linear_root, with_slope
-from gbeam.motion.bases.base import Base
+from gbeam.results.parts import Base
 
 Array = Any
 

@@ -4,7 +4,8 @@
 steps, over many they are NumPy's. With a beam on the rim of a free hub the hub's angle is one more coordinate,
 y = (θ, q), whose row is the moment of the same forces about the hub's axis e. For a model whose places are a polynomial
 that moment is a polynomial with constant tensors, which are contractions of the coefficients on a prescribed base with
-e and with the root's place r_O on the rim: nothing is differentiated.
+e and with the root's place r_O on the rim: nothing is differentiated. Residuals r(y, ẏ, ÿ; inputs) of all models on a
+given base and on a free hub have one form.
 """
 
 from __future__ import annotations
@@ -16,6 +17,8 @@ from gbeam.arrays.tree import record, static
 from gbeam.mechanics.equations.inertia import Inertia
 from gbeam.mechanics.equations.linear import Coefficients, LoadTerms
 from gbeam.mechanics.equations.virtual_work import LoadWork
+from gbeam.motion.bases.hub import Mount
+from gbeam.results.parts import Base
 
 Array = Any
 
@@ -217,3 +220,48 @@ class CompleteHub:
     def about(self, c: Coefficients) -> FreeHub:
         """Put a linear model on the hub's rim."""
         return free_hub(c, self.mount, self.ground)
+
+
+Loads = Any  # components of the loads (loads, 6), or None
+
+
+@record
+class OnBase:
+    """On a base whose motion is given: y = q, inputs (Base, load components)."""
+
+    equations: Any
+
+    @property
+    def first(self) -> int:
+        """Index of the beam's first coordinate in y."""
+        return 0
+
+    def __call__(self, q: Array, qd: Array, qdd: Array, inputs: tuple[Base, Loads]) -> Array:
+        """Residual (n,)."""
+        base, loads = inputs
+        return self.equations.residual(q, qd, qdd, base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads)
+
+    def base(self, y: Array, yd: Array, ydd: Array, inputs: Any) -> Base:
+        """Motion of the base."""
+        return inputs[0]
+
+
+@record
+class OnHub:
+    """On a free hub: y = (θ, q), inputs (torque, load components)."""
+
+    equations: Any
+    mount: Mount
+
+    @property
+    def first(self) -> int:
+        """Index of the beam's first coordinate in y."""
+        return 1
+
+    def __call__(self, y: Array, yd: Array, ydd: Array, inputs: tuple[Array, Loads]) -> Array:
+        """Residual (n + 1,)."""
+        return self.equations.residual(y, yd, ydd, *inputs)
+
+    def base(self, y: Array, yd: Array, ydd: Array, inputs: Any) -> Base:
+        """Motion of the base; its acceleration is the specific force where gravity acts."""
+        return self.mount.base(y[..., 0], yd[..., 0], ydd[..., 0])

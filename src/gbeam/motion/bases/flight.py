@@ -11,10 +11,10 @@ from gbeam.arrays.namespace import holds_jax, namespace
 from gbeam.arrays.tree import assign, record
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.motion.bases.base import Base
 from gbeam.motion.profiles.combine import as_profile, merged_extent, vector
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
 from gbeam.motion.profiles.profile import Profile, smoothed
+from gbeam.results.parts import Base
 
 if TYPE_CHECKING:
     from gbeam.results.description import RecordSummary

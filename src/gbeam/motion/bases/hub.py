@@ -13,9 +13,9 @@ from gbeam.constants import Pointing
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import finite, positive, possible
-from gbeam.motion.bases.base import Base
 from gbeam.motion.profiles.combine import as_profile
 from gbeam.motion.profiles.profile import Profile
+from gbeam.results.parts import Base
 
 POINTINGS = get_args(Pointing)
 

@@ -15,7 +15,6 @@ from gbeam.constants import STANDARD_GRAVITY, InverseName, Mounting, Start
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, positive, possible, vector
-from gbeam.motion.bases.base import Base
 from gbeam.motion.bases.flight import Flight
 from gbeam.motion.centrifuge.course import INVERSES, Course, prepare
 from gbeam.motion.centrifuge.inverses.instant import Geometry, Inverse
@@ -26,6 +25,7 @@ from gbeam.motion.centrifuge.target.target import Episode, Target
 from gbeam.motion.profiles.combine import Turned
 from gbeam.motion.profiles.profile import Profile, sampled
 from gbeam.results.machine import LimitUse, Shortfall
+from gbeam.results.parts import Base
 
 _GRID, _MOST = 1e-3, 500_000  # s between the times at which limits are looked at; most of them
 MOUNTINGS = {"upright": 1.0, "inverted": -1.0}

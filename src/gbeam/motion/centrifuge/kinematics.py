@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
-from gbeam.motion.bases.base import Base
 from gbeam.motion.centrifuge.limits import usage
 from gbeam.numerics.samples import cumulative
 from gbeam.results.machine import AxesResult, LimitUse
+from gbeam.results.parts import Base
 from gbeam.results.result import Floats
 
 if TYPE_CHECKING:
