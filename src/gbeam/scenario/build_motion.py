@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from gbeam import motion
@@ -12,6 +13,8 @@ from gbeam.scenario import schema
 from gbeam.scenario.schema.profile import Record
 
 if TYPE_CHECKING:
+    from pydantic import BaseModel
+
     from gbeam.scenario.load import Collector
 
 
@@ -61,41 +64,21 @@ def centrifuge_of(
         machine = motion.machines[table.machine]
         arm, idle = machine.arm if arm is None else arm, machine.idle if idle is None else idle
         example = machine.limits
-    return motion.Centrifuge(
-        flight,
-        arm=arm,
-        control_point=table.control_point,
-        inverse=table.inverse,
-        limits=_limits(table.limits, example),
-        gravity=table.gravity,
-        idle=idle,
-        smoothing=table.smoothing,
-        mounting=table.mounting,
-        turn=table.turn,
-        start=table.start,
-        spin_up=table.spin_up,
-        spin_down=table.spin_down,
-        clip=table.clip,
-    ).over(*span, ahead=ahead)
+    others = given(table, "kind", "tracks", "machine", "arm", "idle", "limits", "commands", "accept")
+    limits = _limits(table.limits, example)
+    return motion.Centrifuge(flight, arm=arm, idle=idle, limits=limits, **others).over(*span, ahead=ahead)
 
 
 def _limits(table: schema.Limits, example: motion.MachineLimits) -> motion.MachineLimits:
     """The limits that are given, and the example machine's where none is."""
+    named = {name: (getattr(table, name), getattr(example, name)) for name in ("axis1", "axis2", "axis3")}
+    axes = {name: replace(otherwise, **given(axis)) for name, (axis, otherwise) in named.items()}
+    return replace(example, **given(table, *axes), **axes)
 
-    def axis(table: schema.AxisLimit, otherwise: motion.AxisLimit) -> motion.AxisLimit:
-        return motion.AxisLimit(*(mine if mine is not None else theirs for mine, theirs in (
-            (table.rate, otherwise.rate),
-            (table.acceleration, otherwise.acceleration),
-            (table.jerk, otherwise.jerk),
-        )))  # fmt: skip
 
-    return motion.MachineLimits(
-        axis(table.axis1, example.axis1),
-        axis(table.axis2, example.axis2),
-        axis(table.axis3, example.axis3),
-        example.inertia if table.inertia is None else table.inertia,
-        example.power if table.power is None else table.power,
-    )
+def given(table: BaseModel, *apart: str) -> dict[str, Any]:
+    """Values of a table by their keys, but some apart and what is left out."""
+    return {key: value for key, value in table if value is not None and key not in apart}
 
 
 def _hub(parts: Collector, where: str, table: schema.Hub) -> motion.Motion | None:
@@ -103,18 +86,7 @@ def _hub(parts: Collector, where: str, table: schema.Hub) -> motion.Motion | Non
     driven = {name: profile_of(parts, f"{where}.{name}", profile) for name, profile in driving.items()}
     if None in driven.values():
         return None
-    return parts.attempt(
-        where,
-        motion.Hub,
-        radius=table.radius,
-        inertia=table.inertia,
-        **driven,
-        pointing=table.pointing,
-        setting_angle=table.setting_angle,
-        gravity=table.gravity,
-        stiffness=table.stiffness or 0.0,
-        damping=table.damping or 0.0,
-    )
+    return parts.attempt(where, motion.Hub, **driven, **given(table, "kind", "rate", "torque"))
 
 
 def components(parts: Collector, where: str, table: Any) -> Profile | None:
@@ -153,20 +125,10 @@ def _record(table: Record) -> FlightRecord:
     rates = None
     if table.p is not None and table.q is not None and table.r is not None and table.rate_unit is not None:
         rates = Rates(table.p, table.q, table.r, table.rate_unit)
-    conditioning = Conditioning(table.cutoff, table.resample, table.despike, table.skip_checks)
-    return read_flight(
-        table.file,
-        table.time,
-        table.x,
-        table.y,
-        table.z,
-        table.unit,
-        rates=rates,
-        conditioning=conditioning,
-        time_unit=table.time_unit,
-        quantity=table.quantity,
-        span=(table.begin, table.to),
-    )
+    conditions = {key: getattr(table, key) for key in ("cutoff", "resample", "despike", "skip_checks")}
+    columns = given(table, *conditions, "file", "p", "q", "r", "rate_unit", "begin", "to")
+    span = table.begin, table.to
+    return read_flight(table.file, **columns, rates=rates, conditioning=Conditioning(**conditions), span=span)
 
 
 def _recorded(record: FlightRecord, smoothing: float) -> motion.Flight:
