@@ -13,7 +13,7 @@ from typing import BinaryIO
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import TEXT_BYTES
-from gbeam.io.hdf5 import write_whole
+from gbeam.io.kept import write_whole
 from gbeam.scenario.template import template
 from gbeam.scenario.text.revise import with_entry
 

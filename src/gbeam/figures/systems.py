@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from gbeam.constants import SLIDES
 from gbeam.figures.description import (
     FLIGHT,
     REFERENCE,
@@ -81,10 +82,6 @@ def coordinates(response: SystemResponse, title: str = "") -> Figure:
     return Figure(title, "coordinates of the joints", tuple(panels), outcomes=(response.outcome,))
 
 
-def _slides(name: str) -> bool:
-    return name.rpartition(".")[2] in ("x", "y", "z", "displacement")
-
-
 def loop(response: SystemResponse, title: str = "") -> Figure:
     """Describe measurements and commands of the controllers, as asked for and as applied."""
     assert response.loop is not None
@@ -93,7 +90,7 @@ def loop(response: SystemResponse, title: str = "") -> Figure:
         for k, (name, unit) in enumerate(zip(response.loop.measurements, response.loop.units, strict=True))
     ]
     for k, name in enumerate(response.loop.drives):
-        unit = "N" if _slides(name) or ".force_" in name else "N m"
+        unit = "N" if name.rpartition(".")[2] in SLIDES or ".force_" in name else "N m"
         asked, applied = response.loop.asked[:, k], response.loop.applied[:, k]
         scale, unit = scale_of(unit, asked, applied)
         lines = (

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import io
 import os
-import tempfile
 import zlib
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 import h5netcdf
@@ -16,6 +14,7 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import EMBEDDED
+from gbeam.io.kept import write_whole
 from gbeam.io.layout import Group, Variable
 from gbeam.printable import storable
 from gbeam.results.provenance import Environment, Provenance, RecordFile
@@ -28,28 +27,6 @@ _BOOKKEEPING |= {"_Netcdf4Dimid", "_Netcdf4Coordinates"}
 def write_groups(groups: Mapping[str, Group], path: str | os.PathLike[str]) -> None:
     """Write groups to a file, whole or not at all."""
     write_whole(path, image(groups))
-
-
-def write_whole(path: str | os.PathLike[str], data: bytes, *, private: bool = False) -> None:
-    """Write a file under another name beside it, and rename it once it is on the disk; OSError if that cannot be.
-
-    A link at its place is replaced and not followed; a private file is for its owner only.
-    """
-    final = Path(path)
-    handle, name = tempfile.mkstemp(prefix=f".{final.name}-", dir=final.parent)
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        if not private:  # as mkstemp's files are: a result is as readable as any other new file
-            mask = os.umask(0)
-            os.umask(mask)
-            os.chmod(name, 0o666 & ~mask)
-        os.replace(name, final)
-    except BaseException:
-        os.unlink(name)
-        raise
 
 
 def image(groups: Mapping[str, Group]) -> bytes:

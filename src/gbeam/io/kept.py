@@ -1,4 +1,4 @@
-"""Values that took long to compute, kept on disk by the hash of what they were made from."""
+"""Files written whole or not at all, and values that took long to compute, kept by the hash of their source."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from functools import cache
 from pathlib import Path
-from tempfile import NamedTemporaryFile
+from tempfile import mkstemp
 from time import monotonic
 from typing import Any, TypeVar
 
@@ -27,6 +27,28 @@ _ENDING = ".kept"
 _KEEPING = ContextVar("keeping", default=True)
 
 T = TypeVar("T")
+
+
+def write_whole(path: str | os.PathLike[str], *data: bytes, private: bool = False) -> None:
+    """Write a file under another name beside it, and rename it once it is on the disk; OSError if that cannot be.
+
+    A link at its place is replaced and not followed; a private file is for its owner only.
+    """
+    final = Path(path)
+    handle, name = mkstemp(prefix=f".{final.name}-", dir=final.parent)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.writelines(data)
+            file.flush()
+            os.fsync(file.fileno())
+        if not private:  # as mkstemp's files are: a result is as readable as any other new file
+            mask = os.umask(0)
+            os.umask(mask)
+            os.chmod(name, 0o666 & ~mask)
+        os.replace(name, final)
+    except BaseException:
+        os.unlink(name)
+        raise
 
 
 def kept(what: str, source: Any, make: Callable[[], T]) -> T:
@@ -97,16 +119,7 @@ def _write(file: Path, value: Any) -> None:
     """Write a file whole or not at all, and remove those that were not used for longest."""
     content = pickle.dumps(value)
     file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-    with NamedTemporaryFile(dir=file.parent, suffix=".new", delete=False) as out:
-        try:
-            out.write(hashlib.sha256(content).digest())
-            out.write(content)
-            out.close()
-            os.replace(out.name, file)
-        except BaseException:
-            out.close()
-            os.unlink(out.name)
-            raise
+    write_whole(file, hashlib.sha256(content).digest(), content, private=True)
     others = [(each.stat(), each) for each in file.parent.glob(f"*{_ENDING}") if each != file]
     room = MOST - file.stat().st_size
     for about, each in sorted(others, key=lambda pair: -pair[0].st_mtime):

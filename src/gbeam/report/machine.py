@@ -25,7 +25,7 @@ from gbeam.report.blocks import (
     table,
 )
 from gbeam.report.words import known, number, percent, sentence
-from gbeam.results.accounting import Accounting, PeakPair, change, in_g
+from gbeam.results.accounting import QUANTITIES, Accounting, PeakPair, change, in_g
 from gbeam.results.accounting import percent as share_of
 from gbeam.results.criteria import GOOD, RULES, STRESS_AT, Judged
 from gbeam.results.machine import AxesResult, Driven, Shortfall
@@ -135,7 +135,7 @@ def peak_lines(peaks: Mapping[str, PeakPair]) -> Iterator[str]:
     """Largest root loads and stress over the flight."""
     words = []
     for name in ("root_force", "root_moment", "stress", STRESS_AT):
-        pair, (what, unit) = peaks.get(name, PeakPair()), _QUANTITIES[name].split(", ")
+        pair, (what, _, unit) = peaks.get(name, PeakPair()), QUANTITIES[name]
         if math.isfinite(pair.ratio):
             flight, machine = (f"{factor(unit) * each:.4g} {unit}" for each in (pair.flight, pair.machine))
             what = what.replace("the point", pair.place_flight)
@@ -234,24 +234,14 @@ def _criteria(judged: Facts) -> Block:
     return table(rows, cells, "Accepted if every limit is kept", optional=("where",))
 
 
-_QUANTITIES = {
-    "largest_load": "load anywhere on the specimen, g",
-    "tip": "tip displacement, mm",
-    "root_force": "root force, N",
-    "root_moment": "root moment, N m",
-    "stress": "stress, MPa",
-    STRESS_AT: "stress at the point, MPa",
-}
-
-
 def _peaks(judged: Facts, names: tuple[str, str]) -> Block:
     """Largest sizes over the whole flight, and of the load over all of the machine's run."""
 
     def size(key: str) -> Column:
-        return lambda pair: factor(_QUANTITIES[pair["name"]]) * known(pair[key])
+        return lambda pair: factor(QUANTITIES[pair["name"]][2]) * known(pair[key])
 
     cells: Columns = {
-        "largest": lambda pair: _QUANTITIES[pair["name"]],
+        "largest": lambda pair: "{}, {}".format(*QUANTITIES[pair["name"]][::2]),
         names[0]: size("flight"),
         names[1]: size("machine"),
         "change": _changed,

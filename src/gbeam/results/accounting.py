@@ -136,14 +136,16 @@ class Accounting(Part):
         return {reason: total[reason] / duration for reason in sorted(total, key=lambda reason: -total[reason])}
 
 
-UNITS = {
-    "largest_load": "m/s^2",
-    "tip": "m",
-    "root_force": "N",
-    "root_moment": "N m",
-    "stress": "Pa",
-    "stress_at": "Pa",
+# Quantities whose largest sizes are compared: words, SI unit, and that in which tables have it.
+QUANTITIES = {
+    "largest_load": ("load anywhere on the specimen", "m/s^2", "g"),
+    "tip": ("tip displacement", "m", "mm"),
+    "root_force": ("root force", "N", "N"),
+    "root_moment": ("root moment", "N m", "N m"),
+    "stress": ("stress", "Pa", "MPa"),
+    "stress_at": ("stress at the point", "Pa", "MPa"),
 }
+UNITS = {name: unit for name, (_, unit, _) in QUANTITIES.items()}
 
 
 @dataclass(frozen=True, repr=False, eq=False)
