@@ -41,7 +41,7 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
     match result:
         case (Deflection(), *_):
             return _of_deflections(result, title)
-        case (MachinePlan(), *_):
+        case (MachinePlan() | SystemRest(), *_):
             return _by_motion({each.name: figures_of(each, title) for each in result})
         case Study():
             return _of_study(result, title or result.title)
@@ -78,8 +78,6 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
             named = {name: _of_system(each, title or result.title) for name, each in result.responses.items()}
             every = next(iter(named.values())) if len(named) == 1 else _by_motion(named)
             return every | _compared(result.comparisons, title or result.title)
-        case (SystemRest(), *_):
-            return _by_motion({each.name: figures_of(each, title) for each in result})
         case SystemResponse():
             return _of_system(result, title)
         case SystemRest():

@@ -12,31 +12,23 @@ from gbeam.report.words import as_json
 from gbeam.results.cases import Sweep
 from gbeam.results.comparison import Comparison, MachinePlan
 from gbeam.results.declared import declarations
-from gbeam.results.equilibrium import Deflection
 from gbeam.results.facts import facts_of, json_of, paths_of, schema_of
 from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response
 from gbeam.results.result import Result
 from gbeam.results.study import KINDS, Reproduction, Study, SystemStudy, by_motion, tree_of_answers
-from gbeam.results.system import SystemResponse, SystemRest
+from gbeam.results.system import SystemResponse
 
 VERSION = 1  # of the keys: raised where one changes or goes
 
 
 def whole(result: Result) -> Result:
     """Return the result as its JSON has it: a response alone in a study, one that is listed by motion with a name."""
-    match result:
-        case Response():
-            name = result.name or result.environment
-            return Study("", {name: result}, (), warnings=(), provenance=result.provenance)
-        case Deflection(motion=""):
-            return replace(result, motion="beam")
-        case SystemRest(name=""):
-            return replace(result, name="ground")
-        case MachinePlan(name=""):
-            return replace(result, name="centrifuge")
-        case _:
-            return result
+    if isinstance(result, Response):
+        name = result.name or result.environment
+        return Study("", {name: result}, (), warnings=(), provenance=result.provenance)
+    named: dict[str, Any] = {result.listed_by: result.unnamed}
+    return replace(result, **named) if result.listed_by and not getattr(result, result.listed_by) else result
 
 
 def facts(*results: Result, title: str = "", files: Iterable[Path] | None = None) -> dict[str, Any]:

@@ -128,7 +128,7 @@ class Sweep(Figured):
     histories: Mapping[str, Floats] = fact(
         "histories by name", key=None, note="at `time`, NaN where the case has no value", default_factory=dict
     )
-    time: Floats = quantity("s", "times of the histories", "time", empty=True)
+    time: Floats = quantity("s", "times of the histories", "time", empty=True, key="")
     statistics: Mapping[str, Statistics] = fact(
         "statistics of measures and histories, where something is drawn: at every point of the grid",
         key=None,

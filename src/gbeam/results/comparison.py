@@ -10,7 +10,7 @@ import numpy as np
 
 from gbeam.results.accounting import UNITS, Accounting, PeakPair, verdict
 from gbeam.results.criteria import Judged, Limit, state_of
-from gbeam.results.declared import INSIDE, declared, fact, part, quantity, rows
+from gbeam.results.declared import INSIDE, declared, fact, internal, part, quantity, rows
 from gbeam.results.machine import AxesResult, Driven
 from gbeam.results.measures import Fatigue, Mismatch, RootLoads, Shock, Statistics
 from gbeam.results.parts import yield_margin
@@ -45,13 +45,12 @@ class Comparison(Judged, Figured):
 
     flight: str = fact("name of the flight")
     centrifuge: str = fact("name of the centrifuge")
-    time: Floats = quantity("s", "time", "time", role="coordinate", key=None)
-    difference: Floats = quantity("m", "tip displacement on the centrifuge less in flight", "time axis", key=None)
+    time: Floats = quantity("s", "time", "time", role="coordinate")
+    difference: Floats = quantity("m", "tip displacement on the centrifuge less in flight", "time axis")
     covered: Flags = quantity(
         "",
         "whether the time is compared",
         "time",
-        key=None,
         flags=("held", "compared"),
         note="times at which the target was not held",
     )
@@ -68,8 +67,8 @@ class Comparison(Judged, Figured):
     accounting: Accounting = part(
         "which parts of the flight's load the machine reproduces, and why not the others", name="."
     )
-    accept: Mapping[str, Limit] = fact(
-        "limits by name", name=None, key=None, note="docs/verdict.md, Pass or fail", default_factory=dict
+    accept: Mapping[str, Limit] = internal(
+        "", "limits by name", note="docs/verdict.md, Pass or fail", default_factory=dict
     )
     stations: Statistics | None = part(
         "displacement of every station, with trend and elastic vibration apart", name=".", key=INSIDE, optional=True,
@@ -86,18 +85,16 @@ class Comparison(Judged, Figured):
     fatigue: Fatigue | None = part(
         "stress cycles in both runs, and their damage", name=".", optional=True, default=None
     )
-    yield_strength: float | None = fact(
-        "yield strength of the material, where it is given", "Pa", name=None, key=None, default=None
-    )
-    margins_of_materials: tuple[float, float] | None = fact(
+    yield_strength: float | None = internal("Pa", "yield strength of the material, where it is given", default=None)
+    margins_of_materials: tuple[float, float] | None = internal(
+        "",
         "least margin on yield of a solid's materials in flight and on the machine, whose run is judged as a whole",
-        name=None, key=None, default=None,
-    )  # fmt: skip
-    whole: tuple[float, float] | None = fact(
-        "first and last time of the whole flight, where only a part of it was run, and is judged", "s", name=None,
-        key=None, default=None,
-    )  # fmt: skip
-    kept_every: int = fact("how many samples of the histories make one in a file", name=None, key=None, default=1)
+        default=None,
+    )
+    whole: tuple[float, float] | None = internal(
+        "s", "first and last time of the whole flight, where only a part of it was run, and is judged", default=None
+    )
+    kept_every: int = internal("", "how many samples of the histories make one in a file", default=1)
     point: str = fact(
         "point whose displacement is that of the tip", name=None, note="empty where it is the tip", default=""
     )
@@ -157,13 +154,13 @@ _WIDTH = 110  # columns
 class MachinePlan(Judged, Driven, Figured):
     """Motion of a centrifuge that imitates a flight, without the response of a beam."""
 
-    listed_by = "name"
+    listed_by, unnamed = "name", "centrifuge"
     name: str = fact("name of the motion", key=None)
     tracks: str = fact("name of the flight")
     arm: float = fact("arm of the centrifuge", "m")
     outcome: str = fact("how it ended", note="done or limits exceeded")
     message: str = fact("which limits, where the outcome is not done")
-    time: Floats = quantity("s", "time", "time", role="coordinate", key=None)
+    time: Floats = quantity("s", "time", "time", role="coordinate")
     axes: AxesResult = part("the axes at these times", name=None, key=INSIDE)
     accounting: Accounting = part(
         "which parts of the flight's load the machine reproduces, and why not the others", name=None
@@ -176,14 +173,13 @@ class MachinePlan(Judged, Driven, Figured):
         "largest_load, that of the base anywhere on the rigid specimen over all of the run", "peak", UNITS,
         note="NaN where no beam says how long the specimen is", name=".", default_factory=dict,
     )  # fmt: skip
-    accept: Mapping[str, Limit] = fact(
-        "limits by name; those that need a response are not judged", name=None, key=None, default_factory=dict
+    accept: Mapping[str, Limit] = internal(
+        "", "limits by name; those that need a response are not judged", default_factory=dict
     )
     title: str = fact("title of the scenario", key=None, default="")
-    whole: tuple[float, float] | None = fact(
-        "first and last time of the whole flight, where only a part of it is imitated", "s", name=None, key=None,
-        default=None,
-    )  # fmt: skip
+    whole: tuple[float, float] | None = internal(
+        "s", "first and last time of the whole flight, where only a part of it is imitated", default=None
+    )
     with_response = False
 
     @property

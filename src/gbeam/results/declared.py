@@ -18,13 +18,17 @@ import sys
 import textwrap
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from operator import attrgetter
+from types import EllipsisType
 from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar
 
 Role = Literal["variable", "coordinate", "labels", "fact", "part", "rows"]
 INSIDE = "."  # name or key of a part whose fields stand among those of the record that has it
 # Names of the places along dimensions that are the same everywhere.
 NAMES = {"axis": ("x", "y", "z"), "ends": ("start", "end"), "end": ("root", "tip")}
+# Dimensions of histories: what stands along one JSON has only where its declaration says a key.
+_HISTORIES = {"time", "run_time", "at", "better"}
 _SIZES = {"axis": 3, "principal": 3, "euler": 4, "stress_component": 6}  # of an array that is empty
 BESIDE = attrgetter("unit")  # unit of a field of a record whose field `unit` says it
 _METADATA = "declared"
@@ -62,7 +66,7 @@ def quantity(
     *dims: str,
     role: Role = "variable",
     name: str | None = "",
-    key: str | None = "",
+    key: str | EllipsisType | None = ...,
     note: str = "",
     frame: str = "",
     flags: tuple[str, ...] = (),
@@ -74,10 +78,21 @@ def quantity(
 
     Dimensions are one text, "time point axis"; an `empty` array of them is the default of what may be left out.
     """
-    declaration = Declaration(words, unit, tuple(" ".join(dims).split()), role, name, key, note, frame, flags, optional)
+    along, at = _placed(dims, key)
+    declaration = Declaration(words, unit, along, role, name, at, note, frame, flags, optional)
     if empty:
         default["default_factory"] = lambda: _empty(declaration.dims)
     return dataclasses.field(metadata={_METADATA: declaration}, **default)
+
+
+# A field that stays in the record: neither files nor JSON have it.
+internal = partial(quantity, name=None, key=None)
+
+
+def _placed(dims: tuple[str, ...], key: str | EllipsisType | None) -> tuple[tuple[str, ...], str | None]:
+    """Dimensions, and the key in JSON where it is left out: the field's own name; of a history none."""
+    along = tuple(" ".join(dims).split())
+    return along, key if not isinstance(key, EllipsisType) else None if _HISTORIES & set(along) else ""
 
 
 def _empty(dims: tuple[str, ...]) -> Any:
@@ -127,12 +142,12 @@ def declared(
     *dims: str,
     role: Role = "variable",
     name: str | None = "",
-    key: str | None = "",
+    key: str | EllipsisType | None = ...,
     optional: bool = False,
 ) -> Callable[[Callable[[Any], _T]], Declared[_T]]:
     """Make a declared property of a getter."""
-    named = tuple(" ".join(dims).split())
-    return lambda getter: Declared(getter, Declaration(words, unit, named, role, name, key, optional=optional))
+    along, at = _placed(dims, key)
+    return lambda getter: Declared(getter, Declaration(words, unit, along, role, name, at, optional=optional))
 
 
 def declarations(kind: type) -> Iterator[tuple[str, Declaration]]:
@@ -149,10 +164,13 @@ def declarations(kind: type) -> Iterator[tuple[str, Declaration]]:
 def parameters(kind: type) -> str:
     """Return the section `Parameters` of a docstring, of all fields that are declared."""
     lines = ["Parameters", "----------"]
-    for name, annotation in vars(kind).get("__annotations__", {}).items():
-        each = getattr(vars(kind).get(name), "metadata", {}).get(_METADATA)
-        if each is not None:
-            lines += [f"{name} : {_type_words(annotation, each)}", f"    {each.sentence}"]
+    bases = [base for base in reversed(kind.__mro__) if base is kind or "__dataclass_fields__" in vars(base)]
+    every = {name: base for base in bases for name in vars(base).get("__annotations__", {})}
+    for name, base in every.items():
+        field: Any = vars(base).get(name) if base is kind else vars(base)["__dataclass_fields__"].get(name)
+        each = getattr(field, "metadata", {}).get(_METADATA)
+        if each is not None and (base is kind or field.repr):  # the warnings are those of any result
+            lines += [f"{name} : {_type_words(base.__annotations__[name], each)}", f"    {each.sentence}"]
     return "\n".join(lines)
 
 

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, replace
 
 from gbeam.constants import BY_STRAINS
-from gbeam.results.declared import INSIDE, declared, fact, part, quantity
+from gbeam.results.declared import INSIDE, declared, fact, internal, part, quantity
 from gbeam.results.declared import quantity as entry  # a critical value has a field of that name
 from gbeam.results.errors import MODEL, SHAPES, THEORY, TOTAL, UNKNOWN, ErrorEstimate, Errors
 from gbeam.results.facts import at_place
@@ -19,7 +19,7 @@ from gbeam.results.solids import SolidStress, SpecimenLoads, Surface
 class Deflection(Figured):
     """Relative equilibrium at a frozen base motion."""
 
-    listed_by = "motion"
+    listed_by, unnamed = "motion", "beam"
     motion: str = fact("name of the motion", key=None)
     model: str = fact("kind of the model")
     time: float = fact("time at which the motion is frozen", "s")
@@ -40,9 +40,7 @@ class Deflection(Figured):
         "whether the stiffness about the equilibrium is positive definite",
         note="under loads that follow the beam, whether no vibration about it grows",
     )
-    loads: Loads | None = part(
-        "forces, moments and stresses of the sections, of one time", name=None, key=None, default=None
-    )
+    loads: Loads | None = internal("", "forces, moments and stresses of the sections, of one time", default=None)
     errors: Errors = part("of displacement, root loads and stress", name=None, default_factory=Errors)
     solid: SolidStress | None = part("stress of a solid, of one time", name=None, optional=True, default=None)
     surface: Surface | None = part("surface of a solid, for pictures", name="surface_", key=None, default=None)

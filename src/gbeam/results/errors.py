@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.results.declared import declared, fact, labels, part, quantity, rows
+from gbeam.results.declared import declared, fact, internal, labels, part, quantity, rows
 from gbeam.results.result import Complex, Floats, Part
 
 PARTS = ("shapes", "model", "beam_theory", "mesh", "total")
@@ -140,15 +140,13 @@ class FrequencyErrors(Part):
     total: Floats = quantity(
         "", TOTAL, note="against the exact model with more shapes, of the beam theory and of the mesh"
     )
-    theory: str = fact("causes of the error of the beam theory, and what it assumes", name=None, key=None, default="")
-    unseen: tuple[float, ...] = fact(
-        "frequencies below the highest of these that bend the beam and twist it, and that no model has",
+    theory: str = internal("", "causes of the error of the beam theory, and what it assumes", default="")
+    unseen: tuple[float, ...] = internal(
         "Hz",
-        name=None,
-        key=None,
+        "frequencies below the highest of these that bend the beam and twist it, and that no model has",
         default=(),
     )
-    note: str = fact(UNKNOWN, name=None, key=None, default="")
+    note: str = internal("", UNKNOWN, default="")
 
     @property
     def slender(self) -> Floats:

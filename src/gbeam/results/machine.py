@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gbeam.results.declared import BESIDE, declared, fact, part, rows
+from gbeam.results.declared import BESIDE, declared, fact, internal, part, rows
 from gbeam.results.declared import quantity as entry  # a limit has a field of that name
 from gbeam.results.result import Flags, Floats, Part
 
@@ -76,41 +76,34 @@ class Held(Part):
 class AxesResult(Part):
     """A three-axis centrifuge over time."""
 
-    angle: Floats = entry("rad", "angle of the centrifuge's axes", "time machine_axis", name="axis_angle", key=None)
-    rate: Floats = entry("rad/s", "rate of the centrifuge's axes", "time machine_axis", name="axis_rate", key=None)
+    angle: Floats = entry("rad", "angle of the centrifuge's axes", "time machine_axis", name="axis_angle")
+    rate: Floats = entry("rad/s", "rate of the centrifuge's axes", "time machine_axis", name="axis_rate")
     acceleration: Floats = entry(
-        "rad/s^2", "acceleration of the centrifuge's axes", "time machine_axis", name="axis_acceleration", key=None
+        "rad/s^2", "acceleration of the centrifuge's axes", "time machine_axis", name="axis_acceleration"
     )
-    reference: Floats = entry(
-        "m/s^2", "load of the target at the control point", "time axis", name="load_reference", key=None
-    )
-    actual: Floats = entry(
-        "m/s^2", "load that the axes make at the control point", "time axis", name="load_actual", key=None
-    )
+    reference: Floats = entry("m/s^2", "load of the target at the control point", "time axis", name="load_reference")
+    actual: Floats = entry("m/s^2", "load that the axes make at the control point", "time axis", name="load_actual")
     not_followed: Flags = entry(
         "",
         "whether the target is held instead of the flight's load",
         "time",
-        key=None,
         flags=("follows_flight", "held"),
         note="spin-up and spin-down among them",
     )
-    episodes: tuple[tuple[float, float, str], ...] = entry(
-        "", "stretches in which it is: start s, end s, reason", "episode", name=None, key=None
+    episodes: tuple[tuple[float, float, str], ...] = internal(
+        "", "stretches in which it is: start s, end s, reason", "episode"
     )
     limits: tuple[LimitUse, ...] = rows("limits of every axis, used and allowed", "limit", name=None, default=())
     shortfalls: tuple[Shortfall, ...] = rows(
         "where the machine cannot make the flight's load", "shortfall", name="shortfall_", default=()
     )
     control_point: float = entry("m", "control point, from the root along the beam", default=math.nan)
-    warnings: tuple[str, ...] = entry(
-        "", "where the inverse does not keep what it promises", "warning", name=None, key=None, default=()
-    )
+    warnings: tuple[str, ...] = internal("", "where the inverse does not keep what it promises", "warning", default=())
     idle: float = entry(
         "m/s^2", "least load that the target is held up to; 0 where there is none", key=None, default=0.0
     )
     jerk: Floats | None = entry(
-        "rad/s^3", "jerk of the centrifuge's axes", "time machine_axis", name="axis_jerk", key=None, default=None
+        "rad/s^3", "jerk of the centrifuge's axes", "time machine_axis", name="axis_jerk", default=None
     )
     span: tuple[float, float] = entry(
         "s",
@@ -126,7 +119,6 @@ class AxesResult(Part):
         "load of the flight itself",
         "time axis",
         name="load_flight",
-        key=None,
         note="which the target rounds off; before and after the flight that of its first and last time",
         default=None,
     )

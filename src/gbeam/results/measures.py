@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
-from gbeam.results.declared import declared, fact, part, quantity
+from gbeam.results.declared import declared, fact, internal, part, quantity
 from gbeam.results.result import Floats, Part
 
 
@@ -106,16 +106,12 @@ class Statistics(Part):
     flight: Sizes = part("in flight", "station", name="station_*_flight")
     centrifuge: Sizes = part("on the centrifuge", "station", name="station_*_centrifuge")
     difference: Sizes = part("of the difference", "station", name="station_*_difference")
-    trend_flight: Floats = quantity("m", f"tip in flight below the cut-off, {_FILTER}", "time axis", key=None)
-    trend_centrifuge: Floats = quantity(
-        "m", f"tip on the centrifuge below the cut-off, {_FILTER}", "time axis", key=None
-    )
-    vibration_flight: Floats = quantity("m", f"tip in flight above the cut-off, {_FILTER}", "time axis", key=None)
-    vibration_centrifuge: Floats = quantity(
-        "m", f"tip on the centrifuge above the cut-off, {_FILTER}", "time axis", key=None
-    )
+    trend_flight: Floats = quantity("m", f"tip in flight below the cut-off, {_FILTER}", "time axis")
+    trend_centrifuge: Floats = quantity("m", f"tip on the centrifuge below the cut-off, {_FILTER}", "time axis")
+    vibration_flight: Floats = quantity("m", f"tip in flight above the cut-off, {_FILTER}", "time axis")
+    vibration_centrifuge: Floats = quantity("m", f"tip on the centrifuge above the cut-off, {_FILTER}", "time axis")
 
-    tip: int = fact("number of the station that is the tip", name=None, key=None, default=-1)
+    tip: int = internal("", "number of the station that is the tip", default=-1)
 
     @property
     def trend_difference(self) -> Floats:
@@ -132,7 +128,6 @@ class Mismatch(Part):
         "1/s^2",
         "mismatch acceleration per distance from the control point",
         "time axis",
-        key=None,
         note="centrifuge less flight of [−(ω_y² + ω_z²), ω_x ω_y + α_z, ω_x ω_z − α_y]",
     )
     max_gradient: Floats = quantity("1/s^2", "largest size over the times compared", "axis", name=None)
@@ -156,12 +151,10 @@ class Mismatch(Part):
         name=None,
         note="m L³ |1/3 − ξ/2| max|gradient|",
     )
-    length: float = fact("length of the beam, L", "m", name=None, key=None)
-    best: tuple[float, float] = fact(
-        "control points with the least moment at the root, and the least displacement of the tip",
+    length: float = internal("m", "length of the beam, L")
+    best: tuple[float, float] = internal(
         "m",
-        name=None,
-        key=None,
+        "control points with the least moment at the root, and the least displacement of the tip",
         note="that with the least vibration of a uniform cantilever lies between",
         default=(-np.inf, np.inf),
     )
@@ -184,7 +177,7 @@ class Mismatch(Part):
         return self.gradient[:, None, :] * (np.asarray(x)[:, None] - self.control_point)
 
 
-_HISTORY: dict[str, Any] = {"key": None, "frame": "S: axes of the deformed root section"}
+_SECTION_AXES = "S: axes of the deformed root section"
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -192,14 +185,16 @@ class RootHistory(Part):
     """Loads of the root at the comparison's times, axes of its section."""
 
     force_flight: Floats = quantity(
-        "N", "N, V_y, V_z at the root in flight", "time axis", name="force_history_flight", **_HISTORY
+        "N", "N, V_y, V_z at the root in flight", "time axis", name="force_history_flight", frame=_SECTION_AXES
     )
-    force_centrifuge: Floats = quantity("N", "N, V_y, V_z at the root on the centrifuge", "time axis", **_HISTORY)
+    force_centrifuge: Floats = quantity(
+        "N", "N, V_y, V_z at the root on the centrifuge", "time axis", frame=_SECTION_AXES
+    )
     moment_flight: Floats = quantity(
-        "N m", "torque, M_y, M_z at the root in flight", "time axis", name="moment_history_flight", **_HISTORY
+        "N m", "torque, M_y, M_z at the root in flight", "time axis", name="moment_history_flight", frame=_SECTION_AXES
     )
     moment_centrifuge: Floats = quantity(
-        "N m", "torque, M_y, M_z at the root on the centrifuge", "time axis", **_HISTORY
+        "N m", "torque, M_y, M_z at the root on the centrifuge", "time axis", frame=_SECTION_AXES
     )
 
 

@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from gbeam.results.declared import declared, fact, part, quantity, rows
+from gbeam.results.declared import declared, fact, internal, part, quantity, rows
 from gbeam.results.equilibrium import Critical
 from gbeam.results.errors import ErrorEstimate, FrequencyErrors, Instability, Noted, Oscillating, totals
 from gbeam.results.parts import Base
@@ -31,18 +31,11 @@ class Modes(Oscillating, Figured):
     time: float = fact("time at which the motion is frozen", "s")
     base: Base = part("motion of the base at that time")
     gyroscopic: bool = fact("whether Coriolis coupling is in")
-    eigenvalue: Complex = quantity(
-        "1/s",
-        "eigenvalues of the oscillating modes",
-        "mode",
-        name=None,
-        key=None,
-        note="one of each pair, with the positive imaginary part",
+    eigenvalue: Complex = internal(
+        "1/s", "eigenvalues of the oscillating modes", "mode", note="one of each pair, with the positive imaginary part"
     )
     direction: tuple[str, ...] = quantity("", "direction in which the beam moves most", "mode", note="x, y, z or twist")
-    coordinates: Complex = quantity(
-        "", "generalised coordinates, of unit mass-weighted length", "mode coordinate", name=None, key=None
-    )
+    coordinates: Complex = internal("", "generalised coordinates, of unit mass-weighted length", "mode coordinate")
     stations: Floats = quantity("m", "position along the beam from the root", "station", role="coordinate")
     shape: Complex = quantity("", "displacement, largest component 1", "mode station axis")
     equilibrium: Floats = quantity("m", "displacement about which the beam vibrates", "station axis", key=None)

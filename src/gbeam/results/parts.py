@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from gbeam.arrays.tree import record
-from gbeam.results.declared import BESIDE, INSIDE, declared, fact, part, quantity
+from gbeam.results.declared import BESIDE, INSIDE, declared, fact, internal, part, quantity
 from gbeam.results.result import Floats, Part
 
 _SECTION_AXES = "S: axes of the deformed section"
@@ -313,23 +313,24 @@ class Loads(Part):
     stations: Floats = quantity(
         "m", "position of the section along the beam from the root", "section", role="coordinate", key="stations"
     )
-    force: Floats = quantity("N", "force, base axes", "time section axis", name=None, key=None)
-    moment: Floats = quantity("N m", "moment, base axes", "time section axis", name=None, key=None)
-    section_force: Floats = quantity("N", "axial force and shear", "time section axis", frame=_SECTION_AXES)
-    section_moment: Floats = quantity("N m", "torque and bending moments", "time section axis", frame=_SECTION_AXES)
-    stress_tension: Floats = quantity("Pa", "largest normal stress over the section", "time section")
-    stress_compression: Floats = quantity("Pa", "smallest normal stress over the section", "time section")
+    force: Floats = internal("N", "force, base axes", "time section axis")
+    moment: Floats = internal("N m", "moment, base axes", "time section axis")
+    section_force: Floats = quantity("N", "axial force and shear", "time section axis", frame=_SECTION_AXES, key="")
+    section_moment: Floats = quantity(
+        "N m", "torque and bending moments", "time section axis", frame=_SECTION_AXES, key=""
+    )
+    stress_tension: Floats = quantity("Pa", "largest normal stress over the section", "time section", key="")
+    stress_compression: Floats = quantity("Pa", "smallest normal stress over the section", "time section", key="")
     acceleration: Floats = quantity(
-        "m/s^2", "acceleration in the world, base axes; specific force with gravity", "time section axis", key=None
+        "m/s^2", "acceleration in the world, base axes; specific force with gravity", "time section axis"
     )
     beam_torque: Floats | None = quantity(
-        "N m", "torque about the hub's axis that the beam takes", "time", optional=True, default=None
+        "N m", "torque about the hub's axis that the beam takes", "time", optional=True, default=None, key=""
     )
     drive_torque: Floats | None = quantity(
         "N m",
         "the same with the hub's own inertia: the drive's",
         "time",
-        key=None,
         note="None where the inertia is unknown",
         default=None,
     )
@@ -338,16 +339,20 @@ class Loads(Part):
         "normal stress at the extreme fibre of the section where it ranges most",
         "time section",
         name="fibre_stress",
-        key=None,
         note="None where a run is traced",
         default=None,
     )
     von_mises: Floats | None = quantity(
-        "Pa", "largest von Mises stress over the section", "time section", optional=True, default=None,
+        "Pa",
+        "largest von Mises stress over the section",
+        "time section",
+        optional=True,
+        default=None,
         note="NaN of sections by properties or matrices",
-    )  # fmt: skip
+        key="",
+    )
     yield_strength: float | None = fact("yield strength of the material", "Pa", name=None, optional=True, default=None)
-    fatigue_exponent: float = fact("exponent of the material's Wöhler curve", name=None, key=None, default=math.nan)
+    fatigue_exponent: float = internal("", "exponent of the material's Wöhler curve", default=math.nan)
 
     def during(self, part: slice) -> Loads:
         """Loads at some of the times."""
@@ -356,14 +361,14 @@ class Loads(Part):
         ]
         return replace(self, **{name: getattr(self, name)[part] for name in over_time})
 
-    @declared("Pa", "largest size of the normal stress over the section", "time section")
+    @declared("Pa", "largest size of the normal stress over the section", "time section", key="")
     def stress(self) -> Floats:
         """Largest size of the normal stress over the section, in tension or compression, (t, s) Pa."""
         # They are N/A ± the bending stress: the larger size without a choice, and with NumPy's or JAX's arrays.
         middle = (self.stress_tension + self.stress_compression) / 2
         return abs(middle) + (self.stress_tension - self.stress_compression) / 2
 
-    @declared("", "yield strength over stress less one", "time section", name="yield_margin", optional=True)
+    @declared("", "yield strength over stress less one", "time section", name="yield_margin", optional=True, key="")
     def margin(self) -> Floats | None:
         """Margin on yield, yield strength over stress less one, (t, s); None where the strength is not given."""
         if self.yield_strength is None:
@@ -371,11 +376,11 @@ class Loads(Part):
         known = self.von_mises is not None and np.isfinite(self.von_mises).all()
         return yield_margin(self.yield_strength, np.asarray(self.von_mises) if known else self.stress)
 
-    @declared("N", "force of the base on the beam", "time axis", name=None)
+    @declared("N", "force of the base on the beam", "time axis", name=None, key="")
     def root_force(self) -> Floats:
         return -self.force[..., 0, :]
 
-    @declared("N m", "moment of the base on the beam about the root", "time axis", name=None)
+    @declared("N m", "moment of the base on the beam about the root", "time axis", name=None, key="")
     def root_moment(self) -> Floats:
         return -self.moment[..., 0, :]
 

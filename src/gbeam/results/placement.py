@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from gbeam.results.accounting import PeakPair
-from gbeam.results.declared import INSIDE, declared, fact, part, quantity, rows
+from gbeam.results.declared import INSIDE, declared, fact, internal, part, quantity, rows
 from gbeam.results.machine import LimitUse
 from gbeam.results.result import Part, Result
 
@@ -58,7 +58,7 @@ class Candidate(Part):
         default_factory=PeakPair,
     )
 
-    beside: tuple[float, float] = fact("control point along y and z", "m", name=None, key=None, default=(0.0, 0.0))
+    beside: tuple[float, float] = internal("m", "control point along y and z", default=(0.0, 0.0))
     turn: tuple[float, float, float] = quantity(
         "rad", "rotation vector of the specimen in the machine", "axis", default=(0.0, 0.0, 0.0)
     )
@@ -117,7 +117,7 @@ class Placement(Result):
     length: float = fact(
         "length of a straight beam, from root to tip; else the specimen's largest extent", "m", key=None
     )
-    best: Candidate = part("the best", name=None, key=None)
+    best: Candidate = internal("", "the best")
     options: tuple[Candidate, ...] = rows("all that were tried, the best first, those that break limits last", "option")
     current: float = fact(
         "the scenario's control point", "m", name="current_control_point", key="current_control_point"
@@ -128,7 +128,7 @@ class Placement(Result):
         key="mismatch",
         note="for best, current (the scenario's own mounting, smoothing and control point) and middle of the beam",
     )
-    verifications: tuple[Verification, ...] = rows("simulations", "check", name=None, key=None, default=())
+    verifications: tuple[Verification, ...] = internal("", "simulations", "check", default=())
     refused: tuple[str, ...] = fact("candidates that could not be built, and why", default=())
     widths: tuple[float, float] = fact(
         "first and last width of smoothing that was tried", "s", name=None, key="smoothing_range", default=(0.0, 0.0)
@@ -141,7 +141,7 @@ class Placement(Result):
     )
     before: Candidate | None = part("the scenario's own", name=None, default=None)
     point: str = fact("of a system, the point whose displacement and vibration are judged", default="")
-    straight: bool = fact("whether the specimen is one straight beam", name=None, key=None, default=True)
+    straight: bool = internal("", "whether the specimen is one straight beam", default=True)
     outcome: str = fact(
         "how it ended", note="done, or limits exceeded where every candidate breaks one: the best is then the nearest",
         default="done",

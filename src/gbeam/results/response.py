@@ -16,7 +16,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, index_of, positive
 from gbeam.numerics.samples import displacement
-from gbeam.results.declared import INSIDE, declared, fact, labels, part, quantity
+from gbeam.results.declared import INSIDE, declared, fact, internal, labels, part, quantity
 from gbeam.results.errors import Errors
 from gbeam.results.machine import AxesResult, Driven
 from gbeam.results.parts import Base, Influence, Loads, Outline, Peaks, VectorPeaks
@@ -116,9 +116,7 @@ class Readings(Part):
     json_rows: ClassVar[dict[str, str]] = {"sensor": ""}
 
     points: tuple[str, ...] = labels("name of the point at which the sensor is", "sensor")
-    acceleration: Floats = quantity(
-        "m/s^2", "reading of the sensor", "time sensor axis", key=None, frame="axes of the sensor"
-    )
+    acceleration: Floats = quantity("m/s^2", "reading of the sensor", "time sensor axis", frame="axes of the sensor")
     peaks: VectorPeaks = part("largest readings", "sensor", unit="m/s^2", name="max_", key=INSIDE)
 
 
@@ -126,18 +124,17 @@ class Readings(Part):
 class HubResult(Part):
     """A hub turning about z."""
 
-    angle: Floats = quantity("rad", "hub angle about z", "time", name="hub_angle", key=None)
-    rate: Floats = quantity("rad/s", "hub rate about z", "time", name="hub_rate", key=None)
-    acceleration: Floats = quantity("rad/s^2", "hub acceleration about z", "time", name="hub_acceleration", key=None)
+    angle: Floats = quantity("rad", "hub angle about z", "time", name="hub_angle")
+    rate: Floats = quantity("rad/s", "hub rate about z", "time", name="hub_rate")
+    acceleration: Floats = quantity("rad/s^2", "hub acceleration about z", "time", name="hub_acceleration")
     drive_torque: Floats | None = quantity(
         "N m",
         "torque of the hub's drive about z",
         "time",
-        key=None,
         note="None where the rate is prescribed and the hub's inertia not known",
         default=None,
     )
-    free: bool = fact("whether the hub's motion is a result, not prescribed", name=None, key=None, default=False)
+    free: bool = internal("", "whether the hub's motion is a result, not prescribed", default=False)
 
     @declared("rad", "angle at the end", name=None)
     def angle_end(self) -> float:
@@ -182,7 +179,7 @@ class Response(Driven, Figured):
 
     json_rows: ClassVar[dict[str, str]] = {"station": "stations"}
 
-    name: str = fact("name of the motion", name=None, key=None)
+    name: str = internal("", "name of the motion")
     environment: str = fact("flight, centrifuge or hub")
     model: str = fact("kind of the model")
     outcome: str = fact(
@@ -191,17 +188,16 @@ class Response(Driven, Figured):
         "long that whatever deviates grows a thousandfold) or not converged",
     )
     message: str = fact("what happened and what to try, where the outcome is not done")
-    time: Floats = quantity("s", "time", "time", role="coordinate", key=None)
+    time: Floats = quantity("s", "time", "time", role="coordinate")
     stations: Floats = quantity(
         "m", "position along the beam from the root", "station", role="coordinate", key="at", note="the last is the tip"
     )
-    displacement: Floats = quantity("m", "displacement relative to the base axes", "time station axis", key=None)
+    displacement: Floats = quantity("m", "displacement relative to the base axes", "time station axis")
     q: Floats = quantity(
         lambda self: "" if self.model in BY_STRAINS else "m",
         "generalised coordinates of the beam",
         "time coordinate",
         name="coordinates",
-        key=None,
         note="of the exact model and that of fourth order angles and strains",
     )
     qd: Floats = quantity(
@@ -209,9 +205,8 @@ class Response(Driven, Figured):
         "rates of the generalised coordinates",
         "time coordinate",
         name="coordinate_rates",
-        key=None,
     )
-    base: Base = part("motion of the base", "time", key=None)
+    base: Base = part("motion of the base", "time")
     peaks: Peaks = part("largest values between all steps", key=INSIDE)
     integrator: str = fact("integrator")
     step: float = fact("time step", "s")
@@ -221,16 +216,12 @@ class Response(Driven, Figured):
         note="that of `errors`; NaN where there is no estimate",
     )
     residual_from: float = fact("start of the residual", "s", key=None, note="NaN where not given")
-    qdd: Floats = quantity("", "accelerations of the coordinates", "time coordinate", name=None, key=None, empty=True)
-    frequencies: Floats = quantity(
-        "rad/s", "natural frequencies at rest", "mode", name=None, key=None, note="ascending", empty=True
-    )
+    qdd: Floats = internal("", "accelerations of the coordinates", "time coordinate", empty=True)
+    frequencies: Floats = internal("rad/s", "natural frequencies at rest", "mode", note="ascending", empty=True)
     loads: Loads | None = part("internal loads at the root and the stations", key=None, default=None)
     hub: HubResult | None = part("motion of a hub", optional=True, default=None)
     axes: AxesResult | None = part("motion of a centrifuge", key=INSIDE, optional=True, default=None)
-    influence: Influence | None = part(
-        "static answer of the beam to acceleration fields", name=None, key=None, default=None
-    )
+    influence: Influence | None = internal("", "static answer of the beam to acceleration fields", default=None)
     errors: Errors = part(
         "of displacement, loads and stress, with what they are made of", name=None, default_factory=Errors
     )
@@ -244,13 +235,8 @@ class Response(Driven, Figured):
         note="None where there is no beam",
         default=None,
     )
-    bodies: Floats = quantity(
-        "m",
-        "centres of mass of the bodies on the undeformed beam, from the root",
-        "body axis",
-        name=None,
-        key=None,
-        empty=True,
+    bodies: Floats = internal(
+        "m", "centres of mass of the bodies on the undeformed beam, from the root", "body axis", empty=True
     )
     whole: tuple[float, float] | None = quantity(
         "s",
@@ -274,17 +260,14 @@ class Response(Driven, Figured):
         "m/s^2",
         "absolute acceleration of the stations",
         "time station axis",
-        key=None,
         note="specific force where gravity acts; None of a beam, whose loads have it",
         default=None,
     )
-    kept_every: int = fact("how many samples of the histories make one in a file", name=None, key=None, default=1)
-    envelope: Floats = quantity(
+    kept_every: int = internal("", "how many samples of the histories make one in a file", default=1)
+    envelope: Floats = internal(
         "m",
         "corners of the convex hull of a solid, rigid or curved specimen, undeformed, from the root",
         "corner axis",
-        name=None,
-        key=None,
         empty=True,
     )
     solid: SolidStress | None = part("stress of a solid", name="solid_", key="solid", optional=True, default=None)

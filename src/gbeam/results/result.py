@@ -79,6 +79,7 @@ class Result(Value):
     """
 
     listed_by: ClassVar[str] = ""  # field that names each where JSON lists several by their motion
+    unnamed: ClassVar[str] = ""  # name of one that has none there
     warnings: tuple[str, ...] = fact("why it may not be what it seems", default=(), repr=False)
     provenance: Provenance | None = field(default=None, repr=False)
 

@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from gbeam.results.declared import BESIDE, declared, fact, labels, quantity, rows
+from gbeam.results.declared import BESIDE, declared, fact, internal, labels, quantity, rows
 from gbeam.results.result import Figured, Flags, Floats, Part
 
 ON_BOUND = ("inside", "at_bound")
@@ -20,9 +20,9 @@ class FittedColumn(Part):
 
     name: str = labels("name of the column")
     unit: str = quantity("", "SI unit of the column", name="column_unit")
-    measured: Floats = quantity("", "data, in the column's unit", "at", key=None)
-    fitted: Floats = quantity("", "the same of the fitted scenario", "at", key=None)
-    before: Floats = quantity("", "the same of the scenario as it was", "at", name="computed_before", key=None)
+    measured: Floats = quantity("", "data, in the column's unit", "at")
+    fitted: Floats = quantity("", "the same of the fitted scenario", "at")
+    before: Floats = quantity("", "the same of the scenario as it was", "at", name="computed_before")
     noise: float = quantity(
         BESIDE, "standard deviation of the residual", note="with the degrees of freedom that the fit leaves"
     )
@@ -94,9 +94,9 @@ class Fit(Figured):
     )
     columns: tuple[FittedColumn, ...] = rows("columns of the data", "column")
     at: Floats = quantity(
-        lambda self: "" if self.modal else "s", "time, or number of the mode", "at", role="coordinate", key=None
+        lambda self: "" if self.modal else "s", "time, or number of the mode", "at", role="coordinate"
     )
-    modal: bool = fact("whether the data are of modes", name=None, key=None)
+    modal: bool = internal("", "whether the data are of modes")
     evaluations: int = fact("evaluations of the scenario", name=None)
     condition: float = fact(
         "condition of the derivatives, each parameter's of unit length",
@@ -186,8 +186,8 @@ class Optimum(Figured):
         note="NaN where there is no run",
     )
     requirements: tuple[Requirement, ...] = rows("bounds on other figures", "requirement", key="subject_to")
-    path: Floats = quantity("", "values tried that were better than those before", "better parameter", key=None)
-    history: Floats = quantity(BESIDE, "the figure there", "better", key=None)
+    path: Floats = quantity("", "values tried that were better than those before", "better parameter")
+    history: Floats = quantity(BESIDE, "the figure there", "better")
     evaluations: int = fact("evaluations of the scenario", name=None)
     outcome: str = fact(
         "how it ended", note="done, or limits exceeded where no values within the bounds keep the requirements",
@@ -216,7 +216,7 @@ class CommandRun(Part):
     """One command, and the vibration that it leaves."""
 
     name: str = labels("shaped, ZVD or smooth-step")
-    command: Floats = quantity("", "torque, N m, force, N, rate, rad/s, or speed, m/s", "time", name=None, key=None)
+    command: Floats = internal("", "torque, N m, force, N, rate, rad/s, or speed, m/s", "time")
     largest: float = quantity("", "largest torque, N m, force, N, or acceleration, rad/s^2 or m/s^2")
     by_ratio: Floats = quantity(
         "m",
@@ -225,8 +225,8 @@ class CommandRun(Part):
         key=None,
         note="where all their frequencies are so many times as high",
     )
-    time: Floats = quantity("s", "times of the check's run", "run_time", name=None, key=None)
-    tip: Floats = quantity("m", "displacement of the tip", "run_time axis", name=None, key=None)
+    time: Floats = internal("s", "times of the check's run", "run_time")
+    tip: Floats = internal("m", "displacement of the tip", "run_time axis")
     residual: float = quantity("m", "amplitude of the tip after the command", key="residual_amplitude")
     outcome: str = quantity("", "how the run ended")
 
@@ -248,10 +248,10 @@ class ShapedCommand(Figured):
 
     kind: str = fact("torque, rate, force or speed")
     goal: float = fact("angle, rad, or distance, m, or the rate, rad/s, or speed, m/s, that is reached", key=None)
-    to_rate: bool = fact("whether the goal is a rate", name=None, key=None)
+    to_rate: bool = internal("", "whether the goal is a rate")
     duration: float = fact("duration of the command", "s")
     coefficients: Floats = quantity(BESIDE, "coefficients of the command, a gbeam.SplineProfile", "spline")
-    time: Floats = quantity("s", "time", "time", role="coordinate", key=None, note="of the commands")
+    time: Floats = quantity("s", "time", "time", role="coordinate", note="of the commands")
     limit: float = fact(
         "limit of the torque, N m, the force, N, or the acceleration, rad/s^2 or m/s^2",
         name=None,
@@ -282,15 +282,15 @@ class ShapedCommand(Figured):
         ((name, goal),) = self.aim.items()
         return GOALS[name].format(goal)
 
-    @declared(BESIDE, "torque, force, rate or speed", "run time", name="command", key=None)
+    @declared(BESIDE, "torque, force, rate or speed", "run time", name="command")
     def command(self) -> Floats:
         return np.stack([run.command for run in self.runs])
 
-    @declared("s", "time", "run_time", role="coordinate", key=None)
+    @declared("s", "time", "run_time", role="coordinate")
     def run_time(self) -> Floats:
         return self.runs[0].time
 
-    @declared("m", "displacement of the tip", "run run_time axis", name="tip", key=None)
+    @declared("m", "displacement of the tip", "run run_time axis", name="tip")
     def tip(self) -> Floats:
         return np.stack(
             [np.stack([np.interp(self.run_time, r.time, r.tip[:, i]) for i in range(3)], axis=1) for r in self.runs]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.guards.checks import index_of, vector
-from gbeam.results.declared import declared, fact, labels, part, quantity
+from gbeam.results.declared import declared, fact, internal, labels, part, quantity
 from gbeam.results.parts import margin_words, yield_margin
 from gbeam.results.result import Complex, Figured, Flags, Floats, Part
 
@@ -61,8 +61,8 @@ class SolidStress(Figured):
 
     motion: str = fact("name of the motion")
     model: str = fact("kind of the model")
-    time: Floats = quantity("s", "time", "time", role="coordinate", key=None)
-    von_mises: Floats = quantity("Pa", "largest von Mises stress in the solid at that time", "time", key=None)
+    time: Floats = quantity("s", "time", "time", role="coordinate")
+    von_mises: Floats = quantity("Pa", "largest von Mises stress in the solid at that time", "time")
     worst: StressAt = part("where the von Mises stress is largest", name="worst_")
     nearest_yield: StressAt | None = part(
         "where the margin on yield is least", name="nearest_yield_", optional=True, default=None
@@ -73,30 +73,36 @@ class SolidStress(Figured):
                                       optional=True, default=None)  # fmt: skip
     singular_depth: float = fact("largest distance of a node that is left out to one that is judged", "m", default=0.0)
     points: tuple[str, ...] = labels("name of the point", "point", default=())
-    point_von_mises: Floats = quantity("Pa", "von Mises stress at the point", "time point", key=None, empty=True)
+    point_von_mises: Floats = quantity("Pa", "von Mises stress at the point", "time point", empty=True)
     point_principal: Floats = quantity(
-        "Pa", "principal stresses at the point, the largest first", "time point principal", key=None, empty=True
+        "Pa", "principal stresses at the point, the largest first", "time point principal", empty=True
     )
-    materials: tuple[str, ...] = quantity("", "name of the material", "material", name=None, key=None, default=())
-    exponents: Floats = quantity("", "exponent of its Wöhler curve", "material", name=None, key=None, empty=True)
-    material_normal: Floats = quantity(
-        "Pa", "normal stress where it is stressed most, on the plane where that ranges most", "time material",
-        name=None, key=None, empty=True,
-    )  # fmt: skip
+    materials: tuple[str, ...] = internal("", "name of the material", "material", default=())
+    exponents: Floats = internal("", "exponent of its Wöhler curve", "material", empty=True)
+    material_normal: Floats = internal(
+        "Pa",
+        "normal stress where it is stressed most, on the plane where that ranges most",
+        "time material",
+        empty=True,
+    )
     point_normal: Floats = quantity(
-        "Pa", "normal stress at the point, on the plane where it ranges most", "time point", key=None, empty=True
+        "Pa", "normal stress at the point, on the plane where it ranges most", "time point", empty=True
     )
-    point_exponent: Floats = quantity(
-        "", "exponent of the Wöhler curve of the material there", "point", name=None, key=None, empty=True
-    )
+    point_exponent: Floats = internal("", "exponent of the Wöhler curve of the material there", "point", empty=True)
     point_stress: Floats = quantity(
-        "Pa", "stress xx, yy, zz, yz, xz, xy at the point", "time point stress_component", key=None,
-        frame="axes of the point", empty=True,
-    )  # fmt: skip
+        "Pa",
+        "stress xx, yy, zz, yz, xz, xy at the point",
+        "time point stress_component",
+        frame="axes of the point",
+        empty=True,
+    )
     point_strain: Floats = quantity(
-        "", "strain xx, yy, zz, yz, xz, xy at the point, with twice the tensor's shear", "time point stress_component",
-        key=None, frame="axes of the point", empty=True,
-    )  # fmt: skip
+        "",
+        "strain xx, yy, zz, yz, xz, xy at the point, with twice the tensor's shear",
+        "time point stress_component",
+        frame="axes of the point",
+        empty=True,
+    )
     nodes: Floats = quantity(
         "m", "places of the nodes from the root, undeformed", "node axis", name="node_place", key=None, empty=True
     )
@@ -114,8 +120,7 @@ class SolidStress(Figured):
             f"largest {said(self.singular)}"
         )
 
-    @declared("Pa", "normal stress at the worst place, on the plane where it ranges most", "time", name="worst_normal",
-              key=None)  # fmt: skip
+    @declared("Pa", "normal stress at the worst place, on the plane where it ranges most", "time", name="worst_normal")
     def normal(self) -> Floats:
         return self.material_normal[:, self.materials.index(self.worst.material)]
 
@@ -229,22 +234,22 @@ class SpecimenLoads(Figured):
     motion: str = fact("name of the motion")
     environment: str = fact("flight, centrifuge or hub")
     mass: float = fact("mass of the specimen", "kg")
-    time: Floats = quantity("s", "time", "time", role="coordinate", key=None)
+    time: Floats = quantity("s", "time", "time", role="coordinate")
     corners: Floats = quantity(
         "m", "place of the corner from the root", "corner axis", name="corner_place", key="place"
     )
     acceleration: Floats = quantity(
-        "m/s^2", "acceleration of the corner; specific force where gravity acts", "time corner axis", key=None
+        "m/s^2", "acceleration of the corner; specific force where gravity acts", "time corner axis"
     )
     centre: Floats = quantity(
-        "m/s^2", "acceleration of the centre of mass, likewise", "time axis", name="centre_acceleration", key=None
+        "m/s^2", "acceleration of the centre of mass, likewise", "time axis", name="centre_acceleration"
     )
-    force: Floats = quantity("N", "force of the fixture on the specimen", "time axis", key=None)
-    moment: Floats = quantity("N m", "moment of the fixture on the specimen about the root", "time axis", key=None)
+    force: Floats = quantity("N", "force of the fixture on the specimen", "time axis")
+    moment: Floats = quantity("N m", "moment of the fixture on the specimen about the root", "time axis")
     bolts: Floats = quantity(
         "m", "place of the bolt from the root", "bolt axis", name="bolt_place", key="place", empty=True
     )
-    bolt_force: Floats = quantity("N", "force of the bolt on the specimen", "time bolt axis", key=None, empty=True)
+    bolt_force: Floats = quantity("N", "force of the bolt on the specimen", "time bolt axis", empty=True)
     bolt_axis: Floats = quantity(
         "", "direction of the bolts", "axis", key=None, optional=True, default_factory=lambda: np.empty(0)
     )
@@ -279,8 +284,9 @@ class SpecimenLoads(Figured):
     def spread_max(self) -> float:
         return float(self.spread.max())
 
-    @declared("", "largest difference of a corner's acceleration to the centre's, over the largest of the centre",
-              "time", key=None)  # fmt: skip
+    @declared(
+        "", "largest difference of a corner's acceleration to the centre's, over the largest of the centre", "time"
+    )
     def spread(self) -> Floats:
         """Spread of the load over the specimen, (t,): NaN where nothing accelerates."""
         apart = np.linalg.norm(self.acceleration - self.centre[:, None], axis=-1).max(axis=1)
@@ -295,12 +301,12 @@ class SpecimenLoads(Figured):
     def moment_max(self) -> float:
         return float(np.linalg.norm(self.moment, axis=-1).max())
 
-    @declared("N", "tension of the bolt; negative where the specimen is pressed on", "time bolt", key=None)
+    @declared("N", "tension of the bolt; negative where the specimen is pressed on", "time bolt")
     def tension(self) -> Floats:
         # The bolt pulls the specimen against its axis, which points away from the fixture.
         return -(self.bolt_force @ self.bolt_axis) if len(self.bolts) else np.empty((len(self.time), 0))
 
-    @declared("N", "shear of the bolt", "time bolt", key=None)
+    @declared("N", "shear of the bolt", "time bolt")
     def shear(self) -> Floats:
         if not len(self.bolts):
             return np.empty((len(self.time), 0))

@@ -14,7 +14,7 @@ import numpy as np
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import vector
-from gbeam.results.declared import INSIDE, declared, fact, labels, part, quantity, rows
+from gbeam.results.declared import INSIDE, declared, fact, internal, labels, part, quantity, rows
 from gbeam.results.errors import Accelerated, FrequencyErrors, Noted, accelerated, evenly
 from gbeam.results.result import Complex, Floats, Part, Result
 
@@ -80,8 +80,8 @@ class Truncation(Part):
 
     method: str = fact("modal or balanced", name=INSIDE)
     states: int = fact("number of states that are left out", name="/states_left_out", key="states_left_out")
-    hankel: Floats = quantity(
-        "mixed", "Hankel singular values of what decays", "hankel", name=None, key=None, note="of a balanced truncation"
+    hankel: Floats = internal(
+        "mixed", "Hankel singular values of what decays", "hankel", note="of a balanced truncation"
     )
     start: float = fact("lowest frequency at which gains are compared", "Hz", name=None, key="from")
     end: float = fact("highest frequency at which gains are compared", "Hz", name="to", key="to")

@@ -11,7 +11,7 @@ from typing import Any
 from gbeam.results.cases import Sensitivity, Sweep
 from gbeam.results.comparison import Comparison, MachinePlan
 from gbeam.results.criteria import Judged, state_of
-from gbeam.results.declared import declared, fact, quantity, rows
+from gbeam.results.declared import declared, fact, internal, quantity, rows
 from gbeam.results.equilibrium import Critical, CriticalMap, Deflection
 from gbeam.results.facts import ANY, Entry, json_of, tree_of
 from gbeam.results.modal import Campbell, Modes
@@ -32,13 +32,16 @@ class Failure:
     message: str = fact("what happened")
 
 
+@dataclass(frozen=True, repr=False, eq=False)
 class Answers(Figured):
     """Base of the responses in all environments of a scenario."""
 
-    title: str
-    responses: Mapping[str, Any]
-    comparisons: tuple[Comparison, ...] = ()
-    failures: Mapping[str, Failure]
+    title: str = fact("title of the scenario")
+    responses: Mapping[str, Any] = rows("responses by the motion's name", "motion", key="motions")
+    comparisons: tuple[Comparison, ...] = rows("comparisons of centrifuges with flight", "comparison", default=())
+    failures: Mapping[str, Failure] = rows(
+        "where a response has no state to start from", "motion", key="motions", default_factory=dict
+    )
 
     @property
     def _specimens(self) -> dict[str, SpecimenLoads]:
@@ -101,12 +104,7 @@ class Study(Answers):
     ('done', ['flight', 'centrifuge'])
     """
 
-    title: str = fact("title of the scenario")
     responses: Mapping[str, Response] = rows("responses by the motion's name", "motion", key="motions")
-    comparisons: tuple[Comparison, ...] = rows("comparisons of centrifuges with flight", "comparison")
-    failures: Mapping[str, Failure] = rows(
-        "where a response has no state to start from", "motion", key="motions", default_factory=dict
-    )
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -121,15 +119,8 @@ class SystemStudy(Answers):
     ('done', ['ground'])
     """
 
-    title: str = fact("title of the scenario")
     responses: Mapping[str, SystemResponse] = rows(
         "responses by the name of the ground's motion", "motion", key="motions", note="ground where it rests"
-    )
-    comparisons: tuple[Comparison, ...] = rows(
-        "comparisons of centrifuges with flight", "comparison", default_factory=tuple
-    )
-    failures: Mapping[str, Failure] = rows(
-        "where a response has no state to start from", "motion", key="motions", default_factory=dict
     )
 
 
@@ -167,13 +158,11 @@ class ModelRow(Part):
     error_estimate: float = quantity("", "total estimated error over the largest displacement", default=NAN)
     steps: int = quantity("", "number of steps", default=0)
     seconds: float = quantity("s", "time to compute it", default=NAN)
-    time: Floats = quantity("s", "times of the history", "time", name=None, key=None, empty=True)
-    history: Floats = quantity(
+    time: Floats = internal("s", "times of the history", "time", empty=True)
+    history: Floats = internal(
         "m",
         "displacement of the tip in the direction compared",
         "time",
-        name=None,
-        key=None,
         note="empty where there is no answer",
         empty=True,
     )

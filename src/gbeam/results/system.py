@@ -9,8 +9,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from gbeam.constants import SLIDES
 from gbeam.guards.checks import index_of
-from gbeam.results.declared import INSIDE, declared, fact, labels, part, quantity, rows
+from gbeam.results.declared import INSIDE, declared, fact, internal, labels, part, quantity, rows
 from gbeam.results.errors import (
     Accelerated,
     FrequencyErrors,
@@ -37,11 +38,11 @@ _OF_POINTS = {each: each for each in ("place", "velocity", "attitude", "accelera
 class Invariants(Part):
     """Momentum and energy over time: where nothing acts from outside they stay what they were."""
 
-    momentum: Floats = quantity("N s", "momentum", "time axis", key=None, frame="ground")
+    momentum: Floats = quantity("N s", "momentum", "time axis", frame="ground")
     angular_momentum: Floats = quantity(
-        "N m s", "angular momentum about the ground's origin", "time axis", key=None, frame="ground"
+        "N m s", "angular momentum about the ground's origin", "time axis", frame="ground"
     )
-    energy: Floats = quantity("J", "energy: kinetic, elastic and of gravity", "time form", key=None)
+    energy: Floats = quantity("J", "energy: kinetic, elastic and of gravity", "time form")
 
     def _drift(self, history: Floats) -> float:
         size = np.abs(history).max(initial=0.0)
@@ -72,9 +73,9 @@ class Loop(Part):
         "", "SI unit of the measurement", "measurement", name="measurement_unit", key=None
     )
     drives: tuple[str, ...] = labels("name of the drive", "drive", key="name")
-    measured: Floats = quantity("", "measurement, held from its sample", "time measurement", key=None, note="SI")
-    asked: Floats = quantity("", "effort that the law asks for, held from its sample", "time drive", key=None)
-    applied: Floats = quantity("", "effort that acts, limited and delayed", "time drive", key=None)
+    measured: Floats = quantity("", "measurement, held from its sample", "time measurement", note="SI")
+    asked: Floats = quantity("", "effort that the law asks for, held from its sample", "time drive")
+    applied: Floats = quantity("", "effort that acts, limited and delayed", "time drive")
     saturated: Floats = quantity("", "share of the samples that were limited", "drive")
 
 
@@ -89,10 +90,9 @@ class BeamResponse(Part):
     outline: Outline | None = part(
         "its shape at some of the times, axes of its root", key=None, name=INSIDE, default=None
     )
-    points: tuple[str, ...] = quantity(
-        "", "name of the station, or its position", "station", name=None, key=None, note="the sections after the root",
-        default=(),
-    )  # fmt: skip
+    points: tuple[str, ...] = internal(
+        "", "name of the station, or its position", "station", note="the sections after the root", default=()
+    )
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -188,46 +188,36 @@ class SystemResponse(_Placed, Driven, Figured):
     environment: str = fact("kind of the motion of the ground", note="ground where it rests")
     outcome: str = fact("how it ended", note="done, diverged or not converged")
     message: str = fact("what happened and what to try, where the outcome is not done")
-    time: Floats = quantity("s", "time", "time", role="coordinate", key=None)
+    time: Floats = quantity("s", "time", "time", role="coordinate")
     points: tuple[str, ...] = labels("name of the point", "point")
     coordinates: tuple[str, ...] = labels("name of the coordinate", "coordinate")
-    place: Floats = quantity("m", "place of the point", "time point axis", key=None, frame="ground")
-    velocity: Floats = quantity("m/s", "velocity of the point", "time point axis", key=None, frame="ground")
+    place: Floats = quantity("m", "place of the point", "time point axis", frame="ground")
+    velocity: Floats = quantity("m/s", "velocity of the point", "time point axis", frame="ground")
     acceleration: Floats = quantity(
         "m/s^2",
         "acceleration of the point; specific force where gravity acts",
         "time point axis",
-        key=None,
         frame="axes of the point",
     )
-    attitude: Floats = quantity(
-        "", "Euler parameters of the point's axes in those of the ground", "time point euler", key=None
-    )
+    attitude: Floats = quantity("", "Euler parameters of the point's axes in those of the ground", "time point euler")
     angular_velocity: Floats = quantity(
-        "rad/s", "angular velocity of the point", "time point axis", key=None, frame="axes of the point"
+        "rad/s", "angular velocity of the point", "time point axis", frame="axes of the point"
     )
-    q: Floats = quantity(
-        "", "coordinates: m and rad of joints, their own of flexible bodies", "time coordinate", key=None
-    )
-    qd: Floats = quantity("", "rates of the coordinates", "time coordinate", name="rates", key=None)
+    q: Floats = quantity("", "coordinates: m and rad of joints, their own of flexible bodies", "time coordinate")
+    qd: Floats = quantity("", "rates of the coordinates", "time coordinate", name="rates")
     effort: Floats = quantity(
         "",
         "force N or torque N m of the drive on each coordinate",
         "time coordinate",
-        key=None,
         note="of prescribed coordinates what the motion needs; e1, e2 and e3 have torques in axes of the body",
     )
-    ground_force: Floats = quantity("N", "force on the ground", "time axis", key=None, frame="ground")
-    ground_moment: Floats = quantity(
-        "N m", "moment on the ground about its origin", "time axis", key=None, frame="ground"
-    )
+    ground_force: Floats = quantity("N", "force on the ground", "time axis", frame="ground")
+    ground_moment: Floats = quantity("N m", "moment on the ground about its origin", "time axis", frame="ground")
     invariants: Invariants | None = part(
         "momentum and energy", key="invariants", name=INSIDE, note="None on a base that moves", default=None
     )
     loop: Loop | None = part("controllers", key="loop", name=INSIDE, note="None without any", default=None)
-    base: Base | None = part(
-        "motion of the ground", "time", key=None, name="ground_", note="None where it rests", default=None
-    )
+    base: Base | None = part("motion of the ground", "time", name="ground_", note="None where it rests", default=None)
     axes: AxesResult | None = part("motion of a centrifuge", key=INSIDE, optional=True, default=None)
     assembly: Assembly | None = part(
         "how the bodies hang together", key=None, name=INSIDE, note="None where nothing is to be drawn", default=None
@@ -256,7 +246,7 @@ class SystemResponse(_Placed, Driven, Figured):
         "m", "half peak-to-peak after residual_from, of a flexible body's points relative to its root, else of places",
         "point axis", frame="axes of the body's root, else of the ground", optional=True, default=None,
     )  # fmt: skip
-    kept_every: int = fact("how many samples of the histories make one in a file", name=None, key=None, default=1)
+    kept_every: int = internal("", "how many samples of the histories make one in a file", default=1)
 
     @declared("m", "length of the vector of half peak-to-peak from residual_from on", "point", optional=True, name=None)
     def residual_size(self) -> Floats | None:
@@ -366,7 +356,7 @@ class SystemRest(_Placed, Figured):
     0.4431 rad, -9.81 N
     """
 
-    listed_by: ClassVar[str] = "name"
+    listed_by, unnamed = "name", "ground"
     json_rows: ClassVar[dict[str, str]] = {"point": "points", "coordinate": "coordinates"}
 
     name: str = fact("name of the motion of the ground", key=None, note="empty where it rests")
@@ -381,10 +371,13 @@ class SystemRest(_Placed, Figured):
     stable: bool = fact("whether it comes back after any small disturbance, or stays near")
     ground_force: Floats = quantity("N", "force on the ground", "axis", frame="ground")
     ground_moment: Floats = quantity("N m", "moment on the ground about its origin", "axis", frame="ground")
-    loads: Mapping[str, Loads] = rows(
-        "forces, moments and stresses of the beams' sections, of one time", "body", name=None, key=None,
-        note="by the name of the body", default_factory=dict,
-    )  # fmt: skip
+    loads: Mapping[str, Loads] = internal(
+        "",
+        "forces, moments and stresses of the beams' sections, of one time",
+        "body",
+        note="by the name of the body",
+        default_factory=dict,
+    )
 
     solids: Mapping[str, SolidStress] = rows(
         "stress of meshes, of one time, by the name of the body", "body", optional=True, name=None, default_factory=dict
@@ -440,13 +433,8 @@ class SystemModes(Oscillating, Figured):
 
     name: str = fact("name of the motion of the ground", note="empty where it rests")
     time: float = fact("time at which drives and motion are frozen", "s")
-    eigenvalue: Complex = quantity(
-        "1/s",
-        "eigenvalues of the oscillating modes",
-        "mode",
-        name=None,
-        key=None,
-        note="one of each pair, with the positive imaginary part",
+    eigenvalue: Complex = internal(
+        "1/s", "eigenvalues of the oscillating modes", "mode", note="one of each pair, with the positive imaginary part"
     )
     points: tuple[str, ...] = labels("name of the point", "point", key="point_names")
     bodies: tuple[str, ...] = labels("name of the body", "body", key="body_names")
@@ -516,7 +504,7 @@ def named(response: SystemResponse) -> Mapping[str, tuple[Floats, str, Floats]]:
             for i, axis in enumerate("xyz"):
                 histories[f"{joint}.r{axis}"] = turns[:, i], "rad", efforts[:, i]
         elif tail not in _EULER and not tail.startswith("q"):
-            unit = "m" if tail in ("x", "y", "z", "displacement") else "rad"
+            unit = "m" if tail in SLIDES else "rad"
             histories[name] = response.q[:, k], unit, response.effort[:, k]
     return histories
 

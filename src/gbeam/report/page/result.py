@@ -46,8 +46,7 @@ def report_of(
 def variables_of(result: Result) -> dict[str, Any]:
     """The arrays that the file of a result holds, by path, of a place at rest that of its motion."""
     of = whole(result)
-    within = f"motions/{of.name}" if isinstance(of, SystemRest) else ""
-    within = f"motions/{of.motion}" if isinstance(of, Deflection) else within
+    within = f"motions/{getattr(of, of.listed_by)}" if of.listed_by else ""
     return {
         f"{path or within}/{name}" if path or within else name: each.values
         for path, group in groups_of(of).items()
