@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import pickle
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -253,3 +254,21 @@ def test_a_linear_model_is_driven_by_its_base_and_by_prescribed_joints() -> None
 def test_a_free_body_has_six_motions_of_no_frequency() -> None:
     free = gb.modes(gb.System({"rod": gb.RigidBody(1.0, (1.0, 1.0, 1.0))}, {"hold": gb.Joint("free", "rod")}))
     assert free.frequency.shape == (0,) and free.rigid == 6 and free.stable
+
+
+def test_a_body_that_turns_in_its_place_is_said_to_turn() -> None:
+    """No point moves: words and figure are of the hinge; what is a hundredth of the largest motion has no panel."""
+    wheel = gb.RigidBody(1.0, (1.0, 1.0, 1.0), points={"rim": (1.0, 0.0, 0.0)})
+    hub = replace(wheel, points={})
+    hinge = gb.Joint("revolute", "wheel", axes=[(0, 0, 1)], effort=1.0, stiffness=5.0)
+    assert repr(gb.static(gb.System({"wheel": hub}, {"hinge": hinge}))).startswith(
+        "SystemRest: no point moves; hinge.angle reaches 0.2 rad"
+    )
+    turned = gb.simulate(gb.System({"wheel": hub}, {"hinge": hinge}), duration=0.5, step=0.01)
+    assert f"no point moves; hinge.angle reaches {turned.q[-1, 0]:.4g} rad" in repr(turned)
+    assert "energy 0 J at the start, 0." in repr(turned)
+    assert [panel.get_ylabel() for panel in turned.plot()] == ["hinge.angle, rad", "drive, N m"]
+    moved = gb.simulate(gb.System({"wheel": wheel}, {"hinge": hinge}), duration=0.02, step=0.01)
+    (panel,) = moved.plot()
+    assert panel.get_ylabel() == "y, mm"
+    assert f"(not drawn: x by {1e6 * (1 - np.cos(moved.q[-1, 0])):.2g} µm at most)" in panel.figure.texts[0].get_text()

@@ -100,7 +100,9 @@ def _by_motion(named: Mapping[str, dict[str, Describe]]) -> dict[str, Describe]:
 
 
 def _of_system(result: SystemResponse, title: str) -> dict[str, Describe]:
-    every: dict[str, Describe] = {"points": partial(systems.points, result, title)}
+    every: dict[str, Describe] = {}
+    if result.largest.any() or not named(result):
+        every["points"] = partial(systems.points, result, title)
     if named(result):
         every["coordinates"] = partial(systems.coordinates, result, title)
     if result.readings is not None:

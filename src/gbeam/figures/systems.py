@@ -16,6 +16,8 @@ from gbeam.figures.description import (
     Panel,
     components,
     estimated,
+    moving,
+    not_drawn,
     of_motion,
     raised,
     scale_of,
@@ -31,10 +33,10 @@ SAME = 1e-9  # of the largest displacement: what is smaller is rounding
 
 
 def points(response: SystemResponse, title: str = "") -> Figure:
-    """Describe the displacement of every point from its place at the start, a panel for each axis of the ground."""
+    """Describe the displacement of every point from its place at the start along the axes of the ground."""
     moved = response.place - response.place[0]
     scale, unit = scale_of("m", moved)
-    axes = [i for i in range(3) if np.abs(moved[..., i]).max(initial=0.0) > SAME * np.abs(moved).max(initial=0.0)]
+    axes = moving(moved)
     panels = tuple(
         Panel(
             f"{'xyz'[i]}, {unit}",
@@ -54,8 +56,8 @@ def points(response: SystemResponse, title: str = "") -> Figure:
         for i in axes
     )
     about = "displacement of the points from the start, axes of the ground"
-    error = estimated({"": response.error_estimate})
-    return Figure(title, about, panels or (Panel(f"x, {unit}"),), error, (response.outcome,))
+    notes = (*not_drawn(axes, moved), *estimated({"": response.error_estimate}))
+    return Figure(title, about, panels, notes, (response.outcome,))
 
 
 def _moving(moved: np.ndarray) -> list[int]:

@@ -114,7 +114,7 @@ def _of_points(facts: Facts) -> Blocks:
     cells: Columns = {"point": "name", "moves by, m": "displacement_max", "acceleration, m/s²": "acceleration_max"}
     cells |= READ | {residual: "residual_size"}
     yield table(at_points(facts, facts["points"]), cells, optional=(*READ, residual))
-    yield table(named(facts["coordinates"]), {"coordinate": "name", "at the end": "end"}, detail=True)
+    yield table(named(facts["coordinates"]), {"coordinate": "name", "at the end, m or rad": "end"}, detail=True)
     beams = {name: {"loads": each} for name, each in facts.get("beams", {}).items()}
     yield loads_table(beams, "beam")
     yield from stress_table(facts.get("solids", {}), "body")

@@ -119,7 +119,7 @@ class Fit(Figured):
             f"{path} = {value:.6g} ± {error:.2g} {unit}".rstrip()
             for path, value, error, unit in zip(self.parameters, self.values, self.errors, self.units, strict=True)
         ]
-        return self._with_warnings(f"Fit of {len(self.parameters)} values to {self.data}", *rows)
+        return self._with_warnings(f"Fit to {self.data}", *rows)
 
 
 _TIGHT = 1e-3  # of a bound: nearer, it decides

@@ -327,18 +327,17 @@ class SystemResponse(_Placed, Driven, Figured):
 
     def __repr__(self) -> str:
         of = f" {self.name!r}" if self.name else ""
-        far = {name: value for name, value in zip(self.points, self.largest, strict=True)}
-        most = max(far, key=lambda name: far[name])
         unknown = math.isnan(self.error_estimate)
         error = "no error estimate" if unknown else f"estimated error {100 * self.error_estimate:.2g} %"
         lines = [
             f"SystemResponse{of} ({self.environment}): {self.outcome}",
             *([self.message] if self.message else []),
-            f"{most} moves by up to {far[most]:.4g} m in {self.time[0]:.4g} to {self.time[-1]:.4g} s",
+            f"{_most_moved(self, self.largest, 'up to ')} in {self.time[0]:.4g} to {self.time[-1]:.4g} s",
             f"{self.integrator}, {self.steps} steps of {1e3 * self.step:.4g} ms; {error}",
         ]
-        if self.invariants is not None and self.loop is None and not self.effort.any():
-            lines.append(f"energy changes by {self.invariants.energy_change:.2g} of its largest part")
+        if self.invariants is not None:
+            first, last = self.invariants.energy[[0, -1]].sum(axis=1)
+            lines.append(f"energy {first:.4g} J at the start, {last:.4g} J at the end")
         return self._with_warnings(*lines)
 
 
@@ -406,10 +405,9 @@ class SystemRest(_Placed, Figured):
     )  # fmt: skip
 
     def __repr__(self) -> str:
-        size = np.linalg.norm(self.displacement, axis=-1)
-        most = int(size.argmax())
+        moved = _most_moved(self, np.linalg.norm(self.displacement, axis=-1))
         force = ", ".join(f"{each:.4g}" for each in self.ground_force)
-        lines = [f"SystemRest: {self.points[most]} moves by {size[most]:.4g} m", f"force on the ground ({force}) N"]
+        lines = [f"SystemRest: {moved}", f"force on the ground ({force}) N"]
         lines += evenly(self.accelerated)
         total = self.errors.displacement.total
         lines += [f"estimated error {100 * total:.2g} %"] if self.errors.beams and math.isfinite(total) else []
@@ -494,19 +492,28 @@ class SystemModes(Oscillating, Figured):
         return self._with_warnings(*lines)
 
 
-def named(response: SystemResponse) -> Mapping[str, tuple[Floats, str, Floats]]:
+def named(result: SystemResponse | SystemRest) -> Mapping[str, tuple[Floats, str, Floats]]:
     """Histories of the joints' coordinates by name, of balls the rotation vector, each with its unit and the effort."""
-    histories = dict[str, tuple[Floats, str, Floats]]()
-    for k, name in enumerate(response.coordinates):
+    histories, q, effort = dict[str, tuple[Floats, str, Floats]](), *map(np.atleast_2d, (result.q, result.effort))
+    for k, name in enumerate(result.coordinates):
         joint, _, tail = name.rpartition(".")
         if tail == _EULER[0]:
-            turns, efforts = _turned(response.q[:, k : k + 4]), response.effort[:, k + 1 : k + 4]
+            turns, efforts = _turned(q[:, k : k + 4]), effort[:, k + 1 : k + 4]
             for i, axis in enumerate("xyz"):
                 histories[f"{joint}.r{axis}"] = turns[:, i], "rad", efforts[:, i]
         elif tail not in _EULER and not tail.startswith("q"):
             unit = "m" if tail in SLIDES else "rad"
-            histories[name] = response.q[:, k], unit, response.effort[:, k]
+            histories[name] = q[:, k], unit, effort[:, k]
     return histories
+
+
+def _most_moved(result: SystemResponse | SystemRest, sizes: Floats, up: str = "") -> str:
+    """The point that moves furthest and how far, of sizes (p,) m; where none moves, the coordinate that does."""
+    most, coordinates = int(sizes.argmax()), {name: each[:2] for name, each in named(result).items()}
+    if sizes[most] or not coordinates:
+        return f"{result.points[most]} moves by {up}{sizes[most]:.4g} m"
+    name, (history, unit) = max(coordinates.items(), key=lambda each: np.abs(each[1][0]).max())
+    return f"no point moves; {name} reaches {history[np.abs(history).argmax()]:.4g} {unit}"
 
 
 def _turned(e: Floats) -> Floats:
