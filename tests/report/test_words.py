@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from gbeam.report.words import columns, errors_in_words, percent, stress_words, tidy
+from gbeam.report.words import columns, errors_in_words, number, percent, stress_words, tidy
 
 HEADS = ["value", "was", "is", "unit"]
 ROWS = [["beam.material.youngs_modulus", "7e+10", "6.9e+10", "Pa"], ["beam.length", "0.3", "0.31", "m"]]
@@ -44,3 +44,7 @@ def test_rounding_beside_what_is_of_a_larger_scale_is_zero() -> None:
     assert percent(3e-17) == "0 %" and percent(3e-13) == "3.0e-11 %"
     assert errors_in_words({"shapes": 0.01, "model": 3e-18, "total": 0.01}) == "1.0 %"
     assert tidy((1e-18, 1e-12), 1e-12, scale=2.0) == [0.0, 1e-12] and tidy((1e-18,), 1e-18) == [1e-18]
+
+
+def test_a_small_number_of_one_digit_has_no_point() -> None:
+    assert [number(2e-7, 1), number(4.0, 1), number(2e-7)] == ["2e-07", "4", "2.000e-07"]

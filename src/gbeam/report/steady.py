@@ -210,7 +210,7 @@ def state_space(facts: Facts) -> Blocks:
     cells: Columns = {
         "name": "name",
         "unit": lambda each: raised(each["unit"]),
-        "value": lambda each: tidy((each["value"],), sizes[each["unit"]], sizes.get("m", 0.0) or 1.0)[0],
+        "value": lambda each: tidy((each["value"],), sizes[each["unit"]], max(1.0, sizes.get("m", 0.0)))[0],
     }
     for name in signals:
         yield Section(name, (table(facts[name], cells),), titled=True)

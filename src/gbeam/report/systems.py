@@ -58,6 +58,8 @@ def _rest(rest: Facts) -> Blocks:
     cells = {"point": "name", **{f"{axis}, mm": f"displacement.{axis}:.6g" for axis in "xyz"}}
     places = (abs(each) for point in rest["points"].values() for each in point["place"].values())
     yield table(named(rest["points"]), cells, scale=max(places, default=0.0))
+    coordinates: Columns = {"coordinate": "name", "at rest, m or rad": "q", "drive, N or N m": "effort"}
+    yield table(named(rest["coordinates"]), coordinates, detail=True)
     force, moment = ([*rest[key].values()] for key in ("ground_force", "ground_moment"))
     largest = max(map(abs, force + moment))
     pair = (", ".join(f"{each:.5g}" for each in tidy(vector, largest)) for vector in (force, moment))
@@ -65,7 +67,18 @@ def _rest(rest: Facts) -> Blocks:
     yield resting_loads(rest.get("beams", {}), "beam")
     yield from stress_table(rest.get("solids", {}), "body")
     yield from errors_of_system(rest["errors"])
-    yield _others(rest, "points", "time", "ground_force", "ground_moment", "beams", "solids", "errors", "accelerated")
+    yield _others(
+        rest,
+        "points",
+        "coordinates",
+        "time",
+        "ground_force",
+        "ground_moment",
+        "beams",
+        "solids",
+        "errors",
+        "accelerated",
+    )
 
 
 def _others(facts: Facts, *told: str) -> Block:

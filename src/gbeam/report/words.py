@@ -66,7 +66,7 @@ def number(value: float, digits: int = 4) -> str:
     """Write a number with significant digits; a dash where there is none."""
     if not math.isfinite(value):
         return "–"
-    return "0" if value == 0 else f"{value:#.{digits}g}".rstrip(".")
+    return "0" if value == 0 else f"{value:#.{digits}g}".rstrip(".").replace(".e", "e")
 
 
 def percent(share: float) -> str:

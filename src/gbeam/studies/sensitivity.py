@@ -195,7 +195,7 @@ def _possible(
             for share in (-1e-3, 1e-3):
                 inquiry.case(changes_to([each], [each.value * (1 + share) if each.value else share * 1e-3]))
         except GbeamError as error:
-            reason = re.sub(r"^--set [^:]*: ", "", str(error).splitlines()[0])
+            reason = re.sub(rf"^--set [^:]*: |{re.escape(each.path)}:? ", "", str(error).splitlines()[0])
             if strict:
                 problem = f"names {each.path}, which may not be a little less and a little more ({reason})"
                 raise InputError("--with", problem, "leave it out: it has no derivative there") from None
