@@ -315,3 +315,19 @@ def test_page_of_a_study_says_what_it_found(result: Result, said: list[str], dra
     (tmp_path / "result.nc").rename(tmp_path / "kept")
     (tmp_path / "found.json").write_text(as_json(facts(result)))
     assert header_of(report_of_file(tmp_path))["plots"] == []  # JSON holds no histories
+
+
+def test_numbers_of_a_system_have_units_and_rounding_is_zero() -> None:
+    """Of several motions as of one; and a spin across the beam, whose load lies along it, bends it by nothing."""
+    arm = gb.RigidBody(1.0, (0.1, 0.1, 0.1), points={"end": (0.3, 0.0, 0.0)})
+    hinge = gb.Joint("revolute", "arm", axes=[(0, 0, 1)], effort=1.0, stiffness=5.0)
+    system = gb.System({"arm": arm}, {"hinge": hinge})
+    run = gb.simulate(system, duration=0.1, step=0.05)
+    for result in (run, gb.SystemStudy("", {"ground": run})):
+        page = report_of(result)
+        assert "<td>step</td><td>0.05000</td><td>s</td>" in page and ">at the end, m or rad<" in page
+    assert ">at rest, m or rad<" in report_of(gb.static(system))
+    spun = gb.simulate(gb.assemble(BEAM, "FOAM", axial=1, y=1, z=1), gb.Hub(radius=0.5, rate=10.0), duration=0.1)
+    row = report_of(spun).partition("root moment, N m")[2].partition("</tbody>")[0]
+    assert spun.loads is not None and 0 < np.abs(spun.loads.root_moment).max() < 1e-12
+    assert '<td class="number">0</td>' in row

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -38,6 +39,8 @@ def test_every_kind_has_every_output(matrix: dict[str, Any], kind: str, tmp_path
     page = (tmp_path / "x.html").read_text(encoding="utf-8")
     again = report_of_file(tmp_path / "x.nc")
     assert "<table>" in page and f"gbeam {kind}" not in page  # but the verb that answers so
+    shown = re.sub("<script.*?</script>", "", page, flags=re.DOTALL)
+    assert not re.search(r"[a-z]\^[0-9]", shown)  # units as they are printed
     assert again == page or kind == "ModelStudy"  # whose histories no file keeps
     (tmp_path / "x.json").write_text(as_json(known), encoding="utf-8")
     assert "<table>" in report_of_file(tmp_path / "x.json")

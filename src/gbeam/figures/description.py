@@ -17,6 +17,7 @@ from gbeam.results.machine import AxesResult
 from gbeam.results.result import Flags, Floats
 
 REFERENCE, GREY = 6, 7  # numbers of colours: what others are compared with, what was before
+ROUNDING = 1e-9  # of the largest: what is smaller is rounding
 SMALL = 0.01  # of the largest: a smaller component is named and not drawn
 NEAR = 5.0  # times what is used: a limit beyond would press the lines to the ground, and is named only
 _SPAN = 1e-6  # s: shorter is rounding
@@ -157,7 +158,7 @@ def moving(*values: Floats) -> list[int]:
 def not_drawn(shown: Sequence[int], *lengths: Floats) -> tuple[str, ...]:
     """Sizes of those components (of the last axis) of lengths that are not shown."""
     sizes = [max(largest(each[..., i]) for each in lengths) for i in range(3)]
-    hidden = [i for i in range(3) if i not in shown and sizes[i] > 1e-9 * max(sizes)]
+    hidden = [i for i in range(3) if i not in shown and sizes[i] > ROUNDING * max(sizes)]
     units = {i: scale_of("m", sizes[i]) for i in hidden}
     words = [f"{'xyz'[i]} by {scale * sizes[i]:.2g} {unit}" for i, (scale, unit) in units.items()]
     return (f"(not drawn: {' and '.join(words)} at most)",) if words else ()
@@ -166,7 +167,7 @@ def not_drawn(shown: Sequence[int], *lengths: Floats) -> tuple[str, ...]:
 def components(x: Floats, values: Floats, names: Sequence[str], panel: Panel) -> Panel:
     """Put the components (n, 3) that are more than a hundredth of the largest into a panel, and name the others."""
     shown, sizes = moving(values), np.abs(values).max(axis=0)
-    left = [names[i] for i in range(3) if i not in shown and sizes[i] > 1e-9 * sizes.max()]
+    left = [names[i] for i in range(3) if i not in shown and sizes[i] > ROUNDING * sizes.max()]
     lines = tuple(Line(x, values[:, i], names[i], colour=i, dash=_DASHES[i]) for i in shown)
     return replace(panel, lines=lines, title=f"{' and '.join(left)}: below 1 %, not drawn" if left else panel.title)
 

@@ -12,6 +12,7 @@ import numpy as np
 from gbeam.figures.description import (
     FLIGHT,
     REFERENCE,
+    ROUNDING,
     Figure,
     Level,
     Line,
@@ -193,6 +194,8 @@ def _carried(
     names: Names = SECTION,
 ) -> Iterator[Panel]:
     """Forces and moments (k, 3) and, where they are known, the largest and the smallest stress (k,)."""
+    lever = float(np.abs(force).max(initial=0.0) * np.max(carried.stations, initial=0.0))
+    moment = np.where(np.abs(moment) > ROUNDING * lever, moment, 0.0)
     for kind, si, values, each in (("force", "N", force, names[0]), ("moment", "N m", moment, names[1])):
         scale, unit = scale_of(si, values)
         yield components(where, scale * values, each, Panel(f"{kind}, {unit}", zero=True))

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.errors import InputError
-from gbeam.figures.description import GREY, REFERENCE, Area, Bars, Figure, Line, Map, Mark, Panel, scaled
+from gbeam.figures.description import GREY, REFERENCE, Area, Bars, Figure, Line, Map, Mark, Panel, raised, scaled
 from gbeam.results.cases import PROBABILITY, SAMPLE, Parameter, Sensitivity, Sweep
 from gbeam.results.result import Floats
 from gbeam.results.searches import Fit, FittedColumn, Optimum, ShapedCommand
@@ -103,11 +103,11 @@ def _surface(result: Sweep, values: Floats, label: str) -> Panel:
 
 def _value(parameter: Parameter, k: int) -> str:
     value = parameter.values[k]
-    return value if isinstance(value, str) else f"{value:.4g} {parameter.unit}".rstrip()
+    return value if isinstance(value, str) else f"{value:.4g} {raised(parameter.unit)}".rstrip()
 
 
 def _named(parameter: Parameter) -> str:
-    return f"{parameter.path}{f', {parameter.unit}' if parameter.unit else ''}"
+    return f"{parameter.path}{f', {raised(parameter.unit)}' if parameter.unit else ''}"
 
 
 def history(result: Sweep, name: str, title: str = "") -> Figure:
@@ -175,7 +175,7 @@ def _values(result: Fit | Optimum) -> str:
     each = zip(result.parameters, result.values, result.units, strict=True)
     last = isinstance(result, Fit)
     return ", ".join(
-        f"{path.rpartition('.')[2] if last else path.replace('motion.', '', 1)} {value:.4g} {unit}".rstrip()
+        f"{path.rpartition('.')[2] if last else path.replace('motion.', '', 1)} {value:.4g} {raised(unit)}".rstrip()
         for path, value, unit in each
     )
 
@@ -220,7 +220,7 @@ def optimum(result: Optimum, title: str = "") -> Figure:
         Panel(label, (line,), x=over, named=False, height=1.2),
         Panel("between bounds, %", values, x=over, limits=(-3.0, 103.0)),
     )
-    subject = f"{o.minimise} from {o.figure_before:.4g} to {o.figure:.4g} {o.unit}".rstrip()
+    subject = f"{o.minimise} from {o.figure_before:.4g} to {o.figure:.4g} {raised(o.unit)}".rstrip()
     return Figure(title or o.title, subject, panels, (_values(o),), (o.outcome,))
 
 
@@ -229,17 +229,17 @@ def sensitivity(result: Sensitivity, name: str, title: str = "") -> Figure:
     s, k, chosen = result, result.measures.index(name), result.ranked(name)[:_BARS]
     size = float(s.figures[k])
     left_out = len(s.parameters) - len(chosen)
-    subject = f"{name} = {size:.4g} {s.units[k]}".rstrip()
+    subject = f"{name} = {size:.4g} {raised(s.units[k])}".rstrip()
     subject += f" ({left_out} values that matter less are left out)" if left_out else ""
     change = 0.01 * s.derivatives[k, chosen] * s.values[chosen]
     share = bool(s.units[k]) and size != 0  # a figure without a unit is a ratio, and its change one too
     change = 100 * change / abs(size) if share else change
     names = tuple(
-        f"{s.parameters[j].replace('motion.', '', 1)} = {s.values[j]:.4g} {s.parameter_units[j]}".rstrip()
+        f"{s.parameters[j].replace('motion.', '', 1)} = {s.values[j]:.4g} {raised(s.parameter_units[j])}".rstrip()
         for j in chosen
     )
     bars = Bars(names, {"value + 1 %": change, "value \N{MINUS SIGN} 1 %": -change})
-    label = f"change of {name}, {'%' if share else s.units[k]}".rstrip(", ")
+    label = f"change of {name}, {'%' if share else raised(s.units[k])}".rstrip(", ")
     panel = Panel("", x=label, bars=bars, height=max(1.0, _HEIGHT * len(chosen) + 0.3))
     return Figure(title or s.title, subject, (panel,))
 
@@ -255,7 +255,7 @@ def shaping(command: ShapedCommand, title: str = "") -> Figure:
         for k, run in enumerate(c.runs)
     )
     marks = (Mark(c.duration, "end of the command"),)
-    panels = (Panel(f"{c.kind}, {c.unit}", commands), Panel(label, tips, marks=marks, height=1.3))
+    panels = (Panel(f"{c.kind}, {raised(c.unit)}", commands), Panel(label, tips, marks=marks, height=1.3))
     return Figure(title, _subject(c), panels)
 
 

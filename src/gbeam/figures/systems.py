@@ -8,6 +8,7 @@ from gbeam.constants import SLIDES
 from gbeam.figures.description import (
     FLIGHT,
     REFERENCE,
+    ROUNDING,
     Bars,
     Dash,
     Figure,
@@ -29,7 +30,6 @@ from gbeam.results.system import ENERGIES, SystemModes, SystemResponse, SystemRe
 
 COLOURS = 6
 DASHES: tuple[Dash, ...] = ("solid", "dashed", "dotted")
-SAME = 1e-9  # of the largest displacement: what is smaller is rounding
 
 
 def points(response: SystemResponse, title: str = "") -> Figure:
@@ -65,7 +65,7 @@ def _moving(moved: np.ndarray) -> list[int]:
     size, chosen = np.abs(moved).max(initial=0.0), list[int]()
     for k in range(moved.shape[1]):
         apart = [np.abs(moved[:, k] - moved[:, other]).max(initial=0.0) for other in chosen]
-        if np.abs(moved[:, k]).max(initial=0.0) > SAME * size and min(apart, default=np.inf) > SAME * size:
+        if np.abs(moved[:, k]).max(initial=0.0) > ROUNDING * size and min(apart, default=np.inf) > ROUNDING * size:
             chosen.append(k)
     return chosen
 
@@ -75,7 +75,7 @@ def coordinates(response: SystemResponse, title: str = "") -> Figure:
     panels, every = [], named(response)
     size = max((np.abs(history).max(initial=0.0) for history, *_ in every.values()), default=0.0)
     for name, (history, unit, effort) in every.items():
-        if 0 < np.abs(history).max(initial=0.0) <= SAME * size:  # rounding
+        if 0 < np.abs(history).max(initial=0.0) <= ROUNDING * size:  # rounding
             continue
         panels.append(Panel(f"{name}, {unit}", (Line(response.time, history),)))
         if np.any(effort):

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from gbeam.figures.description import raised
 from gbeam.report.blocks import (
     FIGURES,
     Block,
@@ -35,7 +36,11 @@ def sweep(facts: Facts) -> Blocks:
     few = not facts["statistics"] and outcomes.size <= _FEW
     yield table(
         facts["parameters"],
-        {"varies": "path", "unit": "unit", "values": lambda each: each["distribution"] or _ends(each["values"])},
+        {
+            "varies": "path",
+            "unit": lambda each: raised(each["unit"]),
+            "values": lambda each: each["distribution"] or _ends(each["values"]),
+        },
         f"figures of gbeam {facts['verb']}",
         detail=True,
     )
@@ -66,7 +71,7 @@ def _ended(facts: Facts, outcomes: Any) -> Blocks:
 
 
 def _titled(name: str, unit: str) -> str:
-    return f"{name}, {unit}" if unit else name
+    return f"{name}, {raised(unit)}" if unit else name
 
 
 def _ends(values: list[Any]) -> str:

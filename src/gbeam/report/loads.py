@@ -50,7 +50,7 @@ def loads_table(motions: Facts, of: str = "motion") -> Block:
         of: "name",
         "root force, N": "root_force.size.max_abs",
         "at, s": "root_force.size.time_of_max",
-        "root moment, N m": "root_moment.size.max_abs",
+        "root moment, N m": _root_moment,
         "at, s ": "root_moment.size.time_of_max",
         "stress, MPa": "stress.max",
         "at, s  ": "stress.time_of_max",
@@ -59,6 +59,13 @@ def loads_table(motions: Facts, of: str = "motion") -> Block:
     stressed = any(known(each.get("stress", {}).get("max")) > 0 for each in rows)  # of extreme fibres
     caption = f"Largest loads of the root{', and stress anywhere' if stressed else ''}"
     return table(rows, cells, caption, optional=tuple(cells)[5:], detail=True)
+
+
+def _root_moment(loads: Facts) -> float | None:
+    """Largest moment of the root; zero where it is rounding beside the force's on the length."""
+    force, moment = (known(loads[key]["size"]["max_abs"]) for key in ("root_force", "root_moment"))
+    size = max(moment, force * known(loads["sections"][-1]["at"]))
+    return tidy((moment,), size)[0] if math.isfinite(moment) else None
 
 
 def margin(value: float | None) -> Cell:

@@ -148,7 +148,8 @@ def machine_plan(facts: Facts) -> Blocks:
     """Use of every limit, how well the load is followed, and the verdict on it, of every machine."""
     for name, each in facts["motions"].items():
         state = each.get("state", each["outcome"])  # files of 0.2 have none
-        title = f"{name} ({each['arm']:g} m, tracks {each['tracks']}): {state}"
+        tracks = f", tracks {each['tracks']}" if each["tracks"] else ""
+        title = f"{name} ({each['arm']:g} m{tracks}): {state}"
         yield Section(title, tuple(_planned(each)), titled=True, tone="good" if state in GOOD else "bad")
         yield from verdict(each, (each["tracks"] or "flight", name))
         yield said(each)

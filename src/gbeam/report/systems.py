@@ -49,7 +49,8 @@ def system_rest(facts: Facts) -> Blocks:
     """Displacements of the points at rest, and the loads of the ground and of every beam."""
     yield Section("View", (Place("viewer"),))
     for name, each in facts["motions"].items():
-        yield Section(f"motion {name} at {each['time']:.4g} s", tuple(_rest(each)), titled=True)
+        of_motion = _rest({**each, "units": _units(facts)})
+        yield Section(f"motion {name} at {each['time']:.4g} s", tuple(of_motion), titled=True)
     yield Section("Figures", (FIGURES,))
 
 
@@ -81,6 +82,11 @@ def _rest(rest: Facts) -> Blocks:
     )
 
 
+def _units(facts: Facts) -> dict[str, str]:
+    """Units of the quantities of one motion, by their paths in it."""
+    return {path.removeprefix("motions.*."): unit for path, unit in facts.get("units", {}).items()}
+
+
 def _others(facts: Facts, *told: str) -> Block:
     """The quantities that are not told, for a page."""
     return Section("", tuple(quantities({key: value for key, value in facts.items() if key not in told})), detail=True)
@@ -107,7 +113,7 @@ def system_study(facts: Facts) -> Blocks:
     yield Section("Histories", (Place("figures", HINT),))
     for name, each in facts["motions"].items():
         if "points" in each:
-            yield Section(f"motion {name}", tuple(_of_points(each)), titled=True)
+            yield Section(f"motion {name}", tuple(_of_points({**each, "units": _units(facts)})), titled=True)
     yield from in_words_of(facts)
 
 
