@@ -13,16 +13,18 @@ TORQUE = Drive(duration=10.0, end=20.0, torque=200.0, mass=0.5)
 
 @dataclass(frozen=True)
 class Choice:
-    """Settings of gbeam: numbers of axial and bending shapes, which, scheme, step, s."""
+    """Settings of gbeam: numbers of axial and bending shapes, which, scheme, step, s, and if steps are compiled."""
 
     axial: int
     bending: int
     shapes: str
     integrator: str
     step: float
+    compiled: bool = False
 
     def __str__(self) -> str:
-        return f"{self.axial}+{self.bending} shapes, {self.shapes}, {self.integrator}, step {self.step:g} s"
+        how = ", compiled" if self.compiled else ""
+        return f"{self.axial}+{self.bending} shapes, {self.shapes}, {self.integrator}, step {self.step:g} s{how}"
 
 
 @dataclass(frozen=True)

@@ -125,9 +125,7 @@ class Carry(NamedTuple):
 def _stage_residual(residual: Any, t: Tableau, z: Array, inputs: Any, x: Array) -> Array:
     """Residuals of all stages, (s, n)."""
     q, qd = t.w_q @ z + t.c_q @ x, t.w_v @ z + t.c_v @ x
-    if len(t.c_q) == 1:
-        return residual(q[0], qd[0], x[0], jax.tree.map(lambda leaf: leaf[0], inputs))[None]
-    return jax.vmap(residual)(q, qd, x, inputs)
+    return jax.lax.map(lambda stage: residual(*stage), (q, qd, x, inputs))
 
 
 def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> tuple[Array, Array, Array]:
