@@ -248,6 +248,60 @@ def test_a_moment_that_changes_with_the_angle_is_refused(joint: str) -> None:
                 gb.static(system)
 
 
+PANEL, OFFSET, HUB = 1.0, 0.2, 2.0  # m, m, kg m²
+
+
+def slewed(kind: str, gravity: tuple[float, float, float] | None = None, **more: object) -> gb.System:
+    """A panel on a hub that a torque of 1 N m turns about an axis which stays."""
+    strip = gb.Beam(PANEL, gb.Section.rectangle(0.05, 0.002), gb.Material(DENSITY, MODULUS), damping_ratio=0.0)
+    bodies = {"hub": gb.RigidBody(10.0, (1.0, HUB, 1.0)), "panel": gb.assemble(strip, kind, axial=1, y=0, z=3)}
+    pin = gb.Joint("revolute", "hub", axes=[(0, -1, 0)], effort=1.0, **more)  # type: ignore[arg-type]
+    clamp = gb.Joint("fixed", "panel", "hub.root", at=(OFFSET, 0, 0))
+    return gb.System(bodies, {"pin": pin, "clamp": clamp}, gravity=gravity)
+
+
+@pytest.mark.parametrize("gravity", [None, (0.0, -9.81, 0.0)])
+@pytest.mark.parametrize("kind", ["FOAM", "exact"])
+def test_a_hub_that_begins_to_turn_bends_its_panel(kind: str, gravity: tuple[float, float, float] | None) -> None:
+    """α = M/J, and the tip stays behind by μ α (11 L⁵/120 + r L⁴/8)/EI; what is left of K is that of a free hub."""
+    bending, linear = MODULUS * 0.05 * 0.002**3 / 12, DENSITY * 0.05 * 0.002
+    alpha = 1.0 / (HUB + linear * PANEL * (PANEL**2 / 3 + OFFSET * PANEL + OFFSET**2))
+    rest = gb.static(slewed(kind, gravity))
+    (faster,) = rest.accelerated
+    assert faster.coordinate == "pin.angle" and faster.angular_acceleration == pytest.approx(alpha, rel=1e-3)
+    sag = linear * alpha * (11 * PANEL**5 / 120 + OFFSET * PANEL**4 / 8) / bending
+    assert rest.at("panel.tip")[2] == pytest.approx(-sag, rel=2e-3)
+    assert any("pin begins to turn ever faster: 1 N m about its axis" in each for each in rest.warnings)
+    moving = gb.modes(slewed(kind, gravity), errors=False)
+    assert moving.rigid == 1 and moving.stable
+    free = gb.modes(gb.System(slewed(kind).bodies, {**slewed(kind).joints, "pin": FREE_PIN}), errors=False)
+    assert moving.frequency[:2] == pytest.approx(free.frequency[:2], rel=1e-3)
+    run = gb.simulate(slewed(kind, gravity), duration=1e-3, step=1e-3, initial="equilibrium")
+    elastic = [k for k, name in enumerate(run.coordinates) if name.startswith("panel.q")]
+    np.testing.assert_allclose(run.q[0, elastic], rest.q[elastic], atol=1e-8)
+
+
+FREE_PIN = gb.Joint("revolute", "hub", axes=[(0, -1, 0)])
+
+
+@pytest.mark.parametrize("by", [{"gravity": (0, 0, -9.81)}, {"forces": {"push": gb.PointForce("b.end", (0, 0, 1.0))}}])
+def test_a_pendulum_is_not_turned_ever_faster(by: dict[str, object]) -> None:
+    """Level, where its moment is largest and K none."""
+    body = gb.RigidBody(1.0, (0.01, 0.02, 0.02), centre=(0.3, 0, 0), points={"end": (0.5, 0, 0)})
+    pin = gb.Joint("revolute", "b", axes=[(0, 1, 0)])
+    with pytest.raises(gb.ComputationError, match=r"pin\.angle is accelerated by \S+ N m, which nothing holds"):
+        gb.static(gb.System({"b": body}, {"pin": pin}, **by))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    "more",
+    [{"damping": 1.0}, {"friction": 0.1}, {"stops": (-1.0, 1.0), "stop_stiffness": 1e5}],
+)
+def test_a_hub_that_does_not_go_on_turning_faster_is_refused(more: dict[str, object]) -> None:
+    with pytest.raises(gb.ComputationError, match=r"pin\.angle is accelerated by 1 N m, which nothing holds"):
+        gb.static(slewed("FOAM", **more))
+
+
 def carts(**more: object) -> gb.System:
     rail = gb.Joint("prismatic", "front", axes=[(1, 0, 0)], effort=6.0, **more)  # type: ignore[arg-type]
     coupling = gb.Joint("prismatic", "back", on="front.root", axes=[(1, 0, 0)], stiffness=50.0)

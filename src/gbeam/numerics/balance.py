@@ -18,15 +18,19 @@ def loose(stiffness: Floats, velocity: Floats) -> NDArray[np.bool_]:
 
 
 def turning_on(k: Floats, mass: Floats, faster: Floats, which: NDArray[np.bool_], turn: NDArray[np.bool_]) -> bool:
-    """True if a rotation, by its three flags, changes nothing but accelerations `faster` (n,) of coordinates `which`,
-    and its own as they turn on with it; where these are in balance, by K and M (n, n).
+    """True if a rotation, by its one or three flags, changes nothing but accelerations `faster` (n,) of coordinates
+    `which`, and its own as they turn on with it; where these are in balance, by K and M (n, n).
     """
     (held,) = carried(mass, which, k)
-    size = np.abs(k) + np.abs(k - held)
-    alpha = faster[turn]
-    moved = pulled(k, mass, which)[turn][:, turn] + np.cross(alpha, np.eye(3)).T
+    size = np.abs(k) + np.abs(k - held) + np.abs(mass)
+    moved = pulled(k, mass, which)[turn][:, turn] + following(faster[turn])
     alone = np.abs(held[:, turn]).max() <= SAME * size[:, turn].max()
-    return bool(alone and np.abs(moved).max() <= SAME * (1.0 + np.abs(alpha).max()))
+    return bool(alone and np.abs(moved).max() <= SAME * (1.0 + np.abs(faster[turn]).max()))
+
+
+def following(alpha: Floats) -> Floats:
+    """Derivative of an angular acceleration (1,) or (3,), axes of a body, as it turns on: none about a fixed axis."""
+    return np.cross(alpha, np.eye(3)).T if len(alpha) == 3 else np.zeros((1, 1))
 
 
 def carried(mass: Floats, which: NDArray[np.bool_], *forces: Floats) -> tuple[Floats, ...]:

@@ -18,7 +18,7 @@ from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.signals import local_names
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.balance import answered, balanced, carried, loose, pulled, rooted, turning_on, unheld
+from gbeam.numerics.balance import SAME, answered, balanced, carried, loose, pulled, rooted, turning_on, unheld
 
 Array = Any
 Floats = NDArray[np.float64]
@@ -151,12 +151,20 @@ def started_traced(system: System, motion: Motion | None, time: float, initial: 
     return y + elastic * root(left, jnp.zeros(len(free))), yd
 
 
+def _alike(point: Point, left: Floats, k: Floats, mass: Floats, turn: NDArray[np.bool_]) -> bool:
+    """True if equations are the same at all angles of a hinge, by the residual and its columns of K and M (n, 1)."""
+    elsewhere = point.tree(point.y + turn, point.yd, point.ydd, point.inputs)
+    changed = max(np.abs(k).max(), np.abs(elsewhere - left).max())
+    return bool(changed <= SAME * (np.abs(mass).max() + np.abs(left).max()))
+
+
 def adrift(point: Point, left: Floats, slope: Sequence[Floats]) -> NDArray[np.bool_]:
     """Flags of the coordinates that are accelerated at rest, by the residual, K, C and M there: slides from the ground
-    on, and balls after them with which all turns on.
+    on, and balls and hinges after them with which all turns on.
     """
-    tree, turning, (k, c, m) = point.tree, point.tree.turning, slope
+    tree, (k, c, m) = point.tree, slope
     which = np.asarray(tree.sliding & loose(k, c))
+    turning = [turn for turn in tree.turning if turn.sum() > 1 or _alike(point, left, k[:, turn], m[:, turn], turn)]
     if not turning:
         return which
     every = np.any([which, *turning], axis=0)

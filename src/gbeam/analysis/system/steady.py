@@ -23,7 +23,7 @@ from gbeam.mechanics.tree.steps import turned_on
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.bases.hub import Hub
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.balance import balanced, carried
+from gbeam.numerics.balance import balanced, carried, following
 from gbeam.numerics.eigen import (
     RIGID,
     Linear,
@@ -153,7 +153,7 @@ class SteadySystem(Steady):
         if self.point.yd.any():
             return ()
         said, tree, names = [], self.local.tree, self.names
-        turns = [each for each in tree.turning if self.follows[each].any()]
+        turns = [each for each in tree.turning if self.local.ydd[each].any() and self.adrift[each].all()]
         mass = self.local.slopes()[3] if turns else np.zeros((0, 0))
         for turn in turns:
             alpha, slides = self.local.ydd[turn], tree.sliding & self.adrift
@@ -161,7 +161,7 @@ class SteadySystem(Steady):
             size, rate = np.linalg.norm(moment), np.linalg.norm(alpha)
             about = ", ".join(f"{each + 0.0:.3g}" for each in np.round(moment / size, 3))
             joint = names[int(np.flatnonzero(turn)[0])].rpartition(".")[0]
-            where = f"({about}) of {self.system.joints[joint].body}.root"
+            where = f"({about}) of {self.system.joints[joint].body}.root" if len(moment) == 3 else "its axis"
             said.append(
                 f"{joint} begins to turn ever faster: {size:.4g} N m about {where} accelerate it by {rate:.4g} rad/s², "
                 f"and this is the state at that instant, which lasts while it has hardly turned: by 1° in "
@@ -202,7 +202,7 @@ class SteadySystem(Steady):
         by = np.zeros((len(self.local.y), len(self.local.y)))
         for turn in self.local.tree.turning if not self.point.yd.any() else ():
             if self.local.ydd[turn].any() and self.adrift[turn].all():
-                by[np.ix_(turn, turn)] = np.cross(self.local.ydd[turn], np.eye(3)).T
+                by[np.ix_(turn, turn)] = following(self.local.ydd[turn])
         return by
 
     @property

@@ -13,7 +13,7 @@ from gbeam.arrays.namespace import concatenated, namespace
 from gbeam.arrays.tree import record, static
 from gbeam.mechanics.tree.bodies import Acting, Body
 from gbeam.mechanics.tree.frames import Frame, Wrench, cross, turned, turned_back
-from gbeam.mechanics.tree.steps import Ball, Placed, Slide, Step, Turning
+from gbeam.mechanics.tree.steps import Ball, Placed, Rotation, Slide, Step, Turning
 
 Array = Any
 
@@ -41,6 +41,11 @@ class Holder:
     def bends(self) -> bool:
         """True if a force bends within less than a step, as friction does near rest and a stop where it is met."""
         return bool((self.friction > 0).any() or (self.stop > 0).any())
+
+    @property
+    def holds(self) -> bool:
+        """True if there is any force."""
+        return any((each != 0).any() for each in (self.stiffness, self.damping, self.friction, self.stop))
 
     def forces(self, values: Array, rates: Array) -> tuple[Array, Array]:
         """Forces (..., h) that hold the values, and those that hold the rates."""
@@ -215,12 +220,15 @@ class Tree:
 
     @property
     def turning(self) -> list[Array]:
-        """Flags of the unknown coordinates of each ball that follows such slides, or the ground, and meets no stop."""
+        """Flags of the unknown coordinates of each ball that follows such slides, or the ground, and meets no stop, and
+        of each hinge that does and that nothing holds.
+        """
         flags, straight, first = list[Array](), {-1: True}, 0
         for body, link in enumerate(self.links):
             even = straight[link.parent]
             for step in link.steps:
-                if even and isinstance(step, Ball | Turning) and not link.holder.stop.any():
+                hinge = isinstance(step, Rotation) and step.size == 1 and not link.holder.holds
+                if even and (hinge or (isinstance(step, Ball | Turning) and not link.holder.stop.any())):
                     flags.append((first <= self.free) & (self.free < first + step.size))
                 even, first = even and isinstance(step, Slide | Placed), first + step.size
             straight[body], first = even and not link.body.size, first + link.body.size
