@@ -121,6 +121,16 @@ def test_page_of_a_file_is_that_of_the_result(study: Study, tmp_path: Path) -> N
     assert report_of_file(tmp_path) == report_of(study)
 
 
+def test_page_of_a_file_has_what_sensors_read(tmp_path: Path) -> None:
+    short = ["response.duration=2 s", "response.residual_from=1 s", "sensors.tip.damping_ratio=0.7"]
+    study = gb.study(gb.read_scenario("examples/zhang2020_example1.toml", short))
+    study.save(tmp_path / "result.nc")
+    page = report_of_file(tmp_path)
+    assert page == report_of(study)
+    read = [each for each in header_of(page)["plots"] if "readings of the accelerometers" in each["title"]]  # type: ignore[attr-defined]
+    assert len(read) == 2 and all(each["series"] for each in read)
+
+
 def test_page_of_json_is_that_of_the_result(tmp_path: Path) -> None:
     modes = gb.modes(gb.assemble(BEAM, "FOAM", z=3))
     answer = facts(modes)

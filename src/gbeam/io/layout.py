@@ -103,6 +103,18 @@ _NUMBERED = {
 }
 
 
+def name_of(key: str, each: Declaration, pattern: str) -> str:
+    """Name of a field in files, of a record whose names have a pattern."""
+    before, _, after = pattern.partition("*")
+    return before.rstrip("_") if each.name == INSIDE else f"{before}{each.name or key}{after}".rpartition("/")[2]
+
+
+def pattern_of(each: Declaration, pattern: str) -> str:
+    """Pattern of the names of a part in files."""
+    assert each.name is not None
+    return pattern.replace("*", each.name if "*" in each.name else f"{each.name.removesuffix(INSIDE)}*")
+
+
 def group_of(record: Any, over: tuple[str, ...] = (), pattern: str = "*", unit: str = "") -> Group:
     """Return what a file holds of a record: variables, with the coordinates of their dimensions, and attributes.
 
@@ -116,11 +128,10 @@ def group_of(record: Any, over: tuple[str, ...] = (), pattern: str = "*", unit: 
             continue
         if each.optional and unknown(value):
             continue
-        before, _, after = pattern.partition("*")
-        name = before.rstrip("_") if each.name == INSIDE else f"{before}{each.name or key}{after}".rpartition("/")[2]
+        name, after = name_of(key, each, pattern), pattern.partition("*")[2]
         dims = tuple(dim + after.lstrip("_") if dim.endswith("_") else dim for dim in (*over, *each.dims))
         si = unit if each.unit is BESIDE and unit else each.unit(record) if callable(each.unit) else str(each.unit)
-        within = pattern.replace("*", each.name if "*" in each.name else f"{each.name.removesuffix(INSIDE)}*")
+        within = pattern_of(each, pattern)
         if each.role == "part":
             inner = group_of(value, dims, within, si or unit)
             _merge(group, Group(known(inner.variables), inner.coordinates, inner.attrs))

@@ -18,9 +18,10 @@ from gbeam.report import blocks_of, warnings_of
 from gbeam.report.blocks import Blocks, Section, Sentence, Verbatim, pairs
 from gbeam.report.facts import facts_text
 from gbeam.report.page.parts import Numbers, badge, drawn, drawn_blocks, escaped, heading
-from gbeam.report.page.records import figures_in, modes_in
+from gbeam.report.page.records import figures_in, read
 from gbeam.report.page.scene import scene, shapes, shapes_of_system
 from gbeam.report.words import as_json
+from gbeam.results.modal import Modes
 from gbeam.results.result import Result
 
 
@@ -101,7 +102,7 @@ def viewer(
 ) -> dict[str, dict[str, Any]]:
     """Return the modes or the scene that the viewer shows of a result, by its JSON and variables; nothing of others."""
     if kind == "Modes" and facts["modes"]:
-        return {"modes": shapes(modes_in(facts), variables, numbers)}
+        return {"modes": shapes(read(Modes, facts), variables, numbers)}
     if kind == "SystemModes" and facts["modes"] and "hangs_on" in variables:
         return {"modes": shapes_of_system(facts, variables, numbers)}
     motions = facts["motions"] if kind in ("Study", "SystemStudy") else {}
