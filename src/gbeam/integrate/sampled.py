@@ -59,6 +59,21 @@ class Controllers(Protocol):
         ...
 
 
+class Uncontrolled:
+    """No controllers, where some may be."""
+
+    timing: tuple[()] = ()
+    drives: tuple[()] = ()
+
+    def laws(self, times: Any) -> list[Any]:
+        """No laws."""
+        return []
+
+    def driven(self, inputs: Any, held: Array) -> Any:
+        """The inputs themselves."""
+        return inputs
+
+
 class Sampling:
     """Samples of controllers, taken at the beginnings of steps, and the commands `held` in every step (t, m): the
     last ones where no sample is known yet. A sample is its measurements, its command as asked and as limited, and the
@@ -67,7 +82,7 @@ class Sampling:
 
     def __init__(self, controllers: Controllers, residual: Any, drive: Any, steps: Steps) -> None:
         self.controllers, self.residual, self.drive, self.steps = controllers, residual, drive, steps
-        self.held = np.zeros((len(steps), max(part.stop for part in controllers.drives)))
+        self.held = np.zeros((len(steps), max((part.stop for part in controllers.drives), default=0)))
         start, begun = steps.begin[0], steps.begin + NEAR * steps.length
         self.taken, self.since = [], []
         for period, delay in controllers.timing:

@@ -21,7 +21,7 @@ import numpy as np
 import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.arrays.tree import each_leaf
 from gbeam.integrate.equations import Demanded, Fitted, NonlinearEquations, exact, slopes
-from gbeam.integrate.sampled import Sampling
+from gbeam.integrate.sampled import Sampling, Uncontrolled
 from gbeam.integrate.schemes import Scheme, stepped
 from gbeam.integrate.steps import Steps
 from gbeam.integrate.traced_loop import Samples, TracedLoop
@@ -33,9 +33,8 @@ Array = Any
 def traced(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, steps: Steps) -> tuple[Array, ...]:
     """q, q̇, q̈ (t + 1, n) at the beginning and the ends of steps; NaN from one that fails on, as their derivatives."""
     ends = [] if scheme.ends else [steps.end]
-    loop = None if equations.controllers is None else TracedLoop(equations.controllers, steps)
-    sampled = [] if loop is None else [steps.begin]
-    times = np.concatenate([steps.first[:1], *(steps.times(offset) for offset in scheme.offsets), *ends, *sampled])
+    loop = TracedLoop(equations.controllers or Uncontrolled(), steps)
+    times = np.concatenate([steps.first[:1], *(steps.times(offset) for offset in scheme.offsets), *ends, steps.begin])
     steps = replace(steps, kept=np.ones(len(steps), dtype=bool))
     shape = (len(steps) + 1, len(q))
 
@@ -50,8 +49,7 @@ def traced(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, s
             return each_leaf(lambda leaf: leaf[at], driven)
 
         of, out, done = NonlinearEquations(residual, drive), np.full((3, *shape), np.nan), 0
-        if loop is not None:
-            laws = loop.laws_of(inputs)
+        if laws := loop.laws_of(inputs):
             of = replace(of, controllers=loop.controllers.of(exact(residual), laws), samplings=[])
         with np.errstate(all="ignore"):  # of what is no number
             for *piece, _ in windows(of, scheme, q, qd, steps):
@@ -59,27 +57,23 @@ def traced(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, s
                 done += len(piece[0])
             if not scheme.ends:
                 out[2, :done] = Demanded(of, steps, *out[:2])(np.arange(done))
-        return tuple(out), [] if loop is None else loop.recorded(of.samplings[-1], inputs)
+        return tuple(out), loop.recorded(of.samplings[-1], inputs) if laws else []
 
     @jax.custom_jvp
     def run(residual: Any, q: Array, qd: Array, driven: Any, inputs: Any) -> Any:
-        result = (jax.ShapeDtypeStruct(shape, float),) * 3, [] if loop is None else loop.shapes
+        result = (jax.ShapeDtypeStruct(shape, float),) * 3, loop.shapes
         return jax.pure_callback(solved, result, residual, q, qd, driven, inputs, vmap_method="sequential")
 
     @run.defjvp
     def _(primals: Any, tangents: Any) -> Any:
-        every, (residual, _, _, driven, inputs), (changed, dq, dqd, redriven, by_inputs) = (
-            run(*primals),
-            primals,
-            tangents,
-        )
-        in_loop = None if loop is None else (loop, inputs, by_inputs)
+        (residual, _, _, driven, inputs), (changed, dq, dqd, redriven, by_inputs) = primals, tangents
+        every, in_loop = run(*primals), (loop, inputs, by_inputs)
         return every, _changes(scheme, steps, every, (residual, driven), (changed, redriven), dq, dqd, in_loop)
 
-    inputs = [] if loop is None else jax.tree.map(lambda leaf: jnp.asarray(leaf, dtype=float), loop.inputs)
+    inputs = jax.tree.map(lambda leaf: jnp.asarray(leaf, dtype=float), loop.inputs)
     start = jnp.asarray(q, dtype=float), jnp.asarray(qd, dtype=float)
     histories, samples = run(of_steps, *start, equations.drive(times), inputs)
-    if loop is not None:
+    if loop.laws:
         loop.values = samples
         equations.samplings.append(loop)
     return tuple(histories)
@@ -91,7 +85,7 @@ def _changes(
     """Derivatives of a run's q, q̇, q̈ and samples along changes of its residual and drives, of q, q̇ at the start, and of
     the laws of its controllers.
     """
-    (run, samples), t = results, scheme.tableau(steps.length)
+    (run, samples), (loop, *laws), t = results, in_loop, scheme.tableau(steps.length)
     q, qd, qdd = run
     count, n, stages, first = len(steps), q.shape[1], len(scheme.offsets), scheme.tableau(steps.length[0]).first
     x: Array
@@ -112,24 +106,15 @@ def _changes(
         [jax.tree.map(lambda leaf, some=some: leaf[some], each) for each in (of[1], changed[1])]
         for some in (slice(len(states[0])), slice(len(states[0]), None))
     )
-    commands = jnp.zeros((len(states[0]), 0))
-    if in_loop is not None:
-        loop, inputs, by_inputs = in_loop
-        held = loop.held(samples)
-        commands = jnp.concatenate([0 * held[:1], *[held] * (stages + 1)])
-        follow = loop.changes((of[0], begun[0]), (changed[0], begun[1]), run, inputs, by_inputs, samples)
-
-    def driven_by(driven: Any, commands: Array) -> Any:
-        return driven if in_loop is None else in_loop[0].controllers.driven(driven, commands)
+    held, driven_by = loop.held(samples), loop.controllers.driven
+    commands = jnp.concatenate([0 * held[:1], *[held] * ((len(states[0]) - 1) // count)])
+    follow = loop.changes((of[0], begun[0]), (changed[0], begun[1]), run, *laws, samples)
 
     def host(*arguments: Any) -> Any:
         (q, qd, qdd), residual, driven, commands = jax.tree.map(np.asarray, arguments)
         inputs = driven_by(driven, commands)
         with np.errstate(all="ignore"):
-            onto = np.zeros((*q.shape, 0))
-            if in_loop is not None:
-                sampling = Sampling(in_loop[0].controllers, residual, None, steps)
-                onto = sampling.onto(q, qd, qdd, inputs)
+            onto = Sampling(loop.controllers, residual, None, steps).onto(q, qd, qdd, inputs)
             return (*slopes(residual, q, qd, qdd, inputs), onto)
 
     square = (jax.ShapeDtypeStruct((len(states[0]), n, n), float),) * 3
@@ -154,26 +139,22 @@ def _changes(
 
     jacobian, by_z = t.jacobians(*map(by_stage, slope))
     inverse = jnp.linalg.inv(jacobian)
-    idle = jnp.zeros(commands.shape[1])
 
     def step(carried: Any, at: Any) -> Any:
         dz, law = carried
         inverse, by_z, by_command, direct, g, d, sampled = at
-        du, taken = idle, []
-        if in_loop is not None:
-            law, du, taken = follow.step(law, dz, sampled)
+        law, du, taken = follow.step(law, dz, sampled)
         change = direct.ravel() + by_z @ dz.ravel() + (by_command @ du).ravel()
         dx = -(inverse @ change).reshape(stages, n)
         return (g @ dz + d @ dx, law), (dz, dx, du, taken)
 
-    dqdd = accelerated(slice(0, 1), dq[None], dqd[None], idle[None])
-    begin = first @ jnp.stack([dq, dqd, dqdd[0]]), None if in_loop is None else follow.begin
-    by_step = inverse, by_z, by_stage(onto), by_stage(direct), t.g, t.d, None if in_loop is None else follow.by_step
+    dqdd = accelerated(slice(0, 1), dq[None], dqd[None], jnp.zeros((1, commands.shape[1])))
+    begin = first @ jnp.stack([dq, dqd, dqdd[0]]), follow.begin
+    by_step = inverse, by_z, by_stage(onto), by_stage(direct), t.g, t.d, follow.by_step
     _, (dz, dx, du, taken) = jax.lax.scan(step, begin, by_step)
     ends = t.end_z @ dz + t.end_x @ dx
     changes = ends[:, 0], ends[:, 1]
     at_ends = dx[:, -1] if scheme.ends else accelerated(slice(-count, None), *changes, du)
     before = dq[None], dqd[None], dqdd
     histories = tuple(jnp.concatenate(pair) for pair in zip(before, (*changes, at_ends), strict=True))
-    at = [] if in_loop is None else follow.at
-    return histories, [Samples(*(part[k] for part in each)) for each, k in zip(taken, at, strict=True)]
+    return histories, [Samples(*(part[k] for part in each)) for each, k in zip(taken, follow.at, strict=True)]

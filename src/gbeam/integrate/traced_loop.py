@@ -114,7 +114,7 @@ class TracedLoop:
             jnp.where(active[:, None] >= 0, each.limited[np.maximum(active, 0)], 0.0)
             for active, each in zip(self.active, samples, strict=True)
         ]
-        return jnp.concatenate(parts, axis=1)
+        return jnp.concatenate([jnp.zeros((len(self.steps), 0)), *parts], axis=1)
 
     def changes(self, of: Any, changed: Any, run: Any, inputs: Any, by_inputs: Any, samples: list[Samples]) -> _Changes:
         """Changes of the samples along a run with those of residual and drives where steps begin, and of laws."""
@@ -205,5 +205,5 @@ class _Changes:
             ring = jnp.where(taken >= 0, ring.at[taken % count].set(limited), ring)
             after.append((state, ring))
             acting.append(jnp.where(active >= 0, ring[active % count], 0.0))
-        commands = jnp.concatenate(acting)
+        commands = jnp.concatenate([before[:0], *acting])
         return (after, commands), commands, sampled
