@@ -23,7 +23,7 @@ import scipy.sparse
 from plan_minute import TIME, f16, maneuvers
 
 from gbeam.motion import STANDARD_GRAVITY, Centrifuge, Flight, MachineLimits, PiecewiseLinear, machines
-from gbeam.motion.centrifuge.inverses import planned
+from gbeam.motion.centrifuge import course
 from gbeam.numerics import minimise as sequential
 
 G, IDLE, LAST = STANDARD_GRAVITY, 1.4 * STANDARD_GRAVITY, 60.0
@@ -100,7 +100,7 @@ def measure(load: Any, minimise: Callable[..., Any]) -> str:
         return x, value
 
     flight = Flight(acceleration=PiecewiseLinear(TIME, load * G))
-    planned.planned.cache_clear()  # what another solver found for the same machine
+    course.planned.cache_clear()  # what another solver found for the same machine
     sequential.minimise, before = observed, sequential.minimise
     try:
         began = time.process_time()
@@ -134,7 +134,7 @@ def main() -> None:
     sequential.solve_quadratic = piqp
     told = [measure(load, ipopt) for load in loads.values()]
     print(f"| Ipopt, coarse to fine | {installed('casadi')} | {' | '.join(told)} |", flush=True)
-    planned._COARSE, planned._GENTLER = planned._FINE, (1.0,)
+    course._COARSE, course._GENTLER = course._FINE, (1.0,)
     told = [measure(load, ipopt) for load in loads.values()]
     print(f"| Ipopt, finest knots at once | {installed('casadi')} | {' | '.join(told)} |", flush=True)
 

@@ -24,8 +24,8 @@ from gbeam.motion import (
     trapezoid,
     vector,
 )
-from gbeam.motion.centrifuge.target.nearest_load import gentle
 from gbeam.motion.centrifuge.target.reachability import MIN_TRANSVERSE_LOAD, nearest_to_zero
+from gbeam.motion.centrifuge.target.target import gentle
 
 G, R, IDLE, W = STANDARD_GRAVITY, 3.3, 1.4 * STANDARD_GRAVITY, 0.06
 TRAPEZOID = vector(z=trapezoid(10 * G, jerk=4 * G, start=1.0, hold=4.0))

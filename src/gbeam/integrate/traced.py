@@ -6,13 +6,15 @@ stages' accelerations x and the derivative L by the state z before it
     δx = −J⁻¹ (δr + L δz),    δz₊ = g δz + d δx,
 
 where δr is the residual's own derivative by what it is made of and by what drives it: JAX traces the residual and this
-recurrence, but neither Newton's method nor the run. Commands of controllers, which act in whole steps, add to δr.
+recurrence, but neither Newton's method nor the run. Commands of controllers, which act in whole steps, add to δr. Along
+the run a sample changes with the state that it measures, with the state of its law, and directly: these are linear,
+found for all samples at once, and taken through time with the steps.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple, Protocol
 
 import jax
 import jax.numpy as jnp
@@ -21,13 +23,201 @@ import numpy as np
 import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.arrays.tree import each_leaf
 from gbeam.integrate.equations import Demanded, Fitted, NonlinearEquations, exact, slopes
+from gbeam.integrate.newton import accelerations
 from gbeam.integrate.sampled import Sampling, Uncontrolled
 from gbeam.integrate.schemes import Scheme, stepped
 from gbeam.integrate.steps import Steps
-from gbeam.integrate.traced_loop import Samples, TracedLoop
 from gbeam.integrate.windows import windows
 
 Array = Any
+
+
+class TracedLaw(NamedTuple):
+    """A law as a function of its parameters, the references of a sample, its time, its measurements and the state
+    of the law (x,), that gives the command as asked and as limited and the next state; samples are at `times` (s,) s,
+    with references (s, k), and the first state is `start` (x,).
+    """
+
+    times: Any
+    function: Any
+    parameters: Any
+    references: Array
+    start: Array
+
+
+class TracedControllers(Protocol):
+    """Controllers whose values JAX traces, besides what :class:`gbeam.integrate.sampled.Controllers` do."""
+
+    drives: list[slice]
+
+    def laws(self, times: list[Array]) -> list[TracedLaw]:
+        """Laws sampled at times (s,) s each."""
+        ...
+
+    def of(self, residual: Any, laws: list[TracedLaw] | None = None) -> Any:
+        """Controllers that measure by the values of a residual, and command by those of laws."""
+        ...
+
+
+class Samples(NamedTuple):
+    """Samples of one controller: measurements (s, k), commands as asked and as limited (s, m), states before (s, x)."""
+
+    measured: Array
+    asked: Array
+    limited: Array
+    state: Array
+
+
+class TracedLoop:
+    """The samples of controllers at given steps."""
+
+    def __init__(self, controllers: Any, steps: Steps) -> None:
+        plan = Sampling(controllers, None, None, steps)
+        self.controllers, self.steps, self.taken = controllers, steps, plan.taken
+        self.at = [np.flatnonzero(taken >= 0) for taken in plan.taken]  # steps at whose beginning a sample is taken
+        each = np.arange(len(steps))
+        self.active = [
+            np.searchsorted(since[: len(at)], each, side="right") - 1
+            for since, at in zip(plan.since, self.at, strict=True)
+        ]  # of a step: the sample that acts, −1 before the first does
+        self.laws = controllers.laws([steps.begin[at] for at in self.at])
+        self.values: list[Samples] = []
+
+    @property
+    def inputs(self) -> list[tuple[Any, Array, Array]]:
+        """Parameters, references and first state of each law."""
+        return [(law.parameters, law.references, law.start) for law in self.laws]
+
+    def laws_of(self, inputs: Any) -> list[TracedLaw]:
+        """The laws with other parameters, references and first states."""
+        return [TracedLaw(law.times, law.function, *each) for law, each in zip(self.laws, inputs, strict=True)]
+
+    @property
+    def shapes(self) -> list[Samples]:
+        """Shapes of the samples."""
+        sizes = [part.stop - part.start for part in self.controllers.drives]
+        return [
+            Samples(
+                *(jax.ShapeDtypeStruct((len(at), n), float) for n in (law.references.shape[1], m, m, len(law.start)))
+            )
+            for at, m, law in zip(self.at, sizes, self.laws, strict=True)
+        ]
+
+    def recorded(self, sampling: Sampling, inputs: Any) -> list[Samples]:
+        """Arrays of the samples that were taken; NaN of the others."""
+        every = []
+        for shapes, taken, (*_, start) in zip(self.shapes, sampling.samples, inputs, strict=True):
+            arrays = Samples(*(np.full(each.shape, np.nan) for each in shapes))
+            before = [start, *(after for *_, after in taken[:-1])]
+            for k, ((*values, _), state) in enumerate(zip(taken, before, strict=False)):
+                for array, value in zip(arrays, (*values, state), strict=True):
+                    array[k] = value
+            every.append(arrays)
+        return every
+
+    def sampled(self, c: int) -> tuple[Array, ...]:
+        """Measurements (s, k) and commands (s, m) of a controller, as asked and as limited."""
+        return self.values[c][:3]
+
+    def held(self, samples: list[Samples]) -> Array:
+        """Commands that act in the steps, (t, m)."""
+        parts = [
+            jnp.where(active[:, None] >= 0, each.limited[np.maximum(active, 0)], 0.0)
+            for active, each in zip(self.active, samples, strict=True)
+        ]
+        return jnp.concatenate([jnp.zeros((len(self.steps), 0)), *parts], axis=1)
+
+    def changes(self, of: Any, changed: Any, run: Any, inputs: Any, by_inputs: Any, samples: list[Samples]) -> _Changes:
+        """Changes of the samples along a run with those of residual and drives where steps begin, and of laws."""
+        held = self.held(samples)
+        before = jnp.concatenate([0 * held[:1], held[:-1]])
+        every = zip(self.at, self.laws_of(inputs), self.laws_of(by_inputs), samples, strict=True)
+        parts = [
+            self._along(c, of, changed, [part[at] for part in run[:2]], before[at], at) + self._through(law, by, values)
+            for c, (at, law, by, values) in enumerate(every)
+        ]
+        return _Changes(self, parts)
+
+    def _along(self, c: int, of: Any, changed: Any, state: Any, before: Array, at: Array) -> tuple[Array, ...]:
+        """Derivatives of measurements by states (s, k, 2 n) and commands before (s, k, m), and their direct change."""
+        q, qd = state
+        (residual, driven), (by_residual, by_driven) = of, changed
+        driven, by_driven = (jax.tree.map(lambda leaf: leaf[at], each) for each in (driven, by_driven))
+
+        def measured(residual: Any, driven: Any) -> Array:
+            inputs, controllers = self.controllers.driven(driven, before), self.controllers.of(exact(residual))
+            qdd = accelerations(residual, q, qd, inputs) if controllers.accelerates(c) else 0 * q
+            return controllers.measured(c, q, qd, qdd, inputs)
+
+        values, direct = jax.jvp(measured, (residual, driven), (by_residual, by_driven))
+        shapes = (*values.shape, 2 * q.shape[1]), (*values.shape, before.shape[1])
+
+        def host(*arguments: Any) -> Any:
+            q, qd, before, residual, driven = jax.tree.map(np.asarray, arguments)
+            controllers = self.controllers.of(exact(residual))
+            sampling = Sampling(controllers, residual, None, self.steps)
+            with np.errstate(all="ignore"):
+                by_state, by_command = sampling.slopes(c, q, qd, controllers.driven(driven, before))
+            return by_state, np.zeros(shapes[1]) if by_command is None else by_command
+
+        result = tuple(jax.ShapeDtypeStruct(shape, float) for shape in shapes)
+        slope = jax.pure_callback(host, result, q, qd, before, residual, driven, vmap_method="sequential")
+        return *slope, direct
+
+    def _through(self, law: TracedLaw, by: TracedLaw, values: Samples) -> tuple[Array, ...]:
+        """Derivatives of commands and next states by measurements and states, and their direct change, of all samples;
+        that of the state at the start.
+        """
+
+        def whole(parameters: Any, references: Array, y: Array, state: Array, t: Array) -> Array:
+            return jnp.concatenate(law.function(parameters, references, t, y, state))
+
+        sampled, each = (values.measured, values.state, law.times), (None, 0, 0, 0, 0)
+        by_y, by_state = jax.vmap(jax.jacfwd(whole, (2, 3)), each)(law.parameters, law.references, *sampled)
+
+        def direct(parameters: Any, references: Array) -> Array:
+            return jax.vmap(whole, each)(parameters, references, *sampled)
+
+        _, change = jax.jvp(direct, (law.parameters, law.references), (by.parameters, by.references))
+        return by_y, by_state, change, by.start
+
+
+class _Changes:
+    """Changes of samples, taken through the steps of a run, of which each is given those of its state."""
+
+    def __init__(self, loop: TracedLoop, parts: list[tuple[Array, ...]]) -> None:
+        self.drives, self.at = loop.controllers.drives, loop.at
+        self.starts = [part[-1] for part in parts]
+        # Commands wait in a ring, as long as the latest is ahead of the one that acts.
+        newest = [np.maximum.accumulate(taken) for taken in loop.taken]
+        self.rings = [int((new - act).max()) + 1 for new, act in zip(newest, loop.active, strict=True)]
+        self.by_step = [
+            (taken, active, *(each[np.maximum(new, 0)] for each in part[:-1]))
+            for taken, active, new, part in zip(loop.taken, loop.active, newest, parts, strict=True)
+        ]
+
+    @property
+    def begin(self) -> Any:
+        """The laws' states and rings, and no commands before."""
+        sizes = [part.stop - part.start for part in self.drives]
+        rings = [jnp.zeros(shape) for shape in zip(self.rings, sizes, strict=True)]
+        return list(zip(self.starts, rings, strict=True)), jnp.zeros(sum(sizes))
+
+    def step(self, carried: Any, dz: Array, at: Any) -> tuple[Any, Array, Any]:
+        """States and rings after a step, the change of the commands that act in it, and those of its samples."""
+        every, before = carried
+        after, acting, sampled = [], [], []
+        for (state, ring), (taken, active, by_z, by_command, y, by_y, by_state, direct) in zip(every, at, strict=True):
+            count, m = ring.shape
+            measured = by_z @ dz.ravel() + by_command @ before + y
+            asked, limited, moved = jnp.split(by_y @ measured + by_state @ state + direct, (m, 2 * m))
+            sampled.append(Samples(measured, asked, limited, state))
+            state = jnp.where(taken >= 0, moved, state)
+            ring = jnp.where(taken >= 0, ring.at[taken % count].set(limited), ring)
+            after.append((state, ring))
+            acting.append(jnp.where(active >= 0, ring[active % count], 0.0))
+        commands = jnp.concatenate([before[:0], *acting])
+        return (after, commands), commands, sampled
 
 
 def traced(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, steps: Steps) -> tuple[Array, ...]:

@@ -17,9 +17,8 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive, possible
 from gbeam.structure.material import Material
-from gbeam.structure.matrices import between, refuse_impossible
+from gbeam.structure.matrices import between, matrices_of, read_matrices, refuse_impossible
 from gbeam.structure.matrices import listed as matrices
-from gbeam.structure.section_files import matrices_of, read_matrices
 from gbeam.structure.shapes import MATRICES, ROUND, SHAPES
 
 Array = NDArray[np.float64]

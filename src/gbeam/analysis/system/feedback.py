@@ -20,7 +20,7 @@ from gbeam.mechanics.tree.system import System
 from gbeam.results.system import Loop
 
 if TYPE_CHECKING:
-    from gbeam.integrate.traced_loop import TracedLaw
+    from gbeam.integrate.traced import TracedLaw
 
 Array = Any
 Floats = NDArray[np.float64]
@@ -140,7 +140,7 @@ def _traced_law(name: str, each: Feedback, times: Floats) -> TracedLaw:
     """A controller's law at the times of its samples (s,) s, as a function that JAX traces of all it is made of."""
     from jax.flatten_util import ravel_pytree
 
-    from gbeam.integrate.traced_loop import TracedLaw
+    from gbeam.integrate.traced import TracedLaw
 
     sign, values = 1.0, [np.zeros(len(times)) for _ in each.measure]
     if each.reference is not None:

@@ -15,7 +15,6 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
 from gbeam.guards.limits import KNOTS, refuse_more
-from gbeam.motion.centrifuge.target.nearest_load import NearestLoad, gentle, off_axis, unwrapped
 from gbeam.motion.centrifuge.target.reachability import (
     LEAST_IDLE,
     MIN_TRANSVERSE_LOAD,
@@ -29,10 +28,14 @@ from gbeam.motion.centrifuge.target.target import (
     BELOW_IDLE,
     GIMBALS,
     LEFT_OUT,
+    NearestLoad,
     Target,
+    gentle,
     merged_edges,
+    off_axis,
     padded_rows,
     stretches,
+    unwrapped,
 )
 from gbeam.motion.profiles.combine import clamped
 from gbeam.motion.profiles.piecewise import PiecewiseLinear

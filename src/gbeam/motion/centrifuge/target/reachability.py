@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
-from gbeam.motion.centrifuge.target.target import Target
+from gbeam.motion.centrifuge.target.target import IDLE_BAND, Target
 from gbeam.motion.profiles.profile import Profile
 from gbeam.numerics.samples import joined, true_runs
 from gbeam.numerics.series import sqrt, square, where
@@ -23,14 +23,12 @@ Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 LEAST_IDLE = 1.1  # g, with gravity
-IDLE_BAND = 0.2  # of idle: how softly the hold sets in, by at most 1.5 % of idle
 UNTOUCHED = 1 + IDLE_BAND / 2  # times idle: a larger load is not raised
 PARTED = 0.97  # times idle: two returns above idle between which the load is smaller are two
 UNDIRECTED = 0.05  # of idle: a smaller load has no direction worth following
 # The beam stays horizontal, so that gravity always acts across it: no attitude gives less than one g there, and near
 # one g the gimbals would have to turn infinitely fast.
 MIN_TRANSVERSE_LOAD = 1.05 * STANDARD_GRAVITY  # least load across the beam that the gimbals make where gravity acts
-REACH_BAND = 0.1  # of it: likewise
 OPPOSED = 0.1  # two unit vectors whose chord passes this near to zero count as opposite
 _NEAR_ZERO = 0.02  # of the peak load
 _ALONG_BEAM = 1e-3  # of the peak load

@@ -1,4 +1,6 @@
-"""The load that a machine follows, and the stretches in which it is not the flight's."""
+"""The load that a machine follows, the stretches in which it is not the flight's, and the nearest loads that gimbals
+can follow.
+"""
 
 from __future__ import annotations
 
@@ -8,15 +10,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.arrays.namespace import as_array, namespace
-from gbeam.arrays.tree import record, static
-from gbeam.motion.profiles.profile import Profile
+from gbeam.arrays.namespace import as_array, is_traced, namespace
+from gbeam.arrays.tree import assign, record, static
+from gbeam.motion.profiles.combine import merged_breaks
+from gbeam.motion.profiles.profile import Profile, beside, soft_floor, soft_step
 from gbeam.numerics.samples import true_runs
+from gbeam.numerics.series import Series, sin_cos, sqrt, square, stack, where
 
 REASONS = ("below idle", "gimbals", "left out")
 BELOW_IDLE, GIMBALS, LEFT_OUT = range(len(REASONS))
 
 _TOUCH = 1e-9  # s
+IDLE_BAND = 0.2  # of idle: how softly the hold sets in, by at most 1.5 % of idle
+REACH_BAND = 0.1  # of the least load across the beam: likewise
 
 Floats = NDArray[np.float64]
 Row = tuple[float, float, float, float]  # start s, end s, number of the reason, the flight's largest load m/s²
@@ -111,3 +117,177 @@ class Target:
             Episode(float(start), float(end), REASONS[int(code)], float(peak))
             for start, end, code, peak in rows[np.isfinite(rows[:, 0])]
         ]
+
+
+_DIRECTED = 0.2  # of what counts as a whole load: below, the angle about the beam is not looked at
+_POLE = 0.05  # rad from the beam: nearer to it the angle about it would run away
+_LEAST_WEIGHT = 1e-3  # of values without a direction: what keeps the path in one piece between them
+_CARRIED = 0.2  # rad: how far a slope beside the path may carry it away
+_WIDENING = 0.3  # s per s: how its time scale grows from there
+
+Flags = NDArray[np.bool_]
+
+
+def unwrapped(times: Floats, y: Floats, x: Floats, whole: float) -> tuple[Floats, Floats]:
+    """Angle atan2(y, x) of a load (k,) m/s² over times (k,) s, and how much it counts, (k,)."""
+    size = np.hypot(y, x)
+    directed = size >= _DIRECTED * whole
+    if not directed.any():
+        return np.full(times.size, np.pi / 2), np.zeros(times.size)
+    angle = np.unwrap(np.arctan2(y[directed], x[directed]))
+    return np.interp(times, times[directed], angle), np.where(directed, np.minimum(size / whole, 1.0), 0.0)
+
+
+def off_axis(angle: Floats) -> Floats:
+    """Angles from the beam, rad, kept away from its axis."""
+    return np.clip(angle, _POLE, np.pi - _POLE)
+
+
+def gentle(times: Floats, values: Floats, weight: Floats, fixed: Flags, time_scale: float) -> Floats:
+    """Replace the values that are not fixed by a path near them.
+
+    It minimises ∫ w (z − values)² + T⁴ z''² dt with the fixed values kept, so that it leaves and meets them without a
+    corner; changes quicker than a period of 2πT are left out. T is `time_scale`, less beside fixed values that change
+    so quickly that the path would be carried far away before it turns.
+
+    `times` (k,), `values`, `weight` (k,), `fixed` (k,).
+    """
+    if fixed.all() or times.size < 4:
+        return values
+    from scipy.linalg import solve_banded  # imported when a path is sought
+
+    left, right = np.diff(times)[:-1], np.diff(times)[1:]
+    stiffness = _time_scales(times, values, fixed, time_scale)[1:-1] ** 2 * np.sqrt((left + right) / 2)
+    second = 2 * stiffness * np.stack([1 / (left * (left + right)), -1 / (left * right), 1 / (right * (left + right))])
+    # At each knot in turn, the distance from the values and the weighted z'': its square, in normal equations of the
+    # distance alone, would lose all digits where knots are close.
+    band, side = np.zeros((7, 2 * times.size)), np.zeros(2 * times.size)
+    band[3, ::2] = np.where(fixed, 1.0, np.gradient(times) * np.maximum(weight, _LEAST_WEIGHT))
+    band[3, 1::2] = -1.0
+    rows = times.size - 2
+    knots, bends = 2 * np.arange(times.size), 2 * np.arange(1, rows + 1) + 1
+    for i in range(3):
+        of_knot, free = knots[i : i + rows], ~fixed[i : i + rows]
+        band[3 + bends - of_knot, of_knot] = second[i] * free
+        band[3 + of_knot - bends, bends] = second[i] * free
+        side[bends] -= second[i] * values[i : i + rows]
+    return np.asarray(values + solve_banded((3, 3), band, side)[::2])
+
+
+def _time_scales(times: Floats, values: Floats, fixed: Flags, longest: float) -> Floats:
+    """T at every knot: from a slope v beside it a path goes on by about v T."""
+    scale = np.full(times.size, longest)
+    for run in true_runs(~fixed):
+        for edge, inward in ((run.start - 1, -1), (run.stop, 1)):
+            beyond = edge + inward
+            if min(edge, beyond) < 0 or max(edge, beyond) >= times.size:
+                continue
+            slope = abs((values[beyond] - values[edge]) / (times[beyond] - times[edge]))
+            nearest = _CARRIED / max(slope, _CARRIED / longest) + _WIDENING * np.abs(times[run] - times[edge])
+            scale[run] = np.minimum(scale[run], nearest)
+    return scale
+
+
+# Times idle: where a load is its own size again after the gimbals' reach has raised it, and where its direction is
+# wholly its own. Between idle and there the path agrees with it, up to what rounding the path changes.
+_SIZED, _FOLLOWED = 1.1, 1.5
+_FREE = 1.5  # times the least load across the beam: the same
+
+
+@record
+class NearestLoad(Profile):
+    """A flight's load where the machine can make it, else the nearest one that it can.
+
+    - Below idle its size is idle and its direction that of a path.
+    - Where gravity acts and the load across the beam is below the least that the gimbals make, that part is the least,
+      in the direction of the path, and the part along the beam is kept.
+
+    Three times differentiable in size where the load is; the direction goes over to the path's where they agree.
+    """
+
+    flight: Profile  # vector, base axes, m/s², without corners
+    # angles, rad, φ = atan2(f_z, f_y) about the beam and β = atan2(hypot(f_y, f_z), f_x) from it; None of a load that
+    # is never below idle, or out of reach for its corners only
+    path: Profile | None
+    gate: Profile | None  # one, and zero where the load is held at idle, at whose ends it is below that; None if one
+    idle: Any  # least size, m/s²; zero where there is none
+    least: Any  # least load across the beam, m/s², likewise
+    has_idle: bool = static()
+    has_least: bool = static()
+
+    def __post_init__(self) -> None:
+        assign(self, idle=as_array(self.idle), least=as_array(self.least))
+
+    def series(self, t: Any, order: int) -> Series:
+        now = as_array(t)
+        flight = self.flight.series(now, order)
+        xp = namespace(now, flight.value, self.idle)
+        size2, across2 = square(flight), square(flight[..., 1:])
+        free = (size2.value >= (_FOLLOWED * self.idle) ** 2) & (across2.value >= (_FREE * self.least) ** 2)
+        gate: Any = 1.0
+        if self.gate is not None:
+            # A straight ramp between 0 and 1 without its corners: eight times differentiable.
+            gate = soft_step(soft_step(self.gate.series(now, order), 0.5, 1.0), 0.5, 1.0)
+            free = free & (gate.value == 1)
+        if not is_traced(free) and free.all():
+            return flight
+        bent = across2.value > 0
+        across = sqrt(where(bent, across2, 1.0))  # the root has no derivative at zero
+        unit = [flight[..., k] / across for k in (1, 2)]
+        across = where(bent, across, 0.0)
+        along, reached = flight[..., 0], across
+        share: Any = where(bent, 1.0 + 0.0 * across, 0.0)  # of the flight's own direction about the beam
+        if self.has_least:
+            reached = soft_floor(across, self.least, REACH_BAND * self.least)
+            share = share * soft_step(across, (1 + _FREE) / 2 * self.least, (_FREE - 1) * self.least)
+        if self.path is None:
+            return stack([along, *(reached * each for each in unit)])
+        sine, cosine = sin_cos(self.path.series(now, order))
+        if not self.has_idle:
+            return stack([along, *(reached * each for each in _blend(share, unit, [cosine[..., 0], sine[..., 0]]))])
+        size = sqrt(where(size2.value > (self.idle / 2) ** 2, size2, self.idle**2 / 4))
+        sized, directed = (
+            gate * soft_step(size, (1 + each) / 2 * self.idle, (each - 1) * self.idle) for each in (_SIZED, _FOLLOWED)
+        )
+        held = self.idle + gate * (soft_floor(size, self.idle, IDLE_BAND * self.idle) - self.idle)
+        y, z = _blend(share * directed, unit, [cosine[..., 0], sine[..., 0]])
+        x, part = _blend(directed, [along / size, across / size], [cosine[..., 1], sine[..., 1]])
+        if self.has_least:
+            full = sqrt(where(bent | (size2.value > 0), along * along + reached * reached, 1.0))
+            held = held + sized * (full - size)
+            # Idle is above the least across the beam, by little where it is lowest.
+            band = xp.minimum(REACH_BAND * self.least, self.idle - self.least)
+            x, part = _reached(held * x, held * part, self.least, band)
+        else:
+            x, part = held * x, held * part
+        load = stack([x, part * y, part * z])
+        return where(xp.asarray(beside(free, 1)), flight, load)
+
+    @property
+    def breaks(self) -> Any:
+        return self.flight.breaks if self.path is None else merged_breaks(self.flight, self.path)
+
+    def corners(self, step: float) -> NDArray[np.float64]:
+        breaks = self.flight.corners(step)
+        return breaks if self.path is None else np.union1d(breaks, self.path.corners(step))
+
+    def knots(self, step: float) -> NDArray[np.float64]:
+        knots = self.flight.knots(step)
+        return knots if self.path is None else np.union1d(knots, self.path.knots(step))
+
+
+def _blend(share: Series, flight: list[Series], path: list[Series]) -> list[Series]:
+    """A unit vector between two: a share of one and the rest of the other."""
+    mixed = [share * one + (1 - share) * other for one, other in zip(flight, path, strict=True)]
+    size = sqrt(square(stack(mixed)))
+    return [each / size for each in mixed]
+
+
+def _reached(along: Series, across: Series, least: Any, band: Any) -> tuple[Series, Series]:
+    """The part across the beam at its least at least, the size kept."""
+    low = across.value < least + band / 2
+    raised = soft_floor(across, least, band)
+    # Where it is raised the part along the beam is not small: idle is above the least across the beam.
+    along2, total = along * along, along * along + across * across
+    rest = where(low, (total - raised * raised) / where(low, along2, 1.0), 1.0)
+    return along * sqrt(rest), where(low, raised, across)
