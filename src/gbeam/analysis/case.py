@@ -4,7 +4,7 @@ response is computed.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import InitVar, dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, overload
 
@@ -50,6 +50,7 @@ class _InEnvironments(Value):
     title: str
     motions: Mapping[str, Motion]
     response: ResponseSettings | None
+    accept: Mapping[str, Mapping[str, Any]]
     no_beam: ClassVar[tuple[str, str]] = ("", "")  # why it is none, and what to ask in place of what is of one beam
 
     def __post_init__(self, read_from: AnyScenario | None) -> None:
@@ -98,6 +99,13 @@ class _InEnvironments(Value):
         if not self.motions and not isinstance(self, SystemCase):
             fix = 'add what the base does, each [motion.NAME], such as kind = "flight"; `gbeam new` shows how'
             raise InputError("motion", "is missing", fix)
+
+    def _stress_limits(self, lacking: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+        """Places and points of the limits on stress; InputError of a limit of what is lacking."""
+        for name, limits in self.accept.items():
+            where = f"motion.{name}.accept"
+            refuse_unknown(where, limits, lacking)
+            yield from ((f"{where}.{key}", limits[key]) for key in AT_POINTS if limits.get(key) is not None)
 
     def one_beam(self, where: str, what: str) -> Case:
         """Refuse an answer, `what`, that is of one beam, by an error at `where`; return the case where it is of one."""
@@ -259,16 +267,13 @@ class SystemCase(_InEnvironments):
                 self.system.point(f"motion.{name}.accept.point", limits["point"])
             for point in limits.get("control", ()):
                 self.system.point(f"motion.{name}.accept.control.{point}", point)
-            flexible = self.system.flexible.items()
-            stressed = [key for key, body in flexible if body.sections is not None or body.recovery is not None]
-            lacking = {} if stressed else {STRESS: "no body is a beam or a mesh"}
-            refuse_unknown(f"motion.{name}.accept", limits, lacking)
-            for key in (each for each in AT_POINTS if limits.get(each) is not None):
-                where = f"motion.{name}.accept.{key}"
-                body, _ = self.system.point(where, limits[key])
-                if body not in stressed:
-                    fix = f"choose a point of {', '.join(stressed)}"
-                    raise InputError(where, f"is on {body}, which is no beam and no mesh", fix)
+        flexible = self.system.flexible.items()
+        stressed = [key for key, body in flexible if body.sections is not None or body.recovery is not None]
+        for where, point in self._stress_limits({} if stressed else {STRESS: "no body is a beam or a mesh"}):
+            body, _ = self.system.point(where, point)
+            if body not in stressed:
+                fix = f"choose a point of {', '.join(stressed)}"
+                raise InputError(where, f"is on {body}, which is no beam and no mesh", fix)
 
     def assemble(self, stations: ArrayLike | None = None) -> System:
         """Return the system; it has no stations.
@@ -349,13 +354,10 @@ class SpecimenCase(_InEnvironments):
         rigid, recovery = not self.structure.size, self.structure.recovery
         lacking = {STRESS: f"{self.name} is {'rigid' if rigid else 'no mesh'}"} if rigid or recovery is None else {}
         lacking |= {DISPLACEMENT: f"{self.name} is rigid"} if rigid else {}
-        for name, limits in self.accept.items():
-            where = f"motion.{name}.accept"
-            refuse_unknown(where, limits, lacking)
-            for key in (each for each in AT_POINTS if limits.get(each) is not None):
-                with naming(f"{where}.{key}"):
-                    if recovery is not None:
-                        recovery.strain(limits[key], (1.0, 0.0, 0.0))
+        for where, point in self._stress_limits(lacking):
+            with naming(where):
+                if recovery is not None:
+                    recovery.strain(point, (1.0, 0.0, 0.0))
 
     def assemble(self, stations: ArrayLike | None = None) -> Structure:
         """Return the structure; its stations are its points.
