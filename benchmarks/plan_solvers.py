@@ -22,8 +22,10 @@ import numpy as np
 import scipy.sparse
 from plan_minute import TIME, f16, maneuvers
 
-from gbeam.motion import STANDARD_GRAVITY, Centrifuge, Flight, MachineLimits, PiecewiseLinear, machines
+from gbeam.constants import STANDARD_GRAVITY
+from gbeam.motion import Centrifuge, Flight, MachineLimits, machines
 from gbeam.motion.centrifuge import course
+from gbeam.motion.profiles.piecewise import PiecewiseLinear
 from gbeam.numerics import minimise as sequential
 
 G, IDLE, LAST = STANDARD_GRAVITY, 1.4 * STANDARD_GRAVITY, 60.0

@@ -8,8 +8,9 @@ import pytest
 from gbeam.analysis.imitation.comparison import compare
 from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.steady.static import static
+from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
-from gbeam.motion import STANDARD_GRAVITY, Centrifuge, Flight, tabulated
+from gbeam.motion import Centrifuge, Flight, tabulated
 
 from ..lagrange import quickly_compiled
 from ..specimens import strip

@@ -19,7 +19,7 @@ from gbeam.analysis.response.problem import problem_of
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.step_errors import Readings, Run, observed_order
 from gbeam.analysis.response.stepping import answered, refine
-from gbeam.integrate import Trajectory
+from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.section_forces import section_forces
 from validation.accuracy import integrators
 

@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
-from gbeam.integrate import LinearEquations, NonlinearEquations
+from gbeam.integrate.equations import LinearEquations, NonlinearEquations
 
 Equations = LinearEquations | NonlinearEquations
 

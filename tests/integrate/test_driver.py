@@ -9,9 +9,11 @@ import pytest
 
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
-from gbeam.integrate import LinearEquations, NonlinearEquations, gauss, integrate, newmark
 from gbeam.integrate.driver import _LINEAR_CHUNK as LINEAR_CHUNK
+from gbeam.integrate.driver import integrate
+from gbeam.integrate.equations import LinearEquations, NonlinearEquations
 from gbeam.integrate.newton import CHUNK
+from gbeam.integrate.schemes import gauss, newmark
 
 from .systems import OSCILLATOR, VARYING, Bead, Pushed, driven, one, undriven
 

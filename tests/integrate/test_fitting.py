@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from gbeam.integrate import LinearEquations, NonlinearEquations, gauss, integrate, newmark
-from gbeam.integrate.schemes import added
+from gbeam.integrate.driver import integrate
+from gbeam.integrate.equations import LinearEquations, NonlinearEquations
+from gbeam.integrate.schemes import added, gauss, newmark
 
 from .systems import PENDULUM, VARYING
 

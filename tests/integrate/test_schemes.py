@@ -16,19 +16,11 @@ from scipy.integrate import solve_ivp
 from gbeam import InputError
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
-from gbeam.integrate import (
-    Corners,
-    LinearEquations,
-    NonlinearEquations,
-    Scheme,
-    gauss,
-    generalized_alpha,
-    hht,
-    integrate,
-    linear,
-    newmark,
-)
-from gbeam.integrate.steps import fitted
+from gbeam.integrate import linear
+from gbeam.integrate.driver import integrate
+from gbeam.integrate.equations import LinearEquations, NonlinearEquations
+from gbeam.integrate.schemes import Scheme, gauss, generalized_alpha, hht, newmark
+from gbeam.integrate.steps import Corners, fitted
 from validation.published.tables import SCHEMES_THEORY
 
 from .systems import BEAD, OSCILLATOR, PENDULUM, VARYING, Pushed, driven, reference

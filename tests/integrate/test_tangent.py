@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gbeam.integrate import LinearEquations, Scheme, gauss, generalized_alpha, hht, newmark
 from gbeam.integrate.driver import through
+from gbeam.integrate.equations import LinearEquations
+from gbeam.integrate.schemes import Scheme, gauss, generalized_alpha, hht, newmark
 from gbeam.integrate.steps import Corners, fitted
 from gbeam.integrate.tangent import tangent
 

@@ -12,8 +12,11 @@ import pytest
 
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
-from gbeam.integrate import Corners, NonlinearEquations, gauss, generalized_alpha, integrate, newmark, windows
-from gbeam.integrate.equations import accelerations, slopes
+from gbeam.integrate import windows
+from gbeam.integrate.driver import integrate
+from gbeam.integrate.equations import NonlinearEquations, accelerations, slopes
+from gbeam.integrate.schemes import gauss, generalized_alpha, newmark
+from gbeam.integrate.steps import Corners
 
 from ..lagrange import quickly_compiled
 

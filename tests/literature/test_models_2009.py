@@ -14,7 +14,8 @@ import pytest
 
 from gbeam import Hub, Sine, SmoothStep
 from gbeam.analysis.response.problem import problem_of
-from gbeam.integrate import integrate, newmark
+from gbeam.integrate.driver import integrate
+from gbeam.integrate.schemes import newmark
 from validation.published.hubbeam2009 import HUB_INERTIA, HUB_RADIUS, LENGTH
 from validation.published.tables import SLEWS, TORQUES
 

@@ -25,9 +25,12 @@ from gbeam import (
     tabulated,
     vector,
 )
-from gbeam.integrate import LinearEquations, gauss, integrate
+from gbeam.integrate.driver import integrate
+from gbeam.integrate.equations import LinearEquations
+from gbeam.integrate.schemes import gauss
 from gbeam.mechanics.equations.linear import Coefficients
-from gbeam.motion import Base, Profile, moved
+from gbeam.motion import Base, Profile
+from gbeam.motion.centrifuge.kinematics import moved
 from validation.published.specimens import strip_beam
 from validation.published.zhang2020 import COUNTS, G0, LENGTH, LINE, THICKNESS, WIDTH, YOUNG, matrices
 

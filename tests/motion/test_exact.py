@@ -6,10 +6,9 @@ Ledger of the source: "the control point is always consistent" holds for smooth 
 import numpy as np
 import pytest
 
+from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.motion import (
-    STANDARD_GRAVITY,
-    Axes,
     Base,
     Centrifuge,
     Flight,
@@ -21,7 +20,8 @@ from gbeam.motion import (
     tabulated,
     trapezoid,
     vector,
-)  # fmt: skip
+)
+from gbeam.motion.centrifuge.kinematics import Axes  # fmt: skip
 
 G, R = STANDARD_GRAVITY, 3.3
 

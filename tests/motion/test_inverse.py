@@ -9,19 +9,10 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from gbeam.motion import (
-    INVERSES,
-    STANDARD_GRAVITY,
-    Axes,
-    Base,
-    Centrifuge,
-    Flight,
-    Profile,
-    Sine,
-    Sum,
-    constant,
-    vector,
-)
+from gbeam.constants import STANDARD_GRAVITY
+from gbeam.motion import Base, Centrifuge, Flight, Profile, Sine, Sum, constant, vector
+from gbeam.motion.centrifuge.course import INVERSES
+from gbeam.motion.centrifuge.kinematics import Axes
 
 G, R = STANDARD_GRAVITY, 3.3
 T = np.linspace(0.2, 1.8, 33)

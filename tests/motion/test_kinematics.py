@@ -9,7 +9,8 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from gbeam.motion import STANDARD_GRAVITY, Axes, forward, moved
+from gbeam.constants import STANDARD_GRAVITY
+from gbeam.motion.centrifuge.kinematics import Axes, forward, moved
 
 
 def turn(angle: jax.Array, axis: int) -> jax.Array:

@@ -3,22 +3,11 @@
 import numpy as np
 import pytest
 
+from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
-from gbeam.motion import (
-    STANDARD_GRAVITY,
-    AxisLimit,
-    Centrifuge,
-    Flight,
-    Limits,
-    MachineLimits,
-    Profile,
-    build_target,
-    machines,
-    tabulated,
-    trapezoid,
-    usage,
-    vector,
-)  # fmt: skip
+from gbeam.motion import AxisLimit, Centrifuge, Flight, MachineLimits, Profile, machines, tabulated, trapezoid, vector
+from gbeam.motion.centrifuge.limits import Limits, usage
+from gbeam.motion.centrifuge.target.build import build_target  # fmt: skip
 from gbeam.motion.centrifuge.target.reachability import TOO_SHARP
 from gbeam.results.machine import Shortfall
 

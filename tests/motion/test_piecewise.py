@@ -10,7 +10,8 @@ from scipy.integrate import quad
 
 import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.errors import InputError
-from gbeam.motion import PiecewiseLinear, Profile, constant, smoothed, tabulated, trapezoid
+from gbeam.motion import Profile, constant, smoothed, tabulated, trapezoid
+from gbeam.motion.profiles.piecewise import PiecewiseLinear
 
 TRAPEZOID = trapezoid(level=10.0, jerk=4.0, start=1.0, hold=4.0)
 WIDTH = 0.06

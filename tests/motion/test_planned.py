@@ -10,22 +10,15 @@ from scipy.integrate import cumulative_simpson
 from scipy.signal import find_peaks
 
 from gbeam.arrays import tree
+from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
-from gbeam.motion import (
-    STANDARD_GRAVITY,
-    AxisLimit,
-    Centrifuge,
-    Flight,
-    Limits,
-    MachineLimits,
-    machines,
-    read_record,
-    trapezoid,
-)
+from gbeam.motion import AxisLimit, Centrifuge, Flight, MachineLimits, machines, trapezoid
 from gbeam.motion.centrifuge.inverses.axis_splines import AxisSplines, KeptLimits, Tracking
 from gbeam.motion.centrifuge.inverses.instant import Geometry
+from gbeam.motion.centrifuge.limits import Limits
 from gbeam.motion.centrifuge.target.build import build_target
 from gbeam.motion.profiles.profile import Profile
+from gbeam.motion.records.record import read_record
 from gbeam.numerics.bspline import Grid
 
 G, R = STANDARD_GRAVITY, 3.3

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
-from gbeam.motion import STANDARD_GRAVITY
 from gbeam.motion.records.record import Conditioning, FlightRecord, Rates, read_flight
 
 NAMES = ("t", "a_x", "a_y", "a_z")

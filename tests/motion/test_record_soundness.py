@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
-from gbeam.motion import STANDARD_GRAVITY
 from gbeam.motion.records.record import Conditioning, FlightRecord, read_flight
 
 DATA = Path(__file__).parents[2] / "examples" / "data"

@@ -5,22 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
-from gbeam.motion import (
-    STANDARD_GRAVITY,
-    Axes,
-    AxisLimit,
-    Base,
-    Centrifuge,
-    Flight,
-    MachineLimits,
-    Profile,
-    forward,
-    read_record,
-    tabulated,
-    vector,
-)
+from gbeam.motion import AxisLimit, Base, Centrifuge, Flight, MachineLimits, Profile, tabulated, vector
 from gbeam.motion.centrifuge.inverses.spin_up import LEAST_TURNED, USUAL_TURNED
+from gbeam.motion.centrifuge.kinematics import Axes, forward
+from gbeam.motion.records.record import read_record
 
 G, R = STANDARD_GRAVITY, 3.3
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"

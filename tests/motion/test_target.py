@@ -5,27 +5,26 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.motion import (
-    STANDARD_GRAVITY,
     Centrifuge,
     Flight,
-    PiecewiseLinear,
     Profile,
     Sine,
     SmoothStep,
     Sum,
-    Target,
-    build_target,
     constant,
-    read_record,
     smoothed,
     tabulated,
     trapezoid,
     vector,
 )
+from gbeam.motion.centrifuge.target.build import build_target
 from gbeam.motion.centrifuge.target.reachability import MIN_TRANSVERSE_LOAD, nearest_to_zero
-from gbeam.motion.centrifuge.target.target import gentle
+from gbeam.motion.centrifuge.target.target import Target, gentle
+from gbeam.motion.profiles.piecewise import PiecewiseLinear
+from gbeam.motion.records.record import read_record
 
 G, R, IDLE, W = STANDARD_GRAVITY, 3.3, 1.4 * STANDARD_GRAVITY, 0.06
 TRAPEZOID = vector(z=trapezoid(10 * G, jerk=4 * G, start=1.0, hold=4.0))

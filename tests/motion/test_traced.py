@@ -11,21 +11,9 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+from gbeam.constants import STANDARD_GRAVITY  # fmt: skip
 from gbeam.errors import InputError
-from gbeam.motion import (
-    STANDARD_GRAVITY,
-    Centrifuge,
-    Flight,
-    Hub,
-    Profile,
-    Sine,
-    SmoothStep,
-    Sum,
-    smoothed,
-    tabulated,
-    trapezoid,
-    vector,
-)  # fmt: skip
+from gbeam.motion import Centrifuge, Flight, Hub, Profile, Sine, SmoothStep, Sum, smoothed, tabulated, trapezoid, vector
 from gbeam.motion.profiles.combine import clamped
 
 G = STANDARD_GRAVITY

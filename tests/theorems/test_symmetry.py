@@ -23,7 +23,9 @@ from gbeam import (
     solve_equilibrium,
     vector,
 )
-from gbeam.integrate import LinearEquations, gauss, integrate, newmark
+from gbeam.integrate.driver import integrate
+from gbeam.integrate.equations import LinearEquations
+from gbeam.integrate.schemes import gauss, newmark
 from gbeam.motion import Base
 
 from .strategies import EXACT, beams, few, first_frequency, frequencies, numbers, theorem, vectors

@@ -4,21 +4,3 @@ A scheme is data: which combinations of the last state its stages start from, an
 equations become one affine map a step, found for many steps at once; nonlinear ones are solved in windows of many
 steps by Newton's method. Neither compiles anything; batches are compiled, and derivatives of runs that JAX traces.
 """
-
-from gbeam.integrate.driver import integrate
-from gbeam.integrate.equations import LinearEquations, NonlinearEquations, Trajectory
-from gbeam.integrate.schemes import Scheme, gauss, generalized_alpha, hht, newmark
-from gbeam.integrate.steps import Corners
-
-__all__ = [
-    "Corners",
-    "LinearEquations",
-    "NonlinearEquations",
-    "Scheme",
-    "Trajectory",
-    "gauss",
-    "generalized_alpha",
-    "hht",
-    "integrate",
-    "newmark",
-]

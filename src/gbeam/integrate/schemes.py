@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -243,3 +243,11 @@ def to_modes(exponent: Any, step: Any, mass: Floats, damping: Floats, stiffness:
     every = np.where(fits, factor - 1, 0.0), np.where(fits, rate * (slower * factor - 1), 0.0)
     more_mass, more_damping = (shapes * each[..., None, :] @ np.swapaxes(shapes, -1, -2) for each in every)
     return more_mass, more_damping
+
+
+SCHEMES: dict[str, Callable[..., Scheme]] = {
+    "newmark": newmark,
+    "hht": partial(hht, alpha=-0.1),
+    "generalized-alpha": partial(generalized_alpha, rho_inf=0.9),
+    "gauss": gauss,
+}

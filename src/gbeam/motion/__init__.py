@@ -4,25 +4,14 @@ Every motion is a :class:`Motion`: it has a `kind`, ``base(t)`` (a :class:`Base`
 end)``; a hub that is `free` to turn has a torque in place of a motion.
 """
 
-from gbeam.constants import STANDARD_GRAVITY as STANDARD_GRAVITY
 from gbeam.motion.bases.flight import Flight as Flight
 from gbeam.motion.bases.hub import Hub as Hub
 from gbeam.motion.centrifuge.centrifuge import Centrifuge as Centrifuge
-from gbeam.motion.centrifuge.course import INVERSES as INVERSES
-from gbeam.motion.centrifuge.kinematics import Axes as Axes
-from gbeam.motion.centrifuge.kinematics import axis_angles as axis_angles
-from gbeam.motion.centrifuge.kinematics import forward as forward
-from gbeam.motion.centrifuge.kinematics import moved as moved
 from gbeam.motion.centrifuge.limits import AxisLimit as AxisLimit
-from gbeam.motion.centrifuge.limits import Limits as Limits
 from gbeam.motion.centrifuge.limits import MachineLimits as MachineLimits
 from gbeam.motion.centrifuge.limits import machines as machines
-from gbeam.motion.centrifuge.limits import usage as usage
-from gbeam.motion.centrifuge.target.build import build_target as build_target
-from gbeam.motion.centrifuge.target.target import Target as Target
 from gbeam.motion.profiles.combine import Sum as Sum
 from gbeam.motion.profiles.combine import vector as vector
-from gbeam.motion.profiles.piecewise import PiecewiseLinear as PiecewiseLinear
 from gbeam.motion.profiles.piecewise import constant as constant
 from gbeam.motion.profiles.piecewise import tabulated as tabulated
 from gbeam.motion.profiles.piecewise import trapezoid as trapezoid
@@ -31,5 +20,4 @@ from gbeam.motion.profiles.profile import smoothed as smoothed
 from gbeam.motion.profiles.pulse import Sine as Sine
 from gbeam.motion.profiles.pulse import SmoothStep as SmoothStep
 from gbeam.motion.protocol import Motion as Motion
-from gbeam.motion.records.record import read_record as read_record
 from gbeam.results.parts import Base as Base

@@ -190,19 +190,14 @@ def _sensors(parts: Collector, tables: Mapping[str, schema.Sensor], points: tupl
 
 def _response(parts: Collector, table: schema.Response, motions: Mapping[str, Motion]) -> ResponseSettings | None:
     """Settings and, where no duration is written, the time that the records cover; None where there is neither."""
-    from gbeam import integrate
     from gbeam.analysis.response.problem import Initial
     from gbeam.analysis.response.settings import ResponseSettings
+    from gbeam.integrate.schemes import SCHEMES
     from gbeam.motion import Flight
 
-    schemes: dict[str, Callable[..., object]] = {
-        "newmark": integrate.newmark,
-        "hht": integrate.hht,
-        "generalized-alpha": integrate.generalized_alpha,
-    }
     if table.parameters:
         # Made for its refusals only: the analysis makes its own.
-        parts.attempt("response", schemes[table.scheme], **table.parameters)
+        parts.attempt("response", SCHEMES[table.scheme], **table.parameters)
     records = {name: each for name, each in motions.items() if isinstance(each, Flight) and each.record is not None}
     covered = [extent for each in records.values() if (extent := each.acceleration.extent) is not None]
     start = max((first for first, _ in covered), default=0.0)

@@ -16,9 +16,10 @@ from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.step_errors import Estimate, Run, of_everything, ratio
 from gbeam.arrays.namespace import is_traced, namespace
 from gbeam.errors import InputError
+from gbeam.guards.checks import choice
 from gbeam.integrate.driver import integrate
 from gbeam.integrate.equations import Trajectory
-from gbeam.integrate.schemes import Scheme, gauss, generalized_alpha, hht, newmark
+from gbeam.integrate.schemes import SCHEMES, Scheme
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.results.errors import StepErrors
@@ -39,20 +40,8 @@ Plan = Generator[tuple[float, str], Run, tuple[Run, StepErrors]]
 
 def scheme_of(settings: ResponseSettings) -> Scheme:
     """The integration scheme that the settings name."""
-    match settings.integrator:
-        case "newmark":
-            return newmark(**settings.parameters)
-        case "hht":
-            return hht(**{"alpha": -0.1, **settings.parameters})
-        case "generalized-alpha":
-            return generalized_alpha(**{"rho_inf": 0.9, **settings.parameters})
-        case "gauss":
-            return gauss()
-    raise InputError(
-        "response.integrator",
-        f"is {settings.integrator!r}",
-        "choose newmark, hht, generalized-alpha or gauss",
-    )
+    choice("response.integrator", str(settings.integrator), SCHEMES)
+    return SCHEMES[str(settings.integrator)](**settings.parameters)
 
 
 def first_step(structure: Structure, motion: Motion, settings: ResponseSettings) -> float:
