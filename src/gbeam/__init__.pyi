@@ -43,13 +43,13 @@ from gbeam.mechanics.tree.system import Place as Place
 from gbeam.mechanics.tree.system import PointForce as PointForce
 from gbeam.mechanics.tree.system import RigidBody as RigidBody
 from gbeam.mechanics.tree.system import System as System
-from gbeam.motion.bases.flight import Flight as Flight
-from gbeam.motion.bases.hub import Hub as Hub
 from gbeam.motion.centrifuge.centrifuge import Centrifuge as Centrifuge
 from gbeam.motion.centrifuge.limits import AxisLimit as AxisLimit
 from gbeam.motion.centrifuge.limits import MachineLimits as MachineLimits
 from gbeam.motion.centrifuge.limits import machines as machines
 from gbeam.motion.centrifuge.target.build import build_target as build_target
+from gbeam.motion.flight import Flight as Flight
+from gbeam.motion.hub import Hub as Hub
 from gbeam.motion.profiles.combine import Sum as Sum
 from gbeam.motion.profiles.combine import vector as vector
 from gbeam.motion.profiles.piecewise import constant as constant

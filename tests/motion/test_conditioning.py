@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from gbeam import Flight, InputError
-from gbeam.motion.bases.conditioning import dropout, flat_tops, spikes
-from gbeam.motion.bases.flight import body_rates
+from gbeam.motion.flight import body_rates
+from gbeam.motion.records.conditioning import dropout, flat_tops, spikes
 from gbeam.motion.records.record import Conditioning, FlightRecord, Rates, read_flight
 
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"

@@ -16,7 +16,7 @@ import gbeam as gb
 from gbeam.errors import InputError
 from gbeam.guards.limits import NESTING, SCENARIO_BYTES, in_bytes, refuse_large_file
 from gbeam.guards.units import UnitError, quantity
-from gbeam.motion.bases.conditioning import filtered
+from gbeam.motion.records.conditioning import filtered
 from gbeam.scenario import ScenarioError, load, loads
 from gbeam.scenario.text.overrides import excess
 

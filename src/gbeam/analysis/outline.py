@@ -9,7 +9,7 @@ import numpy as np
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.joints import GROUND
 from gbeam.mechanics.tree.system import RigidBody, System
-from gbeam.motion.bases.flight import Flight
+from gbeam.motion.flight import Flight
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.samples import attitude
 from gbeam.results.parts import Outline

@@ -4,12 +4,12 @@ Every motion is a :class:`Motion`: it has a `kind`, ``base(t)`` (a :class:`Base`
 end)``; a hub that is `free` to turn has a torque in place of a motion.
 """
 
-from gbeam.motion.bases.flight import Flight as Flight
-from gbeam.motion.bases.hub import Hub as Hub
 from gbeam.motion.centrifuge.centrifuge import Centrifuge as Centrifuge
 from gbeam.motion.centrifuge.limits import AxisLimit as AxisLimit
 from gbeam.motion.centrifuge.limits import MachineLimits as MachineLimits
 from gbeam.motion.centrifuge.limits import machines as machines
+from gbeam.motion.flight import Flight as Flight
+from gbeam.motion.hub import Hub as Hub
 from gbeam.motion.profiles.combine import Sum as Sum
 from gbeam.motion.profiles.combine import vector as vector
 from gbeam.motion.profiles.piecewise import constant as constant

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import holds_jax
 from gbeam.guards.checks import implausible
-from gbeam.motion.bases.flight import Flight
+from gbeam.motion.flight import Flight
 from gbeam.results.parts import Base
 from gbeam.results.result import part_words
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from gbeam import motion
 from gbeam.motion import Profile
-from gbeam.motion.bases.flight import body_rates
+from gbeam.motion.flight import body_rates
 from gbeam.motion.records.record import Conditioning, FlightRecord, Rates, read_flight
 from gbeam.scenario import schema
 from gbeam.scenario.schema.profile import Record

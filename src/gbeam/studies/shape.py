@@ -21,7 +21,7 @@ from gbeam.guards.checks import choice
 from gbeam.mechanics.models import KINDS
 from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.system import System
-from gbeam.motion.bases.hub import Hub
+from gbeam.motion.hub import Hub
 from gbeam.motion.profiles.piecewise import constant
 from gbeam.printable import advise
 from gbeam.progress import Progress

@@ -29,7 +29,7 @@ from gbeam.integrate.tangent import tangent
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.system import System, stations_of
-from gbeam.motion.bases.hub import Hub
+from gbeam.motion.hub import Hub
 from gbeam.motion.profiles.profile import Profile
 from gbeam.numerics.eigen import RIGID, Linear, symmetric, symmetric_modes
 from gbeam.numerics.series import STEP

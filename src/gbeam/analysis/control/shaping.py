@@ -19,7 +19,7 @@ from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
-from gbeam.motion.bases.hub import Hub
+from gbeam.motion.hub import Hub
 from gbeam.motion.profiles.pulse import SplineProfile
 from gbeam.numerics.minimise import solve_quadratic
 from gbeam.progress import Progress, tell

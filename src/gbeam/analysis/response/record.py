@@ -22,8 +22,8 @@ from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import accelerations, section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.motion import Centrifuge
-from gbeam.motion.bases.flight import Flight
 from gbeam.motion.centrifuge.kinematics import axes_result
+from gbeam.motion.flight import Flight
 from gbeam.motion.protocol import Motion
 from gbeam.results.errors import ErrorEstimate, Errors, StepErrors
 from gbeam.results.machine import AxesResult

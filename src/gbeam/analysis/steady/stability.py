@@ -25,7 +25,7 @@ from gbeam.mechanics.models import Model
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
-from gbeam.motion.bases.hub import Hub
+from gbeam.motion.hub import Hub
 from gbeam.motion.profiles.profile import Profile
 from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress, tell

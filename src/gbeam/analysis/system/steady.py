@@ -21,7 +21,7 @@ from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.signals import deforming, local_names
 from gbeam.mechanics.tree.steps import turned_on
 from gbeam.mechanics.tree.system import System
-from gbeam.motion.bases.hub import Hub
+from gbeam.motion.hub import Hub
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.balance import balanced, carried, following
 from gbeam.numerics.eigen import (

@@ -17,7 +17,7 @@ from gbeam.arrays.tree import record, static
 from gbeam.mechanics.equations.inertia import Inertia
 from gbeam.mechanics.equations.linear import Coefficients, LoadTerms
 from gbeam.mechanics.equations.virtual_work import LoadWork
-from gbeam.motion.bases.hub import Mount
+from gbeam.motion.hub import Mount
 from gbeam.results.parts import Base
 
 Array = Any

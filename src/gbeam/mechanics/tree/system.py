@@ -35,7 +35,7 @@ from gbeam.mechanics.tree.frames import Frame
 from gbeam.mechanics.tree.joints import GROUND, Joint
 from gbeam.mechanics.tree.signals import drives_of, measurable
 from gbeam.mechanics.tree.steps import about
-from gbeam.motion.bases.hub import Hub
+from gbeam.motion.hub import Hub
 from gbeam.motion.profiles.combine import as_profile
 from gbeam.motion.protocol import Motion
 from gbeam.printable import advise

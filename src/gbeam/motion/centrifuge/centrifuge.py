@@ -15,13 +15,13 @@ from gbeam.constants import STANDARD_GRAVITY, InverseName, Mounting, Start
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, positive, possible, vector
-from gbeam.motion.bases.flight import Flight
 from gbeam.motion.centrifuge.course import INVERSES, Course, prepare
 from gbeam.motion.centrifuge.inverses.instant import Geometry, Inverse
 from gbeam.motion.centrifuge.kinematics import Axes, control_point_load, forward, moved
 from gbeam.motion.centrifuge.limits import Ends, Limits, Machine, MachineLimits, usage
 from gbeam.motion.centrifuge.target.reachability import shortfalls
 from gbeam.motion.centrifuge.target.target import Episode, Target
+from gbeam.motion.flight import Flight
 from gbeam.motion.profiles.combine import Turned
 from gbeam.motion.profiles.profile import Profile, sampled
 from gbeam.results.machine import LimitUse, Shortfall

@@ -15,9 +15,9 @@ from gbeam.guards.arguments import typed
 from gbeam.guards.limits import BINARY_BYTES, SAMPLES, refuse_large_file, refuse_more
 from gbeam.io.binary import is_binary, read_binary
 from gbeam.io.table import NO_COLUMN, Clock, Table
-from gbeam.motion.bases.conditioning import FEWEST, Floats, filtered, spikes, without_spikes
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
 from gbeam.motion.records.columns import UNITS, load_factors, mirrored, refuse_other_kinds, unit_of
+from gbeam.motion.records.conditioning import FEWEST, Floats, filtered, spikes, without_spikes
 from gbeam.motion.records.soundness import CHECKS, Samples, oddities, refuse_unsound, summary
 from gbeam.motion.records.text import Span, check_interval, check_sampling, part_within, read_text
 

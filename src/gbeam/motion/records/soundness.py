@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
-from gbeam.motion.bases.conditioning import Floats, dropout, flat_tops, spikes, without_spikes
 from gbeam.motion.records.columns import UNITS
+from gbeam.motion.records.conditioning import Floats, dropout, flat_tops, spikes, without_spikes
 from gbeam.numerics.samples import true_runs
 from gbeam.results.description import Level, RecordSummary, Vector
 

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from gbeam.errors import InputError
 from gbeam.guards.limits import BINARY_BYTES, TEXT_BYTES, in_bytes, refuse_large_file
 from gbeam.io.table import Clock, Column, Table, is_clock
-from gbeam.motion.bases.conditioning import FEWEST, UNEVEN
 from gbeam.motion.records.columns import UNITS, is_unit
+from gbeam.motion.records.conditioning import FEWEST, UNEVEN
 
 Span = tuple[float | str | None, float | str | None]
 

@@ -1,1 +1,0 @@
-"""Motions of a base: flight (prescribed or recorded), a turning hub, how a beam is mounted on one."""
