@@ -24,6 +24,17 @@ from gbeam.results.study import ModelStudy, Study, SystemStudy
 from gbeam.results.system import SystemModes, SystemResponse, SystemRest, named
 
 Describe = Callable[[], Figure]
+# Of kinds that always have the same.
+_OF: dict[type, dict[str, Callable[..., Figure]]] = {
+    Modes: {"modes": steady.modes},
+    Campbell: {"campbell": steady.campbell},
+    CriticalMap: {"critical": steady.critical_map},
+    Fit: {"fit": studies.fit},
+    Optimum: {"optimum": studies.optimum},
+    ShapedCommand: {"shaping": studies.shaping, "robustness": studies.robustness},
+    SolidStress: {"stress": systems.stress},
+    SpecimenLoads: {"specimen": systems.specimen},
+}
 
 
 def figure_of(result: Any, what: str = "", title: str = "") -> Figure:
@@ -57,23 +68,8 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
             return {"shape": partial(steady.static, [result], title), **(along or {})}
         case MachinePlan():
             return _of_machine(result, result.axes, title)
-        case Modes():
-            return {"modes": partial(steady.modes, result, title)}
-        case Campbell():
-            return {"campbell": partial(steady.campbell, result, title)}
-        case CriticalMap():
-            return {"critical": partial(steady.critical_map, result, title)}
         case Sweep():
             return _of_sweep(result, title)
-        case Fit():
-            return {"fit": partial(studies.fit, result, title)}
-        case Optimum():
-            return {"optimum": partial(studies.optimum, result, title)}
-        case ShapedCommand():
-            return {
-                "shaping": partial(studies.shaping, result, title),
-                "robustness": partial(studies.robustness, result, title),
-            }
         case SystemStudy():
             named = {name: _of_system(each, title or result.title) for name, each in result.responses.items()}
             every = next(iter(named.values())) if len(named) == 1 else _by_motion(named)
@@ -85,13 +81,9 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
             return {"rest": partial(systems.rest, result, title), **beams}
         case SystemModes():
             return {"modes": partial(systems.modes, result, title)} if len(result.frequency) else {}
-        case SolidStress():
-            return {"stress": partial(systems.stress, result, title)}
-        case SpecimenLoads():
-            return {"specimen": partial(systems.specimen, result, title)}
         case Sensitivity():
             return {name: partial(studies.sensitivity, result, name, title) for name in result.measures}
-    return {}
+    return {name: partial(describe, result, title) for name, describe in _OF.get(type(result), {}).items()}
 
 
 def _by_motion(named: Mapping[str, dict[str, Describe]]) -> dict[str, Describe]:

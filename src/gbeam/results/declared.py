@@ -76,7 +76,8 @@ def quantity(
 ) -> Any:
     """Declare a field of a result; see :class:`Declaration`, where an empty name or key is the field's own.
 
-    Dimensions are one text, "time point axis"; an `empty` array of them is the default of what may be left out.
+    Dimensions are one text, "time point axis"; an `empty` array of them is the default of what may be left out. A key
+    that is not given is the field's own name, and none along time: JSON has no histories.
     """
     along, at = _placed(dims, key)
     declaration = Declaration(words, unit, along, role, name, at, note, frame, flags, optional)

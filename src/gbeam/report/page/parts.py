@@ -7,7 +7,7 @@ import hashlib
 import html
 import math
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import groupby
 from typing import Any
 
@@ -104,6 +104,11 @@ def _cell(cell: Cell, numeric: bool) -> str:
 
 def _class(names: str) -> str:
     return f' class="{names}"' if names else ""
+
+
+def under(place: str, variables: Mapping[str, Any]) -> dict[str, Any]:
+    """Variables of a file whose names begin so, by the rest of their names."""
+    return {name.removeprefix(place): each for name, each in variables.items() if name.startswith(place)}
 
 
 COLUMNS = 600  # across a plot, of which a line has no more samples than show

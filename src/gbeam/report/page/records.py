@@ -10,6 +10,7 @@ import numpy as np
 
 from gbeam.figures import Describe, figures_of
 from gbeam.io.layout import name_of, pattern_of
+from gbeam.report.page.parts import under
 from gbeam.results.cases import BOUNDS, ORDERS, Indices, Parameter, Sensitivity, Statistics, Sweep
 from gbeam.results.comparison import Comparison, MachinePlan
 from gbeam.results.declared import INSIDE, NAMES, Declaration, annotation, declarations, record_in
@@ -48,7 +49,7 @@ def figures_in(kind: str, facts: Facts, variables: Facts) -> dict[str, Describe]
         study = _study(record, facts, variables)
         return figures_of(study) if study.responses else {}
     if record.listed_by:
-        every = [(name, each, _under(f"motions/{name}/", variables)) for name, each in facts["motions"].items()]
+        every = [(name, each, under(f"motions/{name}/", variables)) for name, each in facts["motions"].items()]
         known = (each for each in every if needed is None or needed in each[-1])
         return figures_of(tuple(read(record, each, v, **{record.listed_by: name}) for name, each, v in known))
     return figures_of(read(record, facts, variables)) if needed is None or needed in variables else {}
@@ -95,7 +96,7 @@ def _stored(kind: type, name: str, each: Declaration, facts: Facts, v: Facts, pa
         if each.role == "part" and _has(inside, v, within := pattern_of(each, pattern)):
             return read(inside, told or {}, v, within)
         if each.role == "rows" and isinstance(told, dict):
-            return {row: read(inside, one, {**v, **_under(f"{row}_", v)}) for row, one in told.items()}
+            return {row: read(inside, one, {**v, **under(f"{row}_", v)}) for row, one in told.items()}
     elif each.role == "coordinate" or (each.role == "variable" and stands in v):
         stored = v.get(each.dims[-1] if each.role == "coordinate" else stands)
         if stored is None or isinstance(stored, str):
@@ -165,10 +166,6 @@ def _bare(value: Any, written: str, each: Declaration) -> Any:
     return np.nan if value is None and written == "float" else value
 
 
-def _under(place: str, variables: Facts) -> dict[str, Any]:
-    return {name.removeprefix(place): each for name, each in variables.items() if name.startswith(place)}
-
-
 def _array(values: Any) -> Floats:
     """Numbers of JSON, NaN for null."""
     return np.array(values, dtype=float)
@@ -191,11 +188,11 @@ def _study(kind: type[_R], facts: Facts, variables: Facts) -> Any:
     of: Any = record_in(kind, "responses")
     responses, comparisons = dict[str, Any](), []
     for name, each in facts["motions"].items():
-        v = _under(f"motions/{name}/", variables)
+        v = under(f"motions/{name}/", variables)
         if "time" in v:
             responses[name] = read(of, each, v, name=name)
     for each in facts["comparisons"]:
-        v = _under(f"comparisons/{each['centrifuge']}/", variables)
+        v = under(f"comparisons/{each['centrifuge']}/", variables)
         if "time" in v and each["flight"] in responses:
             stations = getattr(responses[each["flight"]], "stations", None)
             comparisons.append(read(Comparison, each, v if stations is None else {"station": stations, **v}))

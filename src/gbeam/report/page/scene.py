@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from gbeam.report.page.parts import Numbers, Ref
+from gbeam.report.page.parts import Numbers, Ref, under
 from gbeam.report.words import number
 from gbeam.results.modal import Modes
 from gbeam.results.result import Floats
@@ -35,8 +35,7 @@ def scene(motions: Mapping[str, str], variables: Variables, numbers: Numbers) ->
     """Return the motions that have an outline, and the first one's time of largest deflection, if any."""
     shown = []
     for name, environment in motions.items():
-        place = f"motions/{name}/"
-        of = {key.removeprefix(place): each for key, each in variables.items() if key.startswith(place)}
+        of = under(f"motions/{name}/", variables)
         if "outline" in of:
             shown.append((motion(name, environment, of, numbers), of["outline_time"], of["outline"]))
         elif "surface_vertices" in of:
@@ -75,8 +74,7 @@ def motion(name: str, environment: str, variables: Variables, numbers: Numbers) 
 def _solid(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple[dict[str, Any], Floats, Floats]:
     """One motion of a solid: its surface in a few shapes; times and displacements (t, v, 3), the largest last."""
     some, at = v["surface_time"], v["surface_vertices"]
-    of = {key.removeprefix("surface_"): each for key, each in v.items() if key.startswith("surface_")}
-    surface, tip = _surface(of, v.get("solid_von_mises"), numbers)
+    surface, tip = _surface(under("surface_", v), v.get("solid_von_mises"), numbers)
     header = _header(name, environment, [{"surface": surface}], numbers.add(some), _largest(tip))
     header |= _around(at, numbers) | _carried(v, _indices(v["time"], some), at, numbers)
     return header, some, tip
@@ -87,7 +85,7 @@ def _rigid(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple
     index = np.arange(0, len(v["time"]), -(-len(v["time"]) // TIMES))
     corners, bolts = v["specimen_corner_place"], v.get("specimen_bolt_place", np.empty((0, 3)))
     low, high = corners.min(axis=0), corners.max(axis=0)
-    box = {"size": (high - low).tolist(), "centre": ((low + high) / 2).tolist(), "rotation": np.eye(3).ravel().tolist()}
+    box = _box(high - low, (low + high) / 2, np.eye(3))
     still = np.zeros((len(index), 10))
     still[:, 3] = 1.0  # at the base and along its axes
     body = {"frame": numbers.add(still), "box": box, "points": np.asarray(bolts).tolist()}
@@ -188,13 +186,12 @@ def _system(name: str, environment: str, v: Variables, numbers: Numbers) -> tupl
         frames[body] = turn, at, shift
         part: dict[str, Any] = {"frame": numbers.add(np.concatenate([at, attitude, shift], axis=-1))}
         if body in beams:
-            of = {key.removeprefix(f"{body}_"): each for key, each in v.items() if key.startswith(f"{body}_")}
+            of = under(f"{body}_", v)
             part["beam"] = _beam(of, index, numbers)
             tip = of["outline"][:, -1:]
             deflected = tip if _largest(tip) > _largest(deflected) else deflected
         elif f"surface_{body}_vertices" in v:
-            start = f"surface_{body}_"
-            of = {key.removeprefix(start): each for key, each in v.items() if key.startswith(start)}
+            of = under(f"surface_{body}_", v)
             of["sizes"] = np.stack([np.interp(some, v[f"{body}_surface_time"], each) for each in of["sizes"].T], axis=1)
             part["surface"], moved = _surface(of, v.get(f"{body}_von_mises"), numbers)
             deflected = moved if _largest(moved) > _largest(deflected) else deflected
@@ -205,11 +202,7 @@ def _system(name: str, environment: str, v: Variables, numbers: Numbers) -> tupl
             part["points"] = [turn[0].inv().apply(place[0, i] - at[0]).tolist() for i in others]
             if "box" in v and np.isfinite(v["box"][k]).all():  # no variable where all are flexible
                 size, centre, rotation = (v[key][k] for key in ("box", "box_centre", "box_rotation"))
-                part["box"] = {
-                    "size": size.tolist(),
-                    "centre": centre.tolist(),
-                    "rotation": np.ravel(rotation).tolist(),
-                }
+                part["box"] = _box(size, centre, rotation)
                 corners += [at[:, None] + turn.apply(centre + rotation @ (sign * size / 2))[:, None] for sign in SIGNS]
         parts.append(part | ({"joint": True} if v["joint_kind"][k] not in ("fixed", "free") else {}))
     middle, radius = _view(np.concatenate([place, *corners], axis=1))
@@ -219,6 +212,10 @@ def _system(name: str, environment: str, v: Variables, numbers: Numbers) -> tupl
     header |= {"middle": numbers.add(middle), "radiusShown": radius}
     still = np.concatenate([np.zeros((1, 3)), v["undeformed"], *(each[0] for each in corners)])
     return header | _carried(v, index, still, numbers), some, deflected
+
+
+def _box(size: Floats, centre: Floats, rotation: Floats) -> dict[str, Any]:
+    return {"size": size.tolist(), "centre": centre.tolist(), "rotation": np.ravel(rotation).tolist()}
 
 
 def _view(place: Floats) -> tuple[Floats, float]:
@@ -258,7 +255,7 @@ def shapes(modes: Modes, variables: Variables, numbers: Numbers) -> dict[str, An
     ways = zip(modes.frequency, modes.direction, strict=True)
     labels = [f"{i}: {number(frequency)} Hz, {way}" for i, (frequency, way) in enumerate(ways, 1)]
     if "surface_vertices" in variables:
-        surface = {key.removeprefix("surface_"): each for key, each in variables.items() if key.startswith("surface_")}
+        surface = under("surface_", variables)
         return {"labels": labels, "motions": [_of_surface(k, each, surface, numbers) for k, each in enumerate(labels)]}
     x = modes.stations
     some = np.unique(np.linspace(0, len(x) - 1, SHOWN).round().astype(int))
