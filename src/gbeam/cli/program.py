@@ -24,8 +24,6 @@ from gbeam.questions import QUESTIONS
 # `gbeam --help` imports none.
 _FILES = {
     "run": ("responses", ""),
-    "campbell": ("questions", ""),
-    "critical-speed": ("questions", ""),
     "linearize": ("questions", "State-space model A, B, C, D about the equilibrium at one time of a motion."),
     "models": ("responses", "Compute a scenario by every model, and compare them with the exact one."),
     "plan": ("centrifuge", ""),

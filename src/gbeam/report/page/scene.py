@@ -134,18 +134,15 @@ def _carried(v: Variables, index: Any, places: Floats, numbers: Numbers) -> dict
     if actual is None:
         return header
     time, place, turn = v["time"], v.get("control_place"), v.get("turn")
-    return (
-        header
-        | {
-            "reference": numbers.add(v["load_reference"][index]),
-            "controlPlace": [float(v["control_point"]), 0.0, 0.0] if place is None else np.ravel(place).tolist(),
-            "extent": [places.min(axis=0).tolist(), places.max(axis=0).tolist()],
-            "axes": numbers.add(v["axis_angle"][index]),
-            "arm": float(v["arm"]),
-            "span": [max(float(v["flight_from"]), float(time[0])), min(float(v["flight_to"]), float(time[-1]))],
-        }
-        | ({} if turn is None else {"turn": np.ravel(turn).tolist()})
-    )
+    header |= {
+        "reference": numbers.add(v["load_reference"][index]),
+        "controlPlace": [float(v["control_point"]), 0.0, 0.0] if place is None else np.ravel(place).tolist(),
+        "extent": [places.min(axis=0).tolist(), places.max(axis=0).tolist()],
+        "axes": numbers.add(v["axis_angle"][index]),
+        "arm": float(v["arm"]),
+        "span": [max(float(v["flight_from"]), float(time[0])), min(float(v["flight_to"]), float(time[-1]))],
+    }
+    return header if turn is None else header | {"turn": np.ravel(turn).tolist()}
 
 
 def _beam(variables: Variables, index: Any, numbers: Numbers) -> dict[str, Any]:
