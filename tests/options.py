@@ -23,5 +23,6 @@ def choose(beam: gb.Beam, flight: gb.Flight, case: gb.Case) -> None:
     gb.Centrifuge(flight, arm=3.3, control_point=0.1, gravity=False, inverse="quasistatic")  # type: ignore[arg-type]
     gb.Centrifuge(flight, arm=3.3, control_point=0.1, gravity=False, mounting="down")  # type: ignore[arg-type]
     gb.Centrifuge(flight, arm=3.3, control_point=0.1, gravity=False, start="yawed")  # type: ignore[arg-type]
+    gb.linearize(gb.assemble(beam, "FOAM", z=3), flight, at="begin")  # type: ignore[arg-type]
     gb.ResponseSettings(1.0, integrator="rk4")  # type: ignore[arg-type]
     gb.compare_models(case, ["FOAM", "FOMA"])  # type: ignore[list-item]

@@ -66,6 +66,7 @@ class Bar:
         return f"{on_one_line(what)}: {share:.0%}{_left(monotonic() - self._since, share)}"
 
     def _show(self) -> None:
+        """Draw a bar after some patience, or write lines where it is no terminal, until all is over."""
         every = _interval()
         if self._over.wait(self._patience if every is None else every):
             return

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from pathlib import Path
 
@@ -45,14 +46,18 @@ def test_a_rerun_removes_the_plots_of_the_run_before_it_and_nothing_else(tmp_pat
     assert {file.name for file in tmp_path.iterdir()} == {"facts.json", *kept, *plots}
 
 
+@pytest.mark.parametrize("verb", ["check", "static"])
 def test_what_a_scenario_means_folds_on_a_narrow_terminal(
-    fast: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    verb: str, fast: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["check", str(fast)]) == 0
+    """As do the names of the files that are written."""
+    monkeypatch.chdir(tmp_path)
+    words = [verb, str(fast), *([] if verb == "check" else ["--at", "0.2 s", "--out", "a/folder"])]
+    assert main(words) == 0
     plain = capsys.readouterr().out
     assert max(map(len, plain.splitlines())) > 40  # a file takes any width
     monkeypatch.setenv("COLUMNS", "40")
     monkeypatch.setattr("sys.stdout.isatty", lambda: True)
-    assert main(["check", str(fast)]) == 0
-    folded = capsys.readouterr().out
-    assert max(map(len, folded.splitlines())) <= 40 and folded.split() == plain.split()
+    assert main(words) == 0
+    folded = re.sub(r"\x1b\[[\d;]*m", "", capsys.readouterr().out)
+    assert max(map(len, folded.splitlines())) <= 40 and (verb != "check" or folded.split() == plain.split())

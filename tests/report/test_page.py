@@ -157,6 +157,18 @@ def test_no_report_without_a_result(tmp_path: Path) -> None:
         report_of_file(tmp_path / "none.nc")
 
 
+OF_0_2 = sorted((Path(__file__).parents[1] / "data" / "of_0.2").glob("*.json"))
+
+
+@pytest.mark.parametrize("file", OF_0_2, ids=lambda file: file.stem)
+def test_what_0_2_wrote_has_a_page(file: Path) -> None:
+    """With all that it says, also where a page says more now."""
+    page, known = report_of_file(file), json.loads(file.read_text(encoding="utf-8"))
+    assert f"gbeam {file.stem}" in page and "done" in page
+    for key in ("control_point", "searched_to", "arm", "accurate_to"):
+        assert key not in known or html.escape(key.replace("_", " ")) in page
+
+
 def test_a_kind_without_a_page_of_its_own_shows_its_quantities() -> None:
     system = gb.linearize(gb.assemble(BEAM, "FOAM", y=1), gb.Hub(radius=0.5))
     page = report_of(system)

@@ -148,7 +148,7 @@ def list_files(folder: Path | None, files: Sequence[Path]) -> None:
     if folder is not None and files:
         kept = [file for file in files if file.suffix != ".svg"]
         names = [f"{file.stem}.png/.svg" if file.suffix == ".png" else file.name for file in kept]
-        print(printable(f"\n{len(files)} files in {folder}: {', '.join(names)}"))
+        show_lines([("", ""), (f"{len(files)} files in {folder}: {', '.join(names)}", "")])
 
 
 def write_json(file: Path, facts: Mapping[str, Any]) -> None:

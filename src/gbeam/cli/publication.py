@@ -57,6 +57,7 @@ def publish(folder: Path, make: Callable[[Path], object]) -> list[Path]:
 
 
 def _published(folder: Path, make: Callable[[Path], object]) -> list[Path]:
+    """Make files in a hidden folder, then move them into the folder at once."""
     new = not folder.exists()
     parent = folder.absolute().parent if new else folder
     parent.mkdir(parents=True, exist_ok=True)

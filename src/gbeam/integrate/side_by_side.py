@@ -212,6 +212,8 @@ def integrate_together(runs: Sequence[Run]) -> list[Trajectory | None]:
 
 
 def _stacked(parts: Sequence[Any], axis: int = 0) -> Any:
+    """Stack the arrays of records of one form along an axis."""
+
     def stack(first: Any, *others: Any) -> Any:
         if all(other is first for other in others):  # of one structure, most often
             return np.repeat(np.expand_dims(first, axis), len(parts), axis)

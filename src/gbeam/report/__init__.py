@@ -38,11 +38,16 @@ def blocks_of(
         return _unnamed(facts, words)
     name = re.sub(r"(?<!^)(?=[A-Z])", "_", kind).lower()
     blocks: Iterable[Block] = getattr(import_module(f"gbeam.report.{module}"), name)(facts, **(options or {}))
-    return blocks
+    if "form" in facts:
+        return blocks
+    try:
+        return list(blocks)
+    except LookupError:  # of 0.2, which did not yet say all that is told now
+        return _unnamed(facts, words)
 
 
 def _unnamed(facts: Facts, words: Mapping[str, str] | None) -> Iterable[Block]:
-    """Yield the quantities of a kind that no module describes."""
+    """Yield the quantities of a result as they are, which no module describes."""
     yield Section("View", (Place("viewer"),))
     yield from quantities(facts, words=words)
     yield Section("Figures", (FIGURES,))

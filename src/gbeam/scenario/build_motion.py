@@ -64,7 +64,7 @@ def centrifuge_of(
         machine = motion.machines[table.machine]
         arm, idle = machine.arm if arm is None else arm, machine.idle if idle is None else idle
         example = machine.limits
-    others = given(table, "kind", "tracks", "machine", "arm", "idle", "limits", "commands", "accept")
+    others = values_of(table, "kind", "tracks", "machine", "arm", "idle", "limits", "commands", "accept")
     limits = _limits(table.limits, example)
     return motion.Centrifuge(flight, arm=arm, idle=idle, limits=limits, **others).over(*span, ahead=ahead)
 
@@ -72,11 +72,11 @@ def centrifuge_of(
 def _limits(table: schema.Limits, example: motion.MachineLimits) -> motion.MachineLimits:
     """The limits that are given, and the example machine's where none is."""
     named = {name: (getattr(table, name), getattr(example, name)) for name in ("axis1", "axis2", "axis3")}
-    axes = {name: replace(otherwise, **given(axis)) for name, (axis, otherwise) in named.items()}
-    return replace(example, **given(table, *axes), **axes)
+    axes = {name: replace(otherwise, **values_of(axis)) for name, (axis, otherwise) in named.items()}
+    return replace(example, **values_of(table, *axes), **axes)
 
 
-def given(table: BaseModel, *apart: str) -> dict[str, Any]:
+def values_of(table: BaseModel, *apart: str) -> dict[str, Any]:
     """Values of a table by their keys, but some apart and what is left out."""
     return {key: value for key, value in table if value is not None and key not in apart}
 
@@ -86,7 +86,7 @@ def _hub(parts: Collector, where: str, table: schema.Hub) -> motion.Motion | Non
     driven = {name: profile_of(parts, f"{where}.{name}", profile) for name, profile in driving.items()}
     if None in driven.values():
         return None
-    return parts.attempt(where, motion.Hub, **driven, **given(table, "kind", "rate", "torque"))
+    return parts.attempt(where, motion.Hub, **driven, **values_of(table, "kind", "rate", "torque"))
 
 
 def components(parts: Collector, where: str, table: Any) -> Profile | None:
@@ -126,7 +126,7 @@ def _record(table: Record) -> FlightRecord:
     if table.p is not None and table.q is not None and table.r is not None and table.rate_unit is not None:
         rates = Rates(table.p, table.q, table.r, table.rate_unit)
     conditions = {key: getattr(table, key) for key in ("cutoff", "resample", "despike", "skip_checks")}
-    columns = given(table, *conditions, "file", "p", "q", "r", "rate_unit", "begin", "to")
+    columns = values_of(table, *conditions, "file", "p", "q", "r", "rate_unit", "begin", "to")
     span = table.begin, table.to
     return read_flight(table.file, **columns, rates=rates, conditioning=Conditioning(**conditions), span=span)
 

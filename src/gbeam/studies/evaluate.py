@@ -206,8 +206,8 @@ def rows(inquiry: Inquiry, tasks: Sequence[Task]) -> list[Row]:
 
 
 def _together(inquiry: Inquiry, tasks: Sequence[Task]) -> list[Row]:
-    computed: list[Row] = []
-    posed: list[Posed] = []
+    """Rows of cases, of which those with equal settings are integrated together."""
+    computed, posed = list[Row](), list[Posed]()
     structures: dict[tuple[str, ...], Structure] = {}
     for number, overrides in tasks:
         try:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -277,7 +277,7 @@ def linearize(
     gauges: Sequence[Gauge] = (),
     inputs: Sequence[str] | None = None,
     outputs: Sequence[str] | None = None,
-    at: str = "rest",
+    at: Literal["rest", "start"] = "rest",
     loop: str = "open",
     name: str = "",
 ) -> StateSpace:

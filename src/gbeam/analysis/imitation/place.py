@@ -16,7 +16,7 @@ import numpy as np
 
 from gbeam.analysis.imitation.accounting import largest_load, largest_pair, times_between
 from gbeam.analysis.imitation.comparison import CUTOFF, compare
-from gbeam.analysis.imitation.place_measures import Answers, Choice, Histories, Turn, bringing
+from gbeam.analysis.imitation.place_measures import Answers, Choice, Histories, Turn, Ways, bringing
 from gbeam.analysis.imitation.specimen import specimen_of
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
@@ -235,7 +235,7 @@ def usual(structure: Structure | System) -> dict[str, float]:
     return {"tip" if free else "load": 1.0}
 
 
-def usual_turns(structure: Structure | System) -> str:
+def usual_turns(structure: Structure | System) -> Ways:
     """Ways round where none are named: those of a beam are its mountings."""
     beam = isinstance(structure, Structure) and structure.source is not None
     return "own" if beam else "right-angles"

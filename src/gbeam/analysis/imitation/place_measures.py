@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
-from typing import Any
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -28,7 +28,7 @@ from gbeam.numerics.samples import displacement
 from gbeam.results.result import Flags, Floats
 
 Turn = tuple[float, float, float]
-WAYS = ("own", "right-angles", "any")
+Ways = Literal["own", "right-angles", "any"]
 SAME = 1e-9
 _FACTOR = 4.0  # of the centrifuge's own smoothing, either way
 
@@ -98,7 +98,11 @@ def width_of(centrifuge: Centrifuge) -> float:
 
 @typed
 def choice_of(
-    centrifuge: Centrifuge, smoothing: Sequence[float] = (), *, limited: bool = True, turns: str = "own"
+    centrifuge: Centrifuge,
+    smoothing: Sequence[float] = (),
+    *,
+    limited: bool = True,
+    turns: Ways = "own",
 ) -> Choice:
     """Return both mountings of a centrifuge, its own first, and widths of smoothing.
 
@@ -138,7 +142,7 @@ def choice_of(
     ends = sorted(smoothing) or searched
     widths = coarse(ends[0], ends[-1])
 
-    choice("turns", turns, WAYS)
+    choice("turns", turns, get_args(Ways))
     others = tuple(name for name in MOUNTINGS if name != centrifuge.mounting)
     return Choice(
         Altered(centrifuge), (centrifuge.mounting, *others), widths, len(widths) > 1, limited,
@@ -146,7 +150,7 @@ def choice_of(
     )  # fmt: skip
 
 
-def turns_of(turn: Turn, ways: str) -> tuple[Turn, ...]:
+def turns_of(turn: Turn, ways: Ways) -> tuple[Turn, ...]:
     """Turns by name: the scenario's own first, then those that bring other directions of the specimen along axis 3,
     each once of the two that are opposite, which are the two mountings.
     """

@@ -118,6 +118,7 @@ class SeriesField:
         return self._moved(self._strains(q), self._strains(qd), self._strains(qdd))
 
     def _moved(self, at: Strains, rate: Strains = STILL, change: Strains = STILL) -> Rates:
+        """Places of the points, of strains d and turns k at the nodes, with the first and second rates of both."""
         (d, k), (dd, kd), (ddd, kdd) = at, rate, change
         _, t, arm = self._at_rest()
         *_, lower, rows = self._rows((k, kd, kdd))
