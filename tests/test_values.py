@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import copy
 import pickle
+from contextlib import suppress
 from dataclasses import is_dataclass, replace
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
@@ -192,3 +194,25 @@ def test_a_solid_and_a_specimen_keep_their_fields_alone(samples: Samples) -> Non
     )
     box = gb.RigidSpecimen.box(1.0, (0.1, 0.1, 0.1), (0.0, 0.0, 0.0))
     kept(box, [lambda: box.loads(samples.flight, 0.3, sample=0.01)])
+
+
+def test_what_is_asked_of_a_public_object_changes_nothing(samples: Samples, tmp_path: Path) -> None:
+    """All its properties, and its methods that take nothing, or times and coordinates."""
+    classes = [each for name, each in vars(gb).items() if name in PUBLIC and isinstance(each, type)]
+    objects = [kind(*args, **keywords) for kind in classes for args, keywords in [samples.calls()[kind.__name__]]]
+    objects += [samples.structure, *samples.responses, samples.system, gb.study(samples.case)]
+    at = {"t": 0.05, "time": 0.05, "times": [0.0, 0.05], "start": 0.0, "end": 0.1, "step": 0.01, "x": np.array([0.1])}
+    known = at | {"path": tmp_path / "result.nc", "q": np.zeros(samples.structure.size)}
+    asked = 0
+    for each in objects:
+        before, other = state(each), copy.deepcopy(each)
+        for name in (name for name in dir(type(each)) if not name.startswith("_")):
+            with suppress(gb.InputError):  # of what this one does not have
+                value = getattr(each, name)
+                asked += 1
+                if callable(value):
+                    needed = {p.name for p in signature(value).parameters.values() if p.default is p.empty}
+                    if needed <= known.keys():
+                        value(**{key: known[key] for key in needed})
+        assert state(each) == before and each == other, type(each)
+    assert len(objects) > 35 and asked > 300

@@ -388,6 +388,8 @@ class Section(Value):
 
     def matrices(self, x: ArrayLike) -> tuple[Array, Array]:
         """Stiffness and mass matrices (..., 6, 6) at positions `x`, m, of a section that has them."""
+        if self.shape != MATRICES:
+            raise InputError("shape", f"is {self.shape!r}, which has no matrices", "give gb.Section.of_matrices")
         local = self._local(x)
         return local["stiffness"], local["mass"]
 

@@ -351,6 +351,8 @@ class Joint(Value):
     @property
     def course(self) -> Course:
         """Attitude over time of a ball whose spin is prescribed."""
+        if not {*SPIN} <= self.rates.keys():
+            raise InputError("rate", "prescribes no spin of a ball", "give wx, wy and wz")
         return Course([self.rates[name] for name in SPIN], self.start[-4:])
 
     @property

@@ -88,7 +88,7 @@ def html(
     header: dict[str, Any] = {"plots": [], "maps": []}
     described = figures_in(kind, facts, variables or {}) if figures is None else figures
     plots = drawn((each() for each in described.values()), numbers, header)
-    verb = PAGES[kind].verb if kind in PAGES else kind
+    verb = PAGES[kind].verb if kind in PAGES else (origin.get("command") or kind).removeprefix("gbeam ").split()[0]
     header |= viewer(kind, facts, variables or {}, numbers)
     shown = '<div id="gbeam-viewer"></div>' if header.keys() & {"scene", "modes"} else ""
     blocks = [Section("Warnings", tuple(warnings_of(facts))), *blocks_of(kind, facts), *_origin(origin)]
