@@ -1,4 +1,4 @@
-"""Results as netCDF files, which xarray, MATLAB and h5py open, and as xarray's own objects.
+"""Results as netCDF files, which xarray, MATLAB and h5py open, read back, and as xarray's own objects.
 
 A study is one file: the root says what was computed, from what, and the verdict; ``motions/NAME`` holds the response
 in one environment and ``comparisons/NAME`` what a centrifuge's response is compared with. Any other result is a file

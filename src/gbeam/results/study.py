@@ -1,4 +1,4 @@
-"""Answers in all environments of a scenario, by several models, and computed again."""
+"""Answers in all environments of a scenario, by several models, and computed again; every kind of result by name."""
 
 from __future__ import annotations
 

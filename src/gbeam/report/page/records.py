@@ -80,6 +80,7 @@ def read(kind: type[_R], facts: Facts, v: Facts | None = None, pattern: str = "*
 
 
 def _plainly(facts: Facts, v: Facts) -> Facts:
+    """Nothing apart: all fields are read by their declarations."""
     return {}
 
 
@@ -109,7 +110,7 @@ def _stored(kind: type, name: str, each: Declaration, facts: Facts, v: Facts, pa
 
 
 def _has(kind: type, v: Facts, pattern: str) -> bool:
-    """Whether a file has any of the variables that a record needs."""
+    """True if a file has any of the variables that a record needs."""
     every = {field.name: field for field in fields(kind)}
     needed = ((name, each) for name, each in declarations(kind) if name in every and _is_needed(every[name]))
     for name, each in needed:
