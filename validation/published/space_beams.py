@@ -1,9 +1,11 @@
 """Beams that bend and twist far: measured, by other codes' solids and beams, and along a path with limits.
 
 The beam of Princeton's experiment (Dowell and Traybar 1975) under a weight at its tip at seven angles. Its measured
-numbers are in two reports only, and the public data of other codes have none: ANSYS stands here. The torsion constant
-of ANSYS's beam is that of warping by biquadratic functions in 2 × 2 cells of its section, 3.33 % above Saint-Venant's,
-and with it gbeam has its answers to their digits; what Saint-Venant's makes stands in the remarks.
+numbers are in two reports only, and the public data of other codes have none (GXBeam, Kynema, OpenFAST, AeroBeams;
+MBDyn and Chrono have their own answers), nor has what is public of a thesis that measured it again (AFIT 3547): ANSYS
+stands here. The torsion constant of ANSYS's beam is that of warping by biquadratic functions in 2 × 2 cells of its
+section, 3.33 % above Saint-Venant's, and with it gbeam has its answers to their digits; what Saint-Venant's makes
+stands in the remarks.
 
 Two of the laminates of Minguet and Dugundji (1990), coupled by their stiffness matrices; and Lee's frame, hinged at
 both ends, whose force passes two limits as it snaps through: gbeam's equations of a beam with a corner, with the far
