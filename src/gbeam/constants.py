@@ -4,7 +4,6 @@ from typing import Literal
 
 STANDARD_GRAVITY = 9.80665  # m/s²
 BY_STRAINS = frozenset({"exact", "fourth-order"})  # models whose coordinates are strains, without a unit
-SLIDES = ("displacement", "x", "y", "z")  # coordinates of joints in m; others are angles
 
 ModelKind = Literal["TLAM", "FOAM", "SFOAM", "CFOAM", "fourth-order", "exact"]
 Shapes = Literal["clamped-free", "adapted"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -92,6 +93,18 @@ def test_a_toy_body_on_a_toy_joint_answers(widened: Path) -> None:
     about = 2.0 * 0.3**2 / 2
     expected = np.sqrt([1e3 / 4, 4e3 / 4, 0.5 * 180 / np.pi / about]) / (2 * np.pi)
     np.testing.assert_allclose(sorted(each["frequency"] for each in of), np.sort(expected), rtol=1e-6)
+
+
+def test_a_run_says_the_units_of_its_coordinates(widened: Path) -> None:
+    drives = 'effort = { v = "2 N", angle = "0.1 N m" }\n[response]\nduration = "20 ms"\nstep = "1 ms"\n'
+    (widened / "run.toml").write_text(SCENARIO + drives, encoding="utf-8")
+    done = run(widened, "run", "run.toml", "--json", "--out", "out")
+    assert done.returncode == 0, done.stderr
+    (response,) = json.loads(done.stdout)["motions"].values()
+    assert {name: each["unit"] for name, each in response["coordinates"].items()} == {
+        "table.u": "m", "table.v": "m", "table.angle": "rad"
+    }  # fmt: skip
+    assert any(re.search(r"table\.v \S+ m\b.*table\.angle \S+ rad", line) for line in response["lines"])
 
 
 def test_their_keys_are_in_the_schema_and_their_units_are_asked_for(widened: Path) -> None:

@@ -56,6 +56,14 @@ def test_a_joint_that_moves_no_mass_is_refused(body: gb.RigidBody, question: obj
         question(gb.System({"rod": body}, {"hinge": joint}, gravity=DOWN))  # type: ignore[operator]
 
 
+def test_rotations_without_inertia_are_named_as_they_are_given() -> None:
+    rod = gb.RigidBody(1.0, (0.0, 2.0, 2.0))
+    ball = gb.Joint("spherical", "rod", initial={"rx": 1.0, "ry": 2.0})
+    for question in (gb.static, lambda system: gb.simulate(system, duration=1.0)):
+        with pytest.raises(gb.InputError, match=r"leave ball\.rx without inertia"):
+            question(gb.System({"rod": rod}, {"ball": ball}))
+
+
 def test_modes_about_a_place_that_is_not_stable_say_so() -> None:
     modes = gb.modes(hinged(initial=-np.pi / 2))
     assert len(modes.frequency) == 0

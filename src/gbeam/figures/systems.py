@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from gbeam.constants import SLIDES
 from gbeam.figures.description import (
     FLIGHT,
     REFERENCE,
@@ -91,8 +90,7 @@ def loop(response: SystemResponse, title: str = "") -> Figure:
         Panel(f"{name.rpartition(': ')[2]}, {raised(unit)}", (Line(response.time, response.loop.measured[:, k]),))
         for k, (name, unit) in enumerate(zip(response.loop.measurements, response.loop.units, strict=True))
     ]
-    for k, name in enumerate(response.loop.drives):
-        unit = "N" if name.rpartition(".")[2] in SLIDES or ".force_" in name else "N m"
+    for k, (name, unit) in enumerate(zip(response.loop.drives, response.loop.drive_units, strict=True)):
         asked, applied = response.loop.asked[:, k], response.loop.applied[:, k]
         scale, unit = scale_of(unit, asked, applied)
         lines = (

@@ -9,7 +9,6 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from gbeam.constants import SLIDES
 from gbeam.guards.checks import index_of
 from gbeam.results.declared import INSIDE, declared, fact, internal, labels, part, quantity, rows
 from gbeam.results.errors import (
@@ -73,6 +72,7 @@ class Loop(Part):
         "", "SI unit of the measurement", "measurement", name="measurement_unit", key=None
     )
     drives: tuple[str, ...] = labels("name of the drive", "drive", key="name")
+    drive_units: tuple[str, ...] = quantity("", "SI unit of the drive", "drive", name="drive_unit", key="unit")
     measured: Floats = quantity("", "measurement, held from its sample", "time measurement", note="SI")
     asked: Floats = quantity("", "effort that the law asks for, held from its sample", "time drive")
     applied: Floats = quantity("", "effort that acts, limited and delayed", "time drive")
@@ -191,6 +191,10 @@ class SystemResponse(_Placed, Driven, Figured):
     time: Floats = quantity("s", "time", "time", role="coordinate")
     points: tuple[str, ...] = labels("name of the point", "point")
     coordinates: tuple[str, ...] = labels("name of the coordinate", "coordinate")
+    units: tuple[str, ...] = quantity(
+        "", "SI unit of the coordinate", "coordinate", name="coordinate_unit", key="unit",
+        note="empty of Euler parameters and of a flexible body's own",
+    )  # fmt: skip
     place: Floats = quantity("m", "place of the point", "time point axis", frame="ground")
     velocity: Floats = quantity("m/s", "velocity of the point", "time point axis", frame="ground")
     acceleration: Floats = quantity(
@@ -362,6 +366,10 @@ class SystemRest(_Placed, Figured):
     time: float = fact("time at which drives and motion are frozen", "s")
     points: tuple[str, ...] = labels("name of the point", "point")
     coordinates: tuple[str, ...] = labels("name of the coordinate", "coordinate")
+    units: tuple[str, ...] = quantity(
+        "", "SI unit of the coordinate", "coordinate", name="coordinate_unit", key="unit",
+        note="empty of Euler parameters and of a flexible body's own",
+    )  # fmt: skip
     place: Floats = quantity("m", "place of the point", "point axis", frame="ground")
     displacement: Floats = quantity("m", "displacement from the start", "point axis", frame="ground")
     attitude: Floats = quantity("", "Euler parameters of the point's axes in those of the ground", "point euler")
@@ -501,9 +509,8 @@ def named(result: SystemResponse | SystemRest) -> Mapping[str, tuple[Floats, str
             turns, efforts = _turned(q[:, k : k + 4]), effort[:, k + 1 : k + 4]
             for i, axis in enumerate("xyz"):
                 histories[f"{joint}.r{axis}"] = turns[:, i], "rad", efforts[:, i]
-        elif tail not in _EULER and not tail.startswith("q"):
-            unit = "m" if tail in SLIDES else "rad"
-            histories[name] = q[:, k], unit, effort[:, k]
+        elif result.units[k]:
+            histories[name] = q[:, k], result.units[k], effort[:, k]
     return histories
 
 

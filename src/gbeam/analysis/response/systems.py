@@ -42,6 +42,7 @@ from gbeam.integrate.sampled import Sampling
 from gbeam.integrate.steps import Corners
 from gbeam.mechanics.tree.bodies import LinearBody
 from gbeam.mechanics.tree.equations import Inputs
+from gbeam.mechanics.tree.signals import units_of
 from gbeam.mechanics.tree.steps import continuous
 from gbeam.mechanics.tree.system import System
 from gbeam.motion import Centrifuge
@@ -410,6 +411,7 @@ def _described(
         time=time,
         points=system.points,
         coordinates=system.coordinates,
+        units=units_of(system),
         invariants=invariants,
         loop=loop,
         beams=beams,

@@ -125,10 +125,12 @@ def loop_of(controllers: SystemControllers, sampling: Any, time: Floats) -> Loop
         beyond.append((wanted != commands).mean(axis=0))
         acting.append(namespace(commands).where(active[:, None] >= 0, commands[last], 0.0))
     xp, units = namespace(*asked), measurable(controllers.system)
+    pushed = drives_of(controllers.system)
     return Loop(
         measurements=signal_names(controllers.system.controllers, "measure"),
         units=tuple(units[each] for one in controllers.every for each in one.measure),
         drives=signal_names(controllers.system.controllers, "drive"),
+        drive_units=tuple(pushed[each].unit for one in controllers.every for each in one.drive),
         measured=xp.concatenate(measured, axis=1),
         asked=xp.concatenate(asked, axis=1),
         applied=xp.concatenate(acting, axis=1),

@@ -25,7 +25,7 @@ from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.control import signal_names
 from gbeam.mechanics.tree.equations import Inputs
-from gbeam.mechanics.tree.signals import Driven, deforming, drives_of, local_names, measurable, signals_of
+from gbeam.mechanics.tree.signals import Driven, deforming, drives_of, local_names, measurable, signals_of, units_of
 from gbeam.mechanics.tree.steps import parameters_of_all
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
@@ -76,6 +76,7 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
         time=time,
         points=system.points,
         coordinates=system.coordinates,
+        units=units_of(system),
         displacement=at["place"] - start,
         errors=errors,
         accelerated=state.accelerated,

@@ -94,14 +94,22 @@ class Point:
         return tuple(said)
 
 
-def refuse_massless(system: System, mass: Floats, free: NDArray[np.int64]) -> None:
-    """Refuse a system in which some motion of the coordinates moves no mass."""
+def refuse_massless(system: System, point: Point, mass: Floats) -> None:
+    """Refuse a system in which some motion of the coordinates moves no mass, by M of them at a point."""
+    if _least_moving(mass)[0] > MASSLESS:
+        return
+    local = point.local  # whose names are those of degrees of freedom
+    names, way = local_names(system.coordinates), np.abs(_least_moving(local.slopes()[3])[1])
+    together = ", ".join(names[local.tree.free[k]] for k in np.flatnonzero(way > way.max() / 2))
+    fix = "give the body that it moves a mass, and a moment of inertia about every axis that is free"
+    raise InputError("bodies", f"leave {together} without inertia", fix)
+
+
+def _least_moving(mass: Floats) -> tuple[float, Floats]:
+    """The motion (n,) of the coordinates that moves the least mass, and that mass over the most."""
     scale = rooted(mass)
     _, sizes, rows = np.linalg.svd(mass / np.outer(scale, scale))
-    if sizes.size and sizes[-1] <= MASSLESS * sizes[0]:
-        name = system.coordinates[free[np.abs(rows[-1]).argmax()]]
-        fix = "give the body that it moves a mass, and a moment of inertia about every axis that is free"
-        raise InputError("bodies", f"leave {name} without inertia", fix)
+    return (sizes[-1] / sizes[0] if sizes.any() else 0.0, rows[-1]) if sizes.size else (np.inf, scale)
 
 
 def started(system: System, motion: Motion | None, time: float, initial: str) -> Point:
@@ -113,8 +121,9 @@ def started(system: System, motion: Motion | None, time: float, initial: str) ->
     ydd, searched = np.zeros_like(y), np.where(elastic, initial == "equilibrium", False)
     # Unknown are the coordinates of the bodies, and the accelerations of the joints.
     for _ in range(ITERATIONS):
-        left, k, _, m = Point(tree, y, yd, ydd, inputs).slopes()
-        refuse_massless(system, m, tree.free)
+        begun = Point(tree, y, yd, ydd, inputs)
+        left, k, _, m = begun.slopes()
+        refuse_massless(system, begun, m)
         change = np.linalg.solve(np.where(searched, k, m), -left)
         y, ydd = y + np.where(searched, change, 0), ydd + np.where(searched, 0, change)
         if np.abs(np.where(searched, change, 0)).max(initial=0.0) <= CLOSE * (
@@ -127,8 +136,9 @@ def started(system: System, motion: Motion | None, time: float, initial: str) ->
 
 
 def _farthest(system: System, tree: Tree, values: Any) -> str:
-    """Name of the coordinate of a tree whose value (n,) is the largest."""
-    return system.coordinates[tree.free[int(np.abs(np.nan_to_num(values, nan=np.inf)).argmax())]]
+    """Name of the coordinate of a tree whose value (n,) is the largest, or of the rotation that it is a part of."""
+    name = system.coordinates[tree.free[int(np.abs(np.nan_to_num(values, nan=np.inf)).argmax())]]
+    return name if local_names([name]) == [name] else f"the rotation of {name.rpartition('.')[0]}"
 
 
 def started_traced(system: System, motion: Motion | None, time: float, initial: str) -> tuple[Array, Array]:
@@ -273,7 +283,7 @@ def _steady(system: System, point: Point, slope: Sequence[Floats]) -> Point:
     or in which some motion moves no mass, is refused.
     """
     tree, (k, c, m) = point.tree, slope
-    refuse_massless(system, m, tree.free)
+    refuse_massless(system, point, m)
     which, left = tree.sliding & loose(k, c), tree(point.y, point.yd, point.ydd, point.inputs)
     turned = any(np.abs(point.ydd[turn]).max() > NONE for turn in tree.turning)
     every = adrift(point, left, slope) if turned else which

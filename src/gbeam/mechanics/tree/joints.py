@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import as_array, concatenated, is_jax
 from gbeam.arrays.tree import Value
-from gbeam.constants import SLIDES as SLIDES
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, choice, finite, positive, vector
@@ -37,6 +36,7 @@ _EYE = np.eye(3)
 _EASY = ("stiffness", "ease", "damping", "friction", "stop_stiffness")
 OF_RATES = ("initial_rate", "damping", "friction", "rate", "effort")  # keys by the names of rates
 DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")
+SLIDES = ("displacement", "x", "y", "z")  # coordinates in m; others are angles
 # Kinds of what is said of a coordinate: of a displacement, and of an angle.
 OF_COORDINATES = {
     "initial": ("length", "angle"),

@@ -70,6 +70,12 @@ def signals_of(system: System) -> dict[str, str]:
     return signals
 
 
+def units_of(system: System) -> tuple[str, ...]:
+    """SI units of the coordinates; empty of Euler parameters and of a flexible body's own."""
+    signals = signals_of(system)
+    return tuple(signals.get(each, "") for each in system.coordinates)
+
+
 def rate_signal(rate: str) -> str:
     """Name of the signal of a rate: of a spin that of its component."""
     return rate if rate in SPIN else f"{rate}_rate"
