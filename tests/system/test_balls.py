@@ -177,3 +177,26 @@ def test_a_body_whose_points_do_not_move_is_judged_by_its_turning() -> None:
     np.testing.assert_allclose((moments * spin).sum(axis=1), (moments * spin).sum(axis=1)[0], rtol=1e-6)
     fine = gb.simulate(tumbling, duration=20.0, step=5e-4, estimate=False)
     np.testing.assert_allclose(spin[-1, 1], fine.signal("ball.wy")[-1], atol=1e-3)
+
+
+def test_springs_that_a_ball_turns_over_are_said() -> None:
+    """A body that spins freely about x, sprung about y: at half a turn the rotation vector goes the other way."""
+    ball = gb.Joint("spherical", "body", stiffness={"ry": 60.0}, initial_rate={"wx": 2.0, "wy": 0.1})
+    body = gb.RigidBody(1.0, (0.02, 0.03, 0.04))
+    long, short = (gb.simulate(gb.System({"body": body}, {"ball": ball}), duration=each, step=2e-3) for each in (2, 1))
+    assert any("ball turns by more than half a turn, at 1.5" in each for each in long.warnings)
+    assert not any("half a turn" in each for each in short.warnings)
+    free = gb.Joint("spherical", "body", initial_rate={"wx": 2.0, "wy": 0.1})
+    response = gb.simulate(gb.System({"body": body}, {"ball": free}), duration=2.0, step=2e-3)
+    assert not any("half a turn" in each for each in response.warnings)
+
+
+def test_a_stop_that_a_ball_grazes_between_two_times_is_not_overlooked() -> None:
+    """A ball that turns about one axis is the hinge about it."""
+    rate, end = 2 * np.pi, 1 - 1e-5
+    body, over = gb.RigidBody(1.0, (1.0, 1.0, 1.0)), {"duration": 0.6, "step": 5e-3}
+    held = {"stiffness": {"ry": rate**2}, "stops": {"ry": (-2.0, end)}, "stop_stiffness": {"ry": 1e6}}
+    ball = gb.Joint("spherical", "body", initial_rate={"wy": rate}, **held)
+    response = gb.simulate(gb.System({"body": body}, {"ball": ball}), **over)
+    assert any("ball.ry meets a stop and leaves it within one step, at 0.2" in each for each in response.warnings)
+    assert np.isnan(response.errors.displacement.step)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+import jax
 import numpy as np
 import pytest
 from scipy.linalg import eigh
@@ -47,3 +50,17 @@ def test_couplings_that_cannot_be_are_refused() -> None:
     ):
         with pytest.raises(gb.InputError, match=words):
             gb.Joint("fixed", "box", stiffness=springs, coupling=coupling)
+
+
+def test_a_coupling_has_derivatives() -> None:
+    """Of where a box swings, which its coupling pushes aside; none at all is a fixture without."""
+
+    def aside(coupling: Any) -> Any:
+        springs = {"y": 2e3, "rz": 40.0}
+        joint = gb.Joint("fixed", "box", stiffness=springs, coupling={"y-rz": coupling}, initial={"y": 0.01})
+        box = gb.System({"box": gb.RigidBody(1.0, (0.1, 0.2, 0.3))}, {"foot": joint})
+        return gb.simulate(box, duration=0.1, step=5e-3, estimate=False).signal("foot.rz")[-1]
+
+    slope, difference = jax.grad(aside)(-100.0), (aside(-100.1) - aside(-99.9)) / -0.2
+    assert slope == pytest.approx(difference, rel=1e-5)
+    assert gb.Joint("fixed", "box", coupling={}).holder.coupling is None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any
@@ -42,6 +43,7 @@ from gbeam.integrate.sampled import Sampling
 from gbeam.integrate.steps import Corners
 from gbeam.mechanics.tree.bodies import LinearBody
 from gbeam.mechanics.tree.equations import Inputs
+from gbeam.mechanics.tree.joints import Joint
 from gbeam.mechanics.tree.signals import units_of
 from gbeam.mechanics.tree.steps import continuous
 from gbeam.mechanics.tree.system import System
@@ -49,6 +51,7 @@ from gbeam.motion import Centrifuge
 from gbeam.motion.centrifuge.kinematics import axes_result
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.eigen import positive_definite
+from gbeam.numerics.series import STEP
 from gbeam.progress import Progress, tell
 from gbeam.results.errors import ErrorEstimate, StepErrors, SystemErrors
 from gbeam.results.parts import Loads
@@ -173,7 +176,12 @@ class Ran(Run):
     @cached_property
     def missed(self) -> tuple[str, ...]:
         """Warning of a stop that its steps may miss."""
-        return _missed_stop(self.posed.system, self.trajectory)
+        return _missed_stop(self.posed.system, self.trajectory, self.inputs(self.posed.system, slice(None)))
+
+    @cached_property
+    def turned_over(self) -> tuple[str, ...]:
+        """Warning of springs that hold a ball the other way round."""
+        return _turned_over(self.posed.system, self.trajectory, self.inputs(self.posed.system, slice(None)))
 
     def inputs(self, of: System, steps: Any) -> Inputs:
         """Inputs at some of its steps of its system, or of another with the same controllers."""
@@ -249,7 +257,7 @@ def simulate_system(
         steps |= {PLACE: of_steps.displacement, **dict(zip(steps, of_steps.each, strict=False))}
         settled, closed = begin.state == "equilibrium", again if system.controllers else None
         errors = system_errors(system, *chosen.every(stride), closed, steps, settled=settled)
-    return _described(chosen, settings, stride, errors, name, flight, chosen.missed)
+    return _described(chosen, settings, stride, errors, name, flight, chosen.missed + chosen.turned_over)
 
 
 def _run(
@@ -302,30 +310,57 @@ def _with_ends(motion: Motion | None, settings: ResponseSettings, step: float) -
     return replace(settings, start=settings.start - before, duration=settings.duration + before + after)
 
 
-def _missed_stop(system: System, run: Trajectory) -> tuple[str, ...]:
+def _held(system: System, run: Trajectory, inputs: Inputs) -> Iterator[tuple[str, Joint, Floats, Floats]]:
+    """Joints with springs or stops, by name, and what these hold over the times of a run, (t, h), and its rates: of
+    balls the rotation vector.
+    """
+    states = [run.q, run.qd]
+    if inputs.prescribed is not None:
+        states = [system.tree.whole(each, inputs.prescribed[..., k, :]) for k, each in enumerate(states)]
+    names = {joint.body: name for name, joint in system.joints.items()}
+    parted = zip(*map(system.tree.parted, states), strict=True)
+    for body, link, (q, qd) in zip(system.order, system.tree.links, parted, strict=True):
+        if not link.loose:
+            ahead = [at + 1j * STEP * rate for at, rate in zip(q[:-1], qd[:-1], strict=True)]
+            values, further = (link.held(each, qd[:-1])[0] for each in (q[:-1], ahead))
+            yield names[body], system.joints[names[body]], values, further.imag / STEP
+
+
+def _missed_stop(system: System, run: Trajectory, inputs: Inputs) -> tuple[str, ...]:
     """Warn of a stop that a coordinate meets and leaves between two times of a run, which steps may not know."""
-    stops = dict[str, list[float]]()
-    for name, joint in system.joints.items():
-        of = joint.holder
-        stops |= {f"{name}.{each}": [-low, high] for each, low, high in zip(joint.values, of.low, of.high, strict=True)}
-    free = [system.coordinates[k] for k in system.tree.free]
-    low, high = np.array([stops.get(name, [np.inf, np.inf]) for name in free]).reshape(-1, 2).T
-    if not np.isfinite([low, high]).any():
+    if not any(np.any(joint.holder.stop) for joint in system.joints.values()):
         return ()
     from scipy.interpolate import CubicHermiteSpline  # which takes a while to import
 
-    for sign, ends in ((1.0, high), (-1.0, low)):
-        for k in np.flatnonzero(np.isfinite(ends)):
-            q = sign * run.q[:, k]
-            between = CubicHermiteSpline(run.time, q, sign * run.qd[:, k])
-            turns = between.derivative().roots(extrapolate=False)
-            step = np.clip(np.searchsorted(run.time, turns, side="right") - 1, 0, len(q) - 2)
-            beyond = between(turns) > ends[k] + BEYOND * np.ptp(q)
-            missed = turns[beyond & (np.minimum(q[step], q[step + 1]) <= ends[k])]
-            if missed.size:
-                name = system.coordinates[system.tree.free[k]]
-                words = f"{name} meets a stop and leaves it within one step, at {missed[0]:.4g} s"
-                return (f"{words}: the steps may miss it, and their error is not known; give a smaller step",)
+    for name, joint, values, rates in _held(system, run, inputs):
+        held = zip(joint.values, values.T, rates.T, joint.holder.low, joint.holder.high, strict=True)
+        for value, q, qd, low, high in held:
+            for sign, end in ((1.0, high), (-1.0, -low)):
+                if not np.isfinite(end):
+                    continue
+                between = CubicHermiteSpline(run.time, sign * q, sign * qd)
+                turns = between.derivative().roots(extrapolate=False)
+                step = np.clip(np.searchsorted(run.time, turns, side="right") - 1, 0, len(q) - 2)
+                ends = sign * q[step], sign * q[step + 1]
+                beyond = (between(turns) > end + BEYOND * np.ptp(q)) & (np.abs(np.subtract(*ends)) < math.pi)
+                missed = turns[beyond & (np.minimum(*ends) <= end)]
+                if missed.size:
+                    words = f"{name}.{value} meets a stop and leaves it within one step, at {missed[0]:.4g} s"
+                    return (f"{words}: the steps may miss it, and their error is not known; give a smaller step",)
+    return ()
+
+
+def _turned_over(system: System, run: Trajectory, inputs: Inputs) -> tuple[str, ...]:
+    """Warn of a ball whose springs or stops hold it the other way round from somewhere on."""
+    if not any(joint.holds_turns for joint in system.joints.values()):
+        return ()
+    for name, joint, values, _ in _held(system, run, inputs):
+        jumps = np.linalg.norm(np.diff(values[:, -3:], axis=0), axis=1) > math.pi
+        if joint.holds_turns and jumps.any():
+            words = (
+                f"{name} turns by more than half a turn, at {run.time[int(jumps.argmax())]:.4g} s, and from there its"
+            )
+            return (f"{words} springs and stops hold it the other way round; let a revolute joint turn it so far",)
     return ()
 
 

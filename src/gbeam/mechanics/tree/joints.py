@@ -265,6 +265,13 @@ class Joint(Value):
         return all(getattr(self, name) is None for name in (*_EASY, "stops"))
 
     @property
+    def holds_turns(self) -> bool:
+        """True if springs or stops hold the rotation vector of a ball."""
+        if not KINDS[self.kind].turns:
+            return False
+        return any(name in _TURN for key in ("stiffness", "stops") for name in self._named(key, getattr(self, key)))
+
+    @property
     def holder(self) -> Holder:
         """Springs, dampers, friction and stops of what they hold."""
         values = {name: self._numbers(name, getattr(self, name)) for name in _EASY}
@@ -293,20 +300,21 @@ class Joint(Value):
 
     def _coupling(self, stiffness: Floats) -> Floats | None:
         """Stiffness (h, h) between what springs hold; None without any."""
-        if self.coupling is None:
+        if self.coupling is None or self.coupling == {}:
             return None
         names = self.values
         if not isinstance(self.coupling, Mapping):
             raise InputError("coupling", f"is {self.coupling!r}", 'name pairs of coordinates, such as {"y-rz": -2e4}')
-        coupling = np.zeros((len(names), len(names)))
+        rows = [[0.0] * len(names) for _ in names]
         for pair, value in self.coupling.items():
             ends = str(pair).split("-")
             if len(ends) != 2 or ends[0] == ends[1] or not set(ends) <= set(names):
                 fix = f"give two of {', '.join(names)}" if names else "give the springs of the directions as well"
                 raise InputError(f"coupling.{pair}", "is no pair of coordinates", fix)
             i, j = (names.index(each) for each in ends)
-            coupling[i, j] = coupling[j, i] = finite(f"coupling.{pair}", value)
-        if is_jax(stiffness):
+            rows[i][j] = rows[j][i] = finite(f"coupling.{pair}", value)
+        coupling = as_array([each for row in rows for each in row]).reshape(len(names), len(names))
+        if is_jax(stiffness) or is_jax(coupling):
             return coupling
         whole = np.diag(np.asarray(stiffness, dtype=float)) + coupling
         if np.linalg.eigvalsh(whole)[0] < -1e-9 * np.abs(whole).max():
