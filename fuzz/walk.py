@@ -1,4 +1,4 @@
-"""``python -m fuzz.walk``: every verb over every example and every tree of fuzz/trees.
+"""``python -m fuzz.walk``: every verb over every example and every tree of fuzz/trees, or over trees at random.
 
 Each is to end with an answer, a failure in words, or a refusal with its place; its file is to be opened by ``report``
 and reproduced by ``rerun``, and to hold no absurd number; its page is to open in a browser without a complaint. Hours;
@@ -14,14 +14,15 @@ import re
 import sys
 import tempfile
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import chain
 from pathlib import Path
 from typing import Any
 
 from playwright.sync_api import sync_playwright
 
-from fuzz.cases import ROOT, Case
+from fuzz.cases import ROOT, Case, Random
+from fuzz.grown import grown
 from fuzz.judge import judge
 from fuzz.worker import Answer, call, warm_up
 from tests.browser.chromium import arguments as quiet
@@ -37,9 +38,32 @@ def main() -> int:
     """Walk, and print what is wrong."""
     parser = argparse.ArgumentParser(prog="python -m fuzz.walk", description=__doc__)
     parser.add_argument("only", nargs="*", help="stems of scenarios, or words of the command lines")
-    chosen = parser.parse_args().only
+    parser.add_argument("--grown", type=int, default=0, metavar="N", help="N trees at random, in place of the files")
+    parser.add_argument("--seed", type=int, default=0, help="of the first of them")
+    given = parser.parse_args()
     warm_up()
-    files = sorted((ROOT / "examples").glob("*.toml")) + sorted((ROOT / "fuzz" / "trees").glob("*.toml"))
+    with tempfile.TemporaryDirectory() as folder:
+        files = [planted(Path(folder), each) for each in range(given.seed, given.seed + given.grown)]
+        faults = walk(files or [*_scenarios("examples"), *_scenarios("fuzz/trees")], given.only)
+    print(f"{faults or 'no'} faults")
+    return 1 if faults else 0
+
+
+def _scenarios(folder: str) -> list[Path]:
+    return sorted((ROOT / folder).glob("*.toml"))
+
+
+def planted(folder: Path, seed: int) -> Path:
+    """Write the files of a tree at random, and return the scenario's."""
+    for name, content in grown(Random(seed)).items():
+        file = folder / str(seed) / name.replace("tree", f"grown_{seed}")
+        file.parent.mkdir(exist_ok=True)
+        file.write_bytes(content)
+    return folder / str(seed) / f"grown_{seed}.toml"
+
+
+def walk(files: Sequence[Path], chosen: Sequence[str]) -> int:
+    """Walk the files that are named, by the command lines that have one of the other words; return how many faults."""
     stems = {each.stem for each in files}
     named, words = [each for each in chosen if each in stems], [each for each in chosen if each not in stems]
     faults = 0
@@ -50,8 +74,7 @@ def main() -> int:
                 for fault in walked(arguments[0], str(file), arguments[1:]):
                     print(f"{line}\n    {fault}", flush=True)
                     faults += 1
-    print(f"{faults or 'no'} faults")
-    return 1 if faults else 0
+    return faults
 
 
 def command_lines(scenario: dict[str, Any]) -> Iterator[list[str]]:

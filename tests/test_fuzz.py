@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+import gbeam as gb
+
 ROOT = Path(__file__).parents[1]
 sys.path.append(str(ROOT))
 
@@ -20,6 +22,14 @@ def test_malformed_inputs_are_refused_with_their_place() -> None:
     assert done.returncode == 0 and done.stdout.endswith("no faults\n"), done.stdout + done.stderr
     refused = sum(int(words.split()[0]) for words in done.stdout.replace(":", ",").split(",") if "status 2" in words)
     assert refused > 40
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_trees_at_random_are_scenarios(seed: int, tmp_path: Path) -> None:
+    from fuzz.walk import planted
+
+    case = gb.read_scenario(planted(tmp_path, seed))
+    assert isinstance(case, gb.SystemCase) and len(case.system.order) == len(case.system.joints)
 
 
 @pytest.mark.parametrize(
