@@ -328,7 +328,7 @@ def _held(system: System, run: Trajectory, inputs: Inputs) -> Iterator[tuple[str
 
 def _missed_stop(system: System, run: Trajectory, inputs: Inputs) -> tuple[str, ...]:
     """Warn of a stop that a coordinate meets and leaves between two times of a run, which steps may not know."""
-    if not any(np.any(joint.holder.stop) for joint in system.joints.values()):
+    if len(run.time) < 2 or not any(np.any(joint.holder.stop) for joint in system.joints.values()):
         return ()
     from scipy.interpolate import CubicHermiteSpline  # which takes a while to import
 
