@@ -40,11 +40,11 @@ def main() -> int:
     parser.add_argument("only", nargs="*", help="stems of scenarios, or words of the command lines")
     parser.add_argument("--grown", type=int, default=0, metavar="N", help="N trees at random, in place of the files")
     parser.add_argument("--seed", type=int, default=0, help="of the first of them")
-    given = parser.parse_args()
+    options = parser.parse_args()
     warm_up()
     with tempfile.TemporaryDirectory() as folder:
-        files = [planted(Path(folder), each) for each in range(given.seed, given.seed + given.grown)]
-        faults = walk(files or [*_scenarios("examples"), *_scenarios("fuzz/trees")], given.only)
+        files = [planted(Path(folder), each) for each in range(options.seed, options.seed + options.grown)]
+        faults = walk(files or [*_scenarios("examples"), *_scenarios("fuzz/trees")], options.only)
     print(f"{faults or 'no'} faults")
     return 1 if faults else 0
 

@@ -19,10 +19,10 @@ of 0.25 s with ten elements a leg, -3.80 in steps of 0.5 s with five; but such s
 nearer (0.41 rms in steps of 0.25 s, 0.32 in short ones). What is read off the print is as uncertain: another's reading
 (hortulanusT/dynLattice, transient/test3) is up to 0.2 from this one, 0.064 rms, and 0.05 where all is at rest.
 
-No data of the problem make the curve either. Of gbeam's 0.35 rms at the points that were read, each of stiffness, mass
-and the first leg's length, fitted alone, leaves 0.28 to 0.31, and all twelve data together, to first order and within
-12 % each, 0.21: three times what reading leaves. So what was printed is no solution of these equations for data near
-the ones that are given with it. It is a hard test, too: 1 % of a leg's length moves the elbow by 0.21 rms.
+No data of the problem were found that make the curve. Of gbeam's 0.35 rms at the points that were read, each of
+stiffness, mass and the first leg's length, fitted alone, leaves 0.28 to 0.31, and all twelve data together, to first
+order and within 12 % each, 0.21: three times what reading leaves. So no data near the given ones were found that make
+what was printed. It is a hard test, too: 1 % of a leg's length moves the elbow by 0.21 rms.
 """
 
 from __future__ import annotations
@@ -144,7 +144,8 @@ def right_angle() -> Iterator[Row]:
             near = moved[np.abs(response.time - time) < 1.0]
             ours = float(near.max() if theirs > 0 else near.min())
             words = f"{name} out of the plane, extreme near {time:.1f} s"
-            remark = "-3.96 in steps of 0.25 s; no data near these make the printed curve" if theirs == -3.8714 else ""
+            tried = "-3.96 in steps of 0.25 s; no data near these found that make the printed curve"
+            remark = tried if theirs == -3.8714 else ""
             yield Row(case, words, theirs, ours, "", 0.01, CURVES, remark)
 
 
