@@ -17,6 +17,7 @@ from gbeam.analysis.response.peaks import vector_peaks
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.system.histories import deflection
+from gbeam.arrays.types import Floats
 from gbeam.constants import ModelKind
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
@@ -28,7 +29,6 @@ from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress, tell
 from gbeam.results.response import Response
-from gbeam.results.result import Floats
 from gbeam.results.study import Failure, ModelRow, ModelStudy
 from gbeam.results.system import SystemResponse
 

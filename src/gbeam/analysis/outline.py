@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from gbeam.arrays.types import Floats
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.joints import GROUND
 from gbeam.mechanics.tree.system import RigidBody, System
@@ -13,7 +14,6 @@ from gbeam.motion.flight import Flight
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.samples import attitude
 from gbeam.results.parts import Outline
-from gbeam.results.result import Floats
 from gbeam.results.system import Assembly
 
 

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
+Array = Any  # of NumPy or of JAX
 _PLAIN = frozenset({"numpy", "builtins"})  # modules whose types JAX has no part in: most values, known at once
 
 

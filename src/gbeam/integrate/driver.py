@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 
 from gbeam.arrays.namespace import holds_tracer, is_jax, namespace
+from gbeam.arrays.types import Floats
 from gbeam.integrate import linear
 from gbeam.integrate.equations import Demanded, LinearEquations, NonlinearEquations, Trajectory
 from gbeam.integrate.schemes import Scheme, added
-from gbeam.integrate.steps import Corners, Floats, Steps, fitted
+from gbeam.integrate.steps import Corners, Steps, fitted
 from gbeam.integrate.windows import windows
 
 _LINEAR_CHUNK = 500  # steps whose maps are found at once: as many as stay in a cache

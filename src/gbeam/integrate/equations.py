@@ -11,14 +11,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gbeam.arrays.namespace import is_jax, namespace
+from gbeam.arrays.namespace import Array, is_jax, namespace
 from gbeam.arrays.tree import each_leaf, record
+from gbeam.arrays.types import Floats
 from gbeam.numerics.series import STEP
 
-Array = Any
-Floats = NDArray[np.float64]
 Drive = Callable[[Array], Any]  # times (t,) -> what drives the equations there, arrays with that leading axis
 
 

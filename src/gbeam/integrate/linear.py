@@ -10,13 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import holds_jax, namespace
+from gbeam.arrays.namespace import Array, holds_jax, namespace
 from gbeam.arrays.tree import each_leaf, leaves_of
 from gbeam.integrate.equations import LinearEquations, solved
 from gbeam.integrate.schemes import Scheme, Tableau
 from gbeam.integrate.steps import Steps
-
-Array = Any
 
 
 def start(

@@ -17,6 +17,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from gbeam.arrays.jax_setup import with_slope
+from gbeam.arrays.namespace import Array
 from gbeam.integrate.equations import Drive, exact
 from gbeam.integrate.schemes import Scheme, Tableau
 from gbeam.integrate.steps import Steps
@@ -107,7 +108,6 @@ def _groups(steps: Steps, size: int, *, restart: bool) -> Iterator[tuple[Any, An
             yield np.minimum(first[:, None] + np.arange(size), end[:, None]), last
 
 
-Array = Any
 PER_JACOBIAN = {2: 20, 4: 4}  # steps, by the order of the scheme: a higher one takes longer steps
 LEAST = 1e-3  # m/s² or rad/s²: beside smaller accelerations errors are not measured
 FEWEST, MOST = 2, 8  # corrections of a step

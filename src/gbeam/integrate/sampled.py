@@ -12,11 +12,11 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from gbeam.arrays.namespace import Array
 from gbeam.integrate.equations import NonlinearEquations, accelerations, slopes, solved
 from gbeam.integrate.steps import Steps
 from gbeam.numerics.series import STEP
 
-Array = Any
 NEAR = 1e-6  # of a step: nearer to its beginning a sample is taken there
 
 

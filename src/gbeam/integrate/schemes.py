@@ -22,11 +22,10 @@ from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import holds_jax
 from gbeam.arrays.tree import each_leaf, record
+from gbeam.arrays.types import Complex, Floats
 from gbeam.errors import InputError
 from gbeam.integrate.equations import Fitted, LinearEquations, NonlinearEquations, slopes
 from gbeam.numerics.eigen import symmetric, symmetric_modes
-
-Floats = NDArray[np.float64]
 
 
 @record
@@ -67,7 +66,7 @@ class Scheme:
     order: int
     offsets: tuple[float, ...]
     unit: Tableau
-    exponent: Callable[[NDArray[np.complex128]], NDArray[np.complex128]] | None = None
+    exponent: Callable[[Complex], Complex] | None = None
 
     @property
     def ends(self) -> bool:
@@ -191,7 +190,7 @@ def gauss() -> Scheme:
     return Scheme("gauss", 4, (float(c[0]), float(c[1])), unit, _gauss_exponent)
 
 
-def _gauss_exponent(z: NDArray[np.complex128]) -> NDArray[np.complex128]:
+def _gauss_exponent(z: Complex) -> Complex:
     """Solve R(μ) = (12 + 6μ + μ²)/(12 − 6μ + μ²) = e^z."""
     half = np.tanh(z / 2)
     return 12 * half / (3 + np.sqrt(9 - 12 * half**2))

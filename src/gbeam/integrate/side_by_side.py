@@ -17,7 +17,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from gbeam.arrays.namespace import namespace
+from gbeam.arrays.namespace import Array, namespace
 from gbeam.integrate import newton
 from gbeam.integrate.equations import Fitted, LinearEquations, LinearTerms, NonlinearEquations, Trajectory
 from gbeam.integrate.newton import chunks, stretches
@@ -25,7 +25,6 @@ from gbeam.integrate.schemes import Scheme, Tableau, added, powers_of_step, to_m
 from gbeam.integrate.steps import Steps
 from gbeam.numerics.eigen import symmetric
 
-Array = Any
 Parts = tuple[tuple[int, ...], ...]  # of C, K and F: which of the features each of their terms has
 STEPS = 256  # per compiled call at most
 

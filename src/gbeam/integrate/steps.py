@@ -12,14 +12,12 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.arrays.tree import each_leaf
+from gbeam.arrays.types import Flags, Floats
 from gbeam.integrate.equations import Drive
 from gbeam.integrate.schemes import Scheme
 
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 _NEAR, _ULPS = 1e-8, 8  # of a step, and roundings of a time: nearer to one another, two times are one
 _JUMP = 1e-4  # of the largest value at or between the corners: less is no jump
 _BETWEEN = 0.37  # of the way from one corner to the next

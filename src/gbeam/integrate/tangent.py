@@ -14,13 +14,12 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gbeam.arrays.types import Floats
 from gbeam.integrate.equations import Trajectory
 from gbeam.integrate.schemes import Scheme, Tableau
 from gbeam.integrate.steps import Steps
 
-Floats = NDArray[np.float64]
 # Times, q and q̇ (k, n) there -> M, C, K (k, n, n) and −∂r/∂p (k, n, p).
 System = Callable[[Floats, Floats, Floats], tuple[Floats, Floats, Floats, Floats]]
 _CHUNK = 256  # steps whose systems are solved at once

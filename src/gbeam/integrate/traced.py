@@ -21,6 +21,7 @@ import jax.numpy as jnp
 import numpy as np
 
 import gbeam.arrays.jax_setup  # noqa: F401
+from gbeam.arrays.namespace import Array
 from gbeam.arrays.tree import each_leaf
 from gbeam.integrate.equations import Demanded, Fitted, NonlinearEquations, exact, slopes
 from gbeam.integrate.newton import accelerations
@@ -28,8 +29,6 @@ from gbeam.integrate.sampled import Sampling, Uncontrolled
 from gbeam.integrate.schemes import Scheme, stepped
 from gbeam.integrate.steps import Steps
 from gbeam.integrate.windows import windows
-
-Array = Any
 
 
 class TracedLaw(NamedTuple):

@@ -23,6 +23,7 @@ from typing import Any, cast
 
 import numpy as np
 
+from gbeam.arrays.namespace import Array
 from gbeam.arrays.tree import each_leaf
 from gbeam.integrate.equations import NonlinearEquations, accelerations, exact, slopes, solved
 from gbeam.integrate.linear import recurrence
@@ -30,7 +31,6 @@ from gbeam.integrate.sampled import Held, Sampling, sampling_of
 from gbeam.integrate.schemes import Scheme, Tableau, stepped
 from gbeam.integrate.steps import Steps
 
-Array = Any
 Piece = tuple[Any, ...]
 FIRST, MOST, LONGEST = 100, 200, 1000  # steps in a window: at first, at most, and where derivatives hold all along
 NEAR, APART, FAR = 4, 8, 24  # stages between derivatives: at least, at first, and at most

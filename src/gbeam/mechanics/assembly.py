@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gbeam.arrays.namespace import holds_jax, is_jax, namespace
+from gbeam.arrays.namespace import Array, holds_jax, is_jax, namespace
 from gbeam.constants import ModelKind, Shapes
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
@@ -29,8 +29,6 @@ from gbeam.structure.attachments import TIP
 from gbeam.structure.beam import Beam
 from gbeam.structure.matrices import condensed
 from gbeam.structure.matrices import particles as particles_of_slices
-
-Array = Any
 
 
 @typed

@@ -10,9 +10,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.arrays.namespace import Array
 from gbeam.mechanics.assembly import assembled, breaks_of, forms_of, particles_of, stiffness_of
 from gbeam.mechanics.fields.adapted import GROUPS, Space, adapted_shapes, spaces_of
-from gbeam.mechanics.fields.basis import Array, Counts, Families, Family, Quadrature, Shapes, quadrature
+from gbeam.mechanics.fields.basis import Counts, Families, Family, Quadrature, Shapes, quadrature
 from gbeam.mechanics.fields.strains import STRAINS, strain_field
 from gbeam.mechanics.models import KINDS
 from gbeam.mechanics.structure import Structure

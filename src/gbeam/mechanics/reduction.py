@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
-from gbeam.numerics.eigen import Floats
 from gbeam.numerics.sparse import HOLD, factorised, lowest_modes
 
 if TYPE_CHECKING:

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.arrays.namespace import is_jax, namespace
+from gbeam.arrays.namespace import Array, is_jax, namespace
 from gbeam.arrays.tree import each_leaf
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.fields.vectors import cross, joined, skew, split
@@ -29,7 +29,6 @@ from gbeam.results.parts import Base, Loads
 from gbeam.structure.section import extreme_stresses, worst_fibres
 from gbeam.structure.shapes import von_mises
 
-Array = Any
 _BLOCK = 256  # times handled together: what stays in a cache
 
 

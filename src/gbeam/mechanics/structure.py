@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from gbeam.arrays.namespace import holds_jax, is_jax, namespace
+from gbeam.arrays.namespace import Array, holds_jax, is_jax, namespace
 from gbeam.arrays.tree import Value, record, static
 from gbeam.constants import Shapes
 from gbeam.errors import InputError
@@ -32,8 +32,6 @@ from gbeam.numerics.eigen import positive_definite
 
 if TYPE_CHECKING:
     from gbeam.structure.beam import Beam
-
-Array = Any
 
 
 @record

@@ -10,8 +10,8 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gbeam.arrays.types import Floats
 from gbeam.mechanics.assembly import load_work, particles_of, sections_of
 from gbeam.mechanics.enrichment import Enrichment, enrichment, own_families
 from gbeam.mechanics.equations.inertia import inertia_of
@@ -23,11 +23,10 @@ from gbeam.mechanics.structure import Structure
 from gbeam.structure.beam import Beam
 from gbeam.structure.matrices import condensed
 
-Array = NDArray[np.float64]
 ZONE = 0.9  # of one term's length: what several terms leave of it
 
 
-def stiffening(beam: Beam, x: Array, bent: Array) -> tuple[Array, Array]:
+def stiffening(beam: Beam, x: Floats, bent: Floats) -> tuple[Floats, Floats]:
     """Factors (p,) on EI_y, EI_z at x (p,) by which a strip is stiffer than a beam, at curvatures (2, p), 1/m."""
     if beam.material is None:  # what its matrices say is all that is known
         return np.ones(len(x)), np.ones(len(x))
@@ -41,7 +40,7 @@ def stiffening(beam: Beam, x: Array, bent: Array) -> tuple[Array, Array]:
     return (1 + most * flat[0]) / plate_factor, 1 + most * flat[1]
 
 
-def near_clamp_or_bent(ratio: float, x: Array, across: Array, through: Array, curvature: Array) -> Array:
+def near_clamp_or_bent(ratio: float, x: Floats, across: Floats, through: Floats, curvature: Floats) -> Floats:
     """Flatness of sections, from 0 (free to bend across) to 1 (as in a plate), at positions (p,): c = c' = 0
     at the clamp in b⁴/720 c'''' − (1 − ν) b²/6 c'' + c = −ν w'', to which the stretch adds (1 − ν²) (b² w''/h)²/60 c
     (Searle, 1907).
@@ -72,13 +71,13 @@ class Theory(NamedTuple):
     slender: Structure
     thick: Structure
     columns: dict[str, slice]
-    curvature: Array
-    rigidity: Array
-    node: Array
-    bodies: Array
+    curvature: Floats
+    rigidity: Floats
+    node: Floats
+    bodies: Floats
     beam: Beam
 
-    def plate(self, q: Array) -> Array:
+    def plate(self, q: Floats) -> Floats:
         """Stiffness (n, n) that the strip has beyond the model's, by the largest curvatures at coordinates (t, n)."""
         bent = np.abs(np.einsum("agi,ti->atg", self.curvature, q)).max(axis=1)
         factor = np.stack(stiffening(self.beam, self.node, bent))
@@ -91,7 +90,7 @@ class Theory(NamedTuple):
         slender, thick = (replace(each, kind="exact", linear=False) for each in (self.slender, self.thick))
         return self._replace(slender=slender, thick=thick)
 
-    def variants(self, plate: Array) -> tuple[Structure, Structure]:
+    def variants(self, plate: Floats) -> tuple[Structure, Structure]:
         """The thick beam, and the same with the stiffness of a plate (n, n) besides."""
         c = self.thick.coefficients
         return self.thick, replace(self.thick, coefficients=replace(c, stiffness=c.stiffness + plate))
@@ -133,13 +132,13 @@ class _Parts:
         self.place, self.axes = beam.at_rest(self.points)
         self.move, self.turn = beam.root.directions()
 
-    def field(self, strains: Array) -> StrainField:
+    def field(self, strains: Floats) -> StrainField:
         """The field of shapes with some strains (m, n)."""
         nodal, root = np.split(strains, [6 * len(self.rule.node)])
         shaped = nodal.reshape(6, -1, strains.shape[1])
         return strain_field(self.rule, self.points, shaped, self.move @ root, self.turn @ root, self.beam.line)
 
-    def pulled(self, force: Array, moment: Array) -> Array:
+    def pulled(self, force: Floats, moment: Floats) -> Floats:
         """Generalised forces (m, k) on the strains of forces and moments (3, points, k) at the points."""
         slope, axes = self.cumulative.T @ force, self.axes[: len(self.rule.node)]
         # The axis turns with its sections.
@@ -150,17 +149,17 @@ class _Parts:
         inward = [np.einsum("gba,bgk->agk", axes, each).reshape(-1, force.shape[-1]) for each in (slope, angle)]
         return np.concatenate([*inward, springs])
 
-    def answers(self, coordinates: Array) -> Array:
+    def answers(self, coordinates: Floats) -> Floats:
         """Static answers (m, k) of the thick beam: to its own shapes' inertia, accelerations, loads and hung bodies."""
         at, mass, offset = particles_of(self.beam, self.rule, rotary=True)
         arm = np.einsum("pab,pb->ap", self.axes[at], offset)[..., None]
         onto = at == np.arange(len(self.points))[:, None]  # (points, particles)
 
-        def inertia(move: Array, turn: Array) -> Array:
+        def inertia(move: Floats, turn: Floats) -> Floats:
             each = mass[:, None] * (move[:, at] + np.cross(turn[:, at], arm, axis=0))
             return self.pulled(onto @ each, onto @ np.cross(arm, each, axis=0))
 
-        def of(strains: Array) -> Array:
+        def of(strains: Floats) -> Floats:
             moved, turned = self.field(strains).jacobians(np.zeros(strains.shape[1]))
             return inertia(np.moveaxis(moved, 0, 1), np.moveaxis(turned, 0, 1))
 
@@ -181,7 +180,7 @@ class _Parts:
             answers.append(self.answer(of(answers[-1])))
         return np.concatenate(answers, axis=1)
 
-    def answer(self, forces: Array) -> Array:
+    def answer(self, forces: Floats) -> Floats:
         """Strains (m, k) under generalised forces (m, k)."""
         with np.errstate(divide="ignore"):
             alone = np.where(self.known, 1 / self.stiffness, 0.0)[:, None] * forces
@@ -189,7 +188,7 @@ class _Parts:
             return np.asarray(alone)
         return self._at_nodes(np.asarray(np.linalg.inv(self.coupling)), forces, alone)
 
-    def scaled(self, strains: Array, *, back: bool = False) -> Array:
+    def scaled(self, strains: Floats, *, back: bool = False) -> Floats:
         """Strains (m, k) of which the strain energy is half the square, or `back` from there."""
         root = np.sqrt(np.where(self.known, self.stiffness, 1.0))[:, None]
         alone = strains / root if back else strains * root
@@ -198,7 +197,7 @@ class _Parts:
         upper = np.swapaxes(np.linalg.cholesky(self.coupling), 1, 2)
         return self._at_nodes(np.linalg.inv(upper) if back else upper, strains, alone)
 
-    def _at_nodes(self, matrices: Array, strains: Array, springs: Array) -> Array:
+    def _at_nodes(self, matrices: Floats, strains: Floats, springs: Floats) -> Floats:
         """Products of matrices (g, 6, 6) and nodal strains (m, k), and the last rows, of the root's springs."""
         nodes, count = len(self.rule.node), strains.shape[1]
         nodal = np.einsum("gab,bgk->agk", matrices, strains[: 6 * nodes].reshape(6, nodes, count))
@@ -232,7 +231,7 @@ class _Parts:
             self.beam,
         )
 
-    def shaped(self, families: Families) -> Array:
+    def shaped(self, families: Families) -> Floats:
         """Strains (m, n) of the structure's own coordinates."""
         nodal = shaped_strains(self.rule, families)
         strains = nodal.reshape(-1, nodal.shape[2])
@@ -242,7 +241,7 @@ class _Parts:
         out[len(strains) :, strains.shape[1] :] = np.eye(springs)
         return out
 
-    def others(self, answers: Array, families: tuple[int, ...], coordinates: Array | None = None) -> Array:
+    def others(self, answers: Floats, families: tuple[int, ...], coordinates: Floats | None = None) -> Floats:
         """The part of some answers in families of strains, without that of own shapes, orthonormal in energy."""
         chosen = (np.isin(self.families, families) & self.known)[:, None]
         known = (
@@ -257,7 +256,7 @@ class _Parts:
                 known = np.concatenate([known, (rest / np.linalg.norm(rest))[:, None]], axis=1)
         return np.where(chosen, self.scaled(known[:, first:], back=True), 0.0)
 
-    def energy(self, strains: Array) -> Array:
+    def energy(self, strains: Floats) -> Floats:
         """Stiffness (n, n) of strains (m, n); those that none of these has follow without a force of their own."""
         if self.coupling is None:
             return np.asarray(strains.T @ (np.where(self.known, self.stiffness, 0.0)[:, None] * strains))
@@ -268,7 +267,7 @@ class _Parts:
         springs = root.T @ (self.stiffness[-len(root) :, None] * root) if len(root) else 0.0
         return np.asarray(np.einsum("agi,agj->ij", nodal[kept], forces) + springs)
 
-    def model(self, strains: Array, *, rotary: bool) -> Structure:
+    def model(self, strains: Floats, *, rotary: bool) -> Structure:
         """The linear structure with shapes of some strains (m, n)."""
         structure, beam, rest = self.structure, self.beam, np.zeros(strains.shape[1])
         field, (at, mass, offset) = self.field(strains), particles_of(beam, self.rule, rotary=rotary)
@@ -302,7 +301,7 @@ class _Parts:
         )
 
 
-def _load_terms(work: LoadWork, field: StrainField, at: Array, count: int) -> LoadTerms:
+def _load_terms(work: LoadWork, field: StrainField, at: Floats, count: int) -> LoadTerms:
     """The generalised forces of the loads to first order: of some points at a time."""
     parts = []
     for some in np.array_split(np.arange(len(at)), -(-len(at) // CHUNK)):

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import holds_jax, namespace
 from gbeam.arrays.tree import assign, record
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.motion.profiles.combine import as_profile, merged_extent, vector
@@ -99,7 +99,7 @@ class Flight:
             return Base(a_WO_B, none, none)
         return Base(a_WO_B, *self.rates.derivatives(t))
 
-    def corners(self, step: float) -> NDArray[np.float64]:
+    def corners(self, step: float) -> Floats:
         """Times that steps of length `step` (s) should not pass unseen, s, ascending."""
         breaks = self.acceleration.corners(step)
         return breaks if self.rates is None else np.union1d(breaks, self.rates.corners(step))

@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import Any, ClassVar, Self, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from gbeam.arrays.namespace import as_array, is_traced, namespace
 from gbeam.arrays.tree import assign, record, static
+from gbeam.arrays.types import Floats
 from gbeam.constants import Pointing
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
@@ -201,7 +202,7 @@ class Hub:
         last = xp.maximum(xp.searchsorted(xp.asarray(times), now, side="right") - 1, 0)
         return xp.asarray(angles)[last] + self._turned(xp.asarray(times)[last], now)
 
-    def corners(self, step: float) -> NDArray[np.float64]:
+    def corners(self, step: float) -> Floats:
         """Times that steps of length `step` (s) should not pass unseen, s, ascending."""
         driving = self.torque if self.rate is None else self.rate
         assert driving is not None

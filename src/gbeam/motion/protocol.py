@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from typing import Any, ClassVar, Protocol, Self, runtime_checkable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import holds_jax
+from gbeam.arrays.types import Floats
 from gbeam.guards.checks import implausible
 from gbeam.motion.flight import Flight
 from gbeam.results.parts import Base
@@ -34,7 +34,7 @@ class Motion(Protocol):
         """Motion of the base at times `t` (s, any shape)."""
         ...
 
-    def corners(self, step: float) -> NDArray[np.float64]:
+    def corners(self, step: float) -> Floats:
         """Times that steps of length `step` (s) should not pass unseen, s, ascending."""
         ...
 

@@ -5,19 +5,19 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from gbeam.arrays.types import Flags, Floats
+
 HELD = 1e-12  # of the largest stiffness, scaled: a smaller one holds nothing
 SAME = 1e-8  # of what a rotation changes where nothing is accelerated anew: less is rounding
 
 
-def loose(stiffness: Floats, velocity: Floats) -> NDArray[np.bool_]:
+def loose(stiffness: Floats, velocity: Floats) -> Flags:
     """Flags of the coordinates on which, and on whose rates, no force depends, by K and C (n, n)."""
     return np.asarray(~(stiffness.any(axis=0) | velocity.any(axis=0)))
 
 
-def turning_on(k: Floats, mass: Floats, faster: Floats, which: NDArray[np.bool_], turn: NDArray[np.bool_]) -> bool:
+def turning_on(k: Floats, mass: Floats, faster: Floats, which: Flags, turn: Flags) -> bool:
     """True if a rotation, by its one or three flags, changes nothing but accelerations `faster` (n,) of coordinates
     `which`, and its own as they turn on with it; where these are in balance, by K and M (n, n).
     """
@@ -33,13 +33,13 @@ def following(alpha: Floats) -> Floats:
     return np.cross(alpha, np.eye(3)).T if len(alpha) == 3 else np.zeros((1, 1))
 
 
-def carried(mass: Floats, which: NDArray[np.bool_], *forces: Floats) -> tuple[Floats, ...]:
+def carried(mass: Floats, which: Flags, *forces: Floats) -> tuple[Floats, ...]:
     """Forces (n, ...) with the inertia of some coordinates, accelerated so that theirs vanish."""
     inertia = mass[:, which] @ np.linalg.pinv(mass[which][:, which])
     return tuple(each - inertia @ each[which] for each in forces)
 
 
-def pulled(residual: Floats, mass: Floats, which: NDArray[np.bool_]) -> Floats:
+def pulled(residual: Floats, mass: Floats, which: Flags) -> Floats:
     """Accelerations (n, ...) of some coordinates alone, for which nothing of a residual (n, ...) is left on them."""
     faster = np.zeros_like(residual)
     faster[which] = -np.linalg.pinv(mass[which][:, which]) @ residual[which]
@@ -75,7 +75,7 @@ def unheld(stiffness: Floats, mass: Floats) -> Floats:
     return np.linalg.qr(size[:, None] * ways[:, sizes <= HELD * sizes.max(initial=0.0)])[0]
 
 
-def balanced(residual: Floats, stiffness: Floats, mass: Floats, which: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+def balanced(residual: Floats, stiffness: Floats, mass: Floats, which: Flags) -> tuple[Floats, Floats]:
     """Displacements and accelerations (n,) that answer a residual (n,): accelerations of some coordinates."""
     left, k = carried(mass, which, residual, stiffness)
     k[:, which] = 0.0  # of slides already; a rotation that changes nothing else keeps its angle

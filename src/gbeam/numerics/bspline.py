@@ -6,16 +6,14 @@ from math import comb, factorial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import as_array, namespace
 from gbeam.arrays.tree import record
+from gbeam.arrays.types import Floats
 from gbeam.numerics.series import Series
 
 DEGREE = 5
 PIECE = DEGREE + 1  # coefficients that one piece depends on
-
-Floats = NDArray[np.float64]
 
 
 def _matrix() -> Floats:

@@ -6,11 +6,9 @@ from functools import cached_property
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gbeam.arrays.namespace import namespace
-
-Array = Any
+from gbeam.arrays.namespace import Array, namespace
+from gbeam.arrays.types import Complex, Flags, Floats, Indices
 
 
 def symmetric_modes(stiffness: Array, mass: Array) -> tuple[Array, Array]:
@@ -35,9 +33,6 @@ def symmetric(matrices: Array) -> Array:
     """The symmetric parts of matrices (..., n, n)."""
     return (matrices + namespace(matrices).swapaxes(matrices, -1, -2)) / 2
 
-
-Floats = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 ZERO = 1e-11  # of the largest eigenvalue: a smaller one is rounding about zero
 RIGID = 1e-7  # likewise of systems, in which motions that nothing holds are the roots of rounding
@@ -144,7 +139,7 @@ class Vibrations(NamedTuple):
         return np.abs(self.value)
 
     @property
-    def flutter(self) -> NDArray[np.bool_]:
+    def flutter(self) -> Flags:
         """Flags of those that oscillate and grow."""
         return np.asarray(self.value.real > growth_limit(self.value, self.largest))
 
@@ -161,7 +156,7 @@ def vibrations(linear: Linear, *, gyroscopic: bool = True, zero: float = ZERO) -
     size = float(np.abs(value).max(initial=0.0))
     moving, real = np.abs(value) > zero * size, np.abs(value.imag) <= ZERO * size
 
-    def chosen(which: NDArray[np.bool_]) -> tuple[Complex, Complex]:
+    def chosen(which: Flags) -> tuple[Complex, Complex]:
         order = np.flatnonzero(moving & which)
         order = order[np.argsort(np.abs(value[order]), kind="stable")]
         return value[order], _told_apart(value[order], mode[:, order], linear.mass)
@@ -237,7 +232,7 @@ class Steady:
         return stability_margin(*self.linear[:3], self.zero**2)
 
 
-def matched(alike: Floats) -> tuple[NDArray[np.intp], Floats]:
+def matched(alike: Floats) -> tuple[Indices, Floats]:
     """For each row of MACs (k, l) the column that it resembles most, each of them once, −1 for none; and their MAC."""
     rows, columns = np.arange(len(alike)), alike.argmax(axis=1)
     if len(set(columns)) < len(columns):  # two want the same one

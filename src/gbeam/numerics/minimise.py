@@ -6,9 +6,8 @@ from collections.abc import Callable
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from gbeam.arrays.types import Floats
 
 GRID = 5  # coarse points
 _RESOLUTION = 0.02  # of the number

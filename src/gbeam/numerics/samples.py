@@ -6,20 +6,19 @@ import math
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from gbeam.arrays.types import Flags, Floats
 from gbeam.errors import InputError
 
-Floats = NDArray[np.float64]
 
-
-def true_runs(flags: NDArray[np.bool_]) -> list[slice]:
+def true_runs(flags: Flags) -> list[slice]:
     """Runs of true flags (n,), ascending, each as a slice."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
     return [slice(int(start), int(stop)) for start, stop in edges.reshape(-1, 2)]
 
 
-def joined(runs: list[slice], time: NDArray[np.float64], gap: float) -> list[slice]:
+def joined(runs: list[slice], time: Floats, gap: float) -> list[slice]:
     """Runs of samples at times (n,) s with those nearer than `gap` to one another made one."""
     merged: list[slice] = []
     for run in runs:
@@ -68,7 +67,7 @@ def attitude(time: Floats, w_WB_B: Floats) -> Floats:
     return np.roll(since.as_quat(), 1, axis=1)
 
 
-def separate_peaks(values: NDArray[np.float64], floor: float, dip: float) -> list[tuple[int, slice]]:
+def separate_peaks(values: Floats, floor: float, dip: float) -> list[tuple[int, slice]]:
     """Local maxima (int, slice) of values (n,) above a floor, those that no dip separates being one."""
     peaks: list[tuple[int, slice]] = []
     for run in true_runs(values > floor):
@@ -126,9 +125,7 @@ def riding_acceleration(base: Floats, frequency: ArrayLike, damping: float, step
     return np.reshape(every, (*np.shape(frequency), *np.shape(base)))
 
 
-def largest_riding_acceleration(
-    base: Floats, frequency: Floats, damping: float, step: float, covered: NDArray[np.bool_]
-) -> Floats:
+def largest_riding_acceleration(base: Floats, frequency: Floats, damping: float, step: float, covered: Flags) -> Floats:
     """Largest :func:`riding_acceleration` at samples `covered` (t,): a shock response spectrum, (f, k)."""
     one_by_one = (riding_acceleration(base, omega, damping, step)[covered] for omega in frequency)  # all need memory
     return np.stack([np.abs(each).max(axis=0, initial=0.0) for each in one_by_one])

@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.limits import in_bytes
-from gbeam.numerics.eigen import Floats
 
 # Measured on solids of quadratic tetrahedra: bytes for each of n^(4/3), seconds for each of n² unknowns.
 BYTES = {"Pardiso": 260.0, "SuperLU": 700.0}

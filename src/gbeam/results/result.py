@@ -10,19 +10,15 @@ import os
 from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any, ClassVar
 
-import numpy as np
-from numpy.typing import NDArray
-
 from gbeam.arrays.tree import Value
+from gbeam.arrays.types import Complex as Complex
+from gbeam.arrays.types import Flags as Flags
+from gbeam.arrays.types import Floats as Floats
 from gbeam.results.declared import document, fact
 
 if TYPE_CHECKING:
     from gbeam.plots import Panels
     from gbeam.results.provenance import Provenance
-
-Floats = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Flags = NDArray[np.bool_]
 
 
 def brief(record: Any) -> str:

@@ -10,8 +10,8 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
-from gbeam.numerics.eigen import Floats
 from gbeam.solids.shape_functions import DIMENSIONS, SHAPES, shared_area
 from gbeam.solids.stress import on_face
 from gbeam.solids.texts import ABAQUS, NASTRAN, TextMesh, alike, ending_of, members, real

@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gbeam.arrays.tree import Value
-from gbeam.results.result import Floats
-from gbeam.solids.shape_functions import KINDS, Indices, jacobians, shape_functions
+from gbeam.arrays.types import Floats, Indices
+from gbeam.solids.shape_functions import KINDS, jacobians, shape_functions
 from gbeam.solids.shells import FACTOR, shell_strains
 
 CHUNK = 2**14  # points of elements at once: a quarter of a gigabyte with thirty coordinates

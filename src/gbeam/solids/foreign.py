@@ -14,16 +14,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from gbeam.arrays.types import Floats, Indices
 from gbeam.errors import InputError
 from gbeam.guards.checks import positive
 from gbeam.guards.limits import BINARY_BYTES, in_bytes, refuse_large_file
 from gbeam.guards.units import UnitError, quantity
 from gbeam.numerics.sparse import refuse_cost
 from gbeam.printable import shortened
-from gbeam.results.result import Floats
 from gbeam.solids.exodus import ENDINGS as EXODUS
 from gbeam.solids.exodus import read_exodus
-from gbeam.solids.shape_functions import KINDS, MED_ORDER, Indices
+from gbeam.solids.shape_functions import KINDS, MED_ORDER
 from gbeam.solids.shells import points_of
 from gbeam.solids.stress import surface_of
 from gbeam.solids.texts import AGAIN, TEXTS, TextMesh, ending_of, text_mesh

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gbeam.arrays.tree import Value
+from gbeam.arrays.types import Floats, Indices
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, choice
@@ -19,13 +20,11 @@ from gbeam.mechanics.equations.linear import PAIRS, Coefficients, Geometric, coe
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.reduction import particles_of, reduce, standing_in
 from gbeam.mechanics.structure import Structure, linear_structure
-from gbeam.numerics.eigen import Floats
 from gbeam.solids.foreign import unit_size
 from gbeam.solids.matrices import (
     EXACT,
     MOST,
     OWN,
-    Indices,
     compare_mass,
     displaced,
     every_unknown,

@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gbeam.arrays.tree import Value
+from gbeam.arrays.types import Floats, Indices
 from gbeam.errors import InputError
 from gbeam.guards.checks import positive
-from gbeam.results.result import Floats
-from gbeam.solids.shape_functions import Indices
 from gbeam.structure.attachments import checked_name
 
 if TYPE_CHECKING:

@@ -6,16 +6,14 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gbeam.arrays.types import Floats, Indices
 from gbeam.errors import InputError
 from gbeam.mechanics.equations.linear import PAIRS
 from gbeam.mechanics.fields.taylor import EPSILON
 from gbeam.mechanics.reduction import linear_fields
-from gbeam.numerics.eigen import Floats
 from gbeam.structure.attachments import TIP
 
-Indices = NDArray[np.intp]
 OWN = 0  # direction of a coordinate that belongs to no node
 SYMMETRIC = 1e-6  # of the largest entry
 STRAINED = 1e-5  # of the forces in it: a rigid motion that strains the structure

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.arrays.tree import Value
+from gbeam.arrays.types import Flags, Floats, Indices
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
@@ -20,7 +20,6 @@ from gbeam.mechanics.reduction import inertial_loads, linear_fields, particles_o
 from gbeam.mechanics.structure import Structure, linear_structure
 from gbeam.mechanics.tree.system import Place, RigidBody
 from gbeam.numerics.sparse import refuse_cost
-from gbeam.results.result import Floats
 from gbeam.solids.cad import mesh_of
 from gbeam.solids.cards import cards_of
 from gbeam.solids.elements import (
@@ -47,7 +46,6 @@ from gbeam.solids.links import Linked, Links, attached, refuse_names
 from gbeam.solids.model import SolidModel, beside, hardly_coarser
 from gbeam.solids.placed import Placed, with_cards
 from gbeam.solids.plausibility import doubts_of, refuse_folded, refuse_loose
-from gbeam.solids.shape_functions import Indices
 from gbeam.solids.shells import points_of, refuse_oblique
 from gbeam.solids.stress import NodalStress
 from gbeam.structure.attachments import TIP, checked_name
@@ -97,7 +95,7 @@ class SolidMesh(Value):
 
     points: Floats
     blocks: tuple[Block, ...]
-    clamped: NDArray[np.bool_]
+    clamped: Flags
     numbers: Indices
     point_masses: Floats
     stations: dict[str, int]

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gbeam.arrays.tree import Value
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array
@@ -18,7 +19,6 @@ from gbeam.io.models.registry import model_of
 from gbeam.mechanics.equations.linear import Geometric, coefficients
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.structure import Structure, linear_structure
-from gbeam.numerics.eigen import Floats
 from gbeam.solids.matrices import EXACT, left_out, with_tip
 
 LOOSE = 0.5  # of a modal mass, which the masses of the nodes do not have

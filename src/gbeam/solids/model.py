@@ -6,19 +6,17 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.arrays.tree import Value
+from gbeam.arrays.types import Flags, Floats, Indices
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.structure import Structure
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.response import Response
-from gbeam.results.result import Floats
 from gbeam.results.solids import SolidStress, von_mises
 from gbeam.solids.elements import mass_matrix
-from gbeam.solids.shape_functions import Indices
 from gbeam.solids.stress import NodalStress, solid_stress
 
 if TYPE_CHECKING:
@@ -186,7 +184,7 @@ def _static(structure: Structure) -> Floats:
     return np.linalg.solve(np.asarray(c.stiffness), np.concatenate([c.f_a, c.f_al]).T)
 
 
-def singular(fine: NodalStress, rough: NodalStress, of_fine: Floats, of_rough: Floats) -> NDArray[np.bool_]:
+def singular(fine: NodalStress, rough: NodalStress, of_fine: Floats, of_rough: Floats) -> Flags:
     """Pairs (p,) of a mesh in elements of a coarser one where the stress of answers (n, l) does not converge.
 
     There the stress of an element and the mean at its nodes differ as much on both meshes, where their difference falls

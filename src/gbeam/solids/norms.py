@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.results.result import Floats
-from gbeam.solids.shape_functions import Indices
+from gbeam.arrays.types import Floats, Indices
 
 DIRECTIONS = 8  # of coordinates, those in which they move most, that tell which norms could be the largest
 WIDTH = 0.005  # of cells along these, of the largest coordinate: one bound holds for the times in one

@@ -8,11 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from gbeam.arrays.types import Floats, Indices
 from gbeam.mechanics.tree.system import RigidBody
-from gbeam.results.result import Floats
 from gbeam.solids.cards import Cards, refused
 from gbeam.solids.links import Links, coupling
-from gbeam.solids.shape_functions import Indices
 
 APART = 1e-6  # of the size of a mesh: nodes that are farther apart are not one place
 

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
-from gbeam.results.result import Floats
 from gbeam.solids.elements import determinants
 from gbeam.solids.shape_functions import KINDS
 from gbeam.solids.stress import corners_of, outer_triangles

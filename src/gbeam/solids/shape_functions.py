@@ -12,12 +12,10 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gbeam.arrays.types import Floats, Indices
 from gbeam.errors import InputError
-from gbeam.results.result import Floats
 
-Indices = NDArray[np.intp]
 ACROSS = 3  # degree of the quadrature through the thickness of a shell
 
 _CORNERS = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]

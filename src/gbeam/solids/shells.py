@@ -14,11 +14,10 @@ from typing import Any
 
 import numpy as np
 
+from gbeam.arrays.types import Floats, Indices
 from gbeam.errors import InputError
-from gbeam.results.result import Floats
 from gbeam.solids.shape_functions import (
     KINDS,
-    Indices,
     both_faces,
     jacobians,
     middle_nodes,

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.io.models.registry import model_of
@@ -16,7 +17,6 @@ from gbeam.mechanics.equations.linear import PAIRS, Coefficients, rest_modes
 from gbeam.mechanics.fields.taylor import EPSILON, Places
 from gbeam.mechanics.reduction import standing_in
 from gbeam.mechanics.structure import Structure, linear_structure
-from gbeam.numerics.eigen import Floats
 from gbeam.solids.matrices import with_tip
 
 ALIKE = 1e-6  # of the largest: two ways to the same moments

@@ -9,15 +9,14 @@ from itertools import product
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.arrays.tree import Value
+from gbeam.arrays.types import Complex, Flags, Floats, Indices
 from gbeam.errors import InputError
-from gbeam.results.result import Complex, Floats
 from gbeam.results.solids import SolidStress, StressAt, Surface, SurfaceModes, von_mises
 from gbeam.solids.elements import TENSOR, chunks
 from gbeam.solids.norms import LargestNorms
-from gbeam.solids.shape_functions import KINDS, Indices, extrapolation, reference
+from gbeam.solids.shape_functions import KINDS, extrapolation, reference
 
 VERTICES, TIMES = 1500, 1000  # of pictures, about
 AROUND = np.array([each for each in product((1.0, 0.0, -1.0), repeat=3) if each > (0.0, 0.0, 0.0)])  # half of all ways
@@ -47,7 +46,7 @@ class NodalStress(Value):
     every_table: Floats
     size: int
     felt_at: Indices
-    singular: NDArray[np.bool_]
+    singular: Flags
     compared: bool = False
 
     @classmethod

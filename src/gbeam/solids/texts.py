@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from gbeam.arrays.types import Floats, Indices
 from gbeam.errors import InputError
-from gbeam.results.result import Floats
-from gbeam.solids.shape_functions import DIMENSIONS, GMSH_ORDER, NASTRAN_ORDER, SHAPES, Indices
+from gbeam.solids.shape_functions import DIMENSIONS, GMSH_ORDER, NASTRAN_ORDER, SHAPES
 
 NASTRAN, ABAQUS = (".bdf", ".fem", ".nas"), (".inp",)  # endings
 AGAIN = "write it again with all of its nodes"

@@ -9,10 +9,10 @@ from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.arrays.tree import Value
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive
@@ -201,9 +201,6 @@ class Load(Value):
                 raise InputError(name, f"is {value!r}", "give three finite components, along x, y and z, or a profile")
 
 
-Array = NDArray[np.float64]
-
-
 @typed
 @dataclass(frozen=True, eq=False)
 class Root(Value):
@@ -249,7 +246,7 @@ class Root(Value):
         stiffnesses = {f.name: getattr(self, f.name) for f in fields(self)}
         return {name: value for name, value in stiffnesses.items() if value is not None}
 
-    def directions(self) -> tuple[Array, Array]:
+    def directions(self) -> tuple[Floats, Floats]:
         """Matrices (3, springs) from the springs' stretches to the root's displacement and rotation vector."""
         move, turn = np.zeros((2, 3, len(self.springs)))
         for column, name in enumerate(self.springs):

@@ -7,10 +7,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from gbeam.arrays.namespace import holds_jax, namespace
 from gbeam.arrays.tree import Value
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import damping_ratios, positive, possible
@@ -132,13 +133,13 @@ class Beam(Value):
         return {point.name: point.at for point in self.points} | bodies | {TIP: self.length}
 
     @property
-    def body_centres(self) -> NDArray[np.float64]:
+    def body_centres(self) -> Floats:
         """Centres of mass of the bodies on the undeformed beam, from the root, base axes, (b, 3) m."""
         offset = np.array([m.offset for m in self.masses], dtype=float).reshape(-1, 3)
         place, axes = self.at_rest([m.at for m in self.masses])
         return np.asarray(place + np.einsum("pab,pb->pa", axes, offset))
 
-    def at_rest(self, x: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def at_rest(self, x: ArrayLike) -> tuple[Floats, Floats]:
         """Places (p, 3) m and axes of the sections in columns (p, 3, 3) at positions `x` (p,) m, base axes."""
         if self.line is not None:
             return self.line.places(x)
@@ -146,7 +147,7 @@ class Beam(Value):
         return at[:, None] * np.eye(3)[0], np.broadcast_to(np.eye(3), (len(at), 3, 3))
 
     @property
-    def envelope(self) -> NDArray[np.float64]:
+    def envelope(self) -> Floats:
         """Places (c, 3) m at rest along the line and of the bodies' centres; none of a straight beam."""
         if self.line is None:
             return np.empty((0, 3))

@@ -9,9 +9,10 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from gbeam.arrays.tree import Value
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
@@ -19,8 +20,7 @@ from gbeam.guards.checks import positive
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
 
-Array = NDArray[np.float64]
-Curvature = Callable[[Array], Array]
+Curvature = Callable[[Floats], Floats]
 PANEL = np.pi / 2  # rad by which the line may turn in one panel of a quadrature
 MOST = 400.0  # rad in all
 _KNOTS, _DEGREE = 33, 7  # of the splines that hold a curve's curvatures between two points
@@ -212,7 +212,7 @@ class Line(Value):
             out |= set(np.linspace(low, high, 1 + max(1, math.ceil(turn / PANEL - NEAR)))[1:-1].tolist())
         return tuple(sorted(out))
 
-    def places(self, x: ArrayLike) -> tuple[Array, Array]:
+    def places(self, x: ArrayLike) -> tuple[Floats, Floats]:
         """Places at rest (p, 3) m, base axes, and axes of the sections in columns (p, 3, 3), at positions `x` (p,), m.
 
         A corner turns what lies beyond it; one at the root the root too.
@@ -224,7 +224,7 @@ class Line(Value):
 
         state, edges = np.append(np.zeros(3), np.eye(3).ravel()), sorted({0.0, *self.breaks, self.length})
 
-        def change(x: float, y: Array) -> Array:
+        def change(x: float, y: Floats) -> Floats:
             rotation = y[3:].reshape(3, 3)
             turning = np.cross(np.eye(3), np.asarray(self.curvature(np.array([x])))[0])  # [κ]×
             return np.append(rotation[:, 0], (rotation @ turning).ravel())
@@ -250,10 +250,10 @@ class Line(Value):
 class Even(Value):
     """Curvatures (k, 3) that are constant between edges (k + 1,) m."""
 
-    edges: Array
-    rates: Array
+    edges: Floats
+    rates: Floats
 
-    def __call__(self, x: Array) -> Array:
+    def __call__(self, x: Floats) -> Floats:
         """Curvatures at positions."""
         return self.rates[np.searchsorted(self.edges[1:-1], x, side="left")]
 
@@ -262,11 +262,11 @@ class Even(Value):
 class Splines(Value):
     """Curvatures by a spline between each two edges (k + 1,) m: knots (k, m) and coefficients (k, n, 3)."""
 
-    edges: Array
-    knots: Array
-    coefficients: Array
+    edges: Floats
+    knots: Floats
+    coefficients: Floats
 
-    def __call__(self, x: Array) -> Array:
+    def __call__(self, x: Floats) -> Floats:
         """Curvatures at positions."""
         x = np.asarray(x, dtype=float)
         piece, out = np.searchsorted(self.edges[1:-1], x, side="left"), np.zeros((len(x), 3))
@@ -278,7 +278,7 @@ class Splines(Value):
         return out
 
 
-def _shortest(where: str, before: Array, after: Array) -> Rotation:
+def _shortest(where: str, before: Floats, after: Floats) -> Rotation:
     """The smallest rotation from one direction to another."""
     from scipy.spatial.transform import Rotation
 
@@ -291,7 +291,7 @@ def _shortest(where: str, before: Array, after: Array) -> Rotation:
     return Rotation.from_rotvec(axis / sine * math.atan2(sine, cosine))
 
 
-def _curve(points: Array, chords: Array, twist: Array) -> Line:
+def _curve(points: Floats, chords: Floats, twist: Floats) -> Line:
     """A cubic spline through points: its curvatures as functions of the length of arc."""
     from scipy.integrate import solve_ivp
     from scipy.interpolate import CubicSpline, make_interp_spline
@@ -306,7 +306,7 @@ def _curve(points: Array, chords: Array, twist: Array) -> Line:
         rate = 1 / np.linalg.norm(first)
         return rate, first * rate, np.cross(first, bend(u)) * rate**3
 
-    def change(u: float, y: Array) -> Array:
+    def change(u: float, y: Floats) -> Floats:
         rate, _, turning = tangent(u)
         return np.append(1.0, np.cross(turning, y[1:].reshape(3, 3), axisb=0, axisc=0).ravel()) / rate
 

@@ -14,16 +14,15 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import is_jax, is_traced, namespace
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.checks import array
 from gbeam.guards.limits import TEXT_BYTES, refuse_large_file
 from gbeam.guards.units import UnitError, quantity
 from gbeam.structure.material import Material
 
-Array = NDArray[np.float64]
 Matrix = Any  # tuples of numbers, or an array that JAX traces
 CLOSE = 1e-3  # of the largest alike entry: tables are printed with four digits
 # Particles in place of a section that has second moments about three axes, in radii of gyration.
@@ -59,7 +58,7 @@ def refuse_impossible(dimensions: dict[str, tuple[Any, ...]]) -> None:
                 _refuse_no_body(place, matrix)
 
 
-def _least(matrix: Array) -> float:
+def _least(matrix: Floats) -> float:
     """Least eigenvalue, over the diagonal's sizes; minus one where one of these is not positive."""
     size = np.diag(matrix)
     if not (size > 0).all():
@@ -67,7 +66,7 @@ def _least(matrix: Array) -> float:
     return float(np.linalg.eigvalsh((matrix + matrix.T) / 2 / np.sqrt(np.outer(size, size)))[0])
 
 
-def _refuse_no_body(place: str, matrix: Array) -> None:
+def _refuse_no_body(place: str, matrix: Floats) -> None:
     if not matrix[0, 0] > 0:
         raise InputError(place, f"has the mass {matrix[0, 0]:g} kg/m", "give a positive one in the first three rows")
     mass, (x, y, z), _ = body_of(matrix)
@@ -121,7 +120,7 @@ def particles(matrix: Any, *, rotary: bool) -> tuple[Any, Any]:
     return of_places @ moments.T, centre + LATTICE[:, None] * xp.sqrt(square)[:, None]
 
 
-def between(stations: tuple[float, ...], matrices: tuple[Matrix, ...], x: Any) -> Array:
+def between(stations: tuple[float, ...], matrices: tuple[Matrix, ...], x: Any) -> Floats:
     """Matrices (..., 6, 6) at positions, linear between the stations."""
     xp = namespace(*matrices)
     values, at = xp.asarray(matrices), np.asarray(x, dtype=float)
@@ -133,7 +132,7 @@ def between(stations: tuple[float, ...], matrices: tuple[Matrix, ...], x: Any) -
     return xp.asarray((1 - share) * values[i] + share * values[i + 1])
 
 
-def condensed(stiffness: Array, kept: list[int]) -> Array:
+def condensed(stiffness: Floats, kept: list[int]) -> Floats:
     """Stiffness (..., k, k) of some strains, the others of which follow without a force of their own."""
     if len(kept) == 6:
         return stiffness
@@ -142,19 +141,19 @@ def condensed(stiffness: Array, kept: list[int]) -> Array:
     return xp.asarray(xp.linalg.inv(some))
 
 
-def values(stiffness: Array, mass: Array) -> tuple[Array, ...]:
+def values(stiffness: Floats, mass: Floats) -> tuple[Floats, ...]:
     """Mass, and its second moments ∫z² dm and ∫y² dm about the centre, as of a material of unit density; no fibres."""
     line, _, second = body_of(mass)
     unknown = np.full(line.shape, np.nan)
     return line, second[..., 2, 2], second[..., 1, 1], unknown, unknown
 
 
-def no_torsion(stiffness: Array, **_: Array) -> Array:
+def no_torsion(stiffness: Floats, **_: Floats) -> Floats:
     """The torsion constant, which matrices have in their stiffness: not known."""
     return np.full(stiffness.shape[:-2], np.nan)
 
 
-def no_shear(_: float, stiffness: Array, **__: Array) -> tuple[Array, Array]:
+def no_shear(_: float, stiffness: Floats, **__: Floats) -> tuple[Floats, Floats]:
     """The shear coefficients, likewise."""
     unknown = np.full(stiffness.shape[:-2], np.nan)
     return unknown, unknown
@@ -186,7 +185,7 @@ PROGRAMS = {
 }
 
 
-def read_matrices(path: str | os.PathLike[str], length_unit: str, mass_unit: str) -> tuple[Array, Array]:
+def read_matrices(path: str | os.PathLike[str], length_unit: str, mass_unit: str) -> tuple[Floats, Floats]:
     """Stiffness and mass matrices (6, 6) of a file, in SI, whose unit of time is the second."""
     refuse_large_file("path", path, TEXT_BYTES, "give the output of one section")
     lines = Path(path).read_text(encoding="utf-8", errors="replace").splitlines()
@@ -268,7 +267,7 @@ def _analysed(outline: Any, holes: Any, element_size: float | None, ratio: float
 
 def matrices_of(
     outline: Any, holes: Any, material: Material, axis: Any, element_size: float | None
-) -> tuple[Array, Array]:
+) -> tuple[Floats, Floats]:
     """Stiffness and mass matrices (6, 6) of a drawn section about an axis [y, z] m, or the centroid."""
     section, size = _analysed(outline, holes, element_size, material.ratio)
     modulus, shear = material.youngs_modulus, material.rigidity
@@ -294,14 +293,14 @@ def matrices_of(
     return at_centre.T @ stretched @ at_centre + at_shear.T @ sheared @ at_shear, at_centre.T @ mass @ at_centre
 
 
-def _moved(y: float, z: float) -> Array:
+def _moved(y: float, z: float) -> Floats:
     """Strains (6, 6) at a place of the section by those at the origin."""
     moved = np.eye(6)
     moved[:3, 3:] = [[0, z, -y], [-z, 0, 0], [y, 0, 0]]
     return moved
 
 
-def _corners(where: str, corners: Any) -> Array:
+def _corners(where: str, corners: Any) -> Floats:
     at = array(where, corners)
     if at.ndim != 2 or at.shape[1] != 2 or len(at) < 3 or not np.isfinite(at).all():
         raise InputError(where, f"is an array {at.shape}", "give three corners [y, z] or more, m")

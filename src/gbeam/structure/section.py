@@ -9,10 +9,11 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from gbeam.arrays.namespace import as_array, is_jax, namespace
 from gbeam.arrays.tree import Value, record, static
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive, possible
@@ -20,8 +21,6 @@ from gbeam.structure.material import Material
 from gbeam.structure.matrices import between, matrices_of, read_matrices, refuse_impossible
 from gbeam.structure.matrices import listed as matrices
 from gbeam.structure.shapes import MATRICES, ROUND, SHAPES
-
-Array = NDArray[np.float64]
 
 
 def _listed(name: str, value: Any) -> tuple[Any, ...]:
@@ -368,17 +367,17 @@ class Section(Value):
         area, inertia_y, inertia_z, fibre_y, fibre_z = SHAPES[self.shape].values(**self._local(x))
         return SectionValues(area, inertia_y, inertia_z, fibre_y, fibre_z, round=self.shape in ROUND)
 
-    def torsion_constant(self, x: ArrayLike) -> Array:
+    def torsion_constant(self, x: ArrayLike) -> Floats:
         """J at positions `x`, m⁴; NaN where it is not known."""
         return as_array(SHAPES[self.shape].torsion(**self._local(x)))
 
-    def shear_coefficients(self, x: ArrayLike, poissons_ratio: float) -> tuple[Array, Array]:
+    def shear_coefficients(self, x: ArrayLike, poissons_ratio: float) -> tuple[Floats, Floats]:
         """Coefficients of the shear forces k G A γ along y and z at positions `x`, m, for a `poissons_ratio`."""
         y, z = SHAPES[self.shape].shear(poissons_ratio, **self._local(x))
         xp = namespace(y, z)
         return xp.broadcast_to(y, np.shape(x)), xp.broadcast_to(z, np.shape(x))
 
-    def stresses(self, x: ArrayLike) -> Array | None:
+    def stresses(self, x: ArrayLike) -> Floats | None:
         """Stresses (points, 3, 6, s) Pa, normal and shear along two directions, by unit loads at positions `x` (s,), m;
         None where the shape has no formulas.
         """
@@ -386,7 +385,7 @@ class Section(Value):
         local = self._local(x)
         return None if of is None or any(map(is_jax, local.values())) else np.asarray(of(**local))
 
-    def matrices(self, x: ArrayLike) -> tuple[Array, Array]:
+    def matrices(self, x: ArrayLike) -> tuple[Floats, Floats]:
         """Stiffness and mass matrices (..., 6, 6) at positions `x`, m, of a section that has them."""
         if self.shape != MATRICES:
             raise InputError("shape", f"is {self.shape!r}, which has no matrices", "give gb.Section.of_matrices")
@@ -408,11 +407,11 @@ class Section(Value):
 class SectionValues:
     """Section properties at positions: m², m⁴ and extreme fibres m, corners (±y, ±z), or where `round` a circle."""
 
-    area: Array
-    inertia_y: Array
-    inertia_z: Array
-    extreme_fibre_y: Array
-    extreme_fibre_z: Array
+    area: Floats
+    inertia_y: Floats
+    inertia_z: Floats
+    extreme_fibre_y: Floats
+    extreme_fibre_z: Floats
     round: bool = static(default=False)
 
     def __getitem__(self, chosen: Any) -> SectionValues:
@@ -420,7 +419,7 @@ class SectionValues:
         names = [each.name for each in fields(self) if each.name != "round"]
         return replace(self, **{name: getattr(self, name)[chosen] for name in names})
 
-    def extents(self) -> tuple[Array, Array]:
+    def extents(self) -> tuple[Floats, Floats]:
         """Extents along y and z, m; without extreme fibres those of the rectangle with the same second moments."""
         xp = namespace(self.area, self.inertia_y, self.inertia_z)
         rectangle = [xp.sqrt(12 * each / self.area) for each in (self.inertia_z, self.inertia_y)]

@@ -12,12 +12,11 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gbeam.arrays.namespace import namespace
+from gbeam.arrays.namespace import Array, namespace
+from gbeam.arrays.types import Floats
 from gbeam.structure import matrices
 
-Floats = NDArray[np.float64]
 ALONG = np.linspace(-1, 1, 9)  # of a face, between corners
 _EDGE = np.array([(u, v) for u in ALONG for v in (-1.0, 1.0)])
 POINTS = np.concatenate([_EDGE, _EDGE[:, ::-1], np.zeros((1, 2))])  # of a rectangle: y and z over half of its sides
@@ -88,7 +87,6 @@ def von_mises(stresses: Floats | None, force: Any, moment: Any) -> Floats:
 
 
 MATRICES = "matrices"
-Array = Any
 Rule = Callable[..., tuple[Array, ...]]
 ASSUMED_SHEAR = 0.5  # shear coefficient of a section known by its properties only: between a tube's and a channel's web
 _TERMS = np.arange(1, 12, 2)  # of Saint-Venant's series, whose sum they leave 1e-6 short

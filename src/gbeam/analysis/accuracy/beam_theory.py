@@ -13,11 +13,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gbeam.analysis.accuracy.correction import Posed, Quantity, Reading, State, Within
+from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import Theory
-from gbeam.results.result import Floats
 from gbeam.structure.beam import assumptions
 
 NAMED, NONE = 0.02, 1e-9  # of the largest cause, and of the energy: a smaller one is not named

@@ -13,12 +13,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.arrays.types import Flags, Floats
 from gbeam.integrate.driver import integrate
 from gbeam.integrate.equations import LinearEquations, Trajectory, slopes
 from gbeam.integrate.schemes import gauss
 from gbeam.numerics.balance import balanced, loose
 from gbeam.numerics.eigen import UNSYMMETRIC, symmetric, symmetric_modes
-from gbeam.results.result import Floats
 
 IntArray = NDArray[np.int_]
 Quantity = tuple[str, str]  # a body, or none, and what is read of it
@@ -75,7 +75,7 @@ class Vibration(NamedTuple):
 
     square: Floats
     modes: Floats
-    resolved: NDArray[np.bool_]
+    resolved: Flags
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,8 +89,8 @@ class Departures:
     k: Floats
     c: Floats
     m: Floats
-    elastic: NDArray[np.bool_]
-    turned: NDArray[np.bool_]
+    elastic: Flags
+    turned: Flags
 
     @property
     def interval(self) -> float:

@@ -17,6 +17,7 @@ from gbeam.analysis.accuracy.beam_theory import Lacking, beyond, described, larg
 from gbeam.analysis.accuracy.correction import PLACE, RESOLVED, IntArray, Posed, Quantity, Reading, State, Within
 from gbeam.analysis.accuracy.estimate import BEAM, UNMOVED, Judgement, negligible, of_bodies, unjudged
 from gbeam.arrays.tree import each_leaf
+from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.enrichment import Enrichment, Twin, enrichment
@@ -26,7 +27,6 @@ from gbeam.mechanics.theory import theory_of
 from gbeam.motion.protocol import Motion
 from gbeam.results.errors import ErrorEstimate, Errors
 from gbeam.results.parts import Base, Loads
-from gbeam.results.result import Floats
 from gbeam.structure.section import extreme_stresses
 
 FORCE, MOMENT, STRESS, SHEARED = ((BEAM, each) for each in ("force", "moment", "stress", "sheared"))

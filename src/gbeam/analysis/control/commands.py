@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from gbeam.analysis.control.plants import Goal, Plant
+from gbeam.arrays.types import Complex, Floats
 from gbeam.errors import InputError
 from gbeam.motion.profiles.pulse import SplineProfile, through
 from gbeam.numerics.bspline import DEGREE, Spline
-from gbeam.results.result import Complex, Floats
 
 _FINE = 200  # pieces of a spline that stands for another form
 _TIMES = 2001  # over a command: the splines are smooth, and vanish at the ends with four derivatives

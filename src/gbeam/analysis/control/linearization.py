@@ -22,7 +22,9 @@ from gbeam.analysis.steady.operating_point import (
 from gbeam.analysis.steady.stability import hub_of
 from gbeam.analysis.system.gauges import Strained
 from gbeam.analysis.system.linear import frozen, instabilities, linearize_system, named_acceleration
+from gbeam.arrays.namespace import Array
 from gbeam.arrays.tree import each_leaf, leaves_of, record
+from gbeam.arrays.types import Floats
 from gbeam.constants import BY_STRAINS
 from gbeam.errors import InputError, placing_within
 from gbeam.guards.arguments import typed
@@ -39,7 +41,6 @@ from gbeam.motion import Flight
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.series import STEP
 from gbeam.results.errors import FrequencyErrors, along
-from gbeam.results.result import Floats
 from gbeam.results.state_space import ACCURATE, Gauge, Signal, StateSpace, import_control
 from gbeam.structure.attachments import TIP
 from gbeam.structure.beam import Beam, fibre_strain, names_at
@@ -85,7 +86,6 @@ def surface_gauge(beam: Beam, at: float, face: str) -> Gauge:
     return Gauge(at, y=fibre) if axis == "y" else Gauge(at, z=fibre)
 
 
-Array = Any
 BASE_RATES = tuple(Signal(f"base_rate_{i}", "rad/s") for i in "xyz")
 
 

@@ -20,6 +20,7 @@ from gbeam.analysis.steady.operating_point import turning_inertia
 from gbeam.analysis.system.histories import deflection
 from gbeam.analysis.system.steady import Drive, SteadySystem, steady
 from gbeam.arrays.tree import altered
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.checks import choice
 from gbeam.integrate.driver import through
@@ -35,7 +36,6 @@ from gbeam.numerics.eigen import RIGID, Linear, symmetric, symmetric_modes
 from gbeam.numerics.series import STEP
 from gbeam.progress import Progress
 from gbeam.results.response import Response
-from gbeam.results.result import Floats
 
 Pair = tuple[Profile, Profile]
 Share = Callable[[float], None]  # of a computation, that is done

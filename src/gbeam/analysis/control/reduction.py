@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import scipy.linalg
 
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.results.result import Floats
 from gbeam.results.state_space import Signal, StateSpace, Truncation
 
 Parts = tuple[StateSpace, StateSpace]

@@ -15,6 +15,7 @@ import numpy as np
 from gbeam.analysis.control.commands import Commands, Vibration, check_goal, usual
 from gbeam.analysis.control.plants import DRIVES, Goal, OnHub, OnJoint, Plant, Ran
 from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.structure import Structure
@@ -23,7 +24,6 @@ from gbeam.motion.hub import Hub
 from gbeam.motion.profiles.pulse import SplineProfile
 from gbeam.numerics.minimise import solve_quadratic
 from gbeam.progress import Progress, tell
-from gbeam.results.result import Floats
 from gbeam.results.searches import CommandRun, ShapedCommand
 
 RATIOS = np.linspace(0.7, 1.3, 61)

@@ -7,16 +7,15 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import namespace
+from gbeam.arrays.types import Flags, Floats, Indices
 from gbeam.constants import ToleranceOf
 from gbeam.guards.checks import choice, positive
 from gbeam.motion.centrifuge.kinematics import moved
 from gbeam.numerics.samples import separate_peaks, true_runs
 from gbeam.results.accounting import TOLERANCE_OF, Accounting, LoadPeak, NotFollowed, PeakPair, Preload
 from gbeam.results.machine import AxesResult
-from gbeam.results.result import Flags, Floats
 
 _DIP = 0.9  # of the lower of two maxima: a load that falls further between them makes them two peaks
 _SLACK = 1e-9  # of idle: a load held at it is not above it
@@ -26,7 +25,7 @@ _NEAR = 0.25  # s: so far from a stretch a limit may be used up because of it
 _CORNER, _BELOW = "corner", "below idle"
 _NAMES = (_CORNER, _BELOW, "gimbals", "left out")
 
-Codes = NDArray[np.intp]
+Codes = Indices
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from gbeam.analysis.imitation.accounting import History, account_of, gradients, 
 from gbeam.analysis.imitation.fatigue import fatigue, stress_at_point
 from gbeam.analysis.imitation.specimen import specimen_of
 from gbeam.analysis.response.peaks import maxima, near_maxima, seven_point, vector_peaks
+from gbeam.arrays.types import Flags, Floats
 from gbeam.constants import ToleranceOf
 from gbeam.errors import InputError, placing_within
 from gbeam.guards.arguments import typed
@@ -28,7 +29,6 @@ from gbeam.results.measures import (
 )
 from gbeam.results.parts import Influence
 from gbeam.results.response import Response, Sensor
-from gbeam.results.result import Flags, Floats
 from gbeam.results.system import SystemResponse
 
 

@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from gbeam.analysis.response.peaks import turning_points
+from gbeam.arrays.types import Floats
 from gbeam.guards.checks import index_of
 from gbeam.mechanics.tree.system import ROOT
 from gbeam.results.measures import Fatigue, StressCycles
 from gbeam.results.parts import Loads
 from gbeam.results.response import Response
-from gbeam.results.result import Floats
 from gbeam.results.solids import SolidStress
 from gbeam.results.system import SystemResponse
 

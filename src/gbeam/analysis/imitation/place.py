@@ -22,6 +22,7 @@ from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
+from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.plausibility import input_warnings
@@ -34,7 +35,6 @@ from gbeam.numerics.samples import interpolated, low_pass
 from gbeam.results.criteria import BROKEN
 from gbeam.results.placement import MEASURES, Candidate, Placement, Verification, degrees
 from gbeam.results.response import Response
-from gbeam.results.result import Floats
 from gbeam.results.system import SystemResponse
 
 

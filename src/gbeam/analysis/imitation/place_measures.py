@@ -14,6 +14,7 @@ from gbeam.analysis.imitation.accounting import gradients
 from gbeam.analysis.imitation.specimen import Answer, Specimen
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.stepping import RIGID, even_steps
+from gbeam.arrays.types import Flags, Floats
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice
@@ -25,7 +26,6 @@ from gbeam.motion.centrifuge.course import INVERSES
 from gbeam.motion.protocol import SAMPLES
 from gbeam.numerics.minimise import coarse
 from gbeam.numerics.samples import displacement
-from gbeam.results.result import Flags, Floats
 
 Turn = tuple[float, float, float]
 Ways = Literal["own", "right-angles", "any"]

@@ -15,6 +15,7 @@ from gbeam.analysis.imitation.accounting import (
     points_of,
     times_between,
 )
+from gbeam.arrays.types import Floats
 from gbeam.constants import ToleranceOf
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import SAMPLES, refuse_more
@@ -25,7 +26,6 @@ from gbeam.results.accounting import TOLERANCE, PeakPair
 from gbeam.results.comparison import MachinePlan
 from gbeam.results.criteria import BROKEN, Limit, checked_limits
 from gbeam.results.machine import Commands
-from gbeam.results.result import Floats
 from gbeam.structure.beam import Beam
 
 _FINE = 1e-3  # s: the angle of axis 1 is integrated on times no further apart

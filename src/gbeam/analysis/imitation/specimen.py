@@ -17,6 +17,7 @@ from gbeam.analysis.imitation.accounting import points_of
 from gbeam.analysis.system.point import Point
 from gbeam.analysis.system.steady import Drive, steady
 from gbeam.arrays.tree import each_leaf
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.mechanics.equations.linear import PAIRS, rest_modes
 from gbeam.mechanics.structure import Structure
@@ -24,7 +25,6 @@ from gbeam.mechanics.tree.system import RigidBody, System
 from gbeam.numerics.eigen import RIGID, symmetric
 from gbeam.results.parts import Loads, Peaks
 from gbeam.results.response import Response
-from gbeam.results.result import Floats
 from gbeam.results.solids import SolidStress
 from gbeam.results.system import SystemResponse
 

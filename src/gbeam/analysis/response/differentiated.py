@@ -20,6 +20,7 @@ from gbeam.analysis.response.problem import Problem, problem_of
 from gbeam.analysis.response.record import response_of
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.stepping import corners, first_step, scheme_of, steps_beyond
+from gbeam.arrays.types import Floats
 from gbeam.integrate.driver import through
 from gbeam.integrate.equations import LinearEquations, Trajectory, accelerations, slopes
 from gbeam.integrate.schemes import Scheme, added, stepped
@@ -32,9 +33,6 @@ from gbeam.motion.protocol import Motion
 from gbeam.results.errors import StepErrors
 from gbeam.results.machine import AxesResult
 from gbeam.results.response import Response
-from gbeam.results.result import Floats
-
-Array = Any
 
 
 @dataclass(frozen=True)

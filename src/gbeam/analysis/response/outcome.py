@@ -16,6 +16,8 @@ from gbeam.analysis.accuracy.estimate import FEW_MODES, ROUGH_MESH, cure_of_theo
 from gbeam.analysis.response.problem import Problem
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.steady.equilibrium import expanded
+from gbeam.arrays.namespace import Array
+from gbeam.arrays.types import Floats
 from gbeam.guards.limits import BOUNDLESS
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.equations.linear import Coefficients
@@ -23,9 +25,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.numerics.eigen import eigenvalues, growth_rate, stability_margin, symmetric, unsymmetric
 from gbeam.results.errors import Errors
 from gbeam.results.parts import Base, LoadPeaks, Peaks
-from gbeam.results.result import Floats
 
-Array = Any
 _BLOCK = 2000  # times whose stiffness is looked at together
 _STRETCHES, _MOST = 4, 32  # whose growth is found, and at how many times of each
 _SHARE = 0.01  # of the elastic stiffness: what takes less of it is no cause

@@ -12,15 +12,12 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import is_jax, namespace
+from gbeam.arrays.types import Floats, Indices
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.structure import Structure
 from gbeam.results.parts import Extremes, LoadPeaks, Loads, Peaks, VectorPeaks
-
-Floats = NDArray[np.float64]
-Indices = NDArray[np.intp]
 
 FEWEST = 7  # samples that the polynomial without derivatives needs
 _PER_STEP = 8  # subdivisions; the vertex of a parabola through three of them is the peak

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.analysis.steady.equilibrium import solve_equilibrium
-from gbeam.arrays.namespace import is_jax, namespace
+from gbeam.arrays.namespace import Array, is_jax, namespace
 from gbeam.arrays.tree import Value, each_leaf
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
@@ -19,7 +19,6 @@ from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.results.parts import Base
 
-Array = Any
 STATES = ("equilibrium", "undeformed")
 _ITERATIONS = 60
 

@@ -16,7 +16,8 @@ from gbeam.analysis.response.peaks import displacement_peaks, load_peaks
 from gbeam.analysis.response.problem import Problem, start_of
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.stepping import joined, scheme_of
-from gbeam.arrays.namespace import is_jax
+from gbeam.arrays.namespace import Array, is_jax
+from gbeam.arrays.types import Floats
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import accelerations, section_forces
@@ -29,10 +30,7 @@ from gbeam.results.errors import ErrorEstimate, Errors, StepErrors
 from gbeam.results.machine import AxesResult
 from gbeam.results.parts import Base, Influence, Loads, Peaks
 from gbeam.results.response import HubResult, Response
-from gbeam.results.result import Floats
 from gbeam.structure.beam import names_at
-
-Array = Any
 
 
 def influence(structure: Structure) -> Influence:

@@ -30,6 +30,7 @@ from gbeam.analysis.response.stepping import (
 )
 from gbeam.analysis.response.systems import simulate_system
 from gbeam.arrays.namespace import holds_jax
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice
@@ -43,7 +44,6 @@ from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress, tell
 from gbeam.results.errors import StepErrors
 from gbeam.results.response import Response
-from gbeam.results.result import Floats
 from gbeam.results.system import SystemResponse
 
 UNMOVED = 1e-14  # of the length

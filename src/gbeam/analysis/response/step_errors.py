@@ -17,9 +17,9 @@ from itertools import pairwise
 import numpy as np
 
 from gbeam.analysis.response.peaks import peaks_of_coordinates
+from gbeam.arrays.types import Floats
 from gbeam.integrate.equations import Trajectory
 from gbeam.results.errors import StepErrors
-from gbeam.results.result import Floats
 
 # Believed of a history; runs that hardly converge differ by less than their error.
 LOWEST_ORDER, HIGHEST_ORDER = 0.5, 2.0

@@ -15,6 +15,7 @@ from gbeam.analysis.response.problem import Problem
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.step_errors import Estimate, Run, of_everything, ratio
 from gbeam.arrays.namespace import is_traced, namespace
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.checks import choice
 from gbeam.integrate.driver import integrate
@@ -23,7 +24,6 @@ from gbeam.integrate.schemes import SCHEMES, Scheme
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.results.errors import StepErrors
-from gbeam.results.result import Floats
 
 MAX_STEPS = 4_000_000
 LOADS_STEPS = 50_000  # at most, where it is the loads that need them
@@ -194,9 +194,6 @@ def _check_needed(runs: list[Run], left: float) -> float | None:
     if jump > 3:
         return (4 if jump > 6 else jump // 2) * new.step
     return 4 * new.step if len(runs) == 2 else None
-
-
-Array = Any
 
 
 def steps_beyond(motion: Motion, settings: ResponseSettings, step: float) -> tuple[int, int]:

@@ -9,7 +9,6 @@ from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.analysis.accuracy.correction import PLACE, pieces
 from gbeam.analysis.outline import assembly_of, outline_of
@@ -35,7 +34,8 @@ from gbeam.analysis.system.histories import Carried, beams_of, deflection, histo
 from gbeam.analysis.system.point import Point, started, started_traced
 from gbeam.analysis.system.richer import InputsOf, judged_bodies, read, stiffness_left_out, turning
 from gbeam.analysis.system.steady import MASSLESS, bent_most, massless
-from gbeam.arrays.namespace import holds_jax, is_jax, namespace
+from gbeam.arrays.namespace import Array, holds_jax, is_jax, namespace
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.limits import HISTORY_BYTES, STEPS, refuse_more
 from gbeam.integrate.equations import NonlinearEquations, Trajectory, slopes
@@ -58,8 +58,6 @@ from gbeam.results.parts import Loads
 from gbeam.results.system import BeamResponse, Invariants, Loop, SystemResponse
 from gbeam.structure.beam import names_at
 
-Array = Any
-Floats = NDArray[np.float64]
 LEAST = 500  # steps of the results at least
 LOOKS = 30  # at the mass matrix of a run
 LOADS = "force", "moment", "stress"  # of a beam, whose errors are estimated

@@ -15,6 +15,7 @@ from gbeam.analysis.accuracy.estimate import LIMIT, apart, fuller, percent, wron
 from gbeam.analysis.steady.frequency_errors import Richer, doubtful, judgeable, unknown_errors
 from gbeam.analysis.steady.stability import first_lost_speed, turned
 from gbeam.analysis.system.steady import Turning
+from gbeam.arrays.types import Complex, Floats
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.plausibility import input_warnings
@@ -26,7 +27,6 @@ from gbeam.numerics.eigen import Steady, mac, matched
 from gbeam.progress import Progress, tell
 from gbeam.results.errors import PARTS, ErrorEstimate, FrequencyErrors
 from gbeam.results.modal import Campbell, Crossing
-from gbeam.results.result import Complex, Floats
 
 CONFIDENT = 0.9  # a mode that resembles itself less from one speed to the next is looked at in between
 SURE = 0.95  # of a critical speed: nearer, a frequency goes to zero and has no relative error

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from gbeam.arrays.namespace import is_jax
+from gbeam.arrays.namespace import Array, is_jax
 from gbeam.errors import ComputationError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.equations.linear import Coefficients
@@ -14,7 +14,6 @@ from gbeam.mechanics.structure import Structure
 from gbeam.numerics.eigen import positive_definite, stability_margin
 from gbeam.results.parts import Base
 
-Array = Any
 _ITERATIONS = 30  # of Newton's method
 _LOCATED, _SHORTEST = 1e-4, 1e-6  # strides, shares of the load: within which stability is lost, that are tried
 _NEAR = 1e-6  # of the beam's length: a stride that ends as near to where it started has not left the path

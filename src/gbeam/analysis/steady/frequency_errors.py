@@ -25,6 +25,7 @@ from gbeam.analysis.system.richer import (
     with_beams,
 )
 from gbeam.analysis.system.steady import SteadySystem
+from gbeam.arrays.types import Complex, Floats
 from gbeam.errors import ComputationError
 from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.models import TORSION
@@ -34,7 +35,6 @@ from gbeam.mechanics.tree.signals import deforming
 from gbeam.mechanics.tree.system import System
 from gbeam.numerics.eigen import Steady, mac, matched
 from gbeam.results.errors import PARTS, ErrorEstimate, FrequencyErrors
-from gbeam.results.result import Complex, Floats
 
 BENT = 0.01  # of its kinetic energy: a mode of twist with less bending is excited by nothing that bends the beam
 SHOWN = 3  # frequencies that no model has, named at once

@@ -14,6 +14,7 @@ from gbeam.analysis.accuracy.estimate import LIMIT, apart, fuller, percent, wron
 from gbeam.analysis.steady.frequency_errors import Richer, among, judgeable, unknown_part
 from gbeam.analysis.system.linear import instabilities
 from gbeam.analysis.system.steady import Loaded, Turning, open_loops
+from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
@@ -22,7 +23,6 @@ from gbeam.numerics.eigen import Steady, symmetric, symmetric_modes
 from gbeam.progress import Progress, tell
 from gbeam.results.equilibrium import Critical
 from gbeam.results.errors import ErrorEstimate, along
-from gbeam.results.result import Floats
 
 SCAN = 64  # points at which a loss is looked for before its root is closed in on
 

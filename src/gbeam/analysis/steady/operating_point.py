@@ -11,7 +11,9 @@ import numpy as np
 
 from gbeam.analysis.accuracy.estimate import BEAM
 from gbeam.analysis.steady.equilibrium import equilibrium_about, expanded
+from gbeam.arrays.namespace import Array
 from gbeam.arrays.tree import each_leaf
+from gbeam.arrays.types import Complex, Floats
 from gbeam.errors import ComputationError, InputError
 from gbeam.integrate.equations import slopes
 from gbeam.mechanics.equations.dalembert import OnBase, OnHub
@@ -21,9 +23,7 @@ from gbeam.motion.protocol import Motion
 from gbeam.numerics.eigen import Linear, Steady
 from gbeam.results.modal import outermost
 from gbeam.results.parts import Base
-from gbeam.results.result import Complex, Floats
 
-Array = Any
 REST = Base(*np.zeros((3, 3)))
 
 

@@ -17,6 +17,7 @@ from gbeam.analysis.steady.operating_point import OperatingPoint, on_base, opera
 from gbeam.analysis.system.linear import system_rest
 from gbeam.analysis.system.steady import Drive, steady
 from gbeam.arrays.tree import each_leaf
+from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.integrate.equations import Trajectory
@@ -31,7 +32,6 @@ from gbeam.motion.protocol import Motion
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.errors import Errors
 from gbeam.results.parts import Base
-from gbeam.results.result import Floats
 from gbeam.results.system import SystemRest
 
 LOST = "shapes and model are not judged: the exact model with more shapes comes to no equilibrium there"

@@ -12,7 +12,6 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.analysis.accuracy.beam_theory import Lacking, beyond, described, largest
 from gbeam.analysis.accuracy.correction import PLACE, Posed, Quantity, Reading, State, Within
@@ -29,6 +28,7 @@ from gbeam.analysis.system.richer import (
     theories_of,
     with_beams,
 )
+from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.structure import Structure
@@ -37,7 +37,6 @@ from gbeam.mechanics.tree.system import System
 from gbeam.results.errors import ErrorEstimate, SystemErrors
 from gbeam.results.parts import Base
 
-Floats = NDArray[np.float64]
 Again = Callable[[System], tuple[Trajectory, InputsOf]]
 FEWEST = 3  # times of a response that is judged
 FAR = "shapes and models are not judged: a system with more shapes does not follow"

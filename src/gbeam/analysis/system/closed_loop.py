@@ -15,17 +15,14 @@ from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
+from gbeam.arrays.types import Complex, Floats
 from gbeam.errors import InputError
 from gbeam.mechanics.tree.control import Feedback, Law, signal_names
 from gbeam.results.state_space import Margin, Signal, StateSpace
 
-Array = Any
-Floats = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 SAMPLES = 1000  # of all controllers in their common period, at most
 FINEST = 10**9  # parts of a step by which a delay is known
 ROUNDING = 1e-6  # of z about one, where two motions of zero frequency meet

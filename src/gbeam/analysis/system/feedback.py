@@ -8,10 +8,10 @@ from itertools import accumulate, pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.analysis.system.gauges import read_signals
-from gbeam.arrays.namespace import holds_jax, looks_at_traced, namespace
+from gbeam.arrays.namespace import Array, holds_jax, looks_at_traced, namespace
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.integrate.sampled import NEAR
 from gbeam.mechanics.tree.control import Feedback, signal_names, within
@@ -21,9 +21,6 @@ from gbeam.results.system import Loop
 
 if TYPE_CHECKING:
     from gbeam.integrate.traced import TracedLaw
-
-Array = Any
-Floats = NDArray[np.float64]
 
 
 class SystemControllers:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.analysis.system.histories import carried
-from gbeam.arrays.namespace import namespace
+from gbeam.arrays.namespace import Array, namespace
+from gbeam.arrays.types import Floats
 from gbeam.mechanics.section_forces import sections
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.bodies import Acting
@@ -18,9 +18,6 @@ from gbeam.mechanics.tree.equations import Inputs, State, Tree
 from gbeam.mechanics.tree.signals import CARRIED, carried_of, measurements
 from gbeam.mechanics.tree.system import System, stations_of
 from gbeam.results.parts import Base
-
-Array = Any
-Floats = NDArray[np.float64]
 
 
 class Strained(NamedTuple):

@@ -6,9 +6,9 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gbeam.arrays.namespace import as_array, namespace
+from gbeam.arrays.namespace import Array, as_array, namespace
+from gbeam.arrays.types import Floats
 from gbeam.mechanics.section_forces import Hung, section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.bodies import Acting
@@ -20,8 +20,6 @@ from gbeam.mechanics.tree.system import System, stations_of
 from gbeam.results.parts import Base, Loads
 from gbeam.results.solids import SolidStress, Surface
 
-Array = Any
-Floats = NDArray[np.float64]
 ROUNDING = 1e-12  # of the force times the length: a moment that is less is none, and so of forces
 
 

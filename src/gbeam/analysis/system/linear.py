@@ -10,7 +10,6 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.analysis.accuracy.estimate import LIMIT
 from gbeam.analysis.outline import assembly_of, outline_of
@@ -19,6 +18,8 @@ from gbeam.analysis.system.gauges import Strained, read_signals
 from gbeam.analysis.system.histories import ROUNDING, beams_of, histories, loads_of, meshes_of
 from gbeam.analysis.system.point import Point, started
 from gbeam.analysis.system.steady import Drive, SteadySystem, open_loops, steady
+from gbeam.arrays.namespace import Array
+from gbeam.arrays.types import Complex, Floats
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.checks import choice
 from gbeam.integrate.equations import Trajectory
@@ -34,10 +35,6 @@ from gbeam.numerics.series import STEP
 from gbeam.results.errors import Instability
 from gbeam.results.state_space import Signal, StateSpace
 from gbeam.results.system import BeamShape, SystemModes, SystemRest
-
-Array = Any
-Floats = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 
 def system_rest(state: SteadySystem, name: str) -> SystemRest:

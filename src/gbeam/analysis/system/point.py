@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gbeam.arrays.namespace import namespace
+from gbeam.arrays.namespace import Array, namespace
 from gbeam.arrays.tree import each_leaf, together
+from gbeam.arrays.types import Flags, Floats
 from gbeam.errors import ComputationError, InputError
 from gbeam.integrate.equations import Trajectory, slopes
 from gbeam.mechanics.tree.equations import SLIP, Inputs, Tree
@@ -20,8 +20,6 @@ from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.balance import SAME, answered, balanced, carried, loose, pulled, rooted, turning_on, unheld
 
-Array = Any
-Floats = NDArray[np.float64]
 ITERATIONS = 50
 MASSLESS = 1e-13  # of the largest: a smaller inertia is rounding
 FEW, NEAR = 8, 0.1  # corrections of several states at once, and how far these may lead: m, rad or strain
@@ -161,14 +159,14 @@ def started_traced(system: System, motion: Motion | None, time: float, initial: 
     return y + elastic * root(left, jnp.zeros(len(free))), yd
 
 
-def _alike(point: Point, left: Floats, k: Floats, mass: Floats, turn: NDArray[np.bool_]) -> bool:
+def _alike(point: Point, left: Floats, k: Floats, mass: Floats, turn: Flags) -> bool:
     """True if equations are the same at all angles of a hinge, by the residual and its columns of K and M (n, 1)."""
     elsewhere = point.tree(point.y + turn, point.yd, point.ydd, point.inputs)
     changed = max(np.abs(k).max(), np.abs(elsewhere - left).max())
     return bool(changed <= SAME * (np.abs(mass).max() + np.abs(left).max()))
 
 
-def adrift(point: Point, left: Floats, slope: Sequence[Floats]) -> NDArray[np.bool_]:
+def adrift(point: Point, left: Floats, slope: Sequence[Floats]) -> Flags:
     """Flags of the coordinates that are accelerated at rest, by the residual, K, C and M there: slides from the ground
     on, and balls and hinges after them with which all turns on.
     """

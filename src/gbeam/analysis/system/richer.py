@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from gbeam.analysis.accuracy.correction import PLACE, Posed, Quantity, looked, pieces
 from gbeam.analysis.accuracy.estimate import NO_MESH
 from gbeam.analysis.system.histories import Carried, carried, loads_of
+from gbeam.arrays.types import Floats
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.plausibility import unstiffened
@@ -22,7 +23,6 @@ from gbeam.mechanics.tree.equations import Inputs
 from gbeam.mechanics.tree.system import RigidBody, System, stations_of
 from gbeam.results.parts import Base
 
-Floats = NDArray[np.float64]
 IntArray = NDArray[np.int_]
 NOT_ALL = "shapes and model are not judged of {}: neither a beam, a mesh nor matrices"
 InputsOf = Callable[[System, Any], Inputs]  # of a system with the same joints, at some (index) of the times

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.analysis.system.point import NONE, Point, adrift, rested, rested_together
 from gbeam.analysis.system.richer import stiffness_left_out
+from gbeam.arrays.types import Complex, Flags, Floats
 from gbeam.constants import BY_STRAINS
 from gbeam.errors import ComputationError, InputError
 from gbeam.mechanics.structure import Structure
@@ -35,9 +34,6 @@ from gbeam.numerics.eigen import (
 from gbeam.numerics.series import STEP
 from gbeam.results.errors import Accelerated
 
-Array = Any
-Floats = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 MASSLESS = "no positive mass"  # an outcome
 SLIGHT = 1e-6  # of the loads, by which their stiffness is looked at
 SAME, STILL = 1e-6, 1e-9  # of modes' matrices, and m or rad: what changes with the angle changes by more
@@ -188,7 +184,7 @@ class SteadySystem(Steady):
         return Linear(m, c, k - m @ self.follows, np.zeros((len(m), 0)))
 
     @cached_property
-    def adrift(self) -> NDArray[np.bool_]:
+    def adrift(self) -> Flags:
         """Flags of the local coordinates that are accelerated, or would be."""
         kept = [not self.system.coordinates[k].endswith(".e0") for k in self.point.tree.free]
         left, *slope = self.point.slopes()

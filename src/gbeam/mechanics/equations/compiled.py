@@ -9,10 +9,8 @@ import jax
 import jax.numpy as jnp
 
 from gbeam.arrays.jax_setup import linear_root, with_slope
+from gbeam.arrays.namespace import Array
 from gbeam.results.parts import Base
-
-Array = Any
-
 
 STRIDES, ITERATIONS = 8, 8  # of the load, and of Newton's method in each
 CLOSE, NOTHING = 1e-9, 1e-13  # of the coordinates, and m or rad: a last correction that is smaller has converged

@@ -12,15 +12,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from gbeam.arrays.namespace import concatenated, namespace
+from gbeam.arrays.namespace import Array, concatenated, namespace
 from gbeam.arrays.tree import record, static
 from gbeam.mechanics.equations.inertia import Inertia
 from gbeam.mechanics.equations.linear import Coefficients, LoadTerms
 from gbeam.mechanics.equations.virtual_work import LoadWork
 from gbeam.motion.hub import Mount
 from gbeam.results.parts import Base
-
-Array = Any
 
 
 @record

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.arrays.namespace import concatenated, is_jax, namespace
+from gbeam.arrays.namespace import Array, concatenated, is_jax, namespace
 from gbeam.arrays.tree import record
 from gbeam.mechanics.equations.linear import NOTHING, Geometric, geometric_of
 from gbeam.mechanics.fields.series import SeriesField
@@ -30,9 +30,6 @@ from gbeam.mechanics.fields.vectors import (
     turned_back,
 )
 from gbeam.numerics.series import STEP
-
-Array = Any
-
 
 x, y, z = np.eye(3)[..., None]
 UNITS: Vector = (x, y, z)  # of the three unit vectors, in columns

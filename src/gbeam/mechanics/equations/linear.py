@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import as_array, concatenated, is_jax, namespace
+from gbeam.arrays.namespace import Array, as_array, concatenated, is_jax, namespace
 from gbeam.arrays.tree import record
 from gbeam.errors import InputError
 from gbeam.guards.checks import damping_ratios
@@ -25,7 +25,6 @@ from gbeam.integrate.equations import LinearTerms
 from gbeam.mechanics.fields.taylor import EPSILON, Places
 from gbeam.numerics.eigen import symmetric_modes
 
-Array = Any
 PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))  # axes of six symmetric entries: xx, yy, zz, xy, yz, zx
 NOTHING = 1e-13  # of the sizes of what is summed: less is rounding
 

@@ -9,15 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import namespace
+from gbeam.arrays.namespace import Array, namespace
 from gbeam.arrays.tree import record
 from gbeam.mechanics.equations.linear import LoadTerms
 from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import StrainField
 from gbeam.mechanics.fields.taylor import EPSILON, Places, Polynomials
 from gbeam.mechanics.fields.vectors import cross, joined, split
-
-Array = Any
 
 
 @record

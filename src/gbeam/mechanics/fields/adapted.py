@@ -10,16 +10,14 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gbeam.arrays.types import Floats
 from gbeam.mechanics.fields.basis import Counts, Families, Family, Quadrature, Shapes
 from gbeam.mechanics.fields.strains import STRAINS
 from gbeam.structure.beam import Beam
 
-Array = NDArray[np.float64]
 
-
-def _family(rule: Quadrature, nodal: Array, length: float, *, axial: bool) -> Family:
+def _family(rule: Quadrature, nodal: Floats, length: float, *, axial: bool) -> Family:
     """Functions of nodal curvatures (g, shapes), strains if `axial`: clamped at the root, ∫f² dx = L."""
     once = rule.cumulative(rule.node)
     slope = nodal if axial else once @ nodal
@@ -27,7 +25,7 @@ def _family(rule: Quadrature, nodal: Array, length: float, *, axial: bool) -> Fa
     scale = np.sign(rule.interpolation(np.zeros(1))[0] @ nodal) / np.sqrt(rule.weight @ (once @ slope) ** 2 / length)
     nodal, slope = nodal * scale, slope * scale
 
-    def shapes(x: Array) -> Shapes:
+    def shapes(x: Floats) -> Shapes:
         first, interpolation = rule.cumulative(x), rule.interpolation(x)
         if not axial:
             return Shapes(first @ slope, first @ nodal, interpolation @ nodal)
@@ -46,15 +44,15 @@ class Space(NamedTuple):
     rule: Quadrature
     length: float
     families: tuple[int, ...]
-    line: Array
-    turning: Array
-    mass: Array
-    stiffness: Array
-    sensitivity: Callable[[Array], tuple[Array, Array]]
-    loads: Array | None = None
-    upper: Array | None = None
+    line: Floats
+    turning: Floats
+    mass: Floats
+    stiffness: Floats
+    sensitivity: Callable[[Floats], tuple[Floats, Floats]]
+    loads: Floats | None = None
+    upper: Floats | None = None
 
-    def scaled(self, strains: Array, *, back: bool = False) -> Array:
+    def scaled(self, strains: Floats, *, back: bool = False) -> Floats:
         """Columns (n, k) of which the strain energy is half the square, or `back` from there."""
         if self.upper is None:
             root = np.sqrt(self.stiffness)[:, None]
@@ -71,7 +69,7 @@ class Space(NamedTuple):
         start, nodes = self.families.index(family), len(self.rule.node)
         return slice(start * nodes, (start + 1) * nodes)
 
-    def family(self, family: int, modes: Array) -> Family:
+    def family(self, family: int, modes: Floats) -> Family:
         """The shapes of one family that columns (n, k) are."""
         return _family(self.rule, modes[self.block(family)], self.length, axial=family not in (1, 2))
 
@@ -98,7 +96,7 @@ def space(beam: Beam, rule: Quadrature, along: int, counts: Counts) -> Space:
     free = [i for i, k in enumerate(held) if k is not None]
     sums = rule.cumulative(rule.node)
 
-    def sensitivity(x: Array) -> tuple[Array, Array]:
+    def sensitivity(x: Floats) -> tuple[Floats, Floats]:
         """Displacements and the sections' angles (points, n)."""
         first = rule.cumulative(x)
         move, turn = {0: (first, 0 * first), 3: (0 * first, first)}.get(along, (first @ sums, first))

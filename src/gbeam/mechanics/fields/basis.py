@@ -8,27 +8,26 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from gbeam.arrays.types import Floats
 
 
 class Shapes(NamedTuple):
     """Shape functions at positions: value, slope, curvature (derivatives with respect to x), each (points, shapes)."""
 
-    value: Array
-    slope: Array
-    curvature: Array
+    value: Floats
+    slope: Floats
+    curvature: Floats
 
 
-Family = Callable[[Array], Shapes]
+Family = Callable[[Floats], Shapes]
 Counts = tuple[int, int, int, int, int, int]
 FAMILIES = ("axial", "y", "z", "twist", "shear_y", "shear_z")  # of shapes, as the coordinates come
 # Of the axial displacement, those along y and z, the twist, and the displacements by shear along y and z.
 Families = tuple[Family, Family, Family, Family, Family, Family]
 
 
-def bar_shapes(x: Array, length: float, count: int) -> Shapes:
+def bar_shapes(x: Floats, length: float, count: int) -> Shapes:
     """Fixed-free bar shapes √2 sin((2i−1)πx/2L), ∫f² dx = L (2020 (13a), corrected: its root covers the sine)."""
     k = (2 * np.arange(1, count + 1) - 1) * np.pi / (2 * length)
     phase = np.outer(x, k)
@@ -36,7 +35,7 @@ def bar_shapes(x: Array, length: float, count: int) -> Shapes:
 
 
 @cache
-def bending_roots(count: int) -> Array:
+def bending_roots(count: int) -> Floats:
     """Roots λ of cos λ + 1/cosh λ = 0, ascending: the clamped-free beam's; read only."""
     guess = (np.arange(1, count + 1) - 0.5) * np.pi
     # The root leaves (i − ½)π by about 2 e^{−λ}, alternately up and down.
@@ -48,7 +47,7 @@ def bending_roots(count: int) -> Array:
     return root
 
 
-def bending_shapes(x: Array, length: float, count: int) -> Shapes:
+def bending_shapes(x: Floats, length: float, count: int) -> Shapes:
     """Clamped-free shapes cosh βx − cos βx − σ(sinh βx − sin βx), ∫f² dx = L, by decaying exponentials, which do not
     cancel: c/2 e^{β(x−L)} + (1+σ)/2 e^{−βx} − cos βx + σ sin βx, c = (1−σ) e^{λ}.
     """
@@ -69,7 +68,7 @@ def bending_shapes(x: Array, length: float, count: int) -> Shapes:
     )
 
 
-def legendre_shapes(x: Array, length: float, count: int) -> Shapes:
+def legendre_shapes(x: Floats, length: float, count: int) -> Shapes:
     """Integrated Legendre shapes ∫₀ˣ P_k(2s/L − 1) ds/L, k = 0 … count−1: zero at the root, slopes polynomials."""
     xi = 2 * np.asarray(x) / length - 1
     values, slopes, curvatures = np.zeros((3, len(xi), count))
@@ -81,7 +80,7 @@ def legendre_shapes(x: Array, length: float, count: int) -> Shapes:
     return Shapes(values, slopes, curvatures)
 
 
-def legendre_bending(x: Array, length: float, count: int) -> Shapes:
+def legendre_bending(x: Floats, length: float, count: int) -> Shapes:
     """Shapes whose slopes are the integrated Legendre shapes: polynomials, zero with their slopes at the root."""
     turn = legendre_shapes(x, length, count)
     xi = 2 * np.asarray(x) / length - 1
@@ -92,7 +91,7 @@ def legendre_bending(x: Array, length: float, count: int) -> Shapes:
 def closed_forms(length: float, counts: Counts) -> Families:
     """Fixed-free bar and clamped-free bending shapes: of the bare uniform beam, rigid in twist and shear."""
 
-    def family(shapes: Callable[[Array, float, int], Shapes], count: int) -> Family:
+    def family(shapes: Callable[[Floats, float, int], Shapes], count: int) -> Family:
         return lambda x: shapes(x, length, count)
 
     axial, along_y, along_z, *others = counts
@@ -101,7 +100,7 @@ def closed_forms(length: float, counts: Counts) -> Families:
     return family(bar_shapes, axial), *bending, twist, shear_y, shear_z
 
 
-def between_corners(x: Array, edges: Sequence[float], count: int) -> Array:
+def between_corners(x: Floats, edges: Sequence[float], count: int) -> Floats:
     """Legendre polynomials between corners, (points, count): the constants of all pieces, then the next degree."""
     pieces, out = len(edges) - 1, np.zeros((len(x), count))
     within = np.searchsorted(edges[1:-1], x)
@@ -117,7 +116,7 @@ def polynomials(length: float, counts: Counts, corners: Sequence[float] = ()) ->
     if corners:
 
         def broken(count: int, scale: float) -> Family:
-            def shapes(x: Array) -> Shapes:
+            def shapes(x: Floats) -> Shapes:
                 values = scale * between_corners(x, [0.0, *corners, length], count)
                 return Shapes(np.full_like(values, np.nan), values, values)  # slope or curvature, as the family has it
 
@@ -144,19 +143,19 @@ def polynomials(length: float, counts: Counts, corners: Sequence[float] = ()) ->
 class Quadrature(NamedTuple):
     """Gauss-Legendre nodes (g,) m and weights (g,) m over the beam, in panels with the given edges."""
 
-    node: Array
-    weight: Array
-    edges: Array
+    node: Floats
+    weight: Floats
+    edges: Floats
 
-    def cumulative(self, x: Array) -> Array:
+    def cumulative(self, x: Floats) -> Floats:
         """Matrix (points, g) that integrates nodal values from the root to each x, spectrally in each panel."""
         return self._matrix(x, integrate=True)
 
-    def interpolation(self, x: Array) -> Array:
+    def interpolation(self, x: Floats) -> Floats:
         """Matrix (points, g) that interpolates nodal values at each x by the polynomial of its panel."""
         return self._matrix(x, integrate=False)
 
-    def _matrix(self, x: Array, *, integrate: bool) -> Array:
+    def _matrix(self, x: Floats, *, integrate: bool) -> Floats:
         per_panel = len(self.node) // (len(self.edges) - 1)
         onto = _operator(per_panel, integrate=integrate)
         panel = np.clip(np.searchsorted(self.edges, x, side="left") - 1, 0, len(self.edges) - 2)
@@ -169,13 +168,13 @@ class Quadrature(NamedTuple):
 
 
 @cache
-def _gauss(nodes: int) -> tuple[Array, Array]:
+def _gauss(nodes: int) -> tuple[Floats, Floats]:
     """Gauss-Legendre nodes and weights on [−1, 1]."""
     return legendre.leggauss(nodes)
 
 
 @cache
-def _operator(nodes: int, *, integrate: bool) -> Array:
+def _operator(nodes: int, *, integrate: bool) -> Floats:
     """From values at Gauss-Legendre nodes on [−1, 1] to Legendre coefficients, of the integral from −1 if so wished."""
     xi, _ = _gauss(nodes)
     to_coefficients = np.linalg.inv(legendre.legvander(xi, nodes - 1))

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import is_jax, namespace
+from gbeam.arrays.namespace import Array, is_jax, namespace
 from gbeam.arrays.tree import record
 from gbeam.mechanics.fields.basis import Quadrature
 from gbeam.mechanics.fields.vectors import (
@@ -28,7 +28,6 @@ from gbeam.mechanics.fields.vectors import (
 )
 from gbeam.structure.line import NEAR
 
-Array = Any
 Turn = tuple[Array, ...]  # a quaternion by components
 _GAUSS = np.sqrt(15) / 10 * np.array([-1.0, 0.0, 1.0]) + 0.5
 # i, j and k times a quaternion: its components in another order, with signs.

@@ -6,15 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import namespace
+from gbeam.arrays.namespace import Array, namespace
 from gbeam.arrays.tree import record, static
 from gbeam.mechanics.fields.basis import Families, Quadrature
 from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import ExpandedField, StrainField
 from gbeam.mechanics.fields.taylor import EPSILON, Expanded, Places, Turns, exponential
 from gbeam.mechanics.fields.vectors import rotation_matrix
-
-Array = Any
 
 
 @record

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import namespace
+from gbeam.arrays.namespace import Array, namespace
 from gbeam.arrays.tree import record, static
 from gbeam.mechanics.fields.strains import StrainField, Tangents, added_rates, cross_rates, mapped_rates
 from gbeam.mechanics.fields.taylor import Places, Turns
@@ -37,7 +37,6 @@ from gbeam.mechanics.fields.vectors import (
     turned,
 )
 
-Array = Any
 Rates = tuple[Vector, Vector, Vector]  # a vector with its first and second derivatives with respect to time
 Strains = tuple[Vector, Vector]  # d and k at the nodes, or their derivatives
 STILL: Strains = (NONE, NONE)

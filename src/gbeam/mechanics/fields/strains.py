@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.arrays.namespace import namespace
+from gbeam.arrays.namespace import Array, namespace
 from gbeam.arrays.tree import record, static
 from gbeam.mechanics.fields.basis import Families, Quadrature
 from gbeam.mechanics.fields.frames import Frames, beyond, frames_along, root_rule
@@ -40,8 +40,6 @@ from gbeam.mechanics.fields.vectors import (
     turned_back,
 )
 from gbeam.structure.line import Line
-
-Array = Any
 
 
 class Tangents(NamedTuple):

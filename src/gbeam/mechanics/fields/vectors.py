@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import is_jax, namespace
+from gbeam.arrays.namespace import Array, is_jax, namespace
 
 Scalar = Any
 Vector = tuple[Scalar, Scalar, Scalar]
@@ -125,9 +125,6 @@ def joined(xp: Any, parts: tuple[Scalar, ...], shape: tuple[int, ...]) -> Any:
     for k, part in enumerate(parts):
         out[..., k] = part
     return out
-
-
-Array = Any
 
 
 def rotation_matrix(angle: Array) -> Array:

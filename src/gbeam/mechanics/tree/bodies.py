@@ -7,11 +7,11 @@ A wrench is what motion demands: Σ m a outboard, less the loads. Forces on coor
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from gbeam.arrays.namespace import is_traced, namespace
+from gbeam.arrays.namespace import Array, is_traced, namespace
 from gbeam.arrays.tree import record
 from gbeam.mechanics.equations.dalembert import Complete
 from gbeam.mechanics.equations.linear import Coefficients
@@ -22,7 +22,6 @@ from gbeam.mechanics.fields.vectors import split
 from gbeam.mechanics.tree.frames import Frame, Relative, Wrench, cross, turned, turned_back
 from gbeam.mechanics.tree.steps import rotation_by_vector, tangent_back
 
-Array = Any
 THIN = 1e-9  # of the largest moment of inertia: less is none
 
 

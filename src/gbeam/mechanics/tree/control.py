@@ -11,16 +11,15 @@ from inspect import signature
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import as_array, holds_tracer, is_traced, namespace
 from gbeam.arrays.tree import Value
+from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive, refuse_traced
 from gbeam.motion.profiles.combine import as_profile
 
-Floats = NDArray[np.float64]
 Step = Callable[[float, Floats, Any], tuple[Any, Any]]
 
 

@@ -7,12 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import as_array, is_traced, namespace
+from gbeam.arrays.namespace import Array, as_array, is_traced, namespace
 from gbeam.mechanics.tree.frames import cross
 from gbeam.mechanics.tree.steps import parameter_rates, parameters_after, parameters_of_vector
 from gbeam.motion.profiles.profile import Profile
 
-Array = Any
 STRIDE, PIECES, HALVINGS = 1e-3, 2000, 8  # s, and pieces of the whole, between knots; and how often these are halved
 EXACT = 1e-12  # rad, by which halves of a piece may differ from the whole
 _ROOT = 15**0.5

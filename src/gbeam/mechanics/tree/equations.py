@@ -9,14 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import concatenated, namespace
+from gbeam.arrays.namespace import Array, concatenated, namespace
 from gbeam.arrays.tree import record, static
 from gbeam.mechanics.tree.bodies import Acting, Body
 from gbeam.mechanics.tree.frames import Frame, Wrench, cross, turned, turned_back
 from gbeam.mechanics.tree.steps import Ball, Placed, Rotation, Slide, Step, Turning
-
-Array = Any
-
 
 SLIP = 1e-3  # rad/s or m/s: rate at which friction has 0.76 of its size
 

@@ -11,13 +11,11 @@ and a wrench on Q acts on P by f_P = C f_Q and n_P = C n_Q + r × f_P. All array
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
+from gbeam.arrays.namespace import Array
 from gbeam.arrays.tree import record
 
-Array = Any
 _NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])  # component after each, and the one before
 
 

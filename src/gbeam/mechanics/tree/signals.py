@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from gbeam.arrays.namespace import concatenated, namespace
+from gbeam.arrays.namespace import Array, concatenated, namespace
 from gbeam.mechanics.tree.frames import turned
 from gbeam.mechanics.tree.joints import SLIDES, SPIN
 from gbeam.mechanics.tree.steps import parameters_of_all, vector_of
 
 if TYPE_CHECKING:
     from gbeam.mechanics.tree.system import System
-
-Array = Any
 
 
 class Driven(NamedTuple):

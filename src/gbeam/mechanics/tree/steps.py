@@ -10,11 +10,10 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from gbeam.arrays.namespace import as_array, concatenated, namespace
+from gbeam.arrays.namespace import Array, as_array, concatenated, namespace
 from gbeam.arrays.tree import record
 from gbeam.mechanics.tree.frames import Relative, Wrench, cross, product, turned_back
 
-Array = Any
 SMALL = 0.05  # rad²: below it functions of an angle's square are their Taylor series, to rounding
 
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gbeam.arrays.namespace import as_array, concatenated, holds_jax, is_jax, namespace
+from gbeam.arrays.namespace import Array, as_array, concatenated, holds_jax, is_jax, namespace
 from gbeam.arrays.tree import Value
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, choice, positive, vector
@@ -40,8 +40,6 @@ from gbeam.motion.profiles.combine import as_profile
 from gbeam.motion.protocol import Motion
 from gbeam.printable import advise
 
-Array = Any
-Floats = NDArray[np.float64]
 ROOT = "root"
 
 

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from typing import Any, ClassVar, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import as_array, holds_jax, namespace
 from gbeam.arrays.tree import assign, each_leaf, record, static
+from gbeam.arrays.types import Floats
 from gbeam.constants import STANDARD_GRAVITY, InverseName, Mounting, Start
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
@@ -254,7 +254,7 @@ class Centrifuge:
         """Inverse that makes axis motions of the target, likewise."""
         return self._solved.inverse
 
-    def corners(self, step: float) -> NDArray[np.float64]:
+    def corners(self, step: float) -> Floats:
         """Times that steps of length `step` (s) should not pass unseen, s, ascending."""
         return self.target.load.corners(step)
 
@@ -356,7 +356,7 @@ def _turn(turn: Any) -> tuple[float, float, float]:
     return x, y, z
 
 
-def rotation_of(turn: tuple[float, float, float]) -> NDArray[np.float64]:
+def rotation_of(turn: tuple[float, float, float]) -> Floats:
     """Rotation matrix of a rotation vector, rad."""
     from scipy.spatial.transform import Rotation  # 0.2 s to import, which few machines need
 

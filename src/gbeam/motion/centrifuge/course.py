@@ -10,10 +10,10 @@ from functools import lru_cache, partial
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import as_array, is_jax, is_traced, namespace
 from gbeam.arrays.tree import record, static
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.limits import KNOTS, refuse_more
 from gbeam.motion.centrifuge.inverses.instant import Flat, Geometry, Inverse, Pose, QuasiStatic, exact, unfollowable
@@ -24,8 +24,6 @@ from gbeam.motion.centrifuge.target.target import Target
 from gbeam.motion.profiles.profile import Profile
 from gbeam.numerics.bspline import PIECE, Grid, Spline
 from gbeam.numerics.series import where
-
-Floats = NDArray[np.float64]
 
 _COARSE, _FINE, _FINEST = 0.08, 0.02, 0.005  # s between knots: at first; at most; at least
 _GAIN = 0.15  # of the cost above its bound, that finer knots must bring to go on

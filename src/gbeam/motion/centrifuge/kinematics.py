@@ -5,15 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
+from gbeam.arrays.types import Floats
 from gbeam.motion.centrifuge.limits import usage
 from gbeam.numerics.samples import cumulative
 from gbeam.results.machine import AxesResult, LimitUse
 from gbeam.results.parts import Base
-from gbeam.results.result import Floats
 
 if TYPE_CHECKING:
     from gbeam.motion.centrifuge.centrifuge import Centrifuge
@@ -90,7 +89,7 @@ def moved(base: Base, offset: Any) -> Base:
     return Base(base.a_WO_B + turning, base.w_WB_B, base.alpha_WB_B)
 
 
-def axis_angles(axes: Axes, times: Any) -> NDArray[np.float64]:
+def axis_angles(axes: Axes, times: Any) -> Floats:
     """Angles of the three axes at `times` (n,), (n, 3) rad: that of axis 1 from zero, all without jumps."""
     time = np.asarray(times, dtype=float)
     first = cumulative(time, np.asarray(axes.rate1), np.asarray(axes.acceleration1))

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from typing import Any, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.arrays.tree import assign, record
+from gbeam.arrays.types import Floats
 from gbeam.constants import STANDARD_GRAVITY, Start
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
@@ -102,10 +102,10 @@ class Limits:
 
 
 def usage(
-    time: NDArray[np.float64],
-    rate: NDArray[np.float64],
-    acceleration: NDArray[np.float64],
-    jerk: NDArray[np.float64],
+    time: Floats,
+    rate: Floats,
+    acceleration: Floats,
+    jerk: Floats,
     limits: Limits,
 ) -> tuple[LimitUse, ...]:
     """Return the use of each limit by a motion at times (n,) s: rate, acceleration, jerk (n, 3), rad and s."""
@@ -121,9 +121,7 @@ def usage(
     return tuple(uses)
 
 
-def _use(
-    axis: str, quantity: str, unit: str, time: NDArray[np.float64], values: NDArray[np.float64], allowed: float
-) -> LimitUse:
+def _use(axis: str, quantity: str, unit: str, time: Floats, values: Floats, allowed: float) -> LimitUse:
     size = np.abs(values)
     peak = int(np.argmax(size))
     return LimitUse(axis, quantity, unit, float(size[peak]), allowed, float(time[peak]))

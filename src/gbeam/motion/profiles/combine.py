@@ -7,10 +7,10 @@ from operator import add
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import as_array, is_traced, namespace
 from gbeam.arrays.tree import assign, record
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError, naming
 from gbeam.guards.arguments import typed
 from gbeam.motion.profiles.piecewise import PiecewiseLinear, constant
@@ -30,10 +30,10 @@ class _Combined(Profile):
     def breaks(self) -> Any:
         return merged_breaks(*self.parts)
 
-    def corners(self, step: float) -> NDArray[np.float64]:
+    def corners(self, step: float) -> Floats:
         return np.unique(np.concatenate([part.corners(step) for part in self.parts]))
 
-    def knots(self, step: float) -> NDArray[np.float64]:
+    def knots(self, step: float) -> Floats:
         return np.unique(np.concatenate([part.knots(step) for part in self.parts]))
 
     @property
@@ -105,10 +105,10 @@ class Turned(Profile):
     def breaks(self) -> Any:
         return self.profile.breaks
 
-    def corners(self, step: float) -> NDArray[np.float64]:
+    def corners(self, step: float) -> Floats:
         return self.profile.corners(step)
 
-    def knots(self, step: float) -> NDArray[np.float64]:
+    def knots(self, step: float) -> Floats:
         return self.profile.knots(step)
 
     @property
@@ -228,12 +228,12 @@ class Clamped(Profile):
         between = xp.clip(breaks, self.first, self.last)
         return xp.concatenate([self.first[None], between, self.last[None]])
 
-    def corners(self, step: float) -> NDArray[np.float64]:
+    def corners(self, step: float) -> Floats:
         """The two times and the corners between, s."""
         first, last = float(self.first), float(self.last)
         return np.concatenate([[first], np.clip(self.profile.corners(step), first, last), [last]])
 
-    def knots(self, step: float) -> NDArray[np.float64]:
+    def knots(self, step: float) -> Floats:
         return np.unique(np.clip(self.profile.knots(step), float(self.first), float(self.last)))
 
     def smoothed(self, width: Any) -> Profile:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from gbeam.arrays.namespace import as_array, is_traced, namespace
 from gbeam.arrays.tree import assign, record, static
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import finite, positive
@@ -59,11 +60,11 @@ class PiecewiseLinear(Profile):
     def record(self) -> RecordSummary | None:
         return self.summary
 
-    def corners(self, step: float) -> NDArray[np.float64]:
+    def corners(self, step: float) -> Floats:
         bent = (np.diff(np.asarray(self.slopes), axis=0) != 0).reshape(len(self.times), -1).any(axis=1)
         return np.asarray(self.times)[bent]
 
-    def knots(self, step: float) -> NDArray[np.float64]:
+    def knots(self, step: float) -> Floats:
         return np.asarray(self.times)
 
     def smoothed(self, width: Any) -> Profile:
@@ -79,7 +80,7 @@ def _refuse_infinite(name: str, array: Any) -> None:
         raise InputError(f"{name}[{bad[0]}]", "is not finite", "give a finite number")
 
 
-def _refuse_unordered(times: NDArray[np.float64]) -> None:
+def _refuse_unordered(times: Floats) -> None:
     back = np.flatnonzero(np.diff(times) <= 0)
     if back.size:
         i = int(back[0])
@@ -87,7 +88,7 @@ def _refuse_unordered(times: NDArray[np.float64]) -> None:
         raise InputError(f"times[{i + 1}]", problem, "list times in strictly increasing order")
 
 
-def _refuse_steep(times: NDArray[np.float64], rise: NDArray[np.float64]) -> None:
+def _refuse_steep(times: Floats, rise: Floats) -> None:
     steep = np.argwhere(~np.isfinite(rise))
     if steep.size:
         i = int(steep[0, 0])

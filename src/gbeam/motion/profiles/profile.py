@@ -8,10 +8,10 @@ from math import factorial, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import as_array, is_jax, namespace
 from gbeam.arrays.tree import assign, record
+from gbeam.arrays.types import Floats
 from gbeam.guards.arguments import refuse_units, typed
 from gbeam.guards.checks import positive
 from gbeam.guards.limits import KNOTS, refuse_more
@@ -59,12 +59,12 @@ class Profile(ABC):
     def breaks(self) -> Any:
         """Times (s, ascending) at which a derivative jumps, shape (b,); empty if the third is continuous."""
 
-    def corners(self, step: float) -> NDArray[np.float64]:
+    def corners(self, step: float) -> Floats:
         """Times (s, ascending) that steps of length `step` (s) should not pass unseen; breaks are among them."""
         return np.asarray(self.breaks, dtype=np.float64)
 
     @abstractmethod
-    def knots(self, step: float) -> NDArray[np.float64]:
+    def knots(self, step: float) -> Floats:
         """Times (s, ascending) between which the profile is straight, or which are `step` apart at most."""
 
     @property
@@ -116,7 +116,7 @@ def smoothed(profile: Profile, width: Any) -> Profile:
     return profile.smoothed(positive("smoothing", width, "s"))
 
 
-def rounded_corners(corners: Any, width: float, step: float) -> NDArray[np.float64]:
+def rounded_corners(corners: Any, width: float, step: float) -> Floats:
     """Corners that a kernel rounds: none where steps resolve its `width`, else no nearer than they then would be."""
     apart, times = float(width) / STEPS_PER_EVENT, np.asarray(corners, dtype=np.float64)
     if apart >= step or not times.size:
@@ -124,7 +124,7 @@ def rounded_corners(corners: Any, width: float, step: float) -> NDArray[np.float
     return np.asarray(times[0] + apart * np.unique(np.round((times - times[0]) / apart)))
 
 
-def sampled(start: float, end: float, step: float) -> NDArray[np.float64]:
+def sampled(start: float, end: float, step: float) -> Floats:
     """Evenly spaced times from `start` to `end`, s, no further apart than `step`; InputError if they are too many."""
     count = np.ceil((end - start) / step)
     fix = f"give {KNOTS * step:.3g} s or less, or smooth over more time"
@@ -147,11 +147,11 @@ class Rounded(Profile):
         """None: the third derivative is continuous."""
         return self.sharp.breaks[:0]
 
-    def corners(self, step: float) -> NDArray[np.float64]:
+    def corners(self, step: float) -> Floats:
         """Corners of the sharp profile, s, where steps are long beside the width."""
         return rounded_corners(self.sharp.corners(step), self.width, step)
 
-    def knots(self, step: float) -> NDArray[np.float64]:
+    def knots(self, step: float) -> Floats:
         """Times, s, no further apart than `step` within half a width of the sharp profile's knots."""
         half, inner = float(self.width) / 2, self.sharp.knots(step)
         return sampled(float(inner[0]) - half, float(inner[-1]) + half, step)

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import as_array, namespace
 from gbeam.arrays.tree import assign, record
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, finite, positive
@@ -27,12 +27,12 @@ class _Pulse(Profile):
     def breaks(self) -> Any:
         return self.start + self.duration * np.arange(2.0)
 
-    def corners(self, step: float) -> NDArray[np.float64]:
+    def corners(self, step: float) -> Floats:
         """Start and end, s, and the quarters between where these are of few steps."""
         parts = STEPS_PER_EVENT if float(self.duration) < 2 * STEPS_PER_EVENT * step else 1
         return np.asarray(self.start + self.duration * (np.arange(1 + parts) / parts))
 
-    def knots(self, step: float) -> NDArray[np.float64]:
+    def knots(self, step: float) -> Floats:
         return sampled(float(self.start), float(self.start + self.duration), step)
 
 
@@ -197,13 +197,13 @@ class SplineProfile(Profile):
         """None: the fourth derivative is continuous."""
         return np.empty(0)
 
-    def corners(self, step: float) -> NDArray[np.float64]:
+    def corners(self, step: float) -> Floats:
         """Start and end, s, and the ends of the pieces where these are of few steps."""
         pieces = len(self.coefficients) - DEGREE
         short = float(self.duration) / pieces < PIECE * step
         return np.asarray(self.start + self.duration * np.linspace(0, 1, 1 + (pieces if short else 1)))
 
-    def knots(self, step: float) -> NDArray[np.float64]:
+    def knots(self, step: float) -> Floats:
         return sampled(float(self.start), float(self.start + self.duration), step)
 
 

@@ -6,15 +6,13 @@ from collections.abc import Iterator
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gbeam.arrays.types import Flags, Floats
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError, placing_within
 from gbeam.guards.checks import positive
 from gbeam.guards.limits import SAMPLES, refuse_more
 from gbeam.numerics.samples import low_pass, true_runs
-
-Floats = NDArray[np.float64]
 
 FEWEST = 6  # samples of a record
 UNEVEN = 0.01  # of the median interval
@@ -55,7 +53,7 @@ def dropout(values: Floats, step: float) -> tuple[int, int] | None:
     return None
 
 
-def spikes(load: Floats) -> NDArray[np.bool_]:
+def spikes(load: Floats) -> Flags:
     """Single samples far off, per channel, (t, 3), by both of two tests.
 
     Hampel's: off the median of the seven around them. On a flank beside a peak these deviate from their median as much
@@ -79,7 +77,7 @@ def _windows(values: Floats, beside: int, reflected: Literal["odd", "even"]) -> 
     return np.lib.stride_tricks.sliding_window_view(padded, 2 * beside + 1, axis=0)
 
 
-def _far(off: Floats, around: Floats) -> NDArray[np.bool_]:
+def _far(off: Floats, around: Floats) -> Flags:
     """True if samples are six deviations off, of the windows `around` them and of the median window."""
     spread = 1.4826 * np.median(around, axis=-1)
     spread = np.maximum(spread, np.median(spread, axis=0))
@@ -102,7 +100,7 @@ def flat_tops(values: Floats) -> Iterator[tuple[float, list[slice]]]:
             yield extreme, runs
 
 
-def without_spikes(time: Floats, load: Floats, at: NDArray[np.bool_]) -> Floats:
+def without_spikes(time: Floats, load: Floats, at: Flags) -> Floats:
     """The record with its spikes replaced by straight lines between their neighbours."""
     columns = (np.interp(time, time[~bad], values[~bad]) for values, bad in zip(load.T, at.T, strict=True))
     return np.stack(list(columns), axis=1)

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gbeam.arrays.types import Floats, Indices
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import BINARY_BYTES, SAMPLES, refuse_large_file, refuse_more
@@ -17,7 +17,7 @@ from gbeam.io.binary import is_binary, read_binary
 from gbeam.io.table import NO_COLUMN, Clock, Table
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
 from gbeam.motion.records.columns import UNITS, load_factors, mirrored, refuse_other_kinds, unit_of
-from gbeam.motion.records.conditioning import FEWEST, Floats, filtered, spikes, without_spikes
+from gbeam.motion.records.conditioning import FEWEST, filtered, spikes, without_spikes
 from gbeam.motion.records.soundness import CHECKS, Samples, oddities, refuse_unsound, summary
 from gbeam.motion.records.text import Span, check_interval, check_sampling, part_within, read_text
 
@@ -192,7 +192,7 @@ def read_flight(
         check_interval(when, seconds)
     load = load_scale * table.vector(names, len(clock), part)
 
-    def samples(at: NDArray[np.intp]) -> Samples:
+    def samples(at: Indices) -> Samples:
         specific = quantity == "specific-force"
         return Samples(clock[at], load[at], names, unit, specific, lambda i: table.place(int(at[i])))
 

@@ -6,12 +6,12 @@ from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gbeam.arrays.types import Flags, Floats
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.motion.records.columns import UNITS
-from gbeam.motion.records.conditioning import Floats, dropout, flat_tops, spikes, without_spikes
+from gbeam.motion.records.conditioning import dropout, flat_tops, spikes, without_spikes
 from gbeam.numerics.samples import true_runs
 from gbeam.results.description import Level, RecordSummary, Vector
 
@@ -70,7 +70,7 @@ def _lasts(record: Samples) -> bool:
     return float(record.time[-1] - record.time[0]) >= _FRAGMENT
 
 
-def _calmed(record: Samples) -> tuple[NDArray[np.bool_], Floats, Floats]:
+def _calmed(record: Samples) -> tuple[Flags, Floats, Floats]:
     """Spikes of a record, its load without them, and the size of that."""
     odd = spikes(record.load)
     calm = without_spikes(record.time, record.load, odd)
@@ -81,7 +81,7 @@ def _trust(check: str, otherwise: str = "if the record is right as it is") -> st
     return f'{otherwise}, add skip_checks = ["{check}"]'
 
 
-def _check_spikes(record: Samples, odd: NDArray[np.bool_], size: Floats) -> None:
+def _check_spikes(record: Samples, odd: Flags, size: Floats) -> None:
     """Refuse a spike that would be the record's peak."""
     high = np.linalg.norm(record.load, axis=1)
     i = int(np.argmax(np.where(odd.any(axis=1), high, 0)))

@@ -10,8 +10,8 @@ from collections.abc import Callable
 from statistics import mode
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.limits import BINARY_BYTES, TEXT_BYTES, in_bytes, refuse_large_file
 from gbeam.io.table import Clock, Column, Table, is_clock
@@ -26,7 +26,7 @@ _USUAL = (1e-3, 0.2)  # s: intervals of flight records
 _GAP = 1.9  # of the median interval: a sample is missing, and no clock that jitters is as late
 
 
-def check_sampling(time: NDArray[np.float64], place: Callable[[int], str], *, jitter: bool) -> float:
+def check_sampling(time: Floats, place: Callable[[int], str], *, jitter: bool) -> float:
     """Refuse times (t,) s that stand still, go back, jump or wander; return how far off even ones they are, s."""
     steps = np.diff(time)
 
@@ -62,7 +62,7 @@ def check_sampling(time: NDArray[np.float64], place: Callable[[int], str], *, ji
     return float(np.abs(time - even).max()) if uneven.size else 0.0
 
 
-def check_interval(time: NDArray[np.float64], unit: str) -> None:
+def check_interval(time: Floats, unit: str) -> None:
     """Refuse an interval of times (t,) s that no record of a flight has, and say which unit would make it one."""
     step, length = float(np.median(np.diff(time))), float(time[-1] - time[0])
     trust = 'if it is right as it is, add skip_checks = ["sampling"]'
@@ -86,7 +86,7 @@ def check_interval(time: NDArray[np.float64], unit: str) -> None:
         )
 
 
-def part_within(clock: NDArray[np.float64], of_day: Clock | None, span: Span, counted: Callable[[int], str]) -> slice:
+def part_within(clock: Floats, of_day: Clock | None, span: Span, counted: Callable[[int], str]) -> slice:
     """Return the samples within a span of a record's times (t,) s."""
     if span == (None, None):
         return slice(0, len(clock))

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse
-from numpy.typing import NDArray
 
+from gbeam.arrays.types import Floats
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.motion.centrifuge.inverses.instant import Geometry
 from gbeam.motion.centrifuge.inverses.spin_up import Ramp
@@ -25,8 +25,6 @@ ON_WAY = 0.01  # weight of the squared error before the flight and after it
 BELOW_IDLE = 0.1  # weight of the squared error while the flight's load is below idle, where it is 1 otherwise
 EASE = 1e-4, 1e-6  # g0: what 1 rad/s² and 1 rad/s³ of any axis cost as a tracking error
 _PAIRS = np.tril_indices(4)  # of states
-
-Floats = NDArray[np.float64]
 
 
 class AxisSplines:

@@ -18,10 +18,10 @@ from abc import ABC, abstractmethod
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record, static
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.motion.centrifuge.target.reachability import PARTED, sharp_turns, size_and_rates
 from gbeam.motion.centrifuge.target.target import Target
@@ -125,8 +125,6 @@ _MOST = 60_000  # pieces
 _NEAR, _CLOSE = 1e-6, 1e-10  # rad: largest change of the lag in a step that is taken whole, and in the last one
 _POINTS = np.array([0.5 - np.sqrt(3) / 6, 0.5 + np.sqrt(3) / 6])
 _SMOOTH = 1e-4  # weight of the third derivative at the ends: of all solutions there it picks the one without a layer
-
-Floats = NDArray[np.float64]
 
 
 @record

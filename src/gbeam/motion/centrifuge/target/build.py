@@ -7,9 +7,9 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import is_traced
+from gbeam.arrays.types import Flags, Floats
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
@@ -50,8 +50,6 @@ _PATH = 0.25  # of the smoothing kernel: what rounds the path
 _QUICK = 0.1  # s: time scale of the path where no arm is given
 _ROUNDING = 1e-9
 
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 Stretches = Sequence[tuple[float, float]]
 
 

@@ -9,8 +9,8 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gbeam.arrays.types import Flags, Floats
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.motion.centrifuge.target.target import IDLE_BAND, Target
@@ -18,9 +18,6 @@ from gbeam.motion.profiles.profile import Profile
 from gbeam.numerics.samples import joined, true_runs
 from gbeam.numerics.series import sqrt, square, where
 from gbeam.results.machine import Shortfall
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 LEAST_IDLE = 1.1  # g, with gravity
 UNTOUCHED = 1 + IDLE_BAND / 2  # times idle: a larger load is not raised

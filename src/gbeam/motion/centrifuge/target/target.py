@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import as_array, is_traced, namespace
 from gbeam.arrays.tree import assign, record, static
+from gbeam.arrays.types import Flags, Floats
 from gbeam.motion.profiles.combine import merged_breaks
 from gbeam.motion.profiles.profile import Profile, beside, soft_floor, soft_step
 from gbeam.numerics.samples import true_runs
@@ -24,7 +25,6 @@ _TOUCH = 1e-9  # s
 IDLE_BAND = 0.2  # of idle: how softly the hold sets in, by at most 1.5 % of idle
 REACH_BAND = 0.1  # of the least load across the beam: likewise
 
-Floats = NDArray[np.float64]
 Row = tuple[float, float, float, float]  # start s, end s, number of the reason, the flight's largest load m/s²
 
 
@@ -124,8 +124,6 @@ _POLE = 0.05  # rad from the beam: nearer to it the angle about it would run awa
 _LEAST_WEIGHT = 1e-3  # of values without a direction: what keeps the path in one piece between them
 _CARRIED = 0.2  # rad: how far a slope beside the path may carry it away
 _WIDENING = 0.3  # s per s: how its time scale grows from there
-
-Flags = NDArray[np.bool_]
 
 
 def unwrapped(times: Floats, y: Floats, x: Floats, whole: float) -> tuple[Floats, Floats]:
@@ -267,11 +265,11 @@ class NearestLoad(Profile):
     def breaks(self) -> Any:
         return self.flight.breaks if self.path is None else merged_breaks(self.flight, self.path)
 
-    def corners(self, step: float) -> NDArray[np.float64]:
+    def corners(self, step: float) -> Floats:
         breaks = self.flight.corners(step)
         return breaks if self.path is None else np.union1d(breaks, self.path.corners(step))
 
-    def knots(self, step: float) -> NDArray[np.float64]:
+    def knots(self, step: float) -> Floats:
         knots = self.flight.knots(step)
         return knots if self.path is None else np.union1d(knots, self.path.knots(step))
 
