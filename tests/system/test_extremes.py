@@ -247,3 +247,23 @@ def test_what_does_not_move_is_zero() -> None:
     response = gb.simulate(system, flight, duration=1.0, step=2e-3, estimate=False)
     assert response.largest.max() == 0
     assert "at the end hinge.angle_1 0 rad, hinge.angle_2 0 rad" in text(response)
+
+
+@pytest.mark.parametrize("step", [1e-2, 5e-4, 1e-4])
+@pytest.mark.parametrize("stops", [{}, {"stops": {"rz": (-0.2, 0.2)}, "stop_stiffness": {"rz": 1e3}}])
+def test_what_its_load_does_not_move_rests(step: float, stops: dict[str, object]) -> None:
+    """A weight across the ways that a fixture gives leaves no force but rounding there, which has no sense."""
+    fixture = gb.Joint("fixed", "box", at=(0, 0, 0.05), turn=(0, -1.5, 0), stiffness={"z": 2e4, "rz": 60.0}, **stops)
+    box = gb.RigidBody(30.0, (0.3, 0.3, 0.36), (0.1, 0, 0.035))
+    system = gb.System({"box": box}, {"fixture": fixture}, gravity=(-9.80665, 0, 0))
+    response = gb.simulate(system, duration=0.1, step=step)
+    assert response.outcome == "done" and np.abs(response.q).max() < 1e-15
+
+
+def test_a_slide_across_gravity_comes_to_rest() -> None:
+    """Its forces fall below the rounding of its weight, by which they are then known."""
+    held = {"axes": [(0.6, 0.8, 0)], "turn": (0, -1.5, 0), "stiffness": 2e4, "damping": 300.0, "initial": 1e-3}
+    box = {"box": gb.RigidBody(30.0, (0.3, 0.3, 0.36), (0.1, 0, 0.035))}
+    slide = gb.System(box, {"slide": gb.Joint("prismatic", "box", **held)}, gravity=(0, 0, -9.81))
+    response = gb.simulate(slide, duration=10.0, step=5e-3, estimate=False)
+    assert response.outcome == "done" and np.abs(response.q[-1]).max() < 1e-15

@@ -44,6 +44,7 @@ QUICK = 2  # corrections until the last step is near, up to which more steps fol
 SLOW, FAST = 0.5, 0.01  # of the last correction: where one is larger, derivatives are closer, where smaller farther
 QUICKEST, STALLED = 0.01, 0.9  # factors of corrections: none is thought to be smaller, and where they do not shrink
 TOLERANCE, ROUNDING = 1e-12, 1e-6  # of the largest acceleration: error left by the last correction, and where it stalls
+STUCK = 4  # corrections of a step after which the rounding of its inputs is asked for, too
 TINY = float(np.finfo(float).tiny)
 CANCELLED = 100 * float(np.finfo(float).eps)  # of the forces at a coordinate, each a sum of many: their rounding
 BALANCED = 1e-9  # of the forces at a step: what is left of them where a correction may be the last
@@ -150,11 +151,14 @@ class _Window:
             if far and moved[-1] <= MOVED and count[-1] <= QUICK:
                 self.more = min(self.more + self.more // 2 + 1, LONGEST)
             # By derivatives of another state corrections may shrink slowly without being rounding.
-            quick = least <= FAST
-            good = _converged(size, before, reach, np.minimum(rounding, self.most), fresh=fresh, quick=quick)
+            quick, noise = least <= FAST, np.minimum(rounding, self.most)
+            loads = self._of_inputs(states) if (count >= STUCK).any() else 0 * forces
+            noise = noise + self._left_of(loads)
+            good = _converged(size, before, reach, noise, fresh=fresh, quick=quick)
             # Interpolated from states far away, derivatives may be far too large, and corrections by them small.
             trusted = alone & fresh | (len(self.slope) == 1 and (self.slope == self.reached).all())
-            doubtful = good & ~trusted & ~(_largest(self.left) <= BALANCED * _largest(forces))
+            balanced = _largest(self.left) <= BALANCED * _largest(forces) + CANCELLED * _largest(loads)
+            doubtful = good & ~trusted & ~balanced
             good &= ~doubtful
             least[:] = np.fmin(least, size / np.where(fresh | np.isinf(before), np.nan, before))
             slow = ~good & (count > 1) & ~(size <= SLOW * before) | alone & doubtful
@@ -319,9 +323,19 @@ class _Window:
         """Sizes (t, s n) of the forces that cancel at stages, by derivatives at a state that was reached."""
         return (np.abs(self.reached) @ np.abs(states).swapaxes(1, 2)).sum(axis=0).T.reshape(len(self.x), -1)
 
+    def _of_inputs(self, states: Array) -> Array:
+        """Sizes (t, s n) of the forces of inputs in any direction, as of a weight across all that a joint lets move."""
+        astray = each_leaf(lambda leaf: leaf + CANCELLED * np.abs(leaf).max(initial=0.0), self.inputs)
+        apart = self.residual(*states, astray) - self.residual(*states, self.inputs)
+        return np.asarray(np.abs(apart).reshape(len(self.x), -1) / CANCELLED)
+
+    def _left_of(self, forces: Array) -> Array:
+        """Accelerations (t,) left of forces that cancel."""
+        return _largest(CANCELLED * _products(np.abs(self.maps[0]), forces))
+
     def _rounding(self, forces: Array) -> Array:
         """Accelerations (t,) left of forces that cancel at stages, which no correction takes away."""
-        rounding = _largest(CANCELLED * _products(np.abs(self.maps[0]), forces))
+        rounding = self._left_of(forces)
         if self.most == np.inf:
             self.most = GROWN * float(rounding.max())
         return rounding
