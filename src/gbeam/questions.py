@@ -182,19 +182,16 @@ def prepared(case: AnyCase, name: str) -> Any:
 
 
 def reduced(case: AnyCase, needs: Needs) -> AnyCase:
-    """The case whose responses have what is needed, to the last digit as before.
-
-    Automatic numbers of shapes follow from the errors, and an automatic step from the loads.
+    """The case whose responses have what is needed, to the last digit as before; automatic numbers of shapes follow
+    from the errors.
     """
     if needs.errors or case.automatic:
         return case
     from gbeam.analysis.case import SystemCase
 
-    response = replace(case.over_time, estimate=False)
     compared = isinstance(case, SystemCase) and case.tracks  # by what all of its beams carry
-    if response.step is not None and not (needs.loads or compared):
-        response = replace(response, loads=False)
-    return replace(case, response=response)
+    loads = case.over_time.loads and bool(needs.loads or compared)
+    return replace(case, response=replace(case.over_time, estimate=False, loads=loads))
 
 
 def _structure(case: AnyCase, needs: Needs) -> Any:

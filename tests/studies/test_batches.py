@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 
 import gbeam as gb
+from gbeam.analysis.response import record
 from gbeam.analysis.response.batch import simulate_batch
+from gbeam.integrate import side_by_side
 from gbeam.scenario.load import load
 from gbeam.studies.evaluate import Inquiry, may_share, rows, settled
 from gbeam.studies.template import ScenarioTemplate
@@ -65,7 +67,7 @@ def test_each_case_of_a_batch_that_fails_is_computed_once(fast: Path, monkeypatc
         ScenarioTemplate(load(fast)), "run", None, keys=(("motions", "flight", "tip", "z", "max_abs"),), together=True
     )
     tasks = [(k, (*FIXED, f"{LEVEL}={2 + k / 2} g", f"beam.length={200 + k} mm")) for k in range(11)]
-    alone = [rows(whole, [task])[0] for task in tasks]
+    alone = [next(iter(rows(whole, [task]))) for task in tasks]
     real = simulate_batch
 
     def failing(cases: Any, *args: Any, **more: Any) -> Any:
@@ -76,7 +78,7 @@ def test_each_case_of_a_batch_that_fails_is_computed_once(fast: Path, monkeypatc
         return real(iter(some), *args, **more)
 
     monkeypatch.setattr("gbeam.studies.evaluate.simulate_batch", failing)
-    answer = rows(whole, tasks)
+    answer = sorted(rows(whole, tasks), key=lambda row: row.case)
     assert [row.case for row in answer] == list(range(11)) and sorted(computed) == [*range(200, 206), *range(207, 211)]
     for row, single in zip(answer, alone, strict=True):
         if row.case == 6:
@@ -141,6 +143,67 @@ def test_many_cases_of_an_automatic_step_have_the_figures_of_their_own_runs(fast
         assert peaks.loads is not None
         alone = [peaks.max_abs[2], peaks.loads.moment[0].components.value[1]]
         assert [swept.measures[MEASURES[i]][k] for i in (0, 3)] == pytest.approx(alone, rel=1e-9)
+
+
+PANEL = gb.Beam(3.0, gb.Section.rectangle(0.02, 0.5), gb.Material(2700.0, 70e9), damping_ratio=0.005)
+DRIVES = {
+    "slewed": gb.Hub(radius=0.5, rate=gb.SmoothStep(0.1, 5.0)),
+    "pushed": gb.Hub(radius=0.5, inertia=50.0, torque=gb.Sine(1.0, 5.0)),
+}
+WIDTH, RATE = "beam.section.width", "motion.hub.rate.duration"
+
+
+def panel(drive: str) -> gb.Case:
+    """A satellite's panel, whose steps are found automatically."""
+    return gb.Case("A panel", PANEL, gb.Model("FOAM", y=2), {"hub": DRIVES[drive]}, gb.ResponseSettings(12.0))
+
+
+@pytest.mark.parametrize("drive", DRIVES)
+def test_cases_of_other_structures_have_the_figures_of_their_own_runs(drive: str) -> None:
+    """Numbers of steps differ, and where the torque ends within them; the loads are measured or not."""
+    widths, case = np.linspace(0.015, 0.03, 32), panel(drive)
+    lean, whole = (
+        gb.sweep(case, {WIDTH: widths.tolist()}, measure)
+        for measure in (["tip.y.max_abs", "steps"], ["tip.y.max_abs", "steps", "loads.root_moment.z.max_abs"])
+    )
+    assert len(set(lean.measures["steps"])) > 4
+    for name in lean.measures:
+        np.testing.assert_array_equal(lean.measures[name], whole.measures[name])
+    for k in (0, 19):
+        beam = replace(PANEL, section=gb.Section.rectangle(widths[k], 0.5))
+        alone = gb.simulate(gb.assemble(beam, "FOAM", y=2), DRIVES[drive], duration=12.0)
+        assert alone.steps == lean.measures["steps"][k]
+        assert lean.measures["tip.y.max_abs"][k] == pytest.approx(alone.peaks.max_abs[1], rel=1e-9)
+        assert alone.peaks.loads is not None
+        moment = alone.peaks.loads.moment[0].components.value[2]
+        assert whole.measures["loads.root_moment.z.max_abs"][k] == pytest.approx(moment, rel=1e-9)
+
+
+@pytest.mark.parametrize(("path", "values"), [(RATE, (3.0, 6.0)), (WIDTH, (0.015, 0.03))])
+def test_a_study_costs_little_more_than_a_batch_by_hand(
+    path: str, values: tuple[float, float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Steps that are computed side by side, beside those of the cases' last runs, which a batch with these steps takes;
+    and no loads of sections, which no figure is taken from.
+    """
+    steps, judged = [0], [0]
+    integrate_together, section_forces = side_by_side.integrate_together, record.section_forces
+
+    def integrated(runs: Any) -> Any:
+        steps[0] += len(runs) * max(len(run.steps) for run in runs)
+        return integrate_together(runs)
+
+    def carried(*state: Any, **more: Any) -> Any:
+        judged[0] += 1
+        return section_forces(*state, **more)
+
+    monkeypatch.setattr(side_by_side, "integrate_together", integrated)
+    monkeypatch.setattr(record, "section_forces", carried)
+    swept = gb.sweep(panel("slewed"), {path: np.linspace(*values, 128).tolist()}, ["tip.y.max_abs", "steps"])
+    assert set(swept.outcome) == {"done"}
+    # Beside them: runs by which a step is known to be enough, and places of batches that stay empty; 4.5 and 4.9.
+    assert steps[0] < 6 * swept.measures["steps"].sum()
+    assert judged[0] <= 2  # the first case's, whose figures are looked up
 
 
 def test_cases_with_other_steps_stay_apart() -> None:

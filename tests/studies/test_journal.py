@@ -44,8 +44,8 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Whole:
 
 
 def test_a_killed_sweep_is_resumed(fast: Path, whole: Whole, gbeam: Call) -> None:
-    slow = "import time, gbeam.studies.evaluate as e, gbeam.studies.sweep as s\n"
-    slow += "from gbeam.cli import main\ns._LONGEST = 1\n"
+    slow = "import time, gbeam.studies.evaluate as e, gbeam.studies.workers as w\n"
+    slow += "from gbeam.cli import main\nw.KEPT = 0.0\n"
     slow += "row = e.Inquiry.row\ndef later(*a):\n    time.sleep(0.05)\n    return row(*a)\ne.Inquiry.row = later\n"
     slow += f"main(['sweep', {str(fast)!r}, *{ARGUMENTS!r}])"
     process = subprocess.Popen([sys.executable, "-c", slow], stdout=subprocess.DEVNULL)
@@ -73,7 +73,7 @@ def test_a_full_disk_keeps_what_is_done(fast: Path, gbeam: Call, monkeypatch: py
         if len(calls) > 2:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr("gbeam.studies.sweep._LONGEST", 4)
+    monkeypatch.setattr("gbeam.studies.workers.KEPT", 0.0)
     with monkeypatch.context() as patch:
         patch.setattr("gbeam.studies.journal.os.fsync", full)
         answer = gbeam("sweep", fast, *ARGUMENTS)
@@ -87,7 +87,7 @@ def test_a_full_disk_keeps_what_is_done(fast: Path, gbeam: Call, monkeypatch: py
 def test_a_disk_that_is_full_in_the_middle_of_a_line(fast: Path, gbeam: Call, monkeypatch: pytest.MonkeyPatch) -> None:
     import resource
 
-    monkeypatch.setattr("gbeam.studies.sweep._LONGEST", 4)
+    monkeypatch.setattr("gbeam.studies.workers.KEPT", 0.0)
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (1500, before[1]))
     try:
@@ -215,7 +215,7 @@ def test_a_store_that_is_removed_while_a_sweep_runs_is_said(
             shutil.rmtree("there")
         add(self, rows)
 
-    monkeypatch.setattr("gbeam.studies.sweep._LONGEST", 4)
+    monkeypatch.setattr("gbeam.studies.workers.KEPT", 0.0)
     monkeypatch.setattr(Journal, "add", removing)
     answer = gbeam("sweep", fast, *ARGUMENTS)
     assert answer.status == 1 and "there/cases.jsonl was removed while the sweep ran" in answer.err

@@ -1,7 +1,7 @@
 """Many runs of one shape at once, compiled by JAX: a step of all of them is one program.
 
-The runs share their sizes, the scheme and the number of steps; equations, initial states, drives and lengths of steps
-are each one's own. The steps are those that :func:`gbeam.integrate.driver.integrate` takes.
+The runs share their sizes, the scheme and about the number of steps; equations, initial states, drives and lengths of
+steps are each one's own. The steps are those that :func:`gbeam.integrate.driver.integrate` takes.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from itertools import tee
+from math import ceil, log
 from typing import Any, cast
 
 import jax
@@ -27,6 +28,7 @@ from gbeam.numerics.eigen import symmetric
 
 Parts = tuple[tuple[int, ...], ...]  # of C, K and F: which of the features each of their terms has
 STEPS = 256  # per compiled call at most
+NEARLY = 1.2  # numbers of steps within this ratio are taken together: the shorter runs are repeated at their end
 
 
 @partial(jax.jit, static_argnames=("parts", "ends"))
@@ -140,13 +142,13 @@ class Run:
     def shape(self) -> Hashable | None:
         """Key of runs that can be integrated together; None of one that has to be integrated alone."""
         steps = self.steps
+        about = ceil(log(len(steps), NEARLY))
         if isinstance(self.equations, NonlinearEquations):
             leaves, form = self.residual
-            alike = self.equations.vibrates, len(steps), steps.anew.tobytes()
-            return "nonlinear", form, *map(np.shape, leaves), *alike
+            return "nonlinear", form, *map(np.shape, leaves), self.equations.vibrates, about
         if self.terms is None or (self.scheme.ends and steps.anew.any()):
             return None
-        return "linear", len(self.q), len(steps), self.parts
+        return "linear", len(self.q), about, self.parts
 
     @cached_property
     def residual(self) -> tuple[list[Array], Any]:
@@ -204,6 +206,7 @@ def integrate_together(runs: Sequence[Run]) -> list[Trajectory | None]:
     for run, fine, *state in zip(runs, solved, *histories, strict=True):
         kept = np.append(True, run.steps.kept)
         time = np.append(run.steps.begin[0], run.steps.end)
+        state = [x[: len(kept)] for x in state]
         if not kept.all():
             time, *state = (x[kept] for x in (time, *state))
         trajectories.append(Trajectory(time, *state) if fine and np.isfinite(state[2]).all() else None)
@@ -221,12 +224,19 @@ def _stacked(parts: Sequence[Any], axis: int = 0) -> Any:
     return jax.tree.map(stack, *parts)
 
 
+def _filled(values: Array, count: int) -> Array:
+    """Values (t, ...) and, as often as are missing, the last of them."""
+    missing = count - len(values)
+    return np.concatenate([values, np.repeat(values[-1:], missing, axis=0)]) if missing else values
+
+
 def _linear(runs: Sequence[Run]) -> tuple[Histories, Array]:
-    scheme, count, stages = runs[0].scheme, len(runs[0].steps), stage_count(runs[0].scheme)
+    scheme, stages = runs[0].scheme, stage_count(runs[0].scheme)
+    count = max(len(run.steps) for run in runs)
     needed = np.unique(np.concatenate(runs[0].parts)).astype(int)
     parts = tuple(tuple(np.searchsorted(needed, part).tolist()) for part in runs[0].parts)
-    features = np.stack([run.features[:, needed] for run in runs], axis=-1)
-    lengths = _stacked([run.steps.length for run in runs], axis=-1)
+    features = np.stack([_filled(run.features[:, needed], 1 + count * stages) for run in runs], axis=-1)
+    lengths = _stacked([_filled(run.steps.length, count) for run in runs], axis=-1)
     terms = _stacked([run.alive for run in runs], axis=-1)
     equations: list[Any] = [run.equations for run in runs]
     mass, q, qd = _stacked([(e.mass, run.q, run.qd) for e, run in zip(equations, runs, strict=True)], axis=-1)
@@ -264,7 +274,7 @@ def _over_runs(solve: Callable[..., Any], *more_axes: int | None) -> Callable[..
 
 _slopes = _over_runs(newton.slopes, 0, 0, 0, 0)
 _accelerations = _over_runs(newton.accelerations, 0, 0, 0)
-_steps = _over_runs(newton.steps, 0, 0, 0, 0, None, None)
+_steps = _over_runs(newton.steps, 0, 0, 0, 0, 0, None)
 
 
 Residuals = tuple[Any, tuple[int | None, ...], list[Array]]  # form, axes and arrays: no axis of those that are common
@@ -299,30 +309,45 @@ def _nonlinear(runs: Sequence[Run]) -> tuple[Histories, Array]:
     residual = _fitted(runs, _residuals(runs))
     q, qd = (np.stack([getattr(run, name) for run in runs]) for name in ("q", "qd"))
 
-    def accelerations(times: Sequence[float], q: Array, qd: Array) -> Array:
+    def accelerations(times: Sequence[Any], q: Array, qd: Array) -> Array:
         inputs = _stacked([e.drive(np.array([t])) for e, t in zip(equations, times, strict=True)])
         return np.asarray(_accelerations(*residual, q[:, None], qd[:, None], inputs))[:, 0]
 
-    def begun(q: Array, qd: Array, qdd: Array, lengths: Sequence[float]) -> newton.Carry:
+    def begun(q: Array, qd: Array, qdd: Array, lengths: Sequence[Any]) -> newton.Carry:
         x = np.broadcast_to(qdd[:, None], (len(q), len(scheme.offsets), q.shape[1]))
         return newton.Carry(scheme.tableau(np.array(lengths)).first @ np.stack([q, qd, qdd], axis=1), x, x)
 
     qdd = accelerations([run.steps.first[0] for run in runs], q, qd)
     carry = begun(q, qd, qdd, [run.steps.length[0] for run in runs])
     pieces, sound = [[x[:, None] for x in (q, qd, qdd)]], np.ones(len(runs), dtype=bool)
+    counted = [np.ones((len(runs), 1), dtype=bool)]
     equal, size = Counter(run.steps for run in runs), newton.PER_JACOBIAN[scheme.order]
     laid = {steps: iter(tee(stretches(scheme, steps, size), count)) for steps, count in equal.items()}  # most are equal
     of_runs = [chunks(run.equations.drive, scheme, next(laid[run.steps])) for run in runs]
-    for every in zip(*of_runs, strict=True):
-        inside, ends = every[0].inside, [chunk.end for chunk in every]
+    every = [next(each) for each in of_runs]
+    going = np.ones(len(runs), dtype=bool)
+    while going.any():
+        inside, ends = np.stack([chunk.inside for chunk in every]) & going[:, None], [chunk.end for chunk in every]
         tableau, inputs, at_ends = _stacked([(chunk.tableau, chunk.inputs, chunk.at_ends) for chunk in every])
-        carry, history = _steps(*residual, tableau, carry, inputs, at_ends, every[0].last, every[0].count)
-        *piece, left = (np.asarray(values)[:, inside] for values in history)
-        sound &= (left <= newton.ACCEPTED).all(axis=1)  # NaN is not
-        if scheme.ends and ends[0].anew:
-            q, qd = piece[0][:, -1], piece[1][:, -1]
-            begin, final = (accelerations([getattr(end, at) for end in ends], q, qd) for at in ("resume", "end"))
-            carry, piece[2][:, -1] = begun(q, qd, begin, [end.following for end in ends]), final
+        last, count = np.stack([chunk.last for chunk in every]), max(chunk.count for chunk in every)
+        carry, history = _steps(*residual, tableau, carry, inputs, at_ends, last, count)
+        *piece, left = (np.asarray(values) for values in history)
+        sound &= ((left <= newton.ACCEPTED) | ~inside).all(axis=1)  # NaN is not
+        anew = going & [end.anew for end in ends]
+        if scheme.ends and anew.any():
+            at = np.arange(len(runs)), inside.shape[1] - 1 - inside[:, ::-1].argmax(axis=1)
+            q, qd = piece[0][at], piece[1][at]
+            begin, final = (accelerations([getattr(end, time) for end in ends], q, qd) for time in ("resume", "end"))
+            new = begun(q, qd, begin, [end.following for end in ends])
+            carry = newton.Carry(*(np.where(anew[:, None, None], *both) for both in zip(new, carry, strict=True)))
+            piece[2] = piece[2].copy()
+            piece[2][at[0][anew], at[1][anew]] = final[anew]
         pieces.append(piece)
-    q, qd, qdd = (np.concatenate(part, axis=1) for part in zip(*pieces, strict=True))
-    return (q, qd, qdd), sound
+        counted.append(inside)
+        after = [next(each, None) for each in of_runs]
+        going = np.array([chunk is not None for chunk in after])
+        every = [new or old for new, old in zip(after, every, strict=True)]  # one that has ended repeats its last
+    counts = np.concatenate(counted, axis=1)
+    whole = [np.concatenate(part, axis=1) for part in zip(*pieces, strict=True)]
+    each: Any = ([run[of] for run, of in zip(values, counts, strict=True)] for values in whole)
+    return tuple(each), sound

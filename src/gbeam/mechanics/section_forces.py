@@ -22,8 +22,9 @@ from gbeam.arrays.tree import each_leaf
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.fields.vectors import cross, joined, skew, split
 from gbeam.mechanics.structure import Sections, Structure
+from gbeam.mechanics.tree.bodies import Body
 from gbeam.mechanics.tree.frames import Frame
-from gbeam.mechanics.tree.system import body_of
+from gbeam.mechanics.tree.system import terms_of
 from gbeam.motion.protocol import Motion
 from gbeam.results.parts import Base, Loads
 from gbeam.structure.section import extreme_stresses, worst_fibres
@@ -100,15 +101,24 @@ def section_forces(
     return about_the_hub(loads, motion, base.alpha_WB_B)
 
 
+def root_loads(
+    structure: Structure, terms: Body, base: Base, q: Array, qd: Array, qdd: Array, time: Array
+) -> tuple[Array, Array]:
+    """Force and moment at the root alone, (t, 3), by a structure's `terms`: constant coefficients know them to second
+    order.
+    """
+    applied = None if structure.history is None else structure.history(time)
+    root = Frame(None, None, None, base.w_WB_B, base.a_WO_B, base.alpha_WB_B)
+    _, wrench = terms.demanded(q, qd, qdd, root, applied)
+    return -wrench.force, -wrench.moment
+
+
 def _of_ends(
     structure: Structure, base: Base, q: Array, qd: Array, qdd: Array, time: Array, hung: Hung | None
 ) -> Loads:
     """Loads without stress at the root of constant coefficients, and at the tip, which carries nothing outboard."""
     xp = namespace(q, base.a_WO_B)
-    applied = None if structure.history is None else structure.history(time)
-    root = Frame(None, None, None, base.w_WB_B, base.a_WO_B, base.alpha_WB_B)
-    _, wrench = body_of("", structure).demanded(q, qd, qdd, root, applied)
-    demanded = [wrench.force, wrench.moment]
+    demanded = [-each for each in root_loads(structure, terms_of(structure), base, q, qd, qdd, time)]
     if hung is not None:
         demanded = [each + more.sum(axis=1) for each, more in zip(demanded, (hung.force, hung.moment), strict=True)]
     force, moment = (xp.stack([-each, 0 * each], axis=1) for each in demanded)

@@ -16,9 +16,9 @@ import dataclasses
 import re
 import sys
 import textwrap
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from operator import attrgetter
 from types import EllipsisType
 from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar
@@ -151,15 +151,18 @@ def declared(
     return lambda getter: Declared(getter, Declaration(words, unit, along, role, name, at, optional=optional))
 
 
-def declarations(kind: type) -> Iterator[tuple[str, Declaration]]:
+def declarations(kind: type) -> tuple[tuple[str, Declaration], ...]:
     """Fields of a record, then its properties, that are declared, each with its declaration."""
-    for each in dataclasses.fields(kind):
-        if _METADATA in each.metadata:
-            yield each.name, each.metadata[_METADATA]
-    for base in reversed(kind.__mro__):
-        for name, value in vars(base).items():
-            if isinstance(value, Declared):
-                yield name, value.declaration
+    hashable: Any = kind  # which type checkers deny of classes of records
+    return _declarations(hashable)
+
+
+@cache
+def _declarations(kind: type) -> tuple[tuple[str, Declaration], ...]:
+    fields = ((each.name, each.metadata.get(_METADATA)) for each in dataclasses.fields(kind))
+    values = ((name, value) for base in reversed(kind.__mro__) for name, value in vars(base).items())
+    properties = ((name, value.declaration) for name, value in values if isinstance(value, Declared))
+    return (*((name, each) for name, each in fields if each is not None), *properties)
 
 
 def parameters(kind: type) -> str:

@@ -7,7 +7,7 @@ others depends on the sweep and on the case alone.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import groupby, islice
@@ -168,6 +168,7 @@ def _line(error: Exception) -> str:
 
 Task = tuple[int, tuple[str, ...]]  # number of the case, and its changes
 Posed = tuple[int, Case, Structure]
+MANY = 4 * TOGETHER  # cases that are posed at once: with fewer, many batches of runs that go together are not full
 _ALONE = ("response", "model")  # tables: cases in which they differ have few steps or sizes in common
 
 
@@ -194,53 +195,64 @@ def settled(inquiry: Inquiry, case: AnyCase, cases: int) -> Inquiry:
     return replace(inquiry, together=enough and able)
 
 
-def rows(inquiry: Inquiry, tasks: Sequence[Task]) -> list[Row]:
-    """Compute some cases."""
-    if not inquiry.together:
-        return [inquiry.row(*task) for task in tasks]
-    left = iter(tasks)
-    computed: list[Row] = []
-    while some := list(islice(left, TOGETHER)):  # no more responses at once
-        computed += _together(inquiry, some)
-    return computed
+def rows(inquiry: Inquiry, tasks: Iterable[Task]) -> Iterator[Row]:
+    """Compute cases; those that are integrated together are taken some at a time, and come in any order."""
+    if inquiry.together:
+        return _together(inquiry, iter(tasks))
+    return (inquiry.row(*task) for task in tasks)
 
 
-def _together(inquiry: Inquiry, tasks: Sequence[Task]) -> list[Row]:
+def _together(inquiry: Inquiry, tasks: Iterator[Task]) -> Iterator[Row]:
     """Rows of cases, of which those with equal settings are integrated together."""
-    computed, posed = list[Row](), list[Posed]()
-    structures: dict[tuple[str, ...], Structure] = {}
-    for number, overrides in tasks:
-        try:
-            case = inquiry.case(overrides).one_beam("bodies", "a batch")
-            of_beam = tuple(each for each in overrides if not each.startswith("motion."))
-            structure = structures[of_beam] = structures.get(of_beam) or case.assemble()
-            posed.append((number, case, structure))
-        except Exception as error:
-            computed.append(without_figures(number, inquiry.width, error))
-    # A motion that varies may end a record elsewhere.
-    one_structure = set(structures) == {()}
-    for _, group in groupby(posed, key=lambda each: each[1].response):
-        alike = list(group)
-        answers = {name: _responses(inquiry, alike, name, one_structure) for name in alike[0][1].motions}
-        for k, (number, case, _) in enumerate(alike):
-            computed.append(_row(inquiry, number, case, {name: each[k] for name, each in answers.items()}))
-    return computed
+    while some := list(islice(tasks, MANY)):
+        posed: list[Posed] = []
+        structures: dict[tuple[str, ...], Structure] = {}
+        for number, overrides in some:
+            try:
+                case = inquiry.case(overrides).one_beam("bodies", "a batch")
+                of_beam = tuple(each for each in overrides if not each.startswith("motion."))
+                structure = structures[of_beam] = structures.get(of_beam) or case.assemble()
+                posed.append((number, case, structure))
+            except Exception as error:
+                yield without_figures(number, inquiry.width, error)
+        # A motion that varies may end a record elsewhere.
+        for _, group in groupby(posed, key=lambda each: each[1].response):
+            yield from _answered(inquiry, list(group), one_structure=set(structures) == {()})
 
 
-def _responses(inquiry: Inquiry, posed: Sequence[Posed], name: str, one_structure: bool) -> list[Response | Exception]:
-    """Responses in one environment, or why there is none."""
+def _answered(inquiry: Inquiry, posed: Sequence[Posed], *, one_structure: bool) -> Iterator[Row]:
+    """Rows of cases of the same settings, each once there is an answer in all of its environments."""
     settings = reduced(posed[0][1], inquiry.needs).response
+    pairs = [(k, name) for k, (_, case, _) in enumerate(posed) for name in case.motions]
+    answers: dict[int, dict[str, Response | Exception]] = {}
+    for (k, name), answer in _responses(posed, pairs, settings, one_structure=one_structure):
+        number, case, _ = posed[k]
+        known = answers.setdefault(k, {})
+        known[name] = answer
+        if len(known) == len(case.motions):
+            yield _row(inquiry, number, case, {name: known[name] for name in case.motions})
+            del answers[k]
+
+
+def _responses(
+    posed: Sequence[Posed], pairs: Sequence[tuple[int, str]], settings: Any, *, one_structure: bool
+) -> Iterator[tuple[tuple[int, str], Response | Exception]]:
+    """Responses of cases in environments, or why there is none, in any order."""
+    left = dict.fromkeys(pairs)
     try:
-        cases = ((structure, case.motions[name]) for _, case, structure in posed)
-        batch = dict(simulate_batch(cases, settings, one_structure=one_structure))
+        for k, response in simulate_batch(
+            ((posed[k][2], posed[k][1].motions[name]) for k, name in pairs), settings, one_structure=one_structure
+        ):
+            pair = of, name = pairs[k]
+            del left[pair]
+            yield pair, replace(response, name=name, provenance=posed[of][1].provenance)
     except Exception as error:
-        if len(posed) == 1:
-            return [error]
-        half = len(posed) // 2  # one that fails ends its batch
-        return [
-            each for part in (posed[:half], posed[half:]) for each in _responses(inquiry, part, name, one_structure)
-        ]
-    return [replace(batch[k], name=name, provenance=case.provenance) for k, (_, case, _) in enumerate(posed)]
+        if len(left) == 1:
+            yield next(iter(left)), error
+            return
+        rest, half = list(left), len(left) // 2  # one that fails ends its batch
+        for part in (rest[:half], rest[half:]):
+            yield from _responses(posed, part, settings, one_structure=one_structure)
 
 
 def _row(inquiry: Inquiry, number: int, case: Case, answers: Mapping[str, Response | Exception]) -> Row:

@@ -105,7 +105,7 @@ def start(
             truths = tuple(isinstance(node_at(facts, each), bool) for each in keys)
         inquiry = settled(histories.of(inquiry, case), case, len(cases))
         task = (number, cases.overrides(number))
-        rows += computed(inquiry, [task]) if inquiry.together else [inquiry.measured(number, case, facts)]
+        rows += computed(inquiry, [task]) if inquiry.together else (inquiry.measured(number, case, facts),)
         seconds = time.perf_counter() - begin
         after = missing[index + 1 : index + 1 + min(_FEW, width(inquiry))] or missing[:1]
         after = [each for each in after if all(each != row.case for row in rows)]
@@ -148,5 +148,5 @@ def go_on(
 def _timed(inquiry: Inquiry, cases: Cases, numbers: Sequence[int]) -> tuple[list[Row], float]:
     """Rows of some cases, and the time that one of them takes, s."""
     begin = time.perf_counter()
-    rows = computed(inquiry, [(number, cases.overrides(number)) for number in numbers])
+    rows = list(computed(inquiry, [(number, cases.overrides(number)) for number in numbers]))
     return rows, (time.perf_counter() - begin) / len(numbers)

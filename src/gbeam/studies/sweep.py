@@ -26,10 +26,9 @@ from gbeam.studies.journal import Journal, identity, opened
 from gbeam.studies.start import NO_HISTORIES, OverTime, Start, go_on, start
 from gbeam.studies.statistics import indices, statistics
 from gbeam.studies.template import template_of
-from gbeam.studies.workers import on_scheduler, processes, serially
+from gbeam.studies.workers import KEPT, on_scheduler, processes, serially
 
 MANY = 100_000  # cases beyond which a sweep is begun only when that is confirmed
-_BATCH = 0.5  # s: what is lost at most when a process ends, and how often the store is synchronised
 _LONGEST = 256  # cases in a batch
 Progress = Callable[[int, int, int], None] | bool | None
 
@@ -167,7 +166,7 @@ def sweep(
         _confirm(len(missing), begun.seconds / workers, confirmed)
         tried = {row.case for row in begun.rows}
         left = len(missing) - len(tried)
-        size = int(min(_LONGEST, _BATCH / max(begun.seconds, 1e-4), left / (4 * workers)))
+        size = int(min(_LONGEST, KEPT / max(begun.seconds, 1e-4), left / (4 * workers)))
         tasks = ((number, cases.overrides(number)) for number in missing if number not in tried)
         batches = _batches(tasks, max(1, size // width(inquiry)) * width(inquiry))
         if scheduler is not None:

@@ -24,6 +24,7 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
+from itertools import chain
 from multiprocessing.connection import Connection, wait
 from types import ModuleType
 from typing import Any
@@ -32,15 +33,22 @@ import gbeam
 from gbeam.errors import ComputationError, InputError
 from gbeam.studies.evaluate import Function, Inquiry, Row, Task, rows
 
+KEPT = 0.5  # s: what is lost at most when a process ends, and how often the store is synchronised
 _THREADS = "OPENBLAS_NUM_THREADS"  # of each worker one: those of several wait for one another
 _FUNCTIONS, _WORKERS = "measure", "--workers"
 _ELSEWHERE = "define it at the top level of a module that you import, or leave the workers out"
 
 
 def serially(inquiry: Inquiry, batches: Iterable[Sequence[Task]]) -> Iterator[list[Row]]:
-    """Compute the batches in this process."""
-    for batch in batches:
-        yield rows(inquiry, batch)
+    """Compute the batches in this process, whose cases go together."""
+    done, began = list[Row](), time.perf_counter()
+    for row in rows(inquiry, chain.from_iterable(batches)):
+        done.append(row)
+        if time.perf_counter() - began > KEPT:
+            yield done
+            done, began = [], time.perf_counter()
+    if done:
+        yield done
 
 
 @dataclass
@@ -208,7 +216,7 @@ def _work(pipe: Connection, functions: bytes) -> None:
                 inquiry = message
                 continue
             try:
-                answer: Any = rows(inquiry, message)
+                answer: Any = list(rows(inquiry, message))
             except Exception:
                 answer = traceback.format_exc()
             pipe.send(answer)
@@ -250,7 +258,7 @@ def compute(version: str, inquiry: Inquiry, batch: Sequence[Task]) -> list[Row]:
         from distributed import get_worker
 
         raise OtherVersion(get_worker().address, gbeam.__version__)
-    return rows(inquiry, batch)
+    return list(rows(inquiry, batch))
 
 
 def on_scheduler(inquiry: Inquiry, batches: Iterable[Sequence[Task]], address: str) -> Iterator[list[Row]]:

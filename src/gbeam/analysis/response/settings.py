@@ -60,10 +60,11 @@ class ResponseSettings(Value):
         State at the start: the relative equilibrium unless given; a name such as ``"undeformed"`` stands for its state.
     estimate : bool
         Whether the error is estimated. Without, a given step is run once; an automatic one, which nothing but its own
-        error can choose, is found from several runs all the same, and only shapes and model are not judged. The result
-        says so.
+        error can choose, is found from several runs all the same, and shapes, model and stress are not judged. The
+        result says so.
     loads : bool
-        Whether what the sections carry, and the outline for pictures, are computed. The estimate is of loads too.
+        Whether what the sections carry, and the outline for pictures, are computed. The estimate is of loads too, and
+        an automatic step follows the root's in any case.
     histories : float or None
         Time between the samples of histories in a file, s, as near as the results' steps allow; None keeps all up to
         50,000, else every second, third and so on. Peaks, errors and comparisons are of all, and so is xarray.

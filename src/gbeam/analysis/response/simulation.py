@@ -37,9 +37,10 @@ from gbeam.guards.checks import choice
 from gbeam.guards.limits import BOUNDLESS, HISTORY_BYTES, STEPS, refuse_more
 from gbeam.integrate.equations import Trajectory
 from gbeam.integrate.steps import Corners, Steps, fitted
-from gbeam.mechanics.section_forces import section_forces
+from gbeam.mechanics.section_forces import root_loads, section_forces
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.system import System
+from gbeam.mechanics.tree.bodies import Body
+from gbeam.mechanics.tree.system import System, terms_of
 from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress, tell
 from gbeam.results.errors import StepErrors
@@ -96,6 +97,10 @@ class Posed:
         return steps_within(self.structure, y[:, self.problem.first :])
 
     @cached_property
+    def _terms(self) -> Body:
+        return terms_of(self.structure)
+
+    @cached_property
     def _readings(self) -> Readings:
         return Readings(self._tip, self._moment, self._loads)
 
@@ -110,13 +115,16 @@ class Posed:
         return np.asarray(y[..., self.problem.first :] @ (c.f_al @ np.linalg.solve(c.mass, c.stiffness)).T)
 
     def _loads(self, trajectory: Trajectory, stride: int) -> list[Floats]:
-        """Force and moment at the root, and both sides' stress at every section; none where the settings have none."""
-        if not self.settings.loads:
-            return []
+        """Force and moment at the root and, where errors are estimated, both sides' stress at every section."""
         at = trajectory.at(slice(None, None, stride))
         state = at.q, at.qd, at.qdd
         base, _ = moving(self.motion, at.time, *state)
         q, qd, qdd = (x[:, self.problem.first :] for x in state)
+        force, moment = root_loads(self.structure, self._terms, base, q, qd, qdd, at.time)
+        largest = np.abs(force).max() * self.structure.length, np.abs(moment).max()
+        felt = [force * (largest[0] > NOTHING * largest[1]), moment * (largest[1] > NOTHING * largest[0])]
+        if not self.settings.estimate:
+            return felt
         forces = section_forces(self.structure, base, q, qd, qdd, at.time, motion=self.motion)
         sides = [forces.stress_tension, forces.stress_compression]
         if forces.von_mises is not None and np.isfinite(forces.von_mises).all():
@@ -124,13 +132,7 @@ class Posed:
         stress = np.concatenate(sides, axis=1)[..., None]
         if self.structure.recovery is not None:
             stress = np.asarray(self.structure.recovery.felt(q))
-        force, moment = forces.section_force[:, 0], forces.section_moment[:, 0]
-        largest = np.abs(force).max() * self.structure.length, np.abs(moment).max()
-        return [
-            force * (largest[0] > NOTHING * largest[1]),
-            moment * (largest[1] > NOTHING * largest[0]),
-            stress,
-        ]
+        return [*felt, stress]
 
 
 def pose(

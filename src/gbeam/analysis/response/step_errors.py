@@ -76,7 +76,9 @@ class Run:
         return [peaks_of_coordinates(self.trajectory, values, of) for values, of in histories]
 
     def loads(self, stride: int) -> Sequence[Floats]:
-        """Histories (t, ..., k) of force, moment and stress of each beam, at every so many steps."""
+        """Histories (t, ..., k) of force, moment and stress of each beam, at every so many steps; of one beam the
+        stress is left out where no errors are estimated.
+        """
         return self.readings.loads(self.trajectory, stride)
 
 
@@ -170,4 +172,4 @@ def of_everything(runs: Sequence[Run], order: int) -> StepErrors:
     each = [left(runs, apart, 4 / order) for apart in zip(*differences, strict=True)]
     if not each:
         return StepErrors(displacement)
-    return StepErrors(displacement, max(each[::3] + each[1::3]), max(each[2::3]), tuple(each))
+    return StepErrors(displacement, max(each[::3] + each[1::3]), max(each[2::3], default=math.nan), tuple(each))

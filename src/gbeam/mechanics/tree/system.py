@@ -529,6 +529,11 @@ def body_of(where: str, body: RigidBody | Structure, *, free: bool = False) -> B
     if body.damping_ratio is None:
         fix = "give a ratio of critical damping, such as 0.01, or 0 for none"
         raise InputError(f"{where}.damping_ratio", "is missing, and the response depends on it", fix)
+    return terms_of(body, free=free)
+
+
+def terms_of(body: Structure, *, free: bool = False) -> Body:
+    """The terms of a structure in the equations on any root."""
     equations, stations = body.equations, np.array(list(stations_of(body).values()))
     points: Points
     if isinstance(body.field, Expanded):
