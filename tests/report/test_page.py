@@ -22,6 +22,7 @@ from hypothesis import strategies as st
 import gbeam as gb
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
+from gbeam.figures.response import carried_at_root
 from gbeam.numerics.samples import thinned
 from gbeam.report.facts import facts
 from gbeam.report.page import parts as page_parts
@@ -353,3 +354,15 @@ def test_numbers_of_a_system_have_units_and_rounding_is_zero() -> None:
     row = report_of(spun).partition("root moment, N m")[2].partition("</tbody>")[0]
     assert spun.loads is not None and 0 < np.abs(spun.loads.root_moment).max() < 1e-12
     assert '<td class="number">0</td>' in row
+
+
+def test_a_moment_that_is_no_number_is_a_gap_and_rounding_is_none() -> None:
+    """A force that is none leaves the lever of the others, and no moment is drawn as zero."""
+    run = gb.simulate(gb.assemble(BEAM, "FOAM", y=1, z=1), gb.Flight(z=9.81), duration=0.1, step=0.01)
+    assert run.loads is not None
+    moment, force = run.loads.section_moment.copy(), run.loads.section_force.copy()
+    moment[:], moment[0], moment[-1], force[-1] = 1e-18, 0.5, np.nan, np.nan
+    loads = replace(run.loads, section_moment=moment, section_force=force)
+    panel = next(each for each in carried_at_root(run.time, loads) if each.y.startswith("moment"))
+    for line in panel.lines:
+        assert np.isnan(line.y[-1]) and line.y[0] > 0 and not np.any(line.y[1:-1])

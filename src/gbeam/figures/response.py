@@ -194,8 +194,8 @@ def _carried(
     names: Names = SECTION,
 ) -> Iterator[Panel]:
     """Forces and moments (k, 3) and, where they are known, the largest and the smallest stress (k,)."""
-    lever = float(np.abs(force).max(initial=0.0) * np.max(carried.stations, initial=0.0))
-    moment = np.where(np.abs(moment) > ROUNDING * lever, moment, 0.0)
+    lever = largest(force) * float(np.max(carried.stations, initial=0.0))
+    moment = np.where(np.abs(moment) <= ROUNDING * lever, 0.0, moment)  # what is no number stays a gap
     for kind, si, values, each in (("force", "N", force, names[0]), ("moment", "N m", moment, names[1])):
         scale, unit = scale_of(si, values)
         yield components(where, scale * values, each, Panel(f"{kind}, {unit}", zero=True))
