@@ -219,10 +219,10 @@ def test_large_deflection_is_warned_about_in_second_order_models_only() -> None:
 def test_gauss_and_newmark_agree_on_a_nonlinear_model() -> None:
     structure = assemble(appendage(TIP), Model("CFOAM", 1, 1, 1))  # and a hub of the sizes of loads/test_loads.py
     motion = Hub(radius=0.5, inertia=50.0, torque=Sine(50.0, 2.0), gravity=[1.0, 2.0, -9.8])
-    how = {"tolerance": 1e-6, "loads": False, "estimate": False}  # steps for the tip alone
-    quick, slow = (run(structure, motion, 2.0, integrator=name, **how) for name in ("gauss", "newmark"))
-    np.testing.assert_allclose(quick.tip, slow.tip, atol=2e-6 * np.abs(slow.tip).max())
-    assert quick.steps < slow.steps / 8
+    how = {"loads": False, "estimate": False}
+    steps = {"gauss": 2.5e-3, "newmark": 2.5e-4}  # ten times as many of the one
+    quick, slow = (run(structure, motion, 2.0, integrator=name, step=step, **how) for name, step in steps.items())
+    np.testing.assert_allclose(quick.tip, slow.tip[::10], atol=2e-6 * np.abs(slow.tip).max())
 
 
 def test_unknown_integrator_is_refused() -> None:
