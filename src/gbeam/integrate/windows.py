@@ -44,7 +44,7 @@ QUICK = 2  # corrections until the last step is near, up to which more steps fol
 SLOW, FAST = 0.5, 0.01  # of the last correction: where one is larger, derivatives are closer, where smaller farther
 QUICKEST, STALLED = 0.01, 0.9  # factors of corrections: none is thought to be smaller, and where they do not shrink
 TOLERANCE, ROUNDING = 1e-12, 1e-6  # of the largest acceleration: error left by the last correction, and where it stalls
-STUCK = 4  # corrections of a step after which the rounding of its inputs is asked for, too
+STUCK = 4  # corrections of a step from which on, where they do not shrink, its inputs' rounding is asked for, too
 TINY = float(np.finfo(float).tiny)
 CANCELLED = 100 * float(np.finfo(float).eps)  # of the forces at a coordinate, each a sum of many: their rounding
 BALANCED = 1e-9  # of the forces at a step: what is left of them where a correction may be the last
@@ -152,7 +152,8 @@ class _Window:
                 self.more = min(self.more + self.more // 2 + 1, LONGEST)
             # By derivatives of another state corrections may shrink slowly without being rounding.
             quick, noise = least <= FAST, np.minimum(rounding, self.most)
-            loads = self._of_inputs(states) if (count >= STUCK).any() else 0 * forces
+            stuck = (count >= STUCK) & ~(size <= SLOW * before)
+            loads = self._of_inputs(states) if stuck.any() else 0 * forces
             noise = noise + self._left_of(loads)
             good = _converged(size, before, reach, noise, fresh=fresh, quick=quick)
             # Interpolated from states far away, derivatives may be far too large, and corrections by them small.

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gbeam.analysis.system.gauges import read_signals
-from gbeam.arrays.namespace import Array, holds_jax, looks_at_traced, namespace
+from gbeam.arrays.namespace import Array, as_array, holds_jax, looks_at_traced, namespace
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.integrate.sampled import NEAR
@@ -154,7 +154,9 @@ def _traced_law(name: str, each: Feedback, times: Floats) -> TracedLaw:
     def commanded(parameters: Any, references: Array, t: Any, y: Array, state: Array) -> tuple[Array, ...]:
         parts, limit = parameters
         asked, after = law(parts, t, references + sign * y, state)
-        return asked, within(limit, asked), after
+        if limit is None:
+            return asked, asked, after
+        return asked, within(namespace(asked, limit), as_array(limit), asked), after
 
     return TracedLaw(times, commanded, (parameters, each.limit), references, start)
 

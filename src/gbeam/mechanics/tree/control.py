@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from gbeam.arrays.namespace import as_array, holds_tracer, is_traced, namespace
+from gbeam.arrays.namespace import holds_tracer, is_traced, namespace
 from gbeam.arrays.tree import Value
 from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError, InputError
@@ -228,16 +228,12 @@ class Feedback(Value):
         efforts : (..., m)
             What the law asks for.
         """
-        return np.asarray(within(self.limit, efforts))
+        return efforts if self.limit is None else np.asarray(within(np, np.asarray(self.limit), efforts))
 
 
-def within(limit: Any, efforts: Any) -> Any:
-    """Efforts (..., m) within a limit, if there is one; at it they still have the derivative of what is asked for."""
-    if limit is None:
-        return efforts
-    limit = as_array(limit)
-    xp = namespace(efforts, limit)
-    return xp.where(xp.abs(efforts) <= limit, efforts, xp.sign(efforts) * limit)
+def within(xp: Any, limit: Any, efforts: Any) -> Any:
+    """Efforts (..., m) within a limit; at it they still have the derivative of what is asked for."""
+    return xp.where(abs(efforts) <= limit, efforts, xp.copysign(limit, efforts))
 
 
 def signal_names(controllers: Mapping[str, Feedback], kind: Literal["drive", "measure"]) -> tuple[str, ...]:
