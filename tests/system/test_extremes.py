@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
+from gbeam.analysis.system.steady import Drive, steady
 from gbeam.report import text
 
 ROD = gb.RigidBody(1.0, (0.0, 1 / 12, 1 / 12), centre=(0.5, 0, 0), points={"end": (1, 0, 0)})
@@ -62,6 +63,20 @@ def test_rotations_without_inertia_are_named_as_they_are_given() -> None:
     for question in (gb.static, lambda system: gb.simulate(system, duration=1.0)):
         with pytest.raises(gb.InputError, match=r"leave ball\.rx without inertia"):
             question(gb.System({"rod": rod}, {"ball": ball}))
+
+
+def test_springs_one_behind_the_other_are_refused_and_leave_a_richer_system_no_answer() -> None:
+    def sprung(**root: float) -> gb.System:
+        section, material = gb.Section.rectangle(width=0.02, thickness=0.004), gb.Material(2700, 70e9)
+        strip = gb.Beam(0.5, section, material, damping_ratio=0.01, root=gb.Root(**root))
+        joint = gb.Joint("fixed", "strip", stiffness={"rz": 20.0})
+        return gb.System({"strip": gb.assemble(strip, "FOAM", y=1)}, {"clamp": joint})
+
+    both, one = sprung(rotation_z=50.0), sprung()
+    with pytest.raises(gb.InputError, match="one behind the other"):
+        gb.modes(both)
+    with pytest.raises(gb.ComputationError, match="with richer bodies"):
+        steady(one, Drive()).richer(both)
 
 
 def test_modes_about_a_place_that_is_not_stable_say_so() -> None:

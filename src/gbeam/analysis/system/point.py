@@ -100,6 +100,7 @@ def refuse_massless(system: System, point: Point, mass: Floats) -> None:
     names, way = local_names(system.coordinates), np.abs(_least_moving(local.slopes()[3])[1])
     together = ", ".join(names[local.tree.free[k]] for k in np.flatnonzero(way > way.max() / 2))
     fix = "give the body that it moves a mass, and a moment of inertia about every axis that is free"
+    fix += "; of two springs one behind the other, as a joint's and a beam's root, give one"
     raise InputError("bodies", f"leave {together} without inertia", fix)
 
 

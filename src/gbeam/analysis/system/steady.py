@@ -281,8 +281,11 @@ class SteadySystem(Steady):
         return tuple(names)
 
     def richer(self, system: System) -> SteadySystem:
-        """Steady state of the system with other bodies in it."""
-        return steady(system, self.drive)
+        """Steady state of the system with other bodies in it; a ComputationError where these leave it none."""
+        try:
+            return steady(system, self.drive)
+        except InputError as error:
+            raise ComputationError("no equilibrium", f"with richer bodies, {error}") from error
 
     @property
     def changing(self) -> bool:
