@@ -114,7 +114,9 @@ def test_numpy_in_numpy_out() -> None:
 def test_no_motion_imports_jax() -> None:
     program = f"""
 import sys
-from gbeam.motion import *
+from gbeam.motion import Centrifuge, Flight, Hub, SmoothStep, machines
+from gbeam.motion.centrifuge.course import INVERSES
+from gbeam.motion.records.record import read_record
 record = read_record({str(F16)!r}, "time_s", "n_x_g", "-n_y_g", "-n_z_g", "g")
 for inverse in INVERSES:
     machine = Centrifuge(Flight(acceleration=record), control_point=0.2, limits=machines["specimen-3.3m"], gravity=True,
