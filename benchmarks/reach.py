@@ -225,7 +225,7 @@ def in_loop(_: str) -> dict[str, Any]:
     )
     finest = closed_loop.ours(0.01 / 8), closed_loop.theirs(8, 16_000)
     errors = tuple(lambda answer, of=of: float(np.abs(answer - of).max() / np.abs(of).max()) for of in finest)
-    return {"figure": "closed loop of the satellite, 20 s", "goal": 1, **compared(*settings, errors, 1.2e-4)}
+    return {"figure": "closed loop of the satellite, 20 s", "goal": 1, **compared(*settings, errors, 1.2e-4, TURNS)}
 
 
 def first_calls(_: str) -> dict[str, Any]:

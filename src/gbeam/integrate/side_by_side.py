@@ -214,12 +214,11 @@ def integrate_together(runs: Sequence[Run]) -> list[Trajectory | None]:
 
 
 def _stacked(parts: Sequence[Any], axis: int = 0) -> Any:
-    """Stack the arrays of records of one form along an axis."""
+    """Leaves of trees side by side along a new axis, the first or the last."""
 
-    def stack(first: Any, *others: Any) -> Any:
-        if all(other is first for other in others):  # of one structure, most often
-            return np.repeat(np.expand_dims(first, axis), len(parts), axis)
-        return np.stack([first, *others], axis=axis)
+    def stack(*leaves: Any) -> Array:
+        both = np.asarray(leaves)
+        return both if axis == 0 else np.moveaxis(both, 0, axis)
 
     return jax.tree.map(stack, *parts)
 
@@ -285,7 +284,7 @@ def _residuals(runs: Sequence[Run]) -> Residuals:
     common = {id(leaf) for leaf in jax.tree.leaves(runs[0].common)}
     every = list(zip(*(run.residual[0] for run in runs), strict=True))
     axes = [None if id(leaf[0]) in common and all(x is leaf[0] for x in leaf) else 0 for leaf in every]
-    leaves = [leaf[0] if axis is None else _stacked(leaf) for leaf, axis in zip(every, axes, strict=True)]
+    leaves = [leaf[0] if axis is None else np.asarray(leaf) for leaf, axis in zip(every, axes, strict=True)]
     return runs[0].residual[1], tuple(axes), leaves
 
 
