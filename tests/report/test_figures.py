@@ -80,6 +80,7 @@ def _results(study: Study) -> dict[str, list[Result]]:
         "static": [gb.static(structure, acceleration=(0, 0, 78.5))],
         "modes": [gb.modes(structure, hub)],
         "campbell": [gb.campbell(structure, hub, speeds=np.linspace(0, 30, 7))],
+        "linearize": [gb.linearize(structure, hub)],
         "map": [gb.critical_speed_map(BEAM, gb.Model("TLAM", y=2, z=2), hub, [0.1], [0.1, 0.3])],
         "plan": [_sparse(gb.plan("", machine))],
         "fit": [fit, replace(modal, columns=(column,))],
@@ -113,6 +114,7 @@ NAMES = [
     "static",
     "modes",
     "campbell",
+    "linearize",
     "map",
     "plan",
     "fit",
@@ -191,6 +193,17 @@ def _compare_lines(axes: object, panel: description.Panel, spec: dict, numbers: 
     assert sorted(shaded) == sorted(bands) and len(shaded) == len(panel.spans)
     for mark, (start, end) in zip(panel.marks, spec["bands"][len(panel.spans) :], strict=True):
         assert start == end == mark.value
+
+
+def test_poles_that_grow_are_told_from_those_that_do_not(results: dict[str, list[Result]]) -> None:
+    (linear,) = results["linearize"]
+    a = np.array([[-1.0, 6.0, 0.0], [-6.0, -1.0, 0.0], [0.0, 0.0, 2.0]])  # poles −1 ± 6i and 2, 1/s
+    (panel,) = figures_of(replace(linear, a=a))["poles"]().panels
+    drawn_as = {line.label: (line.x.tolist(), line.y.tolist()) for line in panel.lines}
+    assert drawn_as == {
+        "decays or stays": ([pytest.approx(-1.0)], [pytest.approx(6 / (2 * np.pi))]),
+        "grows": ([2.0], [0.0]),
+    }
 
 
 @pytest.mark.parametrize("kind", NAMES)

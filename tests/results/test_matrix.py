@@ -20,8 +20,8 @@ from gbeam.results.result import Figured
 from gbeam.results.study import KINDS
 
 PAGE = Path(__file__).parents[2] / "docs" / "results.md"
-# One value, a table of options, or matrices: nothing of them is a curve.
-WITHOUT_FIGURE = {"Critical", "Placement", "StateSpace"}
+# One value, or a table of options: nothing of them is a curve.
+WITHOUT_FIGURE = {"Critical", "Placement"}
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -220,8 +220,8 @@ def linearize(
 ) -> int:
     """State-space model A, B, C, D about the equilibrium at one time of a motion.
 
-    With --out writes linear.json and linear.mat, with --report linear.html. Exit status: 0 done, 1 there is no
-    equilibrium, 2 the input is wrong.
+    With --out writes linear.json, linear.mat and a plot of the poles, with --report linear.html. Exit status: 0 done,
+    1 there is no equilibrium, 2 the input is wrong.
     """
     folder = output.folder(scenario)
     loaded = read("linearize", scenario, output.overrides)

@@ -20,6 +20,7 @@ from gbeam.results.modal import Campbell, Modes
 from gbeam.results.response import Response
 from gbeam.results.searches import Fit, Optimum, ShapedCommand
 from gbeam.results.solids import SolidStress, SpecimenLoads
+from gbeam.results.state_space import StateSpace
 from gbeam.results.study import ModelStudy, Study, SystemStudy
 from gbeam.results.system import SystemModes, SystemResponse, SystemRest, named
 
@@ -29,6 +30,7 @@ _OF: dict[type, dict[str, Callable[..., Figure]]] = {
     Modes: {"modes": steady.modes},
     Campbell: {"campbell": steady.campbell},
     CriticalMap: {"critical": steady.critical_map},
+    StateSpace: {"poles": steady.poles},
     Fit: {"fit": studies.fit},
     Optimum: {"optimum": studies.optimum},
     ShapedCommand: {"shaping": studies.shaping, "robustness": studies.robustness},

@@ -12,6 +12,7 @@ from gbeam.figures.description import (
     FLIGHT,
     GREY,
     REFERENCE,
+    ROUNDING,
     Dash,
     Figure,
     Line,
@@ -29,6 +30,7 @@ from gbeam.figures.description import (
 from gbeam.results.equilibrium import CriticalMap, Deflection
 from gbeam.results.modal import Campbell, Modes, near_multiples
 from gbeam.results.result import Floats
+from gbeam.results.state_space import StateSpace
 
 _DASHES: dict[str, Dash] = {"x": "dotted", "y": "solid", "z": "dashed", "twist": "dotted"}
 SHOWN = 6  # shapes drawn
@@ -130,3 +132,19 @@ def critical_map(critical: CriticalMap, title: str = "") -> Figure:
         panel = replace(panel, texts=((*middle, none),), limits=(0.0, critical.searched_to))
     about = of_motion(critical.motion, f"critical hub rate with one more mass, {critical.model}")
     return Figure(title, about, (panel,))
+
+
+def poles(linear: StateSpace, title: str = "") -> Figure:
+    """Describe the poles of a linear model, of a pair that oscillates one: frequency over growth."""
+    values = np.sort(linear.eigenvalue[linear.eigenvalue.imag >= 0])  # by growth
+    grows = values.real > ROUNDING * np.abs(values).max(initial=0.0)
+    lines = tuple(
+        Line(those.real, those.imag / (2 * np.pi), label, colour=colour, marks="dots")
+        for label, colour, those in (("decays or stays", 0, values[~grows]), ("grows", REFERENCE, values[grows]))
+        if those.size
+    )
+    marks = (Mark(0.0, "neither grows nor decays"),) if lines else ()
+    panel = Panel("frequency, Hz", lines, x="growth, 1/s", marks=marks, height=2.0)
+    sampled = f", sampled every {linear.step:.4g} s" if linear.step else ""
+    about = f"poles about the equilibrium at {linear.time:.4g} s, {linear.model}{sampled}"
+    return Figure(title, of_motion(linear.motion, about), (panel,))

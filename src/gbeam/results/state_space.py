@@ -16,7 +16,7 @@ from gbeam.guards.arguments import typed
 from gbeam.guards.checks import vector
 from gbeam.results.declared import INSIDE, declared, fact, internal, labels, part, quantity, rows
 from gbeam.results.errors import Accelerated, FrequencyErrors, Noted, accelerated, evenly
-from gbeam.results.result import Complex, Floats, Part, Result
+from gbeam.results.result import Complex, Figured, Floats, Part
 
 ACCURATE = 0.01  # error of a frequency that is within what a design takes for accurate
 
@@ -122,7 +122,7 @@ class Margin(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class StateSpace(Noted, Result):
+class StateSpace(Noted, Figured):
     """ẋ = Ax + Bu, y = Cx + Du; with a `step` x⁺ = Ax + Bu. All are departures from the operating point.
 
     Examples
