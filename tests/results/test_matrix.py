@@ -20,8 +20,7 @@ from gbeam.results.result import Figured
 from gbeam.results.study import KINDS
 
 PAGE = Path(__file__).parents[2] / "docs" / "results.md"
-# One value, or a table of options: nothing of them is a curve.
-WITHOUT_FIGURE = {"Critical", "Placement"}
+WITHOUT_FIGURE = {"Critical"}  # one value
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -143,8 +143,8 @@ def place(
 
     Prints the --set options that apply the answer; --write writes it, and no change made by --set, into the scenario
     file, whose comments stay. Options that exceed the machine's limits are listed but not chosen, unless
-    --ignore-limits is given. With --out also writes place.json, with --report place.html. Exit status: 0 done, 1 every
-    option exceeds the limits, 2 the input is wrong.
+    --ignore-limits is given. With --out also writes place.json and a plot of the mismatch, with --report
+    place.html. Exit status: 0 done, 1 every option exceeds the limits, 2 the input is wrong.
     """
     weights = None if measure is None else parse(measure)
     widths = [number("--smoothing", text, "time") for text in smoothing]

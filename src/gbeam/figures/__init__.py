@@ -17,6 +17,7 @@ from gbeam.results.comparison import Comparison, MachinePlan
 from gbeam.results.equilibrium import CriticalMap, Deflection
 from gbeam.results.machine import AxesResult
 from gbeam.results.modal import Campbell, Modes
+from gbeam.results.placement import Placement
 from gbeam.results.response import Response
 from gbeam.results.searches import Fit, Optimum, ShapedCommand
 from gbeam.results.solids import SolidStress, SpecimenLoads
@@ -31,6 +32,7 @@ _OF: dict[type, dict[str, Callable[..., Figure]]] = {
     Campbell: {"campbell": steady.campbell},
     CriticalMap: {"critical": steady.critical_map},
     StateSpace: {"poles": steady.poles},
+    Placement: {"mismatch": imitation.placement},
     Fit: {"fit": studies.fit},
     Optimum: {"optimum": studies.optimum},
     ShapedCommand: {"shaping": studies.shaping, "robustness": studies.robustness},

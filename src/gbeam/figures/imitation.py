@@ -7,9 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from gbeam.figures.description import FLIGHT, Figure, Line, Panel, ends_of, imitating, moving, scale_of, stretches
+from gbeam.figures.description import FLIGHT, Bars, Figure, Line, Panel, ends_of, imitating, moving, scale_of, stretches
 from gbeam.results.comparison import Comparison
 from gbeam.results.measures import Shock
+from gbeam.results.placement import Placement
 from gbeam.results.result import Floats
 
 _BENDS = (0, 2, 1)  # axis of the root's moment that bends along each axis; about x it twists
@@ -91,3 +92,13 @@ def shock(comparison: Comparison, spectra: Shock, title: str = "") -> Figure:
         panels.append(Panel(label, lines, x="frequency of the oscillator, Hz", logarithmic=True, height=1.6))
     about = f"shock response of the acceleration of {spectra.control}, Q = {spectra.quality:g}"
     return Figure(title, about, tuple(panels))
+
+
+def placement(result: Placement, title: str = "") -> Figure:
+    """Describe what a placement leaves of each measure of the mismatch, beside other control points."""
+    measures = tuple(next(iter(result.values.values()), {}))
+    bars = {of: 100 * np.array([values[each] for each in measures]) for of, values in result.values.items()}
+    panel = Panel(
+        "", x="mismatch over flight's peak, %", bars=Bars(measures, bars), height=max(1.0, 0.3 * len(measures))
+    )
+    return Figure(title, f"{result.centrifuge} in place of {result.flight}: best and other control points", (panel,))

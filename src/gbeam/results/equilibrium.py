@@ -75,7 +75,10 @@ LOST = {"critical_speed": "rad/s", "critical_acceleration": "m/s^2", "critical_l
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Critical(Result):
-    """Point at which the stiffness about the relative equilibrium stops being positive definite, or something grows."""
+    """Point at which the stiffness about the relative equilibrium stops being positive definite, or something grows.
+
+    It is one value, and has no figure; :func:`gbeam.critical_speed_map` and :func:`gbeam.campbell` have.
+    """
 
     quantity: str = fact("quantity that is raised", note="hub rate or rate, acceleration along x, or load factor")
     unit: str = fact("unit of the quantity", note="rad/s, m/s^2, or none of a factor of the loads", name=None)

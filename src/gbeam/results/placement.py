@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from gbeam.results.accounting import PeakPair
 from gbeam.results.declared import INSIDE, declared, fact, internal, part, quantity, rows
 from gbeam.results.machine import LimitUse
-from gbeam.results.result import Part, Result
+from gbeam.results.result import Figured, Part
 
 MEASURES = ("root-shear", "root-moment", "vibration", "tip", "load")
 
@@ -108,7 +108,7 @@ class Setting(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Placement(Result):
+class Placement(Figured):
     """The best control point, mounting and smoothing for a measure."""
 
     flight: str = fact("name of the flight")
