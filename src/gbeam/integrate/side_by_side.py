@@ -90,7 +90,7 @@ def eliminated(rows: Array) -> Array:
 
 
 def stage_count(scheme: Scheme) -> int:
-    """At how many times of a step its features are read."""
+    """Number of times of a step at which its features are read."""
     return len(scheme.offsets) + (not scheme.ends)
 
 

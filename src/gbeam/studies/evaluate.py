@@ -243,9 +243,9 @@ def _responses(
         for k, response in simulate_batch(
             ((posed[k][2], posed[k][1].motions[name]) for k, name in pairs), settings, one_structure=one_structure
         ):
-            pair = of, name = pairs[k]
-            del left[pair]
-            yield pair, replace(response, name=name, provenance=posed[of][1].provenance)
+            case, name = pairs[k]
+            del left[case, name]
+            yield (case, name), replace(response, name=name, provenance=posed[case][1].provenance)
     except Exception as error:
         if len(left) == 1:
             yield next(iter(left)), error
