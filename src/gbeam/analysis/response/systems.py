@@ -32,7 +32,8 @@ from gbeam.analysis.system.accuracy import doubts, system_errors, unmoved
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
 from gbeam.analysis.system.histories import Carried, beams_of, deflection, histories, loads_of, meshes_of
 from gbeam.analysis.system.point import Point, started, started_traced
-from gbeam.analysis.system.richer import InputsOf, judged_bodies, read, stiffness_left_out, turning
+from gbeam.analysis.system.richer import judged_bodies
+from gbeam.analysis.system.solution import Solution
 from gbeam.analysis.system.steady import MASSLESS, bent_most, massless
 from gbeam.arrays.namespace import Array, holds_jax, is_jax, namespace
 from gbeam.arrays.types import Floats
@@ -137,7 +138,7 @@ class Ran(Run):
         beams = judged_bodies(self.posed.system)
         if not beams or not self.judged:
             return []
-        values = read(self.posed.system, *self.every(stride), beams)
+        values = self.every(stride).read(beams)
         return [values[name, each] for name in beams for each in LOADS]
 
     @cached_property
@@ -149,8 +150,8 @@ class Ran(Run):
     @cached_property
     def moved(self) -> Floats:
         """Displacements of all points, and of three on each body whose points do not turn, side by side, (t, 3 p) m."""
-        system, every = self.posed.system, self.every(1)
-        places = np.concatenate([read(system, *every, ())[PLACE], turning(system, *every)], axis=1)
+        every = self.every(1)
+        places = np.concatenate([every.read(())[PLACE], every.turning()], axis=1)
         moved = np.asarray((places - places[0]).reshape(len(places), -1))
         return np.zeros_like(moved) if unmoved(np.abs(moved).max(initial=0.0), places) else moved
 
@@ -186,10 +187,10 @@ class Ran(Run):
         plain = of.inputs(self.trajectory.time[steps], self.posed.motion)
         return plain if self.loop is None else SystemControllers(of).driven(plain, self.loop.applied[steps])
 
-    def every(self, stride: int) -> tuple[Trajectory, InputsOf]:
-        """Each `stride`-th of its steps, and the inputs at some of these."""
+    def every(self, stride: int) -> Solution:
+        """Each `stride`-th of its steps."""
         steps = np.arange(len(self.trajectory.time))[::stride]
-        return self.trajectory.at(steps), lambda of, some: self.inputs(of, steps[some])
+        return Solution(self.posed.system, self.trajectory.at(steps), lambda of, some: self.inputs(of, steps[some]))
 
     def histories(self, steps: Any, *, loads: bool) -> tuple[dict[str, Any], dict[str, Loads]]:
         """Histories at some of its steps, and loads along the beams by name."""
@@ -244,7 +245,7 @@ def simulate_system(
     stride = 1 if settings.step is not None else round(coarse / chosen.step)
     errors = SystemErrors(ErrorEstimate(of_steps.displacement), note=settings.not_estimated)
 
-    def again(of: System) -> tuple[Trajectory, InputsOf]:
+    def again(of: System) -> Solution:
         richer = PosedSystem(of, motion)
         what = "errors of shapes and models"
         return _run(richer, settings, richer.start(settings), jumps, progress, chosen.step, what).every(stride)
@@ -254,7 +255,7 @@ def simulate_system(
         steps = {(name, each): math.nan for name in judged_bodies(system) for each in LOADS}
         steps |= {PLACE: of_steps.displacement, **dict(zip(steps, of_steps.each, strict=False))}
         settled, closed = begin.state == "equilibrium", again if system.controllers else None
-        errors = system_errors(system, *chosen.every(stride), closed, steps, settled=settled)
+        errors = system_errors(chosen.every(stride), closed, steps, settled=settled)
     return _described(chosen, settings, stride, errors, name, flight, chosen.missed + chosen.turned_over)
 
 
@@ -428,7 +429,7 @@ def _described(
             warnings += (f"{words}; what moves so grows without bound where steps resolve it",)
     warnings += (*settings.warnings, *yielded)
     warnings += tuple(each for each in doubts(errors, settings.tolerance) if each not in warnings) + system.warnings
-    warnings += () if traced else stiffness_left_out(system, every, run.inputs)
+    warnings += () if traced else run.every(1).unstiffened
     residual: Any = None
     if settings.residual_from is not None:
         deflected = (deflection(system, each, over_time["q"]) for each in system.points)

@@ -16,7 +16,6 @@ from gbeam.analysis.accuracy.beam_theory import WORDS, causes, described
 from gbeam.analysis.accuracy.estimate import BEAM, LIMIT, percent, unjudged, wrong_by
 from gbeam.analysis.steady.operating_point import OperatingPoint
 from gbeam.analysis.system.richer import (
-    bases_of,
     coarser,
     judged_bodies,
     left_unjudged,
@@ -229,7 +228,7 @@ def unknown_errors(of: Structure | System, count: int) -> FrequencyErrors | None
 def _with_more(state: OperatingPoint | SteadySystem, *, exact: bool) -> More:
     """More shapes than a steady state has, in exact models or in models of its own kinds."""
     if isinstance(state, SteadySystem):
-        bases = bases_of(state.system, state.point.standing(), state.point.driven, judged_bodies(state.system))
+        bases = state.solution.bases(judged_bodies(state.system))
         rich = richer(state.system, bases, exact=exact)
         return More(rich.system, rich.renamed)
     structure, (_, along_y, along_z, *_) = state.structure, state.structure.counts

@@ -10,34 +10,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial
 
 import numpy as np
 
 from gbeam.analysis.accuracy.beam_theory import Lacking, beyond, described, largest
-from gbeam.analysis.accuracy.correction import PLACE, Posed, Quantity, Reading, State, Within
+from gbeam.analysis.accuracy.correction import PLACE, Quantity, Reading, State
 from gbeam.analysis.accuracy.estimate import UNMOVED, Judgement, cause_and_cure, negligible, percent, worst
-from gbeam.analysis.system.richer import (
-    InputsOf,
-    bases_of,
-    coarser,
-    judged_bodies,
-    left_unjudged,
-    posed,
-    read,
-    richer,
-    theories_of,
-    with_beams,
-)
+from gbeam.analysis.system.richer import coarser, judged_bodies, left_unjudged, richer, theories_of, with_beams
+from gbeam.analysis.system.solution import Solution
 from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError
-from gbeam.integrate.equations import Trajectory
-from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import Theory
 from gbeam.mechanics.tree.system import System
 from gbeam.results.errors import ErrorEstimate, SystemErrors
 from gbeam.results.parts import Base
 
-Again = Callable[[System], tuple[Trajectory, InputsOf]]
+Again = Callable[[System], Solution]
+Begun = Callable[[int], State | None]  # state of so many unknowns in which richer bodies begin
+Rerun = Callable[[System, Iterable[str]], Reading]  # of another system, and of some of its bodies
 FEWEST = 3  # times of a response that is judged
 FAR = "shapes and models are not judged: a system with more shapes does not follow"
 
@@ -55,9 +46,7 @@ def unmoved(size: float, place: Floats) -> bool:
 
 
 def system_errors(
-    system: System,
-    of: Trajectory,
-    inputs: InputsOf,
+    solution: Solution,
     again: Again | None,
     steps: Mapping[Quantity, float],
     *,
@@ -68,41 +57,42 @@ def system_errors(
     (p, 3), and of the beams' root loads and stress, beside those of the steps; bodies begin `settled` or undeformed.
     Richer systems are run `again` if it is given: where controllers answer what is lacking, and at rest.
     """
-    judged = judged_bodies(system)
-    note = left_unjudged(system)
+    judged, note, count = judged_bodies(solution.system), left_unjudged(solution.system), len(solution.of.time)
     step = steps.get(PLACE, math.nan)
-    if not judged or (again is None and len(of.time) < FEWEST):
+    if not judged or (again is None and count < FEWEST):
         none = math.nan if note or judged else 0.0
         return SystemErrors(ErrorEstimate(step, none, none, total=step + none), note=note)
-    solved = posed(system, inputs, judged)
-    computed = solved.read(of)
+    computed = solution.read(judged)
     place = computed[PLACE]
     sizes = {key: largest(each) for key, each in computed.items()}
     sizes[PLACE] = float(np.linalg.norm(place - (place[0] if start is None else start), axis=-1).max())
-    bases, nothing = bases_of(system, of, inputs, judged), set[Quantity]()
+    bases, nothing = solution.bases(judged), set[Quantity]()
     for name, each in judged.items():
         inertia = each.coefficients.rigid[0] * largest(bases[name].a_WO_B)
         nothing |= negligible(sizes, name, each.length, inertia)
     if unmoved(sizes[PLACE], place):
         nothing.add(PLACE)
     exact = all(each.richer or each.kind == "exact" for each in judged.values())
+    rerun = None if again is None else _rerun(again, count)
+
+    def begun(size: int) -> State | None:
+        return None if settled else (np.zeros(size), np.zeros(size))
+
     with np.errstate(all="ignore"):
         try:
-            if again is None:
-                truth, few, *alone = _departing(
-                    system, solved, of, inputs, bases, computed, settled=settled, exact=exact
-                )
+            if rerun is None:
+                truth, few, *alone = _departing(solution, bases, computed, begun, exact=exact)
                 shapes, model = (few, truth), (computed, few)
             else:
-                same = truth = _run(richer(system, bases, exact=True).system, again, len(of.time), judged)
+                same = truth = rerun(richer(solution.system, bases, exact=True).system, judged)
                 alone = [
-                    _alone(richer(system, {name: each}, exact=True).system, again, len(of.time), truth)
+                    _alone(rerun, richer(solution.system, {name: each}, exact=True).system, truth)
                     for name, each in bases.items()
                     if len(bases) > 1
                 ]
                 if not exact:
                     try:
-                        same = _run(richer(system, bases, exact=False).system, again, len(of.time), judged)
+                        same = rerun(richer(solution.system, bases, exact=False).system, judged)
                     except ComputationError:
                         same, note = computed, "; ".join(filter(None, (note, TOGETHER)))
                 # Between a system with more shapes of the same models and the exact one is what the models leave out.
@@ -111,13 +101,14 @@ def system_errors(
             return SystemErrors(ErrorEstimate(step), note=FAR)
         if not np.isfinite(truth[PLACE]).all():
             return SystemErrors(ErrorEstimate(step), note=FAR)
-        mesh = _by_mesh(system, solved, of, inputs, again, judged, settled=settled)
-        theories = theories_of(system)
-        lacking = _beyond(system, solved, of, inputs, theories, again, settled=settled) if theories else Lacking()
+        mesh = _by_mesh(solution, rerun, judged, begun)
+        theories = theories_of(solution.system)
+        loop = rerun if count > 1 else None
+        lacking = _beyond(solution, theories, loop, begun) if theories else Lacking()
     extent = float(np.ptp(place, axis=(0, 1)).max(initial=0.0))
     if theories and not lacking.sizes.get(PLACE, math.nan) <= LOST * max(sizes[PLACE], extent):
         lacking = Lacking()
-        note = "; ".join(filter(None, (note, LOOP_LOST if again is not None and len(of.time) > 1 else BENT_FAR)))
+        note = "; ".join(filter(None, (note, BENT_FAR if loop is None else LOOP_LOST)))
     by_mesh = None if mesh is None else (mesh, computed)
     judgement = Judgement(shapes, model, lacking.sizes, dict(steps), sizes, nothing, by_mesh)
     loads, stress = [judgement.loads(name) for name in judged], [judgement.error((name, "stress")) for name in judged]
@@ -157,96 +148,69 @@ def doubts(errors: SystemErrors, tolerance: float) -> tuple[str, ...]:
     return tuple(said)
 
 
-def _run(system: System, again: Again, count: int, bodies: Iterable[str]) -> Reading:
-    """Readings of a system that is really run, and of some of its bodies."""
-    ran, inputs = again(system)
-    if len(ran.time) < count:
-        raise ComputationError("not converged", "the richer system has no response")
-    return read(system, ran, inputs, bodies)
+def _rerun(again: Again, count: int) -> Rerun:
+    """Run systems for so many times; ComputationError where one comes to no end."""
+
+    def rerun(system: System, bodies: Iterable[str]) -> Reading:
+        solution = again(system)
+        if len(solution.of.time) < count:
+            raise ComputationError("not converged", "the richer system has no response")
+        return solution.read(bodies)
+
+    return rerun
 
 
-def _alone(system: System, again: Again, count: int, truth: Reading) -> Reading:
+def _alone(rerun: Rerun, system: System, truth: Reading) -> Reading:
     """Readings of a system in which one body is richer, of those in the true one; NaN where it comes to no answer, as
     a craft that the others keep in balance.
     """
     try:
-        return _run(system, again, count, [name for name, _ in truth if name])
+        return rerun(system, [name for name, _ in truth if name])
     except ComputationError:
         return {key: np.nan * each for key, each in truth.items()}
 
 
-def _by_mesh(
-    system: System,
-    solved: Posed,
-    of: Trajectory,
-    inputs: InputsOf,
-    again: Again | None,
-    bodies: Iterable[str],
-    *,
-    settled: bool,
-) -> Reading | None:
+def _by_mesh(solution: Solution, rerun: Rerun | None, bodies: Iterable[str], begun: Begun) -> Reading | None:
     """Readings with coarser meshes of the solids; None where none has one."""
-    rough = coarser(system)
+    rough = coarser(solution.system)
     if rough is None:
         return None
-    if again is not None:
-        return _run(rough, again, len(of.time), bodies)
-    within = Within.lifted(posed(rough, inputs, bodies), solved, of)
-    return within.moved(within.departures().answer(within.residual(), _begun(settled)(len(solved.names))))
-
-
-def _begun(settled: bool) -> Callable[[int], State | None]:
-    """State of so many unknowns in which richer bodies begin: None where they rest."""
-    return lambda count: None if settled else (np.zeros(count), np.zeros(count))
+    if rerun is not None:
+        return rerun(rough, bodies)
+    within = solution.within(rough, bodies)
+    return within.moved(within.departures().answer(within.residual(), begun(len(within.less.names))))
 
 
 def _departing(
-    system: System,
-    solved: Posed,
-    of: Trajectory,
-    inputs: InputsOf,
-    bases: Mapping[str, Base],
-    computed: Reading,
-    *,
-    settled: bool,
-    exact: bool,
+    solution: Solution, bases: Mapping[str, Base], computed: Reading, begun: Begun, *, exact: bool
 ) -> Iterator[Reading]:
     """Readings with all that is lacking, without what shapes lack, and with what each of several beams lacks alone."""
-    rich = richer(system, bases, exact=True)
-    within = Within.lifted(posed(rich.system, inputs, bases), solved, of, rich.shared)
+    rich = richer(solution.system, bases, exact=True)
+    within = solution.within(rich.system, bases, rich.shared)
     departures, residual = within.departures(), within.residual()
-    start = _begun(settled)(residual.shape[1])
+    start = begun(residual.shape[1])
     total = departures.answer(residual, start)
     yield within.moved(total)
     yield computed if exact else within.moved(total.less(departures.answer(within.of_new(residual), start)))
     for name in bases if len(bases) > 1 else ():
         # A system in which it alone is exact leaves what it lacks; the others feel it only through the joints.
-        one = richer(system, {name: bases[name]}, exact=True)
-        few = Within.lifted(posed(one.system, inputs, ()), solved, of, one.shared)
+        one = richer(solution.system, {name: bases[name]}, exact=True)
+        few = solution.within(one.system, (), one.shared)
         kept = [k for k, each in enumerate(few.more.bodies) if each == name or each not in bases]
         alone = np.zeros_like(residual)
         alone[:, [within.more.names.index(few.more.names[k]) for k in kept]] = few.residual()[:, kept]
         yield within.moved(departures.answer(alone, start))
 
 
-def _beyond(
-    system: System,
-    solved: Posed,
-    of: Trajectory,
-    inputs: InputsOf,
-    theories: Mapping[str, Theory],
-    again: Again | None,
-    *,
-    settled: bool,
-) -> Lacking:
+def _beyond(solution: Solution, theories: Mapping[str, Theory], loop: Rerun | None, begun: Begun) -> Lacking:
     """Find what the theory of slender beams lacks, in a loop by running thick ones."""
-
-    def rerun(beams: Mapping[str, Structure]) -> Reading:
-        assert again is not None
-        return _run(with_beams(system, beams), again, len(of.time), theories)
-
     # Without a loop, and at rest, what is computed is put into the equations: it may bend farther than they know.
-    loop = rerun if again is not None and len(of.time) > 1 else None
+    bent = partial(with_beams, solution.system)
     return beyond(
-        solved, of, theories, lambda beams: posed(with_beams(system, beams), inputs, theories), _begun(settled), loop
+        solution.posed(theories),
+        solution.of,
+        theories,
+        lambda beams: solution.posed(theories, bent(beams)),
+        begun,
+        None if loop is None else lambda beams: loop(bent(beams), theories),
     )

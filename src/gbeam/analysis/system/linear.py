@@ -17,12 +17,12 @@ from gbeam.analysis.system.accuracy import doubts, system_errors
 from gbeam.analysis.system.gauges import Strained, read_signals
 from gbeam.analysis.system.histories import ROUNDING, beams_of, histories, loads_of, meshes_of
 from gbeam.analysis.system.point import Point, started
+from gbeam.analysis.system.solution import Solution
 from gbeam.analysis.system.steady import Drive, SteadySystem, open_loops, steady
 from gbeam.arrays.namespace import Array
 from gbeam.arrays.types import Complex, Floats
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.checks import choice
-from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.control import signal_names
 from gbeam.mechanics.tree.equations import Inputs
@@ -56,8 +56,8 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
     except ComputationError as error:
         unstable = (f"whether it would stay there is not known, {error}",)
 
-    def again(of: System) -> tuple[Trajectory, Any]:
-        return state.richer(of).point.standing(time), inputs
+    def standing(of: System) -> Solution:
+        return Solution(of, (state if of is system else state.richer(of)).point.standing(time), inputs)
 
     # What nothing holds leaves on the ground the rounding of its inertia.
     moving = point.tree.motion(point.y, point.yd, point.ydd, point.inputs)
@@ -67,7 +67,7 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
         at[key] = np.where(np.abs(at[key]) > ROUNDING * size, at[key], 0.0)
     start = begun["place"][0]
     solids, surfaces = meshes_of(system, np.array([time]), resting["q"], name, "rest")
-    errors = system_errors(system, point.standing(time), inputs, again, {}, settled=True, start=start)
+    errors = system_errors(standing(system), standing, {}, settled=True, start=start)
     return SystemRest(
         name=name,
         time=time,

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from gbeam.analysis.system.point import NONE, Point, adrift, rested, rested_together
-from gbeam.analysis.system.richer import stiffness_left_out
+from gbeam.analysis.system.solution import Solution
 from gbeam.arrays.types import Complex, Flags, Floats
 from gbeam.constants import BY_STRAINS
 from gbeam.errors import ComputationError, InputError
@@ -120,10 +120,14 @@ class SteadySystem(Steady):
         return self.system
 
     @property
+    def solution(self) -> Solution:
+        """The state, as a solution of one time."""
+        return Solution(self.system, self.point.standing(), self.point.driven)
+
+    @property
     def warnings(self) -> tuple[str, ...]:
         """Doubts about the bodies' models, and what they leave out in this state."""
-        left_out = stiffness_left_out(self.system, self.point.standing(), self.point.driven)
-        return self.system.warnings + left_out + self._held_spin + self._spun_up
+        return self.system.warnings + self.solution.unstiffened + self._held_spin + self._spun_up
 
     @property
     def _held_spin(self) -> tuple[str, ...]:
