@@ -15,9 +15,10 @@ import pytest
 from numpy.polynomial import legendre
 
 from gbeam import Flight, Hub, Response, Sine, SmoothStep, Structure, simulate, smoothed, tabulated, trapezoid
+from gbeam.analysis.response.peaks import peaks_of_coordinates
 from gbeam.analysis.response.problem import problem_of
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.step_errors import Readings, Run, observed_order
+from gbeam.analysis.response.step_errors import Run, observed_order
 from gbeam.analysis.response.stepping import answered, refine
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.section_forces import section_forces
@@ -210,13 +211,25 @@ def test_a_step_found_by_a_large_jump_is_checked() -> None:
     def error(step: float) -> float:
         return slow * step**2 + fast * min(1.0, step / resolved) ** 2
 
+    def vector(q: np.ndarray) -> np.ndarray:
+        return np.asarray(q * np.array([0.0, 0.0, 1.0]))
+
+    class Wave(Run):
+        @property
+        def moved(self) -> np.ndarray:
+            return vector(self.trajectory.q)
+
+        @property
+        def peaks(self) -> list[np.ndarray]:
+            return [peaks_of_coordinates(self.trajectory, self.moved, vector)] * 2
+
+        def loads(self, stride: int) -> list[np.ndarray]:
+            return []
+
     def run(step: float, _: str) -> Run:
         time = step * np.arange(round(10 / step) + 1)
         q, qd = ((1 + error(step)) * wave(time)[:, None] for wave in (np.sin, np.cos))
-        return Run(Trajectory(time, q, qd, -q), step, Readings(vector, vector, lambda *_: []))
-
-    def vector(q: np.ndarray) -> np.ndarray:
-        return np.asarray(q * np.array([0.0, 0.0, 1.0]))
+        return Wave(Trajectory(time, q, qd, -q), step)
 
     assert error(0.0025) > 1.5 * settings.aim  # the step that the order promises to be enough
     answer, errors = answered(refine(0.02, 2, settings), run)

@@ -9,10 +9,10 @@ from typing import Any, TypeVar, Unpack
 import numpy as np
 
 from gbeam.analysis.response.peaks import displacement_peaks
+from gbeam.analysis.response.posed import Posed, StructureRun, pose
 from gbeam.analysis.response.record import response_of
 from gbeam.analysis.response.settings import ResponseSettings, Settings
-from gbeam.analysis.response.simulation import Posed, pose, settings_of, simulate, steps_within
-from gbeam.analysis.response.step_errors import Run
+from gbeam.analysis.response.simulation import settings_of, simulate
 from gbeam.analysis.response.stepping import Plan, first_steps, scheme_of
 from gbeam.arrays.namespace import holds_jax
 from gbeam.errors import InputError
@@ -35,7 +35,7 @@ class _Case:
 
     index: int
     posed: Posed
-    plan: Plan
+    plan: Plan[StructureRun]
     step: float
     run: Any
 
@@ -53,7 +53,7 @@ class _Ended:
 
     index: int
     posed: Posed
-    run: Run
+    run: StructureRun
     errors: StepErrors
     known: dict[str, Any]
 
@@ -160,8 +160,8 @@ def _responses(
             raise InputError("simulate_batch", "is given what JAX traces", "map simulate over it with jax.vmap")
         chosen = settings.chosen(free=motion.free)
         *few, step = first_steps(structure, motion, chosen)
-        posed, before, after = pose(structure, motion, chosen, *step)
-        if few or before or after:
+        posed = pose(structure, motion, chosen, *step)
+        if few or posed.before or posed.after:
             yield index, simulate(structure, motion, settings)
             continue
         case = _going_on(index, posed, structure.equations if one_structure else None, posed.plan())
@@ -174,7 +174,12 @@ def _responses(
 
 
 def _going_on(
-    index: int, posed: Posed, common: Any, plan: Plan, run: Run | None = None, known: dict[str, Any] | None = None
+    index: int,
+    posed: Posed,
+    common: Any,
+    plan: Plan[StructureRun],
+    run: StructureRun | None = None,
+    known: dict[str, Any] | None = None,
 ) -> _Case | _Ended:
     """A case with the run that its plan wants next, `known` reused if it counts, or one that has ended."""
     from gbeam.integrate import side_by_side
@@ -211,11 +216,11 @@ def _read(queue: list[_Case], trajectories: list[Trajectory | None]) -> Iterator
     ended = []
     for case, trajectory, moved in zip(queue, trajectories, _displaced(queue, trajectories), strict=True):
         posed, known = case.posed, None
-        if trajectory is None or steps_within(posed.structure, trajectory.q, moved) is not None:
+        if trajectory is None or posed.too_far(trajectory.q, moved) is not None:
             run = posed.run(case.step, stop=posed.too_far)  # one that leaves what its model can mean stops there
         else:
-            run, known = posed.read(trajectory, case.step), {"moved": moved}
-            if posed.structure.linear and not posed.motion.free and posed.stride(case.step) == 1:
+            run, known = StructureRun(trajectory, case.step, posed), {"moved": moved}
+            if posed.structure.linear and not posed.motion.free and run.stride == 1:
                 known["base"], _ = case.run.at_times or (None, None)
         after = _going_on(case.index, posed, case.run.common, case.plan, run, known)
         if isinstance(after, _Case):
@@ -233,7 +238,7 @@ def _displaced(queue: list[_Case], trajectories: list[Trajectory | None]) -> lis
     ]
     for some in _alike(completed, lambda each: (id(each[1].structure), len(each[2].time))):
         posed = some[0][1]
-        q = np.stack([trajectory.q[:, posed.problem.first :] for _, _, trajectory in some])
+        q = np.stack([trajectory.q[:, posed.beam] for _, _, trajectory in some])
         for (k, _, _), moved in zip(some, np.asarray(posed.structure.displacement(q)), strict=True):
             displacements[k] = moved
     return displacements
@@ -252,9 +257,7 @@ def _responses_of(ended: list[_Ended]) -> Iterator[tuple[int, Response]]:
         for case, displacement, case_peaks in zip(some, moved, peaks, strict=True):
             case.known.update(moved=displacement.copy(), peaks=case_peaks)
     for case in ended:
-        posed, step = case.posed, case.run.step
-        inputs = posed.structure, posed.motion, posed.settings, posed.problem, (None, case.run.trajectory, None)
-        yield case.index, response_of(*inputs, "", step, case.errors, posed.stride(step), **case.known)
+        yield case.index, response_of(case.run, case.errors, "", **case.known)
 
 
 def _alike(items: Iterable[Item], key: Callable[[Item], Hashable]) -> Iterable[list[Item]]:

@@ -16,15 +16,16 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.response.problem import Problem, problem_of
+from gbeam.analysis.response.posed import Posed, StructureRun
+from gbeam.analysis.response.problem import problem_of
 from gbeam.analysis.response.record import response_of
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.stepping import corners, first_step, scheme_of, steps_beyond
+from gbeam.analysis.response.stepping import first_step, scheme_of, steps_beyond
 from gbeam.arrays.types import Floats
 from gbeam.integrate.driver import through
 from gbeam.integrate.equations import LinearEquations, Trajectory, accelerations, slopes
 from gbeam.integrate.schemes import Scheme, added, stepped
-from gbeam.integrate.steps import Corners, Steps, fitted
+from gbeam.integrate.steps import Steps, fitted
 from gbeam.integrate.tangent import System, tangent
 from gbeam.mechanics.equations.dalembert import OnBase
 from gbeam.mechanics.structure import Structure
@@ -33,25 +34,6 @@ from gbeam.motion.protocol import Motion
 from gbeam.results.errors import StepErrors
 from gbeam.results.machine import AxesResult
 from gbeam.results.response import Response
-
-
-@dataclass(frozen=True)
-class Posed:
-    """A structure in an environment, and the problem that they pose."""
-
-    structure: Structure
-    motion: Any
-    problem: Problem
-
-    @property
-    def drive(self) -> Any:
-        """Function of times (t,) that gives its inputs."""
-        return self.problem.equations.drive
-
-    def driven_as(self, other: Posed) -> bool:
-        """True if it is driven as another is."""
-        return self.motion is other.motion and self.structure.history is other.structure.history
-
 
 Pair = tuple[Posed, Posed]  # of less and of more of a parameter
 
@@ -143,7 +125,7 @@ class Differentiated:
         self.settings = replace(settings, estimate=False, loads=loads)
         start, duration = settings.start, settings.duration
         motion = motion.over(start, start + duration)
-        self.coarse, self.scheme = first_step(structure, motion, settings), scheme_of(settings)
+        self.scheme = scheme_of(settings)
         kept = grid.stride * grid.step
         before, after = steps_beyond(motion, settings, kept)
         self.begin = start - before * kept
@@ -151,7 +133,7 @@ class Differentiated:
         self.jumps = self._jumps(self.nominal)
         count = round(duration / grid.step)
         up, down = fitted(self.begin, kept, before), fitted(start + kept * (count // grid.stride), kept, after)
-        felt = self._corners(self.nominal).felt_by(self.scheme)
+        felt = self.nominal.felt.felt_by(self.scheme)
         self.parts = up, fitted(start, grid.step, count, felt), down
         # With the ends of the parts of split steps, too.
         problem = self.nominal.problem
@@ -216,23 +198,23 @@ class Differentiated:
         return slopes
 
     def _response(self, posed: Posed, moves: Sequence[tuple[Floats, ...] | None]) -> Response:
-        runs: Any = tuple(
+        up, flight, down = (
             None if run is None else _moved(run, steps, by)
             for run, steps, by in zip(self.runs, self.parts, moves, strict=True)
         )
-        return response_of(
-            posed.structure, posed.motion, self.settings, posed.problem, runs, self.name, self.grid.step,
-            StepErrors(), self.grid.stride, axes_of=self._axes,
-        )  # fmt: skip
+        assert flight is not None
+        run = StructureRun(flight, self.grid.step, posed)
+        return response_of(run, StepErrors(), self.name, up=up, down=down, axes_of=self._axes)
 
     def _axes(self, motion: Any, time: Floats) -> AxesResult | None:
         if not self.axes:
             return None
-        if motion is not self.nominal.motion:
-            return axes_result(motion, time)
-        if self._own_axes is None:
-            self._own_axes = axes_result(motion, time)
-        return self._own_axes
+        if self._own_axes is not None and motion is self.nominal.motion:
+            return self._own_axes
+        axes = axes_result(motion, time)
+        if motion is self.nominal.motion:
+            self._own_axes = axes
+        return axes
 
     def _posed(self, variant: Variant) -> Posed:
         structure, motion = variant
@@ -241,17 +223,12 @@ class Differentiated:
             motion = self.nominal.motion
         else:
             motion = motion.over(self.settings.start, self.settings.start + self.settings.duration)
-        return Posed(structure, motion, problem_of(structure, motion, self.begin, self.settings.begin))
-
-    def _corners(self, posed: Posed) -> Corners:
-        times = corners(posed.structure, posed.motion, self.coarse)
-        start = self.settings.start
-        return Corners.of(times, posed.drive, start, start + self.settings.duration)
+        problem = problem_of(structure, motion, self.begin, self.settings.begin)
+        return Posed(structure, motion, self.settings, problem, self.grid.stride * self.grid.step)
 
     def _jumps(self, posed: Posed) -> Floats:
         """Times at which something jumps."""
-        breaks = self._corners(posed)
-        return breaks.time[breaks.jump]
+        return posed.felt.time[posed.felt.jump]
 
 
 def _moved(run: Trajectory, steps: Steps, by: tuple[Floats, ...] | None) -> Trajectory:

@@ -13,8 +13,8 @@ from gbeam.analysis.accuracy.response_errors import response_errors
 from gbeam.analysis.outline import outline_of
 from gbeam.analysis.response.outcome import describe, effort, inaccuracies
 from gbeam.analysis.response.peaks import displacement_peaks, load_peaks
-from gbeam.analysis.response.problem import Problem, start_of
-from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.analysis.response.posed import StructureRun
+from gbeam.analysis.response.problem import start_of
 from gbeam.analysis.response.stepping import joined, scheme_of
 from gbeam.arrays.namespace import Array, is_jax
 from gbeam.arrays.types import Floats
@@ -55,30 +55,26 @@ def influence(structure: Structure) -> Influence:
 
 
 def response_of(
-    structure: Structure,
-    motion: Motion,
-    settings: ResponseSettings,
-    problem: Problem,
-    runs: tuple[Trajectory | None, Trajectory, Trajectory | None],
-    name: str,
-    step: float,
+    run: StructureRun,
     step_errors: StepErrors,
-    stride: int,
+    name: str,
     *,
+    up: Trajectory | None = None,
+    down: Trajectory | None = None,
     axes_of: Callable[[Any, Floats], AxesResult | None] = axes_result,
     base: Base | None = None,
     moved: Array | None = None,
     peaks: Peaks | None = None,
 ) -> Response:
     """Sample spin-up, flight and spin-down on the coarse grid and describe them, with what a flight alone gave."""
-    up, trajectory, down = runs
+    posed, trajectory, stride = run.posed, run.trajectory, run.stride
+    structure, motion, settings, beam = posed.structure, posed.motion, posed.settings, posed.beam
     every, flight = joined(up, trajectory, down, stride)
     last = trajectory if down is None else down
     traced = is_jax(trajectory.q)
-    beam = slice(problem.first, None)
     fine = structure.displacement(trajectory.q[:, beam]) if moved is None else moved
     if peaks is None:
-        (peaks,) = displacement_peaks(structure, [trajectory], problem.first, fine[None], settings.residual_from)
+        (peaks,) = displacement_peaks(structure, [trajectory], posed.problem.first, fine[None], settings.residual_from)
 
     def at(
         of: Trajectory, steps: Any, known: Base | None = None
@@ -86,7 +82,7 @@ def response_of(
         """Coordinates, base, hub and loads at some of the steps."""
         of = of.at(steps)
         time, q, qd, qdd = of.time, of.q, of.qd, of.qdd
-        base, hub = moving(motion, time, q, qd, qdd, known)
+        base, hub = posed.moving(time, q, qd, qdd, known)
         loads = None
         if settings.loads:
             loads = section_forces(structure, base, q[:, beam], qd[:, beam], qdd[:, beam], time, motion=motion)
@@ -109,7 +105,7 @@ def response_of(
     errors = Errors()
     warnings: tuple[str, ...] = ()
     if not traced:
-        outcome, message, from_run = describe(structure, problem, last, over_time, peaks, time, q[:, beam])
+        outcome, message, from_run = describe(structure, posed.problem, last, over_time, peaks, time, q[:, beam])
         if outcome == "done":
             during = None if loads is None else loads.during(flight)
             tip = np.asarray(displacement[flight, -1])
@@ -154,8 +150,8 @@ def response_of(
         base=over_time,
         peaks=peaks,
         integrator=scheme_of(settings).name,
-        step=step,
-        steps=sum(len(run.time) - 1 for run in runs if run is not None),
+        step=run.step,
+        steps=sum(len(each.time) - 1 for each in (up, trajectory, down) if each is not None),
         error_estimate=errors.displacement.total,
         errors=errors,
         residual_from=math.nan if settings.residual_from is None else settings.residual_from,
@@ -182,20 +178,3 @@ def _recovered(structure: Structure, motion: Motion, time: Floats, base: Base, q
         return {} if structure.source is None else {"envelope": structure.source.beam.envelope}
     parts = structure.recovery.parts(time, base, q, motion=name, model=structure.kind, environment=motion.kind)
     return {"envelope": structure.recovery.envelope, **parts}
-
-
-def moving(
-    motion: Any, time: Floats, y: Array, yd: Array, ydd: Array, base: Base | None = None
-) -> tuple[Base, HubResult | None]:
-    """Motion of the root over time, and of the hub if there is one; the `base` where it is known."""
-    hub = None
-    if motion.free:
-        angle, rate, acceleration = y[:, 0], yd[:, 0], ydd[:, 0]
-        base = motion.mount.base(angle, rate, acceleration)
-        hub = HubResult(angle, rate, acceleration, motion.torque(time), free=True)
-    else:
-        base = motion.base(time) if base is None else base
-        if motion.kind == "hub":
-            axis = motion.mount.R_HB[2]
-            hub = HubResult(motion.angle(time), base.w_WB_B @ axis, base.alpha_WB_B @ axis)
-    return base, hub

@@ -9,14 +9,13 @@ long do not resolve, none is believed above one.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 
-from gbeam.analysis.response.peaks import peaks_of_coordinates
 from gbeam.arrays.types import Floats
 from gbeam.integrate.equations import Trajectory
 from gbeam.results.errors import StepErrors
@@ -27,21 +26,11 @@ _SAMPLES = 2000  # times at most at which the loads of two runs are compared
 
 
 @dataclass(frozen=True)
-class Readings:
-    """Tip and root moment (..., 3) from coordinates, and histories (t, ..., k) of loads from a trajectory."""
-
-    tip: Callable[[Floats], Floats]
-    moment: Callable[[Floats], Floats]
-    loads: Callable[[Trajectory, int], Sequence[Floats]]
-
-
-@dataclass(frozen=True)
-class Run:
+class Run(ABC):
     """A trajectory with the length of its steps, s, and what is read from it."""
 
     trajectory: Trajectory
     step: float
-    readings: Readings
 
     @property
     def bends(self) -> bool:
@@ -63,23 +52,21 @@ class Run:
         """True if it came to its end."""
         return self.trajectory.whole
 
-    @cached_property
+    @property
+    @abstractmethod
     def moved(self) -> Floats:
         """Displacement of the tip, or of all points side by side, (t, 3 p) m."""
-        return self.readings.tip(self.trajectory.q)
 
-    @cached_property
+    @property
+    @abstractmethod
     def peaks(self) -> list[Floats]:
-        """Peaks of the tip's displacement and of the root's moment, (4,) each."""
-        read = self.readings
-        histories = (self.moved, read.tip), (read.moment(self.trajectory.q), read.moment)
-        return [peaks_of_coordinates(self.trajectory, values, of) for values, of in histories]
+        """Peaks of the tip's displacement and of the root's moment, (4,) each; none where the history is judged."""
 
+    @abstractmethod
     def loads(self, stride: int) -> Sequence[Floats]:
         """Histories (t, ..., k) of force, moment and stress of each beam, at every so many steps; of one beam the
         stress is left out where no errors are estimated.
         """
-        return self.readings.loads(self.trajectory, stride)
 
 
 def difference(coarse: Floats, fine: Floats, ratio: int) -> float:

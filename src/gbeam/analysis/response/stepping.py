@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -35,7 +35,8 @@ BENT = 4  # into how many at most where a law bends, for errors to be seen to fa
 RIGID = 2e-3  # s: step of a specimen without coordinates
 SPARE = 1.05  # how much finer a step is than the order promises to be enough
 # Yields a step, s, and what it is for; is sent the run; returns the run that counts with its errors.
-Plan = Generator[tuple[float, str], Run, tuple[Run, StepErrors]]
+R = TypeVar("R", bound=Run)
+Plan = Generator[tuple[float, str], R, tuple[R, StepErrors]]
 
 
 def scheme_of(settings: ResponseSettings) -> Scheme:
@@ -101,7 +102,7 @@ def corners(structure: Structure, motion: Motion, step: float) -> Floats:
     return np.concatenate([motion.corners(step), *loads])
 
 
-def answered(plan: Plan, run: Callable[[float, str], Run]) -> tuple[Run, StepErrors]:
+def answered(plan: Plan[R], run: Callable[[float, str], R]) -> tuple[R, StepErrors]:
     """Compute the runs of a plan, one after the other."""
     try:
         wanted = next(plan)
@@ -112,7 +113,7 @@ def answered(plan: Plan, run: Callable[[float, str], Run]) -> tuple[Run, StepErr
         return chosen, errors
 
 
-def planned(settings: ResponseSettings, step: float, most: int = MAX_STEPS) -> Plan:
+def planned(settings: ResponseSettings, step: float, most: int = MAX_STEPS) -> Plan[R]:
     """The runs of some settings from the step of the results: those of an automatic step, by so many steps at most, or
     of the given one and what its estimate needs.
     """
@@ -124,12 +125,12 @@ def planned(settings: ResponseSettings, step: float, most: int = MAX_STEPS) -> P
     return (yield from once(step, StepErrors()))
 
 
-def once(step: float, errors: StepErrors) -> Plan:
+def once(step: float, errors: StepErrors) -> Plan[R]:
     """One run, whose errors are known beforehand or unknown."""
     return (yield step, "integrating"), errors
 
 
-def check(step: float, order: int) -> Plan:
+def check(step: float, order: int) -> Plan[R]:
     """Run with a given step, and with twice and four times that, from which the error is estimated."""
     runs = [(yield step, "integrating"), (yield 2 * step, "checking with twice the step")]
     if not runs[1].whole:
@@ -138,7 +139,7 @@ def check(step: float, order: int) -> Plan:
     return runs[0], of_everything(runs[::-1], order)
 
 
-def refine(coarse: float, order: int, settings: ResponseSettings, limit: int = MAX_STEPS) -> Plan:
+def refine(coarse: float, order: int, settings: ResponseSettings, limit: int = MAX_STEPS) -> Plan[R]:
     """Divide the step, from twice the results', until the errors estimated of what moves and of the peaks are within
     their aims; histories of root loads, if followed, only to a third of the tolerance and by LOADS_STEPS. Where steps
     are to be no finer than the results' that is the only aim.
@@ -178,13 +179,13 @@ def finer_by(far: float, order: int) -> int:
     return next((jump for jump in JUMPS if jump >= times), JUMPS[-1])
 
 
-def _left(runs: list[Run], order: int, aims: tuple[float, float]) -> tuple[float, float]:
+def _left(runs: Sequence[Run], order: int, aims: tuple[float, float]) -> tuple[float, float]:
     """Error of tip or peaks over its aim, by the order observed and by the scheme's own."""
     error, (tip, peaks) = Estimate.of(runs, order), aims
     return max(error.tip / tip, error.peaks / peaks), max(error.promised_tip / tip, error.promised_peaks / peaks)
 
 
-def _check_needed(runs: list[Run], left: float) -> float | None:
+def _check_needed(runs: Sequence[Run], left: float) -> float | None:
     """Step of a cheaper run, s, that tells whether an error is what the order promises, or None: unresolved modes after
     a jump promise too well.
     """
@@ -211,21 +212,6 @@ def integrated(problem: Problem, settings: ResponseSettings, step: float, **how:
     # A step that does not divide the duration, twice the one given, goes beyond the end.
     how |= {"step": step, "count": math.ceil(settings.duration / step - 1e-6), "start": settings.start}
     return integrate(problem.equations, scheme_of(settings), problem.q, problem.qd, **how)
-
-
-def ramp(problem: Problem, settings: ResponseSettings, step: float, first: int, count: int, **how: Any) -> Trajectory:
-    """Spin-up or spin-down from a problem's state: `count` steps from the `first`, counted from the flight's start."""
-    how |= {"step": step, "count": count, "start": settings.start + step * first}
-    trajectory = integrate(problem.equations, scheme_of(settings), problem.q, problem.qd, **how)
-    # The flight's own times to the last digit.
-    return replace(
-        trajectory, time=np.asarray(settings.start + step * (first + np.arange(len(trajectory.time))), dtype=np.float64)
-    )
-
-
-def going_on(problem: Problem, trajectory: Trajectory) -> Problem:
-    """The problem that begins in the state in which a run ends."""
-    return replace(problem, q=trajectory.q[-1], qd=trajectory.qd[-1])
 
 
 def split(trajectory: Trajectory, *counts: int) -> list[Trajectory | None]:

@@ -19,6 +19,7 @@ from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.step_errors import Run
 from gbeam.analysis.response.stepping import (
     LOADS_STEPS,
+    Plan,
     answered,
     enough,
     even_steps,
@@ -107,15 +108,15 @@ class PosedSystem:
         times = np.unique(np.round(times, 12))
         return Corners(times, np.ones(len(times), dtype=bool))
 
-    def run(self, settings: ResponseSettings, q: Array, qd: Array, step: float, **how: Any) -> Ran:
+    def run(self, settings: ResponseSettings, q: Array, qd: Array, step: float, **how: Any) -> SystemRun:
         """Integrate it from coordinates and rates."""
         trajectory = integrated(Problem(self.equations, q, qd, 0, True), settings, step, **how)
         sampling = self.equations.samplings[-1] if self.equations.samplings else None
-        return Ran(trajectory, step, None, self, sampling, settings.estimate)  # type: ignore[arg-type]
+        return SystemRun(trajectory, step, self, sampling, settings.estimate)
 
 
 @dataclass(frozen=True)
-class Ran(Run):
+class SystemRun(Run):
     """A run of a system, with the samples of its controllers, and whether its loads are to be judged."""
 
     posed: PosedSystem
@@ -235,11 +236,10 @@ def simulate_system(
             point = posed.start(settings)
         _refuse_long(system, settings, settings.step or coarse)
         jumps = posed.jumps(settings, coarse)
-        plan = planned(settings, settings.step or coarse, most)
+        plan: Plan[SystemRun] = planned(settings, settings.step or coarse, most)
         chosen, of_steps = answered(plan, partial(_run, posed, settings, point, jumps, progress))
         if enough(chosen, of_steps, settings):
             break
-    assert isinstance(chosen, Ran)
     if chosen.missed:
         of_steps = StepErrors()
     stride = 1 if settings.step is not None else round(coarse / chosen.step)
@@ -267,7 +267,7 @@ def _run(
     progress: Progress,
     step: float,
     what: str,
-) -> Ran:
+) -> SystemRun:
     """The run from a state, by steps of a length, s, for what is said."""
     return posed.run(settings, point.y, point.yd, step, corners=jumps, progress=partial(tell, progress, what))
 
@@ -378,7 +378,7 @@ def _first_step(posed: PosedSystem, point: Point, settings: ResponseSettings) ->
 
 
 def _described(
-    run: Ran,
+    run: SystemRun,
     settings: ResponseSettings,
     stride: int,
     errors: SystemErrors,

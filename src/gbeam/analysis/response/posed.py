@@ -1,0 +1,212 @@
+"""A structure in an environment posed as a problem, and its runs by any step with what is read of them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from typing import Any
+
+import numpy as np
+
+from gbeam.analysis.accuracy.estimate import NOTHING, UNMOVED
+from gbeam.analysis.response.peaks import peaks_of_coordinates
+from gbeam.analysis.response.problem import Problem, problem_of
+from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.analysis.response.step_errors import Run
+from gbeam.analysis.response.stepping import (
+    MAX_STEPS,
+    Plan,
+    corners,
+    integrated,
+    once,
+    planned,
+    scheme_of,
+    steps_beyond,
+)
+from gbeam.arrays.namespace import Array
+from gbeam.arrays.types import Floats
+from gbeam.guards.limits import BOUNDLESS, HISTORY_BYTES, STEPS, refuse_more
+from gbeam.integrate.driver import integrate
+from gbeam.integrate.equations import Trajectory
+from gbeam.integrate.steps import Corners, Steps, fitted
+from gbeam.mechanics.section_forces import root_loads, section_forces
+from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.bodies import Body
+from gbeam.mechanics.tree.system import terms_of
+from gbeam.motion.protocol import Motion
+from gbeam.progress import Progress, tell
+from gbeam.results.errors import StepErrors
+from gbeam.results.parts import Base
+from gbeam.results.response import HubResult
+
+
+@dataclass(frozen=True, eq=False)
+class Posed:
+    """A structure in an environment posed as a problem, to be run by any step; the results' is `kept`, s."""
+
+    structure: Structure
+    motion: Motion
+    settings: ResponseSettings
+    problem: Problem
+    kept: float
+    limit: int = MAX_STEPS  # of a run
+    before: int = 0  # steps of the results in which a machine spins up
+    after: int = 0
+
+    @property
+    def beam(self) -> slice:
+        """The structure's coordinates among the unknowns."""
+        return slice(self.problem.first, None)
+
+    @property
+    def drive(self) -> Any:
+        """Function of times (t,) that gives its inputs."""
+        return self.problem.equations.drive
+
+    def driven_as(self, other: Posed) -> bool:
+        """True if it is driven as another is."""
+        return self.motion is other.motion and self.structure.history is other.structure.history
+
+    @cached_property
+    def felt(self) -> Corners:
+        """Corners and jumps of what drives it within the flight's times."""
+        times = corners(self.structure, self.motion, self.kept)
+        start, end = self.settings.start, self.settings.start + self.settings.duration
+        return Corners.of(times, self.drive, start, end)
+
+    def moving(
+        self, time: Floats, y: Array, yd: Array, ydd: Array, base: Base | None = None
+    ) -> tuple[Base, HubResult | None]:
+        """Motion of the root over time, and of the hub if there is one; the `base` where it is known."""
+        motion: Any = self.motion
+        hub = None
+        if motion.free:
+            angle, rate, acceleration = y[:, 0], yd[:, 0], ydd[:, 0]
+            base = motion.mount.base(angle, rate, acceleration)
+            hub = HubResult(angle, rate, acceleration, motion.torque(time), free=True)
+        else:
+            base = motion.base(time) if base is None else base
+            if motion.kind == "hub":
+                axis = motion.mount.R_HB[2]
+                hub = HubResult(motion.angle(time), base.w_WB_B @ axis, base.alpha_WB_B @ axis)
+        return base, hub
+
+    def plan(self) -> Plan[StructureRun]:
+        """Plan the runs that the settings need."""
+        if not self.structure.size:  # nothing is integrated
+            return once(self.kept, StepErrors(0.0, 0.0, 0.0))
+        return planned(self.settings, self.kept, self.limit)
+
+    def steps(self, step: float) -> Steps:
+        """Steps of about a length, s; one that does not divide the duration goes beyond the end."""
+        count = math.ceil(self.settings.duration / step - 1e-6)
+        return fitted(self.settings.start, step, count, self.felt.felt_by(scheme_of(self.settings)))
+
+    def run(self, step: float, **how: Any) -> StructureRun:
+        """The run with such steps."""
+        return StructureRun(integrated(self.problem, self.settings, step, corners=self.felt, **how), step, self)
+
+    def going_on(self, run: Trajectory) -> Posed:
+        """It from the state in which a run ends."""
+        return replace(self, problem=replace(self.problem, q=run.q[-1], qd=run.qd[-1]))
+
+    def spun_up(self, progress: Progress) -> Trajectory | None:
+        """Spin-up of a machine, if it has any."""
+        return self._ramp(-self.before, self.before, partial(tell, progress, "spinning up"))
+
+    def spun_down(self, progress: Progress) -> Trajectory | None:
+        """Spin-down from the problem's state, if the machine has any."""
+        first = round(self.settings.duration / self.kept)
+        return self._ramp(first, self.after, partial(tell, progress, "spinning down"))
+
+    def _ramp(self, first: int, count: int, progress: Any) -> Trajectory | None:
+        """So many steps of the results from the `first`, counted from the flight's start."""
+        if not count:
+            return None
+        start, scheme, problem = self.settings.start, scheme_of(self.settings), self.problem
+        how: Any = {"step": self.kept, "count": count, "start": start + self.kept * first, "progress": progress}
+        run = integrate(problem.equations, scheme, problem.q, problem.qd, stop=self.too_far, **how)
+        # The flight's own times to the last digit.
+        time = start + self.kept * (first + np.arange(len(run.time)))
+        return replace(run, time=np.asarray(time, dtype=np.float64))
+
+    def too_far(self, y: Floats, moved: Floats | None = None) -> int | None:
+        """Steps until a projected field moved by the beam's length, or particles without bound, at unknowns (t, n), by
+        `moved` (t, s, 3) m where it is known: it means nothing from there. None if it did not.
+        """
+        if self.structure.kind == "exact":
+            return None
+        moved = self.structure.displacement(y[:, self.beam]) if moved is None else moved
+        limit = BOUNDLESS if self.structure.field is None else self.structure.length
+        far = np.abs(moved).max(axis=(1, 2)) > limit
+        return int(np.argmax(far)) + 1 if far.any() else None
+
+    def tip(self, y: Floats) -> Floats:
+        """Displacement of the tip, m, zero where it is the rounding of places: a torque alone does not move it."""
+        tip = np.asarray(self.structure.tip(y[..., self.beam]))
+        return np.where(np.abs(tip) > UNMOVED * self.structure.length, tip, 0.0)
+
+    def moment(self, y: Floats) -> Floats:
+        """Root moment by the elastic forces K q, which the coordinates' inertia balances, of the straight beam."""
+        c = self.structure.coefficients
+        return np.asarray(y[..., self.beam] @ (c.f_al @ np.linalg.solve(c.mass, c.stiffness)).T)
+
+    @cached_property
+    def terms(self) -> Body:
+        """Terms of the structure's equations, by which loads at its root are found."""
+        return terms_of(self.structure)
+
+
+@dataclass(frozen=True)
+class StructureRun(Run):
+    """A run of a structure."""
+
+    posed: Posed
+
+    @property
+    def stride(self) -> int:
+        """Number of its steps in one of the results, whose times all motions of a study share."""
+        return 1 if self.posed.settings.step is not None else round(self.posed.kept / self.step)
+
+    @cached_property
+    def moved(self) -> Floats:
+        """Displacement of the tip, (t, 3) m."""
+        return self.posed.tip(self.trajectory.q)
+
+    @cached_property
+    def peaks(self) -> list[Floats]:
+        """Peaks of the tip's displacement and of the root's moment, (4,) each."""
+        tip, moment = self.posed.tip, self.posed.moment
+        histories = (self.moved, tip), (moment(self.trajectory.q), moment)
+        return [peaks_of_coordinates(self.trajectory, values, of) for values, of in histories]
+
+    def loads(self, stride: int) -> list[Floats]:
+        """Force and moment at the root and, where errors are estimated, both sides' stress at every section."""
+        posed, structure, at = self.posed, self.posed.structure, self.trajectory.at(slice(None, None, stride))
+        base, _ = posed.moving(at.time, at.q, at.qd, at.qdd)
+        q, qd, qdd = (x[:, posed.beam] for x in (at.q, at.qd, at.qdd))
+        force, moment = root_loads(structure, posed.terms, base, q, qd, qdd, at.time)
+        largest = np.abs(force).max() * structure.length, np.abs(moment).max()
+        felt = [force * (largest[0] > NOTHING * largest[1]), moment * (largest[1] > NOTHING * largest[0])]
+        if not posed.settings.estimate:
+            return felt
+        forces = section_forces(structure, base, q, qd, qdd, at.time, motion=posed.motion)
+        sides = [forces.stress_tension, forces.stress_compression]
+        if forces.von_mises is not None and np.isfinite(forces.von_mises).all():
+            sides.append(forces.von_mises)  # of what is only twisted the others are rounding
+        stress = np.concatenate(sides, axis=1)[..., None]
+        if structure.recovery is not None:
+            stress = np.asarray(structure.recovery.felt(q))
+        return [*felt, stress]
+
+
+def pose(structure: Structure, motion: Motion, settings: ResponseSettings, kept: float, limit: int) -> Posed:
+    """Pose a run, from a machine's start if that comes before."""
+    each = 8.0 * (3 * structure.size + 9 * len(structure.stations))
+    most = min(STEPS, int(HISTORY_BYTES / each))
+    fix = f"give {most * kept:.3g} s or less, or fewer stations"
+    refuse_more("response.duration", "steps", settings.duration / kept, most, each, fix)
+    before, after = steps_beyond(motion, settings, kept)
+    problem = problem_of(structure, motion, settings.start - before * kept, settings.begin)
+    return Posed(structure, motion, settings, problem, kept, limit, before, after)
