@@ -9,7 +9,7 @@ import pytest
 
 import gbeam as gb
 from gbeam.analysis.accuracy.correction import RESOLVED, Departures, Within
-from gbeam.analysis.accuracy.response_errors import Driven, lacking
+from gbeam.analysis.accuracy.response_errors import Solution, lacking
 from gbeam.integrate.equations import Trajectory
 from gbeam.results.parts import Base
 
@@ -190,7 +190,7 @@ def test_a_complete_residual_at_many_times_is_the_compiled_one() -> None:
     structure = laden("exact")
     q, qd, qdd = (states(structure.size, 2, 0.1, seed) for seed in range(3))
     base, loads = Base(*(states(3, 2, 1.0, seed) for seed in (3, 4, 5))), structure.history(np.zeros(2))
-    posed = Driven((base, loads)).posed(structure)
+    posed = Solution(structure, Trajectory(np.zeros(2), q, qd, qdd), (base, loads)).posed()
     ours = posed.residual(q, qd, qdd, posed.inputs(slice(None)))
     first = Base(base.a_WO_B[0], base.w_WB_B[0], base.alpha_WB_B[0])
     theirs = quickly_compiled(base_residual)(structure, q[0], qd[0], qdd[0], first, loads[0])
@@ -208,8 +208,7 @@ def test_departures_of_a_beam_on_a_free_hub_are_derivatives_of_its_equations(kin
         np.concatenate([about[:, [k]], states(n, 2, size, k)], axis=1) for k, size in enumerate((0.1, 0.3, 2.0))
     )
     of = Trajectory(np.array([0.0, 0.1]), y, yd, ydd)
-    driven = Driven((np.zeros(2), structure.history(of.time)), hub)
-    posed = driven.posed(structure)
+    posed = Solution(structure, of, (np.zeros(2), structure.history(of.time)), hub).posed()
     ours = Within.lifted(posed, posed, of).departures()
     for at in range(2):
         for k, matrix in enumerate((ours.k[at], ours.c[at], ours.m[at])):

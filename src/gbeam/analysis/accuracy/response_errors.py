@@ -7,7 +7,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -41,19 +40,23 @@ TOO_FAR = "the solution is too far from the exact model's for an estimate; it is
 
 
 @dataclass(frozen=True, eq=False)
-class Driven:
-    """The inputs of a beam at the times of a solution: its base, or the torque on a free hub; and its loads."""
+class Solution:
+    """A structure with its coordinates and rates at some times, and what drives it then: the motion of its base, or the
+    torque on a free hub, and its loads.
+    """
 
+    structure: Structure
+    of: Trajectory
     inputs: Any
     hub: Any = None
 
     @classmethod
-    def by(cls, structure: Structure, motion: Any, time: Floats) -> Driven:
-        """The drive by a motion and the loads of a structure."""
-        loads = None if structure.history is None else np.asarray(structure.history(time))
+    def driven(cls, structure: Structure, motion: Any, of: Trajectory) -> Solution:
+        """Solution in the environment of a motion."""
+        loads = None if structure.history is None else np.asarray(structure.history(of.time))
         if motion.free:
-            return cls((np.asarray(motion.torque(time)), loads), motion)
-        return cls((each_leaf(np.asarray, motion.base(time)), loads))
+            return cls(structure, of, (np.asarray(motion.torque(of.time)), loads), motion)
+        return cls(structure, of, (each_leaf(np.asarray, motion.base(of.time)), loads))
 
     @property
     def first(self) -> int:
@@ -65,26 +68,39 @@ class Driven:
         """Components of the loads, (t, loads, 6)."""
         return self.inputs[1]
 
-    def at(self, some: Any) -> Driven:
-        """The drive at some of the times."""
-        return replace(self, inputs=each_leaf(lambda leaf: leaf[some], self.inputs))
-
-    def base_of(self, of: Trajectory) -> Base:
-        """Motion of the base in a solution."""
+    @property
+    def base(self) -> Base:
+        """Motion of its base."""
+        of = self.of
         base = self.inputs[0] if self.hub is None else self.hub.mount.base(of.q[:, 0], of.qd[:, 0], of.qdd[:, 0])
         return each_leaf(np.asarray, base)
 
-    def posed(self, structure: Structure) -> Posed:
-        """The equations of a structure that is moved so."""
-        names = ["hub.angle"] * self.first + [f"{BEAM}.q{k + 1}" for k in range(structure.size)]
-        read = partial(self.read, structure)
-        return Posed(structure.residual(self.hub), lambda some: self.at(some).inputs, names, read)
+    def at(self, some: Any) -> Solution:
+        """It at some of the times."""
+        return replace(self, of=self.of.at(some), inputs=each_leaf(lambda leaf: leaf[some], self.inputs))
 
-    def read(self, structure: Structure, of: Trajectory) -> Reading:
+    def posed(self, structure: Structure | None = None) -> Posed:
+        """The equations of its structure, or of another, driven so."""
+        structure = self.structure if structure is None else structure
+        return Posed(
+            structure.residual(self.hub),
+            lambda some: self.at(some).inputs,
+            ["hub.angle"] * self.first + [f"{BEAM}.q{k + 1}" for k in range(structure.size)],
+            lambda of: replace(self, structure=structure, of=of).read(),
+        )
+
+    def within(self, rich: Structure, index: IntArray | None = None) -> Within:
+        """It put into the equations of a structure with more shapes, its own at `index`, or of as many."""
+        index = np.arange(self.structure.size) if index is None else index
+        shared = np.append(np.arange(self.first), self.first + index)
+        return Within.lifted(self.posed(rich), self.posed(), self.of, shared)
+
+    def read(self) -> Reading:
         """Displacement of the tip (t, 3) m, the root's force and moment (t, 3), and the largest size of the stress over
         all sections (t,), or a solid's (t, c), of a structure without sections none.
         """
-        base, (q, qd, qdd) = self.base_of(of), (each[:, self.first :] for each in (of.q, of.qd, of.qdd))
+        structure, of, base = self.structure, self.of, self.base
+        q, qd, qdd = (each[:, self.first :] for each in (of.q, of.qd, of.qdd))
         if structure.sections is None:
             ends = section_forces(structure, base, q, qd, qdd, of.time)
             stress = np.full(len(q), np.nan) if structure.recovery is None else structure.recovery.felt(q)
@@ -96,18 +112,13 @@ class Driven:
         stress = np.maximum(pair[0], -pair[1]).max(axis=1)
         return {PLACE: tip, FORCE: loads.force[:, 0], MOMENT: loads.moment[:, 0], STRESS: stress}
 
-    def within(self, rich: Structure, index: IntArray, structure: Structure, of: Trajectory) -> Within:
-        """A structure's solution in one with more shapes, its own at `index`."""
-        shared = np.append(np.arange(self.first), self.first + index)
-        return Within.lifted(self.posed(rich), self.posed(structure), of, shared)
-
-    def along(self, more: Enrichment | Twin, of: Trajectory) -> tuple[bool, bool, bool]:
-        """True if new shapes along x, y and z would be moved by a solution."""
-        structure = more.structure
+    def along(self, more: Enrichment | Twin) -> tuple[bool, bool, bool]:
+        """True if new shapes along x, y and z would be moved by it."""
+        structure = self.structure
         if isinstance(more, Twin) or all(structure.counts[:3]):
             return True, True, True
         rich, index = more.model(structure.kind)
-        at, base, c = self.within(rich, index, structure, of).of, self.base_of(of), rich.coefficients
+        at, base, c = self.within(rich, index).of, self.base, rich.coefficients
         p, pd, pdd = (each[:, self.first :] for each in (at.q, at.qd, at.qdd))
         residual = c.residual(p, pd, pdd, base.a_WO_B, base.w_WB_B, base.alpha_WB_B, self.loads)
         counts = np.cumsum([0, *rich.counts])
@@ -116,11 +127,11 @@ class Driven:
         axial, along_y, along_z = (n > 0 or size > limit for n, size in zip(structure.counts[:3], forces, strict=False))
         return axial, along_y, along_z
 
-    def theory(self, structure: Structure, of: Trajectory, begin: Begin | None = None, *, straight: bool) -> Lacking:
-        """Find what a solution lacks by the theory of slender beams, from where it begins, or from equilibrium."""
-        if structure.source is None:
+    def theory(self, begin: Begin | None = None, *, straight: bool) -> Lacking:
+        """Find what it lacks by the theory of slender beams, from where it begins, or from equilibrium."""
+        if self.structure.source is None:
             return Lacking()
-        theory = theory_of(structure) if straight else theory_of(structure).exact
+        theory = theory_of(self.structure) if straight else theory_of(self.structure).exact
 
         def begun(_: int) -> State | None:
             if begin is None:
@@ -133,8 +144,7 @@ class Driven:
             )
             return q, qd
 
-        solved = self.posed(structure)
-        return beyond(solved, of, {BEAM: theory}, lambda beams: self.posed(beams[BEAM]), begun)
+        return beyond(self.posed(), self.of, {BEAM: theory}, lambda beams: self.posed(beams[BEAM]), begun)
 
 
 class Rings(NamedTuple):
@@ -147,16 +157,15 @@ class Rings(NamedTuple):
 
 
 def lacking(
-    structure: Structure, driven: Driven, of: Trajectory, computed: Reading, begin: Begin | None, *, straight: bool
+    solution: Solution, computed: Reading, begin: Begin | None, *, straight: bool
 ) -> tuple[Reading, Reading, Rings]:
     """Read a solution by the exact model with more shapes and with as many, and what its samples may hide."""
-    more = enrichment(structure, driven.base_of(of))
-    count = len(of.time)
-    some = np.linspace(0, count - 1, min(count, SCAN)).astype(int)
-    directions = driven.at(some).along(more, of.at(some))
+    kind, count = solution.structure.kind, len(solution.of.time)
+    more = enrichment(solution.structure, solution.base)
+    directions = solution.at(np.linspace(0, count - 1, min(count, SCAN)).astype(int)).along(more)
     exact, index = more.model("exact", directions=directions)
-    within = driven.within(exact, index, structure, of)
-    linear = driven.posed(replace(exact, linear=True)) if straight else None
+    within = solution.within(exact, index)
+    linear = solution.posed(replace(exact, linear=True)) if straight else None
     departures, residual = within.departures(linear), within.residual()
 
     def start(richer: Structure) -> State | None:
@@ -164,20 +173,19 @@ def lacking(
 
     begun, few = start(exact), computed
     total = departures.answer(residual, begun)
-    if structure.kind != exact.kind:
-        same = more.model(structure.kind, directions=directions)[0]
+    if kind != exact.kind:
+        same = more.model(kind, directions=directions)[0]
         few = within.moved(total.less(departures.answer(within.of_new(residual), start(same))))
     return within.moved(total), few, _rings(exact, *departures.shaken(residual, begun))
 
 
-def by_mesh(
-    structure: Structure, driven: Driven, of: Trajectory, computed: Reading, begin: Begin | None
-) -> tuple[Reading, Reading] | None:
+def by_mesh(solution: Solution, computed: Reading, begin: Begin | None) -> tuple[Reading, Reading] | None:
     """Read what a solution would be by a coarser mesh, and what is computed; None where there is no such mesh."""
-    if structure.coarser is None:
+    rough = solution.structure.coarser
+    if rough is None:
         return None
-    within = driven.within(structure.coarser, np.arange(structure.size), structure, of)
-    begun = None if begin is None else _departure(begin, structure.coarser, within.of)
+    within = solution.within(rough)
+    begun = None if begin is None else _departure(begin, rough, within.of)
     return within.moved(within.departures().answer(within.residual(), begun)), computed
 
 
@@ -232,7 +240,7 @@ def errors_of(
 def response_errors(
     structure: Structure,
     motion: Motion,
-    solution: Trajectory,
+    of: Trajectory,
     tip: Floats,
     loads: Loads | None,
     steps: tuple[float, float, float],
@@ -249,36 +257,34 @@ def response_errors(
         if loads is None or not np.isfinite(loads.stress).any():  # such as that of particles, which is not known
             alone[2] = ErrorEstimate()
         return Errors(alone[0], alone[1], alone[2], unjudged(structure)), ()
-    every = stated(structure, tip, loads, solution.q[::stride, -structure.size :])
+    every = stated(structure, tip, loads, of.q[::stride, -structure.size :])
     sizes = {key: largest(each) for key, each in every.items()}
     straight = sizes[PLACE] <= BENT * structure.length
     period = 2 * math.pi / float(structure.rest[0][0])
-    step, least = float(solution.time[1] - solution.time[0]), math.ceil(len(solution.time) / MOST)
+    step, least = float(of.time[1] - of.time[0]), math.ceil(len(of.time) / MOST)
     few = max(1, min(int(period / PER_PERIOD / (stride * step)), len(tip) // FEWEST))
     stride *= few
     by_step = dict(zip((PLACE, FORCE, MOMENT, STRESS), (steps[0], steps[1], *steps[1:]), strict=True))
-    of = solution.at(slice(None, None, stride))
-    driven = Driven.by(structure, motion, of.time)
+    solution = Solution.driven(structure, motion, of.at(slice(None, None, stride)))
     with np.errstate(all="ignore"):
-        beyond = driven.theory(structure, of, begin, straight=straight)
+        beyond = solution.theory(begin, straight=straight)
 
-    def judged(of: Trajectory, driven: Driven, computed: Reading) -> tuple[Errors, float]:
+    def judged(solution: Solution, computed: Reading) -> tuple[Errors, float]:
         """Errors by some of the steps, and the rate of the fastest mode that these may have missed, rad/s."""
         with np.errstate(all="ignore"):
-            truth, exact, rings = lacking(structure, driven, of, computed, begin, straight=straight)
-            mesh = by_mesh(structure, driven, of, computed, begin)
+            truth, exact, rings = lacking(solution, computed, begin, straight=straight)
+            mesh = by_mesh(solution, computed, begin)
         if not np.isfinite(truth[PLACE]).all():
             bounded = structure.source is not None
             return _bounded(structure, sizes[PLACE], steps[0]) if bounded else Errors(ErrorEstimate(steps[0])), 0.0
         errors = errors_of(structure, (exact, truth), (computed, exact), beyond, by_step, sizes, mesh)
         return errors, _missed(rings, sizes, errors, RESOLVED / (least * step))
 
-    errors, rate = judged(of, driven, {key: each[::few] for key, each in every.items()})
+    errors, rate = judged(solution, {key: each[::few] for key, each in every.items()})
     finer = max(least, int(RESOLVED / (rate * step))) if rate else stride
     if finer < stride:
-        of = solution.at(slice(None, None, finer))
-        driven = Driven.by(structure, motion, of.time)
-        errors, _ = judged(of, driven, driven.read(structure, of))
+        solution = Solution.driven(structure, motion, of.at(slice(None, None, finer)))
+        errors, _ = judged(solution, solution.read())
     return errors, tuple(of_bodies(structure, beyond, sizes[PLACE], tolerance))
 
 

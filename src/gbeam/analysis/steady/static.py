@@ -11,7 +11,7 @@ import numpy as np
 from gbeam.analysis.accuracy.beam_theory import largest
 from gbeam.analysis.accuracy.correction import PLACE, Reading
 from gbeam.analysis.accuracy.estimate import LIMIT, cause_and_cure, of_bodies, percent, unjudged
-from gbeam.analysis.accuracy.response_errors import BENT, Driven, errors_of
+from gbeam.analysis.accuracy.response_errors import BENT, Solution, errors_of
 from gbeam.analysis.steady.equilibrium import keeps, solve_equilibrium
 from gbeam.analysis.steady.operating_point import OperatingPoint, on_base, operating_point
 from gbeam.analysis.system.linear import system_rest
@@ -43,26 +43,27 @@ def static_errors(point: OperatingPoint) -> tuple[Errors, tuple[str, ...]]:
     if not structure.judged:
         return Errors(note=unjudged(structure)), ()
     loaded = None if structure.load_values is None else np.asarray(structure.load_values)[None]
-    driven, at = Driven((each_leaf(lambda x: np.asarray(x)[None], point.base), loaded)), _resting(point.q)
-    more = enrichment(structure, point.base)
-    which = driven.along(more, at)
+    inputs = each_leaf(lambda x: np.asarray(x)[None], point.base), loaded
+    solution, more = Solution(structure, _resting(point.q), inputs), enrichment(structure, point.base)
+    which = solution.along(more)
     exact = more.model("exact", directions=which)[0]
 
     def rested(rich: Structure) -> Reading | None:
         """Reading of a structure with more shapes at its own equilibrium; None where there is none."""
         rich = replace(rich, load_values=structure.load_values)
         try:
-            return driven.read(rich, _resting(np.asarray(solve_equilibrium(rich, point.base).q)))
+            q = np.asarray(solve_equilibrium(rich, point.base).q)
         except (ComputationError, np.linalg.LinAlgError):
             return None
+        return replace(solution, structure=rich, of=_resting(q)).read()
 
-    computed, truth = driven.read(structure, at), rested(exact)
+    computed, truth = solution.read(), rested(exact)
     if truth is None:
         return Errors(note=LOST), (LOST,)
     same = truth if structure.kind == exact.kind else rested(more.model(structure.kind, directions=which)[0])
     unknown = {key: np.nan * each for key, each in truth.items()}
     sizes = {key: max(largest(each), largest(truth[key])) for key, each in computed.items()}
-    beyond = driven.theory(structure, at, straight=sizes[PLACE] <= BENT * structure.length)
+    beyond = solution.theory(straight=sizes[PLACE] <= BENT * structure.length)
     same, steps = same or unknown, dict.fromkeys(computed, 0.0)
     mesh = None if structure.coarser is None else (rested(structure.coarser) or unknown, computed)
     errors = errors_of(structure, (computed, same), (same, truth), beyond, steps, sizes, mesh)
