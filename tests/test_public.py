@@ -8,11 +8,22 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any, get_args, get_type_hints
 
 import pytest
 
 import gbeam
+from gbeam import constants
+from gbeam.integrate.schemes import SCHEMES
+from gbeam.mechanics.models import KINDS as MODELS
+from gbeam.mechanics.tree.joints import KINDS as JOINTS
+from gbeam.motion.centrifuge.centrifuge import MOUNTINGS
+from gbeam.motion.centrifuge.course import INVERSES
+from gbeam.motion.records.columns import UNITS
+from gbeam.questions import QUESTIONS, Options, Verb
 from gbeam.results.result import Result
+from gbeam.scenario.schema.scenario import PARAMETERS
+from gbeam.structure.shapes import SHAPES, Dimensions
 
 SOURCE = Path(gbeam.__file__)
 
@@ -79,6 +90,33 @@ def _documented(text: str) -> set[str]:
     section = text.partition("Parameters\n----------\n")[2].split("\n\n")
     lines = [line for part in section for line in part.splitlines() if line and not line.startswith(" ")]
     return {name.strip(" *") for line in lines for name in line.partition(":")[0].split(",")}
+
+
+def test_words_to_choose_from_are_those_that_are_registered() -> None:
+    """Type checkers know the names that run: of every registry that says more of each name than that it is one."""
+    options: dict[str, Any] = {}
+    for question in QUESTIONS.values():
+        for name, each in question.options.items():
+            options[name] = each.type | str if each.kind else each.type
+    dimensions = [name for shape in SHAPES.values() for name in shape.required + shape.optional]
+    assert get_type_hints(Options) == options
+    assert list(Dimensions.__annotations__) == list(dict.fromkeys(dimensions))
+    assert {quantity: tuple(units) for quantity, units in UNITS.items()} == {
+        "acceleration": get_args(constants.AccelerationUnit),
+        "rate": get_args(constants.RateUnit),
+        "time": get_args(constants.TimeUnit),
+    }
+    for names, registry in {
+        Verb: QUESTIONS,
+        constants.JointKind: JOINTS,
+        constants.SectionShape: SHAPES,
+        constants.Integrator: SCHEMES,
+        constants.Mounting: MOUNTINGS,
+        constants.InverseName: INVERSES,
+        constants.ModelKind: MODELS,
+        constants.Parameter: dict.fromkeys(name for takes in PARAMETERS.values() for name in takes),
+    }.items():
+        assert sorted(get_args(names)) == sorted(registry)
 
 
 def test_an_unknown_name_is_an_attribute_error() -> None:

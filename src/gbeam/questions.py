@@ -10,7 +10,7 @@ import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args, get_origin, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypedDict, get_args, get_origin, get_type_hints
 
 from gbeam.errors import InputError
 from gbeam.printable import advise
@@ -24,6 +24,22 @@ if TYPE_CHECKING:
     from gbeam.results.study import Study, SystemStudy
     from gbeam.results.system import SystemModes, SystemRest
 
+Verb = Literal["run", "static", "modes", "critical-speed", "plan", "place", "campbell"]
+Varied = Literal["rate", "loads", "acceleration"]
+# Options of all questions, as studies take those of one; a quantity is a number in SI, or text.
+Options = TypedDict(
+    "Options",
+    {
+        "gyroscopic": bool,
+        "vary": Varied,
+        "turning": str | None,
+        "from": float | str | None,
+        "to": float | str | None,
+        "modes": int,
+        "orders": int,
+    },
+    total=False,
+)
 HUB, CENTRIFUGE = "hub", "centrifuge"
 STATIONS = 81  # along the beam, at which shapes are given
 
@@ -142,7 +158,7 @@ QUESTIONS: dict[str, Question] = {}
 _Answer = Callable[..., Any]
 
 
-def question(name: str, about: str, **more: Any) -> Callable[[_Answer], _Answer]:
+def question(name: Verb, about: str, **more: Any) -> Callable[[_Answer], _Answer]:
     """Declare the question that a function answers: see :class:`Question`."""
 
     def declare(answer: _Answer) -> _Answer:
@@ -150,6 +166,13 @@ def question(name: str, about: str, **more: Any) -> Callable[[_Answer], _Answer]
         return answer
 
     return declare
+
+
+def question_of(verb: str) -> Question:
+    """Return the question of a verb; InputError where there is none."""
+    if verb not in QUESTIONS:
+        raise InputError("--verb", f"is {verb!r}", advise(verb, QUESTIONS))
+    return QUESTIONS[verb]
 
 
 def differentiable() -> tuple[str, ...]:
@@ -280,7 +303,8 @@ def modes(
 
 _TURNING = "Of a system, the angle that turns, base.angle; else its only prescribed one, or only one."
 _SPEED = 'Such as "60 rpm"; by default from rest to the largest rate of the motion.'
-_VARIED = {"rate": "angular rate", "loads": "ratio", "acceleration": "acceleration"}  # kinds of what is raised
+# Kinds of what is raised.
+_VARIED: dict[Varied, str] = {"rate": "angular rate", "loads": "ratio", "acceleration": "acceleration"}
 
 
 def _kind_varied(options: Mapping[str, Any]) -> str:
@@ -299,7 +323,7 @@ def critical_speed(
     needs: Needs = Needs(),
     *,
     vary: Annotated[
-        Literal["rate", "loads", "acceleration"],
+        Varied,
         "What is raised: the rate of the hub or joint; all loads on beams and points, by one factor, the base being "
         "frozen; or the acceleration of the root along the beam, which pushes it.",
     ] = "rate",

@@ -154,5 +154,5 @@ def test_the_unit_is_judged_without_small_spikes(tmp_path: Path) -> None:
 
 
 def test_a_check_that_does_not_exist_cannot_be_skipped(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"record.skip_checks names no check 'units'; choose of sampling, spikes"):
+    with pytest.raises(InputError, match=r"record.skip_checks names no check 'units'; did you mean 'unit'"):
         fly(write(tmp_path, FLIGHTS["6 g turn"]), "g", conditioning=Conditioning(skip_checks=("units",)))

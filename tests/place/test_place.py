@@ -113,7 +113,7 @@ def test_search_finds_an_inner_minimum_and_stops_at_what_is_allowed() -> None:
 
 
 def test_refusals(structure: Any, flight: Any, spin: Any, settings: Any) -> None:
-    with pytest.raises(InputError, match="choose of root-shear"):
+    with pytest.raises(InputError, match="did you mean 'tip'"):
         place(structure, flight, only(spin), settings, {"tips": 1.0}, current=spin())
     with pytest.raises(InputError, match="no weight"):
         place(structure, flight, only(spin), settings, {"tip": 0.0}, current=spin())

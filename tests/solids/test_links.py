@@ -188,6 +188,9 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
         {"links": {"face": "end"}, "springs": {"s": {"between": ["face"], "stiffness": {"x": -1.0}}}},
         "springs.s.stiffness.x is -1",
     ),
+    ({"springs": {"s": {"betwen": ["face"], "stiffness": {}}}}, "springs.s is 'betwen'; did you mean 'between'"),
+    ({"springs": {"s": {"stiffness": {}}}}, "springs.s.between is missing"),
+    ({"springs": {"s": 3.0}}, "springs is .*; give a mapping"),
 ]
 
 

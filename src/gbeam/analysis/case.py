@@ -24,7 +24,7 @@ from gbeam.mechanics.tree.joints import GROUND, Joint
 from gbeam.mechanics.tree.system import RigidBody, System
 from gbeam.motion import Flight
 from gbeam.motion.protocol import Motion
-from gbeam.results.criteria import AT_POINTS, DISPLACEMENT, STRESS, refuse_unknown
+from gbeam.results.criteria import AT_POINTS, DISPLACEMENT, STRESS, Acceptance, refuse_lacking, refuse_unknown
 from gbeam.results.description import (
     BodyOfSystem,
     ControllerOfSystem,
@@ -50,13 +50,15 @@ class _InEnvironments(Value):
     title: str
     motions: Mapping[str, Motion]
     response: ResponseSettings | None
-    accept: Mapping[str, Mapping[str, Any]]
+    accept: Mapping[str, Acceptance]
     no_beam: ClassVar[tuple[str, str]] = ("", "")  # why it is none, and what to ask in place of what is of one beam
 
     def __post_init__(self, read_from: AnyScenario | None) -> None:
         if read_from is not None and not hasattr(type(read_from), "model_fields"):  # pydantic's, not imported for it
             fix = "leave it out: read_scenario gives it"
             raise InputError("read_from", f"is of type {type(read_from).__name__}", fix)
+        for name, limits in self.accept.items():
+            refuse_unknown(f"motion.{name}.accept", limits)
         # By another name than the field's, so that dataclasses.replace leaves it behind.
         object.__setattr__(self, "scenario", read_from)
 
@@ -104,7 +106,7 @@ class _InEnvironments(Value):
         """Places and points of the limits on stress; InputError of a limit of what is lacking."""
         for name, limits in self.accept.items():
             where = f"motion.{name}.accept"
-            refuse_unknown(where, limits, lacking)
+            refuse_lacking(where, limits, lacking)
             yield from ((f"{where}.{key}", limits[key]) for key in AT_POINTS if limits.get(key) is not None)
 
     def one_beam(self, where: str, what: str) -> Case:
@@ -162,7 +164,7 @@ class Case(_InEnvironments):
     response: ResponseSettings | None
     tracks: Mapping[str, str] = field(default_factory=dict)
     stations: tuple[float, ...] = ()
-    accept: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    accept: Mapping[str, Acceptance] = field(default_factory=dict)
     provenance: Provenance | None = None
     sensors: Mapping[str, Sensor] = field(default_factory=dict)
     read_from: InitVar[Scenario | None] = None
@@ -241,7 +243,7 @@ class SystemCase(_InEnvironments):
     motions: Mapping[str, Motion]
     response: ResponseSettings | None
     tracks: Mapping[str, str] = field(default_factory=dict)
-    accept: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    accept: Mapping[str, Acceptance] = field(default_factory=dict)
     provenance: Provenance | None = None
     sensors: Mapping[str, Sensor] = field(default_factory=dict)
     read_from: InitVar[SystemScenario | None] = None
@@ -335,7 +337,7 @@ class SpecimenCase(_InEnvironments):
     motions: Mapping[str, Motion]
     response: ResponseSettings | None
     tracks: Mapping[str, str] = field(default_factory=dict)
-    accept: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    accept: Mapping[str, Acceptance] = field(default_factory=dict)
     provenance: Provenance | None = None
     sensors: Mapping[str, Sensor] = field(default_factory=dict)
     read_from: InitVar[SpecimenScenario | None] = None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, cast
 
 from cyclopts import Parameter
 
@@ -22,6 +22,7 @@ from gbeam.cli.options import (
 from gbeam.cli.outputs import deliver
 from gbeam.cli.process import Watch, command
 from gbeam.cli.publication import publish
+from gbeam.constants import Measure
 from gbeam.errors import InputError, naming
 from gbeam.questions import machine_of
 
@@ -197,13 +198,13 @@ def _apply(loaded: Input, file: Path, name: str, changes: dict[str, str | list[s
     return str(file)
 
 
-def parse(measure: str) -> dict[str, float]:
+def parse(measure: str) -> dict[Measure, float]:
     """Read a measure or a weighted sum of measures."""
-    weights: dict[str, float] = {}
+    weights: dict[Measure, float] = {}
     for term in measure.split(","):
         name, _, weight = term.partition("=")
         try:
-            weights[name.strip()] = float(weight) if weight else 1.0
+            weights[cast("Measure", name.strip())] = float(weight) if weight else 1.0
         except ValueError:
             raise InputError(
                 "--measure", f"has the weight {weight.strip()!r}", 'write "tip=1, root-moment=0.5"'

@@ -18,11 +18,11 @@ from gbeam.questions import QUESTIONS, Needs, Question, differentiable, motion_o
 
 if TYPE_CHECKING:
     from gbeam.analysis.case import AnyCase, Case
+    from gbeam.questions import Verb as Verb
     from gbeam.results.provenance import Provenance
     from gbeam.scenario.load import AnyScenario
 
-    Verb = str
-    _Smooth = str
+    _Smooth = Verb
 else:
     Verb = Literal[tuple(QUESTIONS)]
     _Smooth = Literal[differentiable()]
@@ -137,7 +137,7 @@ def with_options(*verbs: str) -> Callable[[_Function], _Function]:
     return declare
 
 
-def asked(options: Any) -> dict[str, Any]:
+def asked(options: Any) -> Any:
     """Options of a question that were given, by their names: those that are not as without them."""
     every = {each.name: (getattr(options, each.name), each.default) for each in fields(options)}
     return {name.rstrip("_"): value for name, (value, default) in every.items() if value != default}

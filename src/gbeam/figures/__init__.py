@@ -12,6 +12,7 @@ from typing import Any
 from gbeam.errors import InputError
 from gbeam.figures import imitation, response, steady, studies, systems
 from gbeam.figures.description import Figure
+from gbeam.printable import closest
 from gbeam.results.cases import PROBABILITY, Sensitivity, Sweep
 from gbeam.results.comparison import Comparison, MachinePlan
 from gbeam.results.equilibrium import CriticalMap, Deflection
@@ -44,10 +45,13 @@ _OF: dict[type, dict[str, Callable[..., Figure]]] = {
 def figure_of(result: Any, what: str = "", title: str = "") -> Figure:
     """Describe one figure of a result, the first that it has or the one of that name."""
     every = figures_of(result, title)
-    if what and what not in every:
-        raise InputError("what", f"is {what!r}, which this result does not have", f"choose from {', '.join(every)}")
     if not every:
         raise InputError("result", "has nothing to draw", "print it")
+    if what and what not in every:
+        near = closest(what, every)
+        guess = f"did you mean {near!r}? " if near else ""
+        fix = f"{guess}choose from {', '.join(every)}"
+        raise InputError("what", f"is {what!r}, which this result does not have", fix)
     return every[what or next(iter(every))]()
 
 

@@ -7,7 +7,7 @@ import os
 import types
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from inspect import Parameter, signature
-from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
+from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints, is_typeddict
 
 from gbeam.arrays.namespace import has_unit, holds_jax, looks_at_traced
 from gbeam.errors import GbeamError, InputError
@@ -177,6 +177,12 @@ def _single(kind: Any, texts: bool) -> Test:
     if origin in _SEQUENCES:
         wrong = _first_wrong(kind, texts)
         return lambda value: _has_elements(value, origin) and wrong(value) is None
+    if is_typeddict(kind):
+        entries = {name: _test(hint, texts) for name, hint in get_type_hints(kind).items()}
+        # Which names there are is checked where they are used.
+        return lambda value: (
+            isinstance(value, Mapping) and all(entries[key](each) for key, each in value.items() if key in entries)
+        )
     if origin in _MAPPINGS:
         entry = _test(parts[1], texts)
         return lambda value: isinstance(value, Mapping) and all(map(entry, value.values()))
@@ -231,6 +237,10 @@ def _first_wrong(kind: Any, texts: bool) -> Callable[[Any], int | None]:
 def _refused(name: str, value: Any, hint: Any, texts: bool) -> InputError:
     """The error of an argument, or of the first of its elements that is wrong."""
     for kind in _alternatives(hint):
+        if is_typeddict(kind) and isinstance(value, Mapping):
+            for key, entry in get_type_hints(kind).items():
+                if key in value and not _test(entry, texts)(value[key]):
+                    return _refused(f"{name}.{key}", value[key], entry, texts)
         origin = get_origin(kind)
         if origin not in _SEQUENCES or not _has_elements(value, origin):
             continue
@@ -269,6 +279,8 @@ def _word(kind: Any) -> str:
         count = f"{len(parts)} " if origin is tuple and Ellipsis not in parts else ""
         simple = _WORDS.get(parts[0], "").partition(" ")[2]
         return f"a list of {count}{f'{simple}s' if simple else getattr(parts[0], '__name__', 'them')}"
+    if is_typeddict(kind):
+        return "a mapping from text"
     if origin in _MAPPINGS:
         return f"a mapping from text to {_described(parts[1])}"
     name = getattr(origin, "__name__", str(origin))

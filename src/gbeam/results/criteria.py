@@ -7,10 +7,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypedDict, get_args, get_type_hints
 
+from gbeam.constants import ToleranceOf
 from gbeam.errors import InputError, placing_within
+from gbeam.printable import advise
 from gbeam.results.declared import declared, quantity
 
 if TYPE_CHECKING:
@@ -19,10 +21,11 @@ if TYPE_CHECKING:
 
 Limit = float | tuple[float, float]
 Value = tuple[float, str]  # and where it occurs
+Band = float | tuple[float, float] | list[float]  # a limit either way, or the least and the largest
 STRESS_AT = "stress_at"
-AT_POINTS = ("damage_at", STRESS_AT)  # settings that name a point with a stress
+_AtPoint = Literal["damage_at", "stress_at"]
+AT_POINTS: tuple[_AtPoint, ...] = get_args(_AtPoint)  # settings that name a point with a stress
 OF_RESPONSES = ("point", "control", *AT_POINTS)  # settings of what responds
-SETTINGS = ("tolerance", "tolerance_of", *OF_RESPONSES)  # beside the limits in a table of acceptance
 STRESS, DISPLACEMENT = "a stress", "a displacement"  # that not every specimen has
 NOT_ACCEPTED, EXCEEDED = "not accepted", "machine limits exceeded"
 BROKEN = "limits exceeded"  # outcome of a plan, a placement or a search
@@ -114,7 +117,6 @@ def state_of(
 class Rule:
     """A quantity that a limit of acceptance is set on, and how a value is held against the limit."""
 
-    name: str  # key of the limit
     words: str  # description for the reference of scenarios
     # most: a share whose size may be at most the limit; least: one that may be no smaller; level, ratio: machine over
     # flight, which may be at most the limit and no less than its reciprocal, or lies between two; levels are written
@@ -125,6 +127,7 @@ class Rule:
     values: Callable[[Judged], Iterator[Value]]
     response: bool = True  # whether it needs the responses; the others follow from what the machine does alone
     needs: str = ""  # quantity that not every specimen has
+    name: str = ""  # key of the limit
 
     @property
     def band(self) -> bool:
@@ -235,7 +238,14 @@ def judging(accept: Mapping[str, Any], *, response: bool = True) -> dict[str, An
     return settings | {"accept": {name: value for name, value in accept.items() if name not in SETTINGS}}
 
 
-def refuse_unknown(where: str, limits: Iterable[str], lacking: Mapping[str, str]) -> None:
+def refuse_unknown(where: str, limits: Iterable[str]) -> None:
+    """Refuse what is no limit of acceptance and no setting of one."""
+    for name in limits:
+        if name not in Acceptance.__annotations__:
+            raise InputError(f"{where}.{name}", "is no limit of acceptance", advise(name, Acceptance.__annotations__))
+
+
+def refuse_lacking(where: str, limits: Iterable[str], lacking: Mapping[str, str]) -> None:
     """Refuse limits of quantities that a specimen does not have, and why it has none by their names."""
     for name in limits:
         rule = RULES.get(name)
@@ -251,7 +261,7 @@ def checked_limits(accept: Mapping[str, object] | None) -> dict[str, Limit]:
     limits = {}
     for name, limit in ({} if accept is None else accept).items():
         if name not in RULES:
-            raise InputError("accept", f"has {name!r}", f"choose from {', '.join(RULES)}")
+            raise InputError("accept", f"has {name!r}", advise(name, RULES, listed="choose from"))
         with placing_within("accept"):
             limits[name] = RULES[name].checked(limit)
     return limits
@@ -310,46 +320,63 @@ def _damage(judged: Judged) -> Iterator[Value]:
     yield (math.nan, "") if judged.fatigue is None else (judged.fatigue.damage_ratio, judged.fatigue.place)
 
 
-RULES = {
-    rule.name: rule
-    for rule in (
-        Rule("tip", "largest change of the tip's peak displacement", "most", 0.02, _change("tip"),
-             needs=DISPLACEMENT),
-        Rule("root_force", "largest change of the peak force at the root", "most", 0.05, _change("root_force")),
-        Rule("root_moment", "largest change of the peak moment at the root", "most", 0.05, _change("root_moment")),
-        Rule("stress", "largest change of the peak stress, anywhere or at stress_at", "most", 0.05, _stress,
-             needs=STRESS),
-        Rule(
-            "largest_load",
-            "largest change of the largest load anywhere on the specimen, which is that of the machine's whole run, "
-            "spin-up and spin-down included",
-            "most", 0.1, _change("largest_load"), response=False,
-        ),
-        Rule(
-            "peaks", "largest error of any peak of the flight's load above idle, as a vector", "most", 0.03, _peaks,
-            response=False,
-        ),
-        Rule(
-            "spread",
-            "largest difference of the load at the root or the tip from the control point's at these peaks",
-            "most", 0.1, _spread, response=False,
-        ),
-        Rule(
-            "followed", "least share of the flight's time that must be followed", "least", 0.7, _followed,
-            response=False,
-        ),
-        Rule(
-            "srs",
-            "shock response spectra of the tip, or of control points: largest ratio of machine and flight, either way, "
-            "at any frequency along any axis; or the least and the largest of machine to flight, such as "
-            "[-1.5 dB, 3 dB]",
-            "level", 10 ** (3 / 20), _srs,
-        ),
-        Rule(
-            "damage",
-            "fatigue damage of the root, of a solid where its stress is largest, or at damage_at: largest ratio of "
-            "machine and flight, either way; or the least and the largest of machine to flight, such as [0.5, 2]",
-            "ratio", 2.0, _damage, needs=STRESS,
-        ),
-    )
-}  # fmt: skip
+# fmt: off
+class Limits(TypedDict, total=False):
+    """Limits of acceptance by name, as :func:`gbeam.compare` takes them."""
+
+    tip: Annotated[float, Rule(
+        "largest change of the tip's peak displacement", "most", 0.02, _change("tip"), needs=DISPLACEMENT
+    )]
+    root_force: Annotated[float, Rule(
+        "largest change of the peak force at the root", "most", 0.05, _change("root_force")
+    )]
+    root_moment: Annotated[float, Rule(
+        "largest change of the peak moment at the root", "most", 0.05, _change("root_moment")
+    )]
+    stress: Annotated[float, Rule(
+        "largest change of the peak stress, anywhere or at stress_at", "most", 0.05, _stress, needs=STRESS
+    )]
+    largest_load: Annotated[float, Rule(
+        "largest change of the largest load anywhere on the specimen, which is that of the machine's whole run, "
+        "spin-up and spin-down included",
+        "most", 0.1, _change("largest_load"), response=False,
+    )]
+    peaks: Annotated[float, Rule(
+        "largest error of any peak of the flight's load above idle, as a vector", "most", 0.03, _peaks, response=False
+    )]
+    spread: Annotated[float, Rule(
+        "largest difference of the load at the root or the tip from the control point's at these peaks",
+        "most", 0.1, _spread, response=False,
+    )]
+    followed: Annotated[float, Rule(
+        "least share of the flight's time that must be followed", "least", 0.7, _followed, response=False
+    )]
+    srs: Annotated[Band, Rule(
+        "shock response spectra of the tip, or of control points: largest ratio of machine and flight, either way, "
+        "at any frequency along any axis; or the least and the largest of machine to flight, such as "
+        "[-1.5 dB, 3 dB]",
+        "level", 10 ** (3 / 20), _srs,
+    )]
+    damage: Annotated[Band, Rule(
+        "fatigue damage of the root, of a solid where its stress is largest, or at damage_at: largest ratio of "
+        "machine and flight, either way; or the least and the largest of machine to flight, such as [0.5, 2]",
+        "ratio", 2.0, _damage, needs=STRESS,
+    )]
+# fmt: on
+
+
+class Acceptance(Limits, total=False):
+    """Limits of acceptance and their settings, as a case has them for one centrifuge."""
+
+    tolerance: float
+    tolerance_of: ToleranceOf
+    point: str
+    control: Mapping[str, float]
+    damage_at: str
+    stress_at: str
+
+
+RULES: dict[str, Rule] = {
+    name: replace(get_args(hint)[1], name=name) for name, hint in get_type_hints(Limits, include_extras=True).items()
+}
+SETTINGS = tuple(name for name in Acceptance.__annotations__ if name not in RULES)  # beside the limits

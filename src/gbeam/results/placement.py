@@ -5,13 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import get_args
 
+from gbeam.constants import Measure
 from gbeam.results.accounting import PeakPair
 from gbeam.results.declared import INSIDE, declared, fact, internal, part, quantity, rows
 from gbeam.results.machine import LimitUse
 from gbeam.results.result import Figured, Part
 
-MEASURES = ("root-shear", "root-moment", "vibration", "tip", "load")
+MEASURES = get_args(Measure)
 
 
 def degrees(turn: Sequence[float]) -> str:
@@ -113,7 +115,7 @@ class Placement(Figured):
 
     flight: str = fact("name of the flight")
     centrifuge: str = fact("name of the centrifuge")
-    weights: Mapping[str, float] = fact("weights of the measures", name="weight_", key="measure")
+    weights: Mapping[Measure, float] = fact("weights of the measures", name="weight_", key="measure")
     length: float = fact(
         "length of a straight beam, from root to tip; else the specimen's largest extent", "m", key=None
     )

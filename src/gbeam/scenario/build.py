@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.printable import advise
-from gbeam.results.criteria import AT_POINTS, RULES
+from gbeam.results.criteria import AT_POINTS, RULES, Acceptance
 from gbeam.scenario import schema
 from gbeam.scenario.build_beam import beam_of, model_of
 from gbeam.scenario.load import Collector, change, load, placed, provenance
@@ -157,12 +157,11 @@ def _points(structure: Mapping[str, Any]) -> tuple[str, ...]:
     return () if specimen is None else tuple(specimen.points)
 
 
-def _acceptance(
-    parts: Collector, scenario: schema.Environments, points: tuple[str, ...] = ()
-) -> dict[str, dict[str, Any]]:
+def _acceptance(parts: Collector, scenario: schema.Environments, points: tuple[str, ...] = ()) -> dict[str, Acceptance]:
     """Limits of acceptance and their settings, by the centrifuge's name."""
     machines = {name: each for name, each in scenario.motion.items() if isinstance(each, schema.Centrifuge)}
-    limited = {name: each.limits_of_acceptance for name, each in machines.items() if each.limits_of_acceptance}
+    every: dict[str, Any] = {name: each.limits_of_acceptance for name, each in machines.items()}
+    limited = {name: limits for name, limits in every.items() if limits}
     for name, limits in limited.items():
         for key, limit in limits.items():
             if key in RULES:

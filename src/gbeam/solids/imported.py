@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -41,7 +41,10 @@ from gbeam.solids.matrices import (
 )
 from gbeam.structure.attachments import TIP
 
-LOADS = ("a_x", "a_y", "a_z", "alpha_x", "alpha_y", "alpha_z", "w_xx", "w_yy", "w_zz", "w_xy", "w_yz", "w_zx")
+InertialLoad = Literal[
+    "a_x", "a_y", "a_z", "alpha_x", "alpha_y", "alpha_z", "w_xx", "w_yy", "w_zz", "w_xy", "w_yz", "w_zx"
+]
+LOADS = get_args(InertialLoad)
 
 
 @typed
@@ -186,7 +189,7 @@ class ImportedModel(Value):
         clamp: Sequence[int] = (),
         points: Mapping[str, int] | None = None,
         interfaces: Sequence[str] = (),
-        geometric: Mapping[str, Any] | None = None,
+        geometric: Mapping[InertialLoad, Any] | None = None,
         total_mass: float | None = None,
         centre: Sequence[float] | None = None,
         inertia: ArrayLike | None = None,
@@ -366,9 +369,10 @@ def _in_base_axes(matrix: Any, unknowns: Indices, axes: Floats) -> Any:
     return turn @ matrix @ turn.T
 
 
-def _geometric(geometric: Mapping[str, Any] | None, shapes: Floats) -> tuple[Geometric, list[str]]:
+def _geometric(geometric: Mapping[InertialLoad, Any] | None, shapes: Floats) -> tuple[Geometric, list[str]]:
     """Geometric stiffness in coordinates, and which of it is missing."""
-    n, matrices = shapes.shape[1], {}
+    n = shapes.shape[1]
+    matrices: dict[str, Any] = {}
     for name, matrix in (geometric or {}).items():
         choice("geometric", name, LOADS)
         if matrix.shape != (len(shapes), len(shapes)):

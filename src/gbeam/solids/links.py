@@ -6,14 +6,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypedDict, get_args
 
 import numpy as np
 
 from gbeam.arrays.tree import Value
 from gbeam.arrays.types import Floats, Indices
+from gbeam.constants import Direction
 from gbeam.errors import InputError
-from gbeam.guards.checks import positive
+from gbeam.guards.checks import choice, positive
 from gbeam.structure.attachments import checked_name
 
 if TYPE_CHECKING:
@@ -21,8 +22,16 @@ if TYPE_CHECKING:
     from gbeam.mechanics.tree.system import RigidBody
     from gbeam.solids.mesh import SolidMesh
 
+
+class LinkSpring(TypedDict):
+    """A spring between two rigid links, or of one to the base."""
+
+    between: Sequence[str]
+    stiffness: Mapping[Direction, float]
+
+
 ON_A_LINE = 1e-8  # of the largest second moment: nodes that do not say how they turn about their line
-WAYS = ("x", "y", "z", "rx", "ry", "rz")
+WAYS = get_args(Direction)
 CROSS = np.zeros((3, 3, 3))  # θ × r = θ_a r_b CROSS[a, b]
 for _a, _b, _c in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
     CROSS[_a, _b, _c], CROSS[_b, _a, _c] = 1.0, -1.0
@@ -93,7 +102,7 @@ class Links(Value):
         group: Callable[[str, str], Indices],
         links: Mapping[str, str | Sequence[str]],
         carried: Mapping[str, RigidBody],
-        springs: Mapping[str, Mapping[str, Any]],
+        springs: Mapping[str, LinkSpring],
         points: Floats,
         clamped: Any,
     ) -> Links:
@@ -121,6 +130,11 @@ class Links(Value):
             known(f"carried.{name}", name)
         held: dict[str, tuple[tuple[str, ...], Floats, Floats | None]] = {}
         for name, each in springs.items():
+            for key in each:
+                choice(f"springs.{name}", key, LinkSpring.__annotations__)
+            for key in LinkSpring.__annotations__:
+                if key not in each:
+                    raise InputError(f"springs.{name}.{key}", "is missing", "give between and stiffness")
             between = tuple(known(f"springs.{name}.between[{i}]", one) for i, one in enumerate(each["between"]))
             if len(between) not in (1, 2) or len(set(between)) < len(between):
                 fix = "name one link, for a spring to the base, or two"

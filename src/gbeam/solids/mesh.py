@@ -42,7 +42,7 @@ from gbeam.solids.foreign import (
     refuse_missing,
     unit_size,
 )
-from gbeam.solids.links import Linked, Links, attached, refuse_names
+from gbeam.solids.links import Linked, Links, LinkSpring, attached, refuse_names
 from gbeam.solids.model import SolidModel, beside, hardly_coarser
 from gbeam.solids.placed import Placed, with_cards
 from gbeam.solids.plausibility import doubts_of, refuse_folded, refuse_loose
@@ -122,7 +122,7 @@ class SolidMesh(Value):
         interfaces: Mapping[str, str] | None = None,
         links: Mapping[str, str | Sequence[str]] | None = None,
         carried: Mapping[str, RigidBody] | None = None,
-        springs: Mapping[str, Any] | None = None,
+        springs: Mapping[str, LinkSpring] | None = None,
         origin: Sequence[float] = (0.0, 0.0, 0.0),
         turn: Sequence[float] = (0.0, 0.0, 0.0),
         scale: Sequence[float] = (1.0, 1.0, 1.0),

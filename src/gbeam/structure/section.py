@@ -6,7 +6,7 @@ import math
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,13 +14,14 @@ from numpy.typing import ArrayLike
 from gbeam.arrays.namespace import as_array, is_jax, namespace
 from gbeam.arrays.tree import Value, record, static
 from gbeam.arrays.types import Floats
+from gbeam.constants import SectionShape
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive, possible
 from gbeam.structure.material import Material
 from gbeam.structure.matrices import between, matrices_of, read_matrices, refuse_impossible
 from gbeam.structure.matrices import listed as matrices
-from gbeam.structure.shapes import MATRICES, ROUND, SHAPES
+from gbeam.structure.shapes import MATRICES, ROUND, SHAPES, Dimensions
 
 
 def _listed(name: str, value: Any) -> tuple[Any, ...]:
@@ -74,7 +75,7 @@ class Section(Value):
     0.0002388 m²
     """
 
-    shape: str
+    shape: SectionShape
     dimensions: dict[str, tuple[Any, ...]]
     stations: tuple[float, ...] = ()
     plate: bool = False
@@ -129,7 +130,7 @@ class Section(Value):
     @classmethod
     @typed
     def of(
-        cls, shape: str, stations: ArrayLike = (), *, plate: bool = False, **dimensions: ArrayLike | None
+        cls, shape: SectionShape, stations: ArrayLike = (), *, plate: bool = False, **dimensions: Unpack[Dimensions]
     ) -> Section:
         """Build a section from scalars or sequences; a scalar holds at every station.
 

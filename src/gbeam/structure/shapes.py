@@ -9,12 +9,14 @@ part.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple, TypedDict
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from gbeam.arrays.namespace import Array, namespace
 from gbeam.arrays.types import Floats
+from gbeam.constants import SectionShape
 from gbeam.structure import matrices
 
 ALONG = np.linspace(-1, 1, 9)  # of a face, between corners
@@ -86,7 +88,7 @@ def von_mises(stresses: Floats | None, force: Any, moment: Any) -> Floats:
     return out
 
 
-MATRICES = "matrices"
+MATRICES: Final = "matrices"
 Rule = Callable[..., tuple[Array, ...]]
 ASSUMED_SHEAR = 0.5  # shear coefficient of a section known by its properties only: between a tube's and a channel's web
 _TERMS = np.arange(1, 12, 2)  # of Saint-Venant's series, whose sum they leave 1e-6 short
@@ -183,7 +185,26 @@ class Shape(NamedTuple):
     stresses: Callable[..., Array] | None = None
 
 
-SHAPES: dict[str, Shape] = {
+class Dimensions(TypedDict, total=False):
+    """Dimensions of all shapes, as :meth:`gbeam.Section.of` takes those of one."""
+
+    width: ArrayLike | None
+    thickness: ArrayLike | None
+    diameter: ArrayLike | None
+    wall: ArrayLike | None
+    area: ArrayLike | None
+    inertia_y: ArrayLike | None
+    inertia_z: ArrayLike | None
+    extreme_fibre_y: ArrayLike | None
+    extreme_fibre_z: ArrayLike | None
+    torsion_constant: ArrayLike | None
+    shear_coefficient_y: ArrayLike | None
+    shear_coefficient_z: ArrayLike | None
+    stiffness: ArrayLike | None
+    mass: ArrayLike | None
+
+
+SHAPES: dict[SectionShape, Shape] = {
     "rectangle": Shape(rectangle, rectangle_torsion, rectangle_shear, ("width", "thickness"), (), rectangle_stresses),
     "circle": Shape(circle, round_torsion, round_shear, ("diameter",), (), round_stresses),
     "tube": Shape(tube, round_torsion, round_shear, ("diameter", "wall"), (), round_stresses),

@@ -18,10 +18,9 @@ import numpy as np
 from gbeam.analysis.case import AnyCase, Case
 from gbeam.analysis.environments import study_of
 from gbeam.analysis.response.batch import TOGETHER, simulate_batch
-from gbeam.errors import ComputationError, GbeamError, InputError
+from gbeam.errors import ComputationError, GbeamError
 from gbeam.mechanics.structure import Structure
-from gbeam.printable import advise
-from gbeam.questions import QUESTIONS, Needs, reduced
+from gbeam.questions import Needs, question_of, reduced
 from gbeam.results.cases import ANSWERED
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
@@ -67,9 +66,7 @@ class Inquiry:
     together: bool = False  # whether cases that can be integrated together are
 
     def __post_init__(self) -> None:
-        if self.verb not in QUESTIONS:
-            raise InputError("--verb", f"is {self.verb!r}", advise(self.verb, QUESTIONS))
-        QUESTIONS[self.verb].chosen(self.options)  # before anything is computed
+        question_of(self.verb).chosen(self.options)  # before anything is computed
 
     @cached_property
     def width(self) -> int:
@@ -91,7 +88,7 @@ class Inquiry:
 
     def facts(self, case: AnyCase) -> Facts:
         """Answer of the verb, as JSON."""
-        question = QUESTIONS[self.verb]
+        question = question_of(self.verb)
         question.refuse(case)
         answer = question.answer(case, self.motion, self.at, self.needs, **question.chosen(self.options))
         return answer_facts(answer, case.title)

@@ -14,7 +14,7 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.printable import advise, closest
-from gbeam.questions import QUESTIONS
+from gbeam.questions import question_of
 from gbeam.results.result import Floats
 from gbeam.scenario.values import path_text
 from gbeam.structure.attachments import TIP
@@ -74,7 +74,7 @@ def choices(verb: str) -> dict[str, Entry]:
     """Every figure of a question's answers by its path: ``*`` is a name, ``[i]`` a place in a list."""
     from gbeam.results.facts import paths_of
 
-    return {path: each for kind in QUESTIONS[verb].records for path, each in paths_of(tree_of_figures(kind))}
+    return {path: each for kind in question_of(verb).records for path, each in paths_of(tree_of_figures(kind))}
 
 
 def _message(answer: Any) -> str:
@@ -125,10 +125,10 @@ def find(facts: Facts, name: str) -> Keys:
 
 def offered(verb: str, names: Iterable[str], option: str = OPTION) -> None:
     """Refuse a name that no figure of a question can have, before anything is computed."""
-    every = [_segments(path) for path in choices(verb)] if verb in QUESTIONS else []
+    every = [_segments(path) for path in choices(verb)]
     for name in names:
         ends = _segments(name)
-        if every and '"' not in name and not any(_fits(ends, path) for path in every):
+        if '"' not in name and not any(_fits(ends, path) for path in every):
             lasts = (path[-len(ends) :] for path in every)
             pairs_of = (zip(each, ends[-len(each) :], strict=True) for each in lasts)
             near = closest(name, [".".join(end if key == "*" else key for key, end in pairs) for pairs in pairs_of])
@@ -149,9 +149,7 @@ def _fits(ends: Sequence[str], path: Sequence[str]) -> bool:
 
 def usual(template: Template, verb: str, *, judged: bool = False) -> tuple[str, ...]:
     """Figures that are meant where none is named; with those of verdicts, which have no derivative, if `judged`."""
-    question = QUESTIONS.get(verb)
-    if question is None:
-        return ()
+    question = question_of(verb)
     limited = [name for name, accepts in template.imitations.items() if accepts]
     every = question.usual_of_systems if template.of_system else question.usual
     figures = [each.replace("{motion}", name) for name in template.motions for each in every if "{motion}" in each]

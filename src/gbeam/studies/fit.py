@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -14,7 +14,7 @@ from gbeam.analysis.case import Case, SpecimenCase, SystemCase
 from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.progress import Progress
-from gbeam.questions import Needs, reduced
+from gbeam.questions import Needs, Options, reduced
 from gbeam.results.result import Floats
 from gbeam.results.searches import Fit, FittedColumn
 from gbeam.studies.derivatives import Neighbourhood, Quantities
@@ -38,7 +38,7 @@ def fit(
     bounds: Bounds | None = None,
     motion: str | None = None,
     at: float | None = None,
-    options: Mapping[str, Any] | None = None,
+    options: Options | None = None,
     starts: int = 1,
     overrides: Sequence[str] = (),
     progress: Progress = None,

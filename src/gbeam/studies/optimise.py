@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -17,6 +17,7 @@ from gbeam.guards.arguments import typed
 from gbeam.guards.kinds import KINDS
 from gbeam.guards.units import read_quantity
 from gbeam.progress import Progress
+from gbeam.questions import Options, Verb
 from gbeam.results.criteria import BROKEN
 from gbeam.results.result import Floats
 from gbeam.results.searches import Optimum, Requirement
@@ -41,10 +42,10 @@ def optimise(
     *,
     subject_to: Sequence[str] = (),
     bounds: Bounds | None = None,
-    verb: str = "run",
+    verb: Verb = "run",
     motion: str | None = None,
     at: float | None = None,
-    options: Mapping[str, Any] | None = None,
+    options: Options | None = None,
     starts: int = 1,
     overrides: Sequence[str] = (),
     progress: Progress = None,

@@ -15,6 +15,7 @@ from gbeam.analysis.case import Case, SpecimenCase, SystemCase
 from gbeam.errors import GbeamError, InputError, naming
 from gbeam.guards.arguments import typed
 from gbeam.progress import Progress
+from gbeam.questions import Options, Verb
 from gbeam.results.cases import Sensitivity
 from gbeam.results.result import Flags, Floats
 from gbeam.results.study import Study
@@ -38,10 +39,10 @@ def sensitivity(
     of: Sequence[str] = (),
     parameters: Sequence[str] = (),
     *,
-    verb: str = "run",
+    verb: Verb = "run",
     motion: str | None = None,
     at: float | None = None,
-    options: Mapping[str, Any] | None = None,
+    options: Options | None = None,
     overrides: Sequence[str] = (),
     progress: Progress = None,
 ) -> Sensitivity:

@@ -18,6 +18,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import HISTORY_BYTES, WORKERS, refuse_more
 from gbeam.progress import tell
+from gbeam.questions import Options, Verb
 from gbeam.results.cases import Sweep
 from gbeam.studies.cases import Cases, read_cases
 from gbeam.studies.evaluate import Function, Inquiry, Row, Task, may_share, width
@@ -41,10 +42,10 @@ def sweep(
     *,
     histories: Sequence[str] = (),
     times: int = TIMES,
-    verb: str | None = None,
+    verb: Verb | None = None,
     motion: str | None = None,
     at: float | None = None,
-    options: Mapping[str, Any] | None = None,
+    options: Options | None = None,
     overrides: Sequence[str] = (),
     samples: int | None = None,
     sampler: Sampler | None = None,

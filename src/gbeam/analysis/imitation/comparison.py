@@ -18,7 +18,7 @@ from gbeam.guards.checks import index_of, positive
 from gbeam.numerics.samples import interpolated, largest_riding_acceleration, low_pass
 from gbeam.results.accounting import TOLERANCE, PeakPair
 from gbeam.results.comparison import Comparison
-from gbeam.results.criteria import STRESS_AT, Limit, checked_limits
+from gbeam.results.criteria import STRESS_AT, Limits, checked_limits
 from gbeam.results.measures import (
     Mismatch,
     RootHistory,
@@ -125,7 +125,7 @@ def compare(
     point: str | None = None,
     tolerance: float = TOLERANCE,
     tolerance_of: ToleranceOf = "peak",
-    accept: Mapping[str, Limit] | None = None,
+    accept: Limits | None = None,
     control: Mapping[str, float] | None = None,
     damage_at: str | None = None,
     stress_at: str | None = None,

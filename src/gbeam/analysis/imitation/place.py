@@ -23,6 +23,7 @@ from gbeam.analysis.response.simulation import simulate
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
 from gbeam.arrays.types import Floats
+from gbeam.constants import Measure
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.plausibility import input_warnings
@@ -32,6 +33,7 @@ from gbeam.motion import Base, Centrifuge, Flight
 from gbeam.motion.centrifuge.limits import exceeded
 from gbeam.numerics.minimise import least, refine
 from gbeam.numerics.samples import interpolated, low_pass
+from gbeam.printable import advise
 from gbeam.results.criteria import BROKEN
 from gbeam.results.placement import MEASURES, Candidate, Placement, Verification, degrees
 from gbeam.results.response import Response
@@ -124,7 +126,7 @@ def place(
     flight: Flight,
     choice: Choice,
     settings: ResponseSettings,
-    weights: Mapping[str, float],
+    weights: Mapping[Measure, float],
     *,
     current: Centrifuge,
     names: tuple[str, str] = ("flight", "centrifuge"),
@@ -229,7 +231,7 @@ def place(
     )
 
 
-def usual(structure: Structure | System) -> dict[str, float]:
+def usual(structure: Structure | System) -> dict[Measure, float]:
     """Weights where none are given: of the tip, and of the load where nothing is displaced."""
     free = structure.size if isinstance(structure, Structure) else len(structure.tree.free)
     return {"tip" if free else "load": 1.0}
@@ -265,7 +267,7 @@ class _Trials:
         flight: Flight,
         choice: Choice,
         settings: ResponseSettings,
-        weights: Mapping[str, float],
+        weights: Mapping[Measure, float],
         along: str,
         start: Floats,
     ) -> None:
@@ -374,11 +376,11 @@ class _Trials:
         )
 
 
-def check_weights(weights: Mapping[str, float], where: str = "measure") -> None:
+def check_weights(weights: Mapping[Measure, float], where: str = "measure") -> None:
     """Raise InputError, naming `where` they were given, unless every measure is known and one has weight."""
     for name, weight in weights.items():
         if name not in MEASURES:
-            raise InputError(where, f"names {name!r}", f"choose of {', '.join(MEASURES)}")
+            raise InputError(where, f"names {name!r}", advise(name, MEASURES))
         if not (np.isfinite(weight) and weight >= 0):
             raise InputError(where, f"gives {name} the weight {weight:g}", "give weights of 0 or more")
     if not any(weights.values()):

@@ -15,6 +15,7 @@ from gbeam.analysis.imitation.specimen import Answer, Specimen
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.stepping import RIGID, even_steps
 from gbeam.arrays.types import Flags, Floats
+from gbeam.constants import Measure, Mounting
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice
@@ -68,7 +69,7 @@ class Choice:
     """
 
     make: Callable[..., Centrifuge]
-    mountings: tuple[str, ...]
+    mountings: tuple[Mounting, ...]
     widths: tuple[float, ...]
     refined: bool = True
     limited: bool = True
@@ -235,7 +236,7 @@ class Answers:
         flown = flight.base(self.time)
         self.load, self.growth = flown.a_WO_B, gradients(flown.w_WB_B, flown.alpha_WB_B)
 
-    def refuse_unfelt(self, weights: Mapping[str, float]) -> None:
+    def refuse_unfelt(self, weights: Mapping[Measure, float]) -> None:
         """Refuse a measure that has weight, and of which the flight makes none."""
         of, loads = self.specimen, (self.load, self.growth)
         known = {"root-shear": of.force, "root-moment": of.moment}

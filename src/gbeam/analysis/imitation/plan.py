@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from gbeam.analysis.imitation.accounting import (
@@ -24,7 +22,7 @@ from gbeam.motion.centrifuge.kinematics import axes_result, axis_angles
 from gbeam.motion.protocol import implausible_motion
 from gbeam.results.accounting import TOLERANCE, PeakPair
 from gbeam.results.comparison import MachinePlan
-from gbeam.results.criteria import BROKEN, Limit, checked_limits
+from gbeam.results.criteria import BROKEN, Limits, checked_limits
 from gbeam.results.machine import Commands
 from gbeam.structure.beam import Beam
 
@@ -41,7 +39,7 @@ def plan(
     envelope: Floats | None = None,
     tolerance: float = TOLERANCE,
     tolerance_of: ToleranceOf = "peak",
-    accept: Mapping[str, Limit] | None = None,
+    accept: Limits | None = None,
     title: str = "",
 ) -> MachinePlan:
     """Plan one centrifuge over its whole motion, and account for the flight's load on it.

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 
 from gbeam.analysis.steady.equilibrium import solve_equilibrium
 from gbeam.arrays.namespace import Array, is_jax, namespace
 from gbeam.arrays.tree import Value, each_leaf
+from gbeam.constants import Across, State
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, finite
@@ -19,7 +20,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.results.parts import Base
 
-STATES = ("equilibrium", "undeformed")
+STATES = get_args(State)
 _ITERATIONS = 60
 
 
@@ -60,10 +61,10 @@ class Initial(Value):
     2.000 mm
     """
 
-    state: str = "equilibrium"
+    state: State = "equilibrium"
     acceleration: Sequence[float] | None = None
-    tip_displacement: Mapping[str, float] | None = None
-    tip_velocity: Mapping[str, float] | None = None
+    tip_displacement: Mapping[Across, float] | None = None
+    tip_velocity: Mapping[Across, float] | None = None
 
     def __post_init__(self) -> None:
         choice("state", self.state, STATES)
@@ -79,7 +80,7 @@ class Initial(Value):
             object.__setattr__(self, "acceleration", tuple(float(each) for each in self.acceleration))
         for name in ("tip_displacement", "tip_velocity"):
             for axis, value in (getattr(self, name) or {}).items():
-                choice(name, axis, "yz")
+                choice(name, axis, get_args(Across))
                 finite(f"{name}.{axis}", value)
 
     @property
@@ -100,11 +101,11 @@ class Initial(Value):
         return f"begins {words}, {speed}"
 
 
-def _components(values: Mapping[str, float], size: float, unit: str) -> str:
+def _components(values: Mapping[Across, float], size: float, unit: str) -> str:
     return ", ".join(f"{axis} {size * value:.4g} {unit}" for axis, value in values.items())
 
 
-def begun(initial: Initial | str) -> Initial:
+def begun(initial: Initial | State) -> Initial:
     """An initial state, or that of a name; InputError if it is neither."""
     if isinstance(initial, Initial):
         return initial
@@ -124,7 +125,7 @@ def initial_state(structure: Structure, base: Base | None, time: float, initial:
     return q, _moving(structure, q, initial.tip_velocity or {}), stable
 
 
-def _axes(structure: Structure, place: str, values: Mapping[str, float]) -> tuple[tuple[int, ...], Array]:
+def _axes(structure: Structure, place: str, values: Mapping[Across, float]) -> tuple[tuple[int, ...], Array]:
     """The axes along which the tip moves, and the values given of them (k,)."""
     axes = tuple("xyz".index(axis) for axis in values)
     for axis in set(axes) & set(structure.axes_without_shapes):
@@ -133,7 +134,7 @@ def _axes(structure: Structure, place: str, values: Mapping[str, float]) -> tupl
     return axes, np.asarray([*values.values()], dtype=float)
 
 
-def _displaced(structure: Structure, values: Mapping[str, float]) -> Array:
+def _displaced(structure: Structure, values: Mapping[Across, float]) -> Array:
     """Coordinates of least strain energy at which the tip has a displacement: Lagrange's multipliers, by Newton."""
     axes, wanted = _axes(structure, "tip_displacement", values)
     if structure.traced:
@@ -152,7 +153,7 @@ def _displaced(structure: Structure, values: Mapping[str, float]) -> Array:
     raise ComputationError("not converged", f"no shape of the beam has its tip displaced by {wanted_words}; give less")
 
 
-def _moving(structure: Structure, q: Array, values: Mapping[str, float]) -> Array:
+def _moving(structure: Structure, q: Array, values: Mapping[Across, float]) -> Array:
     """Rates at which the tip has a velocity, in the shape of least strain energy."""
     if not values:
         return 0.0 * q

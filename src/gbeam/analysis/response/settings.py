@@ -8,7 +8,7 @@ from typing import TypedDict
 
 from gbeam.analysis.response.problem import Initial, begun
 from gbeam.arrays.tree import Value
-from gbeam.constants import Integrator
+from gbeam.constants import Integrator, Parameter, State
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import finite, implausible, positive, possible, refuse_traced
@@ -26,10 +26,10 @@ class Settings(TypedDict, total=False):
     start: float
     step: float | None
     integrator: Integrator | None
-    parameters: Mapping[str, float]
+    parameters: Mapping[Parameter, float]
     tolerance: float
     residual_from: float | None
-    initial: Initial | str
+    initial: Initial | State
     estimate: bool
     loads: bool
     histories: float | None
@@ -89,10 +89,10 @@ class ResponseSettings(Value):
     start: float = 0.0
     step: float | None = None
     integrator: Integrator | None = None
-    parameters: Mapping[str, float] = field(default_factory=dict)
+    parameters: Mapping[Parameter, float] = field(default_factory=dict)
     tolerance: float = 1e-2
     residual_from: float | None = None
-    initial: Initial | str = field(default_factory=Initial)
+    initial: Initial | State = field(default_factory=Initial)
     estimate: bool = True
     loads: bool = True
     histories: float | None = None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import replace
@@ -23,6 +24,7 @@ from gbeam.integrate.equations import Trajectory
 from gbeam.integrate.schemes import SCHEMES, Scheme
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
+from gbeam.printable import advise
 from gbeam.results.errors import StepErrors
 
 MAX_STEPS = 4_000_000
@@ -42,7 +44,13 @@ Plan = Generator[tuple[float, str], R, tuple[R, StepErrors]]
 def scheme_of(settings: ResponseSettings) -> Scheme:
     """The integration scheme that the settings name."""
     choice("response.integrator", str(settings.integrator), SCHEMES)
-    return SCHEMES[str(settings.integrator)](**settings.parameters)
+    scheme = SCHEMES[str(settings.integrator)]
+    takes = tuple(inspect.signature(scheme).parameters)
+    for name in settings.parameters:
+        if name not in takes:
+            fix = advise(name, takes, listed="it takes") if takes else "leave it out: it has no parameters"
+            raise InputError(f"parameters.{name}", f"does not belong to {settings.integrator}", fix)
+    return scheme(**{str(name): value for name, value in settings.parameters.items()})
 
 
 def first_step(structure: Structure, motion: Motion, settings: ResponseSettings) -> float:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import as_array, concatenated, is_jax
 from gbeam.arrays.tree import Value
+from gbeam.constants import Direction, JointKind
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, choice, finite, positive, vector
@@ -35,7 +36,7 @@ GROUND = "ground"
 _EYE = np.eye(3)
 _EASY = ("stiffness", "ease", "damping", "friction", "stop_stiffness")
 OF_RATES = ("initial_rate", "damping", "friction", "rate", "effort")  # keys by the names of rates
-DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")
+DIRECTIONS = get_args(Direction)
 SLIDES = ("displacement", "x", "y", "z")  # coordinates in m; others are angles
 # Kinds of what is said of a coordinate: of a displacement, and of an angle.
 OF_COORDINATES = {
@@ -92,7 +93,7 @@ def _turns(axes: Floats) -> tuple[Step, ...]:
 
 _BALL, _PLACE = ("e0", "e1", "e2", "e3"), ("x", "y", "z")
 _TURN, SPIN = ("rx", "ry", "rz"), ("wx", "wy", "wz")
-KINDS: dict[str, Kind] = {
+KINDS: dict[JointKind, Kind] = {
     "fixed": Kind("a clamp, or springs and dampers", lambda axes: (), (), sprung=DIRECTIONS),
     "revolute": Kind("a hinge: one angle", _turns, ("angle",), 1),
     "prismatic": Kind("a slide: one displacement", lambda axes: (Slide(axes.T),), ("displacement",), 1),
@@ -161,7 +162,7 @@ class Joint(Value):
     ('angle',)
     """
 
-    kind: str
+    kind: JointKind
     body: str
     on: str = GROUND
     axes: Sequence[Any] | None = None

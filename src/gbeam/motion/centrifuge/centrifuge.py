@@ -28,7 +28,7 @@ from gbeam.results.machine import LimitUse, Shortfall
 from gbeam.results.parts import Base
 
 _GRID, _MOST = 1e-3, 500_000  # s between the times at which limits are looked at; most of them
-MOUNTINGS = {"upright": 1.0, "inverted": -1.0}
+MOUNTINGS: dict[Mounting, float] = {"upright": 1.0, "inverted": -1.0}
 
 
 @typed
@@ -318,7 +318,7 @@ class Centrifuge:
         return shortfalls(self.target, float(self.geometry.arm), turns=not INVERSES[self.method].plans)
 
     @property
-    def mounting(self) -> str:
+    def mounting(self) -> Mounting:
         """Name of the mounting of the specimen in the gimbals, upright or inverted."""
         return next(name for name, sign in MOUNTINGS.items() if sign == self.geometry.sign)
 

@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 
 from gbeam.arrays.types import Floats, Indices
+from gbeam.constants import AccelerationUnit, Check, RateUnit, RecordQuantity, TimeUnit
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import BINARY_BYTES, SAMPLES, refuse_large_file, refuse_more
@@ -20,6 +21,7 @@ from gbeam.motion.records.columns import UNITS, load_factors, mirrored, refuse_o
 from gbeam.motion.records.conditioning import FEWEST, filtered, spikes, without_spikes
 from gbeam.motion.records.soundness import CHECKS, Samples, oddities, refuse_unsound, summary
 from gbeam.motion.records.text import Span, check_interval, check_sampling, part_within, read_text
+from gbeam.printable import advise
 
 
 def read_table(path: str | os.PathLike[str], words: Iterable[str] = ()) -> Table:
@@ -32,9 +34,6 @@ def read_table(path: str | os.PathLike[str], words: Iterable[str] = ()) -> Table
         raise InputError("record.file", problem, "give the path of a record") from None
 
 
-Quantity = Literal["specific-force", "acceleration"]
-
-
 @dataclass(frozen=True)
 class Rates:
     """Columns of a record that hold the body's rates about the base axes, with their signs, and their unit."""
@@ -42,7 +41,7 @@ class Rates:
     p: str
     q: str
     r: str
-    unit: str
+    unit: RateUnit
 
 
 @dataclass(frozen=True)
@@ -65,16 +64,18 @@ class Conditioning:
     cutoff: float | None = None
     resample: float | None = None
     despike: bool = False
-    skip_checks: bool | tuple[str, ...] = False
+    skip_checks: bool | tuple[Check, ...] = False
 
     @property
-    def skipped(self) -> tuple[str, ...]:
+    def skipped(self) -> tuple[Check, ...]:
         """Names of the checks that are left out."""
         if isinstance(self.skip_checks, bool):
             return CHECKS if self.skip_checks else ()
         for name in self.skip_checks:
             if name not in CHECKS:
-                raise InputError("record.skip_checks", f"names no check {name!r}", f"choose of {', '.join(CHECKS)}")
+                raise InputError(
+                    "record.skip_checks", f"names no check {name!r}", advise(name, CHECKS, listed="choose of")
+                )
         return self.skip_checks
 
 
@@ -98,11 +99,11 @@ def read_record(
     x: str,
     y: str,
     z: str,
-    unit: str,
+    unit: AccelerationUnit | Literal["m/s²", "ft/s²"],
     conditioning: Conditioning = Conditioning(),
     *,
-    time_unit: str | None = None,
-    quantity: Quantity = "specific-force",
+    time_unit: TimeUnit | None = None,
+    quantity: RecordQuantity = "specific-force",
     span: Span = (None, None),
 ) -> PiecewiseLinear:
     """Read an acceleration (or specific-force) record.
@@ -165,8 +166,8 @@ def read_flight(
     *,
     rates: Rates | None = None,
     conditioning: Conditioning = Conditioning(),
-    time_unit: str | None = None,
-    quantity: Quantity = "specific-force",
+    time_unit: TimeUnit | None = None,
+    quantity: RecordQuantity = "specific-force",
     span: Span = (None, None),
 ) -> FlightRecord:
     """Read a record with the body's rates, and say what was done to it; see :func:`read_record`."""

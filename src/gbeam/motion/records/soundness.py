@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
+from typing import get_args
 
 import numpy as np
 
 from gbeam.arrays.types import Flags, Floats
-from gbeam.constants import STANDARD_GRAVITY
+from gbeam.constants import STANDARD_GRAVITY, Check
 from gbeam.errors import InputError
 from gbeam.motion.records.columns import UNITS
 from gbeam.motion.records.conditioning import dropout, flat_tops, spikes, without_spikes
 from gbeam.numerics.samples import true_runs
 from gbeam.results.description import Level, RecordSummary, Vector
 
-CHECKS = ("sampling", "spikes", "unit", "sign", "dropouts", "columns")
+CHECKS = get_args(Check)
 LARGEST = 50.0  # g
 _FRAGMENT = 2.0  # s
 _BEGINS = 3.0  # g: above that, no flight begins

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Generic, Literal, TypeVar, get
 
 from pydantic import ConfigDict, Discriminator, Field, StrictBool, Tag, model_validator
 
+from gbeam.constants import AccelerationUnit, Check, RateUnit, RecordQuantity, TimeUnit
 from gbeam.scenario.schema.fields import (
     ONE_OR_LIST,
     Acceleration,
@@ -160,8 +161,7 @@ else:
 
 
 _Skipped = Annotated[
-    Annotated[StrictBool, Tag("one")]
-    | Annotated[tuple[Literal["sampling", "spikes", "unit", "sign", "dropouts", "columns"], ...], Tag("list")],
+    Annotated[StrictBool, Tag("one")] | Annotated[tuple[Check, ...], Tag("list")],
     ONE_OR_LIST,
 ]
 
@@ -177,14 +177,12 @@ class Record(Table):
         description="name of the column of times, numbers or times of day; in MAT, HDF5 and netCDF of the variable, "
         "such as rec.t or acc(:,1); in UFF time"
     )
-    time_unit: Literal["s", "ms", "us", "min"] | None = optional(
-        "unit of the times; what the file says if left out, or else s"
-    )
+    time_unit: TimeUnit | None = optional("unit of the times; what the file says if left out, or else s")
     x: str = Field(description='column of the x component, along the beam; "-" in front changes the sign, "0" is none')
     y: str = Field(description='column of the y component, along the width; "-" in front changes the sign, "0" is none')
     z: str = Field(description='column of the z component, through the thickness; "-" and "0" likewise')
-    unit: Literal["g", "m/s^2", "ft/s^2"] = Field(description="unit of the components: g is 9.80665 m/s^2")
-    quantity: Literal["specific-force", "acceleration"] = Field(
+    unit: AccelerationUnit = Field(description="unit of the components: g is 9.80665 m/s^2")
+    quantity: RecordQuantity = Field(
         default="specific-force",
         description="what the components are. specific-force: what accelerometers measure, 1 g upwards in level "
         "flight; acceleration: none then",
@@ -192,7 +190,7 @@ class Record(Table):
     p: str | None = optional("column of the body rate about x; p, q and r fly the specimen with them")
     q: str | None = optional('column of the body rate about y; "-" and "0" as for x, y and z')
     r: str | None = optional('column of the body rate about z; "-" and "0" likewise')
-    rate_unit: Literal["rad/s", "deg/s"] | None = optional("unit of p, q and r")
+    rate_unit: RateUnit | None = optional("unit of p, q and r")
     begin: Moment | None = optional(
         "first time of the part that is flown, on the record's own clock, such as 2 s, or 12:34:56.7 where "
         "its times are times of day; the record's first if left out",

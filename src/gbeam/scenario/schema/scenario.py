@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, get_args
 
 from pydantic import (
     AfterValidator,
@@ -18,7 +18,7 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
-from gbeam.constants import Integrator, ModelKind, Sampler, Shapes
+from gbeam.constants import Integrator, ModelKind, Parameter, Sampler, Shapes, State
 from gbeam.guards.limits import ENTRIES, NAME, SHAPES, TITLE
 from gbeam.printable import advise, shortened, unprintable
 from gbeam.questions import QUESTIONS
@@ -43,9 +43,8 @@ from gbeam.scenario.schema.fields import (
 from gbeam.scenario.schema.motion import Centrifuge, Flight, Hub, Motion, Sensor
 
 if TYPE_CHECKING:
+    from gbeam.questions import Verb
     from gbeam.scenario.text.source import Source
-
-    Verb = str
 else:
     Verb = Literal[tuple(QUESTIONS)]
 
@@ -84,7 +83,7 @@ class Model(Table):
 
 
 # Which parameters each integrator takes.
-PARAMETERS: dict[str, tuple[str, ...]] = {
+PARAMETERS: dict[Integrator, tuple[Parameter, ...]] = {
     "newmark": ("beta", "gamma"),
     "hht": ("alpha",),
     "generalized-alpha": ("rho_inf",),
@@ -109,7 +108,7 @@ class TipVelocity(Table):
 class Initial(Table):
     """The state of the beam, relative to its base, in which a response begins; a machine's with its spin-up."""
 
-    state: Literal["equilibrium", "undeformed"] = Field(
+    state: State = Field(
         default="equilibrium",
         description="equilibrium: at rest in the relative equilibrium with the base's motion and the loads then; "
         "undeformed: straight and at rest",
@@ -172,12 +171,12 @@ class Response(Table):
     )
 
     @property
-    def scheme(self) -> str:
+    def scheme(self) -> Integrator:
         """The integrator whose parameters these are."""
         return self.integrator or "newmark"
 
     @property
-    def parameters(self) -> dict[str, float]:
+    def parameters(self) -> dict[Parameter, float]:
         """The integrator's parameters that are given."""
         named = {name: getattr(self, name) for name in PARAMETERS[self.scheme]}
         return {name: value for name, value in named.items() if value is not None}
@@ -194,7 +193,7 @@ class Response(Table):
     def _consistent(self) -> Response:
         def problems() -> Iterator[tuple[Loc, PydanticCustomError]]:
             takes = PARAMETERS[self.scheme]
-            for name in ("beta", "gamma", "alpha", "rho_inf"):
+            for name in get_args(Parameter):
                 if name not in takes and getattr(self, name) is not None:
                     hint = f"it takes {' and '.join(takes)}" if takes else "it has no parameters"
                     yield (name,), wrong(f"does not belong to {self.scheme}", hint, mark="key")
