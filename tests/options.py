@@ -83,3 +83,21 @@ def import_models(model: gb.ImportedModel, of: gb.Material) -> None:
         springs={"k": {"between": ["b"], "stiffness": {"zz": 5.0}}},  # type: ignore[dict-item]
     )
     gb.read_record("a.csv", time="t", x="x", y="y", z="z", unit="g", quantity="velocity")  # type: ignore[arg-type]
+
+
+def draw(
+    response: gb.Response, comparison: gb.Comparison, structure: gb.Structure, system: gb.StateSpace, study: gb.Study
+) -> None:
+    """Figures by their names, which each kind of result has of its own."""
+    response.plot().figure.savefig("tip.png")
+    response.plot("axes_rate", title="The rates of the axes")
+    response.plot("tipp")  # type: ignore[arg-type]
+    response.plot("modes")  # type: ignore[arg-type]
+    comparison.plot("parts y")
+    comparison.plot("part y")  # type: ignore[arg-type]
+    gb.static(structure).plot("loads")
+    gb.static(structure).plot("load")  # type: ignore[arg-type]
+    gb.modes(structure).plot("modes")
+    gb.modes(structure).plot("mode")  # type: ignore[arg-type]
+    system.plot("pole")  # type: ignore[arg-type]
+    study.plot("base flight")

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import xarray as xr
 
 import gbeam as gb
-from gbeam.figures import figures_of
+from gbeam.figures import figure_names, figures_of
 from gbeam.report.facts import facts, json_schema_of_results, reference_of_results
 from gbeam.report.page.result import report_of_file
 from gbeam.report.words import as_json
@@ -87,3 +89,25 @@ def test_what_may_be_measured_is_known_before_anything_is_computed() -> None:
         gb.sweep(slew, ["beam.length=7 m, 8 m"], ["tip.w.maximum"])
     with pytest.raises(gb.InputError, match="is no figure of modes; did you mean"):
         gb.sensitivity(slew, ["modes[0].frequenzy"], verb="modes")
+
+
+def test_figures_have_the_names_that_type_checkers_know(matrix: dict[str, Any]) -> None:
+    """All that there are, and no other, of every kind whose figures have fixed names."""
+    response, comparison, plan = (matrix[kind] for kind in ("Response", "Comparison", "MachinePlan"))
+    axes = replace(plan.axes, jerk=plan.axes.rate)
+    wide = [replace(comparison, shock=True, peak_flight=1.0 + np.eye(3)[i]) for i in range(3)]
+    several = {
+        "Response": [
+            replace(response, axes=axes, readings=True, hub=True, solid=True),
+            replace(response, specimen=True),
+        ],
+        "MachinePlan": [replace(plan, axes=axes)],
+        "Comparison": [replace(each, peak_centrifuge=np.ones(3)) for each in wide],
+    }
+    named = {kind: figure_names(type(each)) for kind, each in matrix.items() if isinstance(each, Figured)}
+    open_names = {"Study", "SystemStudy", "SystemResponse", "SystemRest", "Sweep", "Sensitivity"}
+    assert {kind for kind, names in named.items() if not names} == open_names
+    for kind, names in named.items():
+        if names:
+            drawn = [what for each in several.get(kind, [matrix[kind]]) for what in figures_of(each)]
+            assert sorted(set(drawn)) == sorted(names), kind

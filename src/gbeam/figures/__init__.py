@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from typing import Any
+from typing import Any, get_args, get_origin
 
 from gbeam.errors import InputError
 from gbeam.figures import imitation, response, steady, studies, systems
@@ -20,6 +20,7 @@ from gbeam.results.machine import AxesResult
 from gbeam.results.modal import Campbell, Modes
 from gbeam.results.placement import Placement
 from gbeam.results.response import Response
+from gbeam.results.result import Figured
 from gbeam.results.searches import Fit, Optimum, ShapedCommand
 from gbeam.results.solids import SolidStress, SpecimenLoads
 from gbeam.results.state_space import StateSpace
@@ -28,17 +29,17 @@ from gbeam.results.system import SystemModes, SystemResponse, SystemRest, named
 
 Describe = Callable[[], Figure]
 # Of kinds that always have the same.
-_OF: dict[type, dict[str, Callable[..., Figure]]] = {
-    Modes: {"modes": steady.modes},
-    Campbell: {"campbell": steady.campbell},
-    CriticalMap: {"critical": steady.critical_map},
-    StateSpace: {"poles": steady.poles},
-    Placement: {"mismatch": imitation.placement},
-    Fit: {"fit": studies.fit},
-    Optimum: {"optimum": studies.optimum},
-    ShapedCommand: {"shaping": studies.shaping, "robustness": studies.robustness},
-    SolidStress: {"stress": systems.stress},
-    SpecimenLoads: {"specimen": systems.specimen},
+_OF: dict[type[Figured[Any]], tuple[Callable[..., Figure], ...]] = {
+    Modes: (steady.modes,),
+    Campbell: (steady.campbell,),
+    CriticalMap: (steady.critical_map,),
+    StateSpace: (steady.poles,),
+    Placement: (imitation.placement,),
+    Fit: (studies.fit,),
+    Optimum: (studies.optimum,),
+    ShapedCommand: (studies.shaping, studies.robustness),
+    SolidStress: (systems.stress,),
+    SpecimenLoads: (systems.specimen,),
 }
 
 
@@ -91,7 +92,17 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
             return {"modes": partial(systems.modes, result, title)} if len(result.frequency) else {}
         case Sensitivity():
             return {name: partial(studies.sensitivity, result, name, title) for name in result.measures}
-    return {name: partial(describe, result, title) for name, describe in _OF.get(type(result), {}).items()}
+    described = _OF.get(type(result))
+    if described is None:
+        return {}
+    names = figure_names(type(result))
+    return {name: partial(describe, result, title) for name, describe in zip(names, described, strict=True)}
+
+
+def figure_names(kind: type[Figured[Any]]) -> tuple[str, ...]:
+    """Names of the figures that results of a kind can have; none where they follow from what a result holds."""
+    bases = [base for each in kind.__mro__ for base in vars(each).get("__orig_bases__", ())]
+    return get_args(next(get_args(base)[0] for base in bases if get_origin(base) is Figured))
 
 
 def _by_motion(named: Mapping[str, dict[str, Describe]]) -> dict[str, Describe]:

@@ -93,7 +93,7 @@ def _bounds(values: Floats) -> dict[str, Any]:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Sweep(Figured):
+class Sweep(Figured[str]):
     """Figures of many cases of one scenario.
 
     Examples
@@ -224,7 +224,7 @@ class Effects(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Sensitivity(Figured):
+class Sensitivity(Figured[str]):
     """Derivatives of figures of one scenario with respect to physical values in it.
 
     Examples

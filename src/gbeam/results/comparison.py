@@ -5,22 +5,25 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
 from gbeam.results.accounting import UNITS, Accounting, PeakPair, verdict
 from gbeam.results.criteria import Judged, Limit, state_of
 from gbeam.results.declared import INSIDE, declared, fact, internal, part, quantity, rows
-from gbeam.results.machine import AxesResult, Driven
+from gbeam.results.machine import AxesFigure, AxesResult, Driven
 from gbeam.results.measures import Fatigue, Mismatch, RootLoads, Shock, Statistics
 from gbeam.results.parts import yield_margin
 from gbeam.results.result import Figured, Flags, Floats
 
+# The main axis has no letter.
+ComparisonFigure = Literal["parts", "parts x", "parts y", "parts z", "shock"]
 _ACROSS = "over the times at which the target was not held"
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Comparison(Judged, Figured):
+class Comparison(Judged, Figured[ComparisonFigure]):
     """Differences of a centrifuge's response from the flight's that it imitates.
 
     Peaks and accounting are those of the whole flight; differences are taken where the target is the flight's load.
@@ -151,7 +154,7 @@ _WIDTH = 110  # columns
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class MachinePlan(Judged, Driven, Figured):
+class MachinePlan(Judged, Driven, Figured[AxesFigure]):
     """Motion of a centrifuge that imitates a flight, without the response of a beam."""
 
     listed_by, unnamed = "name", "centrifuge"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Literal
 
 from gbeam.constants import BY_STRAINS
 from gbeam.results.declared import INSIDE, declared, fact, internal, part, quantity
@@ -16,7 +17,7 @@ from gbeam.results.solids import SolidStress, SpecimenLoads, Surface
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Deflection(Figured):
+class Deflection(Figured[Literal["shape", "loads"]]):
     """Relative equilibrium at a frozen base motion."""
 
     listed_by, unnamed = "motion", "beam"
@@ -126,7 +127,7 @@ class MapErrors(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class CriticalMap(Figured):
+class CriticalMap(Figured[Literal["critical"]]):
     """Critical hub rates against a mass on the beam and its position."""
 
     motion: str = fact("name of the motion")

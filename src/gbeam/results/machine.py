@@ -5,12 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
 from gbeam.results.declared import BESIDE, declared, fact, internal, part, rows
 from gbeam.results.declared import quantity as entry  # a limit has a field of that name
 from gbeam.results.result import Flags, Floats, Part
+
+AxesFigure = Literal["tracking", "axes_rate", "axes_acceleration", "axes_jerk"]
 
 
 @dataclass(frozen=True)

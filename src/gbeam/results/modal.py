@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -21,7 +21,7 @@ FEW = 2  # modes drawn in any case
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Modes(Oscillating, Figured):
+class Modes(Oscillating, Figured[Literal["modes"]]):
     """Small vibrations about a relative equilibrium, ascending in frequency."""
 
     json_rows: ClassVar[dict[str, str]] = {"mode": "modes"}
@@ -151,7 +151,7 @@ class Crossing(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Campbell(Noted, Figured):
+class Campbell(Noted, Figured[Literal["campbell"]]):
     """Frequencies against speed, each column one mode followed through crossings and veering."""
 
     json_rows: ClassVar[dict[str, str]] = {"mode": "tracks"}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import get_args
+from typing import Literal, get_args
 
 from gbeam.constants import Measure
 from gbeam.results.accounting import PeakPair
@@ -110,7 +110,7 @@ class Setting(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Placement(Figured):
+class Placement(Figured[Literal["mismatch"]]):
     """The best control point, mounting and smoothing for a measure."""
 
     flight: str = fact("name of the flight")

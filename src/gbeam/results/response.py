@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar, Literal, Protocol
 
 import numpy as np
 
@@ -18,11 +18,12 @@ from gbeam.guards.checks import array, index_of, positive
 from gbeam.numerics.samples import displacement
 from gbeam.results.declared import INSIDE, declared, fact, internal, labels, part, quantity
 from gbeam.results.errors import Errors
-from gbeam.results.machine import AxesResult, Driven
+from gbeam.results.machine import AxesFigure, AxesResult, Driven
 from gbeam.results.parts import Base, Influence, Loads, Outline, Peaks, VectorPeaks
 from gbeam.results.result import Figured, Floats, Part, brief
 from gbeam.results.solids import SolidStress, SpecimenLoads, Surface
 
+ResponseFigure = Literal["tip", "specimen", "base", "sensors", "loads", AxesFigure, "hub", "stress"]
 RESOLVED = 4.0  # samples to a period of the sensor
 
 
@@ -161,7 +162,7 @@ class PlotHeading(Protocol):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Response(Driven, Figured):
+class Response(Driven, Figured[ResponseFigure]):
     """Response of the beam in one environment.
 
     Examples

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal, TypeVar
 
 from gbeam.arrays.tree import Value
 from gbeam.arrays.types import Complex as Complex
@@ -141,8 +141,11 @@ class Result(Value):
         write_report(self, path)
 
 
-class Figured(Result):
-    """A result that has figures."""
+FigureName = TypeVar("FigureName", bound=str)
+
+
+class Figured(Result, Generic[FigureName]):
+    """A result that has figures, of these names."""
 
     def view(self) -> Any:
         """Show what moves in a notebook: a study, a response, the shapes of modes, or where a system rests.
@@ -161,16 +164,18 @@ class Figured(Result):
 
         return widget(self)
 
-    def plot(self, what: str = "", *, title: str = "") -> Panels:
+    def plot(self, what: FigureName | Literal[""] = "", *, title: str = "") -> Panels:
         """Draw the result with Matplotlib.
 
         Parameters
         ----------
         what : str
-            Which of its figures; the first that the result has by default. Of a response: tip, base, loads, tracking,
-            axes_rate, axes_acceleration, axes_jerk, hub; of a study: tip, sizes, or any other followed by a space and
-            a motion's name; of a comparison: parts, parts x, parts y, parts z but for the main axis, shock; of a
-            deflection: shape, loads; of a plan: those of its axes and tracking. Other results have one.
+            Which of its figures; the first that the result has by default. Of a response: tip, base, sensors, loads,
+            stress, tracking, axes_rate, axes_acceleration, axes_jerk, hub; of a study: tip, sizes, or any other
+            followed by a space and a motion's name; of a comparison: parts, parts x, parts y, parts z but for the main
+            axis, shock; of a deflection: shape, loads; of a plan: those of its axes and tracking; of a system: points,
+            coordinates, sensors, loop, energy, and loads or stress followed by a space and a body's name; of sweeps
+            and sensitivities: their measures. Type checkers know the names that are always the same.
         title : str
             First line above the figure.
 

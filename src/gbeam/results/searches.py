@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -45,7 +45,7 @@ class FittedColumn(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Fit(Figured):
+class Fit(Figured[Literal["fit"]]):
     """Values of a scenario at which it is nearest to a measurement, in the sense of least squares.
 
     Examples
@@ -154,7 +154,7 @@ class Requirement(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Optimum(Figured):
+class Optimum(Figured[Literal["optimum"]]):
     """Values of a scenario at which a figure is least, within bounds and requirements.
 
     Examples
@@ -232,7 +232,7 @@ class CommandRun(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class ShapedCommand(Figured):
+class ShapedCommand(Figured[Literal["shaping", "robustness"]]):
     """A torque, force, rate or speed of a hub or a joint that leaves the least vibration.
 
     Examples

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,7 +50,7 @@ class StressAt(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class SolidStress(Figured):
+class SolidStress(Figured[Literal["stress"]]):
     """Stress of a solid in a response: anywhere, at its named points, and where it is worst.
 
     Stresses are those of the coordinates, which hold the static answer to the base's motion, at the nodes: extrapolated
@@ -226,7 +226,7 @@ class CornerLoad(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class SpecimenLoads(Figured):
+class SpecimenLoads(Figured[Literal["specimen"]]):
     """Loads of a rigid specimen over time: at its corners, on its fixture and on every bolt."""
 
     json_rows: ClassVar[dict[str, str]] = {"bolt": "bolts", "corner": "corners"}

@@ -7,7 +7,7 @@ import os
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -122,7 +122,7 @@ class Margin(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class StateSpace(Noted, Figured):
+class StateSpace(Noted, Figured[Literal["poles"]]):
     """ẋ = Ax + Bu, y = Cx + Du; with a `step` x⁺ = Ax + Bu. All are departures from the operating point.
 
     Examples

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import isnan
 from math import nan as NAN
-from typing import Any
+from typing import Any, Literal
 
 from gbeam.results.cases import Sensitivity, Sweep
 from gbeam.results.comparison import Comparison, MachinePlan
@@ -33,7 +33,7 @@ class Failure:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Answers(Figured):
+class Answers(Figured[str]):
     """Base of the responses in all environments of a scenario."""
 
     title: str = fact("title of the scenario")
@@ -179,7 +179,7 @@ class ModelRow(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class ModelStudy(Figured):
+class ModelStudy(Figured[Literal["models"]]):
     """A scenario by every model; rows by motion, then model."""
 
     title: str = fact("title of the scenario")

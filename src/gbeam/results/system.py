@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -167,7 +167,7 @@ class _Placed:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class SystemResponse(_Placed, Driven, Figured):
+class SystemResponse(_Placed, Driven, Figured[str]):
     """Response of a system over time, at its named points and coordinates.
 
     Examples
@@ -346,7 +346,7 @@ class SystemResponse(_Placed, Driven, Figured):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class SystemRest(_Placed, Figured):
+class SystemRest(_Placed, Figured[str]):
     """Static equilibrium of a system.
 
     Examples
@@ -423,7 +423,7 @@ class SystemRest(_Placed, Figured):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class SystemModes(Oscillating, Figured):
+class SystemModes(Oscillating, Figured[Literal["modes"]]):
     """Small vibrations of a system about a steady state: a place in which it rests, or is accelerated evenly.
 
     Examples
