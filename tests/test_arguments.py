@@ -293,7 +293,7 @@ class Samples:
                 {"time_unit": "s", "quantity": "specific-force", "span": (None, 0.1)},
             ),
             "read_scenario": ((self.fast, ["beam.length=250 mm"]), {}),
-            "rerun": ((self.fast,), {}),
+            "rerun": ((self.fast,), {"progress": None}),
             "sensitivity": (
                 (self.fast, ["flight.tip.z"], ["beam.section.width"]),
                 {"verb": "static", "motion": "flight", "at": 0.0, "options": None, "overrides": (), "progress": None},

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import hashlib
 import json
 import math
@@ -18,7 +19,7 @@ import pytest
 import gbeam as gb
 from gbeam.results.provenance import Environment
 from gbeam.scenario import provenance
-from gbeam.scenario.load import fingerprint
+from gbeam.scenario.load import defaults_of, fingerprint
 from gbeam.scenario.text.overrides import override
 from gbeam.scenario.text.source import parse
 
@@ -136,6 +137,70 @@ def test_an_integrator_of_version_0_2_is_read_and_refused(result: Path, gbeam: C
     assert "response.integrator: 'adaptive' is no longer offered" in answer.err and 'use "gauss"' in answer.err
     assert gbeam("report", result, "--out", result.parent / "page").status == 0
     assert "adaptive" in (result.parent / "page" / "report.html").read_text(encoding="utf-8")
+
+
+OF_0_2 = Path(__file__).parents[1] / "data" / "of_0.2" / "rerun"
+
+
+@pytest.fixture
+def of_0_2(tmp_path: Path) -> Path:
+    """The response of a free hub, which says neither rotary inertia nor integrator, as version 0.2 wrote it."""
+    (tmp_path / "result.nc").write_bytes(gzip.decompress((OF_0_2 / "result.nc.gz").read_bytes()))
+    return tmp_path / "result.nc"
+
+
+@pytest.mark.parametrize(("file", "least"), [("linear.json", 100), ("critical_speed.json", 10), ("optimum.nc", 15)])
+def test_an_answer_of_0_2_is_reproduced(file: str, least: int, gbeam: Callable[..., Answer]) -> None:
+    answer = gbeam("rerun", OF_0_2 / file)
+    assert answer.status == 0 and "computed again: within 1e-09" in answer.out
+    assert (
+        "read with the defaults of gbeam 0.2.0: beam.rotary_inertia = false, response.integrator = newmark"
+        in answer.out
+    )
+    known = gbeam("rerun", OF_0_2 / file, "--json").json
+    assert known["compared"] >= least and known["outcome"] == "reproduced"
+
+
+def test_a_response_of_0_2_is_reproduced_with_its_defaults_alone(of_0_2: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    then = gb.rerun(of_0_2)
+    assert then.reproduced and then.defaults == {"beam.rotary_inertia": "false", "response.integrator": "newmark"}
+    assert then.compared > 60 and "error_displacement_total" in {each.name.partition("@")[2] for each in then.restated}
+    assert "read with the defaults of gbeam 0.2.0: beam.rotary_inertia = false" in repr(then)
+    for left in then.defaults:
+        kept = {key: value for key, value in then.defaults.items() if key != left}
+        monkeypatch.setattr(import_module("gbeam.scenario.rerun"), "defaults_of", lambda *_, kept=kept: kept)
+        now = gb.rerun(of_0_2)
+        assert not now.reproduced and any(each.name.endswith("/displacement") for each in now.differences)
+
+
+def test_a_number_of_another_version_that_is_more_than_rounding_is_a_difference(of_0_2: Path) -> None:
+    """Of 1e-9 m it is one, of 1e-15 m, as beside the beam's 8 m, it is none; and it is no matter of errors in words."""
+    for change, same in ((1e-15, True), (1e-9, False)):
+
+        def moved(file: h5py.File, change: float = change) -> None:
+            file["motions/slew/displacement"][3, 0, 2] += change  # out of the plane of the hub
+
+        assert gb.rerun(_edited(of_0_2, moved)).reproduced is same
+
+
+def test_keys_say_which_default_a_version_had() -> None:
+    text = 'title = "x"\n' + SPECIMEN + model("FOAM", 0, 1, 1) + FLIGHT + response("1 s")
+    assert defaults_of("0.2.9", text, "", [], ".") == {
+        "beam.rotary_inertia": "false",
+        "response.integrator": "newmark",
+    }
+    assert not defaults_of("0.2.0", text, "", ["beam.rotary_inertia=true", "response.integrator=hht"], ".")
+    for version in ("0.3.0.dev0", "1.0", "", "of mine"):
+        assert not defaults_of(version, text, "", [], ".")
+
+
+def test_one_response_alone_is_computed_again(result: Path, tmp_path: Path) -> None:
+    """It was compared with the file of a study, in which none of its names is."""
+    (result.parents[1] / "s.toml").write_text(RECORDED, encoding="utf-8")
+    study = gb.study(gb.read_scenario(result.parents[1] / "s.toml"))
+    study.responses["flight"].save(tmp_path / "flight.nc")
+    again = gb.rerun(tmp_path / "flight.nc")
+    assert again.reproduced and again.compared > 40
 
 
 def test_a_large_record_is_found_where_it_was(

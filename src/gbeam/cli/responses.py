@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import math
+import re
 import shlex
 from collections.abc import Iterator
 from contextlib import redirect_stdout, suppress
@@ -22,9 +23,9 @@ from gbeam.cli.process import Watch, figures_wanted
 from gbeam.cli.publication import publish, refuse_unwritable
 from gbeam.errors import InputError
 from gbeam.printable import printable
-from gbeam.scenario.values import walk
 
 if TYPE_CHECKING:
+    from gbeam.io.netcdf import Stored
     from gbeam.results.provenance import Provenance
     from gbeam.results.study import Reproduction
 
@@ -154,19 +155,36 @@ def rerun(
     return 0
 
 
-_ABOUT = {"provenance", "files", "seconds", "written", "lines"}  # of the computation, or the figures in words
+# Of the computation, of the form, or the figures in words.
+_ABOUT = {"provenance", "files", "seconds", "written", "lines", "messages", "units", "form"}
 
 
 def _of_netcdf(file: Path) -> Reproduction:
     from gbeam.io.netcdf import read_stored
     from gbeam.scenario.rerun import facts_of, is_run, origin_of, run_again
 
-    stored = read_stored(file)
-    facts = facts_of(stored)
-    if not is_run(facts):
-        return _compared(file, facts, origin_of(file, stored))
-    with Watch(f"reading {file} and computing it again"):
-        return run_again(file, stored)
+    with Watch(f"reading {file} and computing it again") as watch:
+        stored = read_stored(file)
+        if is_run(stored):
+            return run_again(file, stored, watch)
+    origin = origin_of(file, stored)
+    return _compared(file, facts, origin) if (facts := facts_of(stored)) else _file_again(file, stored, origin)
+
+
+def _file_again(file: Path, before: Stored, origin: Provenance) -> Reproduction:
+    """Compare the variables of a file without facts, as version 0.2 wrote those of searches."""
+    from gbeam.io.netcdf import read_stored
+    from gbeam.scenario.rerun import as_read, computed, reproduction, units_in
+
+    with TemporaryDirectory(prefix="gbeam-") as folder:
+        changes, defaults = as_read(str(file), origin, Path(folder))
+        out = Path(folder) / "out"
+        _answered(file, origin, Path(folder), tuple(changes), out)
+        written = [*out.glob("*.nc")]
+        if not written:
+            raise InputError(str(file), "holds no figures to compare", "give the JSON of its verb")
+        after = read_stored(written[0])
+    return reproduction(str(file), computed(before), computed(after), origin, defaults, units_in(before))
 
 
 def answer_again(file: Path) -> Reproduction:
@@ -179,13 +197,21 @@ def answer_again(file: Path) -> Reproduction:
 
 
 def _compared(file: Path, facts: dict[str, Any], origin: Provenance) -> Reproduction:
-    from gbeam.scenario.rerun import records, reproduction
+    from gbeam.results.facts import ANY
+    from gbeam.scenario.rerun import as_read, reproduction
 
     with TemporaryDirectory(prefix="gbeam-") as folder:
-        scenario = Path(folder) / "scenario.toml"
-        scenario.write_text(origin.scenario, encoding="utf-8")
-        again = _answered(file, origin, scenario, tuple(records(origin, Path(folder))))
-    return reproduction(str(file), dict(_leaves(facts)), dict(_leaves(again)), origin)
+        changes, defaults = as_read(str(file), origin, Path(folder))
+        again = _answered(file, origin, Path(folder), tuple(changes))
+    known = again.get("units", {}).items()
+    units = {re.compile(re.escape(place).replace(re.escape(ANY), ".+")): unit for place, unit in known}
+    forms = {name: form for name, form, _ in _leaves(again)}
+
+    def unit_of(name: str) -> str:
+        return next((unit for place, unit in units.items() if place.fullmatch(forms[name])), "")
+
+    then, now = ({name: value for name, _, value in _leaves(each)} for each in (facts, again))
+    return reproduction(str(file), then, now, origin, defaults, unit_of)
 
 
 def _read(file: Path) -> tuple[dict[str, Any], Provenance]:
@@ -205,8 +231,13 @@ def _read(file: Path) -> tuple[dict[str, Any], Provenance]:
         raise InputError(str(file), "is no JSON of gbeam with a provenance", fix) from None
 
 
-def _answered(file: Path, origin: Provenance, scenario: Path, changes: tuple[str, ...]) -> dict[str, Any]:
+def _answered(
+    file: Path, origin: Provenance, folder: Path, changes: tuple[str, ...], out: Path | None = None
+) -> dict[str, Any]:
     from gbeam.cli.program import parsed
+
+    scenario = folder / "scenario.toml"
+    scenario.write_text(origin.scenario, encoding="utf-8")
 
     try:
         verb, bound = parsed(shlex.split(origin.command)[1:])
@@ -216,11 +247,10 @@ def _answered(file: Path, origin: Provenance, scenario: Path, changes: tuple[str
     if "scenario" not in arguments:
         raise InputError(str(file), "is of no verb that reads a scenario", "give the result of another")
     known, asked = bound.signature.parameters, arguments.get("output", Output())
-    out = None
     written = {"write": None, "write_back": False}  # nothing is
     arguments |= {"scenario": scenario} | {name: value for name, value in written.items() if name in known}
     if "resume" in known:  # a sweep has a store in any case; its cluster may be gone
-        out = scenario.parent / "out"
+        out = folder / "out"
         arguments |= {"resume": False, "scheduler": None}
     again = Output((*asked.overrides, *changes), out, json=True)
     if "output" in known:
@@ -233,16 +263,27 @@ def _answered(file: Path, origin: Provenance, scenario: Path, changes: tuple[str
     return dict(json.loads(printed.getvalue()))
 
 
-def _leaves(facts: Any) -> Iterator[tuple[str, Any]]:
-    """Numbers, texts and lists of numbers by their places."""
-    for path, value in walk(facts, _is_array):
-        place = ".".join(map(str, path))
-        if not _ABOUT.isdisjoint(path):
-            continue
-        if isinstance(value, list):
-            yield place, [math.nan if each is None else _number(each) for each in value]
-        else:
-            yield place, _number(value) if isinstance(value, (int, float)) else str(value)
+def _leaves(node: Any, name: str = "", form: str = "") -> Iterator[tuple[str, str, Any]]:
+    """Numbers, texts and lists of numbers: their names, their places as the units have them, and they themselves."""
+    if isinstance(node, dict):
+        for key, value in node.items():
+            if key not in _ABOUT:
+                dot = "." if name else ""
+                yield from _leaves(value, f"{name}{dot}{key}", f"{form}{dot}{key}")
+    elif not isinstance(node, list):
+        yield name, form, _number(node) if isinstance(node, (int, float)) else str(node)
+    elif _is_array(node):
+        yield name, f"{form}[i]", [math.nan if each is None else _number(each) for each in node]
+    else:
+        for row, value in zip(_row_names(node), node, strict=True):
+            yield from _leaves(value, f"{name}.{row}", f"{form}[i]")
+
+
+def _row_names(rows: list[Any]) -> list[Any]:
+    """Names of the rows of a table, so that a new one moves none of the others; their numbers where they have none."""
+    keys = ("motion", "model", "path", "name")
+    names = [" ".join(str(row[key]) for key in keys if key in row) if isinstance(row, dict) else "" for row in rows]
+    return names if all(names) and len(set(names)) == len(names) else list(range(len(rows)))
 
 
 def _is_array(node: Any) -> bool:

@@ -20,6 +20,7 @@ from gbeam.printable import storable
 from gbeam.results.provenance import Environment, Provenance, RecordFile
 
 # Attributes of the format.
+_NO_VARIABLE = b"This is a netCDF dimension but not"  # by netCDF's convention: a dimension without values of its own
 _BOOKKEEPING = {"DIMENSION_LIST", "REFERENCE_LIST", "CLASS", "NAME", "_NCProperties"}
 _BOOKKEEPING |= {"_Netcdf4Dimid", "_Netcdf4Coordinates"}
 
@@ -63,7 +64,7 @@ def contents_of(file: h5py.File) -> dict[str, Any]:
 
     def visit(name: str, node: h5py.Group | h5py.Dataset) -> None:
         attrs[name] = _attrs(node)
-        if isinstance(node, h5py.Dataset):
+        if isinstance(node, h5py.Dataset) and not bytes(node.attrs.get("NAME", b"")).startswith(_NO_VARIABLE):
             variables[name] = _present(node.asstr()[()] if node.dtype.kind == "O" else node[()])
 
     file.visititems(visit)
@@ -138,8 +139,9 @@ def provenance_of(variables: Mapping[str, Any], attrs: Mapping[str, Mapping[str,
             content = zlib.decompressobj().decompress(packed, EMBEDDED) if len(packed) > 1 else None
             file, digest = (str(attrs[name][key]) for key in ("file", "sha256"))
             records.append(RecordFile(name.removeprefix(RECORD), file, digest, content))
+    text = variables.get("scenario")  # in a fit of version 0.2 an array has this name, and it has no text
     return Provenance(
-        scenario=str(variables["scenario"]) if "scenario" in variables else "",
+        scenario=text if isinstance(text, str) else "",
         overrides=tuple(str(root.get("overrides", "")).splitlines()),
         sha256=str(root.get("scenario_sha256", "")),
         records=tuple(records),

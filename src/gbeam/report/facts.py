@@ -97,21 +97,21 @@ def reproduction_json(again: Reproduction) -> dict[str, Any]:
         "compared": again.compared,
         "tolerance": again.tolerance,
         "differences": [asdict(each) for each in again.differences],
+        "restated": [asdict(each) for each in again.restated],
         "changed": {name: {"then": then, "now": now} for name, (then, now) in again.changed.items()},
+        "defaults": dict(again.defaults),
     }
 
 
 def reproduction_text(again: Reproduction) -> str:
     """Values compared, differences, and changes since."""
-    if again.differences:
-        extent = f"within {again.tolerance:g}" if again.reproduced else "NOT reproduced"
-    else:
-        extent = "the same to the last digit"
+    same = f"within {again.tolerance:g}" if again.tolerance else "the same to the last digit"
+    extent = same if again.reproduced else "NOT reproduced"
     lines = [f"{again.file}: {again.compared} values and arrays computed again: {extent}"]
     lines += [f"  {each}" for each in again.differences[:LISTED]]
     if len(again.differences) > LISTED:
         lines.append(f"  and {len(again.differences) - LISTED} more: see --json")
-    lines += [f"  {name} was {then}, is {now}" for name, (then, now) in again.changed.items()]
+    lines += [f"  {each}" for each in again.circumstances()]
     return "\n".join(lines)
 
 

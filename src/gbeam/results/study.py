@@ -228,8 +228,16 @@ class Reproduction(Part):
     file: str = fact("the file")
     compared: int = fact("number of variables and attributes compared")
     differences: tuple[Difference, ...] = rows("differences, the largest first", "difference")
+    restated: tuple[Difference, ...] = rows(
+        "what else differs, and does not count: errors and words, which another version states otherwise, and times of "
+        "peaks, of which equal ones may change places by rounding",
+        "restated",
+    )
     changed: Mapping[str, tuple[str, str]] = fact(
         "what of gbeam, Python, the platform and the dependencies is otherwise: then, and now"
+    )
+    defaults: Mapping[str, str] = fact(
+        "defaults of the version that wrote the file, where today's are others: the scenario is read with them"
     )
 
     @property
@@ -247,8 +255,18 @@ class Reproduction(Part):
         allowed = f"within {self.tolerance:g}" if self.tolerance else "to the last digit"
         lines = [f"Reproduction of {self.file}: {end} {allowed}, {self.compared} values and arrays compared"]
         lines += [str(each) for each in self.differences[:10]]
-        lines += [f"{name} was {then}, is {now}" for name, (then, now) in self.changed.items()]
+        lines += self.circumstances()
         return "\n  ".join(lines)
+
+    def circumstances(self) -> list[str]:
+        """Changes since then, and defaults of then, in words."""
+        lines = [f"{name} was {then}, is {now}" for name, (then, now) in self.changed.items()]
+        if self.restated:
+            lines.insert(0, f"besides {len(self.restated)} stated errors, words and times of equal peaks are otherwise")
+        if self.defaults:
+            words = ", ".join(f"{key} = {value}" for key, value in self.defaults.items())
+            lines.insert(0, f"read with the defaults of gbeam {self.changed['gbeam'][0]}: {words}")
+        return lines
 
 
 # Every kind of result by its name.

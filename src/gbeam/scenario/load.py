@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 from collections.abc import Callable, Iterable, Iterator
 from copy import deepcopy
 from dataclasses import replace
@@ -18,7 +19,7 @@ from pydantic import ValidationError
 from gbeam.errors import InputError
 from gbeam.guards.limits import EMBEDDED, PROBLEMS
 from gbeam.scenario.schema import Environments, Flight, Scenario, kind_of_scenario
-from gbeam.scenario.schema.fields import files
+from gbeam.scenario.schema.fields import files, former_defaults
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.text.overrides import override
 from gbeam.scenario.text.source import Source, parse, read_text
@@ -140,9 +141,23 @@ def change(source: Source, overrides: Iterable[str]) -> AnyScenario:
 def load_environments(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> Environments:
     """Read a scenario file that may lack the beam, for questions about the machine alone."""
     file = Path(path)
-    source = _source(read_text(file), os.fspath(path), overrides, file.parent)
+    return _environments(_source(read_text(file), os.fspath(path), overrides, file.parent))
+
+
+def _environments(source: Source) -> Environments:
     kind = kind_of_scenario(source.data)
     return _validated(Environments if kind is Scenario and not {"beam", "model"} & source.data.keys() else kind, source)
+
+
+def defaults_of(
+    version: str, text: str, name: str, overrides: Iterable[str], folder: str | os.PathLike[str]
+) -> dict[str, str]:
+    """Defaults that a version of gbeam had for keys that a scenario leaves out, where today's are others."""
+    release = tuple(int(number) for number in re.findall(r"\d+", version))
+    if len(release) < 2:  # nothing that gbeam wrote
+        return {}
+    source = _source(text, name, overrides, folder, distributions=True)
+    return dict(former_defaults(_environments(source), release))
 
 
 def _source(

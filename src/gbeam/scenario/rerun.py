@@ -5,7 +5,8 @@ from __future__ import annotations
 import hashlib
 import math
 import os
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -15,18 +16,29 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.limits import BINARY_BYTES, existing, parse_json, refuse_large_file
+from gbeam.guards.limits import BINARY_BYTES, SMALLEST, existing, parse_json, refuse_large_file
 from gbeam.io.hdf5 import RECORD
 from gbeam.io.netcdf import FACTS
+from gbeam.progress import Progress
 from gbeam.results.provenance import Provenance, present
 from gbeam.results.study import Difference, Reproduction
 from gbeam.scenario.build import build
-from gbeam.scenario.load import fingerprint, loads
+from gbeam.scenario.load import defaults_of, fingerprint, loads
 from gbeam.scenario.text.overrides import override
 from gbeam.scenario.text.source import parse
 
 if TYPE_CHECKING:
     from gbeam.io.netcdf import Stored
+
+# Estimates of errors and sentences, which are a version's: names in files and in JSON.
+_STATED = re.compile(
+    r"(^|[@./])(error_\w+|errors?|total_error|run_error|accurate_to|warnings|verdict|summary|message|note|theory|reason"
+    r"|not_varied)($|[.])"
+)
+# Times of peaks, of which equal ones may change places by rounding. The peaks themselves are compared.
+_WHEN = re.compile(r"_time($|_)|(^|[./])time_|time_of_|limits\.\d+\.time$")
+ROUNDING = 1e-12  # of the largest value of a unit, and of one where there is none: less is rounding
+_RATE = re.compile(r"(.+?)(?: s-(\d)|/s(?:\^(\d))?)")
 
 # Attributes of the computation, not of its result.
 _ABOUT = {"date", "command", "overrides", "scenario_sha256"}
@@ -34,7 +46,7 @@ _ABOUT |= {"gbeam_version", "python_version", "platform", "dependencies"}
 
 
 @typed
-def rerun(path: str | os.PathLike[str]) -> Reproduction:
+def rerun(path: str | os.PathLike[str], *, progress: Progress = None) -> Reproduction:
     """Compute a result again, from the scenario and the records that its file holds, and compare every number.
 
     Parameters
@@ -42,11 +54,15 @@ def rerun(path: str | os.PathLike[str]) -> Reproduction:
     path : path
         A ``result.nc`` that ``gbeam run`` or :meth:`gbeam.Study.save` wrote. A record that is too large to be in it is
         read from where it was.
+    progress : callable or bool, optional
+        Called with what is being done and the fraction of it done; True shows a bar.
 
     Returns
     -------
     Reproduction
         It is reproduced where nothing differs, or, with other versions or on another platform, by no more than 1e-9.
+        Of another version of gbeam the scenario is read with its defaults, `defaults`, and its errors and words, which
+        a version states in its way, are apart, `restated`.
 
     Raises
     ------
@@ -70,9 +86,9 @@ def rerun(path: str | os.PathLike[str]) -> Reproduction:
     from gbeam.io.netcdf import read_stored
 
     before = read_stored(path)
-    if not is_run(facts_of(before)):
+    if not is_run(before):
         raise InputError(str(path), "holds no responses but another answer", "`gbeam rerun` runs its verb again")
-    return run_again(path, before)
+    return run_again(path, before, progress)
 
 
 def facts_of(stored: Stored) -> dict[str, Any]:
@@ -84,10 +100,12 @@ def facts_of(stored: Stored) -> dict[str, Any]:
     return facts if isinstance(facts, dict) else {}
 
 
-def is_run(facts: Mapping[str, Any]) -> bool:
-    """True if facts are of responses, or do not say."""
-    form = facts.get("form")
-    return not isinstance(form, dict) or form.get("kind") in ("Study", "SystemStudy")
+def is_run(stored: Stored) -> bool:
+    """True if a file holds responses."""
+    form = facts_of(stored).get("form")
+    if isinstance(form, dict):  # version 0.2 did not say
+        return form.get("kind") in ("Study", "SystemStudy")
+    return any(name.startswith("motions/") or name == "coordinate_rates" for name in stored.variables)
 
 
 def origin_of(path: str | os.PathLike[str], stored: Stored) -> Provenance:
@@ -101,31 +119,67 @@ def origin_of(path: str | os.PathLike[str], stored: Stored) -> Provenance:
     return origin
 
 
-def run_again(path: str | os.PathLike[str], before: Stored) -> Reproduction:
+def run_again(path: str | os.PathLike[str], before: Stored, progress: Progress = None) -> Reproduction:
     """Compute the responses of a file again."""
     from gbeam.analysis.environments import study
     from gbeam.io.netcdf import stored
 
     origin = origin_of(path, before)
     with TemporaryDirectory(prefix="gbeam-") as folder:
-        changes = [*origin.overrides, *records(origin, Path(folder))]
-        case = build(loads(origin.scenario, str(path), changes, folder=folder), ahead=True)
-        after = stored(study(replace(case, provenance=None)))
-    return reproduction(os.fspath(path), _facts(before), _facts(after), origin)
+        changes, defaults = as_read(str(path), origin, Path(folder))
+        scenario = loads(origin.scenario, str(path), [*origin.overrides, *changes], folder=folder)
+        answers = study(replace(build(scenario, ahead=True), provenance=None), progress=progress)
+        after = stored(answers)
+    now = computed(after)
+    if not any(name.startswith("motions/") for name in before.variables):  # one response alone
+        (motion, *others) = facts_of(before).get("motions") or answers.responses
+        if others:
+            fix = "give the result.nc of all its motions"
+            raise InputError(str(path), "holds one response, and does not say of which motion", fix)
+        place = f"motions/{motion}"
+        now |= {name.removeprefix(place).lstrip("/"): each for name, each in now.items() if name.startswith(place)}
+    return reproduction(os.fspath(path), computed(before), now, origin, defaults, units_in(before))
 
 
-def reproduction(file: str, then: Mapping[str, Any], now: Mapping[str, Any], origin: Provenance) -> Reproduction:
-    """Compare what a file holds with what has been computed again."""
+def units_in(stored: Stored) -> Callable[[str], str]:
+    """The unit of a variable of a file by its name."""
+    return lambda name: str(stored.attrs.get(name, {}).get("units", ""))
+
+
+def as_read(file: str, origin: Provenance, folder: Path) -> tuple[list[str], dict[str, str]]:
+    """Put the records into a folder; changes that read a scenario as its version did, and the defaults among them."""
+    assert origin.environment is not None
+    changes = [*_records(origin, folder)]
+    text, overrides = origin.scenario, [*origin.overrides, *changes]
+    defaults = defaults_of(origin.environment.gbeam, text, file, overrides, folder)
+    return [*changes, *(f"{path}={value}" for path, value in defaults.items())], defaults
+
+
+def reproduction(
+    file: str,
+    then: Mapping[str, Any],
+    now: Mapping[str, Any],
+    origin: Provenance,
+    defaults: Mapping[str, str],
+    unit_of: Callable[[str], str],
+) -> Reproduction:
+    """Compare what a file holds with what has been computed again; the unit of each is known by its name."""
     assert origin.environment is not None
     changed = origin.environment.changes(present())
+    other = "gbeam" in changed
     # A later version may hold more. Of another one's file, what both hold is compared.
-    names = [name for name in then if "gbeam" not in changed or name in now]
-    differences = [each for name in names if (each := _difference(name, then.get(name), now.get(name))) is not None]
+    names = [name for name in then if not other or name in now]
+    scales = _scales(then, names, unit_of) if changed else {}
+    each = (_difference(name, then.get(name), now.get(name), unit_of(name), scales) for name in names)
+    differences = sorted(filter(None, each), key=lambda each: -each.size)
+    aside = [e for e in differences if changed and (_WHEN.search(e.name) or (other and _STATED.search(e.name)))]
     return Reproduction(
         file=file,
         compared=len(names),
-        differences=tuple(sorted(differences, key=lambda each: -each.size)),
+        differences=tuple(each for each in differences if each not in aside),
+        restated=tuple(aside),
         changed=changed,
+        defaults=defaults,
     )
 
 
@@ -140,7 +194,7 @@ def checked(file: str, origin: Provenance) -> None:
         raise InputError(file, "holds another scenario than the one that was run", fix)
 
 
-def records(origin: Provenance, folder: Path) -> Iterator[str]:
+def _records(origin: Provenance, folder: Path) -> Iterator[str]:
     """Put the records into a folder, or find them where they were; the changes that make the scenario read them."""
     for number, record in enumerate(origin.records):
         if record.content is None:
@@ -159,19 +213,33 @@ def records(origin: Provenance, folder: Path) -> Iterator[str]:
         yield f"{record.path}={file}"
 
 
-def _facts(of: Stored) -> dict[str, Any]:
+def computed(of: Stored) -> dict[str, Any]:
     """Variables and attributes by their names, but those that say of the computation and not of its result."""
     apart = ("scenario", FACTS)  # the facts are the other variables once more
-    computed = {name: each for name, each in of.variables.items() if name not in apart and not name.startswith(RECORD)}
+    values = {name: each for name, each in of.variables.items() if name not in apart and not name.startswith(RECORD)}
     for place, attrs in of.attrs.items():
         if place not in of.variables:  # whose attributes are words about them
-            computed |= {f"{place}@{name}": each for name, each in attrs.items() if place or name not in _ABOUT}
-    return computed
+            values |= {f"{place}@{name}": each for name, each in attrs.items() if place or name not in _ABOUT}
+    return values
+
+
+def _scales(values: Mapping[str, Any], names: Iterable[str], unit_of: Callable[[str], str]) -> dict[str, float]:
+    """Largest value of every unit; of a rate at least that of what it is a rate of, over the longest time."""
+    scales = {"": 1.0, "1": 1.0, "rad": 1.0}
+    for name in names:
+        value = np.asarray(values[name])
+        if value.dtype.kind == "f":
+            size = float(np.max(np.abs(value), initial=0.0, where=np.isfinite(value)))
+            scales[unit_of(name)] = max(scales.get(unit_of(name), 0.0), size)
+    time = scales.get("s") or 1.0
+    rates = {unit: rate for unit in scales if (rate := _RATE.fullmatch(unit))}
+    rate_of = {unit: scales.get(rate[1], 0.0) / time ** int(rate[2] or rate[3] or 1) for unit, rate in rates.items()}
+    return {unit: max(size, rate_of.get(unit, 0.0), SMALLEST / ROUNDING) for unit, size in scales.items()}
 
 
 @np.errstate(all="ignore")  # a damaged file may hold any number
-def _difference(name: str, then: Any, now: Any) -> Difference | None:
-    """Difference of a variable or an attribute, if there is one."""
+def _difference(name: str, then: Any, now: Any, unit: str, scales: Mapping[str, float]) -> Difference | None:
+    """Difference of a variable or an attribute, if there is one and it is more than rounding at its unit's scale."""
     if then is None or now is None:
         return Difference(name, math.inf, "is not there any more" if now is None else "was not there")
     old, new = np.asarray(then), np.asarray(now)
@@ -185,8 +253,12 @@ def _difference(name: str, then: Any, now: Any) -> Difference | None:
     if not np.array_equal(old[~finite], new[~finite], equal_nan=True):
         return Difference(name, math.inf, f"was {_short(then)}, is {_short(now)}")
     old, new = old[finite], new[finite]
-    size = float(np.abs(old - new).max() / np.abs(old).max(initial=np.finfo(float).tiny))
-    return Difference(name, size, f"differs by up to {size:.2g} of its largest value")
+    if np.abs(old - new).max() <= ROUNDING * scales.get(unit, 0.0):
+        return None
+    largest = float(np.abs(old).max(initial=0.0))
+    size = float(np.abs(old - new).max() / max(largest, np.finfo(float).tiny))
+    words = f"differs by up to {size:.2g} of its largest value, {largest:.4g}"
+    return Difference(name, size, f"{words} {unit}" if unit not in ("", "1") else words)
 
 
 def _short(value: Any) -> str:

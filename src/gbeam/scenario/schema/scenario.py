@@ -26,6 +26,7 @@ from gbeam.scenario.schema.beam import Beam
 from gbeam.scenario.schema.fields import (
     Acceleration,
     Duration,
+    Formerly,
     Loc,
     Offset,
     Position,
@@ -138,7 +139,7 @@ class Response(Table):
         "answers of one time are asked for, such as modes"
     )
     step: Step = Field(default="auto", description="time step, or auto")
-    integrator: Integrator | None = optional(
+    integrator: Annotated[Integrator | None, Formerly("newmark", until=(0, 2))] = optional(
         "time integrator; left out gauss of systems and on free hubs, newmark otherwise"
     )
     beta: Ratio | None = optional("parameter of newmark")
