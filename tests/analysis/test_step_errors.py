@@ -17,8 +17,9 @@ from numpy.polynomial import legendre
 from gbeam import Flight, Hub, Response, Sine, SmoothStep, Structure, simulate, smoothed, tabulated, trapezoid
 from gbeam.analysis.response.peaks import peaks_of_coordinates
 from gbeam.analysis.response.problem import problem_of
+from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.step_errors import Run, observed_order
+from gbeam.analysis.response.step_errors import observed_order
 from gbeam.analysis.response.stepping import answered, refine
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.section_forces import section_forces
@@ -215,6 +216,8 @@ def test_a_step_found_by_a_large_jump_is_checked() -> None:
         return np.asarray(q * np.array([0.0, 0.0, 1.0]))
 
     class Wave(Run):
+        prepared = poses = by_steps = traced = described = None
+
         @property
         def moved(self) -> np.ndarray:
             return vector(self.trajectory.q)
@@ -229,7 +232,7 @@ def test_a_step_found_by_a_large_jump_is_checked() -> None:
     def run(step: float, _: str) -> Run:
         time = step * np.arange(round(10 / step) + 1)
         q, qd = ((1 + error(step)) * wave(time)[:, None] for wave in (np.sin, np.cos))
-        return Wave(Trajectory(time, q, qd, -q), step)
+        return Wave(Trajectory(time, q, qd, -q), step, None)
 
     assert error(0.0025) > 1.5 * settings.aim  # the step that the order promises to be enough
     answer, errors = answered(refine(0.02, 2, settings), run)

@@ -12,10 +12,10 @@ import numpy as np
 from gbeam.analysis.control.linearization import linearize
 from gbeam.analysis.response.differentiated import Differentiated, Grid
 from gbeam.analysis.response.peaks import half_ranges
+from gbeam.analysis.response.posed_system import PosedSystem, state_at
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.response.stepping import scheme_of
-from gbeam.analysis.response.systems import PosedSystem, simulate_system
 from gbeam.analysis.steady.operating_point import turning_inertia
 from gbeam.analysis.system.histories import deflection
 from gbeam.analysis.system.steady import Drive, SteadySystem, steady
@@ -292,7 +292,8 @@ class OnJoint:
     def run(self, profile: Profile, settings: ResponseSettings, name: str = "", progress: Progress = None) -> Ran:
         """Run a command."""
         system = self.commanded(profile)
-        of, k = simulate_system(system, None, settings, name, progress), system.coordinates.index(self.coordinate)
+        of = simulate(system, None, settings, name=name, progress=progress)
+        k = system.coordinates.index(self.coordinate)
         tip, left = self._tip(system, of.time, of.q, settings)
         return Ran(of.time, tip, of.outcome, of.message, left, of.step, (of.q[:, k] - of.q[0, k], of.qd[:, k]))
 
@@ -311,13 +312,13 @@ class OnJoint:
         assert settings.step is not None
         system, scheme = self.commanded(profile), scheme_of(settings)
         tree, k = system.tree, system.coordinates.index(self.coordinate)
-        posed = PosedSystem(system, None)
-        point, count = posed.start(settings), round(settings.duration / settings.step)
-        corners = posed.jumps(settings, settings.step).felt_by(scheme)
+        start, count = state_at(system, None, settings), round(settings.duration / settings.step)
+        posed = PosedSystem(system, None, settings, settings, start, settings.step)
+        corners = posed.felt.felt_by(scheme)
         grid = fitted(settings.start, settings.duration / count, count, corners)
         # With the ends of the parts of split steps, too.
         steps = replace(grid, kept=np.ones(len(grid), dtype=bool))
-        run = through(posed.equations, scheme, point.y, point.yd, steps)
+        run = through(posed.equations, scheme, *start, steps)
 
         def command(of: Profile, time: Floats) -> Floats:
             """The effort (t, 1), or angle, rate and acceleration (t, 3)."""

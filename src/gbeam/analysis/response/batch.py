@@ -9,8 +9,8 @@ from typing import Any, TypeVar, Unpack
 import numpy as np
 
 from gbeam.analysis.response.peaks import displacement_peaks
-from gbeam.analysis.response.posed import Posed, StructureRun, pose
-from gbeam.analysis.response.record import response_of
+from gbeam.analysis.response.posed import Posed, pose
+from gbeam.analysis.response.record import StructureRun, response_of
 from gbeam.analysis.response.settings import ResponseSettings, Settings
 from gbeam.analysis.response.simulation import settings_of, simulate
 from gbeam.analysis.response.stepping import Plan, first_steps, scheme_of
@@ -193,7 +193,7 @@ def _going_on(
             case = _Case(index, posed, plan, step, wanted)
             if case.shape is not None:
                 return case
-            run, known = posed.run(step, stop=posed.too_far), None
+            run, known = StructureRun.by_steps(posed, step), None
     except StopIteration as end:
         chosen, errors = end.value
     return _Ended(index, posed, chosen, errors, known if known and chosen is run else {})
@@ -217,7 +217,7 @@ def _read(queue: list[_Case], trajectories: list[Trajectory | None]) -> Iterator
     for case, trajectory, moved in zip(queue, trajectories, _displaced(queue, trajectories), strict=True):
         posed, known = case.posed, None
         if trajectory is None or posed.too_far(trajectory.q, moved) is not None:
-            run = posed.run(case.step, stop=posed.too_far)  # one that leaves what its model can mean stops there
+            run = StructureRun.by_steps(posed, case.step)  # one that leaves what its model can mean stops there
         else:
             run, known = StructureRun(trajectory, case.step, posed), {"moved": moved}
             if posed.structure.linear and not posed.motion.free and run.stride == 1:

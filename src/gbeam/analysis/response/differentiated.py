@@ -16,9 +16,9 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.response.posed import Posed, StructureRun
+from gbeam.analysis.response.posed import Posed
 from gbeam.analysis.response.problem import problem_of
-from gbeam.analysis.response.record import response_of
+from gbeam.analysis.response.record import StructureRun, response_of
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.stepping import first_step, scheme_of, steps_beyond
 from gbeam.arrays.types import Floats
@@ -203,8 +203,8 @@ class Differentiated:
             for run, steps, by in zip(self.runs, self.parts, moves, strict=True)
         )
         assert flight is not None
-        run = StructureRun(flight, self.grid.step, posed)
-        return response_of(run, StepErrors(), self.name, up=up, down=down, axes_of=self._axes)
+        run = StructureRun(flight, self.grid.step, posed, up, down)
+        return response_of(run, StepErrors(), self.name, axes_of=self._axes)
 
     def _axes(self, motion: Any, time: Floats) -> AxesResult | None:
         if not self.axes:

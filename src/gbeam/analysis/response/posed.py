@@ -1,4 +1,4 @@
-"""A structure in an environment posed as a problem, and its runs by any step with what is read of them."""
+"""A structure in an environment posed as a problem, ready for runs by any step."""
 
 from __future__ import annotations
 
@@ -9,16 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.accuracy.estimate import NOTHING, UNMOVED
-from gbeam.analysis.response.peaks import peaks_of_coordinates
+from gbeam.analysis.accuracy.estimate import UNMOVED
 from gbeam.analysis.response.problem import Problem, problem_of
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.step_errors import Run
 from gbeam.analysis.response.stepping import (
     MAX_STEPS,
     Plan,
     corners,
-    integrated,
     once,
     planned,
     scheme_of,
@@ -30,7 +27,6 @@ from gbeam.guards.limits import BOUNDLESS, HISTORY_BYTES, STEPS, refuse_more
 from gbeam.integrate.driver import integrate
 from gbeam.integrate.equations import Trajectory
 from gbeam.integrate.steps import Corners, Steps, fitted
-from gbeam.mechanics.section_forces import root_loads, section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.bodies import Body
 from gbeam.mechanics.tree.system import terms_of
@@ -53,6 +49,7 @@ class Posed:
     limit: int = MAX_STEPS  # of a run
     before: int = 0  # steps of the results in which a machine spins up
     after: int = 0
+    up: Trajectory | None = None  # the spin-up, once it is run
 
     @property
     def beam(self) -> slice:
@@ -92,8 +89,15 @@ class Posed:
                 hub = HubResult(motion.angle(time), base.w_WB_B @ axis, base.alpha_WB_B @ axis)
         return base, hub
 
-    def plan(self) -> Plan[StructureRun]:
+    @property
+    def stuck(self) -> bool:
+        """True if a spin-up came to no end."""
+        return self.up is not None and not self.up.whole
+
+    def plan(self) -> Plan[Any]:
         """Plan the runs that the settings need."""
+        if self.stuck:
+            return once(self.kept, StepErrors())
         if not self.structure.size:  # nothing is integrated
             return once(self.kept, StepErrors(0.0, 0.0, 0.0))
         return planned(self.settings, self.kept, self.limit)
@@ -103,22 +107,19 @@ class Posed:
         count = math.ceil(self.settings.duration / step - 1e-6)
         return fitted(self.settings.start, step, count, self.felt.felt_by(scheme_of(self.settings)))
 
-    def run(self, step: float, **how: Any) -> StructureRun:
-        """The run with such steps."""
-        return StructureRun(integrated(self.problem, self.settings, step, corners=self.felt, **how), step, self)
+    def begun(self, progress: Progress) -> Posed:
+        """It after a machine's spin-up, if there is any that comes to its end."""
+        up = self._ramp(-self.before, self.before, partial(tell, progress, "spinning up"))
+        return self if up is None else replace(self, up=up, problem=self._after(up))
 
-    def going_on(self, run: Trajectory) -> Posed:
-        """It from the state in which a run ends."""
-        return replace(self, problem=replace(self.problem, q=run.q[-1], qd=run.qd[-1]))
-
-    def spun_up(self, progress: Progress) -> Trajectory | None:
-        """Spin-up of a machine, if it has any."""
-        return self._ramp(-self.before, self.before, partial(tell, progress, "spinning up"))
-
-    def spun_down(self, progress: Progress) -> Trajectory | None:
-        """Spin-down from the problem's state, if the machine has any."""
+    def spun_down(self, run: Trajectory, progress: Progress) -> Trajectory | None:
+        """A machine's spin-down from the state in which a run ends, if there is any."""
         first = round(self.settings.duration / self.kept)
-        return self._ramp(first, self.after, partial(tell, progress, "spinning down"))
+        ended = replace(self, problem=self._after(run))
+        return ended._ramp(first, self.after, partial(tell, progress, "spinning down"))
+
+    def _after(self, run: Trajectory) -> Problem:
+        return replace(self.problem, q=run.q[-1], qd=run.qd[-1])
 
     def _ramp(self, first: int, count: int, progress: Any) -> Trajectory | None:
         """So many steps of the results from the `first`, counted from the flight's start."""
@@ -156,49 +157,6 @@ class Posed:
     def terms(self) -> Body:
         """Terms of the structure's equations, by which loads at its root are found."""
         return terms_of(self.structure)
-
-
-@dataclass(frozen=True)
-class StructureRun(Run):
-    """A run of a structure."""
-
-    posed: Posed
-
-    @property
-    def stride(self) -> int:
-        """Number of its steps in one of the results, whose times all motions of a study share."""
-        return 1 if self.posed.settings.step is not None else round(self.posed.kept / self.step)
-
-    @cached_property
-    def moved(self) -> Floats:
-        """Displacement of the tip, (t, 3) m."""
-        return self.posed.tip(self.trajectory.q)
-
-    @cached_property
-    def peaks(self) -> list[Floats]:
-        """Peaks of the tip's displacement and of the root's moment, (4,) each."""
-        tip, moment = self.posed.tip, self.posed.moment
-        histories = (self.moved, tip), (moment(self.trajectory.q), moment)
-        return [peaks_of_coordinates(self.trajectory, values, of) for values, of in histories]
-
-    def loads(self, stride: int) -> list[Floats]:
-        """Force and moment at the root and, where errors are estimated, both sides' stress at every section."""
-        posed, structure, at = self.posed, self.posed.structure, self.trajectory.at(slice(None, None, stride))
-        base, _ = posed.moving(at.time, at.q, at.qd, at.qdd)
-        q, qd, qdd = (x[:, posed.beam] for x in (at.q, at.qd, at.qdd))
-        force, moment = root_loads(structure, posed.terms, base, q, qd, qdd, at.time)
-        largest = np.abs(force).max() * structure.length, np.abs(moment).max()
-        felt = [force * (largest[0] > NOTHING * largest[1]), moment * (largest[1] > NOTHING * largest[0])]
-        if not posed.settings.estimate:
-            return felt
-        forces = section_forces(structure, base, q, qd, qdd, at.time, motion=posed.motion)
-        sides = [forces.stress_tension, forces.stress_compression]
-        if forces.von_mises is not None and np.isfinite(forces.von_mises).all():
-            sides.append(forces.von_mises)  # of what is only twisted the others are rounding
-        stress = np.concatenate(sides, axis=1)[..., None]
-        if structure.recovery is not None:
-            stress = np.asarray(structure.recovery.felt(q))
-        return [*felt, stress]
 
 
 def pose(structure: Structure, motion: Motion, settings: ResponseSettings, kept: float, limit: int) -> Posed:

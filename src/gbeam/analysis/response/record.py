@@ -1,36 +1,125 @@
-"""The response that a run leaves, with what is read from the trajectory and how well that is known."""
+"""Runs of a structure, and the response that one leaves: what is read from it, and how well that is known."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from gbeam.analysis.accuracy.estimate import NOTHING
 from gbeam.analysis.accuracy.response_errors import response_errors
 from gbeam.analysis.outline import outline_of
 from gbeam.analysis.response.outcome import describe, effort, inaccuracies
-from gbeam.analysis.response.peaks import displacement_peaks, load_peaks
-from gbeam.analysis.response.posed import StructureRun
-from gbeam.analysis.response.problem import start_of
-from gbeam.analysis.response.stepping import joined, scheme_of
+from gbeam.analysis.response.peaks import displacement_peaks, load_peaks, peaks_of_coordinates
+from gbeam.analysis.response.posed import Posed, pose
+from gbeam.analysis.response.problem import problem_of, start_of
+from gbeam.analysis.response.run import Run
+from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.analysis.response.stepping import first_steps, integrated, joined, scheme_of, split, steps_beyond
 from gbeam.arrays.namespace import Array, is_jax
 from gbeam.arrays.types import Floats
+from gbeam.errors import InputError
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.plausibility import input_warnings
-from gbeam.mechanics.section_forces import accelerations, section_forces
+from gbeam.mechanics.section_forces import accelerations, root_loads, section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.motion import Centrifuge
 from gbeam.motion.centrifuge.kinematics import axes_result
 from gbeam.motion.flight import Flight
 from gbeam.motion.protocol import Motion
+from gbeam.progress import Progress
 from gbeam.results.errors import ErrorEstimate, Errors, StepErrors
 from gbeam.results.machine import AxesResult
 from gbeam.results.parts import Base, Influence, Loads, Peaks
 from gbeam.results.response import HubResult, Response
 from gbeam.structure.beam import names_at
+
+Prepared = tuple[Motion, ResponseSettings]
+
+
+@dataclass(frozen=True)
+class StructureRun(Run):
+    """A run of a structure, with a machine's spin-up and spin-down where it has them."""
+
+    posed: Posed
+    up: Trajectory | None = None
+    down: Trajectory | None = None
+
+    @classmethod
+    def prepared(cls, structure: Structure, motion: Motion | None, settings: ResponseSettings) -> Prepared:
+        """The motion over the flight's times, and the settings, whose integrator is chosen."""
+        if motion is None:
+            raise InputError("motion", "is missing", "give a Flight, a Hub or a Centrifuge; Flight(z=0.0) is at rest")
+        structure.require_damping("the response")
+        settings = settings.chosen(free=motion.free)
+        return motion.over(settings.start, settings.start + settings.duration), settings
+
+    @classmethod
+    def poses(cls, structure: Structure, motion: Motion, settings: ResponseSettings) -> Iterator[Posed]:
+        """The problem posed with each of the steps of results to try."""
+        return (pose(structure, motion, settings, *each) for each in first_steps(structure, motion, settings))
+
+    @classmethod
+    def by_steps(cls, posed: Posed, step: float, progress: Progress = None) -> StructureRun:
+        """Run it by such steps, as far as its model means anything; what did not spin up has no other run."""
+        if posed.up is not None and posed.stuck:
+            return cls(posed.up, posed.kept, posed)
+        how: Any = {"corners": posed.felt, "stop": posed.too_far, "progress": progress}
+        return cls(integrated(posed.problem, posed.settings, step, **how), step, posed, posed.up)
+
+    @classmethod
+    def traced(
+        cls, structure: Structure, motion: Motion, settings: ResponseSettings, step: float, name: str
+    ) -> Response:
+        """The response whose values JAX traces: of one program for all of it, which is then taken apart."""
+        before, after = steps_beyond(motion, settings, step)
+        start, count = settings.start - before * step, round(settings.duration / step)
+        problem = problem_of(structure, motion, start, settings.begin)
+        entire = integrated(problem, replace(settings, start=start, duration=(before + count + after) * step), step)
+        up, trajectory, down = split(entire, before, count, after)
+        assert trajectory is not None
+        posed = Posed(structure, motion, settings, problem, step)
+        return response_of(cls(trajectory, step, posed, up, down), StepErrors(), name)
+
+    def described(self, errors: StepErrors, name: str, progress: Progress = None) -> Response:
+        """The response, after the spin-down."""
+        down = self.posed.spun_down(self.trajectory, progress) if self.whole else None
+        return response_of(replace(self, down=down), errors, name)
+
+    @cached_property
+    def moved(self) -> Floats:
+        """Displacement of the tip, (t, 3) m."""
+        return self.posed.tip(self.trajectory.q)
+
+    @cached_property
+    def peaks(self) -> list[Floats]:
+        """Peaks of the tip's displacement and of the root's moment, (4,) each."""
+        tip, moment = self.posed.tip, self.posed.moment
+        histories = (self.moved, tip), (moment(self.trajectory.q), moment)
+        return [peaks_of_coordinates(self.trajectory, values, of) for values, of in histories]
+
+    def loads(self, stride: int) -> list[Floats]:
+        """Force and moment at the root and, where errors are estimated, both sides' stress at every section."""
+        posed, structure, at = self.posed, self.posed.structure, self.trajectory.at(slice(None, None, stride))
+        base, _ = posed.moving(at.time, at.q, at.qd, at.qdd)
+        q, qd, qdd = (x[:, posed.beam] for x in (at.q, at.qd, at.qdd))
+        force, moment = root_loads(structure, posed.terms, base, q, qd, qdd, at.time)
+        largest = np.abs(force).max() * structure.length, np.abs(moment).max()
+        felt = [force * (largest[0] > NOTHING * largest[1]), moment * (largest[1] > NOTHING * largest[0])]
+        if not posed.settings.estimate:
+            return felt
+        forces = section_forces(structure, base, q, qd, qdd, at.time, motion=posed.motion)
+        sides = [forces.stress_tension, forces.stress_compression]
+        if forces.von_mises is not None and np.isfinite(forces.von_mises).all():
+            sides.append(forces.von_mises)  # of what is only twisted the others are rounding
+        stress = np.concatenate(sides, axis=1)[..., None]
+        if structure.recovery is not None:
+            stress = np.asarray(structure.recovery.felt(q))
+        return [*felt, stress]
 
 
 def influence(structure: Structure) -> Influence:
@@ -59,15 +148,13 @@ def response_of(
     step_errors: StepErrors,
     name: str,
     *,
-    up: Trajectory | None = None,
-    down: Trajectory | None = None,
     axes_of: Callable[[Any, Floats], AxesResult | None] = axes_result,
     base: Base | None = None,
     moved: Array | None = None,
     peaks: Peaks | None = None,
 ) -> Response:
     """Sample spin-up, flight and spin-down on the coarse grid and describe them, with what a flight alone gave."""
-    posed, trajectory, stride = run.posed, run.trajectory, run.stride
+    posed, trajectory, stride, up, down = run.posed, run.trajectory, run.stride, run.up, run.down
     structure, motion, settings, beam = posed.structure, posed.motion, posed.settings, posed.beam
     every, flight = joined(up, trajectory, down, stride)
     last = trajectory if down is None else down

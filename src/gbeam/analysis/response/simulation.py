@@ -2,23 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
-from typing import Unpack, overload
+from typing import Any, Unpack, overload
 
-from gbeam.analysis.response.posed import Posed, StructureRun, pose
-from gbeam.analysis.response.problem import problem_of
-from gbeam.analysis.response.record import response_of
+from gbeam.analysis.response.record import StructureRun
+from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.settings import ResponseSettings, Settings
-from gbeam.analysis.response.stepping import (
-    answered,
-    enough,
-    first_steps,
-    integrated,
-    split,
-    steps_beyond,
-)
-from gbeam.analysis.response.systems import simulate_system
+from gbeam.analysis.response.stepping import answered, enough
+from gbeam.analysis.response.systems import SystemRun
 from gbeam.arrays.namespace import holds_jax
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
@@ -27,7 +18,6 @@ from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress, tell
-from gbeam.results.errors import StepErrors
 from gbeam.results.response import Response
 from gbeam.results.system import SystemResponse
 
@@ -112,47 +102,23 @@ def simulate(
     >>> print(f"{1e3 * response.peaks.max_abs[2]:.3f} mm, error {response.error_estimate:.0e}")
     2.302 mm, error 1e-02
     """
-    if isinstance(structure, System):
-        return simulate_system(structure, motion, settings_of(settings, options), name, progress)
-    settings = settings_of(settings, options)
-    if motion is None:
-        raise InputError("motion", "is missing", "give a Flight, a Hub or a Centrifuge; Flight(z=0.0) is at rest")
-    settings = settings.chosen(free=motion.free)
-    structure.require_damping("the response")
-    motion = motion.over(settings.start, settings.start + settings.duration)
+    kind: type[Run] = SystemRun if isinstance(structure, System) else StructureRun
+    motion, settings = kind.prepared(structure, motion, settings_of(settings, options))
     if structure.holds_jax or holds_jax(motion):
-        return _traced(structure, motion, settings, name)
-    for kept, limit in first_steps(structure, motion, settings):
-        posed = pose(structure, motion, settings, kept, limit)
-        up = posed.spun_up(progress)
-        if up is not None and not up.whole:
-            return response_of(StructureRun(up, kept, posed), StepErrors(), name)
-        posed = posed if up is None else posed.going_on(up)
-        run, errors = answered(posed.plan(), partial(_run, posed, progress))
+        if settings.step is None:
+            raise InputError("step", "is automatic, and a traced run has no numbers to choose it by", "give a step, s")
+        step = settings.duration / max(1, round(settings.duration / settings.step))
+        return kind.traced(structure, motion, settings, step, name)
+    for posed in kind.poses(structure, motion, settings):
+        posed = posed.begun(progress)
+        run, errors = answered(posed.plan(), partial(_run, kind, posed, progress))
         if enough(run, errors, settings):
             break
-    down = posed.going_on(run.trajectory).spun_down(progress) if run.whole else None
-    return response_of(run, errors, name, up=up, down=down)
+    return run.described(errors, name, progress)
 
 
-def _run(posed: Posed, progress: Progress, step: float, what: str) -> StructureRun:
-    return posed.run(step, stop=posed.too_far, progress=partial(tell, progress, what))
-
-
-def _traced(structure: Structure, motion: Motion, settings: ResponseSettings, name: str) -> Response:
-    """A run whose values JAX traces: of a given step, without a look at them."""
-    if settings.step is None:
-        raise InputError("step", "is automatic, and a traced run has no numbers to choose it by", "give a step, s")
-    step = settings.duration / max(1, round(settings.duration / settings.step))
-    before, after = steps_beyond(motion, settings, step)
-    start, count = settings.start - before * step, round(settings.duration / step)
-    problem = problem_of(structure, motion, start, settings.begin)
-    # One program for all of it, which is then taken apart.
-    entire = integrated(problem, replace(settings, start=start, duration=(before + count + after) * step), step)
-    up, trajectory, down = split(entire, before, count, after)
-    assert trajectory is not None
-    run = StructureRun(trajectory, step, Posed(structure, motion, settings, problem, step))
-    return response_of(run, StepErrors(), name, up=up, down=down)
+def _run(kind: type[Run], posed: Any, progress: Progress, step: float, what: str) -> Run:
+    return kind.by_steps(posed, step, partial(tell, progress, what))
 
 
 def settings_of(settings: ResponseSettings | None, options: Settings) -> ResponseSettings:

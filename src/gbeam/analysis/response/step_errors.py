@@ -9,64 +9,19 @@ long do not resolve, none is believed above one.
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
+from gbeam.analysis.response.run import Run
 from gbeam.arrays.types import Floats
-from gbeam.integrate.equations import Trajectory
 from gbeam.results.errors import StepErrors
 
 # Believed of a history; runs that hardly converge differ by less than their error.
 LOWEST_ORDER, HIGHEST_ORDER = 0.5, 2.0
 _SAMPLES = 2000  # times at most at which the loads of two runs are compared
-
-
-@dataclass(frozen=True)
-class Run(ABC):
-    """A trajectory with the length of its steps, s, and what is read from it."""
-
-    trajectory: Trajectory
-    step: float
-
-    @property
-    def bends(self) -> bool:
-        """True if a law bends within steps, whose error then depends on where."""
-        return False
-
-    @property
-    def missed(self) -> tuple[str, ...]:
-        """Warning of what the steps may miss: then their error is unknown."""
-        return ()
-
-    @property
-    def followed(self) -> bool:
-        """True if steps are refined for the loads, too."""
-        return True
-
-    @property
-    def whole(self) -> bool:
-        """True if it came to its end."""
-        return self.trajectory.whole
-
-    @property
-    @abstractmethod
-    def moved(self) -> Floats:
-        """Displacement of the tip, or of all points side by side, (t, 3 p) m."""
-
-    @property
-    @abstractmethod
-    def peaks(self) -> list[Floats]:
-        """Peaks of the tip's displacement and of the root's moment, (4,) each; none where the history is judged."""
-
-    @abstractmethod
-    def loads(self, stride: int) -> Sequence[Floats]:
-        """Histories (t, ..., k) of force, moment and stress of each beam, at every so many steps; of one beam the
-        stress is left out where no errors are estimated.
-        """
 
 
 def difference(coarse: Floats, fine: Floats, ratio: int) -> float:

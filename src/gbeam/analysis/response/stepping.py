@@ -13,8 +13,9 @@ from typing import Any, TypeVar
 import numpy as np
 
 from gbeam.analysis.response.problem import Problem
+from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.step_errors import Estimate, Run, of_everything, ratio
+from gbeam.analysis.response.step_errors import Estimate, of_everything, ratio
 from gbeam.arrays.namespace import is_traced, namespace
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError

@@ -1,4 +1,4 @@
-"""Response of a system over time, with the error of its steps."""
+"""Runs of a system, and the response that one leaves, with its errors."""
 
 from __future__ import annotations
 
@@ -14,21 +14,10 @@ from gbeam.analysis.accuracy.correction import PLACE, pieces
 from gbeam.analysis.outline import assembly_of, outline_of
 from gbeam.analysis.response.outcome import yielding
 from gbeam.analysis.response.peaks import half_ranges, load_peaks
-from gbeam.analysis.response.problem import Problem
+from gbeam.analysis.response.posed_system import PosedSystem, corners, first_step, refuse_long, state_at, with_ends
+from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.step_errors import Run
-from gbeam.analysis.response.stepping import (
-    LOADS_STEPS,
-    Plan,
-    answered,
-    enough,
-    even_steps,
-    integrated,
-    planned,
-    scheme_of,
-    steps_beyond,
-    steps_to_try,
-)
+from gbeam.analysis.response.stepping import LOADS_STEPS, scheme_of, steps_to_try
 from gbeam.analysis.system.accuracy import doubts, system_errors, unmoved
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
 from gbeam.analysis.system.histories import Carried, beams_of, deflection, histories, loads_of, meshes_of
@@ -36,13 +25,11 @@ from gbeam.analysis.system.point import Point, started, started_traced
 from gbeam.analysis.system.richer import judged_bodies
 from gbeam.analysis.system.solution import Solution
 from gbeam.analysis.system.steady import MASSLESS, bent_most, massless
-from gbeam.arrays.namespace import Array, holds_jax, is_jax, namespace
+from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
-from gbeam.guards.limits import HISTORY_BYTES, STEPS, refuse_more
-from gbeam.integrate.equations import NonlinearEquations, Trajectory, slopes
+from gbeam.integrate.equations import Trajectory, slopes
 from gbeam.integrate.sampled import Sampling
-from gbeam.integrate.steps import Corners
 from gbeam.mechanics.tree.bodies import LinearBody
 from gbeam.mechanics.tree.equations import Inputs
 from gbeam.mechanics.tree.joints import Joint
@@ -60,69 +47,84 @@ from gbeam.results.parts import Loads
 from gbeam.results.system import BeamResponse, Invariants, Loop, SystemResponse
 from gbeam.structure.beam import names_at
 
-LEAST = 500  # steps of the results at least
 LOOKS = 30  # at the mass matrix of a run
 LOADS = "force", "moment", "stress"  # of a beam, whose errors are estimated
 BEYOND = 1e-8  # of a coordinate's range: less beyond a stop is no contact
 
-
-@dataclass(frozen=True)
-class PosedSystem:
-    """A system on the ground or on a moving base, with the equations of its motion."""
-
-    system: System
-    motion: Motion | None
-
-    @cached_property
-    def equations(self) -> NonlinearEquations:
-        """Its equations, with its controllers, if any, in the loop."""
-        control = SystemControllers(self.system) if self.system.controllers else None
-        drive = partial(self.system.inputs, motion=self.motion)
-        return NonlinearEquations(self.system.tree, drive, control, None if control is None else [])
-
-    def start(self, settings: ResponseSettings) -> Point:
-        """State at the start."""
-        return started(self.system, self.motion, settings.start, settings.begin.state)
-
-    def corners(self, step: float) -> Floats:
-        """Times that steps of a length should not pass unseen, s."""
-        moved = [] if self.motion is None else [self.motion.corners(step)]
-        return np.concatenate([self.system.corners(step), *moved])
-
-    def jumps(self, settings: ResponseSettings, step: float) -> Corners:
-        """Corners in a run of steps of about a length, and jumps of its controllers' commands."""
-        end = settings.start + settings.duration
-        felt = Corners.of(self.corners(step), self.equations.drive, settings.start, end)
-        if self.equations.controllers is None:
-            return felt
-        commands = self.commands(settings).time
-        commands = commands[np.abs(commands[:, None] - felt.time).min(axis=1, initial=np.inf) > 1e-9]
-        both, jumps = np.append(felt.time, commands), np.append(felt.jump, np.ones(len(commands), dtype=bool))
-        return Corners(np.sort(both), jumps[np.argsort(both)])
-
-    def commands(self, settings: ResponseSettings) -> Corners:
-        """Times at which its controllers sample and their commands jump."""
-        if self.equations.controllers is None:
-            return Corners(np.zeros(0), np.zeros(0, dtype=bool))
-        times = self.equations.controllers.corners(settings.start, settings.start + settings.duration)
-        times = np.unique(np.round(times, 12))
-        return Corners(times, np.ones(len(times), dtype=bool))
-
-    def run(self, settings: ResponseSettings, q: Array, qd: Array, step: float, **how: Any) -> SystemRun:
-        """Integrate it from coordinates and rates."""
-        trajectory = integrated(Problem(self.equations, q, qd, 0, True), settings, step, **how)
-        sampling = self.equations.samplings[-1] if self.equations.samplings else None
-        return SystemRun(trajectory, step, self, sampling, settings.estimate)
+Prepared = tuple[Motion | None, ResponseSettings]
 
 
 @dataclass(frozen=True)
 class SystemRun(Run):
-    """A run of a system, with the samples of its controllers, and whether its loads are to be judged."""
+    """A run of a system, with the samples of its controllers."""
 
     posed: PosedSystem
-    sampling: Sampling | None
-    judged: bool
+    sampling: Sampling | None = None
     followed = False
+
+    @classmethod
+    def prepared(cls, system: System, motion: Motion | None, settings: ResponseSettings) -> Prepared:
+        """The motion over the flight's times, and the settings, whose integrator is chosen."""
+        settings = settings.chosen(free=True)
+        if motion is not None:
+            if motion.free:
+                raise InputError("motion", "is a hub that turns freely", "give it as a body on a revolute joint")
+            if system.gravity is not None:
+                fix = "leave one out: a motion carries its own, as specific force"
+                raise InputError("gravity", "is given beside a motion of the base", fix)
+            motion = motion.over(settings.start, settings.start + settings.duration)
+        begin = settings.begin
+        if begin != type(begin)(begin.state):
+            raise InputError(
+                "initial", "displaces a tip", 'give "equilibrium" or "undeformed"; joints have initial values'
+            )
+        return motion, settings
+
+    @classmethod
+    def poses(cls, system: System, motion: Motion | None, settings: ResponseSettings) -> Iterator[PosedSystem]:
+        """The problem posed with each of the steps of results to try."""
+        point, bends = started(system, motion, settings.start, settings.begin.state), partial(corners, system, motion)
+        for kept, limit in steps_to_try(first_step(point, bends, settings), LOADS_STEPS, bends, settings):
+            ends = with_ends(motion, settings, settings.step or kept)
+            refuse_long(system, ends, ends.step or kept)
+            start = (point.y, point.yd) if ends.start == settings.start else state_at(system, motion, ends)
+            yield PosedSystem(system, motion, ends, settings, start, kept, limit)
+
+    @classmethod
+    def by_steps(cls, posed: PosedSystem, step: float, progress: Progress = None) -> SystemRun:
+        """Run it by steps of a length, s."""
+        trajectory = posed.integrated(step, corners=posed.felt, progress=progress)
+        return cls(trajectory, step, posed, posed.sampling)
+
+    @classmethod
+    def traced(
+        cls, system: System, motion: Motion | None, settings: ResponseSettings, step: float, name: str
+    ) -> SystemResponse:
+        """The response whose values JAX traces, by given steps, without a look at them."""
+        ends = with_ends(motion, settings, step)
+        start = started_traced(system, motion, ends.start, settings.begin.state)
+        refuse_long(system, ends, step)
+        posed = PosedSystem(system, motion, ends, settings, start, step)
+        return _described(
+            cls(posed.integrated(step, corners=posed.commands), step, posed, posed.sampling), SystemErrors(), name
+        )
+
+    def described(self, errors: StepErrors, name: str, progress: Progress = None) -> SystemResponse:
+        """The response, with the errors of shapes, models and theories if the settings ask for them."""
+        posed, settings = self.posed, self.posed.settings
+        errors, say = StepErrors() if self.missed else errors, "errors of shapes and models"
+
+        def again(system: System) -> Solution:
+            return SystemRun.by_steps(posed.of(system), self.step, partial(tell, progress, say)).every(self.stride)
+
+        stated = SystemErrors(ErrorEstimate(errors.displacement), note=settings.not_estimated)
+        if settings.estimate and self.whole:
+            tell(progress, say, 0.0)
+            steps = {(body, each): math.nan for body in judged_bodies(posed.system) for each in LOADS}
+            steps |= {PLACE: errors.displacement, **dict(zip(steps, errors.each, strict=False))}
+            settled, closed = settings.begin.state == "equilibrium", again if posed.system.controllers else None
+            stated = system_errors(self.every(self.stride), closed, steps, settled=settled)
+        return _described(self, stated, name, self.missed + self.turned_over)
 
     @cached_property
     def peaks(self) -> list[Floats]:
@@ -137,7 +139,7 @@ class SystemRun(Run):
     def loads(self, stride: int) -> list[Floats]:
         """Force and moment at the root and the stress of every beam that can be judged, at every so many steps."""
         beams = judged_bodies(self.posed.system)
-        if not beams or not self.judged:
+        if not beams or not self.posed.settings.estimate:
             return []
         values = self.every(stride).read(beams)
         return [values[name, each] for name in beams for each in LOADS]
@@ -211,104 +213,6 @@ class SystemRun(Run):
         return over_time | {"attitude": continuous(over_time["attitude"])}, along
 
 
-def simulate_system(
-    system: System, motion: Motion | None, settings: ResponseSettings, name: str, progress: Progress = None
-) -> SystemResponse:
-    """Compute the response of a system on the ground or on a moving base."""
-    settings = settings.chosen(free=True)
-    if motion is not None:
-        if motion.free:
-            raise InputError("motion", "is a hub that turns freely", "give it as a body on a revolute joint")
-        if system.gravity is not None:
-            fix = "leave one out: a motion carries its own, as specific force"
-            raise InputError("gravity", "is given beside a motion of the base", fix)
-        motion = motion.over(settings.start, settings.start + settings.duration)
-    begin, posed = settings.begin, PosedSystem(system, motion)
-    if begin != type(begin)(begin.state):
-        raise InputError("initial", "displaces a tip", 'give "equilibrium" or "undeformed"; joints have initial values')
-    if system.holds_jax or holds_jax(motion):
-        return _traced(posed, settings, name)
-    point = posed.start(settings)
-    flight = settings
-    for coarse, most in steps_to_try(_first_step(posed, point, flight), LOADS_STEPS, posed.corners, flight):
-        settings = _with_ends(motion, flight, flight.step or coarse)
-        if settings.start < flight.start:
-            point = posed.start(settings)
-        _refuse_long(system, settings, settings.step or coarse)
-        jumps = posed.jumps(settings, coarse)
-        plan: Plan[SystemRun] = planned(settings, settings.step or coarse, most)
-        chosen, of_steps = answered(plan, partial(_run, posed, settings, point, jumps, progress))
-        if enough(chosen, of_steps, settings):
-            break
-    if chosen.missed:
-        of_steps = StepErrors()
-    stride = 1 if settings.step is not None else round(coarse / chosen.step)
-    errors = SystemErrors(ErrorEstimate(of_steps.displacement), note=settings.not_estimated)
-
-    def again(of: System) -> Solution:
-        richer = PosedSystem(of, motion)
-        what = "errors of shapes and models"
-        return _run(richer, settings, richer.start(settings), jumps, progress, chosen.step, what).every(stride)
-
-    if settings.estimate and chosen.whole:
-        tell(progress, "errors of shapes and models", 0.0)
-        steps = {(name, each): math.nan for name in judged_bodies(system) for each in LOADS}
-        steps |= {PLACE: of_steps.displacement, **dict(zip(steps, of_steps.each, strict=False))}
-        settled, closed = begin.state == "equilibrium", again if system.controllers else None
-        errors = system_errors(chosen.every(stride), closed, steps, settled=settled)
-    return _described(chosen, settings, stride, errors, name, flight, chosen.missed + chosen.turned_over)
-
-
-def _run(
-    posed: PosedSystem,
-    settings: ResponseSettings,
-    point: Point,
-    jumps: Corners,
-    progress: Progress,
-    step: float,
-    what: str,
-) -> SystemRun:
-    """The run from a state, by steps of a length, s, for what is said."""
-    return posed.run(settings, point.y, point.yd, step, corners=jumps, progress=partial(tell, progress, what))
-
-
-def _refuse_long(system: System, settings: ResponseSettings, step: float) -> None:
-    """Refuse controllers that cannot be sampled, and a run of too many samples or steps."""
-    for key, controller in system.controllers.items():
-        fix = f"give {settings.duration / LOADS_STEPS:.3g} s or more, or a shorter run"
-        samples = settings.duration / controller.sample
-        refuse_more(f"controllers.{key}.sample", "samples", samples, STEPS, 8.0 * 3 * system.tree.size, fix)
-    if system.controllers and not len(system.tree.free):
-        raise InputError("controllers", "have nothing to move: all motion is prescribed", "leave them out, or a rate")
-    if system.controllers and settings.integrator != "gauss":
-        fix = "leave it out: controllers are sampled by Gauss's method"
-        raise InputError("integrator", f"is {settings.integrator!r}", fix)
-    each = 8.0 * (3 * system.tree.size + 16 * len(system.points))
-    most = int(HISTORY_BYTES / each)
-    fix = f"give {most * step:.3g} s or less, or longer steps"
-    refuse_more("response.duration", "steps", settings.duration / step, most, each, fix)
-
-
-def _traced(posed: PosedSystem, settings: ResponseSettings, name: str) -> SystemResponse:
-    """A run whose values JAX traces: of a given step, without a look at them."""
-    if settings.step is None:
-        raise InputError("step", "is automatic, and a traced run has no numbers to choose it by", "give a step, s")
-    step = settings.duration / max(1, round(settings.duration / settings.step))
-    flight, settings = settings, _with_ends(posed.motion, settings, step)
-    start = started_traced(posed.system, posed.motion, settings.start, settings.begin.state)
-    _refuse_long(posed.system, settings, step)
-    ran = posed.run(settings, *start, step, corners=posed.commands(settings))
-    return _described(ran, settings, 1, SystemErrors(), name, flight)
-
-
-def _with_ends(motion: Motion | None, settings: ResponseSettings, step: float) -> ResponseSettings:
-    """Settings of a run from a machine's standstill to its standstill, in whole steps beyond the flight's times."""
-    if motion is None:
-        return settings
-    before, after = (step * count for count in steps_beyond(motion, settings, step))
-    return replace(settings, start=settings.start - before, duration=settings.duration + before + after)
-
-
 def _held(system: System, run: Trajectory, inputs: Inputs) -> Iterator[tuple[str, Joint, Floats, Floats]]:
     """Joints with springs or stops, by name, and what these hold over the times of a run, (t, h), and its rates: of
     balls the rotation vector.
@@ -363,31 +267,10 @@ def _turned_over(system: System, run: Trajectory, inputs: Inputs) -> tuple[str, 
     return ()
 
 
-def _first_step(posed: PosedSystem, point: Point, settings: ResponseSettings) -> float:
-    """Step of the results, s: 500 at least, twenty to the period of the slowest vibration of which the most steps are
-    one to a period, and none over a corner, as far as there are not too many.
-    """
-    _, k, _, m = point.local.slopes()
-    square = np.abs(np.linalg.eigvals(np.linalg.solve(m, k))) if len(k) else np.zeros(0)
-    largest = settings.duration / LEAST
-    oscillating = np.sqrt(square[square > 1e-9 * square.max(initial=0.0)])
-    oscillating = oscillating[oscillating * settings.duration < 2 * math.pi * LOADS_STEPS]
-    if oscillating.size:
-        largest = min(largest, 2 * math.pi / float(oscillating.min()) / 20)
-    return settings.duration / min(even_steps(largest, posed.corners(largest), settings), LOADS_STEPS)
-
-
-def _described(
-    run: SystemRun,
-    settings: ResponseSettings,
-    stride: int,
-    errors: SystemErrors,
-    name: str,
-    flight: ResponseSettings,
-    warnings: tuple[str, ...] = (),
-) -> SystemResponse:
-    """Describe a run at every `stride`-th of its steps; its residual is of the flight's times."""
-    every, system, motion = run.trajectory, run.posed.system, run.posed.motion
+def _described(run: SystemRun, errors: SystemErrors, name: str, warnings: tuple[str, ...] = ()) -> SystemResponse:
+    """Describe a run at the times of its results; its residual is of the flight's times."""
+    every, stride, system, motion = run.trajectory, run.stride, run.posed.system, run.posed.motion
+    settings, flight = run.posed.settings, run.posed.flight
     time, traced = every.time[::stride], is_jax(every.q)
     over_time, along = run.histories(slice(None, None, stride), loads=settings.loads)
     beams, yielded = dict[str, BeamResponse](), []

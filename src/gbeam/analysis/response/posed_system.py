@@ -1,0 +1,152 @@
+"""A system on the ground or on a moving base posed as a problem, ready for runs by any step."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from typing import Any
+
+import numpy as np
+
+from gbeam.analysis.response.problem import Problem
+from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.analysis.response.stepping import (
+    LOADS_STEPS,
+    Plan,
+    even_steps,
+    integrated,
+    planned,
+    steps_beyond,
+)
+from gbeam.analysis.system.feedback import SystemControllers
+from gbeam.analysis.system.point import Point, started
+from gbeam.arrays.namespace import Array
+from gbeam.arrays.types import Floats
+from gbeam.errors import InputError
+from gbeam.guards.limits import HISTORY_BYTES, STEPS, refuse_more
+from gbeam.integrate.equations import NonlinearEquations, Trajectory
+from gbeam.integrate.sampled import Sampling
+from gbeam.integrate.steps import Corners
+from gbeam.mechanics.tree.system import System
+from gbeam.motion.protocol import Motion
+from gbeam.progress import Progress
+
+LEAST = 500  # steps of the results at least
+
+
+@dataclass(frozen=True, eq=False)
+class PosedSystem:
+    """A system in an environment posed from coordinates and rates (n,) at the `start`, to be run by any step.
+
+    The `settings` are those of the run, from a machine's standstill to its standstill; the flight's are those given.
+    """
+
+    system: System
+    motion: Motion | None
+    settings: ResponseSettings
+    flight: ResponseSettings
+    start: tuple[Array, Array]
+    kept: float  # step of the results, s
+    limit: int = LOADS_STEPS  # of steps of a run
+
+    @cached_property
+    def equations(self) -> NonlinearEquations:
+        """Its equations, with its controllers, if any, in the loop."""
+        control = SystemControllers(self.system) if self.system.controllers else None
+        drive = partial(self.system.inputs, motion=self.motion)
+        return NonlinearEquations(self.system.tree, drive, control, None if control is None else [])
+
+    @property
+    def sampling(self) -> Sampling | None:
+        """Samples of its controllers in the last run."""
+        return self.equations.samplings[-1] if self.equations.samplings else None
+
+    @cached_property
+    def felt(self) -> Corners:
+        """Corners and jumps of what drives it, and jumps of its controllers' commands."""
+        end = self.settings.start + self.settings.duration
+        felt = Corners.of(corners(self.system, self.motion, self.kept), self.equations.drive, self.settings.start, end)
+        if self.equations.controllers is None:
+            return felt
+        commands = self.commands.time
+        commands = commands[np.abs(commands[:, None] - felt.time).min(axis=1, initial=np.inf) > 1e-9]
+        both, jumps = np.append(felt.time, commands), np.append(felt.jump, np.ones(len(commands), dtype=bool))
+        return Corners(np.sort(both), jumps[np.argsort(both)])
+
+    @property
+    def commands(self) -> Corners:
+        """Times at which its controllers sample and their commands jump."""
+        if self.equations.controllers is None:
+            return Corners(np.zeros(0), np.zeros(0, dtype=bool))
+        times = self.equations.controllers.corners(self.settings.start, self.settings.start + self.settings.duration)
+        times = np.unique(np.round(times, 12))
+        return Corners(times, np.ones(len(times), dtype=bool))
+
+    def begun(self, progress: Progress) -> PosedSystem:
+        """It where it starts: a machine's spin-up is a part of its run."""
+        return self
+
+    def plan(self) -> Plan[Any]:
+        """Plan the runs that the settings need."""
+        return planned(self.settings, self.settings.step or self.kept, self.limit)
+
+    def integrated(self, step: float, **how: Any) -> Trajectory:
+        """Integrate it by steps of a length, s."""
+        return integrated(Problem(self.equations, *self.start, 0, True), self.settings, step, **how)
+
+    def of(self, system: System) -> PosedSystem:
+        """The same of another system with its joints."""
+        return replace(self, system=system, start=state_at(system, self.motion, self.settings))
+
+
+def corners(system: System, motion: Motion | None, step: float) -> Floats:
+    """Times that steps of a length should not pass unseen, s."""
+    moved = [] if motion is None else [motion.corners(step)]
+    return np.concatenate([system.corners(step), *moved])
+
+
+def state_at(system: System, motion: Motion | None, settings: ResponseSettings) -> tuple[Floats, Floats]:
+    """Coordinates and rates in which a system begins."""
+    point = started(system, motion, settings.start, settings.begin.state)
+    return point.y, point.yd
+
+
+def refuse_long(system: System, settings: ResponseSettings, step: float) -> None:
+    """Refuse controllers that cannot be sampled, and a run of too many samples or steps."""
+    for key, controller in system.controllers.items():
+        fix = f"give {settings.duration / LOADS_STEPS:.3g} s or more, or a shorter run"
+        samples = settings.duration / controller.sample
+        refuse_more(f"controllers.{key}.sample", "samples", samples, STEPS, 8.0 * 3 * system.tree.size, fix)
+    if system.controllers and not len(system.tree.free):
+        raise InputError("controllers", "have nothing to move: all motion is prescribed", "leave them out, or a rate")
+    if system.controllers and settings.integrator != "gauss":
+        fix = "leave it out: controllers are sampled by Gauss's method"
+        raise InputError("integrator", f"is {settings.integrator!r}", fix)
+    each = 8.0 * (3 * system.tree.size + 16 * len(system.points))
+    most = int(HISTORY_BYTES / each)
+    fix = f"give {most * step:.3g} s or less, or longer steps"
+    refuse_more("response.duration", "steps", settings.duration / step, most, each, fix)
+
+
+def with_ends(motion: Motion | None, settings: ResponseSettings, step: float) -> ResponseSettings:
+    """Settings of a run from a machine's standstill to its standstill, in whole steps beyond the flight's times."""
+    if motion is None:
+        return settings
+    before, after = (step * count for count in steps_beyond(motion, settings, step))
+    return replace(settings, start=settings.start - before, duration=settings.duration + before + after)
+
+
+def first_step(point: Point, corners: Callable[[float], Floats], settings: ResponseSettings) -> float:
+    """Step of the results, s: 500 at least, twenty to the period of the slowest vibration of which the most steps are
+    one to a period, and none over a corner, as far as there are not too many.
+    """
+    _, k, _, m = point.local.slopes()
+    square = np.abs(np.linalg.eigvals(np.linalg.solve(m, k))) if len(k) else np.zeros(0)
+    largest = settings.duration / LEAST
+    oscillating = np.sqrt(square[square > 1e-9 * square.max(initial=0.0)])
+    oscillating = oscillating[oscillating * settings.duration < 2 * math.pi * LOADS_STEPS]
+    if oscillating.size:
+        largest = min(largest, 2 * math.pi / float(oscillating.min()) / 20)
+    return settings.duration / min(even_steps(largest, corners(largest), settings), LOADS_STEPS)
