@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 import gbeam as gb
+from gbeam.analysis.response.settings import Settings
+from gbeam.results.criteria import Limits
 
 
 def respond(structure: gb.Structure, motion: gb.Flight) -> None:
@@ -54,6 +58,7 @@ def imitate(case: gb.Case, flight: gb.Response, spun: gb.Response, machine: gb.C
     placed = case.assemble(), machine.flight, gb.choice_of(machine, turns="any"), gb.ResponseSettings(1.0)
     gb.place(*placed, {"tip": 1.0, "root-moment": 0.5}, current=machine)
     gb.place(*placed, {"root_moment": 0.5}, current=machine)  # type: ignore[dict-item]
+    print(gb.machines["large-15m"].limits, gb.machines["large-15"])  # type: ignore[index]
     gb.choice_of(machine, turns="right")  # type: ignore[arg-type]
 
 
@@ -101,3 +106,18 @@ def draw(
     gb.modes(structure).plot("mode")  # type: ignore[arg-type]
     system.plot("pole")  # type: ignore[arg-type]
     study.plot("base flight")
+
+
+def kept(structure: gb.Structure, flight: gb.Response, spun: gb.Response, path: str) -> float:
+    """What is kept in variables has its type; vectors are lists, tuples or arrays; a file is one kind of case."""
+    accept: Limits = {"tip": 0.02}
+    settings: Settings = {"duration": 6.0, "integrator": "gauss"}
+    gb.compare(flight, spun, accept=accept)
+    gb.simulate(structure, gb.Flight(z=9.81), **settings)
+    gb.static(structure, acceleration=np.array([0, 0, 9.81]))
+    gb.Sum([gb.constant(1.0), gb.Sine(1.0, 2.0)])
+    gb.PointMass(0.1, 0.1, offset=[0, 0, 0.01])
+    case = gb.read_scenario(path)
+    assert isinstance(case, gb.Case)
+    size: float = gb.study(case).responses["flight"].peaks.max_size
+    return size

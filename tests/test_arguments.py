@@ -643,6 +643,31 @@ def test_what_is_said_of_them(samples: Samples, call: Callable[[Samples], Any], 
     assert str(refused.value).startswith(words)
 
 
+def as_arrays(value: Any) -> Any:
+    """The value with every list of numbers as an array."""
+    if isinstance(value, dict):
+        return {key: as_arrays(each) for key, each in value.items()}
+    if not isinstance(value, (list, tuple)):
+        return value
+    alike = value and all(isinstance(each, (int, float)) and not isinstance(each, bool) for each in value)
+    return np.array(value) if alike else type(value)(map(as_arrays, value))
+
+
+@pytest.mark.parametrize("name", PUBLIC)
+def test_arrays_stand_where_lists_of_numbers_do(
+    samples: Samples, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And what is made of either is equal, both ways."""
+    monkeypatch.chdir(tmp_path)
+    args, keywords = samples.calls()[name]
+    if name == "rerun":
+        return
+    function = getattr(gb, name)
+    first, second = called(function, *args, **keywords), called(function, *as_arrays(args), **as_arrays(keywords))
+    if isinstance(function, type):
+        assert first == second and second == first
+
+
 def test_what_looks_like_a_number_is_one(samples: Samples) -> None:
     jnp = pytest.importorskip("jax.numpy")
     for seconds in (0, np.float32(0.0), np.int64(0), np.zeros(()), jnp.zeros(()), Decimal(0)):

@@ -113,6 +113,7 @@ def test_words_to_choose_from_are_those_that_are_registered() -> None:
         constants.Integrator: SCHEMES,
         constants.Mounting: MOUNTINGS,
         constants.InverseName: INVERSES,
+        constants.MachineName: gbeam.machines,
         constants.ModelKind: MODELS,
         constants.Parameter: dict.fromkeys(name for takes in PARAMETERS.values() for name in takes),
     }.items():

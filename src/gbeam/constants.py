@@ -19,6 +19,7 @@ Parameter = Literal["beta", "gamma", "alpha", "rho_inf"]  # of integrators
 SectionShape = Literal["rectangle", "circle", "tube", "general", "matrices"]
 JointKind = Literal["fixed", "revolute", "prismatic", "cylindrical", "universal", "spherical", "free"]
 Measure = Literal["root-shear", "root-moment", "vibration", "tip", "load"]  # of a place for a specimen
+MachineName = Literal["human-7.6m", "specimen-3.3m", "large-15m"]
 RecordQuantity = Literal["specific-force", "acceleration"]
 AccelerationUnit = Literal["g", "m/s^2", "ft/s^2"]  # of records, as the next two
 RateUnit = Literal["rad/s", "deg/s"]

@@ -281,3 +281,10 @@ def test_equal_machines_share_a_plan_and_a_load_of_another_kind_has_its_own() ->
     assert first.course.inverse is second.course.inverse and first.course.inverse is not other.course.inverse
     t = times(first, 0.1)
     np.testing.assert_array_equal(first.base(t).a_WO_B, other.base(t).a_WO_B)
+
+
+def test_a_run_shorter_than_the_first_knots_is_planned() -> None:
+    """From idle, so without a spin-up; a constant load is held as it is."""
+    for seconds in (0.05, 0.2):
+        machine = Centrifuge(Flight(z=30.0), arm=R, control_point=0.2, gravity=False, start="idle", span=(0.0, seconds))
+        assert machine.actual(np.linspace(0, seconds, 7)) == pytest.approx(np.array([[0.0, 0.0, 30.0]] * 7), abs=1e-9)

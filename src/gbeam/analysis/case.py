@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.arrays.tree import Value
+from gbeam.arrays.types import Numbers
 from gbeam.errors import InputError, naming
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.assembly import assemble
@@ -163,7 +164,7 @@ class Case(_InEnvironments):
     motions: Mapping[str, Motion]
     response: ResponseSettings | None
     tracks: Mapping[str, str] = field(default_factory=dict)
-    stations: tuple[float, ...] = ()
+    stations: Numbers = ()
     accept: Mapping[str, Acceptance] = field(default_factory=dict)
     provenance: Provenance | None = None
     sensors: Mapping[str, Sensor] = field(default_factory=dict)

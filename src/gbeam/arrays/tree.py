@@ -72,8 +72,10 @@ def _same(one: Any, other: Any) -> bool:
     """True if two values are alike; NaN is like NaN, and what JAX traces only like itself."""
     if one is other:
         return True
-    if isinstance(one, tuple | list):
-        return type(one) is type(other) and len(one) == len(other) and all(map(_same, one, other))
+    listed = [isinstance(each, tuple | list) for each in (one, other)]
+    if any(listed):  # a list, a tuple and an array of the same numbers are alike
+        ordered = all(known or np.ndim(each) for known, each in zip(listed, (one, other), strict=True))
+        return ordered and len(one) == len(other) and all(map(_same, one, other))
     if isinstance(one, dict):
         return type(one) is type(other) and one.keys() == other.keys() and all(_same(one[k], other[k]) for k in one)
     if dataclasses.is_dataclass(one):

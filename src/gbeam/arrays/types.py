@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,3 +12,4 @@ Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Complex = NDArray[np.complex128]
 Indices = NDArray[np.intp]
+Numbers = Sequence[float] | NDArray[Any]  # given: components, or one of each

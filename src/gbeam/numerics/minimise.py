@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
 import numpy as np
@@ -21,7 +21,7 @@ def coarse(low: float, high: float) -> tuple[float, ...]:
     return tuple(float(x) for x in np.geomspace(low, high, GRID)) if high > low else (low,)
 
 
-def refine(evaluate: Evaluate, points: tuple[float, ...]) -> None:
+def refine(evaluate: Evaluate, points: Sequence[float]) -> None:
     """Look for a better number around the best of the coarse ones; what was evaluated is the caller's to keep."""
     values = [evaluate(x) for x in points]
     allowed = [i for i, (_, share) in enumerate(values) if share <= 1]

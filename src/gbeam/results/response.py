@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal, Protocol
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from gbeam.arrays.namespace import is_traced
 from gbeam.arrays.tree import Value
+from gbeam.arrays.types import Numbers
 from gbeam.constants import BY_STRAINS
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
@@ -55,7 +56,7 @@ class Sensor(Value):
     0.7
     """
 
-    turn: Sequence[float] = (0.0, 0.0, 0.0)
+    turn: Numbers = (0.0, 0.0, 0.0)
     frequency: float | None = None
     damping_ratio: float = 0.7
     sensitivity: Any = None
@@ -341,7 +342,7 @@ class Response(Driven, Figured[ResponseFigure]):
         felt = every[:, station]
         return felt if sensor is None else sensor.reads(felt, float(self.time[1] - self.time[0]))
 
-    def strain_at(self, point: str, along: Sequence[float] = (1.0, 0.0, 0.0)) -> Floats:
+    def strain_at(self, point: str, along: Numbers = (1.0, 0.0, 0.0)) -> Floats:
         """Return what a strain gauge at a named point of a solid reads, (t,).
 
         Parameters

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.arrays.types import Numbers
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.guards.checks import index_of, vector
@@ -136,7 +136,7 @@ class SolidStress(Figured[Literal["stress"]]):
     def point_strain_max(self) -> Floats:
         return np.abs(self.point_strain[..., 0]).max(axis=0)
 
-    def strain_at(self, point: str, along: Sequence[float] = (1.0, 0.0, 0.0)) -> Floats:
+    def strain_at(self, point: str, along: Numbers = (1.0, 0.0, 0.0)) -> Floats:
         """Return what a strain gauge at a named point reads, (t,), as :meth:`gbeam.Response.strain_at` does."""
         station = index_of("point", point, self.points)
         way = np.asarray(vector("along", along), dtype=float)

@@ -11,6 +11,8 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
+from gbeam.arrays.tree import Value
+from gbeam.arrays.types import Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import vector
@@ -30,8 +32,8 @@ class Signal(Part):
 
 
 @typed
-@dataclass(frozen=True)
-class Gauge:
+@dataclass(frozen=True, eq=False)
+class Gauge(Value):
     """A strain gauge on a beam or a solid, alone or in a system.
 
     Along a beam it measures the normal strain of what its section carries, on a solid that of a direction.
@@ -61,7 +63,7 @@ class Gauge:
     at: float | str
     y: float = 0.0
     z: float = 0.0
-    along: Sequence[float] = (1.0, 0.0, 0.0)
+    along: Numbers = (1.0, 0.0, 0.0)
     body: str = ""
 
     def __post_init__(self) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gbeam.arrays.tree import Value
-from gbeam.arrays.types import Floats, Indices
+from gbeam.arrays.types import Floats, Indices, Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, choice
@@ -191,7 +191,7 @@ class ImportedModel(Value):
         interfaces: Sequence[str] = (),
         geometric: Mapping[InertialLoad, Any] | None = None,
         total_mass: float | None = None,
-        centre: Sequence[float] | None = None,
+        centre: Numbers | None = None,
         inertia: ArrayLike | None = None,
         kind: str = "matrices",
     ) -> Structure:

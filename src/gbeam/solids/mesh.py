@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.arrays.tree import Value
-from gbeam.arrays.types import Flags, Floats, Indices
+from gbeam.arrays.types import Flags, Floats, Indices, Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
@@ -104,7 +104,7 @@ class SolidMesh(Value):
     interfaces: dict[str, Indices] = field(default_factory=dict)
     links: Links = field(default_factory=Links)
     exponents: dict[str, float] = field(default_factory=dict)
-    turns: dict[str, Sequence[float]] = field(default_factory=dict)
+    turns: dict[str, Numbers] = field(default_factory=dict)
 
     @classmethod
     @typed
@@ -123,9 +123,9 @@ class SolidMesh(Value):
         links: Mapping[str, str | Sequence[str]] | None = None,
         carried: Mapping[str, RigidBody] | None = None,
         springs: Mapping[str, LinkSpring] | None = None,
-        origin: Sequence[float] = (0.0, 0.0, 0.0),
-        turn: Sequence[float] = (0.0, 0.0, 0.0),
-        scale: Sequence[float] = (1.0, 1.0, 1.0),
+        origin: Numbers = (0.0, 0.0, 0.0),
+        turn: Numbers = (0.0, 0.0, 0.0),
+        scale: Numbers = (1.0, 1.0, 1.0),
         mass_unit: str | None = None,
     ) -> SolidMesh:
         """Read a mesh of solid elements, of shells, or of both.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import product
 from typing import Any
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gbeam.arrays.tree import Value
-from gbeam.arrays.types import Floats
+from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive, vector
@@ -69,13 +69,13 @@ class RigidSpecimen(Value):
     """
 
     mass: float
-    centre: Sequence[float]
+    centre: Numbers
     inertia: ArrayLike
     corners: ArrayLike
     bolts: ArrayLike | None = None
-    bolt_axis: Sequence[float] | None = None
+    bolt_axis: Numbers | None = None
     spread_limit: float | None = None
-    points: Mapping[str, Sequence[float]] = field(default_factory=dict)
+    points: Mapping[str, Numbers] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         positive("mass", self.mass, "kg")
@@ -117,11 +117,11 @@ class RigidSpecimen(Value):
     def box(
         cls,
         mass: float,
-        size: Sequence[float],
-        centre: Sequence[float],
+        size: Numbers,
+        centre: Numbers,
         *,
         bolts: ArrayLike | None = None,
-        bolt_axis: Sequence[float] | None = None,
+        bolt_axis: Numbers | None = None,
     ) -> RigidSpecimen:
         """A box of uniform density along the base axes.
 

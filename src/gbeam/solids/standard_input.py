@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.types import Floats
+from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.io.models.registry import model_of
@@ -28,7 +28,7 @@ ORDERS = (((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)), ((0, 0), (1, 1), (2,
 def read_sid(
     path: str | os.PathLike[str],
     *,
-    damping_ratio: float | Sequence[float] | None = None,
+    damping_ratio: float | Numbers | None = None,
     points: Mapping[str, int] | None = None,
     kind: str = "standard input data",
 ) -> Structure:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +11,7 @@ import numpy as np
 
 from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.arrays.tree import Value
-from gbeam.arrays.types import Floats
+from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive
@@ -104,8 +103,8 @@ class PointMass(Value):
 
     at: float
     mass: float
-    inertia: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    inertia: Numbers = (0.0, 0.0, 0.0)
+    offset: Numbers = (0.0, 0.0, 0.0)
     name: str = ""
 
     def __post_init__(self) -> None:
@@ -184,8 +183,8 @@ class Load(Value):
     """
 
     at: float | None = None
-    force: Sequence[float] | Profile | None = None
-    moment: Sequence[float] | Profile | None = None
+    force: Numbers | Profile | None = None
+    moment: Numbers | Profile | None = None
     follower: bool = False
 
     def __post_init__(self) -> None:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from gbeam.arrays.namespace import holds_jax, namespace
 from gbeam.arrays.tree import Value
-from gbeam.arrays.types import Floats
+from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import damping_ratios, positive, possible
@@ -71,7 +71,7 @@ class Beam(Value):
     section: Section
     material: Material | None = None
     masses: Sequence[PointMass] = field(default=())
-    damping_ratio: float | Sequence[float] | None = None
+    damping_ratio: float | Numbers | None = None
     root: Root = field(default_factory=Root)
     loads: Sequence[Load] = field(default=())
     points: Sequence[Point] = field(default=())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gbeam.arrays.tree import Value
-from gbeam.arrays.types import Floats
+from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
@@ -70,8 +70,8 @@ class Line(Value):
 
     length: float
     curvature: Curvature
-    breaks: Sequence[float] = ()
-    corners: Sequence[float] = ()
+    breaks: Numbers = ()
+    corners: Numbers = ()
     turns: ArrayLike = ()
 
     def __post_init__(self) -> None:

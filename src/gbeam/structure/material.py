@@ -10,6 +10,7 @@ import numpy as np
 
 from gbeam.arrays.namespace import is_jax
 from gbeam.arrays.tree import Value
+from gbeam.arrays.types import Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import finite, positive, possible
@@ -143,10 +144,10 @@ class Orthotropic(Value):
     """
 
     density: float
-    youngs_moduli: Sequence[float]
-    poissons_ratios: Sequence[float]
-    shear_moduli: Sequence[float]
-    axes: Sequence[Sequence[float]]
+    youngs_moduli: Numbers
+    poissons_ratios: Numbers
+    shear_moduli: Numbers
+    axes: Sequence[Numbers]
     yield_strength: ClassVar[None] = None
     fatigue_exponent: ClassVar[float] = FATIGUE_EXPONENT
 

@@ -194,7 +194,7 @@ def place(
         raise trials.reasons[0].within(f"motion.{names[1]}")
     if choice.refined:
         of = trials.ranked()[0]
-        refine(lambda width: trials(of.candidate.mounting, width, of.turn), choice.widths)
+        refine(lambda width: trials(of.candidate.mounting, width, of.turn), tuple(choice.widths))
     if choice.between:
         trials.turn_on()
     ranked, before = trials.ranked(), trials.assess(current, at=np.array(current.place))

@@ -14,7 +14,7 @@ from gbeam.analysis.imitation.accounting import gradients
 from gbeam.analysis.imitation.specimen import Answer, Specimen
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.stepping import RIGID, even_steps
-from gbeam.arrays.types import Flags, Floats
+from gbeam.arrays.types import Flags, Floats, Numbers
 from gbeam.constants import Measure, Mounting
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
@@ -69,8 +69,8 @@ class Choice:
     """
 
     make: Callable[..., Centrifuge]
-    mountings: tuple[Mounting, ...]
-    widths: tuple[float, ...]
+    mountings: Sequence[Mounting]
+    widths: Numbers
     refined: bool = True
     limited: bool = True
     turns: tuple[Turn, ...] = ()
@@ -100,7 +100,7 @@ def width_of(centrifuge: Centrifuge) -> float:
 @typed
 def choice_of(
     centrifuge: Centrifuge,
-    smoothing: Sequence[float] = (),
+    smoothing: Numbers = (),
     *,
     limited: bool = True,
     turns: Ways = "own",

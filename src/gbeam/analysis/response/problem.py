@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, get_args
 
@@ -11,6 +11,7 @@ import numpy as np
 from gbeam.analysis.steady.equilibrium import solve_equilibrium
 from gbeam.arrays.namespace import Array, is_jax, namespace
 from gbeam.arrays.tree import Value, each_leaf
+from gbeam.arrays.types import Numbers
 from gbeam.constants import Across, State
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
@@ -62,7 +63,7 @@ class Initial(Value):
     """
 
     state: State = "equilibrium"
-    acceleration: Sequence[float] | None = None
+    acceleration: Numbers | None = None
     tip_displacement: Mapping[Across, float] | None = None
     tip_velocity: Mapping[Across, float] | None = None
 

@@ -15,7 +15,7 @@ from gbeam.analysis.accuracy.estimate import LIMIT, apart, fuller, percent, wron
 from gbeam.analysis.steady.frequency_errors import Richer, doubtful, judgeable, unknown_errors
 from gbeam.analysis.steady.stability import first_lost_speed, turned
 from gbeam.analysis.system.steady import Turning
-from gbeam.arrays.types import Complex, Floats
+from gbeam.arrays.types import Complex, Floats, Numbers
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.plausibility import input_warnings
@@ -69,7 +69,7 @@ def campbell(
     motion: Motion | None = None,
     *,
     turning: str | None = None,
-    speeds: Sequence[float] | Floats | None = None,
+    speeds: Numbers | None = None,
     start: float = 0.0,
     end: float | None = None,
     count: int = 60,

@@ -9,7 +9,6 @@ eigenvalues decide. There damping matters: the least of it lowers the flutter lo
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import fields, replace
 
 import numpy as np
@@ -17,6 +16,7 @@ import numpy as np
 from gbeam.analysis.steady.loss import Path, doubtful_loss, first_loss_along, judged
 from gbeam.analysis.steady.operating_point import REST, OperatingPoint, on_base, on_hub, steady_base
 from gbeam.analysis.system.steady import Drive, Loaded, Turning, turning_of
+from gbeam.arrays.types import Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
@@ -180,8 +180,8 @@ def critical_speed_map(
     beam: Beam,
     model: Model,
     motion: Motion,
-    masses: Sequence[float],
-    positions: Sequence[float],
+    masses: Numbers,
+    positions: Numbers,
     upper: float | None = None,
     *,
     name: str = "",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import overload
 
@@ -17,7 +16,7 @@ from gbeam.analysis.steady.operating_point import OperatingPoint, on_base, opera
 from gbeam.analysis.system.linear import system_rest
 from gbeam.analysis.system.steady import Drive, steady
 from gbeam.arrays.tree import each_leaf
-from gbeam.arrays.types import Floats
+from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.integrate.equations import Trajectory
@@ -103,7 +102,7 @@ def static(
     motion: Motion | None = None,
     time: float = 0.0,
     *,
-    acceleration: Sequence[float] | None = None,
+    acceleration: Numbers | None = None,
     name: str = "",
 ) -> SystemRest: ...
 @overload
@@ -112,7 +111,7 @@ def static(
     motion: Motion | None = None,
     time: float = 0.0,
     *,
-    acceleration: Sequence[float] | None = None,
+    acceleration: Numbers | None = None,
     name: str = "",
 ) -> Deflection: ...
 @typed
@@ -121,7 +120,7 @@ def static(
     motion: Motion | None = None,
     time: float = 0.0,
     *,
-    acceleration: Sequence[float] | None = None,
+    acceleration: Numbers | None = None,
     name: str = "",
 ) -> Deflection | SystemRest:
     """Equilibrium relative to a base whose motion is frozen at a time, and what its sections carry.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
@@ -10,6 +9,7 @@ import numpy as np
 
 from gbeam.arrays.namespace import Array, is_jax, namespace
 from gbeam.arrays.tree import record
+from gbeam.arrays.types import Numbers
 from gbeam.mechanics.fields.basis import Quadrature
 from gbeam.mechanics.fields.vectors import (
     UNTURNED,
@@ -168,7 +168,7 @@ def root_rule(move: Array, turn: Array) -> tuple[Array, Array, Array]:
     return weights, onto, np.arange(moves + turns) >= moves
 
 
-def beyond(corners: Sequence[float], x: Array) -> Array:
+def beyond(corners: Numbers, x: Array) -> Array:
     """Flags (p, c) of points (p,) m that lie beyond corners; one at a corner does not, but at the root."""
     at = np.array(corners, dtype=float)
     return np.asarray((x[:, None] > at * (1 + NEAR)) | (at == 0), dtype=float)
@@ -181,7 +181,7 @@ def frames_along(
     root: Array,
     cumulative: Array,
     node_cumulative: Array,
-    corners: Sequence[float] = (),
+    corners: Numbers = (),
 ) -> Frames:
     """Frames at the quadrature nodes and at points (p,) m of a beam behind the nodes of its root, some of them
     `turning` (r,), with their weights between each other, `root` (r, r), and behind those of its corners.

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import as_array, concatenated, is_jax
 from gbeam.arrays.tree import Value
+from gbeam.arrays.types import Numbers
 from gbeam.constants import Direction, JointKind
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
@@ -166,8 +167,8 @@ class Joint(Value):
     body: str
     on: str = GROUND
     axes: Sequence[Any] | None = None
-    at: Sequence[float] = (0.0, 0.0, 0.0)
-    turn: Sequence[float] = (0.0, 0.0, 0.0)
+    at: Numbers = (0.0, 0.0, 0.0)
+    turn: Numbers = (0.0, 0.0, 0.0)
     initial: Any = None
     initial_rate: Any = None
     stiffness: Any = None

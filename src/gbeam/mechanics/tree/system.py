@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from gbeam.arrays.namespace import Array, as_array, concatenated, holds_jax, is_jax, namespace
 from gbeam.arrays.tree import Value
-from gbeam.arrays.types import Floats
+from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, choice, positive, vector
@@ -61,8 +61,8 @@ class Place(Value):
     (0, 0, 1.5)
     """
 
-    at: Sequence[float] = (0.0, 0.0, 0.0)
-    turn: Sequence[float] = (0.0, 0.0, 0.0)
+    at: Numbers = (0.0, 0.0, 0.0)
+    turn: Numbers = (0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
         vector("at", self.at), vector("turn", self.turn)
@@ -98,7 +98,7 @@ class RigidBody(Value):
 
     mass: float
     inertia: Any = (0.0, 0.0, 0.0)
-    centre: Sequence[float] = (0.0, 0.0, 0.0)
+    centre: Numbers = (0.0, 0.0, 0.0)
     points: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -214,7 +214,7 @@ class System(Value):
     bodies: Mapping[str, RigidBody | Structure]
     joints: Mapping[str, Joint]
     forces: Mapping[str, PointForce] = field(default_factory=dict)
-    gravity: Sequence[float] | None = None
+    gravity: Numbers | None = None
     controllers: Mapping[str, Feedback] = field(default_factory=dict)
     order: tuple[str, ...] = field(init=False, repr=False, compare=False)
     tree: Tree = field(init=False, repr=False, compare=False)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Sequence
 from typing import Any, ClassVar, Self
 
 import numpy as np
 
 from gbeam.arrays.namespace import as_array, holds_jax, namespace
 from gbeam.arrays.tree import assign, each_leaf, record, static
-from gbeam.arrays.types import Floats
+from gbeam.arrays.types import Floats, Numbers
 from gbeam.constants import STANDARD_GRAVITY, InverseName, Mounting, Start
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
@@ -119,7 +118,7 @@ class Centrifuge:
         idle: Any | None = None,
         smoothing: Any | None = 0.0,
         mounting: Mounting = "upright",
-        turn: Sequence[float] = (0.0, 0.0, 0.0),
+        turn: Numbers = (0.0, 0.0, 0.0),
         start: Start = "rest",
         spin_up: float | None = None,
         spin_down: float | None = None,

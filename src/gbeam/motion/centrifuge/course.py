@@ -28,7 +28,7 @@ from gbeam.numerics.series import where
 _COARSE, _FINE, _FINEST = 0.08, 0.02, 0.005  # s between knots: at first; at most; at least
 _GAIN = 0.15  # of the cost above its bound, that finer knots must bring to go on
 _GENTLER = 100.0, 10.0, 1.0  # times the ease: the search begins with gentle motions, whose minima are fewer
-_PER_RAMP = 12  # pieces of a spin-up, at least
+_PER_RAMP = 12  # pieces of a spin-up, or of a run without, at least
 _POINTS = np.array([1, 3, 5]) / 6  # of each piece
 
 
@@ -72,7 +72,8 @@ def planned(target: Target, geometry: Geometry, limits: Limits, ends: Ends) -> P
     lasts = {"spin_up": target.span[0] - begin, "": target.span[1] - target.span[0], "spin_down": end - target.span[1]}
     fix = f"give {KNOTS * _FINE:g} s or less altogether"
     refuse_more(max(lasts, key=lambda name: lasts[name]), "knots", (end - begin) / _FINE, KNOTS, 4000.0, fix)
-    step = _COARSE if ramps is None else min(_COARSE, *(ramp.length / _PER_RAMP for ramp in ramps))
+    lengths = [end - begin] if ramps is None else [ramp.length for ramp in ramps]
+    step = min(_COARSE, *(length / _PER_RAMP for length in lengths))
     grid = Grid(float(begin), float(end), step, _POINTS)
     c, best, within = grid.fit(_guess(grid.time, target, geometry, ramps)), np.inf, False
     while True:

@@ -10,7 +10,7 @@ import numpy as np
 
 from gbeam.arrays.tree import assign, record
 from gbeam.arrays.types import Floats
-from gbeam.constants import STANDARD_GRAVITY, Start
+from gbeam.constants import STANDARD_GRAVITY, MachineName, Start
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, positive
@@ -164,7 +164,7 @@ def _example(arm: float, load_g0: float, onset_g0_per_s: float, gimbal: AxisLimi
     return Machine(arm, MachineLimits(first, gimbal, gimbal), _IDLE, source)
 
 
-machines: dict[str, Machine] = {
+machines: dict[MachineName, Machine] = {
     "human-7.6m": _example(
         7.6,
         12.0,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import reduce
 from operator import add
 from typing import TYPE_CHECKING, Any
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 class _Combined(Profile):
     """A profile made of others, whose times are all of theirs."""
 
-    parts: tuple[Profile, ...]
+    parts: Sequence[Profile]
 
     @property
     def breaks(self) -> Any:
@@ -48,7 +49,7 @@ class Sum(_Combined):
 
     Parameters
     ----------
-    parts : tuple of Profile
+    parts : sequence of Profile
         One or more, all scalar or all vectors.
 
     Raises
@@ -63,11 +64,12 @@ class Sum(_Combined):
     3.0
     """
 
-    parts: tuple[Profile, ...]
+    parts: Sequence[Profile]
 
     def __post_init__(self) -> None:
         if not self.parts:
             raise InputError("parts", "is empty", "list one profile or more")
+        object.__setattr__(self, "parts", tuple(self.parts))
 
     def series(self, t: Any, order: int) -> Series:
         return reduce(add, (part.series(t, order) for part in self.parts))

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Field, StrictBool, Tag, create_model, model_validator
 from pydantic_core import PydanticCustomError
 
-from gbeam.constants import InverseName, Mounting, Pointing, Start, ToleranceOf
+from gbeam.constants import InverseName, MachineName, Mounting, Pointing, Start, ToleranceOf
 from gbeam.results.criteria import RULES
 from gbeam.scenario.schema.fields import (
     ONE_OR_LIST,
@@ -161,7 +161,7 @@ class Centrifuge(Table):
 
     kind: Literal["centrifuge"] = Field(description="kind of the motion")
     tracks: str = Field(description="NAME of the flight motion that it imitates")
-    machine: Literal["human-7.6m", "specimen-3.3m", "large-15m"] | None = optional(
+    machine: MachineName | None = optional(
         "an example machine, which gives arm, idle and limits where they are left out"
     )
     arm: Length | None = optional("radius from the main axis to the control point; or machine")
