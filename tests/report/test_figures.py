@@ -81,6 +81,12 @@ def _results(study: Study) -> dict[str, list[Result]]:
         "modes": [gb.modes(structure, hub)],
         "campbell": [gb.campbell(structure, hub, speeds=np.linspace(0, 30, 7))],
         "linearize": [gb.linearize(structure, hub)],
+        "critical": [
+            gb.critical_speed(structure, hub),
+            gb.critical_speed(structure, hub, upper=1.0),
+            gb.critical_load(_column(follower=True)),
+            gb.buckling_acceleration(structure),
+        ],
         "map": [gb.critical_speed_map(BEAM, gb.Model("TLAM", y=2, z=2), hub, [0.1], [0.1, 0.3])],
         "plan": [_sparse(gb.plan("", machine))],
         "fit": [fit, replace(modal, columns=(column,))],
@@ -89,6 +95,11 @@ def _results(study: Study) -> dict[str, list[Result]]:
         "shape": [_shaped()],
         "sweep": list(_sweeps()),
     }
+
+
+def _column(*, follower: bool, **modes: int) -> gb.Structure:
+    push = gb.Load(0.3, force=(-1.0, 0.0, 0.0), follower=follower)
+    return gb.assemble(replace(BEAM, loads=(push,), damping_ratio=0.0), "SFOAM", **modes or {"z": 3})
 
 
 def _apart(compared: Comparison) -> Comparison:
@@ -115,6 +126,7 @@ NAMES = [
     "modes",
     "campbell",
     "linearize",
+    "critical",
     "map",
     "plan",
     "fit",
@@ -193,6 +205,26 @@ def _compare_lines(axes: object, panel: description.Panel, spec: dict, numbers: 
     assert sorted(shaded) == sorted(bands) and len(shaded) == len(panel.spans)
     for mark, (start, end) in zip(panel.marks, spec["bands"][len(panel.spans) :], strict=True):
         assert start == end == mark.value
+
+
+def test_frequencies_fall_to_the_critical_value() -> None:
+    """Under a dead load with one shape f² = f₀² (1 − P/P_c); two of Beck's column, undamped, meet where it flutters."""
+    euler = gb.critical_load(_column(follower=False, z=1))
+    assert euler.value is not None
+    share = 1 - euler.followed / euler.value
+    np.testing.assert_allclose(euler.frequency[:, 0] ** 2, euler.frequency[0, 0] ** 2 * share, rtol=1e-6)
+    assert np.isnan(euler.frequency[:, 1:]).all() and euler.followed[0] == 0.0 < share[-1] < 1e-5
+    beck = gb.critical_load(_column(follower=True, z=3))
+    apart = np.diff(beck.frequency[:, :2], axis=1)[:, 0]
+    assert beck.kind == "flutter" and (np.diff(apart) < 0).all() and apart[-1] < 5e-3 * apart[0]
+    (panel,) = figures_of(euler)["critical"]().panels
+    (mark,), ((start, end, reason),) = panel.marks, panel.spans
+    assert mark.value == euler.value and mark.label == "divergence along z" and reason == "estimated error"
+    assert (start, end) == pytest.approx([euler.value * (1 + sign * euler.errors.total) for sign in (-1, 1)])
+    kept = gb.critical_speed(gb.assemble(BEAM, "FOAM", axial=1, y=1, z=1), gb.Hub(radius=0.5), upper=30.0)
+    (panel,) = figures_of(kept)["critical"]().panels
+    assert not panel.marks and not panel.spans and kept.followed[-1] == 30.0
+    assert figures_of(replace(kept, followed=np.empty(0), frequency=np.empty((0, 0)))) == {}  # as in earlier files
 
 
 def test_poles_that_grow_are_told_from_those_that_do_not(results: dict[str, list[Result]]) -> None:

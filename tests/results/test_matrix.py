@@ -22,7 +22,6 @@ from gbeam.results.result import Figured
 from gbeam.results.study import KINDS
 
 PAGE = Path(__file__).parents[2] / "docs" / "results.md"
-WITHOUT_FIGURE = {"Critical"}  # one value
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -46,9 +45,7 @@ def test_every_kind_has_every_output(matrix: dict[str, Any], kind: str, tmp_path
     (tmp_path / "x.json").write_text(as_json(known), encoding="utf-8")
     assert "<table>" in report_of_file(tmp_path / "x.json")
     assert result._repr_html_() and repr(result)
-    assert isinstance(result, Figured) == (kind not in WITHOUT_FIGURE)
-    if isinstance(result, Figured):
-        assert figures_of(result)
+    assert isinstance(result, Figured) and figures_of(result)
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -128,8 +128,8 @@ def critical_speed(
     """The rate, load or acceleration at which the equilibrium of a beam or a system is lost.
 
     Where there is none up to the end of the search, the value is null and the reason says so; that is an answer, with
-    exit status 0. 2: the input is wrong, such as a motion without a hub. With --out writes critical_speed.json, and a
-    map also as CSV and plot; with --report also critical_speed.html.
+    exit status 0. 2: the input is wrong, such as a motion without a hub. With --out writes critical_speed.json and a
+    plot of the lowest frequencies on the way there, a map also as CSV; with --report also critical_speed.html.
     """
     folder = output.folder(scenario)
     loaded, question = read("critical-speed", scenario, output.overrides), QUESTIONS["critical-speed"]
@@ -144,8 +144,12 @@ def critical_speed(
         return critical_map(loaded, motion, masses, positions, chosen.get("to"), folder, output)
     name, _ = loaded.motion(motion, kind="hub")
     critical = loaded.answer(question, name, at, options, Needs())
+
+    from gbeam.figures import steady
+
     deliver(
         critical, "critical_speed", folder, output, origin=loaded.case.provenance, listed=False,
+        figures={"critical_speed": partial(steady.critical, critical, loaded.case.title)},
     )  # fmt: skip
     return 0
 

@@ -15,7 +15,7 @@ from gbeam.figures.description import Figure
 from gbeam.printable import closest
 from gbeam.results.cases import PROBABILITY, Sensitivity, Sweep
 from gbeam.results.comparison import Comparison, MachinePlan
-from gbeam.results.equilibrium import CriticalMap, Deflection
+from gbeam.results.equilibrium import Critical, CriticalMap, Deflection
 from gbeam.results.machine import AxesResult
 from gbeam.results.modal import Campbell, Modes
 from gbeam.results.placement import Placement
@@ -77,6 +77,8 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
             return {"shape": partial(steady.static, [result], title), **(along or {})}
         case MachinePlan():
             return _of_machine(result, result.axes, title)
+        case Critical():
+            return {"critical": partial(steady.critical, result, title)} if len(result.followed) else {}
         case Sweep():
             return _of_sweep(result, title)
         case SystemStudy():

@@ -19,6 +19,7 @@ from gbeam.figures.description import (
     Mark,
     Marks,
     Panel,
+    Span,
     declared,
     estimated,
     imitating,
@@ -26,8 +27,10 @@ from gbeam.figures.description import (
     not_drawn,
     of_motion,
     scale_of,
+    scaled,
 )
-from gbeam.results.equilibrium import CriticalMap, Deflection
+from gbeam.results.equilibrium import Critical, CriticalMap, Deflection
+from gbeam.results.errors import along
 from gbeam.results.modal import Campbell, Modes, near_multiples
 from gbeam.results.result import Floats
 from gbeam.results.state_space import StateSpace
@@ -116,6 +119,30 @@ def campbell(diagram: Campbell, title: str = "", unit: tuple[float, str] = (1.0,
     about += f"; {left} higher mode{'s' if left > 1 else ''} not drawn" if left else ""
     errors = {"": math.nan if diagram.errors is None else diagram.errors.largest}
     return Figure(title, about, (panel,), estimated(errors))
+
+
+def critical(lost: Critical, title: str = "") -> Figure:
+    """Describe the lowest frequencies on the way to a critical value, and its errors to both sides of it."""
+    end = float(lost.followed[-1])
+    factor, quantity = scaled(lost.quantity, lost.unit if "/" in lost.unit else "", np.array([end]))
+    known = [k for k in range(lost.frequency.shape[1]) if np.isfinite(lost.frequency[:, k]).any()]
+    near = 3 * float(np.nanmax(lost.frequency[:, known[:2]], initial=0.0))
+    shown = [k for k in known if np.nanmin(lost.frequency[:, k]) <= near]
+    dots: Marks = "dots" if len(lost.followed) == 1 else ""
+    lines = tuple(
+        Line(factor * lost.followed, lost.frequency[:, k], f"frequency {k + 1}", colour=k, marks=dots) for k in shown
+    )
+    marks: tuple[Mark, ...] = ()
+    spans: tuple[Span, ...] = ()
+    error = lost.errors.total  # not finite where the exact model loses nothing, or it is not known
+    if lost.value is not None:
+        way = f" {along(lost.direction)}" if lost.direction else ""
+        marks = (Mark(factor * lost.value, f"{lost.kind}{way}"),)
+        if 0.0 < error < math.inf:
+            at = factor * lost.value
+            spans = (((1 - min(error, 1.0)) * at, (1 + error) * at, "estimated error"),)
+    panel = Panel("frequency, Hz", lines, x=quantity, marks=marks, spans=spans, zero=True, height=2.0)
+    return Figure(title, of_motion(lost.motion, lost.reason), (panel,), estimated({"": error}))
 
 
 def critical_map(critical: CriticalMap, title: str = "") -> Figure:

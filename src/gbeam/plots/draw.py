@@ -116,6 +116,7 @@ _PATTERNS = {
     "left out": ("#EFD3E4", "xxx"),
     "corner": ("#CFE8DE", "---"),
     "designed for": ("#EDEDED", None),
+    "estimated error": ("#EDEDED", None),
 }
 _LIMIT = ("#F7CDB8", "+++")
 STYLE: dict[Any, Any] = {

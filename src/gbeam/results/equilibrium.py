@@ -12,7 +12,7 @@ from gbeam.results.declared import quantity as entry  # a critical value has a f
 from gbeam.results.errors import MODEL, SHAPES, THEORY, TOTAL, UNKNOWN, ErrorEstimate, Errors
 from gbeam.results.facts import at_place
 from gbeam.results.parts import Base, Loads
-from gbeam.results.result import Figured, Floats, Part, Result, brief
+from gbeam.results.result import Figured, Floats, Part, brief
 from gbeam.results.solids import SolidStress, SpecimenLoads, Surface
 
 
@@ -75,11 +75,8 @@ LOST = {"critical_speed": "rad/s", "critical_acceleration": "m/s^2", "critical_l
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Critical(Result):
-    """Point at which the stiffness about the relative equilibrium stops being positive definite, or something grows.
-
-    It is one value, and has no figure; :func:`gbeam.critical_speed_map` and :func:`gbeam.campbell` have.
-    """
+class Critical(Figured[Literal["critical"]]):
+    """Point at which the stiffness about the relative equilibrium stops being positive definite, or something grows."""
 
     quantity: str = fact("quantity that is raised", note="hub rate or rate, acceleration along x, or load factor")
     unit: str = fact("unit of the quantity", note="rad/s, m/s^2, or none of a factor of the loads", name=None)
@@ -97,6 +94,17 @@ class Critical(Result):
         note="that of the model is infinite where the exact one keeps its equilibrium to three times the value",
     )
     error_note: str = fact(UNKNOWN, optional=True, default="")
+    followed: Floats = entry(
+        lambda self: self.unit,
+        "values of the quantity from none to the critical one",
+        "followed",
+        role="coordinate",
+        note="to the end of the search where nothing is lost",
+        empty=True,
+    )
+    frequency: Floats = entry(
+        "Hz", "lowest frequencies about the equilibrium there, undamped", "followed lowest", empty=True
+    )
 
     @declared(LOST, "critical value by what is raised", role="fact", name=None, key=INSIDE)
     def by_name(self) -> dict[str, float | None]:

@@ -13,7 +13,8 @@ import numpy as np
 
 from gbeam.analysis.accuracy.estimate import LIMIT, apart, fuller, percent, wrong_by
 from gbeam.analysis.steady.frequency_errors import Richer, doubtful, judgeable, unknown_errors
-from gbeam.analysis.steady.stability import first_lost_speed, turned
+from gbeam.analysis.steady.loss import Path
+from gbeam.analysis.steady.stability import INSTEAD, first_lost_speed, turned
 from gbeam.analysis.system.steady import Turning
 from gbeam.arrays.types import Complex, Floats, Numbers
 from gbeam.errors import ComputationError, InputError
@@ -139,8 +140,12 @@ def campbell(
         raise InputError("to", f"is {end:g} rad/s, from {start:g} rad/s", "give a range of speeds that ascends from 0")
     if modes < 1:
         raise InputError("modes", f"is {modes}", "give 1 or more")
-    as_known = replace(path, held=True) if isinstance(path, Turning) else None
-    lost = first_lost_speed(structure, motion, turning, end, time, name, progress, as_known)
+    holding: Path = (
+        replace(path, held=True)  # which knows the states
+        if isinstance(path, Turning)
+        else turned(structure, motion, turning, time, "a critical speed", INSTEAD, name, held=True)[0]
+    )
+    lost = first_lost_speed(structure, holding, end, progress)
     # The last speed is short of the critical one, where a frequency is zero.
     last = end if lost.value is None or lost.value <= start else start + (lost.value - start) * (1 - 1e-6)
 

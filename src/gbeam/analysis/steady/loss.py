@@ -19,7 +19,7 @@ from gbeam.errors import ComputationError
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
-from gbeam.numerics.eigen import Steady, symmetric, symmetric_modes
+from gbeam.numerics.eigen import ZERO, Steady, symmetric, symmetric_modes, vibrations
 from gbeam.progress import Progress, tell
 from gbeam.results.equilibrium import Critical
 from gbeam.results.errors import ErrorEstimate, along
@@ -97,6 +97,28 @@ def first_loss_along(
         direction = state.directions(symmetric_modes(*parts)[1][:, :1])[0]
     way = f" {along(direction)}" if direction else ""
     return answer(root, kind, direction, f"{of.kind}: {kind}{way} at {root:.6g} {unit}")
+
+
+FOLLOWED = 20  # steps to the critical value, closer to one another near it, where frequencies fall by a root
+LOWEST = 4  # frequencies followed
+
+
+def with_frequencies(
+    critical: Critical, path: Path, structure: Structure | System, progress: Progress = None
+) -> Critical:
+    """A critical value with the lowest frequencies, undamped, on the way to it."""
+    end = critical.searched_to if critical.value is None else (1 - CLOSE) * critical.value
+    values = end * np.sin(np.linspace(0.0, np.pi / 2, FOLLOWED + 1)) if end else np.zeros(1)
+    frequency = np.full((len(values), LOWEST), np.nan)
+    for row, value in zip(frequency, _in_turn(path, structure, values.tolist()), strict=True):
+        tell(progress, "frequencies on the way to it", value / end if end else 0.0)
+        state = _state(path, structure, value)
+        if state is not None:
+            c = state.linear.velocity
+            undamped = state.linear._replace(velocity=(c - c.T) / 2)  # what is overdamped has no frequency
+            known = vibrations(undamped, zero=max(state.zero, ZERO)).frequency[:LOWEST]
+            row[: len(known)] = known / (2 * np.pi)
+    return replace(critical, followed=values, frequency=frequency)
 
 
 # Shares of the critical value at which richer models are looked at, from below.

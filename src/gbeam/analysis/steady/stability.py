@@ -13,7 +13,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 
-from gbeam.analysis.steady.loss import Path, doubtful_loss, first_loss_along, judged
+from gbeam.analysis.steady.loss import Path, doubtful_loss, first_loss_along, judged, with_frequencies
 from gbeam.analysis.steady.operating_point import REST, OperatingPoint, on_base, on_hub, steady_base
 from gbeam.analysis.system.steady import Drive, Loaded, Turning, turning_of
 from gbeam.arrays.types import Numbers
@@ -110,22 +110,13 @@ def critical_speed(
     >>> print(f"{loss.value:.4g} rad/s")
     1148 rad/s
     """
-    return first_lost_speed(structure, motion, turning, upper, time, name, progress)
+    path, _ = turned(structure, motion, turning, time, "a critical speed", INSTEAD, name, held=True)
+    lost = first_lost_speed(structure, path, upper, progress)
+    return with_frequencies(lost, path, structure, progress)
 
 
-def first_lost_speed(
-    structure: Structure | System,
-    motion: Motion | None,
-    turning: str | None,
-    upper: float | None,
-    time: float,
-    name: str,
-    progress: Progress,
-    path: Path | None = None,
-) -> Critical:
-    """Lowest rate at which an equilibrium is lost, along a path of these that holds the rate, if one is known."""
-    if path is None:
-        path, _ = turned(structure, motion, turning, time, "a critical speed", INSTEAD, name, held=True)
+def first_lost_speed(structure: Structure | System, path: Path, upper: float | None, progress: Progress) -> Critical:
+    """Lowest rate at which an equilibrium is lost, along a path of these that holds the rate."""
     if upper is not None:
         limit = positive("to", upper, "rad/s")
     elif isinstance(structure, Structure):
@@ -279,7 +270,7 @@ def buckling_acceleration(structure: Structure, *, upper: float | None = None, p
         return on_base(replace(of, load_values=values), base)
 
     lost = first_loss_along(pushed, structure, limit, "acceleration along x", "m/s²", progress)
-    return judged(lost, pushed, structure, progress)
+    return with_frequencies(judged(lost, pushed, structure, progress), pushed, structure, progress)
 
 
 @typed
@@ -349,7 +340,7 @@ def critical_load(
         raise InputError(where, "have none that act", fix)
     limit = SEARCH_FACTOR / share if upper is None else positive("to", upper, "times the loads")
     lost = first_loss_along(path, structure, limit, "load factor", "times the loads", progress)
-    return judged(lost, path, structure, progress)
+    return with_frequencies(judged(lost, path, structure, progress), path, structure, progress)
 
 
 def _share(structure: Structure, values: np.ndarray) -> float:

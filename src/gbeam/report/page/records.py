@@ -301,6 +301,7 @@ def _shaped(facts: Facts, v: Facts) -> Facts:
 _APART: dict[type, Callable[[Facts, Facts], Facts]] = {
     AxesResult: _axes,
     Campbell: _campbell,
+    Critical: lambda facts, _: {"value": next((facts[key] for key in facts if key.startswith("critical_")), None)},
     Deflection: lambda facts, _: {"loads": _at_rest(facts["loads"])} if facts.get("loads") else {},
     Fit: _fit,
     MachinePlan: lambda facts, v: {"axes": read(AxesResult, facts, v)},
