@@ -240,11 +240,14 @@ class Samples:
                 (self.structure, self.hub, 0.0),
                 {
                     "rate": None, "q": None, "qd": None, "gauges": [gb.Gauge(0.1, z=0.002)], "name": "hub",
-                    "inputs": None, "outputs": None, "at": "rest", "loop": "open",
+                    "inputs": None, "outputs": None, "at": "rest", "loop": "open", "progress": None,
                 },
             ),
             "modal_truncation": ((self.system, 1), {}),
-            "modes": ((self.structure, self.hub, 0.0), {"gyroscopic": True, "errors": False, "name": "hub"}),
+            "modes": (
+                (self.structure, self.hub, 0.0),
+                {"gyroscopic": True, "errors": False, "name": "hub", "progress": None},
+            ),
             "nonlinear_system": ((self.structure, self.free_hub), {"gauges": [gb.Gauge(0.1, z=0.002)]}),
             "optimise": (
                 (self.fast, "flight.tip.z", ["beam.section.width"]),
@@ -256,13 +259,16 @@ class Samples:
             "place": (
                 (self.structure, self.still, gb.choice_of(self.centrifuge, (0.0,), limited=False), self.settings,
                 {"tip": 1.0}),
-                {"current": self.centrifuge, "names": ("flight", "machine"), "check": False, "along": "x"},
+                {
+                    "current": self.centrifuge, "names": ("flight", "machine"), "check": False, "along": "x",
+                    "progress": None,
+                },
             ),
             "plan": (
                 ("machine", self.centrifuge.over(0.0, 0.1), "flight"),
                 {
                     "beam": self.beam, "tolerance": 0.05, "tolerance_of": "peak", "accept": {"tip": 0.5}, "title": "a",
-                    "envelope": None,
+                    "envelope": None, "progress": None,
                 },
             ),
             "ImportedModel": (
@@ -316,11 +322,12 @@ class Samples:
             ),
             "simulate": ((self.structure, self.still), {"name": "flight", "progress": None, **settings}),
             "simulate_batch": (
-                ([(self.structure, self.still)],), {"together": 2, "one_structure": False, **settings}
+                ([(self.structure, self.still)],),
+                {"together": 2, "one_structure": False, "progress": None, **settings},
             ),
             "smoothed": ((gb.constant(1.0), 0.1), {}),
             "solve_equilibrium": ((self.structure, base), {"time": 0.0}),
-            "static": ((self.structure, self.still), {"time": 0.0, "name": "flight"}),
+            "static": ((self.structure, self.still), {"time": 0.0, "name": "flight", "progress": None}),
             "study": ((self.case,), {"progress": None}),
             "surface_gauges": ((self.beam, [0.1]), {}),
             "sweep": (

@@ -120,7 +120,8 @@ class Bar:
         if self._outer is not None:
             self._outer(*self._interrupted)
             return
-        _SHOWN.reset(self._token)
+        with suppress(ValueError):  # an iterator's, ended in another context than it was begun in
+            _SHOWN.reset(self._token)
         self._over.set()
         if self._thread.is_alive():
             self._thread.join()  # it may be starting the bar at this moment

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import io
 import re
 import subprocess
@@ -84,6 +85,9 @@ def test_bar_on_a_terminal_leaves_the_cursor(monkeypatch: pytest.MonkeyPatch) ->
     assert shown.rindex("\x1b[?25h") > shown.rindex("\x1b[?25l")
 
 
+QUICK = ["response.duration=2 s", "response.residual_from=1 s", "response.step=20 ms", "response.estimate=false"]
+
+
 def test_what_is_quick_shows_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(console, "PATIENCE", 60.0)
     monkeypatch.setattr(sys, "stderr", io.StringIO())
@@ -101,6 +105,51 @@ def test_progress_true_shows_a_bar_from_the_first_second(monkeypatch: pytest.Mon
     run = gb.simulate(specimen, turn, duration=0.6, step=0.01, estimate=False, progress=True)
     assert shown == ["computing"]
     assert run == gb.simulate(specimen, turn, duration=0.6, step=0.01, estimate=False, progress=False)
+
+
+LONG = {
+    "buckling_acceleration", "campbell", "compare_models", "critical_load", "critical_speed", "critical_speed_map",
+    "fit", "linearize", "modes", "optimise", "place", "plan", "rerun", "sensitivity", "shape_command",
+    "shape_hub_command", "simulate", "simulate_batch", "static", "study", "sweep",
+}  # fmt: skip
+
+
+def test_whatever_may_take_long_tells_how_far_it_is(tmp_path: Path) -> None:
+    public = {name: getattr(gb, name) for name in gb.__all__ if inspect.isfunction(getattr(gb, name))}
+    assert {name for name, each in public.items() if "progress" in inspect.signature(each).parameters} == LONG
+    strip = gb.Beam(0.3, gb.Section.rectangle(0.02, 0.004), gb.Material(2700, 70e9), damping_ratio=0.01)
+    specimen, flight, hub = gb.assemble(strip, "FOAM", z=2), gb.Flight(z=20.0), gb.Hub(radius=0.5)
+    machine = gb.Centrifuge(flight, arm=3.3, control_point=0.2, gravity=False, span=(0.0, 0.6))
+    settings = gb.ResponseSettings(duration=0.6, step=0.002, estimate=False)
+    gb.study(gb.read_scenario("examples/hubbeam2009_slew_2p8.toml", QUICK)).save(tmp_path / "result.nc")
+    for ask in (
+        lambda tell: gb.static(specimen, flight, progress=tell),
+        lambda tell: gb.modes(specimen, hub, progress=tell),
+        lambda tell: gb.linearize(specimen, hub, progress=tell),
+        lambda tell: gb.plan("", machine, progress=tell),
+        lambda tell: gb.place(
+            specimen, flight, gb.choice_of(machine, limited=False), settings, {"tip": 1.0}, current=machine, check=True,
+            progress=tell,
+        ),
+        lambda tell: list(gb.simulate_batch([(specimen, flight)] * 2, settings, together=2, progress=tell)),
+        lambda tell: gb.rerun(tmp_path / "result.nc", progress=tell),
+    ):  # fmt: skip
+        said: list[tuple[str, float]] = []
+        ask(lambda *news, said=said: said.append(news))
+        assert len(said) > 1 and all(what and 0 <= share <= 1 for what, share in said)
+    assert said[-1][0].startswith("slew: ")
+
+
+def test_a_batch_shows_its_bar_until_the_last_response(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is an iterator: the bar was gone before the first case was begun."""
+    lines: list[str] = []
+    monkeypatch.setattr(progress.Bar, "_show", lambda self: self._over.wait(60) and lines.append(self.line()))
+    turn = gb.Flight(z=gb.trapezoid(5.0, jerk=20.0, hold=0.1))
+    cases = [(laden("FOAM"), turn)] * 2
+    settings = gb.ResponseSettings(duration=0.6, step=0.01, estimate=False)
+    for _ in gb.simulate_batch(cases, settings, together=2, progress=True):
+        assert not lines
+    assert lines == ["2 of 2 cases: 100%"]
 
 
 def test_a_bar_counts_the_cases_of_a_sweep() -> None:

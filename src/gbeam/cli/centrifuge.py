@@ -65,16 +65,17 @@ def plan(
 
     origin = provenance(environments, command())
     tables = {name: table for name, table in environments.motion.items() if isinstance(table, schema.Centrifuge)}
-    plans = tuple(
-        replace(
-            analysis.plan(
-                name, machines[name], table.tracks,
-                **extent, title=environments.title, **judging(table.limits_of_acceptance, response=False),
-            ),
-            provenance=origin,
-        )
-        for name, table in tables.items()
-    )  # fmt: skip
+    with Watch() as watch:
+        plans = tuple(
+            replace(
+                analysis.plan(
+                    name, machines[name], table.tracks, **extent, title=environments.title, progress=watch,
+                    **judging(table.limits_of_acceptance, response=False),
+                ),
+                provenance=origin,
+            )
+            for name, table in tables.items()
+        )  # fmt: skip
 
     def commands(hidden: Path) -> None:
         from gbeam.io.commands import write_commands
@@ -163,7 +164,7 @@ def place(
     with naming("--smoothing"):
         ways = turn or analysis.usual_turns(structure)
         choice = choice_of(current, widths, limited=not ignore_limits, turns=ways)
-    with loaded.placing(measure="--measure", along="--along"):
+    with Watch() as watch, loaded.placing(measure="--measure", along="--along"):
         placement = analysis.place(
             structure,
             current.flight,
@@ -174,6 +175,7 @@ def place(
             names=(loaded.case.tracks[name], name),
             check=check,
             along=along,
+            progress=watch,
         )
     written = _apply(loaded, scenario, name, placement.changes) if write_back and placement.changes else None
     deliver(

@@ -78,6 +78,7 @@ def typed(function: F) -> F:
     owner = function.__qualname__.removesuffix(".__init__").rpartition(".")[2]
     kinds = (Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD)
     names = [each.name for each in signature(function).parameters.values() if each.kind in kinds]
+    later = str(signature(function).return_annotation).startswith("Iterator")  # which shows its own bar
 
     def check(pairs: Iterable[tuple[str, Any]], texts: bool) -> None:
         tests = _tests(function, texts)
@@ -89,7 +90,7 @@ def typed(function: F) -> F:
     @functools.wraps(function)
     def call(*args: Any, **keywords: Any) -> Any:
         pairs = (*zip(names, args, strict=False), *keywords.items())
-        if ("progress", True) in pairs:
+        if not later and ("progress", True) in pairs:
             with Bar() as bar:
                 return call(**dict(pairs) | {"progress": bar})
         if any(type(value) not in _NUMBERS for _, value in pairs):

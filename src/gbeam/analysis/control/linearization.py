@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gbeam.analysis.steady.frequency_errors import doubtful, judgeable, pole_errors, unknown_errors
+from gbeam.analysis.steady.frequency_errors import BY_RICHER, doubtful, judgeable, pole_errors, unknown_errors
 from gbeam.analysis.steady.operating_point import (
     REST,
     OperatingPoint,
@@ -40,6 +40,7 @@ from gbeam.mechanics.tree.system import System
 from gbeam.motion import Flight
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.series import STEP
+from gbeam.progress import Progress, tell
 from gbeam.results.errors import FrequencyErrors, along
 from gbeam.results.state_space import ACCURATE, Gauge, Signal, StateSpace, import_control
 from gbeam.structure.attachments import TIP
@@ -280,6 +281,7 @@ def linearize(
     at: Literal["rest", "start"] = "rest",
     loop: str = "open",
     name: str = "",
+    progress: Progress = None,
 ) -> StateSpace:
     """State-space model of small departures from an operating point.
 
@@ -315,6 +317,8 @@ def linearize(
         where the system rests, or else at no error.
     name : str
         Of the motion.
+    progress : callable or bool, optional
+        Called with what is being done and the fraction of it done; True shows a bar.
 
     Returns
     -------
@@ -344,12 +348,14 @@ def linearize(
     >>> print(plant.frequency.round(2))
     [  36.56  183.55  229.04 1139.77 4243.13]
     """
+    tell(progress, "equilibrium and slopes", 0.0)
     if isinstance(structure, System):
         structure, strained = _gauged(structure, gauges)
         state = frozen(structure, motion, time, at)
         plant = linearize_system(state, inputs=inputs, outputs=outputs, strained=strained, loop=loop, name=name)
         if at != "rest" or loop != "open":
             return plant
+        tell(progress, BY_RICHER, 0.5)
         frequency, errors, doubts = _poles(state, structure)
         return replace(plant, frequency=frequency, errors=errors, warnings=plant.warnings + doubts)
     choice("loop", loop, ("open",))
@@ -390,6 +396,7 @@ def linearize(
     warnings = input_warnings(structure, motion, name=name, span=(time, time), base=point.base)
     frequency, errors = np.zeros(0), None
     if q is None and qd is None:
+        tell(progress, BY_RICHER, 0.5)
         frequency, errors, doubts = _poles(point, structure)
         warnings += doubts
     return StateSpace(

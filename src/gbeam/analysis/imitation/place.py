@@ -34,6 +34,7 @@ from gbeam.motion.centrifuge.limits import exceeded
 from gbeam.numerics.minimise import least, refine
 from gbeam.numerics.samples import interpolated, low_pass
 from gbeam.printable import advise
+from gbeam.progress import Progress, tell
 from gbeam.results.criteria import BROKEN
 from gbeam.results.placement import MEASURES, Candidate, Placement, Verification, degrees
 from gbeam.results.response import Response
@@ -69,18 +70,22 @@ def verify(
     machines: Mapping[str, Centrifuge],
     settings: ResponseSettings,
     answers: Answers,
+    progress: Progress = None,
 ) -> tuple[Verification, ...]:
     """Simulate flight and machines, prepared for the settings' span and named by their places, and compare."""
     settings = replace(settings, estimate=False)  # a verification states none
     mode, across = answers.mode, slice(1 if answers.specimen.straight else 0, 3)
 
-    def simulated(motion: Any) -> Response:
-        response = simulate(structure, motion, settings)
+    def simulated(motion: Any, what: str) -> Response:
+        def report(doing: str, share: float) -> None:
+            tell(progress, f"checking {what}: {doing}", share)
+
+        response = simulate(structure, motion, settings, progress=report)
         if response.outcome != "done":
             raise ComputationError(response.outcome, f"a run that verifies the places is no answer: {response.message}")
         return specimen_of(response) if isinstance(response, SystemResponse) else response
 
-    in_flight = simulated(flight)
+    in_flight = simulated(flight, "flight")
     point = answers.tip or None if isinstance(structure, System) else None
     tip = -1 if point is None else in_flight.points.index(point)
     # Machines at different control points share their axis motions, and the current one may be at the middle.
@@ -91,14 +96,14 @@ def verify(
         place = np.asarray(machine.place)
         motion, at = id(machine.course), place.tobytes()
         if (motion, at) not in responses:
-            responses[motion, at] = simulated(machine)
+            responses[motion, at] = simulated(machine, name)
         response = responses[motion, at]
         comparison = compare(in_flight, response, point=point)
         compared = np.isin(response.time, comparison.time[comparison.covered])
         vibration, moved = np.nan, np.nan
         if mode is not None:
             if motion not in carried:
-                carried[motion] = simulated(_Carried(machine))
+                carried[motion] = simulated(_Carried(machine), f"{name}, carried")
             # Whose automatic step may differ.
             carried_tip = interpolated(response.time, carried[motion].time, carried[motion].displacement[:, tip])
             swing = response.displacement[:, tip] - carried_tip
@@ -132,6 +137,7 @@ def place(
     names: tuple[str, str] = ("flight", "centrifuge"),
     check: bool = False,
     along: str = "",
+    progress: Progress = None,
 ) -> Placement:
     """Find the control point, mounting and smoothing that change a specimen's response least.
 
@@ -159,6 +165,8 @@ def place(
     along : str
         Directions in which the control point may be moved within the specimen, such as ``"xz"``; by default x in a
         straight beam, and all three in another specimen.
+    progress : callable or bool, optional
+        Called with what is being done and the fraction of it done; True shows a bar.
 
     Returns
     -------
@@ -185,7 +193,7 @@ def place(
     check_weights(weights)
     if isinstance(structure, Structure) and (check or "vibration" in weights):
         structure.require_damping("the vibration")
-    trials = _Trials(structure, flight, choice, settings, weights, along, np.asarray(current.place))
+    trials = _Trials(structure, flight, choice, settings, weights, along, np.asarray(current.place), progress)
     for width in reversed(choice.widths):  # the widest first, see Answers
         for turn in choice.turns or (None,):
             for mounting in choice.mountings:
@@ -219,7 +227,9 @@ def place(
         values=values,
         totals=totals,
         before=before.candidate,
-        verifications=verify(structure, flight, machines, settings, trials.answers) if check and allowed else (),
+        verifications=verify(structure, flight, machines, settings, trials.answers, progress)
+        if check and allowed
+        else (),
         refused=tuple(trials.refused),
         widths=(choice.widths[0], choice.widths[-1]),
         outcome="done" if allowed else BROKEN,
@@ -270,7 +280,10 @@ class _Trials:
         weights: Mapping[Measure, float],
         along: str,
         start: Floats,
+        progress: Progress,
     ) -> None:
+        self.progress = progress
+        tell(progress, "flight", 0.0)
         self.answers, self.flight = Answers(structure, flight, settings), flight
         self.answers.refuse_unfelt(weights)
         self.choice, self.weights = choice, weights
@@ -291,6 +304,7 @@ class _Trials:
         """Weighted measure at the best control point, and the largest share of a limit."""
         key, options = (mounting, width, turn), (mounting, width) if turn is None else (mounting, width, turn)
         if key not in self.evaluated:
+            tell(self.progress, f"placement {len(self.evaluated) + len(self.refused) + 1}", 0.0)
             try:
                 self.evaluated[key] = self.assess(self.choice.make(*options), turn=turn)
             except InputError as error:

@@ -20,6 +20,7 @@ from gbeam.guards.limits import SAMPLES, refuse_more
 from gbeam.motion import Centrifuge
 from gbeam.motion.centrifuge.kinematics import axes_result, axis_angles
 from gbeam.motion.protocol import implausible_motion
+from gbeam.progress import Progress, tell
 from gbeam.results.accounting import TOLERANCE, PeakPair
 from gbeam.results.comparison import MachinePlan
 from gbeam.results.criteria import BROKEN, Limits, checked_limits
@@ -41,6 +42,7 @@ def plan(
     tolerance_of: ToleranceOf = "peak",
     accept: Limits | None = None,
     title: str = "",
+    progress: Progress = None,
 ) -> MachinePlan:
     """Plan one centrifuge over its whole motion, and account for the flight's load on it.
 
@@ -60,6 +62,8 @@ def plan(
         As for :func:`gbeam.compare`; limits that need a response are not judged.
     title : str
         Of the scenario, for the header of the commands.
+    progress : callable or bool, optional
+        Called with what is being done and the fraction of it done; True shows a bar.
 
     Raises
     ------
@@ -79,6 +83,7 @@ def plan(
     limits = checked_limits(accept)
     if beam is not None and beam.line is not None:
         envelope = beam.envelope
+    tell(progress, "axis motions", 0.0)
     first, last = (float(end) for end in motion.extent)
     time = times_between(first, last)
     axes = axes_result(motion, time)
@@ -87,6 +92,7 @@ def plan(
     warnings = implausible_motion(motion, where, span)
     warnings += implausible_motion(motion.flight, f"motion.{tracks}" if tracks else "flight", span)
     during = slice(*np.searchsorted(time, (span[0], np.nextafter(span[1], np.inf))))
+    tell(progress, "what the flight and the machine make", 0.5)
     flown, machine = motion.flight.base(time[during]), motion.base(time)
     tip = np.array([[np.nan if beam is None else beam.length, 0.0, 0.0]])
     ends = tip if envelope is None else envelope

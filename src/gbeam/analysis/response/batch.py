@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Iterator
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sized
+from contextlib import nullcontext
 from dataclasses import dataclass
 from typing import Any, TypeVar, Unpack
 
@@ -20,6 +21,7 @@ from gbeam.guards.arguments import typed
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
+from gbeam.progress import Bar, Progress, tell
 from gbeam.results.errors import StepErrors
 from gbeam.results.response import Response
 
@@ -65,6 +67,7 @@ def simulate_batch(
     *,
     together: int = TOGETHER,
     one_structure: bool = False,
+    progress: Progress = None,
     **options: Unpack[Settings],
 ) -> Iterator[tuple[int, Response]]:
     """Compute the responses of many cases.
@@ -85,6 +88,9 @@ def simulate_batch(
         How many cases are integrated together; by default as many as a processor's cache holds; more on a GPU.
     one_structure : bool
         Whether all cases have the same structure, one object: those of complete models then take less time.
+    progress : callable or bool, optional
+        Called with how many cases are done and the fraction of them, zero where their number is not known; True shows
+        a bar while responses are taken.
 
     Yields
     ------
@@ -122,7 +128,20 @@ def simulate_batch(
     settings = settings_of(settings, options if settings else {"estimate": False, **options})
     if together < 1:
         raise InputError("together", f"is {together}", "give one or more")
-    return _responses(cases, settings, together, one_structure)
+    return _told(_responses(cases, settings, together, one_structure), cases, progress)
+
+
+def _told(
+    responses: Iterator[tuple[int, Response]], cases: Iterable[Any], progress: Progress
+) -> Iterator[tuple[int, Response]]:
+    """The responses, and a word after each."""
+    count = len(cases) if isinstance(cases, Sized) else 0
+    of = f" of {count}" if count else ""
+    with Bar() if progress is True else nullcontext(progress) as told:
+        tell(told, f"0{of} cases, compiling first", 0.0)
+        for done, answer in enumerate(responses, 1):
+            tell(told, f"{done}{of} cases", done / count if count else 0.0)
+            yield answer
 
 
 def _responses(

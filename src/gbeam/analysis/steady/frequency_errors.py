@@ -36,6 +36,7 @@ from gbeam.numerics.eigen import Steady, mac, matched
 from gbeam.results.errors import PARTS, ErrorEstimate, FrequencyErrors
 
 BENT = 0.01  # of its kinetic energy: a mode of twist with less bending is excited by nothing that bends the beam
+BY_RICHER = "errors, by richer models"  # what is being done
 SHOWN = 3  # frequencies that no model has, named at once
 
 

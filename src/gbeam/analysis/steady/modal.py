@@ -7,7 +7,7 @@ from typing import overload
 
 import numpy as np
 
-from gbeam.analysis.steady.frequency_errors import Richer, doubtful, judgeable, unknown_errors
+from gbeam.analysis.steady.frequency_errors import BY_RICHER, Richer, doubtful, judgeable, unknown_errors
 from gbeam.analysis.steady.operating_point import OperatingPoint, drawn, extent, operating_point
 from gbeam.analysis.system.linear import instabilities, largest_component, system_modes
 from gbeam.analysis.system.steady import Drive, steady
@@ -17,6 +17,7 @@ from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
+from gbeam.progress import Progress, tell
 from gbeam.results.modal import Modes
 from gbeam.results.system import SystemModes
 
@@ -72,6 +73,7 @@ def modes(
     gyroscopic: bool = True,
     errors: bool = True,
     name: str = "",
+    progress: Progress = None,
 ) -> SystemModes: ...
 @overload
 def modes(
@@ -82,6 +84,7 @@ def modes(
     gyroscopic: bool = True,
     errors: bool = True,
     name: str = "",
+    progress: Progress = None,
 ) -> Modes: ...
 @typed
 def modes(
@@ -92,6 +95,7 @@ def modes(
     gyroscopic: bool = True,
     errors: bool = True,
     name: str = "",
+    progress: Progress = None,
 ) -> Modes | SystemModes:
     """Small vibrations of a beam about its relative equilibrium on a base frozen at a time, or of a system of bodies.
 
@@ -111,6 +115,8 @@ def modes(
         Whether to estimate the errors of the frequencies, which takes most of the time.
     name : str
         For the result.
+    progress : callable or bool, optional
+        Called with what is being done and the fraction of it done; True shows a bar.
 
     Returns
     -------
@@ -129,6 +135,7 @@ def modes(
     >>> print(gb.modes(structure).frequency.round(1))
     [  36.6  182.6  229.  1138.7 4243.1]
     """
+    tell(progress, "equilibrium", 0.0)
     if isinstance(structure, System):
         state = steady(structure, Drive(motion, time))
         moving = state.vibrations(gyroscopic=gyroscopic)
@@ -137,6 +144,7 @@ def modes(
             return of_system
         if not judgeable(structure):
             return replace(of_system, errors=unknown_errors(structure, len(moving.value)))
+        tell(progress, BY_RICHER, 0.5)
         judged = Richer(state).errors(state, moving.value, moving.modes.T, gyroscopic=gyroscopic)
         said = doubtful(judged[~(of_system.frequency > of_system.reached)])  # of those above all is said
         return replace(of_system, errors=judged, warnings=of_system.warnings + said)
@@ -146,6 +154,7 @@ def modes(
     computed = modes_at(structure, point, gyroscopic=gyroscopic, name=name, time=time)
     stated = None
     if errors and judgeable(structure):
+        tell(progress, BY_RICHER, 0.5)
         stated = Richer(point).errors(point, computed.eigenvalue, computed.coordinates, gyroscopic=gyroscopic)
         warnings += doubtful(stated)
     elif errors:

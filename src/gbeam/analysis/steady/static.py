@@ -28,6 +28,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import theory_of
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
+from gbeam.progress import Progress, tell
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.errors import Errors
 from gbeam.results.parts import Base
@@ -104,6 +105,7 @@ def static(
     *,
     acceleration: Numbers | None = None,
     name: str = "",
+    progress: Progress = None,
 ) -> SystemRest: ...
 @overload
 def static(
@@ -113,6 +115,7 @@ def static(
     *,
     acceleration: Numbers | None = None,
     name: str = "",
+    progress: Progress = None,
 ) -> Deflection: ...
 @typed
 def static(
@@ -122,6 +125,7 @@ def static(
     *,
     acceleration: Numbers | None = None,
     name: str = "",
+    progress: Progress = None,
 ) -> Deflection | SystemRest:
     """Equilibrium relative to a base whose motion is frozen at a time, and what its sections carry.
 
@@ -139,6 +143,8 @@ def static(
         In place of a motion: acceleration of the root, or specific force, base axes, m/s².
     name : str
         For the result.
+    progress : callable or bool, optional
+        Called with what is being done and the fraction of it done; True shows a bar.
 
     Returns
     -------
@@ -160,10 +166,13 @@ def static(
     >>> print(f"{1e3 * rest.tip[2]:.3f} mm")
     -2.297 mm
     """
+    tell(progress, "equilibrium", 0.0)
     if isinstance(structure, System):
         if acceleration is not None:
             raise InputError("acceleration", "is given of a system", "give it gravity, which is its opposite")
-        return system_rest(steady(structure, Drive(motion, time)), name)
+        state = steady(structure, Drive(motion, time))
+        tell(progress, "loads, and errors by richer models", 0.5)
+        return system_rest(state, name)
     if acceleration is None:
         point = operating_point(structure, motion, time)
     elif motion is not None:
@@ -175,6 +184,7 @@ def static(
                 "acceleration", f"is {acceleration!r}", "give three finite components, x, y and z, in m/s²"
             )
         point = on_base(structure.at_time(time), Base(a, np.zeros(3), np.zeros(3)))
+    tell(progress, "loads, and errors by richer models", 0.5)
     return deflection_at(structure, point, motion, time, name)
 
 
