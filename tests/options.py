@@ -41,6 +41,11 @@ def choose(beam: gb.Beam, flight: gb.Flight, case: gb.Case) -> None:
     gb.Section.of("rectangle", widht=0.02, thickness=0.004)  # type: ignore[call-arg]
     gb.Joint("revolute", "panel", axes=[(0, 1, 0)])
     gb.Joint("revolut", "panel", axes=[(0, 1, 0)])  # type: ignore[arg-type]
+    gb.Joint("fixed", "panel", stiffness={"rx": 5e3}, stops={"rx": (-0.1, 0.1)}, coupling={"x-rx": -2e4})
+    gb.Joint("fixed", "panel", stiffness={"xr": 5e3})  # type: ignore[dict-item]
+    gb.Joint("spherical", "panel", initial={"rx": 0.1}, rate={"wx": gb.SmoothStep(1.0, 2.0), "wy": 0, "wz": 0})
+    gb.Joint("spherical", "panel", initial={"wx": 0.1})  # type: ignore[dict-item]
+    gb.Joint("revolute", "panel", axes=[(0, 1, 0)], effort=gb.Sine(1.0, 2.0), stiffness=20.0)
 
 
 def imitate(case: gb.Case, flight: gb.Response, spun: gb.Response, machine: gb.Centrifuge) -> None:

@@ -109,6 +109,8 @@ def test_words_to_choose_from_are_those_that_are_registered() -> None:
     for names, registry in {
         Verb: QUESTIONS,
         constants.JointKind: JOINTS,
+        constants.Coordinate: {name for kind in JOINTS.values() for name in kind.value_names},
+        constants.Rate: {name for kind in JOINTS.values() for name in (*kind.value_names, *kind.names_in("rate"))},
         constants.SectionShape: SHAPES,
         constants.Integrator: SCHEMES,
         constants.Mounting: MOUNTINGS,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -230,7 +230,8 @@ class OnJoint:
         joint = self.system.joints[name]
         initial = {key: value + moved * (key == coordinate) for key, value in joint.first.items()}
         efforts = {key: each for key, each in joint.efforts.items() if key != coordinate}
-        held = replace(joint, initial=initial, rate={**joint.rates, coordinate: 0.0}, effort=efforts)
+        moves: dict[str, Any] = {"initial": initial, "rate": {**joint.rates, coordinate: 0.0}, "effort": efforts}
+        held = replace(joint, **moves)
         return steady(replace(self.system, joints={**self.system.joints, name: held}), Drive())
 
     def _deflection(self, q: Floats) -> Floats | None:
@@ -285,8 +286,8 @@ class OnJoint:
         name, _, coordinate = self.coordinate.rpartition(".")
         joint = self.system.joints[name]
         others = joint.efforts if self.free else joint.rates
-        command = {**others, coordinate: 0.0 if profile is None else profile}
-        joint = replace(joint, effort=command) if self.free else replace(joint, rate=command)
+        command: Any = {**others, coordinate: 0.0 if profile is None else profile}
+        joint = replace(joint, **{"effort" if self.free else "rate": command})
         return replace(self.system, joints={**self.system.joints, name: joint})
 
     def run(self, profile: Profile, settings: ResponseSettings, name: str = "", progress: Progress = None) -> Ran:

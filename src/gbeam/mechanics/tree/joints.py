@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple, get_args
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from gbeam.arrays.namespace import as_array, concatenated, is_jax
 from gbeam.arrays.tree import Value
 from gbeam.arrays.types import Numbers
-from gbeam.constants import Direction, JointKind
+from gbeam.constants import Coordinate, Direction, JointKind, Rate
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, choice, finite, positive, vector
@@ -33,6 +33,9 @@ from gbeam.motion.profiles.profile import Profile
 
 Array = Any
 Floats = NDArray[np.float64]
+_Values = ArrayLike | Mapping[Coordinate, ArrayLike] | None  # of a single coordinate, or by name
+_Rates = ArrayLike | Mapping[Rate, ArrayLike] | None
+_Drives = Profile | ArrayLike | Mapping[Rate, Profile | ArrayLike] | None
 GROUND = "ground"
 _EYE = np.eye(3)
 _EASY = ("stiffness", "ease", "damping", "friction", "stop_stiffness")
@@ -169,16 +172,16 @@ class Joint(Value):
     axes: Sequence[Any] | None = None
     at: Numbers = (0.0, 0.0, 0.0)
     turn: Numbers = (0.0, 0.0, 0.0)
-    initial: Any = None
-    initial_rate: Any = None
-    stiffness: Any = None
-    ease: Any = None
-    damping: Any = None
-    friction: Any = None
-    stops: Any = None
-    stop_stiffness: Any = None
-    rate: Any = None
-    effort: Any = None
+    initial: _Values = None
+    initial_rate: _Rates = None
+    stiffness: _Values = None
+    ease: _Values = None
+    damping: _Rates = None
+    friction: _Rates = None
+    stops: _Values = None
+    stop_stiffness: _Values = None
+    rate: _Drives = None
+    effort: _Drives = None
     coupling: Any = None
 
     def __post_init__(self) -> None:
@@ -203,7 +206,7 @@ class Joint(Value):
             for name in (*_EASY, "stops"):
                 if getattr(self, name) is not None and not isinstance(getattr(self, name), Mapping):
                     raise InputError(name, f"is {getattr(self, name)!r}", 'say of which directions: {"rx": 5000.0}')
-            for direction in self.stiffness or {}:
+            for direction in self._sprung:
                 choice("stiffness", direction, DIRECTIONS)
         self.holder, self.start, self.start_rate, self.efforts, self.rates  # noqa: B018  raise what they refuse
 
@@ -211,8 +214,13 @@ class Joint(Value):
     def coordinates(self) -> tuple[str, ...]:
         """Names of the joint's coordinates."""
         if self.kind == "fixed":
-            return tuple(each for each in DIRECTIONS if each in (self.stiffness or {}))
+            return tuple(each for each in DIRECTIONS if each in self._sprung)
         return KINDS[self.kind].names
+
+    @property
+    def _sprung(self) -> Mapping[Coordinate, ArrayLike]:
+        """Springs that are named."""
+        return self.stiffness if isinstance(self.stiffness, Mapping) else {}
 
     @property
     def values(self) -> tuple[str, ...]:
