@@ -79,8 +79,8 @@ def quantity(
     Dimensions are one text, "time point axis"; an `empty` array of them is the default of what may be left out. A key
     that is not given is the field's own name, and none along time: JSON has no histories.
     """
-    along, at = _placed(dims, key)
-    declaration = Declaration(words, unit, along, role, name, at, note, frame, flags, optional)
+    dim_names, json_key = _placed(dims, key)
+    declaration = Declaration(words, unit, dim_names, role, name, json_key, note, frame, flags, optional)
     if empty:
         default["default_factory"] = lambda: _empty(declaration.dims)
     return dataclasses.field(metadata={_METADATA: declaration}, **default)
@@ -91,9 +91,11 @@ internal = partial(quantity, name=None, key=None)
 
 
 def _placed(dims: tuple[str, ...], key: str | EllipsisType | None) -> tuple[tuple[str, ...], str | None]:
-    """Dimensions, and the key in JSON where it is left out: the field's own name; of a history none."""
-    along = tuple(" ".join(dims).split())
-    return along, key if not isinstance(key, EllipsisType) else None if _HISTORIES & set(along) else ""
+    """Dimensions one by one, and the key in JSON: if left out "", the field's own name, or None of a history."""
+    names = tuple(" ".join(dims).split())
+    if not isinstance(key, EllipsisType):
+        return names, key
+    return names, None if _HISTORIES & set(names) else ""
 
 
 def _empty(dims: tuple[str, ...]) -> Any:
@@ -147,12 +149,12 @@ def declared(
     optional: bool = False,
 ) -> Callable[[Callable[[Any], _T]], Declared[_T]]:
     """Make a declared property of a getter."""
-    along, at = _placed(dims, key)
-    return lambda getter: Declared(getter, Declaration(words, unit, along, role, name, at, optional=optional))
+    dim_names, json_key = _placed(dims, key)
+    return lambda getter: Declared(getter, Declaration(words, unit, dim_names, role, name, json_key, optional=optional))
 
 
 def declarations(kind: type) -> tuple[tuple[str, Declaration], ...]:
-    """Fields of a record, then its properties, that are declared, each with its declaration."""
+    """Return the declared fields of a record, then its declared properties, each name with its declaration."""
     hashable: Any = kind  # which type checkers deny of classes of records
     return _declarations(hashable)
 
@@ -166,15 +168,15 @@ def _declarations(kind: type) -> tuple[tuple[str, Declaration], ...]:
 
 
 def parameters(kind: type) -> str:
-    """Return the section `Parameters` of a docstring, of all fields that are declared."""
+    """Return the section `Parameters` of a docstring: type and words of every declared field."""
     lines = ["Parameters", "----------"]
     bases = [base for base in reversed(kind.__mro__) if base is kind or "__dataclass_fields__" in vars(base)]
-    every = {name: base for base in bases for name in vars(base).get("__annotations__", {})}
-    for name, base in every.items():
+    owners = {name: base for base in bases for name in vars(base).get("__annotations__", {})}
+    for name, base in owners.items():
         field: Any = vars(base).get(name) if base is kind else vars(base)["__dataclass_fields__"].get(name)
-        each = getattr(field, "metadata", {}).get(_METADATA)
-        if each is not None and (base is kind or field.repr):  # the warnings are those of any result
-            lines += [f"{name} : {_type_words(base.__annotations__[name], each)}", f"    {each.sentence}"]
+        declaration = getattr(field, "metadata", {}).get(_METADATA)
+        if declaration is not None and (base is kind or field.repr):  # the warnings are those of any result
+            lines += [f"{name} : {_type_words(base.__annotations__[name], declaration)}", f"    {declaration.sentence}"]
     return "\n".join(lines)
 
 
@@ -188,17 +190,18 @@ def document(kind: type) -> None:
         kind.__doc__ = f"{above.rstrip()}\n\n{section}\n" + (f"\n{examples}{below}" if examples else "")
 
 
-def _type_words(annotation: str, each: Declaration) -> str:
+def _type_words(annotation: str, declaration: Declaration) -> str:
+    """Type of a field as docstrings have it: shape, kind and unit."""
     kinds = {"Floats": "", "Complex": "complex", "Flags": "bool", "NDArray[np.int_]": "int"}
-    base, _, none = annotation.partition(" | None")
-    words = kinds.get(base, re.sub(r"tuple\[(\w+), \.\.\.\]", r"tuple of \1", base)) + (" or None" if none or _ else "")
-    unit = each.unit if isinstance(each.unit, str) else ""
-    shape = _shape(each) if base in kinds else ""
+    base, optional, _ = annotation.partition(" | None")
+    words = kinds.get(base, re.sub(r"tuple\[(\w+), \.\.\.\]", r"tuple of \1", base)) + (" or None" if optional else "")
+    unit = declaration.unit if isinstance(declaration.unit, str) else ""
+    shape = _shape(declaration) if base in kinds else ""
     return ", ".join(filter(None, (" ".join(filter(None, (shape, words.strip()))), unit)))
 
 
-def _shape(each: Declaration) -> str:
-    dims = [dim.rstrip("_") for dim in each.dims]
+def _shape(declaration: Declaration) -> str:
+    dims = [dim.rstrip("_") for dim in declaration.dims]
     return f"({', '.join(dims)}{',' if len(dims) == 1 else ''})" if dims else ""
 
 
@@ -208,14 +211,14 @@ def annotation(kind: type, name: str) -> str:
 
 
 def record_in(kind: type, name: str) -> Any:
-    """Return the record that a field's annotation names, such as that of ``tuple[Crossing, ...]``, if any."""
+    """Return the record that a field's annotation names, such as Crossing of ``tuple[Crossing, ...]``; None if none."""
     text, module = _annotated(kind, name)
     named = (vars(sys.modules[module]).get(word) for word in re.findall(r"\w+", text))
     return next((each for each in named if isinstance(each, type) and dataclasses.is_dataclass(each)), None)
 
 
 def _annotated(kind: type, name: str) -> tuple[str, str]:
-    """An annotation, and the module in which it is written."""
+    """Annotation of a field, or of a property's result, and the module in which it is written; "" if there is none."""
     for base in kind.__mro__:
         if name in vars(base).get("__annotations__", {}):
             return vars(base)["__annotations__"][name], base.__module__

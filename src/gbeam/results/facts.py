@@ -24,28 +24,30 @@ def json_of(result: Any) -> dict[str, Any]:
 
 
 def facts_of(record: Any) -> dict[str, Any]:
-    """Return a record as JSON: vectors by their axes; what stands along a dimension of its `json_rows` row by row."""
+    """Return the quantities of a record as JSON: vectors by axis, arrays along a dimension of its `json_rows` as one
+    value in each row.
+    """
     facts: dict[str, Any] = {}
-    lists: dict[str, str] = getattr(record, "json_rows", {})
-    for name, each in declarations(type(record)):
+    row_keys: dict[str, str] = getattr(record, "json_rows", {})
+    for name, declaration in declarations(type(record)):
         value = getattr(record, name)
-        if each.key is None or (each.optional and unknown(value)):
+        if declaration.key is None or (declaration.optional and unknown(value)):
             continue
-        key, along = each.key or name, _along(each, lists)
-        for end, one in _parts(value):
-            if along is None:
-                _put(facts, f"{key}{end}", _plain(one, each))
+        key, row_dim = declaration.key or name, _along(declaration, row_keys)
+        for suffix, part in _parts(value):
+            if row_dim is None:
+                _put(facts, f"{key}{suffix}", _plain(part, declaration))
                 continue
-            places = _labels(record, along)
-            axis = each.dims.index(along)
-            every = _rows(facts, lists[along], places, _count(one, axis))
-            if one is None:  # not estimated: no number in any row
-                shares: list[Any] = [dict.fromkeys(units_of(record_in(type(record), name)), math.nan)] * len(every)
+            row_labels = _labels(record, row_dim)
+            axis = declaration.dims.index(row_dim)
+            rows = _rows(facts, row_keys[row_dim], row_labels, _count(part, axis))
+            if part is None:  # not estimated: no number in any row
+                cells: list[Any] = [dict.fromkeys(units_of(record_in(type(record), name)), math.nan)] * len(rows)
             else:
-                across = replace(each, dims=tuple(dim for dim in each.dims if dim != along))
-                shares = [_plain(at_place(one, i, axis), across) for i in range(len(every))]
-            for row, share in zip(every, shares, strict=True):
-                _put(row, f"{key}{end}", share)
+                of_row = replace(declaration, dims=tuple(dim for dim in declaration.dims if dim != row_dim))
+                cells = [_plain(at_place(part, i, axis), of_row) for i in range(len(rows))]
+            for row, cell in zip(rows, cells, strict=True):
+                _put(row, f"{key}{suffix}", cell)
     return facts
 
 
@@ -68,65 +70,68 @@ class Entry:
 
 
 def tree_of(kind: type) -> dict[str, Any]:
-    """Return what :func:`facts_of` makes of a record of this kind: a :class:`Entry` for each quantity at its place."""
+    """Return the layout of the JSON of :func:`facts_of` for a kind of record: an :class:`Entry` at the key of each
+    quantity, :data:`ANY` for names, and :class:`Rows` for lists.
+    """
     tree: dict[str, Any] = {}
-    lists: dict[str, str] = getattr(kind, "json_rows", {})
-    for name, each in declarations(kind):
-        if each.key is None:
+    row_keys: dict[str, str] = getattr(kind, "json_rows", {})
+    for name, declaration in declarations(kind):
+        if declaration.key is None:
             continue
-        key, written = each.key or name, annotation(kind, name)
-        inside = record_in(kind, name) if each.role in ("part", "rows") else None
-        leaf: Any = tree_of(inside) if inside else _leaf(each, lists, written)
-        along = _along(each, lists)
-        if each.role == "part" and "None" in written and along is None and not each.optional:
+        key, hint = declaration.key or name, annotation(kind, name)
+        inner = record_in(kind, name) if declaration.role in ("part", "rows") else None
+        leaf: Any = tree_of(inner) if inner else _leaf(declaration, row_keys, hint)
+        row_dim = _along(declaration, row_keys)
+        if declaration.role == "part" and "None" in hint and row_dim is None and not declaration.optional:
             leaf = Nullable(leaf)
-        if inside and each.unit and isinstance(each.unit, str):
-            leaf = _each(leaf, partial(_united, unit=each.unit))
-        if inside and each.role == "part" and key != INSIDE and not each.words.startswith("of "):
-            leaf = _each(leaf, partial(_explained, words=each.words))
-        if inside and each.role == "part" and each.dims and along is None:
-            leaf = _each(leaf, lambda entry: replace(entry, ends=entry.ends or ("[i]",)))
-        if isinstance(each.unit, dict):
-            named_unit = {"unit": Entry("", "SI unit", types=("string",))} if inside else {}
-            leaf = leaf if inside else replace(leaf, ends=())
-            for row, unit in each.unit.items():
-                united = _each(leaf, partial(_united, unit=unit))
-                _put(tree, f"{key}.{row}" if inside else row, united | named_unit if inside else united)
+        if inner and declaration.unit and isinstance(declaration.unit, str):
+            leaf = _changed(leaf, partial(_united, unit=declaration.unit))
+        if inner and declaration.role == "part" and key != INSIDE and not declaration.words.startswith("of "):
+            leaf = _changed(leaf, partial(_explained, words=declaration.words))
+        if inner and declaration.role == "part" and declaration.dims and row_dim is None:
+            leaf = _changed(leaf, lambda entry: replace(entry, ends=entry.ends or ("[i]",)))
+        if isinstance(declaration.unit, dict):
+            named_unit = {"unit": Entry("", "SI unit", types=("string",))} if inner else {}
+            leaf = leaf if inner else replace(leaf, ends=())
+            for row, unit in declaration.unit.items():
+                united = _changed(leaf, partial(_united, unit=unit))
+                _put(tree, f"{key}.{row}" if inner else row, united | named_unit if inner else united)
             continue
-        if each.role == "rows":
-            named = "Mapping" in written or (inside and _label(inside))
+        if declaration.role == "rows":
+            named = "Mapping" in hint or (inner and _label(inner))
             leaf = {ANY: leaf} if named else Rows(leaf)
-        where = tree
-        if along is not None and lists[along]:
-            where = tree.setdefault(lists[along], {} if _is_labelled(kind, along) else Rows())
-        if along is not None and _is_labelled(kind, along):
-            where = where.setdefault(ANY, {})
-        _put(where, key, leaf)
-        if written == "Complex":
-            _put(where, f"{key}_imaginary", leaf)
+        parent = tree
+        if row_dim is not None and row_keys[row_dim]:
+            parent = tree.setdefault(row_keys[row_dim], {} if _is_labelled(kind, row_dim) else Rows())
+        if row_dim is not None and _is_labelled(kind, row_dim):
+            parent = parent.setdefault(ANY, {})
+        _put(parent, key, leaf)
+        if hint == "Complex":
+            _put(parent, f"{key}_imaginary", leaf)
     return tree
 
 
-def _leaf(each: Declaration, lists: Mapping[str, str], written: str) -> Entry:
-    spread = not (each.key or "").startswith("/")
-    dims = [dim for dim in each.dims if dim not in lists or not spread]
-    either = written == "Limit" or re.search(r"float \| tuple", written)
-    mapped = len(re.findall("dict|Mapping", written))
-    ends: tuple[str, ...] = ("[i]",) if dims or ("tuple" in written and not each.dims and not either) else ()
-    if mapped:
-        ends = (".".join(ANY for _ in range(mapped)),)
+def _leaf(declaration: Declaration, row_keys: Mapping[str, str], hint: str) -> Entry:
+    """Entry of a quantity that is no record: its unit, words, components and type in JSON."""
+    in_rows = not (declaration.key or "").startswith("/")
+    dims = [dim for dim in declaration.dims if dim not in row_keys or not in_rows]
+    scalar_too = hint == "Limit" or re.search(r"float \| tuple", hint)
+    depth = len(re.findall("dict|Mapping", hint))
+    ends: tuple[str, ...] = ("[i]",) if dims or ("tuple" in hint and not declaration.dims and not scalar_too) else ()
+    if depth:
+        ends = (".".join(ANY for _ in range(depth)),)
     elif dims and dims[-1] in NAMES:
         ends = NAMES[dims[-1]]
-    number = re.search("float|Floats|int|Complex|Limit|Any", written)
-    kind = "number" if number else "boolean" if re.search("bool|Flags", written) else "string"
-    unit = each.unit if isinstance(each.unit, str) else "unit"
-    return Entry(unit, each.words, ends, (kind, "array") if either else (kind,))
+    number = re.search("float|Floats|int|Complex|Limit|Any", hint)
+    kind = "number" if number else "boolean" if re.search("bool|Flags", hint) else "string"
+    unit = declaration.unit if isinstance(declaration.unit, str) else "unit"
+    return Entry(unit, declaration.words, ends, (kind, "array") if scalar_too else (kind,))
 
 
-def _each(tree: Any, change: Callable[[Entry], Entry]) -> Any:
-    """A tree whose entries are changed."""
+def _changed(tree: Any, change: Callable[[Entry], Entry]) -> Any:
+    """Return the tree with `change` applied to every entry."""
     if isinstance(tree, dict):
-        return type(tree)({key: _each(each, change) for key, each in tree.items()})
+        return type(tree)({key: _changed(branch, change) for key, branch in tree.items()})
     return change(tree)
 
 
@@ -142,20 +147,20 @@ def units_of(kind: type) -> Units:
     """Return the unit of every quantity that :func:`facts_of` makes of a record of this kind, at its place."""
 
     def units(tree: Any) -> Any:
-        return {key: units(each) for key, each in tree.items()} if isinstance(tree, dict) else tree.unit
+        return {key: units(branch) for key, branch in tree.items()} if isinstance(tree, dict) else tree.unit
 
     return dict(units(tree_of(kind)))
 
 
 def paths_of(tree: dict[str, Any], before: str = "") -> Iterator[tuple[str, Entry]]:
-    """Yield the path of every number in a tree; ``*`` is a name, ``[i]`` a number in a list."""
-    for key, each in tree.items():
+    """Yield path and entry of every quantity that is not text; ``*`` in a path is a name, ``[i]`` a place in a list."""
+    for key, branch in tree.items():
         path = f"{before}{key}"
-        if isinstance(each, dict):
-            yield from paths_of(each, f"{path}{'[i]' if isinstance(each, Rows) else ''}.")
-        elif "string" not in each.types:
-            for end in each.ends or ("",):
-                yield f"{path}{'.' if end and end != '[i]' else ''}{end}", each
+        if isinstance(branch, dict):
+            yield from paths_of(branch, f"{path}{'[i]' if isinstance(branch, Rows) else ''}.")
+        elif "string" not in branch.types:
+            for end in branch.ends or ("",):
+                yield f"{path}{'.' if end and end != '[i]' else ''}{end}", branch
 
 
 def schema_of(tree: Any) -> dict[str, Any]:
@@ -190,7 +195,7 @@ def unit_at(facts: Any, tree: Any, keys: tuple[str | int, ...]) -> str | None:
 
 
 def unknown(value: Any) -> bool:
-    """Return whether a value says nothing: none, empty, or no number at all."""
+    """Return True for None, for what is empty, and for numbers that are all NaN."""
     if isinstance(value, (float, np.ndarray)):
         values = np.asarray(value)
         return values.size == 0 or (values.dtype.kind in "fc" and bool(np.isnan(values).all()))
@@ -198,23 +203,24 @@ def unknown(value: Any) -> bool:
 
 
 def _parts(value: Any) -> list[tuple[str, Any]]:
-    """The value, or the real and imaginary part of complex ones, with what their names end in."""
+    """Return ("", value), or of complex values the real part with "" and the imaginary part with "_imaginary"."""
     if np.iscomplexobj(value):
         return [("", value.real), ("_imaginary", value.imag)]
     return [("", value)]
 
 
-def _plain(value: Any, each: Declaration) -> Any:
-    if value is None or each.role == "part":
+def _plain(value: Any, declaration: Declaration) -> Any:
+    """JSON of a value: records as objects, rows as a list or by name, vectors by component."""
+    if value is None or declaration.role == "part":
         return None if value is None else facts_of(value)
-    if each.role == "rows" and isinstance(value, Mapping):
-        units = {name: {"unit": unit} for name, unit in each.unit.items()} if isinstance(each.unit, dict) else {}
-        return {name: facts_of(row) | units.get(name, {}) for name, row in value.items()}
-    if each.role == "rows":
+    if declaration.role == "rows" and isinstance(value, Mapping):
+        units = declaration.unit if isinstance(declaration.unit, dict) else {}
+        return {name: facts_of(row) | ({"unit": units[name]} if name in units else {}) for name, row in value.items()}
+    if declaration.role == "rows":
         label = _label(type(value[0])) if value else ""
         return {getattr(row, label): facts_of(row) for row in value} if label else [facts_of(row) for row in value]
-    if each.dims and each.dims[-1] in NAMES:
-        return dict(zip(NAMES[each.dims[-1]], np.asarray(value).T.tolist(), strict=True))
+    if declaration.dims and declaration.dims[-1] in NAMES:
+        return dict(zip(NAMES[declaration.dims[-1]], np.asarray(value).T.tolist(), strict=True))
     return _bare(value)
 
 
@@ -228,7 +234,7 @@ def _bare(value: Any) -> Any:
 
 
 def _put(facts: dict[str, Any], key: str, value: Any) -> None:
-    """Put a value at its key, whose dots lead deeper; the values of a part that stands inside beside the others."""
+    """Set `facts` at a key, whose dots lead deeper; an object at INSIDE, or beside one, is merged into that."""
     if key == INSIDE:
         _merge(facts, value)
         return
@@ -242,6 +248,7 @@ def _put(facts: dict[str, Any], key: str, value: Any) -> None:
 
 
 def _merge(facts: dict[str, Any], others: dict[str, Any]) -> None:
+    """Merge JSON into `facts`: objects key by key, lists row by row; any other value replaces the old one."""
     for key, value in others.items():
         if isinstance(value, list) and isinstance(facts.get(key), list):
             for row, other in zip(facts[key], value, strict=True):
@@ -252,15 +259,15 @@ def _merge(facts: dict[str, Any], others: dict[str, Any]) -> None:
             facts[key] = value
 
 
-def _along(each: Declaration, lists: Mapping[str, str]) -> str | None:
-    """The dimension along which JSON has rows, if any."""
-    if each.role == "rows" or (each.key or "").startswith("/"):
+def _along(declaration: Declaration, row_keys: Mapping[str, str]) -> str | None:
+    """Dimension along which JSON has a value in each row; None where it has none."""
+    if declaration.role == "rows" or (declaration.key or "").startswith("/"):
         return None
-    return next((dim for dim in each.dims if dim in lists), None)
+    return next((dim for dim in declaration.dims if dim in row_keys), None)
 
 
 def _labels(record: Any, dim: str) -> tuple[str, ...] | None:
-    """Names by which JSON has the places along a dimension; None where it lists them."""
+    """Keys by which JSON has the places along a dimension; None where it lists them."""
     if dim in NAMES:
         return NAMES[dim]
     name = next((name for name, each in declarations(type(record)) if _names(each, dim)), None)
@@ -268,7 +275,7 @@ def _labels(record: Any, dim: str) -> tuple[str, ...] | None:
 
 
 def _label(kind: type) -> str:
-    """The field of a row that is its key in JSON; empty where rows are listed."""
+    """Name of the field that is the key of a row in JSON; empty where rows are listed."""
     return next((name for name, each in declarations(kind) if each.role == "labels" and each.key is None), "")
 
 
@@ -276,12 +283,12 @@ def _is_labelled(kind: type, dim: str) -> bool:
     return dim in NAMES or any(_names(each, dim) for _, each in declarations(kind))
 
 
-def _names(each: Declaration, dim: str) -> bool:
-    return each.role == "labels" and each.key is None and each.dims == (dim,)
+def _names(declaration: Declaration, dim: str) -> bool:
+    return declaration.role == "labels" and declaration.key is None and declaration.dims == (dim,)
 
 
 def _rows(facts: dict[str, Any], key: str, labels: tuple[str, ...] | None, count: int) -> list[dict[str, Any]]:
-    """The rows of JSON that stand along a dimension, made where there are none."""
+    """Objects of the rows along a dimension under `key`: by label, or in a list of `count`; missing ones are added."""
     if labels is not None:
         named = facts.setdefault(key, {}) if key else facts
         return [named.setdefault(label, {}) for label in labels]
@@ -291,14 +298,14 @@ def _rows(facts: dict[str, Any], key: str, labels: tuple[str, ...] | None, count
 
 
 def _count(value: Any, axis: int) -> int:
-    """Number of places along a dimension of an array or a tuple, or of the arrays of a record; zero of none."""
+    """Number of places along an axis of an array or a tuple, or of the arrays of a record; zero for None."""
     if value is None or not dataclasses.is_dataclass(value):
         return 0 if value is None else np.shape(value)[axis]
     return max(_count(each, axis) for _, each in _arrays(value))
 
 
 def at_place(value: Any, place: int, axis: int = 0) -> Any:
-    """Return the share of one place along a dimension of an array or a tuple, or of the arrays of a record."""
+    """Return what an array, a tuple, or every array of a record holds at one place along an axis."""
     if isinstance(value, tuple):
         return value[place]
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
@@ -307,8 +314,8 @@ def at_place(value: Any, place: int, axis: int = 0) -> Any:
 
 
 def _arrays(record: Any) -> Iterator[tuple[str, Any]]:
-    """The fields of a record that are arrays, or records of arrays."""
-    for each in dataclasses.fields(record):
-        value = getattr(record, each.name)
+    """Yield name and value of the fields of a record that are arrays, or records of arrays."""
+    for field in dataclasses.fields(record):
+        value = getattr(record, field.name)
         if dataclasses.is_dataclass(value) or isinstance(value, np.ndarray):
-            yield each.name, value
+            yield field.name, value
