@@ -130,8 +130,8 @@ class Accounting(Part):
     def shares(self) -> dict[str, float]:
         """Share of the flight's time that is not followed, by reason, the largest first."""
         total: dict[str, float] = {}
-        for each in self.not_followed:
-            total[each.reason] = total.get(each.reason, 0.0) + (each.end - each.start)
+        for stretch in self.not_followed:
+            total[stretch.reason] = total.get(stretch.reason, 0.0) + (stretch.end - stretch.start)
         duration = self.span[1] - self.span[0]
         return {reason: total[reason] / duration for reason in sorted(total, key=lambda reason: -total[reason])}
 
@@ -180,56 +180,57 @@ def verdict(
     whole: tuple[float, float] | None = None,
     point: str = "tip",
 ) -> str:
-    """Return one sentence about the whole flight between motions of these names.
+    """Return the verdict on an imitation as one sentence; `flight` and `machine` are the names of the motions.
 
-    The part of it that was run; the flight's largest load peak, where that is not reproduced; the largest load
-    anywhere on the specimen, the tip's, or another `point`'s, and the root moment's peaks, of which the tip's counts as
-    reproduced `within` a share (the load's tolerance by default), and the least `margins` on yield in flight and on the
-    machine; how many load peaks are reproduced and how well; the time followed and why the rest is not; and what is
-    loaded beyond.
+    As far as they are known it states: the part that was run, if the `whole` flight, from its first to its last time,
+    s, was not; the flight's largest load peak, if that is not reproduced; the largest load anywhere on the specimen;
+    the peaks of the tip, or of another `point`, and of the root moment, where the tip's counts as reproduced if it
+    differs by at most the share `within` (the load's tolerance by default); the least `margins` on yield in flight and
+    on the machine; how many load peaks are reproduced, and how well; the share of the time that is followed, and why
+    the rest is not; and the worst preload.
     """
     within = accounting.tolerance if within is None else within
-    said = [] if whole is None else [part_words(accounting.span, whole)]
+    clauses = [] if whole is None else [part_words(accounting.span, whole)]
     main = accounting.main
     if main is not None and main.reason:
-        said.append(
+        clauses.append(
             f"{flight}'s load peak of {in_g(main.load)} at {main.time:.2f} s is not reproduced: {machine} makes "
             f"{in_g(main.reproduced)} ({main.reason})"
         )
-    largest = peaks.get("largest_load", PeakPair())
-    if math.isfinite(largest.machine):
-        said.append(_largest(flight, machine, largest))
+    largest_load = peaks.get("largest_load", PeakPair())
+    if math.isfinite(largest_load.machine):
+        clauses.append(_largest(flight, machine, largest_load))
     if "tip" in peaks:
-        said.append(_tip(flight, machine, peaks["tip"], within, point))
+        clauses.append(_tip(flight, machine, peaks["tip"], within, point))
     moment = peaks.get("root_moment", PeakPair())
     if math.isfinite(moment.ratio):
-        said.append(f"root moment {change(moment.ratio)}")
+        clauses.append(f"root moment {change(moment.ratio)}")
     if margins is not None:
         beyond = [name for name, margin in zip((flight, machine), margins, strict=True) if margin < 0]
-        above = f", ABOVE YIELD in {' and '.join(beyond)}" if beyond else ""
-        said.append(f"margin on yield {margins[0]:.3g} in {flight}, {margins[1]:.3g} on {machine}{above}")
-    said.append(_load_peaks(accounting))
-    said += _missed(accounting, main)
-    said.append(_time(accounting))
+        warning = f", ABOVE YIELD in {' and '.join(beyond)}" if beyond else ""
+        clauses.append(f"margin on yield {margins[0]:.3g} in {flight}, {margins[1]:.3g} on {machine}{warning}")
+    clauses.append(_load_peaks(accounting))
+    clauses += _missed(accounting, main)
+    clauses.append(_time(accounting))
     if accounting.preloads:
-        worst = max(accounting.preloads, key=lambda each: each.load - max(each.flight, accounting.idle))
-        said.append(
+        worst = max(accounting.preloads, key=lambda preload: preload.load - max(preload.flight, accounting.idle))
+        clauses.append(
             f"preload: {machine} makes {in_g(worst.load)} at {worst.time:.2f} s, where {flight} has "
             f"{in_g(worst.flight)}{f' and idle is {in_g(accounting.idle)}' if accounting.idle else ''}"
         )
-    return "; ".join(said)
+    return "; ".join(clauses)
 
 
 def _largest(flight: str, machine: str, load: PeakPair) -> str:
-    ends = (
+    extremes = (
         f"{name} {in_g(size)}{f' at {place}' if place else ''} at {time:.2f} s"
         for name, size, place, time in (
             (flight, load.flight, load.place_flight, load.time_flight),
             (machine, load.machine, load.place_machine, load.time_machine),
         )
     )
-    by = f" ({change(load.ratio)})" if math.isfinite(load.ratio) else ""
-    return f"largest load anywhere on the specimen: {', '.join(ends)}{by}"
+    relative = f" ({change(load.ratio)})" if math.isfinite(load.ratio) else ""
+    return f"largest load anywhere on the specimen: {', '.join(extremes)}{relative}"
 
 
 def _tip(flight: str, machine: str, tip: PeakPair, within: float, point: str) -> str:
@@ -244,17 +245,18 @@ def _tip(flight: str, machine: str, tip: PeakPair, within: float, point: str) ->
 
 
 def _load_peaks(accounting: Accounting) -> str:
-    count, above = len(accounting.peaks), f" above {in_g(accounting.idle)}" if accounting.idle else ""
+    count = len(accounting.peaks)
+    above = f" above {in_g(accounting.idle)}" if accounting.idle else ""
     if not count:
         return f"no load peak{above}"
-    good = [peak for peak in accounting.peaks if not peak.reason]
+    reproduced = [peak for peak in accounting.peaks if not peak.reason]
     noun = "load peak" if count == 1 else "load peaks"
-    within = f" within {percent(max(_FINEST, *(peak.error for peak in good)), up=True)}" if good else ""
-    return f"{len(good)} of {count} {noun}{above} reproduced{within}"
+    within = f" within {percent(max(_FINEST, *(peak.error for peak in reproduced)), up=True)}" if reproduced else ""
+    return f"{len(reproduced)} of {count} {noun}{above} reproduced{within}"
 
 
 def _missed(accounting: Accounting, main: LoadPeak | None) -> Iterator[str]:
-    """The largest of the other peaks that are not reproduced."""
+    """Yield a clause on the largest peak that is not reproduced, other than `main`, if there is one."""
     others = [peak for peak in accounting.missed if peak is not main]
     if others:
         worst = max(others, key=lambda peak: peak.load)

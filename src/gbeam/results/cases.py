@@ -150,8 +150,8 @@ class Sweep(Figured[str]):
     def estimates(self) -> Mapping[str, Mapping[str, Any]]:
         """Every estimate by name with its bounds; lists along the grid, and along the times of a history."""
         return {
-            name: {"draws": each.count, **{of: _bounds(each[of]) for of in each.names}}
-            for name, each in self.statistics.items()
+            name: {"draws": statistics.count, **{kind: _bounds(statistics[kind]) for kind in statistics.names}}
+            for name, statistics in self.statistics.items()
         }
 
     @declared("", "Sobol indices by measure, parameter and order; lists along the grid", role="fact", key="indices")
@@ -159,10 +159,10 @@ class Sweep(Figured[str]):
         """First and total index of every parameter with its bounds; lists along the grid."""
         return {
             name: {
-                path: {order: _bounds(each.values[..., k, i, :]) for i, order in enumerate(ORDERS)}
-                for k, path in enumerate(each.parameters)
+                path: {order: _bounds(indices.values[..., k, i, :]) for i, order in enumerate(ORDERS)}
+                for k, path in enumerate(indices.parameters)
             }
-            for name, each in self.indices.items()
+            for name, indices in self.indices.items()
         }
 
     @declared("", "dimensions of every list", role="fact")
@@ -174,7 +174,7 @@ class Sweep(Figured[str]):
         """Numbers of cases by their outcome; ``done`` first."""
         names, numbers = np.unique(self.outcome.astype(str), return_counts=True)
         counts = dict(zip(names.tolist(), numbers.tolist(), strict=True))
-        return dict(sorted(counts.items(), key=lambda each: (each[0] != "done", each[0])))
+        return dict(sorted(counts.items(), key=lambda item: (item[0] != "done", item[0])))
 
     @property
     def computed(self) -> Flags:
@@ -284,8 +284,9 @@ class Sensitivity(Figured[str]):
         }
 
     def _effect(self, k: int, j: int) -> Effect:
+        """Effect of parameter j on measure k."""
         path, value, unit, method = self.parameters[j], self.values[j], self.parameter_units[j], self.methods[j]
-        slope, relative, error = (float(each[k, j]) for each in (self.derivatives, self.relative, self.errors))
+        slope, relative, error = (float(table[k, j]) for table in (self.derivatives, self.relative, self.errors))
         return Effect(path, float(value), unit, slope, relative, error, method, bool(self.kinks[k, j]))
 
     @declared("", "relative change of the measure over that of the parameter", "measure parameter", key=None)
@@ -300,7 +301,7 @@ class Sensitivity(Figured[str]):
         return np.argsort(-np.abs(self.derivatives[k] * self.values), kind="stable")
 
     def __repr__(self) -> str:
-        first = self.ranked()[:3]
-        shares = ", ".join(f"{self.parameters[j]} {self.relative[0, j]:+.3g} %/%" for j in first)
-        what = f"{', '.join(self.measures)} to {len(self.parameters)} values"
-        return self._with_warnings(f"Sensitivity of {what}: {self.measures[0]} by {shares}")
+        leading = self.ranked()[:3]
+        shares = ", ".join(f"{self.parameters[j]} {self.relative[0, j]:+.3g} %/%" for j in leading)
+        subject = f"{', '.join(self.measures)} to {len(self.parameters)} values"
+        return self._with_warnings(f"Sensitivity of {subject}: {self.measures[0]} by {shares}")

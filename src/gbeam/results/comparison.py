@@ -198,12 +198,12 @@ class MachinePlan(Judged, Driven, Figured[AxesFigure]):
         return state_of(self.outcome, [self])
 
     def __repr__(self) -> str:
-        of = f" {self.name!r}" if self.name else ""
+        name = f" {self.name!r}" if self.name else ""
         tracks = f", tracks {self.tracks!r}" if self.tracks else ""
-        lines = [f"MachinePlan{of} (arm {self.arm:g} m{tracks}): {self.state}"]
+        lines = [f"MachinePlan{name} (arm {self.arm:g} m{tracks}): {self.state}"]
         lines += [self.message] if self.message else []
         lines += textwrap.wrap(self.verdict, _WIDTH)
-        rate, acceleration = (np.abs(each).max(axis=0) for each in (self.axes.rate, self.axes.acceleration))
+        rate, acceleration = (np.abs(history).max(axis=0) for history in (self.axes.rate, self.axes.acceleration))
         lines.append(f"axis rates up to {_listed(rate)} rad/s, accelerations {_listed(acceleration)} rad/s²")
         error = self.axes.tracking_error[~self.axes.not_followed]
         if error.size:

@@ -99,8 +99,9 @@ class Judged:
 def state_of(
     outcome: str, imitations: Sequence[Judged], *, exceeded: bool = False, kept: Sequence[bool | None] = ()
 ) -> str:
-    """Say how an answer with imitations ended, and whether it `kept` other limits, in a few words, of which only
-    :data:`GOOD` are to be shown as good.
+    """Return the outcome of an answer in a few words, with what limits make of it; only :data:`GOOD` ones are good.
+
+    `exceeded` is True if a limit of a machine is; `kept` are the verdicts on other limits, None where there is none.
     """
     if outcome != "done":
         return outcome
@@ -108,9 +109,9 @@ def state_of(
         return NOT_ACCEPTED
     if exceeded:
         return EXCEEDED
-    whole = [each for each in imitations if each.accepted and not each.not_judged and not each.part]
+    accepted = [each for each in imitations if each.accepted and not each.not_judged and not each.part]
     missed = any(main is not None and main.reason for main in (each.accounting.main for each in imitations))
-    return ("accepted" if whole or True in kept else "done") + (", largest load peak missed" if missed else "")
+    return ("accepted" if accepted or True in kept else "done") + (", largest load peak missed" if missed else "")
 
 
 @dataclass(frozen=True)
@@ -135,7 +136,7 @@ class Rule:
         return self.kind in ("level", "ratio")
 
     def checked(self, limit: object) -> Limit:
-        """Return a limit as floats; InputError if it means nothing."""
+        """Return a limit as a float, or as the least and the largest ratio; InputError if it is not possible."""
         from gbeam.guards.checks import positive
 
         if not self.band or not isinstance(limit, (tuple, list)):
@@ -166,10 +167,10 @@ class Rule:
         return (1 / limit, limit) if self.band else (-limit, limit)
 
     def worst(self, judged: Judged, bounds: tuple[float, float]) -> Value:
-        """The value that comes nearest to its bound, or lies furthest beyond, and where; NaN, and why, of none."""
+        """Return the value nearest to its bound or furthest beyond it, and where; NaN, and why, if none is known."""
         low, high = bounds
 
-        def used(value: Value) -> float:
+        def use(value: Value) -> float:
             size = value[0]
             if not self.band:
                 return abs(size)
@@ -177,8 +178,8 @@ class Rule:
                 return math.inf
             return math.log(size) / math.log(high if size > 1 else low)
 
-        every = [*self.values(judged), (math.nan, "")]
-        return max((value for value in every if not math.isnan(value[0])), key=used, default=every[0])
+        values = [*self.values(judged), (math.nan, "")]
+        return max((value for value in values if not math.isnan(value[0])), key=use, default=values[0])
 
     def written(self, value: float) -> str:
         """Return a value in its unit."""
@@ -232,32 +233,32 @@ class Criterion:
 
 
 def judging(accept: Mapping[str, Any], *, response: bool = True) -> dict[str, Any]:
-    """Arguments of :func:`gbeam.compare`, or without a response of :func:`gbeam.plan`, by a table of acceptance."""
+    """Return keyword arguments of :func:`gbeam.compare` from `accept`, or without a response of :func:`gbeam.plan`."""
     names = [name for name in SETTINGS if response or name not in OF_RESPONSES]
     settings = {name: value for name, value in accept.items() if name in names}
     return settings | {"accept": {name: value for name, value in accept.items() if name not in SETTINGS}}
 
 
 def refuse_unknown(where: str, limits: Iterable[str]) -> None:
-    """Refuse what is no limit of acceptance and no setting of one."""
+    """InputError unless every name is a limit of acceptance or one of their settings."""
     for name in limits:
         if name not in Acceptance.__annotations__:
             raise InputError(f"{where}.{name}", "is no limit of acceptance", advise(name, Acceptance.__annotations__))
 
 
 def refuse_lacking(where: str, limits: Iterable[str], lacking: Mapping[str, str]) -> None:
-    """Refuse limits of quantities that a specimen does not have, and why it has none by their names."""
+    """InputError for a limit on a quantity that the specimen lacks; `lacking` says by quantity why it lacks it."""
     for name in limits:
         rule = RULES.get(name)
         if rule is not None and rule.needs in lacking:
-            others = ", ".join(each.name for each in RULES.values() if each.needs not in lacking)
+            others = ", ".join(other.name for other in RULES.values() if other.needs not in lacking)
             raise InputError(
                 f"{where}.{name}", f"is of {rule.needs}, and {lacking[rule.needs]}", f"choose from {others}"
             )
 
 
 def checked_limits(accept: Mapping[str, object] | None) -> dict[str, Limit]:
-    """Return limits by name, as floats; InputError of one that has no such name, or means nothing."""
+    """Return limits by name, as floats; InputError for an unknown name or an impossible limit."""
     limits = {}
     for name, limit in ({} if accept is None else accept).items():
         if name not in RULES:
@@ -272,7 +273,7 @@ def _decibels(ratio: float) -> float:
 
 
 def _change(name: str) -> Callable[[Judged], Iterator[Value]]:
-    """Relative change of a largest size from flight to machine."""
+    """Return a function that yields the relative change of a peak from flight to machine, and where that is."""
 
     def values(judged: Judged) -> Iterator[Value]:
         if name in judged.peaks:
