@@ -58,17 +58,17 @@ class Deflection(Figured[Literal["shape", "loads"]]):
         return self.displacement[-1]
 
     def __repr__(self) -> str:
-        of = f" {self.motion!r}" if self.motion else ""
+        motion = f" {self.motion!r}" if self.motion else ""
         tip = ", ".join(f"{1e3 * each:.4g}" for each in self.tip)
-        rest = "stable" if self.stable else "NOT stable: no beam would stay there"
+        stability = "stable" if self.stable else "NOT stable: no beam would stay there"
         total = self.errors.displacement.total
         error = f"; estimated error {100 * total:.2g} %" if math.isfinite(total) else ""
-        head = f"Deflection{of} ({self.model}) at {self.time:.4g} s:"
+        head = f"Deflection{motion} ({self.model}) at {self.time:.4g} s:"
         if self.specimen is not None:
             first, *others = self.specimen.lines
             return self._with_warnings(f"{head} {first}", *others)
         lines = () if self.solid is None else self.solid.lines
-        return self._with_warnings(f"{head} tip ({tip}) mm{error}; {rest}", *lines)
+        return self._with_warnings(f"{head} tip ({tip}) mm{error}; {stability}", *lines)
 
 
 LOST = {"critical_speed": "rad/s", "critical_acceleration": "m/s^2", "critical_load_factor": ""}

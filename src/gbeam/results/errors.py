@@ -41,9 +41,9 @@ class ErrorEstimate(Part):
         return self.total - (0.0 if math.isnan(self.beam_theory) else self.beam_theory)
 
     def adding(self, *, beam_theory: float = math.nan, mesh: float = math.nan) -> ErrorEstimate:
-        """Errors with one of the beam theory, or of the mesh; one that is not known leaves the total."""
-        more = {name: share for name, share in (("beam_theory", beam_theory), ("mesh", mesh)) if not math.isnan(share)}
-        return replace(self, total=self.total + sum(more.values()), **more)
+        """Return the errors with that of the beam theory, or of the mesh, added to the total; NaN adds nothing."""
+        added = {name: share for name, share in (("beam_theory", beam_theory), ("mesh", mesh)) if not math.isnan(share)}
+        return replace(self, total=self.total + sum(added.values()), **added)
 
     def __repr__(self) -> str:
         parts = self.causes | {"total": self.total}
@@ -69,7 +69,7 @@ class Errors(Part):
     )
 
     def above(self, tolerance: float) -> dict[str, ErrorEstimate]:
-        """Errors that are larger in all, by what they are of."""
+        """Return the errors whose total is above a tolerance, by what they are of, in words."""
         every = {"tip's displacement": self.displacement, "root's loads": self.loads, "stress": self.stress}
         return {name: each for name, each in every.items() if each.total > tolerance}
 
@@ -118,13 +118,13 @@ class SystemErrors(Part):
     note: str = fact(UNKNOWN, default="")
 
     def __repr__(self) -> str:
-        pairs_of = zip(self.beams, self.by_beam, strict=True)
-        alone = (f"{name} {100 * each:.2g} %" for name, each in pairs_of if not math.isnan(each))
+        errors = zip(self.beams, self.by_beam, strict=True)
+        by_beam = (f"{name} {100 * error:.2g} %" for name, error in errors if not math.isnan(error))
         named = ("displacement", "loads", "stress") if self.beams else ("displacement",)
-        lines = [f"{each}: {getattr(self, each)}" for each in named]
-        lines.insert(1, ", ".join(alone))
-        pairs = zip(self.beams, self.theory, strict=True)
-        lines += [f"beam theory of {name}: {words}" for name, words in pairs if words]
+        lines = [f"{error}: {getattr(self, error)}" for error in named]
+        lines.insert(1, ", ".join(by_beam))
+        theories = zip(self.beams, self.theory, strict=True)
+        lines += [f"beam theory of {name}: {words}" for name, words in theories if words]
         lines.append(self.note)
         return "\n  ".join(["SystemErrors", *filter(None, lines)])
 
@@ -162,7 +162,7 @@ class FrequencyErrors(Part):
         return replace(self, **{name: each[chosen] for name, each in self.parts.items()})
 
     def within(self, share: float) -> int:
-        """Number of the first frequencies whose every total is within a share; zero where there is no estimate."""
+        """Number of frequencies, counted from the first, whose total errors are known and at most `share`."""
         return int(np.append(np.flatnonzero(~(self.total <= share)), len(self.total))[0])
 
     @property
@@ -239,7 +239,7 @@ def accelerated() -> Any:
 
 
 def evenly(every: tuple[Accelerated, ...]) -> list[str]:
-    """Line on what is accelerated; none where all rests."""
+    """Return a line on what is accelerated; no line where all rests."""
     return [f"accelerated evenly: {', '.join(map(str, every))}"] if every else []
 
 

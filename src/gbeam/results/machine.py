@@ -159,7 +159,7 @@ class AxesResult(Part):
 
     @property
     def limit_shares(self) -> dict[str, Floats]:
-        """Share of each limit that is given used over time, (t,), by axis and quantity: ``axis 2 jerk``."""
+        """Used share of each finite limit over time, (t,), by axis and quantity: ``axis 2 jerk``."""
         histories = {"rate": self.rate, "acceleration": self.acceleration, "jerk": self.jerk}
         shares = {}
         for use in self.limits:
@@ -247,6 +247,7 @@ class Driven:
         return Peak(float(abs(values[i])), float(self.time[i]))
 
     def _tracking(self, axes: AxesResult, aim: Floats) -> Tracking:
+        """Largest error of the load against `aim` (t, 3) where the target is not held; NaN where it always is."""
         if axes.not_followed.all():
             return Tracking(math.nan, math.nan, math.nan)
         error = np.where(axes.not_followed, -1.0, np.linalg.norm(axes.actual - aim, axis=1))

@@ -285,7 +285,7 @@ class Shock(Part):
 
     @property
     def ratio(self) -> Floats:
-        """Machine over flight, (f, 3); an axis counts from a tenth of the flight's largest at the frequency on."""
+        """Machine over flight, (f, 3); less than a tenth of flight's largest at a frequency counts as that tenth."""
         least = _FELT * self.flight.max(axis=1, keepdims=True)
         with np.errstate(invalid="ignore", divide="ignore"):
             return np.asarray(np.maximum(self.centrifuge, least) / np.maximum(self.flight, least))

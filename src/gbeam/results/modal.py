@@ -112,10 +112,10 @@ class Modes(Oscillating, Figured[Literal["modes"]]):
         return self.twist * outermost(self.width, self.thickness, is_round=self.round)
 
     def __repr__(self) -> str:
-        of = f" {self.motion!r}" if self.motion else ""
-        modes = [f"{f:.4g} Hz {way}" for f, way in zip(self.frequency, self.direction, strict=True)]
-        more = f" and {len(modes) - SHOWN} more" if len(modes) > SHOWN else ""
-        lines = [f"Modes{of} ({self.model}) at {self.time:.4g} s: {', '.join(modes[:SHOWN])}{more}"]
+        motion = f" {self.motion!r}" if self.motion else ""
+        listed = [f"{f:.4g} Hz {way}" for f, way in zip(self.frequency, self.direction, strict=True)]
+        others = f" and {len(listed) - SHOWN} more" if len(listed) > SHOWN else ""
+        lines = [f"Modes{motion} ({self.model}) at {self.time:.4g} s: {', '.join(listed[:SHOWN])}{others}"]
         lines += map(str, self.instabilities)
         return self._with_warnings(*lines)
 
@@ -205,6 +205,8 @@ class Campbell(Noted, Figured[Literal["campbell"]]):
 
 
 def near_multiples(frequency: Floats, speed: Floats, orders: Sequence[int]) -> list[int]:
-    """Modes that a Campbell diagram draws, of (k, v) Hz over (v,) rad/s: all but those far above every multiple."""
+    """Return the indices of the modes that a Campbell diagram draws, from frequencies (k, v), Hz, at speeds (v,),
+    rad/s: the first two, and those that are not far above every multiple of the speed.
+    """
     far = FAR * max(orders, default=0) * speed[-1] / (2 * np.pi) if len(orders) else np.inf
-    return [k for k, each in enumerate(frequency) if k < FEW or not np.nanmin(each, initial=np.inf) > far]
+    return [k for k, history in enumerate(frequency) if k < FEW or not np.nanmin(history, initial=np.inf) > far]

@@ -109,8 +109,10 @@ class VectorPeaks(Part):
 
     def __getitem__(self, place: int | slice) -> VectorPeaks:
         """The peaks at one place, or at some."""
-        c, s = self.components, self.size
-        return VectorPeaks(Extremes(c.value[place], c.time[place]), Extremes(s.value[place], s.time[place]))
+        components, size = self.components, self.size
+        return VectorPeaks(
+            Extremes(components.value[place], components.time[place]), Extremes(size.value[place], size.time[place])
+        )
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -355,9 +357,9 @@ class Loads(Part):
     fatigue_exponent: float = internal("", "exponent of the material's Wöhler curve", default=math.nan)
 
     def during(self, part: slice) -> Loads:
-        """Loads at some of the times."""
+        """Return the loads at a slice of the times."""
         over_time = [
-            each.name for each in fields(self) if np.ndim(getattr(self, each.name)) and each.name != "stations"
+            field.name for field in fields(self) if np.ndim(getattr(self, field.name)) and field.name != "stations"
         ]
         return replace(self, **{name: getattr(self, name)[part] for name in over_time})
 

@@ -18,7 +18,7 @@ MEASURES = get_args(Measure)
 
 def degrees(turn: Sequence[float]) -> str:
     """A rotation vector in words."""
-    return "({}) deg".format(", ".join(f"{math.degrees(each):.4g}" for each in turn))
+    return "({}) deg".format(", ".join(f"{math.degrees(angle):.4g}" for angle in turn))
 
 
 _LEVER = 0.1  # least part of the total error that a move must save to be worth it
@@ -164,17 +164,19 @@ class Placement(Figured[Literal["mismatch"]]):
 
     @property
     def changes(self) -> dict[str, str | list[str]]:
-        """Changes of the centrifuge, as in a scenario; empty where it is the best already, or none may be."""
+        """Keys of the centrifuge to change, with their values as in a scenario; empty where the placement is the best
+        already, or every option breaks a limit.
+        """
         best, before = self.best, self.before
         if self.outcome != "done":
             return {}
         changes: dict[str, str | list[str]] = {}
         now = (self.current, 0.0, 0.0) if before is None else before.place
         if math.dist(best.place, now) > _SAME * self.length:
-            place = [f"{1e3 * each:.6g} mm" for each in best.place]
+            place = [f"{1e3 * component:.6g} mm" for component in best.place]
             changes["control_point"] = place if any(best.place[1:]) or best.place[0] < 0 else place[0]
         if before is not None and best.turn != before.turn:
-            changes["turn"] = [f"{math.degrees(each):.6g} deg" for each in best.turn]
+            changes["turn"] = [f"{math.degrees(component):.6g} deg" for component in best.turn]
         if before is not None and best.mounting != before.mounting:
             changes["mounting"] = best.mounting
         if before is not None and abs(best.smoothing - before.smoothing) > 1e-3 * before.smoothing:
@@ -184,7 +186,9 @@ class Placement(Figured[Literal["mismatch"]]):
 
     @declared("", "why none is allowed, or why placing saves little", role="fact")
     def message(self) -> str:
-        """Reason for which none is allowed, and which comes nearest; or placing saves little, and what dominates."""
+        """Sentence on why no option is allowed, that the placement is the best already, or that placing saves little;
+        empty where it helps.
+        """
         best, before = self.best, self.before
         if self.outcome != "done":
             broken = "; ".join(str(use) for use in best.exceeded)
@@ -196,8 +200,8 @@ class Placement(Figured[Literal["mismatch"]]):
             return "the scenario has the best placement already"
         if before is None or before.exceeded or best.total_error <= (1 - _LEVER) * before.total_error:
             return ""
-        most = best.most_used
-        limit = f", and {most} leaves no more" if most is not None and most.share >= _FULL else ""
+        most_used = best.most_used
+        limit = f", and {most_used} leaves no more" if most_used is not None and most_used.share >= _FULL else ""
         return (
             f"placing is no lever here: it brings the measure from {100 * before.total_error:.3g} to "
             f"{100 * best.total_error:.3g} % of flight's peak; what the load itself differs by at the control point "

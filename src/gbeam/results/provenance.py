@@ -43,7 +43,7 @@ class Environment(Part):
     dependencies: Mapping[str, str] = fact("version of each package that gbeam needs")
 
     def changes(self, other: Environment) -> dict[str, tuple[str, str]]:
-        """Differences to another: its name, here and there."""
+        """Return what differs in another environment, by name: the values in this one and in the other."""
         mine, theirs = self._facts(), other._facts()
         names = [*mine, *(name for name in theirs if name not in mine)]
         pairs = {name: (mine.get(name, "missing"), theirs.get(name, "missing")) for name in names}
@@ -73,7 +73,7 @@ class Provenance(Part):
     )
 
     def stated(self) -> tuple[Provenance, Environment]:
-        """Provenance with its date and its environment, which takes some time to find, and that."""
+        """Return the provenance with date and environment filled in, and the environment, which takes time to find."""
         environment = self.environment or present()
         return replace(self, environment=environment, date=self.date or _now()), environment
 
@@ -92,7 +92,7 @@ def present() -> Environment:
 
     import gbeam
 
-    def of(name: str) -> str:
+    def version_of(name: str) -> str:
         try:
             return version(name)
         except PackageNotFoundError:
@@ -104,5 +104,5 @@ def present() -> Environment:
         needed = []
     names = {re.split(r"[^\w.-]", each)[0] for each in needed if "extra ==" not in each} | {"jaxlib", "h5py", "numpy"}
     system = f"{platform.system()} {platform.release()} {platform.machine()}"
-    dependencies = MappingProxyType({name: of(name) for name in sorted(names)})
+    dependencies = MappingProxyType({name: version_of(name) for name in sorted(names)})
     return Environment(gbeam.__version__, sys.version.split()[0], system, dependencies)

@@ -336,10 +336,10 @@ class Response(Driven, Figured[ResponseFigure]):
         InputError
             If there is no such point, the run has no accelerations, or its samples do not resolve the sensor.
         """
-        station, every = index_of("point", point, self.points), self.accelerations
-        if every is None:
+        station, accelerations = index_of("point", point, self.points), self.accelerations
+        if accelerations is None:
             raise InputError("response", "has no accelerations", "leave loads = true in its settings")
-        felt = every[:, station]
+        felt = accelerations[:, station]
         return felt if sensor is None else sensor.reads(felt, float(self.time[1] - self.time[0]))
 
     def strain_at(self, point: str, along: Numbers = (1.0, 0.0, 0.0)) -> Floats:
@@ -375,17 +375,17 @@ class Response(Driven, Figured[ResponseFigure]):
     def __repr__(self) -> str:
         if is_traced(self.peaks.max_abs):
             return brief(self)
-        of = f" {self.name!r}" if self.name else ""
-        main = int(np.argmax(self.peaks.max_abs))
+        name = f" {self.name!r}" if self.name else ""
+        axis = int(np.argmax(self.peaks.max_abs))
         unknown = math.isnan(self.error_estimate)
         error = "no error estimate" if unknown else f"estimated error {self.error_estimate:.2g} of the peak"
         moved = [
-            f"tip up to {1e3 * self.peaks.max_abs[main]:.4g} mm along {'xyz'[main]}, "
-            f"at {self.peaks.time_of_max[main]:.4g} s of {self.time[0]:.4g} to {self.time[-1]:.4g} s",
+            f"tip up to {1e3 * self.peaks.max_abs[axis]:.4g} mm along {'xyz'[axis]}, "
+            f"at {self.peaks.time_of_max[axis]:.4g} s of {self.time[0]:.4g} to {self.time[-1]:.4g} s",
             f"{self.integrator}, {self.steps} steps of {1e3 * self.step:.4g} ms; {error}",
         ]
         lines = [
-            f"Response{of} ({self.environment}, {self.model}): {self.outcome}",
+            f"Response{name} ({self.environment}, {self.model}): {self.outcome}",
             *([self.message] if self.message else []),
             *(moved if self.specimen is None else self.specimen.lines),
             *(f"warning: {each}" for each in self.warnings),

@@ -29,11 +29,12 @@ def brief(record: Any) -> str:
 
 def part_words(span: tuple[float, float], whole: tuple[float, float]) -> str:
     """Part of a flight in words: ``0 to 6 of 15.99 s``, ``102 to 108 of 100 to 116 s``; all s."""
-    first = "" if whole[0] == 0 else f"{whole[0]:.6g} to "
-    return f"{span[0]:.6g} to {span[1]:.6g} of {first}{whole[1]:.6g} s"
+    beginning = "" if whole[0] == 0 else f"{whole[0]:.6g} to "
+    return f"{span[0]:.6g} to {span[1]:.6g} of {beginning}{whole[1]:.6g} s"
 
 
 def _short(value: Any) -> str:
+    """A value on a line: arrays by their shapes, other records by their names, long tuples and mappings by length."""
     if isinstance(value, (str, bool, int)) or value is None:
         return repr(value)
     if isinstance(value, float):

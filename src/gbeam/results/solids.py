@@ -139,10 +139,10 @@ class SolidStress(Figured[Literal["stress"]]):
     def strain_at(self, point: str, along: Numbers = (1.0, 0.0, 0.0)) -> Floats:
         """Return what a strain gauge at a named point reads, (t,), as :meth:`gbeam.Response.strain_at` does."""
         station = index_of("point", point, self.points)
-        way = np.asarray(vector("along", along), dtype=float)
-        if not way.any():
+        direction = np.asarray(vector("along", along), dtype=float)
+        if not direction.any():
             raise InputError("along", "is zero", "give a direction, such as (1, 0, 0)")
-        x, y, z = way / np.linalg.norm(way)
+        x, y, z = direction / np.linalg.norm(direction)
         strain = self.point_strain[:, station]
         return np.asarray(strain @ np.array([x * x, y * y, z * z, y * z, x * z, x * y]))
 
@@ -154,12 +154,13 @@ class SolidStress(Figured[Literal["stress"]]):
         assert self.nearest_yield.margin is not None
         words = margin_words(self.nearest_yield.margin)
         material = self.nearest_yield.material or "the material"
-        same = (self.worst.node, self.worst.material) == (self.nearest_yield.node, self.nearest_yield.material)
-        where = ", there" if same else f": {said(self.nearest_yield)}"
-        return said(self.worst), f"{words} in {material}{where}"
+        same_node = (self.worst.node, self.worst.material) == (self.nearest_yield.node, self.nearest_yield.material)
+        place = ", there" if same_node else f": {said(self.nearest_yield)}"
+        return said(self.worst), f"{words} in {material}{place}"
 
     def __repr__(self) -> str:
-        of, (worst, margin) = f" {self.motion!r}" if self.motion else "", self.lines
+        of = f" {self.motion!r}" if self.motion else ""
+        worst, margin = self.lines
         return self._with_warnings(f"SolidStress{of} ({self.model}): {worst}", margin, *filter(None, [self.left_out]))
 
 
@@ -171,13 +172,13 @@ def von_mises(stress: Floats) -> Floats:
 
 
 def place_words(place: Floats) -> str:
-    """A place in mm, to the nanometre: zero is not its rounding."""
+    """A place (3,), m, in mm; rounded to the nanometre, so that a rounding error is zero."""
     x, y, z = 1e3 * np.round(np.asarray(place, dtype=float), 9) + 0.0
     return f"({x:.4g}, {y:.4g}, {z:.4g}) mm"
 
 
 def said(stress: StressAt) -> str:
-    """A stress with its place and time, and how sure the mesh is of it."""
+    """A stress with its place and time, and the spread of the elements there."""
     return (
         f"von Mises {1e-6 * stress.von_mises:.4g} MPa at {place_words(stress.place)}, node {stress.node}, at "
         f"{stress.time:.4g} s{stress.apart}"
@@ -289,9 +290,9 @@ class SpecimenLoads(Figured[Literal["specimen"]]):
     )
     def spread(self) -> Floats:
         """Spread of the load over the specimen, (t,): NaN where nothing accelerates."""
-        apart = np.linalg.norm(self.acceleration - self.centre[:, None], axis=-1).max(axis=1)
+        distance = np.linalg.norm(self.acceleration - self.centre[:, None], axis=-1).max(axis=1)
         largest = np.linalg.norm(self.centre, axis=-1).max()
-        return apart / largest if largest > 0 else np.full(len(apart), np.nan)
+        return distance / largest if largest > 0 else np.full(len(distance), np.nan)
 
     @declared("N", "largest size of the force on the specimen", name=None, key="force.max_abs")
     def force_max(self) -> float:
@@ -325,8 +326,8 @@ class SpecimenLoads(Figured[Literal["specimen"]]):
     def lines(self) -> list[str]:
         """The largest loads in words."""
         worst = self.largest
-        held = {None: "", True: ", accepted", False: ", not accepted"}[self.within_limit]
-        limit = "" if self.spread_limit is None else f"{held} (limit {100 * self.spread_limit:.3g} %)"
+        verdict = {None: "", True: ", accepted", False: ", not accepted"}[self.within_limit]
+        limit = "" if self.spread_limit is None else f"{verdict} (limit {100 * self.spread_limit:.3g} %)"
         lines = [
             f"up to {worst.g:.4g} g at {place_words(worst.place)}, at {worst.time:.4g} s; spread over the specimen "
             f"{100 * self.spread_max:.3g} %{limit}",
@@ -339,5 +340,6 @@ class SpecimenLoads(Figured[Literal["specimen"]]):
         return lines
 
     def __repr__(self) -> str:
-        of, (first, *others) = f" {self.motion!r}" if self.motion else "", self.lines
+        of = f" {self.motion!r}" if self.motion else ""
+        first, *others = self.lines
         return self._with_warnings(f"SpecimenLoads{of} ({self.environment}): {first}", *others)

@@ -185,9 +185,9 @@ class StateSpace(Noted, Figured[Literal["poles"]]):
     @declared("1/s", "eigenvalue of A; of samples ln z over their step", "eigenvalue", key="/eigenvalue")
     def eigenvalue(self) -> Complex:
         """Eigenvalues s of A, (n,) 1/s, the slowest to decay first; of a sampled model ln z/T of its z."""
-        value: Any = np.asarray(np.linalg.eigvals(self.a), dtype=complex)
-        value = np.log(value + 1e-300) / self.step if self.step else value
-        return value[np.lexsort((value.imag, np.abs(value.imag), -value.real))]
+        poles: Any = np.asarray(np.linalg.eigvals(self.a), dtype=complex)
+        poles = np.log(poles + 1e-300) / self.step if self.step else poles
+        return poles[np.lexsort((poles.imag, np.abs(poles.imag), -poles.real))]
 
     @declared("mixed", "of what decays", "hankel", name="hankel_singular_value", key="hankel_singular_values")
     def hankel(self) -> Floats:
@@ -219,26 +219,27 @@ class StateSpace(Noted, Figured[Literal["poles"]]):
             If there is no such signal.
         """
 
-        def places(chosen: Sequence[str] | None, signals: tuple[Signal, ...], what: str) -> list[int]:
+        def places(chosen: Sequence[str] | None, signals: tuple[Signal, ...], argument: str) -> list[int]:
             names = [each.name for each in signals]
             for name in chosen or ():
                 if name not in names:
-                    raise InputError(what, f"has no {name!r}", f"choose from {', '.join(names)}")
+                    raise InputError(argument, f"has no {name!r}", f"choose from {', '.join(names)}")
             return list(range(len(names))) if chosen is None else [names.index(name) for name in chosen]
 
-        i, o = places(inputs, self.inputs, "inputs"), places(outputs, self.outputs, "outputs")
+        ins, outs = places(inputs, self.inputs, "inputs"), places(outputs, self.outputs, "outputs")
+        gains = np.ix_(outs, ins)
         left_out = self.truncation
         if left_out is not None:
-            left_out = replace(left_out, error=left_out.error[np.ix_(o, i)], gain=left_out.gain[np.ix_(o, i)])
+            left_out = replace(left_out, error=left_out.error[gains], gain=left_out.gain[gains])
         return replace(
             self,
-            b=self.b[:, i],
-            c=self.c[o],
-            d=self.d[np.ix_(o, i)],
-            inputs=tuple(self.inputs[k] for k in i),
-            outputs=tuple(self.outputs[k] for k in o),
-            input=self.input[i],
-            output=self.output[o],
+            b=self.b[:, ins],
+            c=self.c[outs],
+            d=self.d[gains],
+            inputs=tuple(self.inputs[k] for k in ins),
+            outputs=tuple(self.outputs[k] for k in outs),
+            input=self.input[ins],
+            output=self.output[outs],
             truncation=left_out,
         )
 
@@ -274,46 +275,48 @@ class StateSpace(Noted, Figured[Literal["poles"]]):
         import scipy.io
 
         named = {"state": self.states, "input": self.inputs, "output": self.outputs}
-        words: dict[str, Any] = {}
+        texts: dict[str, Any] = {}
         for key, signals in named.items():
-            words[f"{key}_name"] = np.array([each.name for each in signals], dtype=object)
-            words[f"{key}_unit"] = np.array([each.unit for each in signals], dtype=object)
+            texts[f"{key}_name"] = np.array([each.name for each in signals], dtype=object)
+            texts[f"{key}_unit"] = np.array([each.unit for each in signals], dtype=object)
         if self.provenance is not None:
             stated, environment = self.provenance.stated()
-            words["provenance"] = f"gbeam {environment.gbeam}: {stated.command}; scenario SHA-256 {stated.sha256}"
-        points = {"x0": self.state, "u0": self.input, "y0": self.output}
+            texts["provenance"] = f"gbeam {environment.gbeam}: {stated.command}; scenario SHA-256 {stated.sha256}"
+        numbers = {"x0": self.state, "u0": self.input, "y0": self.output}
         if self.errors is not None:
-            points |= {"frequency_Hz": self.frequency, "frequency_error": self.errors.total}
+            numbers |= {"frequency_Hz": self.frequency, "frequency_error": self.errors.total}
         if self.step:
-            points |= {"Ts": np.array(self.step)}
+            numbers |= {"Ts": np.array(self.step)}
         if self.truncation is not None:
-            points |= {"truncation_error": self.truncation.error, "truncation_bound": np.array(self.truncation.bound)}
+            numbers |= {"truncation_error": self.truncation.error, "truncation_bound": np.array(self.truncation.bound)}
         scipy.io.savemat(
             os.fspath(path),
-            {"A": self.a, "B": self.b, "C": self.c, "D": self.d, **points, **words},
+            {"A": self.a, "B": self.b, "C": self.c, "D": self.d, **numbers, **texts},
             appendmat=False,
             oned_as="column",
         )
 
     def __repr__(self) -> str:
-        of = f" of {self.model}" if self.model else ""
-        counts = evenly(self.accelerated) + [
-            f"{len(signals)} {what} ({', '.join(each.name for each in signals[:4])}{', …' if len(signals) > 4 else ''})"
-            for what, signals in (("states", self.states), ("inputs", self.inputs), ("outputs", self.outputs))
+        model = f" of {self.model}" if self.model else ""
+        lines = evenly(self.accelerated) + [
+            f"{len(signals)} {kind} ({', '.join(each.name for each in signals[:4])}{', …' if len(signals) > 4 else ''})"
+            for kind, signals in (("states", self.states), ("inputs", self.inputs), ("outputs", self.outputs))
         ]
         if not math.isnan(self.accurate_to):
-            counts.append(
+            lines.append(
                 f"frequencies within {100 * ACCURATE:g} % of the exact model's up to {self.accurate_to:.4g} Hz"
             )
-        for each in self.margins:
-            counts.append(f"{each.drive}: gain margin {each.gain:.3g}, phase margin {math.degrees(each.phase):.3g} deg")
+        for margin in self.margins:
+            lines.append(
+                f"{margin.drive}: gain margin {margin.gain:.3g}, phase margin {math.degrees(margin.phase):.3g} deg"
+            )
         if self.truncation is not None:
             share = float(self.truncation.share.max(initial=0.0))
-            counts.append(
+            lines.append(
                 f"{self.truncation.method} truncation: {self.truncation.states} states left out, at most "
                 f"{100 * share:.2g} % of the largest gain up to {self.truncation.end:.4g} Hz"
             )
-        return self._with_warnings(f"StateSpace{of}{f' on {self.motion!r}' if self.motion else ''}", *counts)
+        return self._with_warnings(f"StateSpace{model}{f' on {self.motion!r}' if self.motion else ''}", *lines)
 
 
 def import_control() -> Any:

@@ -46,8 +46,8 @@ class Answers(Figured[str]):
     @property
     def _specimens(self) -> dict[str, SpecimenLoads]:
         """Loads of a rigid specimen by the motion's name."""
-        alone = {name: each.specimen for name, each in self.responses.items() if isinstance(each, Response)}
-        return {name: specimen for name, specimen in alone.items() if specimen is not None}
+        specimens = {name: each.specimen for name, each in self.responses.items() if isinstance(each, Response)}
+        return {name: specimen for name, specimen in specimens.items() if specimen is not None}
 
     @property
     def exceeding(self) -> Mapping[str, str]:
@@ -58,10 +58,11 @@ class Answers(Figured[str]):
     @property
     def not_accepted(self) -> Mapping[str, str]:
         """Limits of acceptance that are not kept, of imitations and of rigid specimens, by the motion's name."""
-        words = {name: specimen.refusal for name, specimen in self._specimens.items()}
-        for each in self.comparisons:
-            words[each.centrifuge] = ", ".join(filter(None, (each.refusal, words.get(each.centrifuge, ""))))
-        return {name: each for name, each in words.items() if each}
+        reasons = {name: specimen.refusal for name, specimen in self._specimens.items()}
+        for comparison in self.comparisons:
+            name = comparison.centrifuge
+            reasons[name] = ", ".join(filter(None, (comparison.refusal, reasons.get(name, ""))))
+        return {name: reason for name, reason in reasons.items() if reason}
 
     @property
     def refusals(self) -> Mapping[str, str]:
@@ -84,8 +85,8 @@ class Answers(Figured[str]):
     @property
     def unfinished(self) -> Mapping[str, Failure]:
         """Failures of the environments that are not done, by name."""
-        cut = {name: Failure(r.outcome, r.message) for name, r in self.responses.items() if r.outcome != "done"}
-        return {**cut, **self.failures}
+        ended_early = {name: Failure(r.outcome, r.message) for name, r in self.responses.items() if r.outcome != "done"}
+        return {**ended_early, **self.failures}
 
     @property
     def outcome(self) -> str:
@@ -310,7 +311,7 @@ def by_motion(answers: Sequence[Any], title: str = "") -> dict[str, Any]:
 
 
 def tree_of_answers(kind: type) -> dict[str, Any]:
-    """Return the tree of the JSON of a verb: of some kinds it lists one by one what each motion answers."""
+    """Return the tree of the JSON of a verb that answers with a kind: by motion where JSON lists that kind so."""
     if not getattr(kind, "listed_by", ""):
         return tree_of(kind)
     return {"motions": {ANY: {"outcome": Entry("", "how it ended", types=("string",)), **tree_of(kind)}}}

@@ -57,8 +57,8 @@ class Invariants(Part):
 
     @declared("", "largest change of the energy, over the largest of its parts", role="fact")
     def energy_change(self) -> float:
-        whole, size = self.energy.sum(axis=1), np.abs(self.energy).max(initial=0.0)
-        return float(np.abs(whole - whole[0]).max(initial=0.0) / size) if size > 0 else 0.0
+        total, size = self.energy.sum(axis=1), np.abs(self.energy).max(initial=0.0)
+        return float(np.abs(total - total[0]).max(initial=0.0) / size) if size > 0 else 0.0
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -267,8 +267,8 @@ class SystemResponse(_Placed, Driven, Figured[str]):
         "m", "displacement of the point from its place at the start, the largest", "point", key="displacement_max"
     )
     def largest(self) -> Floats:
-        moved = np.linalg.norm(self.place - self.place[0], axis=-1).max(axis=0)
-        return np.where(moved <= _ROUNDING * np.abs(self.place).max(initial=0.0), 0.0, moved)
+        distance = np.linalg.norm(self.place - self.place[0], axis=-1).max(axis=0)
+        return np.where(distance <= _ROUNDING * np.abs(self.place).max(initial=0.0), 0.0, distance)
 
     @declared("m/s^2", "acceleration, the largest", "point", key="acceleration_max")
     def largest_acceleration(self) -> Floats:
@@ -322,8 +322,8 @@ class SystemResponse(_Placed, Driven, Figured[str]):
         if body in self.beams and load in ("root_force", "root_moment") and kind in tuple("xyz"):
             return np.asarray(getattr(self.beams[body].loads, load)[:, "xyz".index(kind)])
         if f"{owner}.{_EULER[0]}" in self.coordinates and kind in (*_TURNS, *_SPINS):
-            first = self.coordinates.index(f"{owner}.{_EULER[0]}")
-            e, rate = (each[:, first : first + 4] for each in (self.q, self.qd))
+            start = self.coordinates.index(f"{owner}.{_EULER[0]}")
+            e, rate = (each[:, start : start + 4] for each in (self.q, self.qd))
             return _turned(e)[:, _TURNS.index(kind)] if kind in _TURNS else _spun(e, rate)[:, _SPINS.index(kind)]
         if name.endswith("_rate") and name.removesuffix("_rate") in self.coordinates:
             return self.qd[:, self.coordinates.index(name.removesuffix("_rate"))]
@@ -501,8 +501,9 @@ class SystemModes(Oscillating, Figured[Literal["modes"]]):
 
 
 def named(result: SystemResponse | SystemRest) -> Mapping[str, tuple[Floats, str, Floats]]:
-    """Histories of the joints' coordinates by name, of balls the rotation vector, each with its unit and the effort."""
-    histories, q, effort = dict[str, tuple[Floats, str, Floats]](), *map(np.atleast_2d, (result.q, result.effort))
+    """Coordinates of joints by name: history, unit and drive's effort; of a ball its rotation vector, ``joint.rx``."""
+    histories: dict[str, tuple[Floats, str, Floats]] = {}
+    q, effort = np.atleast_2d(result.q), np.atleast_2d(result.effort)
     for k, name in enumerate(result.coordinates):
         joint, _, tail = name.rpartition(".")
         if tail == _EULER[0]:
@@ -515,8 +516,9 @@ def named(result: SystemResponse | SystemRest) -> Mapping[str, tuple[Floats, str
 
 
 def _most_moved(result: SystemResponse | SystemRest, sizes: Floats, up: str = "") -> str:
-    """The point that moves furthest and how far, of sizes (p,) m; where none moves, the coordinate that does."""
-    most, coordinates = int(sizes.argmax()), {name: each[:2] for name, each in named(result).items()}
+    """Words for the point with the largest of `sizes` (p,) m; where none moves, for the largest coordinate."""
+    most = int(sizes.argmax())
+    coordinates = {name: (history, unit) for name, (history, unit, _) in named(result).items()}
     if sizes[most] or not coordinates:
         return f"{result.points[most]} moves by {up}{sizes[most]:.4g} m"
     name, (history, unit) = max(coordinates.items(), key=lambda each: np.abs(each[1][0]).max())
