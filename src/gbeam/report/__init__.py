@@ -72,11 +72,11 @@ def text(*answers: Result) -> str:
 
 def warnings_of(facts: Facts) -> Iterable[Block]:
     """Yield the warnings of a result, or of several by motion, each once."""
-    every = [("", facts), *facts.get("motions", {}).items()]
-    names: dict[str, list[str]] = {}
-    for name, each in every:
-        for warning in each.get("warnings", ()):
-            names.setdefault(warning, []).append(name)
-    common = ([""], [name for name, _ in every[1:]])
-    lines = (line if of in common else f"{', '.join(filter(None, of))}: {line}" for line, of in names.items())
+    answers = [("", facts), *facts.get("motions", {}).items()]
+    sources: dict[str, list[str]] = {}
+    for name, answer in answers:
+        for warning in answer.get("warnings", ()):
+            sources.setdefault(warning, []).append(name)
+    common = ([""], [name for name, _ in answers[1:]])
+    lines = (line if of in common else f"{', '.join(filter(None, of))}: {line}" for line, of in sources.items())
     yield Items(tuple(lines), "warning")

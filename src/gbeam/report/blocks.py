@@ -111,16 +111,16 @@ def table(
     scale: float = 0.0,
     **more: Any,
 ) -> Table:
-    """Return a table of columns by their heads; those that are `optional` are left out where no row has a value.
+    """Return a table of rows of JSON; `cells` are its columns by head, and `optional` ones are left out where empty.
 
-    Numbers at paths are in SI: a head such as "stress, MPa" converts them, and rounding errors of the largest in that
-    unit, and of what is of a larger `scale`, are zero.
+    Numbers at paths are in SI: a head such as "stress, MPa" converts them. What is a rounding error beside the largest
+    number of the same unit, or beside a larger `scale`, is zero.
     """
     forms = ["" if callable(column) else column.partition(":")[2] for column in cells.values()]
     units = ["" if callable(column) else _unit(head) for head, column in cells.items()]
-    every = [[_value(row, column) for column in cells.values()] for row in rows]
+    values = [[_value(row, column) for column in cells.values()] for row in rows]
     sizes = dict.fromkeys(units, 0.0)
-    for unit, value in (pair for row in every for pair in zip(units, row, strict=True)):
+    for unit, value in (pair for row in values for pair in zip(units, row, strict=True)):
         sizes[unit] = max(sizes[unit], abs(value) if isinstance(value, (int, float)) else 0.0)
 
     def cell(value: Value, form: str, unit: str) -> Cell:
@@ -128,7 +128,7 @@ def table(
             value = 0.0 if abs(value) <= rounding(sizes[unit], scale) else factor(unit) * value
         return _cell(value, form)
 
-    drawn = [tuple(map(cell, row, forms, units)) for row in every]
+    drawn = [tuple(map(cell, row, forms, units)) for row in values]
     kept = [k for k, head in enumerate(cells) if head not in optional or any(row[k].text not in " –" for row in drawn)]
     heads = tuple(head.strip() for k, head in enumerate(cells) if k in kept)
     return Table(heads, tuple(tuple(row[k] for k in kept) for row in drawn), caption, **more)
@@ -139,7 +139,7 @@ def _unit(head: str) -> str:
 
 
 def factor(unit: str) -> float:
-    """Number of a unit, or of the one at the end of a head, in one of SI."""
+    """Return how many of a unit, or of the unit at the end of a head, make one of SI."""
     return _SHOWN.get(_unit(unit) or unit, 1.0)
 
 
@@ -149,12 +149,12 @@ def pairs(rows: Iterable[tuple[str, Value]], caption: str = "") -> Table:
 
 
 def named(rows: Facts) -> list[Facts]:
-    """Rows of JSON that stand by name, each with its name."""
+    """Return the rows of a JSON object as a list, each with its key as ``name``."""
     return [{"name": name, **each} for name, each in rows.items()]
 
 
 def numbered(rows: Iterable[Facts]) -> list[Facts]:
-    """Rows of JSON that stand in a list, each with its number from one."""
+    """Return the rows of a JSON list, each with its number from one as ``number``."""
     return [{"number": str(k), **each} for k, each in enumerate(rows, 1)]
 
 
@@ -164,19 +164,21 @@ _APART = ("form", "units", "provenance", "warnings", "files", "title", "outcome"
 def quantities(
     facts: Facts, units: Mapping[str, str] | None = None, place: str = "", words: Mapping[str, str] | None = None
 ) -> Iterator[Block]:
-    """Yield any quantities of JSON, `words` by path: single values in a table, lists and named rows in one each."""
+    """Yield any JSON: a table of its plain values, and a section of each list of rows and of each object; `units` and
+    `words` are by path, `place` is the path of `facts`.
+    """
     from gbeam.figures.description import raised  # with figures of every kind, which `gbeam check` does without
 
     units = facts.get("units", {}) if units is None else units
-    told = {key: value for key, value in facts.items() if key not in _APART and value not in (None, "")}
-    single: dict[str, Column] = {
+    shown = {key: value for key, value in facts.items() if key not in _APART and value not in (None, "")}
+    cells: dict[str, Column] = {
         "": lambda key: key.replace("_", " "),
-        " ": lambda key: told[key],
+        " ": lambda key: shown[key],
         "  ": lambda key: raised(units.get(place + key, "")),
         "   ": lambda key: (words or {}).get(place + key, ""),
     }
-    yield table([key for key, value in told.items() if not isinstance(value, (dict, list))], single, optional=("   ",))
-    for key, value in told.items():
+    yield table([key for key, value in shown.items() if not isinstance(value, (dict, list))], cells, optional=("   ",))
+    for key, value in shown.items():
         if key == "motions":
             for name, each in value.items():
                 yield Section(
@@ -200,6 +202,7 @@ def quantities(
 
 
 def _value(row: Any, column: Column) -> Value:
+    """Value of a column in a row: by its function, or at its path; None where a key of the path is missing."""
     if callable(column):
         return column(row)
     for key in column.partition(":")[0].split("."):
@@ -209,6 +212,7 @@ def _value(row: Any, column: Column) -> Value:
 
 
 def _cell(value: Value, form: str = "") -> Cell:
+    """Cell of a value: a dash for None and what is not finite; numbers by the form, else with four digits."""
     match value:
         case Cell():
             return value
@@ -241,6 +245,7 @@ _BLANK = ("", "")
 
 
 def _lines(blocks: Iterable[Block]) -> Iterator[tuple[str, str]]:
+    """Lines of blocks for a terminal, each with its tone; empty ones about sections."""
     for block in blocks:
         match block:
             case Table(detail=False) if block.rows:
@@ -260,12 +265,13 @@ def _lines(blocks: Iterable[Block]) -> Iterator[tuple[str, str]]:
 
 
 def _rows(block: Table) -> Iterator[tuple[str, str]]:
+    """Lines of a table for a terminal, each with its tone: bad where a cell of the row is, none in folded rows."""
     shown = block.rows[: block.most]
-    left = {k for k in range(len(block.heads)) if not block.numeric(k)}
-    lines = columns(list(block.heads), [[cell.text for cell in row] for row in shown], left)
+    flush_left = {k for k in range(len(block.heads)) if not block.numeric(k)}
+    lines = columns(list(block.heads), [[cell.text for cell in row] for row in shown], flush_left)
     tones = ["faint", *("bad" if any(cell.tone == "bad" for cell in row) else "" for row in shown)]
     folded = len(lines) != len(tones)
-    drawn = [(line, "" if folded else tone) for line, tone in zip(lines, tones if not folded else lines, strict=True)]
+    drawn = list(zip(lines, [""] * len(lines) if folded else tones, strict=True))
     if not folded and not any(block.heads):
         drawn = drawn[1:]
     if block.most is not None and len(block.rows) > block.most:

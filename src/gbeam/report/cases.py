@@ -31,7 +31,7 @@ _FAILURES = 5  # that are named
 
 
 def sweep(facts: Facts) -> Blocks:
-    """Cases of a grid, or the statistics of what is drawn; the failures; and on a page every case."""
+    """Cases of a sweep, if few, or quantiles; of random draws statistics; how cases ended; on a page all cases."""
     outcomes = np.array(facts["outcomes"], dtype=object)
     few = not facts["statistics"] and outcomes.size <= _FEW
     yield table(
@@ -55,19 +55,19 @@ def sweep(facts: Facts) -> Blocks:
 
 
 def _ended(facts: Facts, outcomes: Any) -> Blocks:
-    """Numbers of cases by their outcomes, and the first that are not done, by what they say."""
+    """Numbers of cases by outcome, and each message of those that are not done, with its number of cases."""
     lost = int((~np.isin(outcomes.astype(str), ("done", *ANSWERED))).sum())
     if facts["statistics"] and lost:
         yield Sentence(f"{lost} of {outcomes.size} cases are not done: the estimates are of the others")
     counts = ", ".join(f"{count} {name}" for name, count in facts["counts"].items())
     yield Sentence(f"{outcomes.size} cases: {counts}", "bad" if lost else "")
-    said: dict[str, int] = {}
+    counts_of: dict[str, int] = {}
     for outcome, message in zip(outcomes.ravel(), np.array(facts["messages"], dtype=object).ravel(), strict=True):
         if outcome != "done":
             words = f"{outcome}: {message}" if message else outcome
-            said[words] = said.get(words, 0) + 1
-    shown = [f"{count} × {words}" for words, count in list(said.items())[:_FAILURES]]
-    yield Items((*shown, *(["…"] if len(said) > _FAILURES else [])), "bad")
+            counts_of[words] = counts_of.get(words, 0) + 1
+    lines = [f"{count} × {words}" for words, count in list(counts_of.items())[:_FAILURES]]
+    yield Items((*lines, *(["…"] if len(counts_of) > _FAILURES else [])), "bad")
 
 
 def _titled(name: str, unit: str) -> str:
@@ -75,8 +75,8 @@ def _titled(name: str, unit: str) -> str:
 
 
 def _ends(values: list[Any]) -> str:
-    words = [six(each).text for each in values]
-    return f"{len(values)} values, {f'{words[0]} to {words[-1]}' if len(values) > 3 else ', '.join(words)}"
+    written = [six(each).text for each in values]
+    return f"{len(values)} values, {f'{written[0]} to {written[-1]}' if len(values) > 3 else ', '.join(written)}"
 
 
 def _cases(facts: Facts, outcomes: Any) -> Block:
@@ -88,20 +88,20 @@ def _cases(facts: Facts, outcomes: Any) -> Block:
 
     def case(place: tuple[int, ...]) -> list[Cell]:
         ended = Cell(outcomes[place], "" if outcomes[place] == "done" else "bad")
-        values = (each["values"][place[at]] for each, at in zip(parameters, axes, strict=True))
+        values = (each["values"][place[axis]] for each, axis in zip(parameters, axes, strict=True))
         return [*map(six, values), *(Cell(number(each[place])) for each in figures), ended]
 
     heads = [_titled(each["path"], each["unit"]) for each in parameters]
     heads += [_titled(name, each["unit"]) for name, each in measures.items()]
     heads += [] if facts["outcome"] == "done" else ["outcome"]
     places = list(np.ndindex(outcomes.shape))
-    more = f"the first {_LISTED} of {len(places)}" if len(places) > _LISTED else ""
+    caption = f"the first {_LISTED} of {len(places)}" if len(places) > _LISTED else ""
     detail = len(places) > _FEW or bool(facts["statistics"])
-    return table(map(case, places[:_LISTED]), {head: str(k) for k, head in enumerate(heads)}, more, detail=detail)
+    return table(map(case, places[:_LISTED]), {head: str(k) for k, head in enumerate(heads)}, caption, detail=detail)
 
 
 def _quantiles(measures: Facts) -> Block:
-    """Least, mean and largest, and the quantiles of the cases that have a figure."""
+    """Extremes, mean, quantiles and standard deviation of each measure, over the cases that have it."""
     summaries: dict[str, Any] = {
         "least": np.min,
         "5 %": lambda v: np.quantile(v, 0.05),
@@ -112,9 +112,9 @@ def _quantiles(measures: Facts) -> Block:
         "standard deviation": lambda v: np.std(v, ddof=1) if len(v) > 1 else np.nan,
     }
 
-    every = [np.array(each["values"], dtype=float) for each in measures.values()]
-    finite = [values[np.isfinite(values)] for values in every]
-    rows = [[name, *(number(of(each)) if len(each) else "–" for each in finite)] for name, of in summaries.items()]
+    measured = [np.array(each["values"], dtype=float) for each in measures.values()]
+    finite = [values[np.isfinite(values)] for values in measured]
+    rows = [[name, *(number(f(each)) if len(each) else "–" for each in finite)] for name, f in summaries.items()]
     heads = ["", *(_titled(name, each["unit"]) for name, each in measures.items())]
     return table(rows, {head: str(k) for k, head in enumerate(heads)})
 
@@ -127,7 +127,9 @@ def _estimates(facts: Facts, name: str) -> Blocks:
         yield _history(facts["time"], estimates, title)
     elif isinstance(estimates["draws"], int):
         rows = [
-            (each, number(known(at["estimate"])), _between(at)) for each, at in estimates.items() if each != "draws"
+            (statistic, number(known(bounds["estimate"])), _between(bounds))
+            for statistic, bounds in estimates.items()
+            if statistic != "draws"
         ]
         columns = {"": "0", " ": "1", "  ": "2"}
         yield table(rows, columns, f"{title}, of {estimates['draws']} draws, with 95 % confidence")
@@ -178,7 +180,7 @@ def _over_grid(facts: Facts, estimates: Facts, title: str) -> Block:
 
 
 def _history(time: list[float], estimates: Facts, title: str) -> Block:
-    """Band over time at the time at which the median is largest, at the first point of the grid."""
+    """Quantiles of a history at the time at which its median is largest, at the first point of the grid."""
 
     def over_time(name: str, bound: str) -> Any:
         values = np.array(estimates[name][bound], dtype=float)

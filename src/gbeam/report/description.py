@@ -24,12 +24,12 @@ def text(case: Described) -> str:
     lines = [case.title or "(no title)", *_structure(case)]
     motions = []
     for name, kind in case.motions.items():
-        what = kind + (f" that tracks {case.tracks[name]}" if name in case.tracks else "")
-        motions.append(name + (f": {what}" if what != name else ""))
+        described = kind + (f" that tracks {case.tracks[name]}" if name in case.tracks else "")
+        motions.append(name + (f": {described}" if described != name else ""))
     lines += _listed("motions", motions)
     for name, record in case.records.items():
-        first, *others = _lines(record)
-        lines += [f"  {'record':<9} {name}: {first}", *(f"  {'':<9} {line}" for line in others)]
+        first, *more_lines = _lines(record)
+        lines += [f"  {'record':<9} {name}: {first}", *(f"  {'':<9} {line}" for line in more_lines)]
     if case.start is not None and case.duration is not None:
         end, step = case.start + case.duration, "auto" if case.step is None else f"{1e3 * case.step:.4g} ms"
         lines.append(f"  response  {case.start:.4g} to {end:.4g} s, {case.integrator}, step {step}")
@@ -73,6 +73,7 @@ def _specimen(case: SpecimenDescription) -> list[str]:
 
 
 def _system(case: SystemDescription) -> list[str]:
+    """Lines on the bodies, joints, forces, controllers and gravity of a system."""
     bodies = []
     for name, body in case.bodies.items():
         counted = f", {body.coordinates} coordinate{'' if body.coordinates == 1 else 's'}" if body.coordinates else ""
@@ -100,11 +101,11 @@ def _lines(record: RecordSummary) -> Iterator[str]:
     clock = f", 0 s being {record.clock}" if record.clock else ""
     quantity = record.quantity.replace("-", " ")
     yield f"{Path(record.file).name}, {record.samples} samples at {record.rate:.4g} Hz, {part}{clock}, {quantity}"
-    ends_of = zip("xyz", record.columns, record.smallest, record.largest, strict=True)
-    wide = max(map(len, record.columns))
-    for axis, column, smallest, largest in ends_of:
+    axes = zip("xyz", record.columns, record.smallest, record.largest, strict=True)
+    width = max(map(len, record.columns))
+    for axis, column, smallest, largest in axes:
         low, high = (f"{value / STANDARD_GRAVITY:.4g}" for value in (smallest, largest))
-        yield f"{axis} = {column:<{wide}}  {low} to {high} g" if column != "0" else f"{axis} = 0"
+        yield f"{axis} = {column:<{width}}  {low} to {high} g" if column != "0" else f"{axis} = 0"
     yield f"largest load {_load(record.peak)} at {record.time_of_peak:.6g} s"
     if record.level is not None:
         yield f"level from {record.level.start:.6g} to {record.level.end:.6g} s: {_load(record.level.load)} on average"

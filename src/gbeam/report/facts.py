@@ -23,7 +23,7 @@ VERSION = 1  # of the keys: raised where one changes or goes
 
 
 def whole(result: Result) -> Result:
-    """Return the result as its JSON has it: a response alone in a study, one that is listed by motion with a name."""
+    """Return a result as its JSON has it: a response in a study of its own; of kinds listed by motion, with a name."""
     if isinstance(result, Response):
         name = result.name or result.environment
         return Study("", {name: result}, (), warnings=(), provenance=result.provenance)
@@ -46,7 +46,7 @@ def facts(*results: Result, title: str = "", files: Iterable[Path] | None = None
 
 
 def _worded(figures: dict[str, Any], answers: list[Result]) -> dict[str, Any]:
-    """Figures with the sentences of a verb's text, and with how all cases of a sweep ended."""
+    """Add to JSON the sentences of the answers' printed reports, and to a sweep's its state as outcome; return it."""
     for answer in answers:
         match answer:
             case MachinePlan():
@@ -62,11 +62,11 @@ def _worded(figures: dict[str, Any], answers: list[Result]) -> dict[str, Any]:
                 from gbeam.report.study import comparison_lines, of_beam, of_machine, of_system
 
                 for name, response in answer.responses.items():
-                    of = of_beam(response) if isinstance(response, Response) else of_system(response)
-                    lines = [*of, *of_machine(response)]
+                    sentences = of_beam(response) if isinstance(response, Response) else of_system(response)
+                    lines = [*sentences, *of_machine(response)]
                     figures["motions"][name]["lines"] = lines
-                for each, compared in zip(figures["comparisons"], answer.comparisons, strict=True):
-                    each["lines"] = list(comparison_lines(compared))
+                for entry, comparison in zip(figures["comparisons"], answer.comparisons, strict=True):
+                    entry["lines"] = list(comparison_lines(comparison))
             case SystemResponse():
                 from gbeam.report.study import of_system
 
@@ -104,10 +104,10 @@ def reproduction_json(again: Reproduction) -> dict[str, Any]:
 
 
 def reproduction_text(again: Reproduction) -> str:
-    """Values compared, differences, and changes since."""
+    """Return a reproduction in words: values compared, differences, changes since."""
     same = f"within {again.tolerance:g}" if again.tolerance else "the same to the last digit"
-    extent = same if again.reproduced else "NOT reproduced"
-    lines = [f"{again.file}: {again.compared} values and arrays computed again: {extent}"]
+    verdict = same if again.reproduced else "NOT reproduced"
+    lines = [f"{again.file}: {again.compared} values and arrays computed again: {verdict}"]
     lines += [f"  {each}" for each in again.differences[:LISTED]]
     if len(again.differences) > LISTED:
         lines.append(f"  and {len(again.differences) - LISTED} more: see --json")
@@ -163,7 +163,7 @@ def reference_of_results() -> str:
 
 
 def _rows(kind: type) -> Iterator[tuple[str, str, str]]:
-    """Path, unit and words of the numbers; of what is another kind of result its name only."""
+    """Yield path, unit and words of the quantities of a kind; of what is another kind of result only a link to it."""
     others = {each.key or name for name, each in declarations(kind) if each.role == "rows"}
     responses = {"Study": "Response", "SystemStudy": "SystemResponse"}.get(kind.__name__, "")
     links = {"motions": responses, "comparisons": "Comparison"} if responses else {}

@@ -14,9 +14,10 @@ from gbeam.results.errors import ErrorEstimate
 from gbeam.results.parts import margin_words
 
 
-def resting_loads(loads: Facts, of: str = "motion") -> Block:
-    """Loads of the root and stress at rest, in every motion, or `of` every beam."""
-    cells = {of: "name", "force, N": "force", "moment, N m": "moment", "stress, MPa": "stress", "largest in": "place"}
+def resting_loads(loads: Facts, row_of: str = "motion") -> Block:
+    """Table of root loads and stress at rest, a row for every `row_of`: motion, or beam of a system."""
+    cells = {row_of: "name", "force, N": "force", "moment, N m": "moment"}
+    cells |= {"stress, MPa": "stress", "largest in": "place"}
     cells |= {"margin on yield": "least", "torque from the hub, N m": "beam_torque"}
     rows = [_at_rest(each) for each in named(loads)]
     stressed = any(each["stress"] for each in rows)
@@ -25,7 +26,7 @@ def resting_loads(loads: Facts, of: str = "motion") -> Block:
 
 
 def _at_rest(loads: Facts) -> Facts:
-    """Loads at rest without rounding errors, the moment's of a lever, and the stress in words."""
+    """Row of loads at rest: root force and moment, where rounding errors are zero, and the extreme stress in words."""
     low, high = (np.array(loads[key], dtype=float) for key in ("stress_compression", "stress_tension"))
     force, moment = (float(np.abs(list(loads[key].values())).max()) for key in ("section_force", "section_moment"))
     sizes = {"force": force, "moment": max(moment, force * loads["stations"][-1])}
@@ -43,11 +44,11 @@ def _at_rest(loads: Facts) -> Facts:
     }
 
 
-def loads_table(motions: Facts, of: str = "motion") -> Block:
-    """Largest loads of the root and stress, in every motion, or `of` every beam."""
+def loads_table(motions: Facts, row_of: str = "motion") -> Block:
+    """Table of the largest root loads and stress, a row for every `row_of`: motion, or beam of a system."""
     rows = [{"name": name, **each["loads"]} for name, each in motions.items() if "loads" in each]
     cells: Columns = {
-        of: "name",
+        row_of: "name",
         "root force, N": "root_force.size.max_abs",
         "at, s": "root_force.size.time_of_max",
         "root moment, N m": _root_moment,
@@ -75,18 +76,18 @@ def margin(value: float | None) -> Cell:
     return Cell(margin_words(value).removeprefix("margin on yield "), "bad" if value < 0 else "")
 
 
-def parts_tables(motions: Facts, of: str = "motion") -> tuple[Block, ...]:
+def parts_tables(motions: Facts, row_of: str = "motion") -> tuple[Block, ...]:
     """Largest stress of meshes, and loads of rigid specimens."""
     solids, rigid = ({n: each[key] for n, each in motions.items() if key in each} for key in ("solid", "specimen"))
-    return *stress_table(solids, of), *specimen_tables(rigid)
+    return *stress_table(solids, row_of), *specimen_tables(rigid)
 
 
-def stress_table(solids: Facts, of: str = "motion") -> Blocks:
-    """Largest von Mises stress of a mesh in every motion, or `of` every body, with its place and the least margin, and
-    what is left out.
+def stress_table(solids: Facts, row_of: str = "motion") -> Blocks:
+    """Tables of the largest von Mises stress of meshes, its place and the least margin, a row for every `row_of`:
+    motion, or body of a system; and what is left out of the stress.
     """
     cells: Columns = {
-        of: "name",
+        row_of: "name",
         "von Mises, MPa": "worst.von_mises",
         **_place("worst.place"),
         "node": "worst.node",
@@ -98,10 +99,10 @@ def stress_table(solids: Facts, of: str = "motion") -> Blocks:
         ),
     }
     yield table(named(solids), cells, "Largest stress, and where it is", optional=("node",))
-    words = {name: each["left_out"] for name, each in solids.items() if each.get("left_out")}
-    alike = len(words) == len(solids) and len(set(words.values())) == 1
-    if words:
-        yield Items(tuple(set(words.values()) if alike else (f"{name}: {each}" for name, each in words.items())))
+    remarks = {name: each["left_out"] for name, each in solids.items() if each.get("left_out")}
+    alike = len(remarks) == len(solids) and len(set(remarks.values())) == 1
+    if remarks:
+        yield Items(tuple(set(remarks.values()) if alike else (f"{name}: {each}" for name, each in remarks.items())))
 
 
 # Of the rows of `at_points`.
@@ -113,8 +114,8 @@ READ: Columns = {
 
 
 def at_points(facts: Facts, points: Facts) -> Iterator[Facts]:
-    """Named points of a response with what an accelerometer reads there, and the largest stress and strain of a mesh;
-    those of a system have the names of their bodies before theirs.
+    """Yield rows of named points (``body.point`` of systems) with the readings of their accelerometers, and the largest
+    stress and strain of a mesh.
     """
     for name, each in points.items():
         body, _, point = name.rpartition(".")
@@ -124,7 +125,7 @@ def at_points(facts: Facts, points: Facts) -> Iterator[Facts]:
 
 
 def points_table(motions: Facts) -> Block:
-    """Largest values at named points in every motion; nothing where only the tip is one, without a sensor."""
+    """Table of the largest values at named points, by motion; empty if there is only a tip, without a sensor."""
     rows = [
         {"motion": name, **row}
         for name, each in motions.items()
@@ -146,8 +147,8 @@ def specimen_tables(rigid: Facts) -> Blocks:
     """Load at the corners of a rigid specimen in every motion, on its fixture and on its bolts."""
 
     def spread(each: Facts) -> Value:
-        held = {True: (", accepted", "good"), False: (", NOT accepted", "bad"), None: ("", "")}
-        words, tone = held[each.get("within_limit")]
+        verdicts = {True: (", accepted", "good"), False: (", NOT accepted", "bad"), None: ("", "")}
+        words, tone = verdicts[each.get("within_limit")]
         return Cell(f"{100 * known(each['spread']):.3g} %{words}", tone)
 
     corners: Columns = {
@@ -170,10 +171,10 @@ def specimen_tables(rigid: Facts) -> Blocks:
 def errors(motions: Facts) -> Blocks:
     """Estimated errors by their causes, and what is not estimated."""
     rows = [
-        {"name": name, "of": of, **each["errors"][of]}
+        {"name": name, "of": quantity, **each["errors"][quantity]}
         for name, each in motions.items()
-        for of in (("loads",) if "specimen" in each else ("displacement", "loads", "stress"))
-        if each["errors"][of]["total"] is not None
+        for quantity in (("loads",) if "specimen" in each else ("displacement", "loads", "stress"))
+        if each["errors"][quantity]["total"] is not None
     ]
     causes = {name.replace("_", " "): f"{name}:%" for name, _ in declarations(ErrorEstimate)}
     yield table(rows, {"motion": "name", "of": "of"} | causes, "Estimated errors, of the largest size", optional=causes)

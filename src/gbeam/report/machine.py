@@ -41,7 +41,7 @@ def tracked(driven: Driven) -> str:
 
 
 def followed(facts: Mapping[str, Any]) -> str:
-    """Both errors in words, from their JSON."""
+    """Words for how well the load follows the target and the flight, from the JSON of both errors."""
     error, of_flight = facts["tracking_error"], facts.get("flight_error")
     if error["max"] is None or math.isnan(error["max"]):
         return "the target is held all the time"
@@ -97,14 +97,16 @@ def judged_lines(judged: Judged) -> Iterator[str]:
 
 
 def accounting_lines(accounting: Accounting) -> Iterator[str]:
-    """Load peaks, those that are not reproduced first; spread of the load; stretches that are not followed."""
+    """Yield lines on up to :data:`SHOWN` load peaks, first chosen those not reproduced, then the largest, in order of
+    time; on the load over the specimen; and on as many of the longest stretches that are not followed.
+    """
     listed = sorted(accounting.peaks, key=lambda peak: (not peak.reason, -peak.load))[:SHOWN]
     for peak in sorted(listed, key=lambda peak: peak.time):
         # Where the size hides a difference of direction, that is said too.
-        turned = f", as a vector {share_of(peak.error)}" if peak.error > abs(peak.ratio - 1) + 0.01 else ""
-        apart = peak.time_machine - peak.time
-        later = f", {abs(1e3 * apart):.0f} ms {'later' if apart > 0 else 'earlier'}" if abs(apart) >= _APART else ""
-        size = f"{in_g(peak.reproduced)} ({change(peak.ratio)}{turned}{later})"
+        direction = f", as a vector {share_of(peak.error)}" if peak.error > abs(peak.ratio - 1) + 0.01 else ""
+        delay = peak.time_machine - peak.time
+        timing = f", {abs(1e3 * delay):.0f} ms {'later' if delay > 0 else 'earlier'}" if abs(delay) >= _APART else ""
+        size = f"{in_g(peak.reproduced)} ({change(peak.ratio)}{direction}{timing})"
         if math.isfinite(peak.instant_error):
             size += f", {share_of(peak.instant_error if peak.instant_error > _NONE else 0.0)} off at the same instant"
         yield (
@@ -121,18 +123,18 @@ def accounting_lines(accounting: Accounting) -> Iterator[str]:
     stretches = [
         each for each in accounting.not_followed if each.reason != "below idle" and each.end - each.start > SHORTEST
     ]
-    longest = sorted(stretches, key=lambda each: each.start - each.end)[:SHOWN]
-    for each in sorted(longest, key=lambda each: each.start):
+    longest = sorted(stretches, key=lambda stretch: stretch.start - stretch.end)[:SHOWN]
+    for stretch in sorted(longest, key=lambda stretch: stretch.start):
         yield (
-            f"not followed {each.start:.3f} to {each.end:.3f} s: {each.reason}, flight's load up to "
-            f"{in_g(each.flight_peak)}"
+            f"not followed {stretch.start:.3f} to {stretch.end:.3f} s: {stretch.reason}, flight's load up to "
+            f"{in_g(stretch.flight_peak)}"
         )
     if len(stretches) > SHOWN:
         yield f"not followed {len(stretches) - SHOWN} times more: see --json"
 
 
 def peak_lines(peaks: Mapping[str, PeakPair]) -> Iterator[str]:
-    """Largest root loads and stress over the flight."""
+    """Yield a line on the largest root loads and stress over the flight; none if no ratio is known."""
     words = []
     for name in ("root_force", "root_moment", "stress", STRESS_AT):
         pair, (what, _, unit) = peaks.get(name, PeakPair()), QUANTITIES[name]
@@ -162,10 +164,10 @@ def _planned(plan: Facts) -> Blocks:
     yield limits(plan)
     yield Sentence(followed(plan))
     yield held(plan)
-    lacks = tuple(str(Shortfall(**each)) for each in plan["shortfalls"])
-    yield Items(lacks[:SHOWN], "warning")
-    if len(lacks) > SHOWN:
-        yield Sentence(f"and {len(lacks) - SHOWN} more: see --json")
+    shortfalls = tuple(str(Shortfall(**each)) for each in plan["shortfalls"])
+    yield Items(shortfalls[:SHOWN], "warning")
+    if len(shortfalls) > SHOWN:
+        yield Sentence(f"and {len(shortfalls) - SHOWN} more: see --json")
 
 
 def limits(machine: Facts) -> Block:
@@ -208,11 +210,14 @@ def verdict(judged: Facts, names: tuple[str, str]) -> Blocks:
 
 def said(judged: Facts) -> Block:
     """The verdict and what it rests on, in words."""
-    lines, tone = Items(tuple(judged["lines"])), "bad" if judged["accepted"] is False else "verdict"
+    lines = Items(tuple(judged["lines"]))
+    tone = "bad" if judged["accepted"] is False else "verdict"
     return Section(sentence(judged["verdict"]), (lines,), titled=True, folded="Verdict in words", tone=tone)
 
 
 def _criteria(judged: Facts) -> Block:
+    """Table of the limits of acceptance and their values, and of limits that need a response."""
+
     def limit(each: Facts) -> Value:
         if "limit" not in each:
             return None
@@ -256,6 +261,7 @@ def _peaks(judged: Facts, names: tuple[str, str]) -> Block:
 
 
 def _load_peaks(judged: Facts) -> Block:
+    """Table of the peaks of flight's load, with the machine's load at each."""
     cells: Columns = {
         "at, s": "time",
         "flight, g": "load",
@@ -270,15 +276,16 @@ def _load_peaks(judged: Facts) -> Block:
 
 
 def _not_followed(judged: Facts) -> Block:
+    """Table of the stretches that are not followed, folded on a page if there are many."""
     accounting = judged["accounting"]
-    rows, shares = accounting["not_followed"], known(accounting["followed_share"])
-    of = "load at the time" if accounting["tolerance_of"] == "instant" else "largest load"
-    within = f"within {share_of(accounting['tolerance'])} of the {of}"
-    caption = f"Not followed: {_percent(1 - shares)} of the flight's time ({_percent(shares)} is followed, {within})"
+    rows, share = accounting["not_followed"], known(accounting["followed_share"])
+    reference = "load at the time" if accounting["tolerance_of"] == "instant" else "largest load"
+    within = f"within {share_of(accounting['tolerance'])} of the {reference}"
+    caption = f"Not followed: {_percent(1 - share)} of the flight's time ({_percent(share)} is followed, {within})"
     cells = {"from, s": "start:.3f", "to, s": "end:.3f", "flight up to, g": "flight_peak", "why": "reason"}
     stretches = table(rows, cells, caption)
-    several = f"{len(rows)} stretches that are not followed"
-    return Section(several, (stretches,), folded=several) if len(rows) > _MANY else stretches
+    title = f"{len(rows)} stretches that are not followed"
+    return Section(title, (stretches,), folded=title) if len(rows) > _MANY else stretches
 
 
 def _changed(pair: Facts) -> Value:

@@ -46,15 +46,17 @@ def known(value: float | None) -> float:
 
 
 def columns(heads: list[str], rows: list[list[str]], left: Collection[int] = (0,)) -> list[str]:
-    """Lines of a table, flush right but for some columns; on a narrower terminal each row in lines of its own."""
+    """Return the lines of a table, columns flush right but for those `left`; if the terminal is narrow, a line per
+    cell.
+    """
     widths = [max(len(row[k]) for row in [heads, *rows]) for k in range(len(heads))]
     room = terminal_width()
     if 0 < room < sum(widths) + 2 * len(widths):
         beside = max(map(len, heads))
         folded: list[str] = []
         for first, *others in rows:
-            named = zip(heads[1:], others, strict=True)
-            folded += [first, *(f"  {head:<{beside}}  {cell}" for head, cell in named if cell)]
+            cells = zip(heads[1:], others, strict=True)
+            folded += [first, *(f"  {head:<{beside}}  {cell}" for head, cell in cells if cell)]
         return folded
     return [
         "  ".join(f"{cell:{'<' if k in left else '>'}{widths[k]}}" for k, cell in enumerate(row)).rstrip()
@@ -86,17 +88,19 @@ def errors_in_words(errors: Mapping[str, float | None]) -> str:
 
 
 def rounding(size: float, scale: float = 0.0) -> float:
-    """Largest rounding error beside the largest of its kind, and of differences of what is of a larger scale."""
+    """Return the largest rounding error of numbers of a `size`, and of differences of numbers of a `scale`."""
     return max(1e-10 * size, 1e-14 * scale, 1e-20)
 
 
 def tidy(values: Iterable[float], size: float, scale: float = 0.0) -> list[float]:
-    """Values without the rounding errors of what is `size` large, or of nothing at all, or of a larger scale."""
+    """Return values with zero for what is a rounding error beside `size`, or `scale`: :func:`rounding`."""
     return [float(value) if abs(value) > rounding(size, scale) else 0.0 for value in values]
 
 
 def stress_words(stations: Any, tension: Any, compression: Any, yield_strength: float | None) -> str:
-    """The extreme normal stresses (s,) Pa at stations (s,) m, where the larger is, and the margin on yield if known."""
+    """Words for the extreme normal stresses (s,) Pa at stations (s,) m, where the larger is, and the margin on yield if
+    known.
+    """
     sizes = [max(high, -low) for high, low in zip(tension, compression, strict=True)]
     stress = float(max(sizes))
     worst = sizes.index(stress)
