@@ -48,10 +48,12 @@ def sensitivity(facts: Facts) -> Blocks:
 
 
 def _effects(measure: Facts) -> Block:
+    """Table of the effect of each parameter on a measure."""
+
     def change(each: Facts) -> Value:
         # A figure without a unit is a ratio, and its change one too.
-        by, size = 0.01 * known(each["derivative"]) * known(each["value"]), known(measure["value"])
-        return percent(by / size) if measure["unit"] and size else f"{number(by)} {raised(measure['unit'])}".rstrip()
+        df, size = 0.01 * known(each["derivative"]) * known(each["value"]), known(measure["value"])
+        return percent(df / size) if measure["unit"] and size else f"{number(df)} {raised(measure['unit'])}".rstrip()
 
     columns: Columns = {
         "of": "path",
@@ -69,7 +71,7 @@ def _with_unit(figure: Facts) -> str:
 
 
 def _interval(ends: str) -> Column:
-    """Ends of an interval, or that the value lies on the bound of the search."""
+    """Column of the interval at the key `ends`; "on its bound" where the value lies on the bound of the search."""
 
     def cell(each: Facts) -> Value:
         return Cell("on its bound", "bad") if each["at_bound"] else " to ".join(six(end).text for end in each[ends])
@@ -153,10 +155,10 @@ _LISTED = 12  # options in a terminal
 
 def placement(facts: Facts) -> Blocks:
     """The best placement and how to apply it, every measure before and after, the simulations, the other options."""
-    parts = facts["measure"]
-    weighted = (f"{weight:g} × {name}" for name, weight in parts.items())
-    measure = " + ".join(weighted if len(parts) > 1 else parts)
-    measure += f" of {facts['point']}" if facts["point"] and {"tip", "vibration"} & parts.keys() else ""
+    weights = facts["measure"]
+    weighted = (f"{weight:g} × {name}" for name, weight in weights.items())
+    measure = " + ".join(weighted if len(weights) > 1 else weights)
+    measure += f" of {facts['point']}" if facts["point"] and {"tip", "vibration"} & weights.keys() else ""
     nearest = "" if facts["outcome"] == "done" else " (nearest to the limits, which none keeps)"
     yield Sentence(f"{facts['centrifuge']}, tracking {facts['flight']}: least {measure}{nearest}", "verdict")
     yield Section("Placement", (pairs(_best(facts)),))
@@ -200,7 +202,7 @@ def _load(load: Facts) -> str:
 
 
 def _range(facts: Facts) -> str:
-    """Range that was searched, and whether the best lies at its end."""
+    """Range of smoothing that was searched, and whether the best lies at its end; empty if only one was."""
     low, high = facts["smoothing_range"]
     if low == high:
         return ""
@@ -224,8 +226,8 @@ def _measures(values: Facts, places: dict[str, str], title: str) -> Block:
 
 
 def _verified(facts: Facts, places: dict[str, str]) -> Blocks:
+    """Table of simulated differences at each control point, and the factor by which the best vibrates less."""
     checks = facts["verifications"]
-
     cells = {
         "control point": "name",
         "tip, mm": "tip_difference",
@@ -242,6 +244,8 @@ def _verified(facts: Facts, places: dict[str, str]) -> Blocks:
 
 
 def _options(options: Sequence[Facts], measure: str) -> Block:
+    """Table of the options, the best first, each with its share of a limit or the limits that it exceeds."""
+
     def limits(each: Facts) -> Value:
         words = "; ".join(
             f"{use['axis']} {use['quantity']} {number(use['used'])} of {number(use['allowed'])} {use['unit']}"
@@ -266,7 +270,7 @@ def _options(options: Sequence[Facts], measure: str) -> Block:
 
 
 def _of_peak(share: float | None) -> str:
-    """A share of flight's peak; below 1e-8 it is rounding, and above 1e8 flight's peak is."""
+    """Write a share of flight's peak: 0 below 1e-8, which is rounding; above 1e8 flight's peak is that."""
     if share is None:
         return "–"
     if share > 1e8:

@@ -71,7 +71,7 @@ def modes(facts: Facts) -> Blocks:
 
 
 def where(facts: Facts, *words: str) -> Sentence:
-    """The motion, if it has a name, the model, and other words."""
+    """Sentence on the motion, if it has a name, the model, and other words."""
     motion = f"motion {facts['motion']}" if facts["motion"] else ""
     return Sentence(", ".join(filter(None, (motion, f"model {facts['model']}", *words))))
 
@@ -80,7 +80,7 @@ ERROR: Columns = {"estimated error": "error_estimate:%"}
 
 
 def modes_table(facts: Facts, more: Mapping[str, Column]) -> Block:
-    """Frequencies and damping, and more of every mode."""
+    """Table of frequency, damping and `more` columns of every mode, and a note on what is not estimated."""
 
     def damping(each: Facts) -> Value:
         return f"{each['damping_ratio'] if abs(each['damping_ratio']) > ROUNDING else 0.0:.4g}"
@@ -101,6 +101,7 @@ def evenly(facts: Facts) -> Blocks:
 
 
 def growing(facts: Facts, which: Callable[[Facts], str]) -> Block:
+    """Items on what grows, with words of `which` mode that is."""
     return Items(
         tuple(
             f"{each['kind']}{which(each)}: grows by {number(each['growth_rate'])} per second"
@@ -127,29 +128,29 @@ def campbell(facts: Facts, speeds: Mapping[str, float] = _SPEEDS) -> Blocks:
     `speeds` are the units of speed, with their number in 1 rad/s.
     """
 
-    def speed(size: float) -> Column:
-        return lambda each: six(size * each["speed"])
+    def speed(factor: float) -> Column:
+        return lambda each: six(factor * each["speed"])
 
     low, high = facts["speed"][0], facts["speed"][-1]
-    span = where(facts, *(f"{size * low:.4g} to {size * high:.4g} {unit}" for unit, size in speeds.items()))
+    span = where(facts, *(f"{factor * low:.4g} to {factor * high:.4g} {unit}" for unit, factor in speeds.items()))
     yield Section("Campbell diagram", (span, FIGURES))
     if facts["critical_speed"] is not None:
-        at = ", ".join(f"{number(size * facts['critical_speed'])} {unit}" for unit, size in speeds.items())
+        lost_at = ", ".join(f"{number(factor * facts['critical_speed'])} {unit}" for unit, factor in speeds.items())
         reason = f" ({facts['critical_speed_reason']})" if facts.get("critical_speed_reason") else ""
         error = _stated(facts.get("critical_speed_errors", {}))
-        yield Sentence(f"the equilibrium is lost at {at}{reason}{error}", "bad")
+        yield Sentence(f"the equilibrium is lost at {lost_at}{reason}{error}", "bad")
     ends = {"Hz at the start": "frequency.0:.6g", "Hz at the end": "frequency.-1:.6g"}
     tracks = table(numbered(facts["tracks"]), {"mode": "number", "along": "direction", **ends, **ERROR})
     yield Section("Modes", (tracks, *noted(facts)))
     crossings: Columns = {
         "mode": lambda each: each["track"] + 1,
         "multiple": lambda each: f"{each['order']} ×",
-        **{f"speed, {raised(unit)}": speed(size) for unit, size in speeds.items()},
+        **{f"speed, {raised(unit)}": speed(factor) for unit, factor in speeds.items()},
         "frequency, Hz": "frequency:.6g",
         **ERROR,
     }
-    none = () if facts["crossings"] else (Sentence("no crossing in this range", "faint"),)
-    yield Section("Crossings", (table(facts["crossings"], crossings), *none))
+    remark = () if facts["crossings"] else (Sentence("no crossing in this range", "faint"),)
+    yield Section("Crossings", (table(facts["crossings"], crossings), *remark))
 
 
 def critical(facts: Facts) -> Blocks:
@@ -190,8 +191,8 @@ def critical_map(facts: Facts) -> Blocks:
         np.nanmax(np.array(errors_of.get(key, 0.0), dtype=float), initial=0.0) for key in ("shapes", "total")
     )
     if shapes:
-        every = f", {percent(total)} in all" if total else ""
-        yield Sentence(f"estimated errors up to {percent(shapes)} from too few shapes{every}")
+        in_all = f", {percent(total)} in all" if total else ""
+        yield Sentence(f"estimated errors up to {percent(shapes)} from too few shapes{in_all}")
     yield Section("Figure", (FIGURES,))
 
 
@@ -205,8 +206,8 @@ def state_space(facts: Facts) -> Blocks:
     signals = ("states", "inputs", "outputs")
     # Angles are of the scale of a radian, beams' coordinates, which have no unit, of that of lengths.
     sizes = {"rad": 1.0}
-    for each in (each for name in signals for each in facts[name]):
-        sizes[each["unit"]] = max(sizes.get(each["unit"], 0.0), abs(each["value"]))
+    for signal in (row for name in signals for row in facts[name]):
+        sizes[signal["unit"]] = max(sizes.get(signal["unit"], 0.0), abs(signal["value"]))
     cells: Columns = {
         "name": "name",
         "unit": lambda each: raised(each["unit"]),
@@ -222,8 +223,8 @@ def state_space(facts: Facts) -> Blocks:
         "along": lambda each: "({:g}, {:g}, {:g})".format(*each["along"]),
     }
     names = {each["name"] for each in facts["outputs"]}
-    listed = [each for each in numbered(facts.get("gauges", ())) if f"strain_{each['number']}" in names]
-    yield table(listed, gauges, "Gauges", optional=("fibre y, mm", "fibre z, mm"))
+    used = [each for each in numbered(facts.get("gauges", ())) if f"strain_{each['number']}" in names]
+    yield table(used, gauges, "Gauges", optional=("fibre y, mm", "fibre z, mm"))
     yield from _accuracy(facts)
     if facts["step"]:
         yield from _in_steps(facts)
@@ -239,23 +240,23 @@ def _station(at: float | str) -> str:
 
 
 def _accuracy(facts: Facts) -> Blocks:
-    """Frequency up to which its poles are those of the exact model, and how far off the others are."""
+    """Sentence on up to which frequency the poles are accurate, how far off the others are, and by what model."""
     totals = np.array([each.get("errors", {}).get("total") for each in facts["poles"]], dtype=float)
     models = [each.get("errors", {}).get("model") for each in facts["poles"]]
     if not np.isfinite(totals).any():
         yield from noted(facts)
         return
-    good = int(np.append(np.flatnonzero(~(totals <= ACCURATE)), len(totals))[0])
+    accurate = int(np.append(np.flatnonzero(~(totals <= ACCURATE)), len(totals))[0])
     words = []
-    if good:
-        worst, end = percent(float(totals[:good].max())), facts["accurate_to"]
-        words.append(f"frequencies accurate to {worst} up to {end:.5g} Hz ({good} of {len(totals)})")
-    if good < len(totals):
-        beyond = totals[good:][np.isfinite(totals[good:])]
-        off = f"up to {percent(float(beyond.max()))} off" if len(beyond) else "not judged"
-        words.append(f"{'higher ones' if good else 'frequencies'} {off}")
-    more = all(each is None for each in models)
-    by = "the model with more modes" if more else "the exact model with more shapes and the theory of thick beams"
+    if accurate:
+        worst, end = percent(float(totals[:accurate].max())), facts["accurate_to"]
+        words.append(f"frequencies accurate to {worst} up to {end:.5g} Hz ({accurate} of {len(totals)})")
+    if accurate < len(totals):
+        beyond = totals[accurate:][np.isfinite(totals[accurate:])]
+        error = f"up to {percent(float(beyond.max()))} off" if len(beyond) else "not judged"
+        words.append(f"{'higher ones' if accurate else 'frequencies'} {error}")
+    same_model = all(each is None for each in models)
+    by = "the model with more modes" if same_model else "the exact model with more shapes and the theory of thick beams"
     note = f"; {facts['error_note']}" if facts.get("error_note") else ""
     yield Sentence(f"{'; '.join(words)}, by {by}{note}")
 
@@ -285,9 +286,9 @@ def _left_out(facts: Facts, left_out: Facts) -> Blocks:
     words = f"{left_out['method']} truncation leaves out {states} of {states + len(facts['states'])} states"
     if shares.size:
         worst = np.unravel_index(int(shares.argmax()), shares.shape)
-        to, by = facts["outputs"][worst[0]]["name"], facts["inputs"][worst[1]]["name"]
+        output, input_ = facts["outputs"][worst[0]]["name"], facts["inputs"][worst[1]]["name"]
         words += f": up to {left_out['to']:.5g} Hz at most {percent(float(shares[worst]))} of the largest gain"
-        words += f" ({to} by {by})" if shares.size > 1 else ""
+        words += f" ({output} by {input_})" if shares.size > 1 else ""
     yield Sentence(words)
     if left_out["method"] == "balanced":
         values = " ".join(f"{value:.3g}" for value in facts["hankel_singular_values"])
@@ -296,7 +297,7 @@ def _left_out(facts: Facts, left_out: Facts) -> Blocks:
 
 
 def map_csv(critical: CriticalMap) -> str:
-    """Map as comma-separated values: a row per position, a column per mass, nan where there is none; then errors."""
+    """Return a map as CSV: a row per position, a column per mass, nan where there is none; then columns of errors."""
     heads = ["position_m", *(f"critical_rad_per_s_with_{m:g}_kg" for m in critical.mass)]
     columns = [critical.position, *critical.speed]
     if critical.errors is not None:

@@ -74,6 +74,7 @@ def of_beam(response: Response) -> Iterator[str]:
 
 
 def _accuracy(response: Response) -> str:
+    """Sentence on the model, the time steps, and the estimated errors, with what they leave out."""
     step = f"{response.steps} steps of {_time(response.step)}"
     if math.isnan(response.error_estimate) or response.outcome != "done":
         error = "no error estimate"
@@ -84,8 +85,8 @@ def _accuracy(response: Response) -> str:
         if response.solid is not None and math.isfinite(response.errors.stress.total):
             error += f", {percent(response.errors.stress.total)} of the largest stress"
         if response.point_acceleration is not None and response.errors.note:  # no beam, of which all is judged
-            alone = ", of the time step alone: " if math.isnan(response.errors.displacement.shapes) else "; "
-            error += f"{alone}{response.errors.note}"
+            link = ", of the time step alone: " if math.isnan(response.errors.displacement.shapes) else "; "
+            error += f"{link}{response.errors.note}"
     return f"{response.model}, {response.integrator}, {step}; {error}"
 
 
@@ -113,11 +114,11 @@ def of_machine(response: Response | SystemResponse) -> Iterator[str]:
     if len(stretches) > EPISODES:
         yield f"target held {len(stretches) - EPISODES} times more: see the result file"
     # Stretches in which the target is held are listed above; a load that is followed and yet out of reach is news.
-    others = [each for each in axes.shortfalls if not any(start <= each.time <= end for start, end, _ in stretches)]
-    for each in others[:SHORTFALLS]:
+    not_held = [each for each in axes.shortfalls if not any(start <= each.time <= end for start, end, _ in stretches)]
+    for each in not_held[:SHORTFALLS]:
         yield f"warning: {each}"
-    if len(others) > SHORTFALLS:
-        yield f"warning: and {len(others) - SHORTFALLS} more: see `gbeam plan`"
+    if len(not_held) > SHORTFALLS:
+        yield f"warning: and {len(not_held) - SHORTFALLS} more: see `gbeam plan`"
 
 
 _FELT = 0.01  # of flight's peak: a mismatch that bends the tip by less is no reason to move the specimen
@@ -140,9 +141,9 @@ def comparison_lines(comparison: Comparison) -> Iterator[str]:
         )
     if comparison.fatigue is not None and math.isfinite(comparison.fatigue.damage_ratio):
         fatigue = comparison.fatigue
-        flown, spun = (1e-6 * each.largest for each in (fatigue.flight, fatigue.machine))
+        in_flight, machine = (1e-6 * each.largest for each in (fatigue.flight, fatigue.machine))
         yield (
-            f"stress cycles {fatigue.place} up to {flown:.4g} MPa in flight, {spun:.4g} MPa on the centrifuge: "
+            f"stress cycles {fatigue.place} up to {in_flight:.4g} MPa in flight, {machine:.4g} MPa on the centrifuge: "
             + f"{number(fatigue.damage_ratio, 3)} times flight's damage (Wöhler exponent {fatigue.exponent:g})"
         )
     if comparison.shock is not None and comparison.shock.extremes:
@@ -162,21 +163,21 @@ def comparison_lines(comparison: Comparison) -> Iterator[str]:
     if comparison.mismatch is not None:
         mismatch = comparison.mismatch
         bound = mismatch.tip_bound[main]
-        felt = bound > _FELT * comparison.peak_flight[main]
-        advice = "; `gbeam place` finds the best control point" if felt and not mismatch.placed else ""
+        matters = bound > _FELT * comparison.peak_flight[main]
+        advice = "; `gbeam place` finds the best control point" if matters and not mismatch.placed else ""
         bent = f", which bends the tip by up to {1e3 * bound:.3g} mm quasi-statically" if math.isfinite(bound) else ""
         yield f"mismatch up to {mismatch.max_acceleration[main]:.3g} m/s² along the beam{bent}{advice}"
 
 
 def of_system(response: SystemResponse) -> Iterator[str]:
     """Sentences on joints, loads, energy and the error."""
-    every = named_histories(response)
-    size = max((float(np.abs(history).max()) for history, *_ in every.values()), default=0.0)
-    at_end = [float(history[-1]) for history, *_ in every.values()]
+    histories = named_histories(response)
+    size = max((float(np.abs(history).max()) for history, *_ in histories.values()), default=0.0)
+    at_end = [float(history[-1]) for history, *_ in histories.values()]
     scale = float(np.abs(response.place).max(initial=0.0))
     ends = tidy(at_end, max(size, float(response.largest.max(initial=0.0))), scale)
     joints = ", ".join(
-        f"{name} {number(end)} {unit}" for (name, (_, unit, _)), end in zip(every.items(), ends, strict=True)
+        f"{name} {number(end)} {unit}" for (name, (_, unit, _)), end in zip(histories.items(), ends, strict=True)
     )
     if joints:
         yield f"at the end {joints}"
@@ -186,14 +187,14 @@ def of_system(response: SystemResponse) -> Iterator[str]:
         yield "; ".join(limited)
     yield from (f"{body}: {largest_loads(each.peaks)}" for body, each in response.beams.items() if each.peaks)
     yield from (f"{body}: {line}" for body, each in response.solids.items() for line in each.lines)
-    kept = response.invariants
-    if kept is not None:
-        totals = kept.energy[[0, -1]].sum(axis=1)
-        first, last = map(number, tidy(totals.tolist(), float(np.abs(kept.energy).max())))
+    invariants = response.invariants
+    if invariants is not None:
+        totals = invariants.energy[[0, -1]].sum(axis=1)
+        first, last = map(number, tidy(totals.tolist(), float(np.abs(invariants.energy).max())))
         yield f"energy {first} J at the start, {last} J at the end"
     error = percent(response.error_estimate)
-    known = f"estimated error {error}" if math.isfinite(response.error_estimate) else "no error estimate"
-    yield f"{response.integrator}, {response.steps} steps of {1e3 * response.step:.4g} ms, {known}"
+    accuracy = f"estimated error {error}" if math.isfinite(response.error_estimate) else "no error estimate"
+    yield f"{response.integrator}, {response.steps} steps of {1e3 * response.step:.4g} ms, {accuracy}"
 
 
 HINT = "Drag across a plot to zoom all of them, double-click to see all again, click to take the viewer to that time."
@@ -229,9 +230,9 @@ def in_words_of(facts: Facts) -> Blocks:
         title = f"{name}{'' if kind == name else f' ({kind})'}: {each['outcome']}"
         folded, tone = (title, "good") if each["outcome"] == "done" else ("", "bad")
         message = (Sentence(sentence(each["message"]), "bad"),) if each.get("message") else ()
-        used = (limits(each),) if "limits" in each else ()
+        limits_used = (limits(each),) if "limits" in each else ()
         lines = Items(tuple(each.get("lines", ())))
-        yield Section(title, (*message, *used, lines), titled=True, folded=folded, tone=tone)
+        yield Section(title, (*message, *limits_used, lines), titled=True, folded=folded, tone=tone)
     yield from map(said, facts["comparisons"])
 
 
@@ -241,8 +242,8 @@ def _tips(motions: Facts) -> Block:
     for name, each in motions.items():
         sizes = {axis: known(peak["max_abs"]) for axis, peak in each["tip"].items()}
         # A direction that nothing drives holds rounding errors, whose time would mean nothing.
-        moving = [axis for axis, size in sizes.items() if size > ROUNDING * max(sizes.values())]
-        shown = [axis for axis in moving if axis != "size" or len(moving) > 2]
+        axes = [axis for axis, size in sizes.items() if size > ROUNDING * max(sizes.values())]
+        shown = [axis for axis in axes if axis != "size" or len(axes) > 2]
         rows += [{"motion": name, "axis": axis, **each["tip"][axis]} for axis in shown]
     cells: Columns = {
         "motion": "motion",
@@ -275,15 +276,15 @@ def model_study(facts: Facts) -> Blocks:
     yield table(facts["rows"], cells)
     remarks = []
     for row in facts["rows"]:
-        which = f"{row['motion']}, {row['model']}"
+        row_name = f"{row['motion']}, {row['model']}"
         if row["message"]:
-            remarks.append(f"{which} {row['outcome']}: {row['message']}")
+            remarks.append(f"{row_name} {row['outcome']}: {row['message']}")
         # To check with exact is what this study has just done.
-        remarks += [f"{which}: {each}" for each in row["warnings"] if "check with model.kind" not in each]
+        remarks += [f"{row_name}: {each}" for each in row["warnings"] if "check with model.kind" not in each]
     yield Items(tuple(remarks))
     yield Section("Figures", (FIGURES,))
 
 
 def _signed(words: str) -> str:
-    """Digits without a minus before a zero."""
+    """Write zero with a plus sign: -0.00 % as +0.00 %; any other number as it is."""
     return words if any(digit in words for digit in "123456789") else words.replace("-", "+")

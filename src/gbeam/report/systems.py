@@ -27,10 +27,10 @@ def system_modes(facts: Facts) -> Blocks:
     """Modes with the bodies' shares of the kinetic energy."""
 
     def shares(each: Facts) -> Value:
-        pairs_of = zip(facts["body_names"], each["share"], strict=True)
+        pairs = zip(facts["body_names"], each["share"], strict=True)
         # Bodies of equal shares in their own order, whatever the last digits say.
-        ranked = sorted(pairs_of, key=lambda pair: -round(pair[1], 2))
-        return ", ".join(f"{body} {part:.0%}" for body, part in ranked if part > 0.005)
+        ranked = sorted(pairs, key=lambda pair: -round(pair[1], 2))
+        return ", ".join(f"{body} {share:.0%}" for body, share in ranked if share > 0.005)
 
     yield Sentence(f"{facts['name']} at {facts['time']:.4g} s".lstrip())
     yield from evenly(facts)
@@ -55,6 +55,7 @@ def system_rest(facts: Facts) -> Blocks:
 
 
 def _rest(rest: Facts) -> Blocks:
+    """Displacements and coordinates of a system at rest, its loads, stress and errors, and on a page all else."""
     yield from evenly(rest)
     cells = {"point": "name", **{f"{axis}, mm": f"displacement.{axis}:.6g" for axis in "xyz"}}
     places = (abs(each) for point in rest["points"].values() for each in point["place"].values())
@@ -88,7 +89,7 @@ def _units(facts: Facts) -> dict[str, str]:
 
 
 def _others(facts: Facts, *told: str) -> Block:
-    """The quantities that are not told, for a page."""
+    """All quantities but those with the keys `told`, for a page only."""
     return Section("", tuple(quantities({key: value for key, value in facts.items() if key not in told})), detail=True)
 
 
@@ -129,6 +130,7 @@ def system_response(facts: Facts) -> Blocks:
 
 
 def _of_points(facts: Facts) -> Blocks:
+    """Motions of points and coordinates, loads, stress and errors of a response, and on a page all else."""
     residual = f"residual from {known(facts.get('residual_from')):g} s, m"
     cells: Columns = {"point": "name", "moves by, m": "displacement_max", "acceleration, m/s²": "acceleration_max"}
     cells |= READ | {residual: "residual_size"}
