@@ -60,6 +60,7 @@ PAGES = {
 
 
 def _kind(facts: Mapping[str, Any]) -> str | None:
+    """Kind of a result, by its form, or by its keys if it is of 0.2; None of what is no result."""
     if "form" in facts:
         return str(facts["form"]["kind"])
     motions = facts.get("motions", {}).values()
@@ -90,9 +91,9 @@ def html(
     plots = drawn((each() for each in described.values()), numbers, header)
     verb = PAGES[kind].verb if kind in PAGES else (origin.get("command") or kind).removeprefix("gbeam ").split()[0]
     header |= viewer(kind, facts, variables or {}, numbers)
-    shown = '<div id="gbeam-viewer"></div>' if header.keys() & {"scene", "modes"} else ""
+    viewer_place = '<div id="gbeam-viewer"></div>' if header.keys() & {"scene", "modes"} else ""
     blocks = [Section("Warnings", tuple(warnings_of(facts))), *blocks_of(kind, facts), *_origin(origin)]
-    body, state = drawn_blocks(blocks, shown, plots), badge(facts.get("state", facts["outcome"]))
+    body, state = drawn_blocks(blocks, viewer_place, plots), badge(facts.get("state", facts["outcome"]))
     title = facts.get("title") or _title(origin) or f"gbeam {verb}"
     return _page(title, state, _subject(verb, origin), body, header, numbers)
 
@@ -100,7 +101,7 @@ def html(
 def viewer(
     kind: str, facts: Mapping[str, Any], variables: Mapping[str, Any], numbers: Numbers
 ) -> dict[str, dict[str, Any]]:
-    """Return the modes or the scene that the viewer shows of a result, by its JSON and variables; nothing of others."""
+    """Return what the viewer shows, as ``modes`` or ``scene``, from JSON and variables; empty where nothing moves."""
     if kind == "Modes" and facts["modes"]:
         return {"modes": shapes(read(Modes, facts), variables, numbers)}
     if kind == "SystemModes" and facts["modes"] and "hangs_on" in variables:
@@ -141,6 +142,7 @@ def _title(origin: Mapping[str, Any]) -> str:
 
 
 def _origin(origin: Mapping[str, Any]) -> Blocks:
+    """Section on the origin of a result: command, files, versions, changes and scenario; none if `origin` is empty."""
     if not origin:
         return
     rows = [
@@ -159,6 +161,7 @@ def _origin(origin: Mapping[str, Any]) -> Blocks:
 
 
 def _page(title: str, state: str, subject: str, body: str, header: Mapping[str, Any], numbers: Numbers) -> str:
+    """HTML of a whole page; `header` and `numbers` are what its script draws."""
     assets = files("gbeam.report.page") / "assets"
     script, style = ((assets / name).read_text(encoding="utf-8") for name in ("gbeam.js", "gbeam.css"))
     data = json_printable(json.dumps(header, ensure_ascii=False, allow_nan=False)).replace("<", "\\u003c")
@@ -194,7 +197,7 @@ def _hash(text: str) -> str:
 
 def html_of(result: Result) -> str:
     """Return the inside of a result's page, without its figures and the viewer."""
-    known = json.loads(facts_text(result))
-    blocks = drawn_blocks([*warnings_of(known), *blocks_of(str(known["form"]["kind"]), known)], "", "")
-    title, said = known.get("title", ""), badge(known.get("state", known["outcome"]))
-    return f"<div>{heading(title, 3) if title else ''}<p>{said}</p>{blocks}</div>"
+    facts = json.loads(facts_text(result))
+    blocks = drawn_blocks([*warnings_of(facts), *blocks_of(str(facts["form"]["kind"]), facts)], "", "")
+    title, state = facts.get("title", ""), badge(facts.get("state", facts["outcome"]))
+    return f"<div>{heading(title, 3) if title else ''}<p>{state}</p>{blocks}</div>"

@@ -40,14 +40,15 @@ def paragraph(text: str, kind: str = "") -> str:
 def drawn_blocks(blocks: Iterable[Block], viewer: str, figures: str, level: int = 2) -> str:
     """Return blocks as HTML, with the viewer and the figures at their places, below headings of a level."""
     drawn = []
-    for tables, group in groupby(blocks, lambda block: isinstance(block, Table)):
+    for are_tables, group in groupby(blocks, lambda block: isinstance(block, Table)):
         inside = [shown for block in group if (shown := _drawn_block(block, viewer, figures, level))]
-        beside = tables and len(inside) > 1
-        drawn.append(f'<div class="gbeam-tables">{"".join(inside)}</div>' if beside else "".join(inside))
+        side_by_side = are_tables and len(inside) > 1
+        drawn.append(f'<div class="gbeam-tables">{"".join(inside)}</div>' if side_by_side else "".join(inside))
     return "".join(drawn)
 
 
 def _drawn_block(block: Block, viewer: str, figures: str, level: int) -> str:
+    """HTML of one block; empty where it has nothing to show."""
     match block:
         case Table():
             return table(block)
@@ -107,7 +108,7 @@ def _class(names: str) -> str:
 
 
 def under(place: str, variables: Mapping[str, Any]) -> dict[str, Any]:
-    """Variables of a file whose names begin so, by the rest of their names."""
+    """Return the variables whose names begin with `place`, by the rest of their names."""
     return {name.removeprefix(place): each for name, each in variables.items() if name.startswith(place)}
 
 
@@ -153,6 +154,7 @@ def drawn(figures: Iterable[Figure], numbers: Numbers, header: dict[str, Any]) -
 
 
 def _figure(figure: Figure, numbers: Numbers, header: dict[str, Any]) -> str:
+    """HTML of a figure, with places for its plots and maps, whose data go into `header` and `numbers`."""
     reasons = dict.fromkeys(reason for panel in figure.panels for *_, reason in panel.spans)
     notes = [*figure.notes, *([f"grey: {', '.join(reasons)}"] if reasons else [])]
     parts = [heading(figure.subject, 3), *(paragraph(note, "faint") for note in notes)]
@@ -168,7 +170,7 @@ def _figure(figure: Figure, numbers: Numbers, header: dict[str, Any]) -> str:
 
 
 def _plot(panel: Panel, subject: str, numbers: Numbers, specs: list[dict[str, Any]]) -> tuple[str, str]:
-    """Add a plot, and return its place and caption."""
+    """Add the data of a panel to `specs` and `numbers`, and return the id of its place, and its caption."""
     place, (quantity, _, unit) = f"plot-{len(specs)}", panel.y.rpartition(", ")
     quantity, label = quantity or panel.y, panel.y if len(panel.y) <= FITTING else unit
     low, high = panel.limits or (-np.inf, np.inf)
@@ -183,7 +185,7 @@ def _plot(panel: Panel, subject: str, numbers: Numbers, specs: list[dict[str, An
 
 
 def _said(panel: Panel) -> Iterator[str]:
-    """Names that a picture has at its places, in words."""
+    """Yield in words the marks, texts and ticks that a plot of Matplotlib writes where they are."""
     for each in panel.marks:
         yield f"{each.label} at {number(each.value)}"
     named = {line.label.removeprefix("_") for line in panel.lines}
@@ -193,7 +195,7 @@ def _said(panel: Panel) -> Iterator[str]:
 
 
 def _series(panel: Panel) -> Iterator[tuple[dict[str, Any], Floats, Floats]]:
-    """Look, places and values of every line, edges of areas among them."""
+    """Yield look, x and y of every line of a panel, the edges of its areas among them."""
     for area in panel.areas:
         edges = {"lower end": area.low, "upper end": area.high} if np.any(area.low) else {"": area.high}
         for end, values in edges.items():
@@ -215,12 +217,13 @@ def _look(line: Line, quantity: str) -> dict[str, Any]:
 
 
 def _ascending(x: Floats) -> Floats:
-    """Places without two that are the same."""
+    """Return x with every value that repeats the one before moved on by a little."""
     same = np.concatenate([[False], np.diff(x) <= 0])
     return x + _NUDGE * np.ptp(x) * same if same.any() else x
 
 
 def _table(panel: Panel, bars: Bars) -> str:
+    """Table of bars: a row for each name, with values, their intervals, and bars beside them."""
     largest = max((float(np.nanmax(np.abs(each), initial=0.0)) for each in bars.values.values()), default=0.0) or 1.0
 
     def cell(label: str, k: int) -> Cell:
@@ -234,6 +237,7 @@ def _table(panel: Panel, bars: Bars) -> str:
 
 
 def _map(panel: Panel, cells: Map, numbers: Numbers, maps: list[dict[str, Any]]) -> str:
+    """Add the data of a heat map to `maps` and `numbers`, and return its place."""
     place, (title, _, unit) = f"map-{len(maps)}", cells.label.rpartition(", ")
     x, y = (
         {"label": label, "ticks": [f"{value:.6g}" for value in values]}

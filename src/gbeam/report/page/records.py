@@ -41,7 +41,7 @@ _NEEDED = {
 
 
 def figures_in(kind: str, facts: Facts, variables: Facts) -> dict[str, Describe]:
-    """Return what describes the figures of a result of a kind, from its JSON and, of histories, its variables."""
+    """Return the functions that describe the figures of a stored result, by name; `variables` are those of its file."""
     record, needed = KINDS.get(kind, Result), _NEEDED.get(kind)
     if not issubclass(record, Figured):
         return {}
@@ -49,38 +49,39 @@ def figures_in(kind: str, facts: Facts, variables: Facts) -> dict[str, Describe]
         study = _study(record, facts, variables)
         return figures_of(study) if study.responses else {}
     if record.listed_by:
-        every = [(name, each, under(f"motions/{name}/", variables)) for name, each in facts["motions"].items()]
-        known = (each for each in every if needed is None or needed in each[-1])
-        return figures_of(tuple(read(record, each, v, **{record.listed_by: name}) for name, each, v in known))
+        answers = [(name, answer, under(f"motions/{name}/", variables)) for name, answer in facts["motions"].items()]
+        drawable = (each for each in answers if needed is None or needed in each[-1])
+        return figures_of(tuple(read(record, answer, v, **{record.listed_by: name}) for name, answer, v in drawable))
     return figures_of(read(record, facts, variables)) if needed is None or needed in variables else {}
 
 
 def read(kind: type[_R], facts: Facts, v: Facts | None = None, pattern: str = "*", /, **more: Any) -> _R:
-    """A record of `more`, of variables of a file and of its JSON; what none has, which no figure reads, is empty.
+    """Return a record with fields from `more`, else from the variables `v` of a file, else from JSON; others are empty.
 
-    Variables of a record within another have the `pattern` of :func:`gbeam.io.layout.group_of`.
+    Only fields that no figure reads are so empty. Variables of a record within another have the `pattern` of
+    :func:`gbeam.io.layout.group_of`.
     """
-    every = {field.name: field for field in fields(kind)}  # type: ignore[arg-type]
+    by_name = {field.name: field for field in fields(kind)}  # type: ignore[arg-type]
     more = {**_APART.get(kind, _plainly)(facts, v or {}), **more}
     sizes: dict[str, int] = {}
-    for name, each in declarations(kind):
-        if name in more or name not in every:
+    for name, declaration in declarations(kind):
+        if name in more or name not in by_name:
             continue
-        value = None if each.name is None or not v else _stored(kind, name, each, facts, v, pattern)
-        if value is not None and each.role == "variable":
-            sizes |= dict(zip(each.dims, np.shape(value), strict=False))
-        if value is not None or (value := _value(kind, name, each, facts)) is not None:
+        value = None if declaration.name is None or not v else _stored(kind, name, declaration, facts, v, pattern)
+        if value is not None and declaration.role == "variable":
+            sizes |= dict(zip(declaration.dims, np.shape(value), strict=False))
+        if value is not None or (value := _value(kind, name, declaration, facts)) is not None:
             more[name] = value
-    for name, each in declarations(kind):
-        if name in every and name not in more and _is_needed(every[name]):
+    for name, declaration in declarations(kind):
+        if name in by_name and name not in more and _is_needed(by_name[name]):
             # A file has no variable of which no value is known.
-            known = each.role == "variable" and each.dims and set(each.dims) <= sizes.keys()
-            more[name] = np.full([sizes[dim] for dim in each.dims], np.nan) if known else _NONE
+            sized = declaration.role == "variable" and declaration.dims and set(declaration.dims) <= sizes.keys()
+            more[name] = np.full([sizes[dim] for dim in declaration.dims], np.nan) if sized else _NONE
     return kind(**more)
 
 
 def _plainly(facts: Facts, v: Facts) -> Facts:
-    """Nothing apart: all fields are read by their declarations."""
+    """Return no fields: all are read by their declarations."""
     return {}
 
 
@@ -88,66 +89,68 @@ def _is_needed(field: Any) -> bool:
     return field.default is MISSING and field.default_factory is MISSING
 
 
-def _stored(kind: type, name: str, each: Declaration, facts: Facts, v: Facts, pattern: str) -> Any:
-    """A field as a file has it; None where it does not."""
-    stands = name_of(name, each, pattern)
-    inside = record_in(kind, name) if each.role in ("part", "rows") else None
-    if inside is not None:
-        told = facts if each.key == INSIDE else None if each.key is None else _at(facts, each.key or name)
-        if each.role == "part" and _has(inside, v, within := pattern_of(each, pattern)):
-            return read(inside, told or {}, v, within)
-        if each.role == "rows" and isinstance(told, dict):
-            return {row: read(inside, one, {**v, **under(f"{row}_", v)}) for row, one in told.items()}
-    elif each.role == "coordinate" or (each.role == "variable" and stands in v):
-        stored = v.get(each.dims[-1] if each.role == "coordinate" else stands)
-        if stored is None or isinstance(stored, str):
-            return stored
-        stored = stored.astype(bool) if each.flags else stored
-        return stored if stored.ndim else stored.item()
-    elif each.dims[-1:] == ("ends",) and f"{stands}_from" in v:
-        return float(v[f"{stands}_from"]), float(v[f"{stands}_to"])
+def _stored(kind: type, name: str, declaration: Declaration, facts: Facts, v: Facts, pattern: str) -> Any:
+    """Value of a field in the variables of a file; None where the file does not have it."""
+    variable, key = name_of(name, declaration, pattern), declaration.key
+    inner = record_in(kind, name) if declaration.role in ("part", "rows") else None
+    if inner is not None:
+        inner_facts = facts if key == INSIDE else None if key is None else _at(facts, key or name)
+        if declaration.role == "part" and _has(inner, v, within := pattern_of(declaration, pattern)):
+            return read(inner, inner_facts or {}, v, within)
+        if declaration.role == "rows" and isinstance(inner_facts, dict):
+            return {row: read(inner, row_facts, {**v, **under(f"{row}_", v)}) for row, row_facts in inner_facts.items()}
+    elif declaration.role == "coordinate" or (declaration.role == "variable" and variable in v):
+        value = v.get(declaration.dims[-1] if declaration.role == "coordinate" else variable)
+        if value is None or isinstance(value, str):
+            return value
+        value = value.astype(bool) if declaration.flags else value
+        return value if value.ndim else value.item()
+    elif declaration.dims[-1:] == ("ends",) and f"{variable}_from" in v:
+        return float(v[f"{variable}_from"]), float(v[f"{variable}_to"])
     return None
 
 
 def _has(kind: type, v: Facts, pattern: str) -> bool:
     """True if a file has any of the variables that a record needs."""
-    every = {field.name: field for field in fields(kind)}
-    needed = ((name, each) for name, each in declarations(kind) if name in every and _is_needed(every[name]))
-    for name, each in needed:
-        if each.name is None:
+    by_name = {field.name: field for field in fields(kind)}
+    needed = ((name, each) for name, each in declarations(kind) if name in by_name and _is_needed(by_name[name]))
+    for name, declaration in needed:
+        if declaration.name is None:
             continue
-        inside = record_in(kind, name) if each.role == "part" else None
-        if _has(inside, v, pattern_of(each, pattern)) if inside else name_of(name, each, pattern) in v:
+        inner = record_in(kind, name) if declaration.role == "part" else None
+        if _has(inner, v, pattern_of(declaration, pattern)) if inner else name_of(name, declaration, pattern) in v:
             return True
     return False
 
 
-def _value(kind: type, name: str, each: Declaration, facts: Facts) -> Any:
-    """A field, which JSON has in the rows of a dimension or at its key; None where it is not there."""
-    key, written = each.key or name, annotation(kind, name)
-    lists: dict[str, str] = {} if key.startswith("/") else getattr(kind, "json_rows", {})
-    along = next((dim for dim in each.dims if dim in lists), None)
-    rows: Any = [] if along is None else facts.get(lists[along], [])
-    if each.role == "labels" and along is not None:
-        rows = rows if lists[along] else facts
+def _value(kind: type, name: str, declaration: Declaration, facts: Facts) -> Any:
+    """Value of a field in JSON, in the rows of a dimension or at its key; None where it is not there."""
+    key, hint = declaration.key or name, annotation(kind, name)
+    row_keys: dict[str, str] = {} if key.startswith("/") else getattr(kind, "json_rows", {})
+    row_dim = next((dim for dim in declaration.dims if dim in row_keys), None)
+    rows: Any = [] if row_dim is None else facts.get(row_keys[row_dim], [])
+    if declaration.role == "labels" and row_dim is not None:
+        rows = rows if row_keys[row_dim] else facts
         return tuple(rows) if isinstance(rows, dict) else _words(rows, key)
-    if each.key is None or (key == INSIDE and "None" in written):
+    if declaration.key is None or (key == INSIDE and "None" in hint):
         return None
-    inside = record_in(kind, name) if each.role in ("part", "rows") else None
-    if along is not None:
-        listed = rows if isinstance(rows, list) else [rows[place] for place in NAMES.get(along, rows)]
-        shares = [_at(row, key) for row in listed]
-        if inside is not None:  # such as errors: of a record of arrays, what the rows have
-            names: Facts = next((share for share in shares if share), {})
-            return read(inside, {one: [share[one] for share in shares] for one in names}) if names else None
-        across = [_bare(np.nan if share is None else share, written, each) for share in shares]
-        return tuple(shares) if "tuple" in written else np.stack(across, each.dims.index(along)) if across else None
+    inner = record_in(kind, name) if declaration.role in ("part", "rows") else None
+    if row_dim is not None:
+        listed = rows if isinstance(rows, list) else [rows[place] for place in NAMES.get(row_dim, rows)]
+        cells = [_at(row, key) for row in listed]
+        if inner is not None:  # such as errors: of a record of arrays, what the rows have
+            names: Facts = next((cell for cell in cells if cell), {})
+            return read(inner, {part: [cell[part] for cell in cells] for part in names}) if names else None
+        if "tuple" in hint:
+            return tuple(cells)
+        arrays = [_bare(np.nan if cell is None else cell, hint, declaration) for cell in cells]
+        return np.stack(arrays, declaration.dims.index(row_dim)) if arrays else None
     value = facts if key == INSIDE else _at(facts, key)
-    if inside is None or value is None:
-        return _bare(value, written, each)
-    if each.role == "part":
-        return read(inside, value)
-    return tuple(read(inside, row) for row in value) if isinstance(value, list) else None
+    if inner is None or value is None:
+        return _bare(value, hint, declaration)
+    if declaration.role == "part":
+        return read(inner, value)
+    return tuple(read(inner, row) for row in value) if isinstance(value, list) else None
 
 
 def _at(facts: Any, key: str) -> Any:
@@ -156,15 +159,15 @@ def _at(facts: Any, key: str) -> Any:
     return facts
 
 
-def _bare(value: Any, written: str, each: Declaration) -> Any:
+def _bare(value: Any, hint: str, declaration: Declaration) -> Any:
     """A value of JSON as a record has it: arrays for lists, vectors for components, NaN for null."""
-    if isinstance(value, dict) and each.dims[-1:] and each.dims[-1] in NAMES:
+    if isinstance(value, dict) and declaration.dims[-1:] and declaration.dims[-1] in NAMES:
         return _vectors(value)
-    if value is not None and ("Floats" in written or "Complex" in written):
+    if value is not None and ("Floats" in hint or "Complex" in hint):
         return _array(value)
     if isinstance(value, list):
         return tuple(value)
-    return np.nan if value is None and written == "float" else value
+    return np.nan if value is None and hint == "float" else value
 
 
 def _array(values: Any) -> Floats:
@@ -186,17 +189,17 @@ def _vectors(values: Facts) -> Floats:
 
 def _study(kind: type[_R], facts: Facts, variables: Facts) -> Any:
     """The responses in all environments that have one, and their comparisons."""
-    of: Any = record_in(kind, "responses")
+    response_kind: Any = record_in(kind, "responses")
     responses, comparisons = dict[str, Any](), []
-    for name, each in facts["motions"].items():
+    for name, entry in facts["motions"].items():
         v = under(f"motions/{name}/", variables)
         if "time" in v:
-            responses[name] = read(of, each, v, name=name)
-    for each in facts["comparisons"]:
-        v = under(f"comparisons/{each['centrifuge']}/", variables)
-        if "time" in v and each["flight"] in responses:
-            stations = getattr(responses[each["flight"]], "stations", None)
-            comparisons.append(read(Comparison, each, v if stations is None else {"station": stations, **v}))
+            responses[name] = read(response_kind, entry, v, name=name)
+    for entry in facts["comparisons"]:
+        v = under(f"comparisons/{entry['centrifuge']}/", variables)
+        if "time" in v and entry["flight"] in responses:
+            stations = getattr(responses[entry["flight"]], "stations", None)
+            comparisons.append(read(Comparison, entry, v if stations is None else {"station": stations, **v}))
     return kind("", responses, tuple(comparisons))  # type: ignore[call-arg]
 
 
@@ -218,6 +221,7 @@ def _eigenvalues(facts: Facts, _: Facts) -> Facts:
 
 
 def _modes(facts: Facts, _: Facts) -> Facts:
+    """Fields of Modes that JSON has in real and imaginary parts: eigenvalues, shapes and twist."""
     rows = facts["modes"]
     real, imaginary = (
         np.array([_vectors(each[key]) for each in rows]).reshape(len(rows), -1, 3)
@@ -245,6 +249,7 @@ def _sensitivity(facts: Facts, _: Facts) -> Facts:
 
 
 def _sweep(facts: Facts, variables: Facts) -> Facts:
+    """Fields of a Sweep; its histories are variables."""
     named = {key: facts.get(key, {}) for key in ("measures", "histories")}
     parameters = [
         Parameter(each["path"], np.array(each["values"]), each["unit"], each["distribution"] or "")
@@ -280,20 +285,20 @@ def _indices(facts: Facts) -> Indices:
 
 
 def _fit(facts: Facts, v: Facts) -> Facts:
-    at, data = "time" if "time" in v else "mode", ("measured", "fitted", "computed_before")
+    abscissa, names = "time" if "time" in v else "mode", ("measured", "fitted", "computed_before")
     columns = [
-        read(FittedColumn, each, {key: v[key][k] for key in data}, name=name)
-        for k, (name, each) in enumerate(facts["columns"].items())
+        read(FittedColumn, column, {key: v[key][k] for key in names}, name=name)
+        for k, (name, column) in enumerate(facts["columns"].items())
     ]
-    return {"columns": tuple(columns), "at": v[at], "modal": at == "mode"}
+    return {"columns": tuple(columns), "at": v[abscissa], "modal": abscissa == "mode"}
 
 
 def _shaped(facts: Facts, v: Facts) -> Facts:
     ((goal, size),) = facts["goal"].items()
     runs = []
-    for k, (name, each) in enumerate(facts["commands"].items()):
+    for k, (name, command) in enumerate(facts["commands"].items()):
         histories = {key: v[key][k] for key in ("command", "by_ratio", "tip")}
-        runs.append(read(CommandRun, each, name=name, time=v["run_time"], **histories))
+        runs.append(read(CommandRun, command, name=name, time=v["run_time"], **histories))
     return {"goal": size, "to_rate": goal in ("rate", "speed"), "runs": tuple(runs)}
 
 

@@ -34,22 +34,22 @@ _FIX = "give the result.nc of `gbeam run`, its folder, or the JSON of another ve
 def report_of(
     result: Any, known: Mapping[str, Any] | None = None, figures: Mapping[str, Describe] | None = None
 ) -> str:
-    """Return the page of a result, or of several of one kind: of what is `known` of it, with its figures."""
+    """Return the page of a result, or of several of one kind, from its JSON `known` and figures, or computing both."""
     if known is None:
         known = facts(result) | {"provenance": origin_json(result.provenance or Provenance())}
         figures = figures_of(whole(result))
-    every = result if isinstance(result, tuple) else (result,)
-    variables = {key: value for each in every if isinstance(each, SHOWN) for key, value in variables_of(each).items()}
+    results = result if isinstance(result, tuple) else (result,)
+    variables = {key: value for each in results if isinstance(each, SHOWN) for key, value in variables_of(each).items()}
     return html(known, variables, figures=figures)
 
 
 def variables_of(result: Result) -> dict[str, Any]:
-    """The arrays that the file of a result holds, by path, of a place at rest that of its motion."""
-    of = whole(result)
-    within = f"motions/{getattr(of, of.listed_by)}" if of.listed_by else ""
+    """Return the arrays of the file of a result by path; those of a result listed by motion stand under that motion."""
+    named = whole(result)
+    folder = f"motions/{getattr(named, named.listed_by)}" if named.listed_by else ""
     return {
-        f"{path or within}/{name}" if path or within else name: each.values
-        for path, group in groups_of(of).items()
+        f"{path or folder}/{name}" if path or folder else name: each.values
+        for path, group in groups_of(named).items()
         for name, each in (group.variables | group.coordinates).items()
     }
 
@@ -57,10 +57,10 @@ def variables_of(result: Result) -> dict[str, Any]:
 def shown(result: Result) -> tuple[dict[str, Any], Numbers]:
     """Scene of a result in the viewer: its header, and the numbers."""
     numbers, known = Numbers(), facts(result)
-    seen = viewer(known["form"]["kind"], known, variables_of(result) if isinstance(result, SHOWN) else {}, numbers)
-    if not seen:
+    view = viewer(known["form"]["kind"], known, variables_of(result) if isinstance(result, SHOWN) else {}, numbers)
+    if not view:
         raise InputError("result", f"{type(result).__name__} has no motion to show", "print it, or plot it")
-    return {"plots": [], "maps": [], **seen}, numbers
+    return {"plots": [], "maps": [], **view}, numbers
 
 
 def write_report(result: Result, path: str | os.PathLike[str]) -> None:
@@ -82,6 +82,7 @@ def report_of_file(path: Path) -> str:
 
 
 def _page_of(file: Path) -> str:
+    """HTML of the page of a JSON or netCDF file."""
     if file.suffix == ".json":
         return html(read_json(file, _FIX))
     stored = read_stored(file)

@@ -32,63 +32,64 @@ WIDE, THICK = 0.03, 0.012  # of the length: of a beam whose section a result doe
 
 
 def scene(motions: Mapping[str, str], variables: Variables, numbers: Numbers) -> dict[str, Any] | None:
-    """Return the motions that have an outline, and the first one's time of largest deflection, if any."""
+    """Return the motions that can be shown, and the time at which the first deflects most; None if there are none."""
     shown = []
     for name, environment in motions.items():
-        of = under(f"motions/{name}/", variables)
-        if "outline" in of:
-            shown.append((motion(name, environment, of, numbers), of["outline_time"], of["outline"]))
-        elif "surface_vertices" in of:
-            at_rest = np.ndim(of["root_acceleration"]) == 1
-            shown.append(_solid(name, environment, _at_once(of, "root_acceleration") if at_rest else of, numbers))
-        elif "specimen_corner_place" in of:
-            shown.append(_rigid(name, environment, of, numbers))
-        elif "hangs_on" in of:
-            at_rest = of["place"].ndim == 2
-            shown.append(_system(name, environment, _at_once(of, *_PLACED) if at_rest else of, numbers))
+        v = under(f"motions/{name}/", variables)
+        if "outline" in v:
+            shown.append((motion(name, environment, v, numbers), v["outline_time"], v["outline"]))
+        elif "surface_vertices" in v:
+            at_rest = np.ndim(v["root_acceleration"]) == 1
+            shown.append(_solid(name, environment, _at_once(v, "root_acceleration") if at_rest else v, numbers))
+        elif "specimen_corner_place" in v:
+            shown.append(_rigid(name, environment, v, numbers))
+        elif "hangs_on" in v:
+            at_rest = v["place"].ndim == 2
+            shown.append(_system(name, environment, _at_once(v, *_PLACED) if at_rest else v, numbers))
     if not shown:
         return None
-    _, time, moved = shown[0]
-    return {"motions": [each for each, *_ in shown], "start": float(time[(moved[:, -1] ** 2).sum(axis=-1).argmax()])}
+    _, time, displacement = shown[0]
+    start = float(time[(displacement[:, -1] ** 2).sum(axis=-1).argmax()])
+    return {"motions": [header for header, *_ in shown], "start": start}
 
 
 def motion(name: str, environment: str, variables: Variables, numbers: Numbers) -> dict[str, Any]:
-    """One motion: the beam's outline, stress, load, and the turning of what carries it."""
-    of: Any = variables.get
-    index = _indices(of("time"), of("outline_time"))
+    """Header of a beam's motion: its outline, stress and load, and the turning of what carries it."""
+    get: Any = variables.get
+    index = _indices(get("time"), get("outline_time"))
     beam = {"beam": _beam(variables, index, numbers)}
-    header = _header(name, environment, [beam], numbers.add(of("outline_time")), _largest(of("outline")))
-    header["length"] = float(of("point")[-1])
-    if (rest := of("outline_place")) is not None:
+    header = _header(name, environment, [beam], numbers.add(get("outline_time")), _largest(get("outline")))
+    header["length"] = float(get("point")[-1])
+    if (rest := get("outline_place")) is not None:
         header |= _extent(rest, numbers)
-    reach = np.array([[float(of("point")[-1]), 0.0, 0.0]]) if rest is None else rest
+    reach = np.array([[float(get("point")[-1]), 0.0, 0.0]]) if rest is None else rest
     header |= _carried(variables, index, np.concatenate([np.zeros((1, 3)), reach]), numbers)
-    if of("attitude") is not None:
-        header["attitude"] = numbers.add(of("attitude"))
-    if of("hub_radius") is not None:
-        header["radius"], header["mounting"] = float(of("hub_radius")), np.ravel(of("hub_mounting")).tolist()
-        header["angle"] = numbers.add(of("hub_angle")[index])
+    if get("attitude") is not None:
+        header["attitude"] = numbers.add(get("attitude"))
+    if get("hub_radius") is not None:
+        header["radius"], header["mounting"] = float(get("hub_radius")), np.ravel(get("hub_mounting")).tolist()
+        header["angle"] = numbers.add(get("hub_angle")[index])
     return header
 
 
 def _solid(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple[dict[str, Any], Floats, Floats]:
-    """One motion of a solid: its surface in a few shapes; times and displacements (t, v, 3), the largest last."""
-    some, at = v["surface_time"], v["surface_vertices"]
+    """Header of a solid's motion; its times (t,) and the displacement (t, 1, 3) of the vertex that moves farthest."""
+    times, vertices = v["surface_time"], v["surface_vertices"]
     surface, tip = _surface(under("surface_", v), v.get("solid_von_mises"), numbers)
-    header = _header(name, environment, [{"surface": surface}], numbers.add(some), _largest(tip))
-    header |= _around(at, numbers) | _carried(v, _indices(v["time"], some), at, numbers)
-    return header, some, tip
+    header = _header(name, environment, [{"surface": surface}], numbers.add(times), _largest(tip))
+    header |= _around(vertices, numbers) | _carried(v, _indices(v["time"], times), vertices, numbers)
+    return header, times, tip
 
 
 def _rigid(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple[dict[str, Any], Floats, Floats]:
-    """One motion of a rigid specimen: the box about its corners, and its bolts; times and the load (t, 1, 3)."""
+    """Header of a rigid specimen's motion, as a box about its corners; times (t,) and root acceleration (t, 1, 3)."""
     index = np.arange(0, len(v["time"]), -(-len(v["time"]) // TIMES))
     corners, bolts = v["specimen_corner_place"], v.get("specimen_bolt_place", np.empty((0, 3)))
     low, high = corners.min(axis=0), corners.max(axis=0)
     box = _box(high - low, (low + high) / 2, np.eye(3))
-    still = np.zeros((len(index), 10))
-    still[:, 3] = 1.0  # at the base and along its axes
-    body = {"frame": numbers.add(still), "box": box, "points": np.asarray(bolts).tolist()}
+    frames = np.zeros((len(index), 10))
+    frames[:, 3] = 1.0  # at the base and along its axes
+    body = {"frame": numbers.add(frames), "box": box, "points": np.asarray(bolts).tolist()}
     header = _header(name, environment, [body], numbers.add(v["time"][index]), 0.0)
     header |= _around(np.concatenate([corners, bolts]), numbers) | _carried(v, index, corners, numbers)
     return header, v["time"][index], v["root_acceleration"][index, None]
@@ -100,34 +101,34 @@ def _header(name: str, environment: str, parts: list[Any], time: Ref, largest: f
 
 
 def _indices(time: Floats, some: Floats) -> Any:
-    """Places among a response's own times of some of them."""
+    """Indices of `some` of the times in `time`."""
     return np.searchsorted(time, some - 1e-12).clip(max=len(time) - 1)
 
 
 def _around(places: Floats, numbers: Numbers) -> dict[str, Any]:
-    """Length and view of a solid at places (p, 3)."""
+    """Length, and middle and radius of the view, of places (p, 3)."""
     low, high = places.min(axis=0), places.max(axis=0)
     radius = float(np.linalg.norm(high - low)) / 2
     return {"length": 2 * radius, "middle": numbers.add((low + high)[None] / 2), "radiusShown": 1.05 * radius}
 
 
-def _surface(of: Variables, stress: Floats | None, numbers: Numbers) -> tuple[dict[str, Any], Floats]:
-    """A surface in a few shapes, the largest stress that is judged, of the vertices or `stress` over time, and the
-    farthest vertex's displacement (t, 1, 3).
+def _surface(surface: Variables, stress: Floats | None, numbers: Numbers) -> tuple[dict[str, Any], Floats]:
+    """Header of a surface in a few shapes, with the largest judged stress, over time (`stress`, if known) or of the
+    vertices; and the displacement (t, 1, 3) of the vertex that moves farthest.
     """
-    few = of["sizes"][:: max(1, len(of["sizes"]) // 100)]
-    moved = np.einsum("ts,sva->tva", few, of["shapes"])
-    seen = von_mises(np.einsum("ts,sva->tva", few, of["stress"])).max(axis=0)
-    judged = np.broadcast_to(of.get("judged", True), seen.shape).astype(bool)  # older files do not say
-    largest = float(seen[judged].max(initial=0.0) if stress is None else np.max(stress))
-    vertex = (moved**2).sum(axis=-1).max(axis=0).argmax()
-    header = {key: numbers.add(of[key]) for key in SURFACE} | {"largest": largest}
-    header["beyond"] = bool(seen[~judged].max(initial=0.0) > (1 + BEYOND) * largest)
-    return header, np.einsum("ts,sa->ta", of["sizes"], of["shapes"][:, vertex])[:, None]
+    few = surface["sizes"][:: max(1, len(surface["sizes"]) // 100)]
+    displacement = np.einsum("ts,sva->tva", few, surface["shapes"])
+    by_vertex = von_mises(np.einsum("ts,sva->tva", few, surface["stress"])).max(axis=0)
+    judged = np.broadcast_to(surface.get("judged", True), by_vertex.shape).astype(bool)  # older files do not say
+    largest = float(by_vertex[judged].max(initial=0.0) if stress is None else np.max(stress))
+    vertex = (displacement**2).sum(axis=-1).max(axis=0).argmax()
+    header = {key: numbers.add(surface[key]) for key in SURFACE} | {"largest": largest}
+    header["beyond"] = bool(by_vertex[~judged].max(initial=0.0) > (1 + BEYOND) * largest)
+    return header, np.einsum("ts,sa->ta", surface["sizes"], surface["shapes"][:, vertex])[:, None]
 
 
 def _carried(v: Variables, index: Any, places: Floats, numbers: Numbers) -> dict[str, Any]:
-    """The load of the base, and the machine about a specimen that reaches over places (p, 3), if there is one."""
+    """Header of the load of the base, and of the machine, if any, about a specimen over `places` (p, 3)."""
     actual = v.get("load_actual")
     load = v.get("root_acceleration") if actual is None else actual
     header = {} if load is None else {"load": numbers.add(load[index]), "largestLoad": _largest(load)}
@@ -146,69 +147,73 @@ def _carried(v: Variables, index: Any, places: Floats, numbers: Numbers) -> dict
 
 
 def _beam(variables: Variables, index: Any, numbers: Numbers) -> dict[str, Any]:
-    """A beam in axes of its root, its stress at the response's times of an index."""
-    of: Any = variables.get
+    """Header of a beam in axes of its root, with its stress at the times of `index`."""
+    get: Any = variables.get
     header: dict[str, Any] = {
-        **shape(of("point"), of("outline_width"), of("outline_thickness"), of("outline_round")),
-        **{key: of(f"outline_{name}").tolist() for key, name in LINE if of(f"outline_{name}") is not None},
-        "bodies": [] if of("body_mass") is None else np.stack([of("body_position"), of("body_mass")], axis=1).tolist(),
-        "displacement": numbers.add(of("outline")),
+        **shape(get("point"), get("outline_width"), get("outline_thickness"), get("outline_round")),
+        **{key: get(f"outline_{name}").tolist() for key, name in LINE if get(f"outline_{name}") is not None},
+        "bodies": []
+        if get("body_mass") is None
+        else np.column_stack([get("body_position"), get("body_mass")]).tolist(),
+        "displacement": numbers.add(get("outline")),
     }
-    stress = of("stress")
+    stress = get("stress")
     if stress is not None and np.isfinite(stress).all():
         largest = float(np.max(stress))
-        header["stress"] = {"at": of("section").tolist(), "values": numbers.add(stress[index]), "largest": largest}
+        header["stress"] = {"at": get("section").tolist(), "values": numbers.add(stress[index]), "largest": largest}
     return header
 
 
 def _system(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple[dict[str, Any], Floats, Floats]:
-    """One motion of a system: beams, boxes, roots; times and deflection (t, 1, 3) of the most deflected beam."""
+    """Header of a system's motion; its times (t,) and the deflection (t, 1, 3) of the body that deflects most."""
     time, beams = v["time"], [body for body in v["body"] if f"{body}_outline" in v]
-    some = v[f"{beams[0]}_outline_time"] if beams else time[:: -(-len(time) // TIMES)]
-    index = _indices(time, some)
+    times = v[f"{beams[0]}_outline_time"] if beams else time[:: -(-len(time) // TIMES)]
+    index = _indices(time, times)
     place, points = v["place"][index], list(v["point"])
     frames: dict[str, tuple[Any, Any, Floats]] = {
-        "ground": (Rotation.identity(), np.zeros(3), np.zeros((len(some), 3)))
+        "ground": (Rotation.identity(), np.zeros(3), np.zeros((len(times), 3)))
     }
-    parts, corners, deflected = [], list[Floats](), np.zeros((len(some), 1, 3))
+    parts, corners, deflected = [], list[Floats](), np.zeros((len(times), 1, 3))
     for k, body in enumerate(v["body"]):
         root = points.index(f"{body}.root")
         attitude = v["attitude"][index, root]
-        turn, at = Rotation.from_quat(np.roll(attitude, -1, axis=-1)), place[:, root]
-        on = v["hangs_on"][k]
-        held, origin, shift = frames[on.partition(".")[0]]
-        if on in points:
-            bent = held.inv().apply(place[:, points.index(on)] - origin) - v["place_at_rest"][k]
-            shift = shift + held.apply(np.where(np.abs(bent) > 1e-9 * np.abs(place).max(), bent, 0.0))
-        frames[body] = turn, at, shift
-        part: dict[str, Any] = {"frame": numbers.add(np.concatenate([at, attitude, shift], axis=-1))}
+        turn, origin = Rotation.from_quat(np.roll(attitude, -1, axis=-1)), place[:, root]
+        parent = v["hangs_on"][k]
+        parent_turn, parent_place, offset = frames[parent.partition(".")[0]]
+        if parent in points:
+            bent = parent_turn.inv().apply(place[:, points.index(parent)] - parent_place) - v["place_at_rest"][k]
+            offset = offset + parent_turn.apply(np.where(np.abs(bent) > 1e-9 * np.abs(place).max(), bent, 0.0))
+        frames[body] = turn, origin, offset
+        part: dict[str, Any] = {"frame": numbers.add(np.concatenate([origin, attitude, offset], axis=-1))}
         if body in beams:
-            of = under(f"{body}_", v)
-            part["beam"] = _beam(of, index, numbers)
-            tip = of["outline"][:, -1:]
+            inner = under(f"{body}_", v)
+            part["beam"] = _beam(inner, index, numbers)
+            tip = inner["outline"][:, -1:]
             deflected = tip if _largest(tip) > _largest(deflected) else deflected
         elif f"surface_{body}_vertices" in v:
-            of = under(f"surface_{body}_", v)
-            of["sizes"] = np.stack([np.interp(some, v[f"{body}_surface_time"], each) for each in of["sizes"].T], axis=1)
-            part["surface"], moved = _surface(of, v.get(f"{body}_von_mises"), numbers)
+            inner = under(f"surface_{body}_", v)
+            stored_times = v[f"{body}_surface_time"]
+            inner["sizes"] = np.stack([np.interp(times, stored_times, each) for each in inner["sizes"].T], axis=1)
+            part["surface"], moved = _surface(inner, v.get(f"{body}_von_mises"), numbers)
             deflected = moved if _largest(moved) > _largest(deflected) else deflected
-            size = np.ptp(of["vertices"], axis=0)
-            corners += [at[:, None] + turn.apply(each)[:, None] for each in of["vertices"].min(axis=0) + CORNERS * size]
+            low, size = inner["vertices"].min(axis=0), np.ptp(inner["vertices"], axis=0)
+            corners += [origin[:, None] + turn.apply(corner)[:, None] for corner in low + CORNERS * size]
         else:
             others = [i for i, each in enumerate(points) if each.startswith(f"{body}.") and i != root]
-            part["points"] = [turn[0].inv().apply(place[0, i] - at[0]).tolist() for i in others]
+            part["points"] = [turn[0].inv().apply(place[0, i] - origin[0]).tolist() for i in others]
             if "box" in v and np.isfinite(v["box"][k]).all():  # no variable where all are flexible
                 size, centre, rotation = (v[key][k] for key in ("box", "box_centre", "box_rotation"))
                 part["box"] = _box(size, centre, rotation)
-                corners += [at[:, None] + turn.apply(centre + rotation @ (sign * size / 2))[:, None] for sign in SIGNS]
+                halves = SIGNS * size / 2
+                corners += [origin[:, None] + turn.apply(centre + rotation @ half)[:, None] for half in halves]
         parts.append(part | ({"joint": True} if v["joint_kind"][k] not in ("fixed", "free") else {}))
     middle, radius = _view(np.concatenate([place, *corners], axis=1))
     largest = max([_largest(deflected), *(_largest(v[f"{body}_outline"]) for body in beams)])
-    header = _header(name, environment, parts, numbers.add(some), largest)
+    header = _header(name, environment, parts, numbers.add(times), largest)
     header["length"] = max((float(v[f"{body}_point"][-1]) for body in beams), default=radius)
     header |= {"middle": numbers.add(middle), "radiusShown": radius}
-    still = np.concatenate([np.zeros((1, 3)), v["undeformed"], *(each[0] for each in corners)])
-    return header | _carried(v, index, still, numbers), some, deflected
+    at_start = np.concatenate([np.zeros((1, 3)), v["undeformed"], *(each[0] for each in corners)])
+    return header | _carried(v, index, at_start, numbers), times, deflected
 
 
 def _box(size: Floats, centre: Floats, rotation: Floats) -> dict[str, Any]:
@@ -216,7 +221,7 @@ def _box(size: Floats, centre: Floats, rotation: Floats) -> dict[str, Any]:
 
 
 def _view(place: Floats) -> tuple[Floats, float]:
-    """Middle (1, 3) of what moves over points (t, p, 3), and its radius; (t, 3) of what is followed."""
+    """Middle (1, 3) and radius of the view of points (t, p, 3); a middle (t, 3) that follows them if they go far."""
     low, high = place.min(axis=(0, 1)), place.max(axis=(0, 1))
     middle = (place.min(axis=1) + place.max(axis=1)) / 2
     of_bodies = float(np.linalg.norm(place - middle[:, None], axis=-1).max())
@@ -233,7 +238,7 @@ def _extent(rest: Floats, numbers: Numbers) -> dict[str, Any]:
 
 
 def shape(points: Floats, width: Floats, thickness: Floats, is_round: Any) -> dict[str, Any]:
-    """The beam along its axis."""
+    """Header of the shape of a beam: its points along the axis, and the extents of its section."""
     return {
         "points": np.asarray(points).tolist(),
         "width": np.asarray(width).tolist(),
@@ -243,36 +248,36 @@ def shape(points: Floats, width: Floats, thickness: Floats, is_round: Any) -> di
 
 
 def _at_once(v: Variables, *names: str) -> Variables:
-    """Variables of a body at rest as of one that moves, at one time, those of these names over time."""
+    """Return the variables of a body at rest as those of one time: `names` get an axis of times."""
     return {**v, "time": np.zeros(1), **{name: v[name][None] for name in names}}
 
 
 def shapes(modes: Modes, variables: Variables, numbers: Numbers) -> dict[str, Any]:
-    """Shapes of every mode of a beam, at some of the stations, or of a solid's surface, as motions of a period."""
-    ways = zip(modes.frequency, modes.direction, strict=True)
-    labels = [f"{i}: {number(frequency)} Hz, {way}" for i, (frequency, way) in enumerate(ways, 1)]
+    """Return every mode of a beam, at some of the stations, or of a solid's surface, as a motion of one period."""
+    pairs = zip(modes.frequency, modes.direction, strict=True)
+    labels = [f"{i}: {number(frequency)} Hz, {direction}" for i, (frequency, direction) in enumerate(pairs, 1)]
     if "surface_vertices" in variables:
         surface = under("surface_", variables)
         return {"labels": labels, "motions": [_of_surface(k, each, surface, numbers) for k, each in enumerate(labels)]}
     x = modes.stations
-    some = np.unique(np.linspace(0, len(x) - 1, SHOWN).round().astype(int))
+    chosen = np.unique(np.linspace(0, len(x) - 1, SHOWN).round().astype(int))
     sizes = [
-        (each if each.size else x[-1] * part * np.ones(len(x)))[some]
-        for each, part in ((modes.width, WIDE), (modes.thickness, THICK))
+        (each if each.size else x[-1] * share * np.ones(len(x)))[chosen]
+        for each, share in ((modes.width, WIDE), (modes.thickness, THICK))
     ]
     motions = []
     line: dict[str, Any] = {}
     view: dict[str, Any] = {"length": float(x[-1])}
     if modes.place is not None and modes.across is not None:
-        line = {"rest": modes.place[some].tolist(), "across": modes.across[some].tolist()}
+        line = {"rest": modes.place[chosen].tolist(), "across": modes.across[chosen].tolist()}
         view = _extent(modes.place, numbers)
     for k, label in enumerate(labels):
-        twist = np.zeros(1) if modes.twist is None else modes.twist[k, some]
+        twist = np.zeros(1) if modes.twist is None else modes.twist[k, chosen]
         amplitude = _amplitude(x[-1], 1.0, float(np.abs(twist).max()))
         beam = {
-            **shape(x[some], sizes[0], sizes[1], modes.round),
+            **shape(x[chosen], sizes[0], sizes[1], modes.round),
             **line,
-            "displacement": numbers.add(amplitude * _swung(modes.shape[k, some])),
+            "displacement": numbers.add(amplitude * _swung(modes.shape[k, chosen])),
         }
         if modes.twist is not None:
             beam["twist"] = numbers.add(amplitude * _swung(twist))
@@ -307,26 +312,26 @@ def shapes_of_system(facts: Mapping[str, Any], v: Variables, numbers: Numbers) -
     rest = Rotation.from_quat(np.roll(v["attitude"], -1, axis=-1))
     _, radius = _view(v["place"][None])
 
-    def of(name: str, k: int) -> Any:
+    def of_mode(name: str, k: int) -> Any:
         return _complex(v, name)[k]
 
     meshes = {
         body: {key: v[f"surface_{body}_{key}"] for key in MESH} for body in v["body"] if f"surface_{body}_vertices" in v
     }
     for k, label in enumerate(labels):
-        most = [np.abs(of(each, k)).max() for each in ("shape", *(f"{body}_outline_shape" for body in beams))]
-        most += [_in_mode(each, k) for each in meshes.values()]
-        amplitude = _amplitude(2 * radius, float(max(most)), float(np.abs(of("turn", k)).max()))
-        turned = [Rotation.from_rotvec(amplitude * each) * rest for each in _swung(of("turn", k))]
+        largest = [np.abs(of_mode(each, k)).max() for each in ("shape", *(f"{body}_outline_shape" for body in beams))]
+        largest += [_in_mode(each, k) for each in meshes.values()]
+        amplitude = _amplitude(2 * radius, float(max(largest)), float(np.abs(of_mode("turn", k)).max()))
+        attitudes = [Rotation.from_rotvec(amplitude * each) * rest for each in _swung(of_mode("turn", k))]
         moving = {
             **v,
             "time": PHASES,
-            "place": v["place"] + amplitude * _swung(of("shape", k)),
-            "attitude": np.stack([np.roll(each.as_quat(), 1, axis=-1) for each in turned]),
+            "place": v["place"] + amplitude * _swung(of_mode("shape", k)),
+            "attitude": np.stack([np.roll(each.as_quat(), 1, axis=-1) for each in attitudes]),
         }
         for body in beams:
             moving[f"{body}_outline_time"] = PHASES
-            moving[f"{body}_outline"] = v[f"{body}_outline"] + amplitude * _swung(of(f"{body}_outline_shape", k))
+            moving[f"{body}_outline"] = v[f"{body}_outline"] + amplitude * _swung(of_mode(f"{body}_outline_shape", k))
         for body, mesh in meshes.items():
             moving[f"{body}_surface_time"] = PHASES
             moving[f"surface_{body}_sizes"] = amplitude * _swung(_complex(mesh, "sizes")[k])
@@ -335,12 +340,12 @@ def shapes_of_system(facts: Mapping[str, Any], v: Variables, numbers: Numbers) -
 
 
 def _amplitude(length: float, largest: float, turn: float) -> float:
-    """Size in which a mode is drawn."""
+    """Factor of a shape whose largest displacement and rotation are these, so that it is seen and does not turn far."""
     return min(AMPLITUDE * length / (largest or 1.0), TURN / turn if turn else np.inf)
 
 
 def _swung(shape: Any) -> Floats:
-    """Complex shapes over a period, (t, ...)."""
+    """Real motion (t, ...) over a period of complex shapes."""
     phase = np.exp(2j * np.pi * PHASES / PERIOD).reshape(-1, *[1] * np.ndim(shape))
     return np.asarray((phase * shape).real)
 
