@@ -57,7 +57,7 @@ class Gauge(Value):
     Examples
     --------
     >>> gb.Gauge(at=0.01, z=0.002)
-    Gauge(at=0.01, y=0.0, z=0.002, along=(1.0, 0.0, 0.0), body='')
+    Gauge(at=0.01, z=0.002)
     """
 
     at: float | str
