@@ -114,7 +114,7 @@ def draw(
 
 
 def kept(structure: gb.Structure, flight: gb.Response, spun: gb.Response, path: str) -> float:
-    """What is kept in variables has its type; vectors are lists, tuples or arrays; a file is one kind of case."""
+    """Variables keep the types of what they hold; vectors are lists, tuples or arrays; a file is one kind of case."""
     accept: Limits = {"tip": 0.02}
     settings: Settings = {"duration": 6.0, "integrator": "gauss"}
     gb.compare(flight, spun, accept=accept)

@@ -97,7 +97,7 @@ class PosedSystem:
         return integrated(Problem(self.equations, *self.start, 0, True), self.settings, step, **how)
 
     def of(self, system: System) -> PosedSystem:
-        """The same of another system with its joints."""
+        """Return the problem of another system, which begins at its own initial state."""
         return replace(self, system=system, start=state_at(system, self.motion, self.settings))
 
 
