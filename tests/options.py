@@ -122,6 +122,8 @@ def kept(structure: gb.Structure, flight: gb.Response, spun: gb.Response, path: 
     gb.static(structure, acceleration=np.array([0, 0, 9.81]))
     gb.Sum([gb.constant(1.0), gb.Sine(1.0, 2.0)])
     gb.PointMass(0.1, 0.1, offset=[0, 0, 0.01])
+    gb.Joint("revolute", "panel", axes=np.array([[0, 1, 0]]), at=np.zeros(3))
+    gb.campbell(structure, gb.Hub(radius=0.5), speeds=np.linspace(0, 5, 3), orders=np.arange(1, 3))
     case = gb.read_scenario(path)
     assert isinstance(case, gb.Case)
     size: float = gb.study(case).responses["flight"].peaks.max_size

@@ -27,6 +27,5 @@ TimeUnit = Literal["s", "ms", "us", "min"]
 Check = Literal["sampling", "spikes", "unit", "sign", "dropouts", "columns"]  # of a record
 Coordinate = Literal["x", "y", "z", "rx", "ry", "rz", "angle", "displacement", "angle_1", "angle_2"]  # of joints
 Rate = Literal[Coordinate, "wx", "wy", "wz"]
-Axis = Literal["x", "y", "z"]
 Across = Literal["y", "z"]  # the beam
 Direction = Literal["x", "y", "z", "rx", "ry", "rz"]  # the last three components of a rotation vector

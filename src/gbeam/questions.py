@@ -1,7 +1,8 @@
 """The questions that a case answers, each declared once: its function, what it needs, which record it gives.
 
 Sweeps, sensitivities and optimisation take their figures from these answers, by the names in this list; so do the
-command line, the app and the schema of scenarios. To add one, decorate its function; nothing heavy is imported here.
+command line, the app and the schema of scenarios. To add one, decorate its function, and name it for type checkers in
+:data:`Verb`, its options in :data:`Options`; nothing heavy is imported here.
 """
 
 from __future__ import annotations

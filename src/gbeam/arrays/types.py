@@ -12,4 +12,4 @@ Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Complex = NDArray[np.complex128]
 Indices = NDArray[np.intp]
-Numbers = Sequence[float] | NDArray[Any]  # given: components, or one of each
+Numbers = Sequence[float] | NDArray[Any]  # components of a vector, or one of each

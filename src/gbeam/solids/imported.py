@@ -186,7 +186,7 @@ class ImportedModel(Value):
         *,
         modes: int,
         damping_ratio: Any,
-        clamp: Sequence[int] = (),
+        clamp: Sequence[int] | Indices = (),
         points: Mapping[str, int] | None = None,
         interfaces: Sequence[str] = (),
         geometric: Mapping[InertialLoad, Any] | None = None,

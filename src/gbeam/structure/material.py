@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from gbeam.arrays.namespace import is_jax
 from gbeam.arrays.tree import Value
@@ -147,7 +147,7 @@ class Orthotropic(Value):
     youngs_moduli: Numbers
     poissons_ratios: Numbers
     shear_moduli: Numbers
-    axes: Sequence[Numbers]
+    axes: ArrayLike
     yield_strength: ClassVar[None] = None
     fatigue_exponent: ClassVar[float] = FATIGUE_EXPONENT
 

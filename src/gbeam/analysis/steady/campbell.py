@@ -16,7 +16,7 @@ from gbeam.analysis.steady.frequency_errors import Richer, doubtful, judgeable, 
 from gbeam.analysis.steady.loss import Path
 from gbeam.analysis.steady.stability import INSTEAD, first_lost_speed, turned
 from gbeam.analysis.system.steady import Turning
-from gbeam.arrays.types import Complex, Floats, Numbers
+from gbeam.arrays.types import Complex, Floats, Indices, Numbers
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.plausibility import input_warnings
@@ -75,7 +75,7 @@ def campbell(
     end: float | None = None,
     count: int = 60,
     modes: int = 8,
-    orders: Sequence[int] = (1, 2, 3, 4),
+    orders: Sequence[int] | Indices = (1, 2, 3, 4),
     time: float = 0.0,
     name: str = "",
     progress: Progress = None,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple, get_args
 
@@ -169,7 +169,7 @@ class Joint(Value):
     kind: JointKind
     body: str
     on: str = GROUND
-    axes: Sequence[Any] | None = None
+    axes: ArrayLike | None = None
     at: Numbers = (0.0, 0.0, 0.0)
     turn: Numbers = (0.0, 0.0, 0.0)
     initial: _Values = None
@@ -187,11 +187,8 @@ class Joint(Value):
     def __post_init__(self) -> None:
         choice("kind", self.kind, KINDS)
         wanted = KINDS[self.kind].axes
-        axes = (
-            np.zeros((0, 3))
-            if self.axes is None or not len(self.axes)
-            else np.asarray(array("axes", self.axes), dtype=float)
-        )
+        axes = np.asarray(array("axes", () if self.axes is None else self.axes), dtype=float)
+        axes = axes if axes.size else np.zeros((0, 3))
         if axes.shape != (wanted, 3):
             problem = "is missing" if not axes.size else f"has the shape {axes.shape}"
             fix = f"give {wanted} of 3 components each: a {self.kind} joint has as many" if wanted else "leave it out"
