@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from dataclasses import fields as dataclass_fields
 from dataclasses import replace
@@ -338,6 +339,23 @@ class Samples:
             "trapezoid": ((1.0,), {"jerk": 1.0, "start": 0.0, "hold": 1.0}),
             "vector": ((), {"x": 1.0, "y": 2.0, "z": 3.0}),
         }  # fmt: skip
+
+    @functools.cached_property
+    def objects(self) -> dict[str, Any]:
+        """An object of every class with methods that take quantities, by its name."""
+        box = gb.RigidSpecimen.box(mass=1.0, size=(0.1, 0.2, 0.3), centre=(0.1, 0.0, 0.0))
+        comparison = gb.compare(*self.responses)
+        every = [
+            self.beam, self.beam.section, self.case, self.centrifuge.over(0.0, 0.2), self.flight, self.hub, self.hinge,
+            self.settings, self.structure, box, gb.Feedback(self.law, ["hinge.angle"], ["hinge.angle"], 0.01),
+            gb.Line.of_pieces([0.3]), gb.Sensor(), gb.Sine(1.0, 1.0, 0.0), gb.SmoothStep(1.0, 1.0, 0.0),
+            gb.SplineProfile(1.0, [0.0] * 12), gb.Sum((gb.constant(1.0), gb.constant(2.0))), comparison.mismatch,
+            self.responses[0].errors, gb.System({"bar": self.bar}, {"hinge": self.hinge}),
+        ]  # fmt: skip
+        calls = self.calls()
+        every += [getattr(gb, name)(*calls[name][0], **calls[name][1]) for name in ("SpecimenCase", "SystemCase")]
+        matrices = gb.Section.of_matrices(np.eye(6), np.diag([0.2, 0.2, 0.2, 2e-5, 1e-5, 1e-5]))
+        return {type(each).__name__: each for each in every} | {"Section.matrices": matrices}
 
 
 @pytest.fixture(scope="module")

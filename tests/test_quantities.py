@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import functools
 import inspect
 import re
+import types
 from collections.abc import Callable
+from dataclasses import dataclass
 from inspect import signature
 from operator import attrgetter
 from pathlib import Path
@@ -15,9 +18,17 @@ import pint
 import pytest
 
 import gbeam as gb
-from gbeam.guards.kinds import KINDS, kind_of_argument
+from gbeam.arrays.tree import Value
+from gbeam.guards.arguments import typed
+from gbeam.guards.kinds import KINDS, PLAIN, USUAL, WRITTEN, Kinds, below, kind_of_argument, only
+from gbeam.guards.units import unit_of
+from gbeam.mechanics.tree.joints import OF_COORDINATES
+from gbeam.results.errors import Errors
+from gbeam.results.measures import Mismatch
 
-from .test_arguments import PUBLIC, Samples, called
+from .test_arguments import PUBLIC, RESULTS, Samples, called
+
+pytestmark = pytest.mark.filterwarnings("error::pint.UnitStrippedWarning")
 
 
 @pytest.fixture(scope="module")
@@ -44,6 +55,14 @@ def with_numbers(value: Any, change: Callable[[float], Any]) -> Any:
     return change(value) if numbers(value) else value
 
 
+def kinds_in(value: Any, kinds: Kinds) -> set[str]:
+    """Kinds of the numbers in a value."""
+    if isinstance(value, (list, tuple, dict)):
+        entries = value.items() if isinstance(value, dict) else enumerate(value)
+        return set().union(*(kinds_in(each, below(kinds, key)) for key, each in entries))
+    return {only(kinds)} if numbers(value) or value is None else set()
+
+
 def with_units(value: Any) -> dict[str, Any]:
     """The value with its numbers as quantities, or as texts."""
     said = {
@@ -55,7 +74,7 @@ def with_units(value: Any) -> dict[str, Any]:
     }
     if isinstance(value, (list, tuple)) and all(map(numbers, value)):
         said["array"] = np.array(value, dtype=float) * UNITS.mm
-        said["array of objects"] = np.array([number * UNITS.mm for number in value] + [None], dtype=object)[:-1]
+        said["array of objects"] = np.fromiter((number * UNITS.mm for number in value), dtype=object)
         said["the last alone"] = [*value[:-1], value[-1] * UNITS.mm]
         said["the last alone a text"] = [*value[:-1], f"{value[-1]} mm"]
     return said
@@ -66,6 +85,9 @@ SHAPES: dict[str, tuple[tuple[Any, ...], dict[str, Any]]] = {
     "Section.rectangle": (([0.02, 0.02], [0.004, 0.002], (0.0, 0.3)), {}),
     "Section.circle": ((0.01,), {}),
     "Section.tube": ((0.01, 1e-3), {}),
+    "Line.of_pieces": (([0.1, 0.2],), {"twist": 0.1, "turn_y": [0.0, 0.2], "turn_z": 0.3}),
+    "Line.of_points": (([(0.0, 0.0, 0.0), (0.1, 0.0, 0.0), (0.2, 0.1, 0.0)],), {"twist": 0.1}),
+    "RigidSpecimen.box": ((1.0, (0.1, 0.2, 0.3)), {"centre": (0.1, 0.0, 0.0)}),
     "Section.general": (
         (8e-5, 1e-10, 1e-10, (), 0.01, 0.002),
         {"torsion_constant": 1e-10, "shear_coefficient_y": 0.8, "shear_coefficient_z": 0.8},
@@ -73,7 +95,27 @@ SHAPES: dict[str, tuple[tuple[Any, ...], dict[str, Any]]] = {
 }
 
 
+SLIDE = gb.System({"bar": gb.RigidBody(1.0, (1.0, 1.0, 1.0))}, {"s": gb.Joint("prismatic", "bar", axes=[(1, 0, 0)])})
 INSTEAD: dict[str, dict[str, Any]] = {  # of what stands in the calls of above
+    "Feedback": {
+        "law": lambda t, y: np.zeros(2),
+        "sample": 0.01,
+        "measure": ["a.angle_rate", "b.tip.place_x", "b.root.force_x"],
+        "drive": ["a.displacement", "a.moment_x"],
+        "limit": [5.0, 3.0],
+        "reference": (0.1, 0.2, 0.3),
+    },
+    "Joint": {
+        "kind": "cylindrical",
+        "body": "bar",
+        "axes": [(1.0, 0.0, 0.0)],
+        "coupling": {"displacement-angle": 0.5},
+        "stops": {"displacement": (-0.1, 0.1), "angle": (-1.0, 1.0)},
+        **{key: {"displacement": 2.0, "angle": 3.0} for key in OF_COORDINATES if key not in ("stops", "rate")},
+    },
+    "Load": {"force": (0.0, 0.0, 2.0), "moment": (0.0, 1.0, 0.0)},
+    "optimise": {"bounds": {"beam.length": (0.1, 0.5)}, "options": {"to": 3.0}},
+    "shape_command": {"structure": SLIDE, "hub": "s.displacement", "rate": 0.1, "duration": 1.0, "limit": 3.0},
     "Hub": {"radius": 0.5, "inertia": 2.0, "torque": 1.0},
     "Initial": {"tip_displacement": {"z": 0.1}},
     "Flight": {"z": 1.0, "rates": (0.1, 0.2, 0.3)},
@@ -81,14 +123,22 @@ INSTEAD: dict[str, dict[str, Any]] = {  # of what stands in the calls of above
 }
 
 
+def called_with(samples: Samples, name: str, instead: str = "") -> tuple[tuple[Any, ...], dict[str, Any]]:
+    """Arguments of a public function, or of a method that builds an object."""
+    if instead or name in OF_FILES:
+        return (), (INSTEAD if instead else OF_FILES)[name]
+    return SHAPES[name] if name in SHAPES else samples.calls()[name]
+
+
 @pytest.mark.parametrize("name", [*PUBLIC, *SHAPES, *(f"{name} instead" for name in INSTEAD)])
 def test_no_number_loses_its_unit(samples: Samples, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of 20 mm NumPy takes 20, and texts of numbers are read as metres."""
     monkeypatch.chdir(tmp_path)
     name, _, instead = name.partition(" ")
-    args, keywords = SHAPES[name] if name in SHAPES else ((), INSTEAD[name]) if instead else samples.calls()[name]
+    args, keywords = called_with(samples, name, instead)
     function = attrgetter(name)(gb)
     names = [*signature(function).parameters]
+    values = dict(zip(names, args, strict=False)) | keywords
     problems = []
     for at, value in [*enumerate(args), *keywords.items()]:
         said = with_units(value) if numbers(value) else {"quantity": 1 * UNITS.mm} if value is None else {}
@@ -96,18 +146,14 @@ def test_no_number_loses_its_unit(samples: Samples, name: str, tmp_path: Path, m
             changed = list(args), dict(keywords)
             changed[isinstance(at, str)][at] = wrong  # type: ignore[index]
             argument = at if isinstance(at, str) else names[at]
-            if argument == "over" and "text" in how:
-                continue  # a sweep's values are the scenario's, which has units
-            kind = kind_of_argument(name.rpartition(".")[2] if name.startswith("Section.") else name, argument)
-            if kind == ("angle" if how == "without dimension" else "length") and how not in (
-                "unit",
-                "array of objects",
-            ):
+            kinds = kinds_in(value, kind_of_argument(name.rpartition(".")[2], argument, values))
+            fitting = {WRITTEN, "angle" if how == "without dimension" else "length"}
+            if kinds <= fitting and how not in ("unit", "array of objects"):
                 continue  # it is read: see below
             try:
                 called(function, *changed[0], **changed[1])
             except gb.InputError as error:
-                said_so = BARE in error.fix or (kind and "expected" in error.fix)
+                said_so = BARE in error.fix or (any(kinds) and "expected" in error.fix)
                 if not ("text" in how or (argument in error.where and said_so)):
                     problems.append(f"{argument}, {how}: {error}")
             except Exception as error:
@@ -117,67 +163,174 @@ def test_no_number_loses_its_unit(samples: Samples, name: str, tmp_path: Path, m
     assert not problems, "\n".join(problems)
 
 
-MADE = [*SHAPES, *(name for name in PUBLIC if isinstance(getattr(gb, name), type))]
+@dataclass(eq=False)
+class Held(Value):
+    """Compares its content number by number."""
+
+    content: Any
 
 
-@pytest.mark.parametrize("name", [*MADE, *(f"{name} instead" for name in INSTEAD if name != "vector")])
+def written(value: Any, kinds: Kinds, how: str) -> Any:
+    """The value with its numbers in another unit than that of SI, exactly as large, as texts or as quantities."""
+    if isinstance(value, (dict, list, tuple)):
+        entries = value.items() if isinstance(value, dict) else enumerate(value)
+        changed = {key: written(each, below(kinds, key), how) for key, each in entries}
+        return changed if isinstance(value, dict) else type(value)(changed.values())
+    kind = only(kinds)
+    if not numbers(value) or kind in ("", PLAIN) or not np.isfinite(value):
+        return value
+    si = "mm" if kind == WRITTEN else KINDS[kind].unit
+    other = si if kind == WRITTEN or si[:1] == "k" else next(iter(USUAL.get(kind, [f"k{si}"])))
+    factor = 1.0 if kind == WRITTEN else unit_of(f"1 {other}", kind)[1]
+    near = value / factor
+    exact = [float(each) for each in (near, *np.nextafter(near, (-np.inf, np.inf))) if each * factor == value]
+    number, unit = (exact[0], other) if exact else (float(value), si)
+    if how == "text":
+        return f"{number!r} {unit}" if unit else number
+    return number * UNITS(unit.replace("g", "g_0", kind in ("acceleration", "jerk")) or "dimensionless")
+
+
+OF_FILES: dict[str, dict[str, Any]] = {  # methods of what is read from files
+    "ImportedModel.reduced": {"total_mass": 1.0, "centre": (0.1, 0.0, 0.0), "inertia": np.eye(3).tolist()},
+    "ModalTest.structure": {"mass": [0.1, 0.2]},
+    "Section.drawn": {"outline": [(0.0, 0.1)], "holes": [[(0.0, 0.1)]], "axis": (0.0, 0.1), "element_size": 0.1},
+    "Section.read": {"stations": (0.0, 0.1)},
+    "SolidMesh.read": {
+        "thickness": {"skin": 1e-3}, "element_size": 0.1, "points": {"lid": (0.1, 0.2, 0.0), "foot": "12"},
+        "point_masses": {"lid": 0.1}, "origin": (0.1, 0.0, 0.0), "turn": (0.0, 0.0, 0.1),
+        "springs": {"mount": {"between": ["a", "b"], "stiffness": {"x": 2.0, "rz": 3.0}}},
+    },
+    "SolidMesh.reduced": {"modes": 5, "damping_ratio": [0.1, 0.2]},
+    "Structure.of_particles": {"mass": [1.0], "r0": [(0.1, 0.0, 0.0)], "damping_ratio": [0.1], "stations": [0]},
+}  # fmt: skip
+
+
+def received(function: Any) -> Any:
+    """A class; or what a function is called with, which need not run to be asked how it reads its arguments."""
+    if isinstance(function, type):
+        return function
+
+    @functools.wraps(function.__wrapped__)  # type: ignore[attr-defined]
+    def call(*args: Any, **keywords: Any) -> Any:
+        return args, keywords
+
+    return types.MethodType(typed(call), function.__self__) if inspect.ismethod(function) else typed(call)
+
+
+@pytest.mark.parametrize("name", [*PUBLIC, *SHAPES, *OF_FILES, *(f"{name} instead" for name in INSTEAD)])
 @pytest.mark.parametrize("how", ["text", "pint"])
 def test_a_quantity_is_read_as_scenarios_read_it(samples: Samples, name: str, how: str) -> None:
-    """Texts with a unit and pint's quantities make what the numbers in SI make."""
+    """Texts with a unit and pint's quantities are what the numbers in SI are."""
     name, _, instead = name.partition(" ")
-    args, keywords = SHAPES[name] if name in SHAPES else ((), INSTEAD[name]) if instead else samples.calls()[name]
-    function = attrgetter(name)(gb)
-    places = [*zip(signature(function).parameters, args, strict=False), *keywords.items()]
-
-    def said(argument: str, value: Any) -> Any:
-        kind = kind_of_argument(name.rpartition(".")[2], argument)
-        if not kind or not numbers(value):
-            return value
-        unit = KINDS[kind].unit
-        if how == "text":
-            return with_numbers(value, lambda number: f"{number!r} {unit}" if unit else number)
-        return with_numbers(value, lambda number: number * UNITS(unit or "dimensionless"))
-
-    in_si, read = (
-        function(*[change(*each) for each in places[: len(args)]], **{k: change(k, v) for k, v in keywords.items()})
-        for change in (lambda _, value: value, said)
-    )
-    assert read == in_si
+    args, keywords = called_with(samples, name, instead)
+    function = received(attrgetter(name)(gb))
+    values = dict(zip(signature(function).parameters, args, strict=False)) | keywords
+    kinds = {each: kind_of_argument(name.rpartition(".")[2], each, values) for each in values}
+    said = {each: written(value, kinds[each], how) for each, value in values.items()}
+    for each, kind in kinds.items():
+        if kind == WRITTEN:  # the scenario reads its texts
+            values[each] = written(values[each], kind, "text")
+    assert Held(function(**said)) == Held(function(**values))
 
 
-ANY_UNIT = {"over", "amplitude", "level"}  # of the scenario's values, and of profiles of whatever quantity
+# Of methods, by their names, or those of the method where they differ.
+ARGUMENTS: dict[str, Any] = {
+    "acceleration": np.ones((5, 3)), "ahead": True, "duration": 0.1, "end": 0.1, "measured": np.array([0.1]),
+    "name": "flight", "order": 1, "poissons_ratio": 0.3, "q": np.full(2, 1e-4), "rate": "angle", "sample": 0.01,
+    "samples": 100, "start": 0.0, "state": np.zeros(0), "stations": [0.1], "step": 0.01, "t": 0.05, "time": 0.05,
+    "tolerance": 0.05, "width": 0.05, "x": [0.1, 0.2],
+}  # fmt: skip
+OF_RESPONSES = {"RigidSpecimen.felt", "RigidSpecimen.parts"}  # which call them
+
+
+def of_gbeam(method: Any) -> bool:
+    """True of a public method that is gbeam's."""
+    name = getattr(method, "__name__", "_")
+    home = str(getattr(method, "__module__", ""))
+    return inspect.isroutine(method) and (name == "__call__" or name[0] != "_") and home.startswith("gbeam.")
+
+
+def methods() -> dict[str, Callable[..., Any]]:
+    """Methods, of every class that users get hold of, that take quantities or plain numbers."""
+    classes = [each for name in gb.__all__ if isinstance(each := getattr(gb, name), type)]
+    taken = {}
+    for kind in [*classes, Mismatch, Errors]:
+        for name, method in inspect.getmembers(kind, of_gbeam):
+            names = signature(method).parameters if inspect.isfunction(method) else ()
+            if any(kind_of_argument(name, each, {}) for each in names):
+                taken[f"{kind.__name__}.{name}"] = method
+    return taken
+
+
+@pytest.mark.parametrize("name", sorted(methods().keys() - OF_RESPONSES - OF_FILES.keys()))
+def test_methods_read_quantities_too(samples: Samples, name: str) -> None:
+    owner, _, method = name.partition(".")
+    call = getattr(samples.objects.get(name, samples.objects.get(owner)), method)
+    values = {each: ARGUMENTS[each] for each in signature(call).parameters if each != "motion"}
+    if name == "RigidSpecimen.loads":
+        values["motion"] = samples.flight
+    kinds = {each: kind_of_argument(method, each, {}) for each in values}
+    for how in ("text", "pint"):
+        said = {each: written(value, kinds[each], how) for each, value in values.items()}
+        assert Held(call(**said)) == Held(call(**values))
+    for each in (each for each, kind in kinds.items() if kind):
+        for wrong in ("5 W", 5 * UNITS.W, np.ones(2) * UNITS.W, object()):
+            with pytest.raises(gb.InputError, match=f"^{each}"):
+                call(**values | {each: wrong})
+
+
+# Not read, though documents say a unit, and why.
+NOT_READ = {
+    "values of profiles, which do not know what they are of": "amplitude level raw coefficients values",
+    "functions": "curvature law make",
+    "words": "clamp fix length_unit mass_unit measure overrides problem time_unit unit",
+    "matrices whose entries have several units": "geometric stiffness mass inertia",
+    "derivatives by coordinates, which have no unit": "turns",
+}
 
 
 def test_units_of_arguments_are_those_of_the_documents(samples: Samples) -> None:
-    """Where a public docstring says one unit of a number, the argument is read as a quantity that has it."""
+    """Where a public docstring says units of a number, the argument is read as a quantity that has one of them."""
     problems, read = [], 0
-    for name, (args, keywords) in samples.calls().items():
-        values = {**dict(zip(signature(getattr(gb, name)).parameters, args, strict=False)), **keywords}
-        for argument, words in documented(getattr(gb, name)).items():
-            kind = kind_of_argument(name, argument)
-            units = set(SAID.findall(words))
-            if not kind and len(units) == 1 and numbers(values.get(argument)) and argument not in ANY_UNIT:
+    left_out = " ".join(NOT_READ.values()).split()
+    classes = [name for name in gb.__all__ if isinstance(getattr(gb, name), type) and name not in RESULTS]
+    every = {*samples.calls(), *SHAPES, *OF_FILES}
+    functions = {name: getattr(gb, name) for name in samples.calls()}
+    for name in classes:
+        functions |= {f"{name}.{key}": each for key, each in inspect.getmembers(getattr(gb, name), of_gbeam)}
+    for name, function in functions.items():
+        owner = name.rpartition(".")[2]
+        args, keywords = called_with(samples, name) if name in every else ((), {})
+        words = documented(function)
+        values = dict(zip(signature(function).parameters, args, strict=False)) | keywords
+        values = dict.fromkeys(words) | values | INSTEAD.get(name, {})
+        for argument in words.keys() & signature(function).parameters.keys():
+            kinds = kind_of_argument(owner, argument, values)
+            units = set(SAID.findall(words[argument]))
+            if units and not kinds and argument not in left_out:
                 problems.append(f"{name}: {argument} is in {units}, and not read as a quantity")
-            if not kind or not units:
+            if not kinds or not units or kinds in (PLAIN, WRITTEN):
                 continue
             read += 1
-            unit = KINDS[kind].unit.replace("^2", "²").replace("^3", "³").replace("^4", "⁴").replace("1/s", "Hz")
-            if unit and unit not in units:
-                problems.append(f"{name}: {argument} is read in {unit}, and said to be in {units}")
-    assert not problems and read > 60, "\n".join(problems)
+            for kind in kinds_in(values[argument], kinds) - {"", WRITTEN}:
+                unit = KINDS[kind].unit.replace("^2", "²").replace("^3", "³").replace("^4", "⁴").replace("1/s", "Hz")
+                if unit and unit not in units:
+                    problems.append(f"{name}: {argument} is read in {unit}, and said to be in {units}")
+    assert not problems and read > 240, "\n".join([*problems, str(read)])
 
 
 SAID = re.compile(
-    r"(?<![\w/'`])(kg m²|N m s/rad|N m/rad|N m|N/m|kg/m³|rad/s[²³]|rad/s|m/s[²³]|m/s|m²|m⁴|Hz|Pa|rad|kg|N|s|m|W)"
+    r"(?<![\w/'`])(kg m²|N m s/rad|N s/m|N m/rad|N m|N/m|kg/m³|rad/s[²³]|rad/s|m/s[²³]|m/s|m²|m⁴|Hz|Pa|rad|kg|N|s|m|W)"
     r"(?![\w/²³⁴'])"
 )
 
 
 def documented(thing: Any) -> dict[str, str]:
-    """Words of every parameter in a docstring."""
+    """Words of every parameter in a docstring: among its parameters, or after its name in a sentence."""
     text = inspect.getdoc(thing) or ""
     section = re.search(r"Parameters\n-+\n(.*?)(?:\n\n[A-Z]\w+\n---|\Z)", text, re.DOTALL)
-    words: dict[str, str] = {}
+    sentence = text.partition("\n\n")[0].replace("\n", " ")
+    words = dict(re.findall(r"`(\w+)`((?: \(\w, ?\),?)?,? \(?[^\s),.:;]+)", sentence))
     names: list[str] = []
     for line in section[1].splitlines() if section else ():
         if line and not line.startswith(" "):
@@ -188,22 +341,40 @@ def documented(thing: Any) -> dict[str, str]:
     return words
 
 
-@pytest.mark.parametrize("name", ["flight", "hub", "centrifuge", "profile", "section", "beam", "particles"])
-def test_nor_do_those_that_methods_are_given(samples: Samples, name: str) -> None:
-    mass, time = np.ones(1), 0.5
-    places: tuple[Any, ...] = (np.zeros((1, 3)), np.ones((1, 3, 1)), np.eye(1))
-    call: Callable[[Any], Any] = {
-        "flight": lambda unit: samples.flight.over(0.0, time * unit),
-        "hub": lambda unit: samples.hub.over(0.0, time * unit),
-        "centrifuge": lambda unit: samples.centrifuge.over(0.0, time * unit),
-        "profile": lambda unit: gb.constant(1.0)(time * unit),
-        "section": lambda unit: samples.beam.section.at(np.array([time]) * unit),
-        "beam": lambda unit: samples.beam.rigidities(np.array([time]) * unit),
-        "particles": lambda unit: gb.Structure.of_particles(mass * unit, *places, second=np.zeros((1, 3, 1, 1))),
-    }[name]
-    call(1)
-    with pytest.raises(gb.InputError):
-        call(UNITS.mm)
+def sliding(**keywords: Any) -> Any:
+    return gb.Joint("cylindrical", "bar", axes=[(1, 0, 0)], **keywords)
+
+
+def law(**keywords: Any) -> Any:
+    return gb.Feedback(lambda t, y: y, ["a.angle_rate"], ["a.displacement", "a.moment_x"], 0.01, **keywords)
+
+
+@pytest.mark.parametrize(
+    ("read", "size"),
+    [
+        (lambda: gb.Load("0.1 m", force=(0, 0, "5 kN")).force[2], 5e3),
+        (lambda: gb.Load("0.1 m", moment=(0, "5 kN m", 0)).moment[1], 5e3),
+        (lambda: gb.Load(force=(0, 0, "5 N/mm")).force[2], 5e3),
+        (lambda: gb.Load(moment=(0, 5 * UNITS.N, 0)).moment[1], 5.0),
+        (lambda: gb.Joint("revolute", "bar", axes=[(0, 1, 0)], stops=("-90 deg", 1.0), stop_stiffness=9.0).stops[0],
+         -np.pi / 2),
+        (lambda: sliding(stiffness={"displacement": "2 N/mm", "angle": 3.0}).stiffness["displacement"], 2e3),
+        (lambda: sliding(damping={"angle": "2 kN m s/rad"}).damping["angle"], 2e3),
+        (lambda: sliding(friction={"displacement": "2 kN"}).friction["displacement"], 2e3),
+        (lambda: sliding(effort={"angle": "2 kN m"}).effort["angle"], 2e3),
+        (lambda: sliding(rate={"angle": "60 rpm"}).rate["angle"], 2 * np.pi),
+        (lambda: gb.Joint("free", "bar", initial_rate={"wx": "60 rpm", "x": 1.0}).initial_rate["wx"], 2 * np.pi),
+        (lambda: gb.Joint("fixed", "bar", stiffness={"y": 9e9, "rz": 9e9}, coupling={"y-rz": "2 kN"}).coupling["y-rz"],
+         2e3),
+        (lambda: law(limit=["3 kN", 2.0]).limit[0], 3e3),
+        (lambda: law(limit=[2.0, "3 kN m"]).limit[1], 3e3),
+        (lambda: law(reference="60 rpm").reference[0](0.0), 2 * np.pi),
+        (lambda: gb.Section("general", {"area": ("80 mm^2",), "inertia_y": (1e-9,), "inertia_z": (1e-9,)}).at(0.0).area,
+         8e-5),
+    ],
+)  # fmt: skip
+def test_a_unit_may_be_that_of_a_name(read: Callable[[], float], size: float) -> None:
+    assert read() == pytest.approx(size, rel=1e-15)
 
 
 BARE = "give numbers without a unit, in SI"
@@ -229,6 +400,15 @@ class Metres(float):
          'expected an angular rate, such as "3 rad/s"'),
         (lambda: gb.Hub(radius=0.5, rate=60 * UNITS.mm), 'rate "60.0 mm" is a length; '
          'expected an angular rate, such as "3 rad/s"'),
+        (lambda: gb.Load(force=(0, 0, "5 N")), 'force[2] "5 N" is a force; '
+         'expected a force per length, such as "20 N/m"'),
+        (lambda: sliding(stiffness={"displacement": "2 N m/rad"}), 'stiffness.displacement "2 N m/rad" is a rotational '
+         'stiffness; expected a stiffness, such as "1e6 N/m"'),
+        (lambda: law(limit=[2.0, "3 N"]), 'limit[1] "3 N" is a force; expected a torque, such as "200 N m"'),
+        (lambda: gb.Flight(z=6 * UNITS.g), 'z "6.0 gram" is a mass; expected an acceleration, such as "6 g"'),
+        (lambda: gb.Flight(z=6.0).base("noon"), "t is 'noon'; give numbers"),
+        (lambda: gb.Flight(z=6.0).base(np.array(["5"])), 't[0] "5" has no unit; '
+         'add a unit, such as "16 s", or write the bare number 5 for s'),
     ],
 )  # fmt: skip
 def test_how_a_unit_is_refused(call: Callable[[], Any], words: str) -> None:

@@ -42,6 +42,8 @@ class InputError(GbeamError, ValueError):
     mass | is -1 kg | give a non-negative, finite value
     """
 
+    of_type = False  # whether it is of an argument's type, which whoever was given the argument may say better
+
     def __init__(self, where: str, problem: str, fix: str) -> None:
         self.where, self.problem, self.fix = where, problem, fix
         super().__init__(f"{where} {problem}; {fix}" if where else f"{problem}; {fix}")

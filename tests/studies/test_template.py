@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pint
 import pytest
 
 import gbeam as gb
@@ -136,6 +137,37 @@ def test_a_motion_of_ones_own_is_swept_and_kept_in_no_store(fast: Path, tmp_path
     assert gb.sweep(case, over, ["tip.z"], verb="static").outcome.tolist() == ["done", "done"]
     with pytest.raises(gb.InputError, match="store cannot know the case again"):
         gb.sweep(case, over, ["tip.z"], verb="static", store=tmp_path / "store")
+
+
+def test_values_whose_unit_is_that_of_a_name_are_read_in_it() -> None:
+    slide = gb.Joint("cylindrical", "bar", axes=[(1, 0, 0)], stiffness={"displacement": 2.0, "angle": 3.0})
+    system = gb.System({"bar": gb.RigidBody(1.0, (1.0, 1.0, 1.0))}, {"j": slide})
+    template = CaseTemplate(gb.SystemCase("slide", system, {}, gb.ResponseSettings(1.0)))
+    place = "joints.j.stiffness.displacement"
+    assert template.quantities()[place] == (2.0, "stiffness")
+    assert template.unit("joints.j.stiffness.angle") == "N m/rad"
+    assert template.changed([f"{place}=3 N/mm"]).case.system.joints["j"].stiffness == {
+        "displacement": 3e3,
+        "angle": 3.0,
+    }
+    with pytest.raises(gb.InputError, match=f'{place} "3 N m/rad" is a rotational stiffness'):
+        template.changed([f"{place}=3 N m/rad"])
+
+
+def test_quantities_of_pint_are_varied_and_bound(fast: Path) -> None:
+    mm = pint.UnitRegistry().mm
+    static: Any = {"verb": "static", "motion": "flight", "at": 0.5}
+    of_text, of_pint, of_arrays = (
+        gb.sweep(fast, {"beam.length": lengths}, ["flight.tip.z"], **static)
+        for lengths in (["280 mm", "290 mm"], [280 * mm, 290 * mm], np.array([280.0, 290.0]) * mm)
+    )
+    assert of_text == of_pint == of_arrays and of_pint.parameters[0].unit == "mm"
+    width = "beam.section.width"
+    best = [
+        gb.optimise(fast, "flight.tip.z", [width], bounds={width: bounds}, **static)
+        for bounds in ((0.01, 0.03), (10 * mm, 30 * mm))
+    ]
+    assert np.array_equal(best[0].bounds, best[1].bounds)
 
 
 def test_what_a_case_cannot_vary_is_refused_at_its_place(fast: Path) -> None:

@@ -16,6 +16,7 @@ from gbeam.arrays.tree import Value
 from gbeam.arrays.types import Numbers
 from gbeam.errors import InputError, naming
 from gbeam.guards.arguments import typed
+from gbeam.guards.kinds import kinds
 from gbeam.mechanics.assembly import assemble
 from gbeam.mechanics.fields.basis import FAMILIES, quadrature
 from gbeam.mechanics.models import Model
@@ -25,7 +26,15 @@ from gbeam.mechanics.tree.joints import GROUND, Joint
 from gbeam.mechanics.tree.system import RigidBody, System
 from gbeam.motion import Flight
 from gbeam.motion.protocol import Motion
-from gbeam.results.criteria import AT_POINTS, DISPLACEMENT, STRESS, Acceptance, refuse_lacking, refuse_unknown
+from gbeam.results.criteria import (
+    AT_POINTS,
+    DISPLACEMENT,
+    KINDS_OF_LIMITS,
+    STRESS,
+    Acceptance,
+    refuse_lacking,
+    refuse_unknown,
+)
 from gbeam.results.description import (
     BodyOfSystem,
     ControllerOfSystem,
@@ -116,6 +125,7 @@ class _InEnvironments(Value):
         raise InputError(where, f"{problem}, and {what} is of one beam", fix)
 
 
+@kinds(accept={"*": KINDS_OF_LIMITS})
 @typed
 @dataclass(frozen=True, eq=False, repr=False)
 class Case(_InEnvironments):
@@ -197,6 +207,7 @@ class Case(_InEnvironments):
         return self
 
 
+@kinds(accept={"*": KINDS_OF_LIMITS})
 @typed
 @dataclass(frozen=True, eq=False, repr=False)
 class SystemCase(_InEnvironments):
@@ -289,6 +300,7 @@ class SystemCase(_InEnvironments):
         return self.system
 
 
+@kinds(accept={"*": KINDS_OF_LIMITS})
 @typed
 @dataclass(frozen=True, eq=False, repr=False)
 class SpecimenCase(_InEnvironments):

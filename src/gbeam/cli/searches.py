@@ -195,9 +195,8 @@ def shape(
     """
     folder = output.folder(scenario)
 
-    from gbeam.analysis.case import SystemCase
     from gbeam.analysis.control.plants import DRIVES
-    from gbeam.studies.shape import driven_joint, hub_of, scenario_with, slides
+    from gbeam.studies.shape import driven_of, scenario_with, slides
     from gbeam.studies.shape import shape_hub_command as compute
 
     def optional(option: str, text: str | None, kind: str) -> float | None:
@@ -205,13 +204,8 @@ def shape(
 
     from gbeam.scenario.build import read_scenario
 
-    case = read_scenario(scenario, output.overrides)
-    if isinstance(case, SystemCase):
-        name, hub = driven_joint(case, joint)
-    else:
-        case = case.one_beam("bodies", "gbeam shape")
-        name, hub = hub_of(case, motion)
-    straight = isinstance(case, SystemCase) and slides(name)
+    case, name, hub = driven_of(read_scenario(scenario, output.overrides), motion, joint)
+    straight = slides(name)
     bound = optional("--limit", limit, DRIVES[hub.free, straight][1])
     with Watch() as watch:
         answer = compute(

@@ -12,7 +12,7 @@ from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_
 from gbeam.arrays.namespace import has_unit, holds_jax, looks_at_traced
 from gbeam.errors import GbeamError, InputError
 from gbeam.guards.kinds import kind_of_argument
-from gbeam.guards.units import BEGINNING, UnitError, in_si
+from gbeam.guards.units import BEGINNING, in_si
 from gbeam.printable import shortened
 from gbeam.progress import Bar
 
@@ -48,6 +48,7 @@ def _in_si(value: Any) -> str:
 
 
 F = TypeVar("F", bound=Callable[..., Any])
+C = TypeVar("C", bound=type)
 Test = Callable[[Any], bool]
 _SEQUENCES = (list, tuple, Sequence, Iterable, Collection)
 _MAPPINGS = (dict, Mapping)
@@ -74,39 +75,64 @@ def typed(function: F) -> F:
     """
     if isinstance(function, type):
         function.__init__ = typed(function.__init__)  # type: ignore[misc]
-        return function
+        return typed_methods(function)
+    return _typed(function)
+
+
+def typed_methods(cls: C) -> C:
+    """Let the public methods of a class that take quantities, or plain numbers, do as typed functions do.
+
+    Bare numbers and arrays of them, which are most, go straight through.
+    """
+    for name, method in [*vars(cls).items()]:
+        if not isinstance(method, types.FunctionType) or (name.startswith("_") and name != "__call__"):
+            continue
+        code = method.__code__
+        names = code.co_varnames[1 : code.co_argcount + code.co_kwonlyargcount]
+        if not hasattr(method, "__wrapped__") and any(kind_of_argument(name, each, {}) for each in names):
+            setattr(cls, name, _typed(method, method=True))
+    return cls
+
+
+def _typed(function: F, method: bool = False) -> F:
     owner = function.__qualname__.removesuffix(".__init__").rpartition(".")[2]
+    of = owner if method else ""
     kinds = (Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD)
     names = [each.name for each in signature(function).parameters.values() if each.kind in kinds]
     later = str(signature(function).return_annotation).startswith("Iterator")  # which shows its own bar
 
     def check(pairs: Iterable[tuple[str, Any]], texts: bool) -> None:
-        tests = _tests(function, texts)
+        tests = _tests(function, texts, of)
         for name, value in pairs:
             refuse_units(name, value)
             if name in tests and not tests[name](value):
-                raise _refused(name, value, _hints(function)[name], texts)
+                refused = _refused(name, value, _hints(function, of)[name], texts)
+                refused.of_type = True
+                raise refused
 
     @functools.wraps(function)
     def call(*args: Any, **keywords: Any) -> Any:
+        if method and not keywords and all(map(_is_bare, args[1:])):
+            return function(*args)
         pairs = (*zip(names, args, strict=False), *keywords.items())
         if not later and ("progress", True) in pairs:
             with Bar() as bar:
                 return call(**dict(pairs) | {"progress": bar})
         if any(type(value) not in _NUMBERS for _, value in pairs):
-            args = (*(_read(owner, *each) for each in zip(names, args, strict=False)), *args[len(names) :])
-            keywords = {name: _read(owner, name, value) for name, value in keywords.items()}
+            read = functools.partial(_read, owner, dict(pairs))
+            args = (*map(read, names, args), *args[len(names) :])
+            keywords = {name: read(name, value) for name, value in keywords.items()}
             pairs = (*zip(names, args, strict=False), *keywords.items())
         check(pairs, True)
         try:
             return function(*args, **keywords)
         except (AttributeError, LookupError, TypeError, ValueError) as error:
-            if not isinstance(error, GbeamError):
+            if not isinstance(error, GbeamError) or getattr(error, "of_type", False):
                 check(pairs, False)
-                if looks_at_traced(error):
-                    name = next((name for name, value in pairs if _holds_jax(value)), pairs[0][0])
-                    fix = "give numbers: JAX follows motions, structures, systems and simulate with a given step"
-                    raise InputError(name, f"is traced by JAX, and {owner} looks at its numbers", fix) from error
+            if not isinstance(error, GbeamError) and looks_at_traced(error):
+                name = next((name for name, value in pairs if _holds_jax(value)), pairs[0][0])
+                fix = "give numbers: JAX follows motions, structures, systems and simulate with a given step"
+                raise InputError(name, f"is traced by JAX, and {owner} looks at its numbers", fix) from error
             raise
 
     return call  # type: ignore[return-value]
@@ -116,31 +142,44 @@ def _holds_jax(value: Any) -> bool:
     return bool(getattr(value, "holds_jax", False)) or holds_jax(value)
 
 
-def _read(owner: str, name: str, value: Any) -> Any:
+def _is_bare(value: Any) -> bool:
+    """True of a number, an array of NumPy's of numbers, or a plain list or mapping of these."""
+    kind = type(value)
+    if kind in _NUMBERS:
+        return True
+    if kind.__module__ == "numpy":
+        return hasattr(value, "dtype") and value.dtype.kind in "fiuc"  # complex ones are steps of derivatives
+    if kind not in (list, tuple, dict):
+        return False
+    listed = value.values() if kind is dict else value
+    return _NUMBERS.issuperset(map(type, listed)) or all(map(_is_bare, listed))
+
+
+def _read(owner: str, arguments: Mapping[str, Any], name: str, value: Any) -> Any:
     """An argument in SI, where it is a quantity, or holds some, as text or of pint."""
-    kind = "" if type(value) in _NUMBERS else kind_of_argument(owner, name)
-    if not kind:
-        return value
-    try:
-        return in_si(value, kind)
-    except UnitError as error:
-        raise InputError(name, error.problem, error.hint) from None
+    kinds = "" if _is_bare(value) else kind_of_argument(owner, name, arguments)
+    return in_si(name, value, kinds) if kinds else value
 
 
 @functools.cache
-def _tests(function: Callable[..., Any], texts: bool) -> dict[str, Test]:
-    return {name: _test(hint, texts) for name, hint in _hints(function).items()}
+def _tests(function: Callable[..., Any], texts: bool, method: str) -> dict[str, Test]:
+    return {name: _test(hint, texts) for name, hint in _hints(function, method).items()}
 
 
 @functools.cache
-def _hints(function: Callable[..., Any]) -> dict[str, Any]:
-    """Types of the arguments; any, where a name is imported for type checkers only."""
+def _hints(function: Callable[..., Any], method: str) -> dict[str, Any]:
+    """Types of the arguments; any, where a name is imported for type checkers only, but where a method's has a kind."""
+    from numpy.typing import ArrayLike
+
     unknown: dict[str, Any] = {}
     while True:
         try:
-            return get_type_hints(function, localns=unknown, include_extras=True)
+            hints = get_type_hints(function, localns=unknown, include_extras=True)
         except NameError as error:
             unknown[str(error.name)] = Any
+            continue
+        numbers = {name for name in hints if hints[name] is Any and method and kind_of_argument(method, name, {})}
+        return hints | dict.fromkeys(numbers, ArrayLike)
 
 
 def _alternatives(hint: Any) -> tuple[Any, ...]:
@@ -208,8 +247,10 @@ def _is_number(value: Any, texts: bool) -> bool:
 
 
 def _are_numbers(value: Any, texts: bool) -> bool:
-    nested = isinstance(value, (list, tuple)) and all(_are_numbers(each, texts) for each in value)
-    return nested or _is_number(value, texts)
+    listed = value.tolist() if _kind(value) == "O" else value
+    if isinstance(listed, (list, tuple)):
+        return all(_are_numbers(each, texts) for each in listed)
+    return _is_number(value, texts)
 
 
 def _has_elements(value: Any, origin: Any) -> bool:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any, TypeVar
 
 from gbeam.constants import STANDARD_GRAVITY
 
@@ -73,9 +75,16 @@ USUAL: dict[str, dict[str, float]] = {
     "amplitude ratio": {"%": 0.01},
 }
 
+# Of an argument, or of what it holds: by key, or at any, "*", or in order. They may follow from the other arguments.
+Kinds = str | Mapping[str, "Kinds"] | tuple[str, ...]
+Declared = Kinds | Callable[[Mapping[str, Any]], Kinds]
+WRITTEN = "as written"  # of a scenario's value, which has the kind of its place there
+PLAIN = "plain"  # of numbers that have no unit, such as the coordinates of a model
+
 _BY_KIND = {
+    PLAIN: "q qd",
     "length": "arm at control_point diameter extreme_fibre_y extreme_fibre_z length offset positions radius stations "
-    "thickness tip_displacement wall width",
+    "thickness tip_displacement wall width x",
     "area": "area",
     "second moment of area": "inertia_y inertia_z torsion_constant",
     "mass": "mass",
@@ -85,7 +94,7 @@ _BY_KIND = {
     "stiffness": "translation_x translation_y translation_z",
     "rotational stiffness": "rotation_y rotation_z",
     "torque": "torque",
-    "time": "duration end hold residual_from sample smoothing span spin_down spin_up start step time widths",
+    "time": "duration end hold residual_from sample smoothing span spin_down spin_up start step t time widths",
     "speed": "tip_velocity",
     "acceleration": "acceleration gravity idle",
     "angle": "angle setting_angle",
@@ -96,7 +105,7 @@ _BY_KIND = {
 }
 _BY_NAME = {name: kind for kind, names in _BY_KIND.items() for name in names.split()}
 # Of a function or a class, the arguments whose names mean something else elsewhere; of no kind where it is not known.
-_BY_OWNER = {
+_BY_OWNER: dict[str, dict[str, Declared]] = {
     "AxisLimit": {"acceleration": "angular acceleration", "jerk": "angular jerk"},
     "Case": {"tolerance": ""},
     "Centrifuge": {"gravity": "", "turn": "angle"},
@@ -107,7 +116,7 @@ _BY_OWNER = {
     "Flight": {"x": "acceleration", "y": "acceleration", "z": "acceleration"},
     "Gauge": {"y": "length", "z": "length"},
     "Hub": {"stiffness": "rotational stiffness", "damping": "rotational damping"},
-    "ImportedModel": {"nodes": "length"},
+    "ImportedModel": {"nodes": "length", "mass": ""},
     "ModalTest": {"nodes": "length", "modal_mass": "mass"},
     "PointForce": {"force": "force", "moment": "torque"},
     "ResponseSettings": {"histories": "time"},
@@ -117,7 +126,7 @@ _BY_OWNER = {
     "buckling_acceleration": {"upper": "acceleration"},
     "Line": {"breaks": "length", "corners": "length", "turns": "angle"},
     "PiecewiseLinear": {"times": "time"},
-    "Joint": {"stiffness": "", "damping": "", "rate": "", "turn": "angle"},
+    "Joint": {"turn": "angle"},
     "Place": {"turn": "angle"},
     "RigidBody": {"centre": "length", "points": "length"},
     "SmoothedPiecewiseLinear": {"width": "time"},
@@ -126,24 +135,54 @@ _BY_OWNER = {
     "critical_speed": {"upper": "angular rate"},
     "critical_speed_map": {"upper": "angular rate", "masses": "mass"},
     "drawn": {"outline": "length", "holes": "length", "axis": "length", "element_size": "length"},
-    "fit": {"at": "time"},
+    "fit": {"at": "time", "bounds": WRITTEN, "options": WRITTEN},
+    "of_matrices": {"mass": ""},
+    "of_particles": {"r0": "length", "stations": ""},
     "of_pieces": {"lengths": "length", "twist": "angle", "turn_y": "angle", "turn_z": "angle"},
     "of_points": {"points": "length", "twist": "angle"},
     "linearize": {"at": ""},
-    "optimise": {"at": "time"},
+    "optimise": {"at": "time", "bounds": WRITTEN, "options": WRITTEN},
     "plan": {"envelope": "length"},
-    "read": {"element_size": "length", "origin": "length", "turn": "angle", "point_masses": "mass"},
-    "read_record": {"time": ""},
+    "read": {"mass": "", "element_size": "length", "origin": "length", "turn": "angle", "point_masses": "mass"},
+    "read_record": {"time": "", "x": ""},
     "reduced": {"total_mass": "mass", "centre": "length"},
-    "sensitivity": {"at": "time"},
+    "sensitivity": {"at": "time", "options": WRITTEN},
     "shape_command": {"distance": "length"},
     "shape_hub_command": {"distance": "length"},
     "smoothed": {"width": "time"},
-    "sweep": {"at": "time"},
+    "sweep": {"at": "time", "over": WRITTEN, "options": WRITTEN},
     "tabulated": {"times": "time"},
+    "vector": {"x": ""},
 }
+T = TypeVar("T", bound=Callable[..., Any])
 
 
-def kind_of_argument(owner: str, name: str) -> str:
-    """Return the kind of quantity of an argument of a public function or class; empty where texts are not read."""
-    return _BY_OWNER.get(owner, {}).get(name, _BY_NAME.get(name, ""))
+def kinds(**declared: Declared) -> Callable[[T], T]:
+    """Declare kinds of arguments of a function or a class, by name, that are not those of every such name."""
+
+    def of(thing: T) -> T:
+        _BY_OWNER.setdefault(thing.__name__, {}).update(declared)
+        return thing
+
+    return of
+
+
+def kind_of_argument(owner: str, name: str, arguments: Mapping[str, Any]) -> Kinds:
+    """Return the kind of quantity of one of the arguments of a public function or class; empty where it has none."""
+    declared = _BY_OWNER.get(owner, {}).get(name, _BY_NAME.get(name, ""))
+    return declared(arguments) if callable(declared) else declared
+
+
+def below(of: Kinds, key: Any) -> Kinds:
+    """Return the kinds of what an argument of some kinds holds at a key, or at a place in order."""
+    if isinstance(of, Mapping) and isinstance(key, str):
+        return of.get(key, of.get("*", ""))
+    return of[key] if isinstance(of, tuple) and key in range(len(of)) else only(of)
+
+
+def only(of: Kinds) -> str:
+    """Return the kind that all have; empty where they differ."""
+    if isinstance(of, str):
+        return of
+    each = {only(one) for one in (of.values() if isinstance(of, Mapping) else of)}
+    return each.pop() if len(each) == 1 else ""

@@ -12,7 +12,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from gbeam.errors import InputError
-from gbeam.guards.kinds import KINDS, USUAL, Kind
+from gbeam.guards.kinds import KINDS, PLAIN, USUAL, WRITTEN, Kind, Kinds, below, only
 from gbeam.guards.limits import QUANTITY
 from gbeam.printable import closest, shortened
 
@@ -115,26 +115,43 @@ def quantity(value: object, kind: str) -> float:
     return number
 
 
-def in_si(value: Any, kind: str) -> Any:
+def in_si(where: str, value: Any, kinds: Kinds) -> Any:
     """Return a value, or what a list or a mapping holds, in SI: texts that begin with a number and pint's quantities.
 
-    Raises UnitError where one is of another kind. What is neither stays what it is.
+    Raises InputError where one is of another kind. What is neither stays what it is.
     """
-    if isinstance(value, str):
-        return quantity(value, kind) if BEGINNING.match(value) else value
-    if hasattr(value, "magnitude") and hasattr(value, "dimensionality"):  # of pint
-        unit, number = f"{value.units:~P}", value.magnitude
-        if not unit and not KINDS[kind].unit:
-            return number
-        if isinstance(number, (int, float)):
-            return quantity(f"{float(number)!r} {unit}", kind)
-        return number * quantity(f"1 {unit}", kind)
-    if isinstance(value, (list, tuple)):
-        parts = [in_si(each, kind) for each in value]
-        return value if all(one is other for one, other in zip(parts, value, strict=True)) else type(value)(parts)
     if isinstance(value, dict):
-        return {key: in_si(each, kind) for key, each in value.items()}
+        return {key: in_si(f"{where}.{key}", each, below(kinds, key)) for key, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        parts = [in_si(f"{where}[{i}]", each, below(kinds, i)) for i, each in enumerate(value)]
+        return value if all(one is other for one, other in zip(parts, value, strict=True)) else type(value)(parts)
+    kind = only(kinds)
+    if kind in ("", PLAIN):
+        return value
+    if getattr(getattr(value, "dtype", None), "kind", "") == "U":
+        listed = value.tolist()
+        return value if (read := in_si(where, listed, kind)) is listed else read
+    try:
+        if isinstance(value, str):
+            return quantity(value, kind) if kind != WRITTEN and BEGINNING.match(value) else value
+        if hasattr(value, "magnitude") and hasattr(value, "dimensionality"):  # of pint
+            return _of_pint(value, kind)
+    except UnitError as error:
+        raise InputError(where, error.problem, error.hint) from None
     return value
+
+
+def _of_pint(value: Any, kind: str) -> Any:
+    """A quantity of pint in SI, or as the text of a scenario."""
+    unit, number = re.sub(r"\bg\b", "gram", f"{value.units:~P}"), value.magnitude
+    if kind == WRITTEN:
+        texts = [f"{float(each)!r} {unit}".strip() for each in getattr(number, "flat", [number])]
+        return texts if getattr(number, "ndim", 0) else texts[0]
+    if not unit and not KINDS[kind].unit:
+        return number
+    if isinstance(number, (int, float)):
+        return quantity(f"{float(number)!r} {unit}", kind)
+    return number * quantity(f"1 {unit}", kind)
 
 
 def argument(text: str, kind: str) -> float:

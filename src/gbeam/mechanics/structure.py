@@ -11,7 +11,7 @@ from gbeam.arrays.namespace import Array, holds_jax, is_jax, namespace
 from gbeam.arrays.tree import Value, record, static
 from gbeam.constants import Shapes
 from gbeam.errors import InputError
-from gbeam.guards.arguments import typed
+from gbeam.guards.arguments import typed, typed_methods
 from gbeam.guards.checks import implausible, positive
 from gbeam.mechanics.equations.dalembert import Complete, CompleteHub, FreeHub, OnBase, OnHub, free_hub, ground_of
 from gbeam.mechanics.equations.inertia import Inertia
@@ -84,6 +84,7 @@ class Source(Value):
     shapes: Shapes
 
 
+@typed_methods
 @record
 class Structure:
     """A structure in a model's coordinates; made by :func:`gbeam.assemble`, or of particles by :meth:`of_particles`.

@@ -381,3 +381,6 @@ RULES: dict[str, Rule] = {
     name: replace(get_args(hint)[1], name=name) for name, hint in get_type_hints(Limits, include_extras=True).items()
 }
 SETTINGS = tuple(name for name in Acceptance.__annotations__ if name not in RULES)  # beside the limits
+# Kinds of quantity of limits, and of the tolerance that may stand beside them.
+KINDS_OF_LIMITS = {name: "amplitude ratio" if rule.kind == "level" else "ratio" for name, rule in RULES.items()}
+KINDS_OF_LIMITS["tolerance"] = "ratio"

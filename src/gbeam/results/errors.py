@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from gbeam.guards.arguments import typed_methods
 from gbeam.results.declared import declared, fact, internal, labels, part, quantity, rows
 from gbeam.results.result import Complex, Floats, Part
 
@@ -52,6 +53,7 @@ class ErrorEstimate(Part):
         return ", ".join(known) or "not known"
 
 
+@typed_methods
 @dataclass(frozen=True, repr=False, eq=False)
 class Errors(Part):
     """Estimated errors of a response, or of a static deflection, which takes no time steps."""

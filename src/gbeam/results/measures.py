@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from gbeam.guards.arguments import typed_methods
 from gbeam.results.declared import declared, fact, internal, part, quantity
 from gbeam.results.result import Floats, Part
 
@@ -119,6 +121,7 @@ class Statistics(Part):
         return self.trend_centrifuge - self.trend_flight
 
 
+@typed_methods
 @dataclass(frozen=True, repr=False, eq=False)
 class Mismatch(Part):
     """Acceleration that grows with the distance from the control point: Δa(x, t) = gradient(t) (x − x_c)."""
@@ -172,7 +175,7 @@ class Mismatch(Part):
             share = np.where(self.max_gradient > 0, np.abs(self.gradient) / self.max_gradient, 0.0)
         return np.asarray(self.tip_bound * share)
 
-    def field(self, x: Floats) -> Floats:
+    def field(self, x: ArrayLike) -> Floats:
         """Δa at positions `x` (s,) m from the root, (t, s, 3) m/s²."""
         return self.gradient[:, None, :] * (np.asarray(x)[:, None] - self.control_point)
 

@@ -13,11 +13,13 @@ from gbeam.arrays.types import Flags, Floats, Indices, Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
+from gbeam.guards.kinds import Kinds, kinds
 from gbeam.mechanics.equations.linear import coefficients, geometric_of
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.plausibility import implausible_material
 from gbeam.mechanics.reduction import inertial_loads, linear_fields, particles_of, reduce
 from gbeam.mechanics.structure import Structure, linear_structure
+from gbeam.mechanics.tree.joints import kind_of_value
 from gbeam.mechanics.tree.system import Place, RigidBody
 from gbeam.numerics.sparse import refuse_cost
 from gbeam.solids.cad import mesh_of
@@ -42,7 +44,7 @@ from gbeam.solids.foreign import (
     refuse_missing,
     unit_size,
 )
-from gbeam.solids.links import Linked, Links, LinkSpring, attached, refuse_names
+from gbeam.solids.links import WAYS, Linked, Links, LinkSpring, attached, refuse_names
 from gbeam.solids.model import SolidModel, beside, hardly_coarser
 from gbeam.solids.placed import Placed, with_cards
 from gbeam.solids.plausibility import doubts_of, refuse_folded, refuse_loose
@@ -52,6 +54,13 @@ from gbeam.structure.attachments import TIP, checked_name
 from gbeam.structure.material import Material, Orthotropic
 
 MIDDLE = 1e-6  # of half of the thickness of a shell: a place that is nearer to the middle is on neither side
+
+
+def _kinds_of_points(arguments: Mapping[str, Any]) -> Kinds:
+    """Kinds of places by name, some of which are names of groups."""
+    points = arguments.get("points")
+    places = points.items() if isinstance(points, Mapping) else ()
+    return {name: "length" for name, at in places if not isinstance(at, str)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,6 +116,9 @@ class SolidMesh(Value):
     turns: dict[str, Numbers] = field(default_factory=dict)
 
     @classmethod
+    @kinds(
+        springs={"*": {"stiffness": {way: kind_of_value("stiffness", way) for way in WAYS}}}, points=_kinds_of_points
+    )
     @typed
     def read(
         cls,

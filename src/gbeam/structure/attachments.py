@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,7 @@ from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive
+from gbeam.guards.kinds import kinds
 
 if TYPE_CHECKING:
     from gbeam.motion import Profile
@@ -153,6 +155,14 @@ class PointMass(Value):
         return any(is_jax(value) for value in (self.mass, *self.inertia))
 
 
+def _spread(arguments: Mapping[str, Any]) -> bool:
+    return arguments.get("at") is None
+
+
+@kinds(
+    force=lambda arguments: "force per length" if _spread(arguments) else "force",
+    moment=lambda arguments: "force" if _spread(arguments) else "torque",  # N m/m
+)
 @typed
 @dataclass(frozen=True, eq=False)
 class Load(Value):

@@ -18,6 +18,7 @@ from gbeam.constants import SectionShape
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive, possible
+from gbeam.guards.kinds import kind_of_argument, kinds
 from gbeam.structure.material import Material
 from gbeam.structure.matrices import between, matrices_of, read_matrices, refuse_impossible
 from gbeam.structure.matrices import listed as matrices
@@ -43,6 +44,14 @@ KINDS = {
 _UNITS = {"area": "m²", "second moment": "m⁴", "shear coefficient": "(a number)"}
 
 
+@kinds(
+    dimensions={
+        name: kind_of_argument("of", name, {})
+        for kind, shape in SHAPES.items()
+        for name in (*shape.required, *shape.optional)
+        if kind != MATRICES  # of mixed units
+    }
+)
 @typed
 @dataclass(frozen=True, eq=False)
 class Section(Value):
@@ -369,7 +378,7 @@ class Section(Value):
         return SectionValues(area, inertia_y, inertia_z, fibre_y, fibre_z, round=self.shape in ROUND)
 
     def torsion_constant(self, x: ArrayLike) -> Floats:
-        """J at positions `x`, m⁴; NaN where it is not known."""
+        """J, m⁴, at positions `x`, m; NaN where it is not known."""
         return as_array(SHAPES[self.shape].torsion(**self._local(x)))
 
     def shear_coefficients(self, x: ArrayLike, poissons_ratio: float) -> tuple[Floats, Floats]:

@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
 
-from gbeam.analysis.case import Case, SystemCase
-from gbeam.analysis.control.plants import driven, movable
+from gbeam.analysis.case import AnyCase, Case, SystemCase
+from gbeam.analysis.control.plants import DRIVES, driven, movable
 from gbeam.analysis.control.shaping import profile_of, shape_command
 from gbeam.analysis.model_study import counterpart, of_kind
 from gbeam.constants import ModelKind
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice
+from gbeam.guards.kinds import kinds
 from gbeam.mechanics.models import KINDS
 from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.system import System
@@ -35,6 +36,17 @@ _POINTS = 401  # of a table: straight lines between them are off by 1e-4 of a sm
 _AFTER = 1.25  # times the command: how long a scenario of it lasts at least
 
 
+def _drive(arguments: Mapping[str, Any]) -> tuple[bool, bool]:
+    """True if an effort drives, and if what is driven slides."""
+    case = template_of(arguments["scenario"], arguments.get("overrides", ())).built()
+    _, name, hub = driven_of(case, arguments.get("motion"), arguments.get("joint"))
+    return hub.free, slides(name)
+
+
+@kinds(
+    limit=lambda arguments: DRIVES[_drive(arguments)][1],
+    rate=lambda arguments: "speed" if _drive(arguments)[1] else "angular rate",
+)
 @typed
 def shape_hub_command(
     scenario: str | os.PathLike[str] | Case | SystemCase,
@@ -99,16 +111,11 @@ def shape_hub_command(
     >>> gb.shape_hub_command(hub, duration=20.0).outcome
     'done'
     """
-    case = template_of(scenario, overrides).built()
+    case, name, hub = driven_of(template_of(scenario, overrides).built(), motion, joint)
     if isinstance(case, SystemCase):
-        name, hub = driven_joint(case, joint)
         structure: Any = _grounded(case, motion)
         turned: Any = name
     else:
-        case = case.one_beam("bodies", "gbeam shape")
-        if joint is not None:
-            raise InputError("--joint", f"is {joint!r}, and the scenario is of one beam", "name its hub by --motion")
-        name, hub = hub_of(case, motion)
         structure, turned = case, driven(hub, constant(0.0))  # mounted as it is: free, or at rate zero
     where = f"joints.{name}" if isinstance(case, SystemCase) else f"motion.{name}"
     if case.automatic:
@@ -117,7 +124,7 @@ def shape_hub_command(
         raise InputError("--check", f"is {check!r}", advise(check, KINDS))
     if angle is None and rate is None and distance is None:
         angle, rate = _goal(hub, where)
-        if isinstance(case, SystemCase) and slides(name):
+        if slides(name):
             angle, distance = None, angle
     if duration is None:
         duration = _end(hub, where)
@@ -138,6 +145,16 @@ def shape_hub_command(
             raise error.at(f"motion.{motion_of(case.motions, motion)}") from None
         raise error.within("system" if isinstance(case, SystemCase) else where) from None
     return replace(shaped, motion=name, provenance=case.provenance)
+
+
+def driven_of(case: AnyCase, motion: str | None, joint: str | None) -> tuple[Case | SystemCase, str, Hub]:
+    """The case, and what a command drives: a coordinate of its system and a hub of its rate, or free; or its hub."""
+    if isinstance(case, SystemCase):
+        return case, *driven_joint(case, joint)
+    case = case.one_beam("bodies", "gbeam shape")
+    if joint is not None:
+        raise InputError("--joint", f"is {joint!r}, and the scenario is of one beam", "name its hub by --motion")
+    return case, *hub_of(case, motion)
 
 
 def hub_of(case: Case, name: str | None) -> tuple[str, Hub]:
@@ -173,8 +190,9 @@ def driven_joint(case: SystemCase, name: str | None) -> tuple[str, Hub]:
 
 
 def slides(coordinate: str) -> bool:
-    """True if a coordinate is a displacement."""
-    return coordinate.rpartition(".")[2] in SLIDES
+    """True if a coordinate is a displacement; a hub, by its name alone, is none."""
+    joint, _, moved = coordinate.rpartition(".")
+    return bool(joint) and moved in SLIDES
 
 
 def _grounded(case: SystemCase, name: str | None) -> System:

@@ -19,11 +19,11 @@ from gbeam.analysis.case import AnyCase, Case, SpecimenCase, SystemCase
 from gbeam.analysis.system.histories import beams_of
 from gbeam.arrays.tree import altered, arguments_of
 from gbeam.errors import InputError, placing_within
-from gbeam.guards.kinds import KINDS, kind_of_argument
+from gbeam.guards.kinds import KINDS, Kinds, below, kind_of_argument, only
 from gbeam.guards.units import read_quantity
 from gbeam.mechanics.assembly import assemble, model_of
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.joints import COUPLINGS, GROUND, OF_COORDINATES, SLIDES, Joint, kind_of_value
+from gbeam.mechanics.tree.joints import GROUND
 from gbeam.mechanics.tree.system import RigidBody, System
 from gbeam.printable import advise
 from gbeam.results.provenance import Provenance
@@ -39,6 +39,7 @@ from gbeam.structure.beam import Beam
 if TYPE_CHECKING:
     from gbeam.scenario.load import AnyScenario
 
+_KINDS: Kinds = {"system": {"gravity": "acceleration"}}  # of what is no argument of an object of a case
 _LONGEST = 100  # numbers of a list that are values of a study; more are a record
 
 
@@ -219,7 +220,7 @@ class CaseTemplate:
                     node[step] = {}
                 node = node[step]
             node[steps[-1]] = value.strip()
-        parts = _with(self._tree, "", wanted, ())
+        parts = _with(self._tree, _KINDS, wanted, ())
         motions: dict[str, Any] = parts.pop("motion")
         for machine, flight in self.case.tracks.items():
             if motions.get(flight) is not self.case.motions.get(flight):
@@ -236,17 +237,17 @@ class CaseTemplate:
         return self.case
 
     def quantities(self) -> dict[str, tuple[float, str]]:
-        every = {path_text(path): (value, kind) for path, value, kind in _numbers(self._tree, "", ())}
+        every = {path_text(path): (value, kind) for path, value, kind in _numbers(self._tree, _KINDS, ())}
         # A machine that tracks a flight of the case has it from there.
         copies = tuple(f"motion.{machine}.flight." for machine in self.case.tracks)
         return {path: each for path, each in every.items() if not path.startswith(copies)}
 
     def unit(self, path: str) -> str:
         node: Any = self._tree
-        kind = ""
+        kinds = _KINDS
         for step in parse_path(path) or ():
-            node, kind = _below(node, kind).get(step, (None, ""))
-        return KINDS[kind].unit if kind else ""
+            node, kinds = _below(node, kinds).get(step, (None, ""))
+        return KINDS[kind].unit if (kind := only(kinds)) else ""
 
 
 Template = ScenarioTemplate | CaseTemplate
@@ -261,31 +262,21 @@ def template_of(
     return ScenarioTemplate(scenario_of(scenario, overrides, distributions=distributions))
 
 
-def _below(node: Any, kind: str) -> dict[Any, tuple[Any, str]]:
+def _below(node: Any, kinds: Kinds) -> dict[Any, tuple[Any, Kinds]]:
     """Children of a node by name or number, of their own kind of quantity or of that which they are arguments of."""
     if isinstance(node, (tuple, list)) or np.ndim(node):
-        return {k: (each, kind) for k, each in enumerate(node)}
-    owner = getattr(node, "owner", type(node).__name__)
-    arguments = dict(node) if isinstance(node, Mapping) else arguments_of(node) or {}
-    return {name: (each, _kind(node, owner, name) or kind) for name, each in arguments.items()}
+        return {k: (each, only(kinds)) for k, each in enumerate(node)}
+    if isinstance(node, Mapping):
+        return {name: (each, below(kinds, name)) for name, each in node.items()}
+    owner, arguments = getattr(node, "owner", type(node).__name__), arguments_of(node) or {}
+    return {name: (each, kind_of_argument(owner, name, arguments) or kinds) for name, each in arguments.items()}
 
 
-def _kind(node: Any, owner: str, name: str) -> str:
-    """Kind of an argument of an object; of a joint that of its coordinates, where these are of one kind."""
-    if isinstance(node, Joint) and name in OF_COORDINATES:
-        kinds = {kind_of_value(name, each) for each in node.coordinates}
-        return kinds.pop() if len(kinds) == 1 else ""
-    if isinstance(node, Joint) and name == "coupling":
-        counts = {sum(each in SLIDES for each in str(pair).split("-")) for pair in node.coupling or ()}
-        return COUPLINGS[counts.pop()] if len(counts) == 1 else ""
-    return kind_of_argument(owner, name)
-
-
-def _with(node: Any, kind: str, wanted: Any, path: Path) -> Any:
+def _with(node: Any, kinds: Kinds, wanted: Any, path: Path) -> Any:
     """The node with other values, SI or text with a unit, at some places below it."""
     if isinstance(wanted, str):
-        return _read(node, kind, wanted, path)
-    known = _below(node, kind)
+        return _read(node, only(kinds), wanted, path)
+    known = _below(node, kinds)
     for step in wanted:
         if step not in known:
             below = [
@@ -317,12 +308,12 @@ def _read(current: Any, kind: str, text: str, path: Path) -> Any:
     return int(value) if isinstance(current, int) and value == int(value) else value
 
 
-def _numbers(node: Any, kind: str, path: Path) -> Iterator[tuple[Path, float, str]]:
+def _numbers(node: Any, kinds: Kinds, path: Path) -> Iterator[tuple[Path, float, str]]:
     """Every number below a node, with its path and kind; counts are none."""
     if isinstance(node, (bool, str, int)) or np.size(node) > _LONGEST:
         return
     if isinstance(node, float) or (hasattr(node, "dtype") and np.ndim(node) == 0):
-        yield path, float(node), kind or "ratio"
+        yield path, float(node), only(kinds) or "ratio"
         return
-    for step, (value, of) in _below(node, kind).items():
+    for step, (value, of) in _below(node, kinds).items():
         yield from _numbers(value, of, (*path, step))

@@ -7,8 +7,10 @@ as it turns, is then made least by Gauss-Newton steps along the exact derivative
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -18,6 +20,7 @@ from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
+from gbeam.guards.kinds import kinds
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.hub import Hub
@@ -36,6 +39,19 @@ _MISSED = 0.01  # of the goal, as a run's vibration moves what is driven
 _BETTER = 0.9  # a step that leaves more than this share is the last
 
 
+def _drive(arguments: Mapping[str, Any]) -> tuple[bool, bool]:
+    """True if an effort drives, and if what is driven slides."""
+    structure, hub = (arguments.get(name) for name in ("structure", "hub"))
+    if isinstance(hub, Hub) or not isinstance(structure, System):
+        return isinstance(hub, Hub) and hub.free, False
+    driven = OnJoint(structure, str(hub), "")
+    return driven.free, driven.slides
+
+
+@kinds(
+    limit=lambda arguments: DRIVES[_drive(arguments)][1],
+    rate=lambda arguments: "speed" if _drive(arguments)[1] else "angular rate",
+)
 @typed
 def shape_command(
     structure: Structure | System,

@@ -15,10 +15,11 @@ from gbeam.constants import ToleranceOf
 from gbeam.errors import InputError, placing_within
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import index_of, positive
+from gbeam.guards.kinds import kinds
 from gbeam.numerics.samples import interpolated, largest_riding_acceleration, low_pass
 from gbeam.results.accounting import TOLERANCE, PeakPair
 from gbeam.results.comparison import Comparison
-from gbeam.results.criteria import STRESS_AT, Limits, checked_limits
+from gbeam.results.criteria import KINDS_OF_LIMITS, STRESS_AT, Limits, checked_limits
 from gbeam.results.measures import (
     Mismatch,
     RootHistory,
@@ -117,6 +118,7 @@ _FEWEST = 16  # samples worth filtering
 _ROUNDING = 1e-12  # of the last time
 
 
+@kinds(accept=KINDS_OF_LIMITS)
 @typed
 def compare(
     flight: Response | SystemResponse,

@@ -16,6 +16,7 @@ from gbeam.analysis.imitation.accounting import (
 from gbeam.arrays.types import Floats
 from gbeam.constants import ToleranceOf
 from gbeam.guards.arguments import typed
+from gbeam.guards.kinds import kinds
 from gbeam.guards.limits import SAMPLES, refuse_more
 from gbeam.motion import Centrifuge
 from gbeam.motion.centrifuge.kinematics import axes_result, axis_angles
@@ -23,13 +24,14 @@ from gbeam.motion.protocol import implausible_motion
 from gbeam.progress import Progress, tell
 from gbeam.results.accounting import TOLERANCE, PeakPair
 from gbeam.results.comparison import MachinePlan
-from gbeam.results.criteria import BROKEN, Limits, checked_limits
+from gbeam.results.criteria import BROKEN, KINDS_OF_LIMITS, Limits, checked_limits
 from gbeam.results.machine import Commands
 from gbeam.structure.beam import Beam
 
 _FINE = 1e-3  # s: the angle of axis 1 is integrated on times no further apart
 
 
+@kinds(accept=KINDS_OF_LIMITS)
 @typed
 def plan(
     name: str,

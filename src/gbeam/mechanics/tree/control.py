@@ -6,7 +6,7 @@ import math
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import reduce
+from functools import partial, reduce
 from inspect import signature
 from typing import Any, Literal
 
@@ -18,11 +18,20 @@ from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive, refuse_traced
+from gbeam.guards.kinds import Kinds, kinds
+from gbeam.mechanics.tree.signals import kind_of_drive, kind_of_signal
 from gbeam.motion.profiles.combine import as_profile
 
 Step = Callable[[float, Floats, Any], tuple[Any, Any]]
 
 
+def _kinds(key: str, kind: Callable[[str], str], arguments: Mapping[str, Any]) -> Kinds:
+    """Kinds of what is said of each of some names."""
+    names = arguments.get(key)
+    return tuple(kind(str(name)) for name in names) if isinstance(names, (list, tuple)) else ""
+
+
+@kinds(limit=partial(_kinds, "drive", kind_of_drive), reference=partial(_kinds, "measure", kind_of_signal))
 @typed
 @dataclass(frozen=True, eq=False)
 class Feedback(Value):
@@ -50,7 +59,7 @@ class Feedback(Value):
     delay : float
         Time from a sample until its efforts act, s.
     limit : float or sequence of float, optional
-        Largest size of the efforts, of all or of each.
+        Largest size of the efforts, of all or of each, N or N m.
     reference : float, Profile or sequence of these, optional
         The law is given what the measurements lack of it, reference − y, one for each measurement.
     state : optional

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, NamedTuple, get_args
 
 import numpy as np
@@ -16,6 +17,7 @@ from gbeam.constants import Coordinate, Direction, JointKind, Rate
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, choice, finite, positive, vector
+from gbeam.guards.kinds import Kinds, kinds
 from gbeam.mechanics.tree.course import Course
 from gbeam.mechanics.tree.equations import Holder
 from gbeam.mechanics.tree.steps import (
@@ -61,6 +63,20 @@ COUPLINGS = ("rotational stiffness", "force", "stiffness")  # of two coordinates
 def kind_of_value(key: str, coordinate: str) -> str:
     """Kind of quantity of what a key says of a coordinate."""
     return OF_COORDINATES[key][coordinate not in SLIDES]
+
+
+def _kinds_of(key: str, arguments: Mapping[str, Any]) -> Kinds:
+    """Kinds of what a key says of a joint, by its arguments."""
+    name: Any = str(arguments.get("kind"))
+    kind = KINDS.get(name)
+    return {} if kind is None else {each: kind_of_value(key, each) for each in kind.names_in(key)}
+
+
+def _kinds_of_coupling(arguments: Mapping[str, Any]) -> Kinds:
+    """Kinds of the stiffness between two coordinates, by both names."""
+    pairs = arguments.get("coupling")
+    names = pairs if isinstance(pairs, Mapping) else ()
+    return {pair: COUPLINGS[sum(each in SLIDES for each in str(pair).split("-")[:2])] for pair in names}
 
 
 class Kind(NamedTuple):
@@ -110,6 +126,7 @@ KINDS: dict[JointKind, Kind] = {
 }
 
 
+@kinds(coupling=_kinds_of_coupling, **{key: partial(_kinds_of, key) for key in OF_COORDINATES})
 @typed
 @dataclass(frozen=True, eq=False)
 class Joint(Value):
@@ -132,25 +149,25 @@ class Joint(Value):
     turn : (3,)
         Rotation vector of the body's root axes in those of the point where all coordinates are zero, rad.
     initial, initial_rate : float or mapping of str to float
-        Coordinates and rates at the start, zero unless given, by name (``angle``, ``displacement``, ``angle_1``,
-        ``angle_2``, ``x``, ``y``, ``z``); of a single coordinate just its value. A spherical or free joint turns by the
-        rotation vector ``rx``, ``ry``, ``rz``, of half a turn at most, from where `turn` sets it, at the angular
-        velocity ``wx``, ``wy``, ``wz``, both in axes of the body: `initial`, springs and stops are given by the former,
-        `initial_rate`, `damping`, `friction`, `rate` and `effort` by the latter.
+        Coordinates, m or rad, and rates, m/s or rad/s, at the start, zero unless given, by name (``angle``,
+        ``displacement``, ``angle_1``, ``angle_2``, ``x``, ``y``, ``z``); of a single coordinate just its value. A
+        spherical or free joint turns by the rotation vector ``rx``, ``ry``, ``rz``, of half a turn at most, from where
+        `turn` sets it, at the angular velocity ``wx``, ``wy``, ``wz``, both in axes of the body: `initial`, springs and
+        stops are given by the former, `initial_rate`, `damping`, `friction`, `rate` and `effort` by the latter.
     stiffness, ease, damping, friction : float or mapping of str to float
-        Spring, N/m or N m/rad, coordinate at which it has no force, damper, N s/m or N m s/rad, and Coulomb friction, N
-        or N m, of each coordinate. A ``fixed`` joint gives way along and about the axes that have a stiffness: ``x``,
-        ``y``, ``z``, ``rx``, ``ry``, ``rz``, the last three components of a rotation vector.
+        Spring, N/m or N m/rad, coordinate at which it has no force, m or rad, damper, N s/m or N m s/rad, and Coulomb
+        friction, N or N m, of each coordinate. A ``fixed`` joint gives way along and about the axes that have a
+        stiffness: ``x``, ``y``, ``z``, ``rx``, ``ry``, ``rz``, the last three components of a rotation vector.
     coupling : mapping of str to float, optional
         Stiffness between two coordinates, by both names, such as ``{"y-rz": -2e4}``: with the springs of all six
         directions the 6 × 6 stiffness of a fixture, N/m, N, or N m.
     stops : pair of float or mapping of str to pairs
-        Lowest and highest coordinate, at which stops begin to give way.
+        Lowest and highest coordinate, m or rad, at which stops begin to give way.
     stop_stiffness : float or mapping of str to float
         Of the stops, N/m or N m/rad.
     rate : Profile or mapping of str to Profile, optional
-        Prescribed rates: such coordinates are no unknowns, and what their drives need is a result. Of ``wx``, ``wy``
-        and ``wz`` all three are prescribed, or none.
+        Prescribed rates, m/s or rad/s: such coordinates are no unknowns, and what their drives need is a result. Of
+        ``wx``, ``wy`` and ``wz`` all three are prescribed, or none.
     effort : Profile or mapping of str to Profile, optional
         Force or torque of a drive on each coordinate, N or N m.
 

@@ -6,8 +6,9 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gbeam.arrays.namespace import Array, concatenated, namespace
+from gbeam.guards.kinds import KINDS
 from gbeam.mechanics.tree.frames import turned
-from gbeam.mechanics.tree.joints import SLIDES, SPIN
+from gbeam.mechanics.tree.joints import SPIN, kind_of_value
 from gbeam.mechanics.tree.steps import parameters_of_all, vector_of
 
 if TYPE_CHECKING:
@@ -25,6 +26,33 @@ class Driven(NamedTuple):
     force: int = 0
 
 
+# Kinds of what is measured at points, of joints but for their coordinates, and of what sections carry, axes of its own.
+_OF_POINTS = {
+    "place": "length",
+    "velocity": "speed",
+    "attitude": "angle",
+    "acceleration": "acceleration",
+    "spin": "angular rate",
+}
+CARRIED = {"force": "force", "moment": "torque"}
+
+
+def kind_of_signal(name: str) -> str:
+    """Kind of quantity of what may be measured, by its name."""
+    signal = name.rpartition(".")[2]
+    kind = (_OF_POINTS | CARRIED).get(signal.rpartition("_")[0])
+    if kind is not None:
+        return kind
+    rate = signal.removesuffix("_rate")
+    return kind_of_value("initial_rate" if rate != signal or signal in SPIN else "initial", rate)
+
+
+def kind_of_drive(name: str) -> str:
+    """Kind of quantity of what may drive a system, by its name."""
+    drive = name.rpartition(".")[2]
+    return CARRIED.get(drive.rpartition("_")[0]) or kind_of_value("effort", drive)
+
+
 def deforming(names: Sequence[str], body: str) -> list[int]:
     """Numbers of those among coordinates that deform a body, by their names."""
     return [k for k, each in enumerate(names) if each.startswith(f"{body}.q")]
@@ -40,12 +68,13 @@ def local_names(coordinates: Iterable[str]) -> list[str]:
 def drives_of(system: System) -> dict[str, Driven]:
     """Efforts on the coordinates of joints, ``joint.angle``, and components of forces, ``thrust.force_x``, by name."""
     drives = {}
-    rates = [(f"{owner}.{rate}", rate) for owner, joint in system.joints.items() for rate in joint.rate_names]
-    for each, rate in sorted(rates, key=lambda pair: system.row(pair[0])):
-        drives[each] = Driven("effort", system.row(each), "N" if rate in SLIDES else "N m")
+    rates = [f"{owner}.{rate}" for owner, joint in system.joints.items() for rate in joint.rate_names]
+    for each in sorted(rates, key=system.row):
+        drives[each] = Driven("effort", system.row(each), KINDS[kind_of_drive(each)].unit)
     for k, owner in enumerate(system.forces):
-        for i, (kind, unit) in enumerate((("force", "N"), ("moment", "N m"))):
-            drives |= {f"{owner}.{kind}_{axis}": Driven("wrenches", 3 * i + j, unit, k) for j, axis in enumerate("xyz")}
+        for i, (each, kind) in enumerate(CARRIED.items()):
+            unit = KINDS[kind].unit
+            drives |= {f"{owner}.{each}_{axis}": Driven("wrenches", 3 * i + j, unit, k) for j, axis in enumerate("xyz")}
     return drives
 
 
@@ -60,11 +89,10 @@ def signals_of(system: System) -> dict[str, str]:
     signals: dict[str, str] = {}
     for name, joint in system.joints.items():
         for value, rate in zip(joint.values, joint.rate_names, strict=True):
-            unit = "m" if value in SLIDES else "rad"
-            signals |= {f"{name}.{value}": unit, f"{name}.{rate_signal(rate)}": f"{unit}/s"}
-    units = {"place": "m", "velocity": "m/s", "attitude": "rad", "acceleration": "m/s^2", "spin": "rad/s"}
+            names = f"{name}.{value}", f"{name}.{rate_signal(rate)}"
+            signals |= {each: KINDS[kind_of_signal(each)].unit for each in names}
     for point in system.points:
-        signals |= {f"{point}.{kind}_{axis}": unit for kind, unit in units.items() for axis in "xyz"}
+        signals |= {f"{point}.{each}_{axis}": KINDS[kind].unit for each, kind in _OF_POINTS.items() for axis in "xyz"}
     return signals
 
 
@@ -79,14 +107,12 @@ def rate_signal(rate: str) -> str:
     return rate if rate in SPIN else f"{rate}_rate"
 
 
-CARRIED = {"force": "N", "moment": "N m"}  # by a section, axes of its own
-
-
 def carried_of(system: System) -> dict[str, str]:
     """Names of what sections of beams carry, as gauges there know it, with their units: ``strip.root.moment_y``."""
     beams = [name for name in system.order if getattr(system.bodies[name], "sections", None) is not None]
     points = [f"{name}.{point}" for name in beams for point in system.points_of(name)]
-    return {f"{each}.{kind}_{axis}": unit for each in points for kind, unit in CARRIED.items() for axis in "xyz"}
+    names = [f"{each}.{kind}_{axis}" for each in points for kind in CARRIED for axis in "xyz"]
+    return {each: KINDS[kind_of_signal(each)].unit for each in names}
 
 
 def measurable(system: System) -> dict[str, str]:

@@ -12,7 +12,7 @@ import numpy as np
 from gbeam.arrays.namespace import as_array, is_jax, namespace
 from gbeam.arrays.tree import assign, record
 from gbeam.arrays.types import Floats
-from gbeam.guards.arguments import refuse_units, typed
+from gbeam.guards.arguments import typed, typed_methods
 from gbeam.guards.checks import positive
 from gbeam.guards.limits import KNOTS, refuse_more
 from gbeam.numerics.series import Series, compose, where
@@ -26,12 +26,17 @@ TOGETHER = 1_000_000  # knots or nodes of the windows around some times: what mo
 STEPS_PER_EVENT = 4  # a rounded corner or a pulse of so many steps is resolved
 
 
+@typed_methods
 class Profile(ABC):
     """A scalar or vector given over time, with its time derivatives in closed form.
 
     NumPy arrays in, NumPy arrays out; JAX arrays and tracers pass, in the times as in the profile's own values, which
     are the leaves of a pytree: profiles can be traced, mapped and differentiated with respect to them.
     """
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        typed_methods(cls)
 
     @abstractmethod
     def series(self, t: Any, order: int) -> Series:
@@ -42,12 +47,10 @@ class Profile(ABC):
 
     def __call__(self, t: Any) -> Any:
         """Value at times `t` (s, any shape): of the shape of `t`, with a trailing 3 for a vector."""
-        refuse_units("t", t)
         return self.series(t, 0).value
 
     def derivatives(self, t: Any, order: int = 1) -> tuple[Any, ...]:
         """Value and time derivatives up to `order` at times `t` (s), each like the value."""
-        refuse_units("t", t)
         return self.series(t, order).derivatives()
 
     def integral(self, t: Any) -> Any | None:
