@@ -27,8 +27,8 @@ from gbeam.results.errors import ErrorEstimate, SystemErrors
 from gbeam.results.parts import Base
 
 Again = Callable[[System], Solution]
-Begun = Callable[[int], State | None]  # state of so many unknowns in which richer bodies begin
-Rerun = Callable[[System, Iterable[str]], Reading]  # of another system, and of some of its bodies
+Begun = Callable[[int], State | None]  # initial state of so many unknowns of a richer system; None: in equilibrium
+Rerun = Callable[[System, Iterable[str]], Reading]  # runs another system, and reads some of its bodies
 FEWEST = 3  # times of a response that is judged
 FAR = "shapes and models are not judged: a system with more shapes does not follow"
 
@@ -53,9 +53,9 @@ def system_errors(
     settled: bool,
     start: Floats | None = None,
 ) -> SystemErrors:
-    """Errors of the places of all points, as fractions of the largest displacement, from the first of them or a `start`
-    (p, 3), and of the beams' root loads and stress, beside those of the steps; bodies begin `settled` or undeformed.
-    Richer systems are run `again` if it is given: where controllers answer what is lacking, and at rest.
+    """Errors of the places of all points, over the largest displacement from the first places or a `start` (p, 3), and
+    of the beams' root loads and stress; `steps` has the errors of the time steps. Bodies begin `settled`, in
+    equilibrium, or undeformed. Richer systems are linearised, or run by `again` if given (with controllers, at rest).
     """
     judged, note, count = judged_bodies(solution.system), left_unjudged(solution.system), len(solution.of.time)
     step = steps.get(PLACE, math.nan)
@@ -64,15 +64,15 @@ def system_errors(
         return SystemErrors(ErrorEstimate(step, none, none, total=step + none), note=note)
     computed = solution.read(judged)
     place = computed[PLACE]
-    sizes = {key: largest(each) for key, each in computed.items()}
+    sizes = {quantity: largest(values) for quantity, values in computed.items()}
     sizes[PLACE] = float(np.linalg.norm(place - (place[0] if start is None else start), axis=-1).max())
     bases, nothing = solution.bases(judged), set[Quantity]()
-    for name, each in judged.items():
-        inertia = each.coefficients.rigid[0] * largest(bases[name].a_WO_B)
-        nothing |= negligible(sizes, name, each.length, inertia)
+    for name, body in judged.items():
+        inertia = body.coefficients.rigid[0] * largest(bases[name].a_WO_B)
+        nothing |= negligible(sizes, name, body.length, inertia)
     if unmoved(sizes[PLACE], place):
         nothing.add(PLACE)
-    exact = all(each.richer or each.kind == "exact" for each in judged.values())
+    exact = all(body.richer or body.kind == "exact" for body in judged.values())
     rerun = None if again is None else _rerun(again, count)
 
     def begun(size: int) -> State | None:
@@ -81,13 +81,13 @@ def system_errors(
     with np.errstate(all="ignore"):
         try:
             if rerun is None:
-                truth, few, *alone = _departing(solution, bases, computed, begun, exact=exact)
-                shapes, model = (few, truth), (computed, few)
+                truth, few_shapes, *alone = _departing(solution, bases, computed, begun, exact=exact)
+                shapes, model = (few_shapes, truth), (computed, few_shapes)
             else:
                 same = truth = rerun(richer(solution.system, bases, exact=True).system, judged)
                 alone = [
-                    _alone(rerun, richer(solution.system, {name: each}, exact=True).system, truth)
-                    for name, each in bases.items()
+                    _alone(rerun, richer(solution.system, {name: base}, exact=True).system, truth)
+                    for name, base in bases.items()
                     if len(bases) > 1
                 ]
                 if not exact:
@@ -95,7 +95,7 @@ def system_errors(
                         same = rerun(richer(solution.system, bases, exact=False).system, judged)
                     except ComputationError:
                         same, note = computed, "; ".join(filter(None, (note, TOGETHER)))
-                # Between a system with more shapes of the same models and the exact one is what the models leave out.
+                # The errors of models lie between the system with more shapes of the same models and the exact one.
                 shapes, model = (computed, same), (same, truth)
         except (ComputationError, np.linalg.LinAlgError):
             return SystemErrors(ErrorEstimate(step), note=FAR)
@@ -117,7 +117,7 @@ def system_errors(
         loads=worst(loads),
         stress=worst(stress),
         beams=tuple(judged),
-        by_beam=np.array([judgement.apart(PLACE, (computed, each)) for each in alone or [truth]]),
+        by_beam=np.array([judgement.apart(PLACE, (computed, better)) for better in alone or [truth]]),
         loads_by_beam=np.array([each.total for each in loads]),
         stress_by_beam=np.array([each.total for each in stress]),
         theory=tuple(described(judged[name], lacking.causes.get(name, {})) for name in judged),
@@ -126,30 +126,31 @@ def system_errors(
 
 
 def doubts(errors: SystemErrors, tolerance: float) -> tuple[str, ...]:
-    """Warnings of what is wrong by more than a tolerance, and of what is not judged."""
-    said = [errors.note] if errors.note else []
-    for what, size, each, by_beam in (
+    """Warnings of errors above a tolerance, with cause and cure, and of answers that are not judged."""
+    warnings = [errors.note] if errors.note else []
+    for what, size, error, by_beam in (
         ("places are", "the largest displacement", errors.displacement, errors.by_beam),
         ("loads are", "the largest of them", errors.loads, errors.loads_by_beam),
         ("stress is", "its largest", errors.stress, errors.stress_by_beam),
     ):
-        parts = each.step, each.shapes, each.model, each.beam_theory, each.mesh
+        parts = error.step, error.shapes, error.model, error.beam_theory, error.mesh
         if not any(part > tolerance for part in parts):
             continue
-        share = percent(np.nanmax([each.total, each.step]))
-        if each.step == np.nanmax(parts):
-            said.append(f"{what} wrong by an estimated {share} of {size}: {STEPS}")
+        share = percent(np.nanmax([error.total, error.step]))
+        if error.step == np.nanmax(parts):
+            warnings.append(f"{what} wrong by an estimated {share} of {size}: {STEPS}")
             continue
-        which = int(np.nan_to_num(by_beam).argmax())
-        cause, cure = cause_and_cure(each, errors.theory[which])
-        if each.shapes == np.nanmax(parts):
-            cure = "raise its model.modes, of a mesh its modes"  # which are given in a system
-        said.append(f"{what} wrong by an estimated {share} of {size}: {cause}, most of {errors.beams[which]}; {cure}")
-    return tuple(said)
+        worst_beam = int(np.nan_to_num(by_beam).argmax())
+        cause, cure = cause_and_cure(error, errors.theory[worst_beam])
+        if error.shapes == np.nanmax(parts):
+            cure = "raise its model.modes, of a mesh its modes"  # systems have no automatic number of modes
+        most_of = errors.beams[worst_beam]
+        warnings.append(f"{what} wrong by an estimated {share} of {size}: {cause}, most of {most_of}; {cure}")
+    return tuple(warnings)
 
 
 def _rerun(again: Again, count: int) -> Rerun:
-    """Run systems for so many times; ComputationError where one comes to no end."""
+    """Function that runs a system and reads it; ComputationError where a run has fewer than `count` times."""
 
     def rerun(system: System, bodies: Iterable[str]) -> Reading:
         solution = again(system)
@@ -161,17 +162,17 @@ def _rerun(again: Again, count: int) -> Rerun:
 
 
 def _alone(rerun: Rerun, system: System, truth: Reading) -> Reading:
-    """Readings of a system in which one body is richer, of those in the true one; NaN where it comes to no answer, as
-    a craft that the others keep in balance.
+    """Readings, of the same quantities as `truth`, of a system in which one body alone is richer; NaN where its run
+    fails, as of a craft that the other bodies, richer too, keep in balance.
     """
     try:
         return rerun(system, [name for name, _ in truth if name])
     except ComputationError:
-        return {key: np.nan * each for key, each in truth.items()}
+        return {quantity: np.nan * values for quantity, values in truth.items()}
 
 
 def _by_mesh(solution: Solution, rerun: Rerun | None, bodies: Iterable[str], begun: Begun) -> Reading | None:
-    """Readings with coarser meshes of the solids; None where none has one."""
+    """Readings of the system with coarser meshes of its solids; None if no solid has one."""
     rough = coarser(solution.system)
     if rough is None:
         return None
@@ -184,7 +185,9 @@ def _by_mesh(solution: Solution, rerun: Rerun | None, bodies: Iterable[str], beg
 def _departing(
     solution: Solution, bases: Mapping[str, Base], computed: Reading, begun: Begun, *, exact: bool
 ) -> Iterator[Reading]:
-    """Readings with all that is lacking, without what shapes lack, and with what each of several beams lacks alone."""
+    """Readings of linearised richer systems: exact models with more shapes, exact models with the same shapes and, of
+    several bodies, each alone richer.
+    """
     rich = richer(solution.system, bases, exact=True)
     within = solution.within(rich.system, bases, rich.shared)
     departures, residual = within.departures(), within.residual()
@@ -193,18 +196,17 @@ def _departing(
     yield within.moved(total)
     yield computed if exact else within.moved(total.less(departures.answer(within.of_new(residual), start)))
     for name in bases if len(bases) > 1 else ():
-        # A system in which it alone is exact leaves what it lacks; the others feel it only through the joints.
-        one = richer(solution.system, {name: bases[name]}, exact=True)
-        few = solution.within(one.system, (), one.shared)
-        kept = [k for k, each in enumerate(few.more.bodies) if each == name or each not in bases]
-        alone = np.zeros_like(residual)
-        alone[:, [within.more.names.index(few.more.names[k]) for k in kept]] = few.residual()[:, kept]
-        yield within.moved(departures.answer(alone, start))
+        # The residual of a system in which it alone is exact; the others feel it only through the joints.
+        one_richer = richer(solution.system, {name: bases[name]}, exact=True)
+        alone = solution.within(one_richer.system, (), one_richer.shared)
+        kept = [k for k, body in enumerate(alone.more.bodies) if body == name or body not in bases]
+        left = np.zeros_like(residual)
+        left[:, [within.more.names.index(alone.more.names[k]) for k in kept]] = alone.residual()[:, kept]
+        yield within.moved(departures.answer(left, start))
 
 
 def _beyond(solution: Solution, theories: Mapping[str, Theory], loop: Rerun | None, begun: Begun) -> Lacking:
-    """Find what the theory of slender beams lacks, in a loop by running thick ones."""
-    # Without a loop, and at rest, what is computed is put into the equations: it may bend farther than they know.
+    """What the theory of slender beams lacks: by runs with thick beams in a `loop`, else by the residual in theirs."""
     bent = partial(with_beams, solution.system)
     return beyond(
         solution.posed(theories),

@@ -29,55 +29,53 @@ class SystemControllers:
     def __init__(self, system: System, tree: Any = None, laws: list[TracedLaw] | None = None) -> None:
         self.system, self.tree, self.traced_laws = system, system.tree if tree is None else tree, laws
         self.every: list[Feedback] = list(system.controllers.values())
-        ends = [0, *accumulate(len(each.drive) for each in self.every)]
+        ends = [0, *accumulate(len(controller.drive) for controller in self.every)]
         self.drives = [slice(*pair) for pair in pairwise(ends)]
         drives = drives_of(system)
-        driven = [drives[name] for each in self.every for name in each.drive]
-        # Of every command the effort or the component of a wrench that it adds to.
-        self.efforts, self.wrenches = (
-            np.zeros((ends[-1], system.tree.size)),
-            np.zeros((ends[-1], len(system.forces), 6)),
-        )
-        for k, each in enumerate(driven):
-            if each.way == "effort":
-                self.efforts[k, each.at] = 1.0
+        driven = [drives[name] for controller in self.every for name in controller.drive]
+        # Efforts and wrenches by unit commands: each command adds to one of their entries.
+        self.efforts = np.zeros((ends[-1], system.tree.size))
+        self.wrenches = np.zeros((ends[-1], len(system.forces), 6))
+        for k, drive in enumerate(driven):
+            if drive.way == "effort":
+                self.efforts[k, drive.at] = 1.0
             else:
-                self.wrenches[k, each.force, each.at] = 1.0
+                self.wrenches[k, drive.force, drive.at] = 1.0
 
     @property
     def timing(self) -> list[tuple[float, float]]:
-        """Time between samples and delay of each, s."""
+        """Time between samples and delay of each controller, s."""
         return [(each.sample, each.delay) for each in self.every]
 
     def corners(self, start: float, end: float) -> Floats:
-        """Times at which commands change, s."""
-        times = [start + delay + np.arange(0.0, end - start, period) for period, delay in self.timing]
+        """Times of samples, and at which commands begin to act, s."""
+        changes = [start + delay + np.arange(0.0, end - start, period) for period, delay in self.timing]
         samples = [start + np.arange(0.0, end - start, period) for period, _ in self.timing]
-        return np.concatenate([*times, *samples]) if times else np.zeros(0)
+        return np.concatenate([*changes, *samples]) if changes else np.zeros(0)
 
     def measured(self, controller: int, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
         """Measurements (t, k) of one controller."""
         return read_signals(self.system, self.tree, self.every[controller].measure, q, qd, qdd, inputs)
 
     def accelerates(self, controller: int) -> bool:
-        """Return whether one measures accelerations, or what sections carry, which follows from them."""
-        felt = carried_of(self.system)
-        return any(".acceleration_" in each or each in felt for each in self.every[controller].measure)
+        """True if one controller measures accelerations, or loads of sections, which follow from accelerations."""
+        section_loads = carried_of(self.system)
+        return any(".acceleration_" in name or name in section_loads for name in self.every[controller].measure)
 
     def started(self, controller: int) -> Any:
-        """State of one at the start."""
+        """State of one controller at the start."""
         return self.every[controller].start if self.traced_laws is None else self.traced_laws[controller].start
 
     def commanded(self, controller: int, t: float, measured: Array, state: Any) -> tuple[Array, Array, Any]:
-        """Command of one as its law has it and within its limits, and its next state."""
+        """Command of one controller by its law, that command within its limits, and its next state."""
         if self.traced_laws is not None:
             law = self.traced_laws[controller]
             k = int(np.abs(law.times - t).argmin())
             values = law.function(law.parameters, law.references[k], t, measured, state)
             return tuple(map(np.asarray, values))  # type: ignore[return-value]
-        each = self.every[controller]
-        asked, state = each.effort(t, measured, state)
-        return asked, each.limited(asked), state
+        feedback = self.every[controller]
+        asked, state = feedback.effort(t, measured, state)
+        return asked, feedback.limited(asked), state
 
     def driven(self, inputs: Any, held: Array) -> Any:
         """Inputs with commands (t, m) added."""
@@ -90,7 +88,7 @@ class SystemControllers:
 
     @cached_property
     def traced(self) -> bool:
-        """True if JAX traces one."""
+        """True if JAX traces a controller."""
         return any(each.traced for each in self.every)
 
     def of(self, residual: Any, laws: list[TracedLaw] | None = None) -> SystemControllers:
@@ -98,19 +96,19 @@ class SystemControllers:
         return SystemControllers(self.system, residual, laws)
 
     def laws(self, times: list[Floats]) -> list[TracedLaw]:
-        """Laws sampled at times (s,) s each, as JAX traces them."""
-        for name, each in self.system.controllers.items():
-            for signal in {*each.measure} & carried_of(self.system).keys():
+        """Laws of the controllers, each at the times (s,) of its samples, s, as functions that JAX traces."""
+        for name, controller in self.system.controllers.items():
+            for signal in {*controller.measure} & carried_of(self.system).keys():
                 if holds_jax(self.system.bodies[signal.partition(".")[0]]):
                     fix = "trace what else there is, or measure acceleration"
                     raise InputError(f"controllers.{name}.measure", f"has {signal!r} of a beam that JAX traces", fix)
-        return [_traced_law(*each) for each in zip(self.system.controllers, self.every, times, strict=True)]
+        return [_traced_law(*law) for law in zip(self.system.controllers, self.every, times, strict=True)]
 
 
 def loop_of(controllers: SystemControllers, sampling: Any, time: Floats) -> Loop:
-    """Samples and commands of the controllers, held at times (t,) s."""
+    """Record of the controllers at times (t,) s: samples, commands asked for and commands acting, as held then."""
     start, slack = sampling.steps.begin[0], NEAR * float(sampling.steps.length.min())
-    measured, asked, acting, beyond = [], [], [], []
+    measured, asked, acting, saturated = [], [], [], []
     for c, (period, delay) in enumerate(controllers.timing):
         taken = np.floor((time + slack - start) / period).astype(int)
         active = np.floor((time + slack - start - delay) / period).astype(int)
@@ -119,37 +117,37 @@ def loop_of(controllers: SystemControllers, sampling: Any, time: Floats) -> Loop
         taken, last = np.minimum(taken, len(values) - 1), np.clip(active, 0, len(values) - 1)
         measured.append(values[taken])
         asked.append(wanted[taken])
-        beyond.append((wanted != commands).mean(axis=0))
+        saturated.append((wanted != commands).mean(axis=0))
         acting.append(namespace(commands).where(active[:, None] >= 0, commands[last], 0.0))
     xp, units = namespace(*asked), measurable(controllers.system)
-    pushed = drives_of(controllers.system)
+    drives = drives_of(controllers.system)
     return Loop(
         measurements=signal_names(controllers.system.controllers, "measure"),
-        units=tuple(units[each] for one in controllers.every for each in one.measure),
+        units=tuple(units[name] for controller in controllers.every for name in controller.measure),
         drives=signal_names(controllers.system.controllers, "drive"),
-        drive_units=tuple(pushed[each].unit for one in controllers.every for each in one.drive),
+        drive_units=tuple(drives[name].unit for controller in controllers.every for name in controller.drive),
         measured=xp.concatenate(measured, axis=1),
         asked=xp.concatenate(asked, axis=1),
         applied=xp.concatenate(acting, axis=1),
-        saturated=xp.concatenate(beyond),
+        saturated=xp.concatenate(saturated),
     )
 
 
-def _traced_law(name: str, each: Feedback, times: Floats) -> TracedLaw:
-    """A controller's law at the times of its samples (s,) s, as a function that JAX traces of all it is made of."""
+def _traced_law(name: str, controller: Feedback, times: Floats) -> TracedLaw:
+    """A controller's law at the times of its samples (s,) s, as a function of its parameters and references for JAX."""
     from jax.flatten_util import ravel_pytree
 
     from gbeam.integrate.traced import TracedLaw
 
-    sign, values = 1.0, [np.zeros(len(times)) for _ in each.measure]
-    if each.reference is not None:
-        sign, values = -1.0, [profile(times) for profile in each.reference]
+    sign, values = 1.0, [np.zeros(len(times)) for _ in controller.measure]
+    if controller.reference is not None:
+        sign, values = -1.0, [profile(times) for profile in controller.reference]
     references = namespace(*values).stack(values, axis=-1)
-    if isinstance(each.law, tuple):
-        law, parameters, start = _linear, each.law, each.start
+    if isinstance(controller.law, tuple):
+        law, parameters, start = _linear, controller.law, controller.start
     else:
-        start, restored = ravel_pytree(each.state)
-        law, parameters = _of_function(f"controllers.{name}.law", each, start, restored)
+        start, restored = ravel_pytree(controller.state)
+        law, parameters = _of_function(f"controllers.{name}.law", controller, start, restored)
 
     def commanded(parameters: Any, references: Array, t: Any, y: Array, state: Array) -> tuple[Array, ...]:
         parts, limit = parameters
@@ -158,29 +156,30 @@ def _traced_law(name: str, each: Feedback, times: Floats) -> TracedLaw:
             return asked, asked, after
         return asked, within(namespace(asked, limit), as_array(limit), asked), after
 
-    return TracedLaw(times, commanded, (parameters, each.limit), references, start)
+    return TracedLaw(times, commanded, (parameters, controller.limit), references, start)
 
 
 def _linear(parts: Any, _: Any, error: Array, state: Array) -> tuple[Array, Array]:
+    """Commands and next state of a law by matrices."""
     a, b, c, d = parts
     return c @ state + d @ error, a @ state + b @ error
 
 
-def _of_function(where: str, each: Feedback, start: Array, restored: Any) -> tuple[Any, Any]:
-    """A controller's function of the values that it refers to, and these values."""
+def _of_function(where: str, controller: Feedback, start: Array, restored: Any) -> tuple[Any, Any]:
+    """A law that is a function, compiled, with the values that it refers to as first argument; and these values."""
     import jax
     import jax.numpy as jnp
     from jax.flatten_util import ravel_pytree
 
-    count = len(each.drive)
+    count = len(controller.drive)
 
     def plain(t: Any, error: Array, state: Array) -> tuple[Array, Array]:
-        if each.stateful:
-            efforts, after = each.law(t, error, restored(state))
+        if controller.stateful:
+            efforts, after = controller.law(t, error, restored(state))
             return jnp.asarray(efforts, dtype=float).reshape(-1), ravel_pytree(after)[0].astype(float)
-        return jnp.asarray(each.law(t, error), dtype=float).reshape(-1), state
+        return jnp.asarray(controller.law(t, error), dtype=float).reshape(-1), state
 
-    example = 0.0, jnp.zeros(len(each.measure)), start
+    example = 0.0, jnp.zeros(len(controller.measure)), start
     try:
         law, parts = jax.closure_convert(plain, *example)
         efforts, after = jax.eval_shape(plain, *example)

@@ -21,26 +21,26 @@ from gbeam.results.parts import Base
 
 
 class Strained(NamedTuple):
-    """A gauge on a body: its strain by unit coordinates of a solid (n,), or by unit loads (6,) of a `section`."""
+    """A gauge on a body: strains by unit coordinates (n,) or, with a `section`, by unit force and moment there (6,)."""
 
     body: str
     share: Floats
     section: int | None = None
 
     def read(self, system: System, state: State, acting: list[list[Acting]], inputs: Inputs) -> Array:
-        """Strain (t,) in a motion (t,) of a tree."""
+        """Reading (t,) of the gauge at states (t,) of the system's tree."""
         k, body = system.order.index(self.body), system.bodies[self.body]
         if self.section is None:
             return state.q[k][-1] @ self.share
         assert isinstance(body, Structure) and body.sections is not None
         q, qd, qdd, a, w, alpha, hung = carried(system, state, self.body, acting)
         loads = sections(body, body.sections, Base(a, w, alpha), q, qd, qdd, inputs.loads[k], hung)
-        of_section = [each[:, self.section] for each in (loads.section_force, loads.section_moment)]
+        of_section = [load[:, self.section] for load in (loads.section_force, loads.section_moment)]
         return namespace(*of_section).concatenate(of_section, axis=-1) @ self.share
 
 
 def carrying(system: System, name: str) -> Strained:
-    """Gauge that reads a component of what a section carries: ``strip.root.moment_y``."""
+    """Gauge that reads a component of the force or moment in a section, by its name: ``strip.root.moment_y``."""
     owner, _, component = name.rpartition(".")
     body, _, point = owner.partition(".")
     kind, axis = component.split("_")
@@ -59,36 +59,38 @@ def read_signals(
     inputs: Inputs,
     strained: Mapping[str, Strained] | None = None,
 ) -> Array:
-    """Values (..., k) of measurements, gauges among them, at unknown coordinates (..., n) and inputs, broadcast."""
-    felt = carried_of(system)
-    gauges = {**(strained or {}), **{each: carrying(system, each) for each in wanted if each in felt}}
-    plain = measurements(system, tree, y, yd, ydd, inputs, [each for each in wanted if each not in gauges])
+    """Values (..., k) of the `wanted` signals, gauges `strained` and section loads among them, at free coordinates,
+    rates and accelerations (..., n) and inputs, broadcast.
+    """
+    section_loads = carried_of(system)
+    gauges = {**(strained or {}), **{name: carrying(system, name) for name in wanted if name in section_loads}}
+    plain = measurements(system, tree, y, yd, ydd, inputs, [name for name in wanted if name not in gauges])
     if plain.shape[-1] == len(wanted):
         return plain
     xp, ground = namespace(plain, inputs.ground.a), inputs.ground
     ranks = {"prescribed": 2, "efforts": 1, "wrenches": 2}
-    driving = {name: (getattr(inputs, name), rank) for name, rank in ranks.items()}
-    driving = {name: each for name, each in driving.items() if each[0] is not None}
-    leading = [each.shape[: each.ndim - rank] for each, rank in driving.values()]
-    shape = np.broadcast_shapes(ground.a.shape[:-1], *(each.shape[:-1] for each in (y, yd, ydd)), *leading)
+    driving = {name: (getattr(inputs, name), rank) for name, rank in ranks.items() if getattr(inputs, name) is not None}
+    leading = [values.shape[: values.ndim - rank] for values, rank in driving.values()]
+    shape = np.broadcast_shapes(ground.a.shape[:-1], *(state.shape[:-1] for state in (y, yd, ydd)), *leading)
 
     def flat(leaf: Array, rank: int) -> Array:
+        """Broadcast the leading axes of a leaf to `shape`, and join them to one of times."""
         trailing = leaf.shape[leaf.ndim - rank :]
         return xp.broadcast_to(leaf, (*shape, *trailing)).reshape(-1, *trailing)
 
-    y, yd, ydd = (flat(each, 1) for each in (y, yd, ydd))
-    frame = {each.name: flat(getattr(ground, each.name), 2 if each.name == "R" else 1) for each in fields(ground)}
-    every = replace(
+    y, yd, ydd = (flat(state, 1) for state in (y, yd, ydd))
+    frame = {part.name: flat(getattr(ground, part.name), 2 if part.name == "R" else 1) for part in fields(ground)}
+    inputs = replace(
         inputs,
         ground=replace(ground, **frame),
-        loads=tuple(None if each is None else flat(each, 2) for each in inputs.loads),
-        **{name: flat(*each) for name, each in driving.items()},
+        loads=tuple(None if load is None else flat(load, 2) for load in inputs.loads),
+        **{name: flat(*pair) for name, pair in driving.items()},
     )
-    state = tree.motion(y, yd, ydd, every)
-    *_, acting = tree.demanded(state, every)
-    rest = iter(xp.moveaxis(plain, -1, 0))
-    values = [
-        gauges[each].read(system, state, acting, every).reshape(shape) if each in gauges else next(rest)
-        for each in wanted
+    state = tree.motion(y, yd, ydd, inputs)
+    *_, acting = tree.demanded(state, inputs)
+    others = iter(xp.moveaxis(plain, -1, 0))
+    signals = [
+        gauges[name].read(system, state, acting, inputs).reshape(shape) if name in gauges else next(others)
+        for name in wanted
     ]
-    return xp.stack([xp.broadcast_to(each, shape) for each in values], axis=-1)
+    return xp.stack([xp.broadcast_to(values, shape) for values in signals], axis=-1)

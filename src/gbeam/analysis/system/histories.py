@@ -20,11 +20,11 @@ from gbeam.mechanics.tree.system import System, stations_of
 from gbeam.results.parts import Base, Loads
 from gbeam.results.solids import SolidStress, Surface
 
-ROUNDING = 1e-12  # of the force times the length: a moment that is less is none, and so of forces
+ROUNDING = 1e-12  # of the force times the length: a smaller moment is rounding; likewise a force
 
 
 class Carried(NamedTuple):
-    """A beam over time: its coordinates and their rates (t, n), the motion (t, 3) of its root, and what hangs on it."""
+    """A beam over time: coordinates, rates, accelerations (t, n), motion (t, 3) of its root, loads on its stations."""
 
     q: Floats
     qd: Floats
@@ -38,14 +38,16 @@ class Carried(NamedTuple):
 def histories(
     system: System, y: Array, yd: Array, ydd: Array, inputs: Inputs, *, inertial: bool
 ) -> tuple[dict[str, Floats], dict[str, Carried]]:
-    """Motions of points, coordinates, drives, the ground at unknowns (t, n) and rates, and of beams by name."""
+    """Histories by key, of points, coordinates, efforts and the ground's load, from free coordinates (t, n) and rates,
+    with momentum and energy if the ground is `inertial`; and the state of each beam by name.
+    """
     tree = system.tree
     state = tree.motion(y, yd, ydd, inputs)
     frames = state.every_point
     rows, ground, acting = tree.demanded(state, inputs)
     whole = [y, yd]
     if inputs.prescribed is not None:
-        whole = [tree.whole(each, inputs.prescribed[:, k]) for k, each in enumerate(whole)]
+        whole = [tree.whole(unknown, inputs.prescribed[:, k]) for k, unknown in enumerate(whole)]
     xp = namespace(rows)
     effort = xp.zeros_like(whole[0]) if inputs.efforts is None else inputs.efforts
     effort = xp.where(np.isin(np.arange(tree.size), tree.fixed), rows, effort)
@@ -69,7 +71,9 @@ def histories(
 
 
 def deflection(system: System, point: str, q: Array) -> Array | None:
-    """Displacement (t, 3) of a point of a flexible body relative to its root by coordinates (t, n); None of others."""
+    """Displacement (t, 3) m of a named point relative to its flexible body's root, by coordinates (t, n); None if the
+    point is of a rigid body.
+    """
     name, k = system.point("point", point)
     body = system.bodies[name]
     if not isinstance(body, Structure) or k >= len(stations_of(body)):
@@ -79,35 +83,35 @@ def deflection(system: System, point: str, q: Array) -> Array | None:
 
 def beams_of(system: System) -> dict[str, Structure]:
     """Bodies that have sections, by name."""
-    every = ((name, system.bodies[name]) for name in system.order)
-    return {name: body for name, body in every if isinstance(body, Structure) and body.sections is not None}
+    bodies = ((name, system.bodies[name]) for name in system.order)
+    return {name: body for name, body in bodies if isinstance(body, Structure) and body.sections is not None}
 
 
 def carried(system: System, state: State, name: str, acting: list[list[Acting]]) -> Carried:
-    """A beam of a system in motion, by wrenches on the points of all bodies."""
+    """State of one beam over time; `acting` has the wrenches on the points of every body."""
     k = system.order.index(name)
     places, root = list(stations_of(system.bodies[name]).values()), state.roots[k]  # type: ignore[arg-type]
-    q, qd, qdd = (each[k][-1] for each in (state.q, state.qd, state.qdd))
-    wrenches = [each.wrench.brought(each.by) for each in acting[k]]
+    q, qd, qdd = (values[k][-1] for values in (state.q, state.qd, state.qdd))
+    wrenches = [at_point.wrench.brought(at_point.by) for at_point in acting[k]]
     none = np.zeros((len(q), 0, 3))
     force, moment = (
-        namespace(q).stack([getattr(each, name) for each in wrenches], axis=1) if wrenches else none
-        for name in ("force", "moment")
+        namespace(q).stack([getattr(wrench, part) for wrench in wrenches], axis=1) if wrenches else none
+        for part in ("force", "moment")
     )
-    hung = Hung(np.array([places[each.point] for each in acting[k]], dtype=int), force, moment)
+    hung = Hung(np.array([places[at_point.point] for at_point in acting[k]], dtype=int), force, moment)
     return Carried(q, qd, qdd, root.a, root.w, root.alpha, hung)
 
 
 def loads_of(beam: Structure, pieces: list[Carried], time: Floats) -> Loads:
-    """Loads along a beam at times (t,) s, whose pieces follow one another."""
+    """Loads along a beam at times (t,) s, of which the pieces, one after the other, have the states."""
     *moving, hung = zip(*pieces, strict=True)
     xp = namespace(*moving[0])
-    q, qd, qdd, a, w, alpha = (xp.concatenate(each) for each in moving)
+    q, qd, qdd, a, w, alpha = (xp.concatenate(values) for values in moving)
     station, force, moment = zip(*hung, strict=True)
-    every = Hung(station[0], xp.concatenate(force), xp.concatenate(moment))
-    loads = section_forces(beam, Base(a, w, alpha), q, qd, qdd, time, hung=every)
+    hung_on = Hung(station[0], xp.concatenate(force), xp.concatenate(moment))
+    loads = section_forces(beam, Base(a, w, alpha), q, qd, qdd, time, hung=hung_on)
     # A joint that is free carries nothing but rounding.
-    force, moment = (xp.abs(each).max(axis=(0, 2)) for each in (loads.force, loads.moment))
+    force, moment = (xp.abs(load).max(axis=(0, 2)) for load in (loads.force, loads.moment))
     idle = {"force": force * beam.length <= ROUNDING * moment, "moment": moment <= ROUNDING * force * beam.length}
     kept: dict[str, Any] = {
         key: xp.where(none[:, None], 0.0, getattr(loads, key))
@@ -120,7 +124,7 @@ def loads_of(beam: Structure, pieces: list[Carried], time: Floats) -> Loads:
 def meshes_of(
     system: System, time: Floats, q: Floats, motion: str, environment: str
 ) -> tuple[dict[str, SolidStress], dict[str, Surface]]:
-    """Stress and surfaces of the meshes among the bodies, by name, at coordinates (t, n) at times (t,)."""
+    """Stress and surfaces of the bodies made of meshes, by name, at coordinates (t, n) at times (t,) s."""
     stresses, surfaces = dict[str, SolidStress](), dict[str, Surface]()
     for body, solid in system.bodies.items():
         if isinstance(solid, Structure) and solid.recovery is not None:

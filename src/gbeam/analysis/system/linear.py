@@ -40,16 +40,16 @@ from gbeam.results.system import BeamShape, SystemModes, SystemRest
 def system_rest(state: SteadySystem, name: str) -> SystemRest:
     """Describe where a system rests, and what holds it there."""
     system, point, time, motion = state.system, state.point, state.drive.time, state.drive.motion
-    first, _ = system.start
 
     def inputs(of: System, _: Any = None) -> Any:
         return of.inputs(np.array([time]), motion)
 
     (begun, _), (resting, beams) = (
         histories(system, y[None], point.yd[None], point.ydd[None], inputs(system), inertial=False)
-        for y in (first[system.tree.free], point.y)
+        for y in (system.start[0][system.tree.free], point.y)
     )
-    at, unstable = {key: value[0] for key, value in resting.items()}, tuple[str, ...]()
+    values = {key: history[0] for key, history in resting.items()}
+    unstable = tuple[str, ...]()
     try:
         if len(growing := state.moving.growing):
             unstable = (f"unstable, no system would stay there: grows by {growing[0].real:.4g} per second",)
@@ -59,12 +59,12 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
     def standing(of: System) -> Solution:
         return Solution(of, (state if of is system else state.richer(of)).point.standing(time), inputs)
 
-    # What nothing holds leaves on the ground the rounding of its inertia.
+    # Forces on the ground that are rounding beside the inertia of accelerated bodies are none.
     moving = point.tree.motion(point.y, point.yd, point.ydd, point.inputs)
-    parts = zip(point.tree.links, moving.q, moving.roots, strict=True)
-    pushed = sum(float(link.body.mass_moment(q[-1])[0] * np.linalg.norm(root.a)) for link, q, root in parts)
-    for key, size in ("ground_force", pushed), ("ground_moment", pushed * np.abs(at["place"]).max(initial=0.0)):
-        at[key] = np.where(np.abs(at[key]) > ROUNDING * size, at[key], 0.0)
+    links = zip(point.tree.links, moving.q, moving.roots, strict=True)
+    inertia = sum(float(link.body.mass_moment(q[-1])[0] * np.linalg.norm(root.a)) for link, q, root in links)
+    for key, size in ("ground_force", inertia), ("ground_moment", inertia * np.abs(values["place"]).max(initial=0.0)):
+        values[key] = np.where(np.abs(values[key]) > ROUNDING * size, values[key], 0.0)
     start = begun["place"][0]
     solids, surfaces = meshes_of(system, np.array([time]), resting["q"], name, "rest")
     errors = system_errors(standing(system), standing, {}, settled=True, start=start)
@@ -74,7 +74,7 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
         points=system.points,
         coordinates=system.coordinates,
         units=units_of(system),
-        displacement=at["place"] - start,
+        displacement=values["place"] - start,
         errors=errors,
         accelerated=state.accelerated,
         stable=not unstable,
@@ -82,18 +82,18 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
         assembly=assembly_of(system),
         outlines={
             body: outline
-            for body, each in beams.items()
-            if (outline := outline_of(beams_of(system)[body], None, np.array([time]), each.q)) is not None
+            for body, beam in beams.items()
+            if (outline := outline_of(beams_of(system)[body], None, np.array([time]), beam.q)) is not None
         },
-        loads={body: loads_of(beams_of(system)[body], [each], np.array([time])) for body, each in beams.items()},
+        loads={body: loads_of(beams_of(system)[body], [beam], np.array([time])) for body, beam in beams.items()},
         solids=solids,
         surfaces=surfaces,
-        **{key: at[key] for key in ("place", "attitude", "q", "effort", "ground_force", "ground_moment")},
+        **{key: values[key] for key in ("place", "attitude", "q", "effort", "ground_force", "ground_moment")},
     )
 
 
 def system_modes(state: SteadySystem, moving: Vibrations, time: float, name: str) -> SystemModes:
-    """Describe vibrations of a system about a steady state."""
+    """Describe the modes, `moving`, of a system about a steady state, each scaled to a largest displacement of one."""
     system, local = state.system, state.local
     shape, turn = (np.einsum("pan,nk->kpa", each, moving.modes) for each in state.slopes_of_frames)
     largest = largest_component(shape)
@@ -129,7 +129,7 @@ def system_modes(state: SteadySystem, moving: Vibrations, time: float, name: str
 
 
 def largest_component(shape: Complex) -> Complex:
-    """The component of each mode (k, ...) that is largest."""
+    """The component (k,) of each mode (k, ...) that is largest in size."""
     flat = shape.reshape(len(shape), -1) if shape.size else np.ones((len(shape), 1))
     return flat[np.arange(len(flat)), np.abs(flat).argmax(axis=1)]
 
@@ -137,32 +137,32 @@ def largest_component(shape: Complex) -> Complex:
 def instabilities(point: Steady, moving: Vibrations) -> tuple[Instability, ...]:
     """Growing motions about a steady state."""
     flutter = np.flatnonzero(moving.flutter)
-    ways = [point.directions(each) if each.size else () for each in (moving.divergence, moving.modes[:, flutter])]
+    diverging, fluttering = (
+        zip(values, point.directions(modes) if modes.size else (), strict=True)
+        for values, modes in ((moving.diverging, moving.divergence), (moving.value[flutter], moving.modes[:, flutter]))
+    )
     return (
-        *(Instability("divergence", float(v.real), 0.0, d) for v, d in zip(moving.diverging, ways[0], strict=True)),
-        *(
-            Instability("flutter", float(v.real), float(abs(v) / (2 * np.pi)), d)
-            for v, d in zip(moving.value[flutter], ways[1], strict=True)
-        ),
+        *(Instability("divergence", float(v.real), 0.0, way) for v, way in diverging),
+        *(Instability("flutter", float(v.real), float(abs(v) / (2 * np.pi)), way) for v, way in fluttering),
     )
 
 
 def _shapes(state: SteadySystem, modes: Array) -> dict[str, BeamShape]:
-    """Shapes of the beams at rest, and in modes (n, k)."""
+    """Outlines of the beams by name: bent in the steady state, and their displacements by modes (n, k)."""
     beams = dict[str, BeamShape]()
     for name, beam in beams_of(state.system).items() if modes.size else ():
         columns = deforming(state.names, name)
         q, time = state.local.y[columns], np.arange(modes.shape[1])
         outline = outline_of(beam, None, np.zeros(1), q[None])
         if outline is not None:
-            moved = [outline_of(beam, None, time, q + 1j * STEP * each[columns].T) for each in (modes.real, modes.imag)]
-            real, imaginary = (each.displacement.imag / STEP for each in moved if each is not None)
+            moved = [outline_of(beam, None, time, q + 1j * STEP * part[columns].T) for part in (modes.real, modes.imag)]
+            real, imaginary = (bent.displacement.imag / STEP for bent in moved if bent is not None)
             beams[name] = BeamShape(outline, real + 1j * imaginary)
     return beams
 
 
 def frozen(system: System, motion: Motion | None, time: float, at: str) -> SteadySystem:
-    """A system where it rests, or, `at` its start, in the motion there."""
+    """State of a system to linearise about: `at` is "rest", its equilibrium, or "start", its motion at the start."""
     choice("at", at, ("rest", "start"))
     drive = Drive(motion, time)
     if at == "rest":
@@ -192,8 +192,8 @@ def linearize_system(
     if loop != "open":
         from gbeam.analysis.system.closed_loop import closed_loop  # takes SciPy's optimisation, 0.2 s to import
 
-        commanded = [each for one in system.controllers.values() for each in one.drive]
-        measured = [each for one in system.controllers.values() for each in one.measure]
+        commanded = [drive for controller in system.controllers.values() for drive in controller.drive]
+        measured = [signal for controller in system.controllers.values() for signal in controller.measure]
         free = _default_inputs(system, state.drive.motion) if inputs is None else list(inputs)
         wanted = [*_default_outputs(system), *strained] if outputs is None else list(outputs)
         options: Any = {"inputs": commanded + free, "outputs": measured + wanted, "strained": strained}
@@ -201,23 +201,23 @@ def linearize_system(
         chosen = range(len(measured), len(measured) + len(wanted))
         return closed_loop(plant, dict(system.controllers), chosen, None if loop == "closed" else loop)
     local = state.local
-    every = drives_of(system) | _moves_of(system, state.drive.motion)
+    drivable = drives_of(system) | _moves_of(system, state.drive.motion)
     driven = _default_inputs(system, state.drive.motion) if inputs is None else inputs
-    for each in driven:
-        choice("inputs", each, every)
+    for signal in driven:
+        choice("inputs", signal, drivable)
     units = measurable(system) | dict.fromkeys(strained, "1")
     wanted = [*_default_outputs(system), *strained] if outputs is None else [*outputs]
-    for each in wanted:
-        choice("outputs", each, units)
+    for signal in wanted:
+        choice("outputs", signal, units)
     read = partial(read_signals, system, local.tree, wanted, strained=strained)
     values, (by_y, by_yd, by_ydd) = _outputs(local, read)
-    out = by_y - by_ydd @ state.follows, by_yd, by_ydd
-    b, direct = _inputs(system, local, state.names, [every[each] for each in driven], read)
-    driving = tuple(Signal(each, every[each].unit) for each in driven)
-    a, b, c, d = state.linear._replace(inputs=b).state_space(*out, direct)
+    slopes = by_y - by_ydd @ state.follows, by_yd, by_ydd
+    b, direct = _inputs(system, local, state.names, [drivable[each] for each in driven], read)
+    driving = tuple(Signal(each, drivable[each].unit) for each in driven)
+    a, b, c, d = state.linear._replace(inputs=b).state_space(*slopes, direct)
     names = state.names
-    per = {"": "", "_rate": "/s"}  # a rotation is that from where the ball is
-    states = [Signal(f"{name}{end}", units.get(name, "") and units[name] + per[end]) for end in per for name in names]
+    per = {"": "", "_rate": "/s"}  # of names and units; rotations of a ball are counted from this state
+    states = [Signal(f"{each}{end}", units.get(each, "") and units[each] + per[end]) for end in per for each in names]
     return StateSpace(
         a=a,
         b=b,
@@ -238,21 +238,21 @@ def linearize_system(
 
 
 def named_acceleration(motion: Any) -> str:
-    """Name of accelerations where a motion goes: with gravity they are what accelerometers measure."""
-    weighs = motion.kind == "centrifuge" and float(motion.geometry.gravity) > 0
-    weighs = weighs or (motion.kind == "hub" and motion.mount.gravity is not None)
-    return "specific_force" if weighs else "acceleration"
+    """Word for the accelerations of a motion: "specific_force" if gravity is in them, else "acceleration"."""
+    weight = motion.kind == "centrifuge" and float(motion.geometry.gravity) > 0
+    weight = weight or (motion.kind == "hub" and motion.mount.gravity is not None)
+    return "specific_force" if weight else "acceleration"
 
 
 def _moves_of(system: System, motion: Motion | None) -> dict[str, Driven]:
     """Accelerations of the base, where one moves, and of prescribed coordinates, by name."""
     moves: dict[str, Driven] = {}
     if motion is not None:
-        ways = ("a", named_acceleration(motion), "m/s^2"), ("alpha", "angular_acceleration", "rad/s^2")
-        for way, kind, unit in ways:
+        kinds = ("a", named_acceleration(motion), "m/s^2"), ("alpha", "angular_acceleration", "rad/s^2")
+        for way, kind, unit in kinds:
             moves |= {f"base_{kind}_{axis}": Driven(way, k, unit) for k, axis in enumerate("xyz")}
     units = signals_of(system)
-    for k, name in enumerate(local_names(system.coordinates[at] for at in system.tree.fixed)):
+    for k, name in enumerate(local_names(system.coordinates[index] for index in system.tree.fixed)):
         moves[f"{name}_acceleration"] = Driven("prescribed", k, f"{units[name]}/s^2")
     return moves
 
@@ -273,34 +273,34 @@ def _default_outputs(system: System) -> list[str]:
 def _inputs(
     system: System, local: Point, names: Sequence[str], chosen: Sequence[Driven], read: Callable[..., Any]
 ) -> tuple[Floats, Floats]:
-    """Forces (n, m) of unit inputs on the coordinates, and what they add to the outputs (k, m) at once."""
-    at = local.y + 0j, local.yd + 0j, local.ydd + 0j
-    now = tuple(each[None] for each in at)
-    columns, direct = np.zeros((len(names), len(chosen))), np.zeros((read(*now, local.inputs).shape[-1], len(chosen)))
-    for k, each in enumerate(chosen):
-        if each.way == "effort":
-            (name,) = local_names([system.coordinates[each.at]])
-            columns[names.index(name), k] = 1.0
+    """Generalised forces (n, m) of unit inputs, and their direct feedthrough (k, m) to the outputs of `read`."""
+    state = local.y + 0j, local.yd + 0j, local.ydd + 0j
+    now = tuple(values[None] for values in state)
+    forces, direct = np.zeros((len(names), len(chosen))), np.zeros((read(*now, local.inputs).shape[-1], len(chosen)))
+    for k, drive in enumerate(chosen):
+        if drive.way == "effort":
+            (name,) = local_names([system.coordinates[drive.at]])
+            forces[names.index(name), k] = 1.0
             continue
-        moved = _moved(local.inputs, each)
-        columns[:, k] = -local.tree(*at, moved).imag / STEP
+        moved = _moved(local.inputs, drive)
+        forces[:, k] = -local.tree(*state, moved).imag / STEP
         direct[:, k] = read(*now, moved)[0].imag / STEP
-    return columns, direct
+    return forces, direct
 
 
 def _moved(inputs: Inputs, by: Driven) -> Inputs:
-    """Inputs of which one is a complex step away."""
+    """Inputs with a complex step in one of them: an acceleration of the ground, or an entry of an array."""
     if by.way in ("a", "alpha"):
         faster = getattr(inputs.ground, by.way) + 1j * STEP * np.eye(3)[by.at]
         return replace(inputs, ground=replace(inputs.ground, **{by.way: faster}))
-    which = by.force if by.way == "wrenches" else 2
+    row = by.force if by.way == "wrenches" else 2  # of prescribed values, rates and accelerations the last
     values: Any = np.array(getattr(inputs, by.way), dtype=complex)
-    values[which, by.at] += 1j * STEP
+    values[row, by.at] += 1j * STEP
     return replace(inputs, **{by.way: values})
 
 
 def _outputs(local: Point, read: Callable[..., Any]) -> tuple[Floats, tuple[Floats, Floats, Floats]]:
-    """Values of outputs, and their derivatives with respect to y, ẏ and ÿ."""
+    """Values (k,) of the outputs that `read` reads, and their derivatives (k, n) with respect to y, ẏ and ÿ."""
     n = len(local.y)
     state = np.concatenate([local.y, local.yd, local.ydd])
     moved = np.concatenate([state[None] + 0j, state + 1j * STEP * np.eye(3 * n)]).reshape(3 * n + 1, 3, n)

@@ -30,7 +30,7 @@ CLOSE = 1e-12  # of the coordinates: where the next correction would be smaller,
 
 @dataclass(frozen=True)
 class Point:
-    """A tree at unknown coordinates and their rates (n,), and what drives it there."""
+    """State of a tree: its free coordinates, their rates and accelerations (n,), and its inputs."""
 
     tree: Tree
     y: Floats
@@ -49,13 +49,14 @@ class Point:
         tree, prescribed = self.tree, self.inputs.prescribed
         states = [self.y, self.yd, self.ydd]
         if prescribed is not None:
-            states = [tree.whole(each, prescribed[k]) for k, each in enumerate(states)]
+            states = [tree.whole(state, prescribed[k]) for k, state in enumerate(states)]
         reduced, y, yd, ydd = tree.local(states[0], states[1], states[2])
         free, inputs = reduced.free, self.inputs
         if inputs.efforts is not None:
             pairs = zip(tree.links, reduced.links, strict=True)
-            sizes = (each for a, b in pairs for each in zip(a.sizes, b.sizes, strict=True))
-            kept = np.concatenate([np.arange(size) >= size - less for size, less in sizes])
+            sizes = (pair for link, less in pairs for pair in zip(link.sizes, less.sizes, strict=True))
+            # Efforts act on the last coordinates of a joint, as many as it has degrees of freedom.
+            kept = np.concatenate([np.arange(size) >= size - fewer for size, fewer in sizes])
             inputs = replace(inputs, efforts=inputs.efforts[..., kept])
         if prescribed is not None:
             inputs = replace(inputs, prescribed=np.stack([y, yd, ydd])[:, np.array(reduced.fixed, dtype=int)])
@@ -71,63 +72,64 @@ class Point:
         return Trajectory(np.array([time]), self.y[None], self.yd[None], self.ydd[None])
 
     def driven(self, *_: Any) -> Inputs:
-        """Inputs of that trajectory."""
+        """Inputs with an axis of one time, as of the trajectory of `standing`; arguments are ignored."""
         return each_leaf(lambda leaf: leaf[None], self.inputs)
 
     def sticking(self, system: System) -> tuple[str, ...]:
         """Warnings of coordinates that friction holds, which small departures see as dampers."""
         state = self.tree.motion(self.y, self.yd, self.ydd, self.inputs)
-        said = []
+        warnings = []
         for name, joint in system.joints.items():
             k = system.order.index(joint.body)
             rates = self.tree.links[k].held(state.q[k][:-1], state.qd[k][:-1])[1] if joint.coordinates else ()
-            for each, friction, rate in zip(joint.rate_names, np.asarray(joint.holder.friction), rates, strict=True):
-                if friction > 0 and each not in joint.rates and abs(rate) < 3 * SLIP:
+            for kind, friction, rate in zip(joint.rate_names, np.asarray(joint.holder.friction), rates, strict=True):
+                if friction > 0 and kind not in joint.rates and abs(rate) < 3 * SLIP:
                     size = friction / SLIP / np.cosh(rate / SLIP) ** 2
-                    unit = "N s/m" if each in SLIDES else "N m s/rad"
-                    said.append(
-                        f"friction of {name}.{each} is a damper of {size:.3g} {unit} for small departures, which "
+                    unit = "N s/m" if kind in SLIDES else "N m s/rad"
+                    warnings.append(
+                        f"friction of {name}.{kind} is a damper of {size:.3g} {unit} for small departures, which "
                         "hardly move it: leave it out for those with the joint free, or give rate = 0 with it held"
                     )
-        return tuple(said)
+        return tuple(warnings)
 
 
 def refuse_massless(system: System, point: Point, mass: Floats) -> None:
-    """Refuse a system in which some motion of the coordinates moves no mass, by M of them at a point."""
+    """Raise InputError if some motion of the coordinates has no kinetic energy, by M (n, n) at a point."""
     if _least_moving(mass)[0] > MASSLESS:
         return
     local = point.local  # whose names are those of degrees of freedom
-    names, way = local_names(system.coordinates), np.abs(_least_moving(local.slopes()[3])[1])
-    together = ", ".join(names[local.tree.free[k]] for k in np.flatnonzero(way > way.max() / 2))
+    names, motion = local_names(system.coordinates), np.abs(_least_moving(local.slopes()[3])[1])
+    together = ", ".join(names[local.tree.free[k]] for k in np.flatnonzero(motion > motion.max() / 2))
     fix = "give the body that it moves a mass, and a moment of inertia about every axis that is free"
     fix += "; of two springs one behind the other, as a joint's and a beam's root, give one"
     raise InputError("bodies", f"leave {together} without inertia", fix)
 
 
 def _least_moving(mass: Floats) -> tuple[float, Floats]:
-    """The motion (n,) of the coordinates that moves the least mass, and that mass over the most."""
+    """The smallest singular value of the scaled M over the largest, and the motion (n,) of the coordinates with it."""
     scale = rooted(mass)
     _, sizes, rows = np.linalg.svd(mass / np.outer(scale, scale))
     return (sizes[-1] / sizes[0] if sizes.any() else 0.0, rows[-1]) if sizes.size else (np.inf, scale)
 
 
 def started(system: System, motion: Motion | None, time: float, initial: str) -> Point:
-    """The system at its joints' start, with flexible bodies undeformed, or in equilibrium where they rest and stay."""
+    """State at the start of the joints; bodies are undeformed or, if `initial` is "equilibrium", bent so that their
+    own coordinates are not accelerated. ComputationError where no such shape exists.
+    """
     tree, inputs = system.tree, system.inputs(np.asarray(time), motion)
     free = tree.free
     y, yd = (each[free] for each in system.start)
     elastic = np.array([".q" in system.coordinates[k] for k in free], dtype=bool)
     ydd, searched = np.zeros_like(y), np.where(elastic, initial == "equilibrium", False)
-    # Unknown are the coordinates of the bodies, and the accelerations of the joints.
+    # Newton's method for the coordinates of the bodies, where searched, and all other accelerations.
     for _ in range(ITERATIONS):
         begun = Point(tree, y, yd, ydd, inputs)
         left, k, _, m = begun.slopes()
         refuse_massless(system, begun, m)
         change = np.linalg.solve(np.where(searched, k, m), -left)
         y, ydd = y + np.where(searched, change, 0), ydd + np.where(searched, 0, change)
-        if np.abs(np.where(searched, change, 0)).max(initial=0.0) <= CLOSE * (
-            1e-3 + np.abs(y[elastic]).max(initial=0.0)
-        ):
+        moved = np.abs(np.where(searched, change, 0)).max(initial=0.0)
+        if moved <= CLOSE * (1e-3 + np.abs(y[elastic]).max(initial=0.0)):
             return Point(tree, y, yd, ydd, inputs)
     body = _farthest(system, tree, np.where(searched, change, 0)).rpartition(".")[0]
     fix = 'begin with initial = "undeformed"'
@@ -135,13 +137,13 @@ def started(system: System, motion: Motion | None, time: float, initial: str) ->
 
 
 def _farthest(system: System, tree: Tree, values: Any) -> str:
-    """Name of the coordinate of a tree whose value (n,) is the largest, or of the rotation that it is a part of."""
+    """Name of the free coordinate with the largest value (n,); of an Euler parameter, the rotation of its joint."""
     name = system.coordinates[tree.free[int(np.abs(np.nan_to_num(values, nan=np.inf)).argmax())]]
     return name if local_names([name]) == [name] else f"the rotation of {name.rpartition('.')[0]}"
 
 
 def started_traced(system: System, motion: Motion | None, time: float, initial: str) -> tuple[Array, Array]:
-    """Coordinates and rates at the start of a system that JAX traces; NaN where its bodies find no place to rest."""
+    """Coordinates and rates (n,) as `started` has them, of a system that JAX traces; NaN where no shape is at rest."""
     tree, inputs = system.tree, system.inputs(np.asarray(time), motion)
     free = tree.free
     y, yd = (each[free] for each in system.start)
@@ -161,46 +163,46 @@ def started_traced(system: System, motion: Motion | None, time: float, initial: 
 
 
 def _alike(point: Point, left: Floats, k: Floats, mass: Floats, turn: Flags) -> bool:
-    """True if equations are the same at all angles of a hinge, by the residual and its columns of K and M (n, 1)."""
+    """True if turning one hinge by a radian changes no residual; `turn` flags it, `k` and `mass` are its columns."""
     elsewhere = point.tree(point.y + turn, point.yd, point.ydd, point.inputs)
     changed = max(np.abs(k).max(), np.abs(elsewhere - left).max())
     return bool(changed <= SAME * (np.abs(mass).max() + np.abs(left).max()))
 
 
 def adrift(point: Point, left: Floats, slope: Sequence[Floats]) -> Flags:
-    """Flags of the coordinates that are accelerated at rest, by the residual, K, C and M there: slides from the ground
-    on, and balls and hinges after them with which all turns on.
+    """Flags (n,) of the coordinates that nothing holds, by the residual `left` and K, C, M: slides from the ground, and
+    balls and hinges behind them if the equations stay the same as all beyond turns with them.
     """
     tree, (k, c, m) = point.tree, slope
-    which = np.asarray(tree.sliding & loose(k, c))
+    slides = np.asarray(tree.sliding & loose(k, c))
     turning = [turn for turn in tree.turning if turn.sum() > 1 or _alike(point, left, k[:, turn], m[:, turn], turn)]
     if not turning:
-        return which
-    every = np.any([which, *turning], axis=0)
-    local = replace(point, ydd=point.ydd + pulled(left, m, every)).local
+        return slides
+    candidates = np.any([slides, *turning], axis=0)
+    local = replace(point, ydd=point.ydd + pulled(left, m, candidates)).local
     _, k, c, m = local.slopes()
     turns = local.tree.turning
-    every = np.any([local.tree.sliding & loose(k, c), *turns], axis=0)
-    free = [not c[:, turn].any() and turning_on(k, m, local.ydd, every, turn) for turn in turns]
-    return np.any([which, *(turn for turn, each in zip(turning, free, strict=True) if each)], axis=0)
+    candidates = np.any([local.tree.sliding & loose(k, c), *turns], axis=0)
+    free = [not c[:, turn].any() and turning_on(k, m, local.ydd, candidates, turn) for turn in turns]
+    return np.any([slides, *(turn for turn, turns_on in zip(turning, free, strict=True) if turns_on)], axis=0)
 
 
 def _newton(point: Point, left_over: Floats) -> tuple[Point, tuple[Floats, ...], Floats, bool]:
-    """The point at rest where so much is out of balance, with K, C and M, the last change, and if it is none."""
-    before, tree, which = 0.0, point.tree, point.tree.sliding
-    if which.any() or tree.turning:
+    """Solve residual = `left_over` (n,) by Newton's method: the point, K, C, M, last correction, True if converged."""
+    before, tree, accelerated = 0.0, point.tree, point.tree.sliding
+    if accelerated.any() or tree.turning:
         left, *slope = point.slopes()
-        which = adrift(point, left, slope)
-        point = replace(point, ydd=point.ydd + pulled(left - left_over, slope[-1], which))
+        accelerated = adrift(point, left, slope)
+        point = replace(point, ydd=point.ydd + pulled(left - left_over, slope[-1], accelerated))
     for _ in range(ITERATIONS):
         left, k, c, m = point.slopes()
-        change, _ = balanced(left - left_over, k, m, which)
+        change, _ = balanced(left - left_over, k, m, accelerated)
         size = float(np.abs(change).max(initial=0.0))
         # Steps of a radian at most: a beam far from its equilibrium turns by as much.
         point = replace(point, y=point.y + change / max(1.0, size))
         # With other accelerations than those of the forces a body that turns with all that pushes it would change them.
-        left = tree(point.y, point.yd, point.ydd, point.inputs) if which.any() else left
-        point = replace(point, ydd=point.ydd + pulled(left - left_over, m, which))
+        left = tree(point.y, point.yd, point.ydd, point.inputs) if accelerated.any() else left
+        point = replace(point, ydd=point.ydd + pulled(left - left_over, m, accelerated))
         # The next correction is smaller by what this one is smaller than the last one, at least.
         limit = CLOSE * (1.0 + np.abs(point.y).max(initial=0.0))
         if min(size, 1.0) * min(size / before if before else 1.0, 1.0) <= limit:
@@ -210,12 +212,12 @@ def _newton(point: Point, left_over: Floats) -> tuple[Point, tuple[Floats, ...],
 
 
 def rested_together(
-    system: System, tree: Tree, each: Sequence[Inputs], starts: Floats
+    system: System, tree: Tree, drives: Sequence[Inputs], starts: Floats
 ) -> list[tuple[Point, tuple[Floats, ...]] | None]:
-    """A system's tree at rest under several inputs near starts (t, n) of all coordinates, with K, C and M there; None
-    where Newton's method does not find it near the start.
+    """States of rest of a system's tree under several inputs, each with its K, C and M, from starts (t, n) of all
+    coordinates; None for each that Newton's method does not find near its start.
     """
-    inputs, sliding = together(each), tree.sliding
+    inputs, sliding = together(drives), tree.sliding
     y, begun = starts[:, tree.free], starts[:, tree.free]
     still, ydd, before = np.zeros_like(y), np.zeros_like(y), np.full(len(y), np.inf)
     converged, lost = np.zeros((2, len(y)), dtype=bool)
@@ -225,17 +227,17 @@ def rested_together(
             if sliding.any():
                 if not count:
                     k, c, m = slopes(tree, y, still, ydd, inputs)
-                    which = sliding & np.array([loose(*each) for each in zip(k, c, strict=True)])
+                    which = sliding & np.array([loose(*pair) for pair in zip(k, c, strict=True)])
                 left = tree(y, still, ydd, inputs)
-                ydd = ydd + [pulled(*each) for each in zip(left, m, which, strict=True)]
+                ydd = ydd + [pulled(*state) for state in zip(left, m, which, strict=True)]
             left, (k, c, m) = tree(y, still, ydd, inputs), slopes(tree, y, still, ydd, inputs)
             settled = converged  # where the derivatives are those of a state that has converged
             if (settled | lost).all():
                 break
             lost = lost | ~np.isfinite(np.concatenate([left[:, None], k], axis=1)).all(axis=(1, 2))
             change = np.zeros_like(y)
-            for at in np.flatnonzero(~lost).tolist():
-                change[at], _ = balanced(left[at], k[at], m[at], which[at])
+            for i in np.flatnonzero(~lost).tolist():
+                change[i], _ = balanced(left[i], k[i], m[i], which[i])
             size = np.abs(change).max(axis=1, initial=0.0)
             shrunk = np.where(np.isfinite(before) & (before > 0), np.minimum(size / before, 1.0), 1.0)
             limit = CLOSE * (1.0 + np.abs(y).max(axis=1, initial=0.0))
@@ -243,28 +245,28 @@ def rested_together(
             converged = ~lost & (np.minimum(size, 1.0) * shrunk <= limit)
     near = settled & ~lost & (np.abs(y - begun).max(axis=1, initial=0.0) <= NEAR)
     points: list[tuple[Point, tuple[Floats, ...]] | None] = [None] * len(y)
-    for at in np.flatnonzero(near).tolist():
-        slope = k[at], c[at], m[at]
+    for i in np.flatnonzero(near).tolist():
+        slope = k[i], c[i], m[i]
         try:
-            points[at] = _steady(system, Point(tree, y[at], still[at], ydd[at], each[at]), slope), slope
+            points[i] = _steady(system, Point(tree, y[i], still[i], ydd[i], drives[i]), slope), slope
         except (InputError, ComputationError, np.linalg.LinAlgError):
             continue
     return points
 
 
 def rested(system: System, tree: Tree, inputs: Inputs, start: Floats | None = None) -> Point:
-    """A system's tree in relative equilibrium: joints and bodies rest, and what slides freely is accelerated evenly.
+    """State of a tree in relative equilibrium: rates are zero, and only coordinates that nothing holds are accelerated.
 
-    Of places that nothing holds it is the nearest one to a `start` of all coordinates, by default that of the joints,
-    with bodies undeformed. Where Newton's method fails from there, what is out of balance at the start is taken away
-    in shares.
+    If there are several, the nearest one to coordinates `start`, by default the joints' start with bodies undeformed.
+    Where Newton's method fails from there, the residual at the start is taken away in shares. ComputationError if
+    there is no equilibrium.
     """
     still = np.zeros(len(tree.free))
     begun = point = Point(tree, (system.start[0] if start is None else start)[tree.free], still, still, inputs)
-    beginning, reached, stride = tree(begun.y, still, still, inputs), 0.0, 1.0
+    residual, reached, stride = tree(begun.y, still, still, inputs), 0.0, 1.0
     while reached < 1.0:
         share = min(reached + stride, 1.0)
-        moved, slope, change, converged = _newton(point, (1.0 - share) * beginning)
+        moved, slope, change, converged = _newton(point, (1.0 - share) * residual)
         if converged:
             point, reached, stride = moved, share, 2 * stride
         elif stride > SHORTEST:
@@ -278,23 +280,23 @@ def rested(system: System, tree: Tree, inputs: Inputs, start: Floats | None = No
 
 
 def _steady(system: System, point: Point, slope: Sequence[Floats]) -> Point:
-    """A point without accelerations of rounding, by K, C and M there; one that forces left over accelerate otherwise,
-    or in which some motion moves no mass, is refused.
+    """The point with accelerations that are rounding set to zero; ComputationError where forces would accelerate other
+    coordinates, InputError where some motion has no mass. `slope` is K, C and M.
     """
     tree, (k, c, m) = point.tree, slope
     refuse_massless(system, point, m)
-    which, left = tree.sliding & loose(k, c), tree(point.y, point.yd, point.ydd, point.inputs)
-    turned = any(np.abs(point.ydd[turn]).max() > NONE for turn in tree.turning)
-    every = adrift(point, left, slope) if turned else which
-    (left,), (k,) = carried(m, which, left), carried(m, every, k)
-    k[:, every] = 0.0
-    # By forces alone that no stiffness balances: the rounding of a stiff body's is more than gravity.
-    ways = unheld(k, m)
-    yields = np.linalg.solve(m, ways) @ ways.T
+    slides, left = tree.sliding & loose(k, c), tree(point.y, point.yd, point.ydd, point.inputs)
+    turns = any(np.abs(point.ydd[turn]).max() > NONE for turn in tree.turning)
+    accelerated = adrift(point, left, slope) if turns else slides
+    (left,), (k,) = carried(m, slides, left), carried(m, accelerated, k)
+    k[:, accelerated] = 0.0
+    # Only forces that no stiffness balances are judged: the rounding of a stiff body's forces is more than gravity.
+    directions = unheld(k, m)
+    yields = np.linalg.solve(m, directions) @ directions.T
     rounding = np.abs(yields) @ np.abs(k).sum(axis=1)
     if np.abs(yields @ left).max(initial=0.0) > NONE * max(1.0, 1e-6 * rounding.max(initial=0.0)):
         raise ComputationError("no equilibrium", _unheld(system, point.local))
-    # Of a ball all or none: what turns it about one axis is not the rounding of another.
+    # Of a ball all three or none: an acceleration about one axis is no rounding of another's.
     faster = np.abs(point.ydd) > NONE
     for turn in tree.turning:
         faster |= turn & faster[turn].any()
@@ -306,11 +308,11 @@ def _unheld(system: System, local: Point) -> str:
     left, k, c, m = local.slopes()
     left, k = carried(m, local.tree.sliding & loose(k, c), left, k)
     left = left - k @ answered(k, m, left)
-    # Of all that is accelerated with it the one on which the force left over acts.
-    at = int(np.abs(left / np.sqrt(np.diag(m))).argmax())
-    name = local_names(system.coordinates)[local.tree.free[at]]
+    # Of the coordinates that are accelerated together, the one on which the force left over acts.
+    row = int(np.abs(left / np.sqrt(np.diag(m))).argmax())
+    name = local_names(system.coordinates)[local.tree.free[row]]
     joint, _, kind = name.rpartition(".")
-    size = f"{abs(left[at]):.4g} {'N' if kind in SLIDES else 'N m'}"
+    size = f"{abs(left[row]):.4g} {'N' if kind in SLIDES else 'N m'}"
     if joint in system.joints and kind in ("rx", "ry", "rz") and system.joints[joint].kind == "free":
         about = f"{kind[1]} of {system.joints[joint].body}.root"
         fix = "push in line with the mass centre, balance the moment, or hold it"

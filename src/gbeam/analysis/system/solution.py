@@ -18,19 +18,21 @@ from gbeam.mechanics.tree.equations import Inputs
 from gbeam.mechanics.tree.system import RigidBody, System
 from gbeam.results.parts import Base
 
-InputsOf = Callable[[System, Any], Inputs]  # of a system with the same joints, at some (index) of the times
+InputsOf = Callable[[System, Any], Inputs]  # of a system with the same joints, at times by an index or slice
 
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """A system with its coordinates and rates at some times, and the inputs then of every system with its joints."""
+    """A system, its trajectory `of` (coordinates, rates and accelerations at times), and its inputs at these times,
+    which are known for every system with the same joints.
+    """
 
     system: System
     of: Trajectory
     inputs: InputsOf
 
     def posed(self, bodies: Iterable[str], system: System | None = None) -> Posed:
-        """The equations of its system, or of another, at its times, and what is read of some of the bodies."""
+        """Equations of this system, or of another, at the solution's times, with a function that reads `bodies`."""
         system = self.system if system is None else system
         names = [system.coordinates[k] for k in system.tree.free]
         return Posed(
@@ -41,38 +43,40 @@ class Solution:
         )
 
     def within(self, system: System, bodies: Iterable[str], shared: IntArray | None = None) -> Within:
-        """It put into the equations of another system, where its unknowns have the same names, or are those shared."""
+        """The solution put into the equations of another system, where its unknowns have the same names or the indices
+        `shared`.
+        """
         return Within.lifted(self.posed(bodies, system), self.posed(bodies), self.of, shared)
 
     def read(self, bodies: Iterable[str]) -> Reading:
-        """Places (t, p, 3) m of all points, and of some bodies the force and moment (t, 3) at the root and the largest
-        size of the normal stress, and that of von Mises, over the sections (t,), or a solid's stress (t, c).
+        """Places (t, p, 3) m of all points and, of each body named, force and moment (t, 3) at the root and the largest
+        normal and von Mises stress over the sections (t,); of a solid the stress (t, c) of `recovery.felt`.
         """
         tree, of = self.system.tree, self.of
         places, along = list[Floats](), {name: list[Carried]() for name in bodies}
-        for some in pieces(len(of.time), tree.size):
-            now, at = self.inputs(self.system, some), of.at(some)
-            state = tree.motion(at.q, at.qd, at.qdd if along else 0 * at.q, now)
+        for times in pieces(len(of.time), tree.size):
+            inputs, at = self.inputs(self.system, times), of.at(times)
+            state = tree.motion(at.q, at.qd, at.qdd if along else 0 * at.q, inputs)
             places.append(np.stack([frame.p for frame in state.every_point], axis=1))
             if along:
-                acting = tree.demanded(state, now)[2]
-                for name, each in along.items():
-                    each.append(carried(self.system, state, name, acting))
+                acting = tree.demanded(state, inputs)[2]
+                for name, carried_pieces in along.items():
+                    carried_pieces.append(carried(self.system, state, name, acting))
         out: dict[Quantity, Floats] = {PLACE: np.concatenate(places)}
-        for name, each in along.items():
+        for name, carried_pieces in along.items():
             body = self.system.flexible[name]
-            loads = loads_of(body, each, of.time)
+            loads = loads_of(body, carried_pieces, of.time)
             sheared = loads.stress if loads.von_mises is None else np.nan_to_num(loads.von_mises)
             stress = loads.stress.max(axis=1)
             if body.recovery is not None:
-                stress = body.recovery.felt(np.concatenate([part.q for part in each]))
+                stress = body.recovery.felt(np.concatenate([piece.q for piece in carried_pieces]))
             out |= {(name, "force"): loads.root_force, (name, "moment"): loads.root_moment}
             out |= {(name, "stress"): stress, (name, "sheared"): sheared.max(axis=1)}
         return out
 
     def turning(self) -> Floats:
-        """Places (t, 3 k, 3) m from the root, ground's axes, of three points at the radius of gyration of each rigid
-        body that has no points beside its root, which do not show how it turns.
+        """Places (t, 3 k, 3) m from the root, in the ground's axes, of three points on the axes of each of the k rigid
+        bodies without points off the root, at its radius of gyration: they move as it turns.
         """
         tree, of, radii = self.system.tree, self.of, dict[int, float]()
         for k, name in enumerate(self.system.order):
@@ -80,26 +84,26 @@ class Solution:
             if isinstance(body, RigidBody) and not np.any(body.body.places) and body.mass > 0:
                 about_root = np.trace(body.tensor) / (2 * body.mass) + np.square(body.centre).sum()
                 radii[k] = float(np.sqrt(about_root))
-        turned = list[Floats]()
-        for some in pieces(len(of.time), tree.size) if radii else ():
-            at = of.at(some)
-            roots = tree.motion(at.q, at.qd, 0 * at.q, self.inputs(self.system, some)).roots
+        places = list[Floats]()
+        for times in pieces(len(of.time), tree.size) if radii else ():
+            at = of.at(times)
+            roots = tree.motion(at.q, at.qd, 0 * at.q, self.inputs(self.system, times)).roots
             axes = [radius * np.swapaxes(roots[k].R, -1, -2) for k, radius in radii.items()]
-            turned.append(np.concatenate([np.broadcast_to(each, (len(at.q), 3, 3)) for each in axes], axis=1))
-        return np.concatenate(turned) if turned else np.zeros((len(of.time), 0, 3))
+            places.append(np.concatenate([np.broadcast_to(ends, (len(at.q), 3, 3)) for ends in axes], axis=1))
+        return np.concatenate(places) if places else np.zeros((len(of.time), 0, 3))
 
     def bases(self, bodies: Iterable[str]) -> dict[str, Base]:
-        """Motions of the roots of some bodies, at some of the times (t, 3)."""
-        some = looked(len(self.of.time))
-        at = self.of.at(some)
-        state = self.system.tree.motion(at.q, at.qd, at.qdd, self.inputs(self.system, some))
+        """Motions (t, 3) of the roots of the bodies, by name, at a selection of the times."""
+        times = looked(len(self.of.time))
+        at = self.of.at(times)
+        state = self.system.tree.motion(at.q, at.qd, at.qdd, self.inputs(self.system, times))
         roots = {name: state.roots[k] for k, name in enumerate(self.system.order)}
         return {name: Base(roots[name].a, roots[name].w, roots[name].alpha) for name in bodies}
 
     @property
     def unstiffened(self) -> tuple[str, ...]:
-        """Warnings of how large the stiffness by loads is that bodies by matrices lack, moved as their roots are."""
+        """Warnings of bodies made of matrices, which lack stiffness by loads: how large it would be in this motion."""
         lacking = [name for name, body in self.system.flexible.items() if body.unstiffened]
         bases = self.bases(lacking) if lacking else {}
-        said = ((name, unstiffened(self.system.flexible[name], base, "its motion")) for name, base in bases.items())
-        return tuple(f"{name}: {each}" for name, words in said for each in words)
+        warnings = ((name, unstiffened(self.system.flexible[name], base, "its motion")) for name, base in bases.items())
+        return tuple(f"{name}: {warning}" for name, of_body in warnings for warning in of_body)

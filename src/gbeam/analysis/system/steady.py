@@ -54,10 +54,10 @@ class Drive:
     factor: float = 1.0
 
     def inputs(self, system: System) -> Inputs:
-        """Inputs of a system's tree; of a coordinate that is not prescribed they are the last prescribed ones."""
-        hub = isinstance(self.motion, Hub) and self.rate is not None and not self.coordinate
-        inputs = system.inputs(np.asarray(self.time), None if hub else self.motion)
-        if hub:
+        """Inputs of a system's tree; a coordinate that turns without being prescribed is added as the last of these."""
+        hub_turns = isinstance(self.motion, Hub) and self.rate is not None and not self.coordinate
+        inputs = system.inputs(np.asarray(self.time), None if hub_turns else self.motion)
+        if hub_turns:
             base = self.motion.mount.base(*(np.asarray(float(each)) for each in (self.turn, self.rate, 0.0)))  # type: ignore[union-attr, arg-type]
             still = np.zeros(3)
             ground = Frame(np.eye(3), still, still, base.w_WB_B, base.a_WO_B, base.alpha_WB_B)
@@ -71,21 +71,22 @@ class Drive:
             k = system.coordinates.index(self.coordinate)
             if k not in system.tree.fixed:
                 prescribed = np.append(prescribed, [[system.start[0][k]], [0.0], [0.0]], axis=1)
-            which = system.tree.fixed.index(k) if k in system.tree.fixed else -1
-            prescribed[1:, which] = self.rate, 0.0
+            column = system.tree.fixed.index(k) if k in system.tree.fixed else -1
+            prescribed[1:, column] = self.rate, 0.0
         if self.turn:
-            # All that turns goes on for as long as this takes.
+            # All prescribed coordinates go on for as long as the fastest one takes to turn so far.
             fastest = np.abs(np.append(prescribed[1], self.rate or 0.0)).max()
             before = prescribed.copy()
             prescribed[0] += prescribed[1] * self.turn / fastest
-            for k, at in enumerate(system.tree.fixed):
-                if system.coordinates[at].endswith(".e0"):
-                    prescribed[:, k : k + 4] = turned_on(before[:, k : k + 4], self.turn / fastest)
+            for column, k in enumerate(system.tree.fixed):
+                if system.coordinates[k].endswith(".e0"):  # the first of four Euler parameters
+                    euler = slice(column, column + 4)
+                    prescribed[:, euler] = turned_on(before[:, euler], self.turn / fastest)
         return replace(inputs, prescribed=prescribed if prescribed.size else None)
 
 
 def bent_most(system: System, names: Sequence[str], q: Floats) -> tuple[str, float]:
-    """Name of the body of second order that is bent most at coordinates (k, n), and how far, over its size."""
+    """Name of the second-order body that moves most over its size at coordinates (k, n), and that ratio."""
     bent = {"a body": 0.0}
     for name, body in system.bodies.items():
         if isinstance(body, Structure) and body.kind not in BY_STRAINS:
@@ -96,7 +97,7 @@ def bent_most(system: System, names: Sequence[str], q: Floats) -> tuple[str, flo
 
 
 def massless(system: System, names: Sequence[str], q: Floats) -> str:
-    """Say which body's model leaves a motion about coordinates (n,) without kinetic energy."""
+    """Say which body is bent so far at coordinates (n,) that its model leaves a motion without kinetic energy."""
     most, _ = bent_most(system, names, q[None])
     exact = "give it the exact model, or " if getattr(system.bodies.get(most), "field", None) is not None else ""
     fix = f"{exact}load it less, or put the mass of what holds it, a hub or a bearing, on its joint as a rigid body"
@@ -131,25 +132,24 @@ class SteadySystem(Steady):
 
     @property
     def _held_spin(self) -> tuple[str, ...]:
-        """Warning of what turns at the start, goes on turning by itself, and rests in this state."""
+        """Warning of joints that turn freely at the start and rest in this state."""
         tree, names = self.local.tree, self.names
         rates = self.system.tree.local(*self.system.start, 0 * self.system.start[0])[2][tree.free]
         if self.point.yd.any() or not rates.any():
             return ()
         k, _, m = self.local.slopes()[1:]
-        (held,) = carried(m, self.adrift, k)
-        held[:, self.adrift] = 0.0
-        goes_on = np.abs(held).max(axis=0) <= STILL * np.abs(held).max() if held.any() else np.ones(len(m), dtype=bool)
-        pairs = zip(names, goes_on & (rates != 0), strict=True)
-        turning = dict.fromkeys(
-            each.rpartition(".")[0] for each, on in pairs if on and each.rpartition(".")[2] not in SLIDES
-        )
+        (stiffness,) = carried(m, self.adrift, k)
+        stiffness[:, self.adrift] = 0.0
+        size = np.abs(stiffness).max(axis=0)
+        unsprung = size <= STILL * size.max() if stiffness.any() else np.ones(len(m), dtype=bool)
+        goes_on = (name.rpartition(".") for name, on in zip(names, unsprung & (rates != 0), strict=True) if on)
+        turning = dict.fromkeys(joint for joint, _, kind in goes_on if kind not in SLIDES)
         words = f'{" and ".join(turning)} did not turn, as at the start: gb.linearize(at="start") is about that motion'
         return (f"as if {words}",) if turning else ()
 
     @property
     def _spun_up(self) -> tuple[str, ...]:
-        """Warnings of joints that begin to turn ever faster, by which moment, and for how long they hardly turn."""
+        """Warnings of joints with an angular acceleration: the moment that turns them, and the time to turn by 1°."""
         if self.point.yd.any():
             return ()
         said, tree, names = [], self.local.tree, self.names
@@ -189,21 +189,22 @@ class SteadySystem(Steady):
 
     @cached_property
     def adrift(self) -> Flags:
-        """Flags of the local coordinates that are accelerated, or would be."""
+        """Flags of the local coordinates that nothing holds, so that forces accelerate them."""
+        # Rotations stand for the last three of four Euler parameters.
         kept = [not self.system.coordinates[k].endswith(".e0") for k in self.point.tree.free]
         left, *slope = self.point.slopes()
         return adrift(self.point, left, slope)[kept]
 
     @cached_property
     def follows(self) -> Floats:
-        """Derivative of the accelerations ÿ with respect to y, signs turned, by which they turn on with the body that
-        they turn ever faster.
+        """Minus the derivatives (n, n) of the accelerations ÿ with respect to y: the axis of an angular acceleration
+        turns with the body.
         """
-        by = np.zeros((len(self.local.y), len(self.local.y)))
+        slope = np.zeros((len(self.local.y), len(self.local.y)))
         for turn in self.local.tree.turning if not self.point.yd.any() else ():
             if self.local.ydd[turn].any() and self.adrift[turn].all():
-                by[np.ix_(turn, turn)] = following(self.local.ydd[turn])
-        return by
+                slope[np.ix_(turn, turn)] = following(self.local.ydd[turn])
+        return slope
 
     @property
     def coordinates(self) -> Floats:
@@ -224,11 +225,11 @@ class SteadySystem(Steady):
         ydd, slides = self.local.ydd, self.local.tree.sliding
         if ydd[~slides].any() and (self.point.yd.any() or ydd[~(slides | self.adrift)].any()):
             return ()
-        pairs = zip(self.names, ydd.tolist(), slides, strict=True)
+        columns = zip(self.names, ydd.tolist(), slides, strict=True)
         return tuple(
-            Accelerated(name, each) if slide else Accelerated(name, angular_acceleration=each)
-            for name, each, slide in pairs
-            if abs(each) > NONE
+            Accelerated(name, size) if slide else Accelerated(name, angular_acceleration=size)
+            for name, size, slide in columns
+            if abs(size) > NONE
         )
 
     @property
@@ -255,16 +256,16 @@ class SteadySystem(Steady):
         return self.slopes_of_frames[0]
 
     def shares(self, modes: Complex) -> Floats:
-        """Shares (k, bodies) of the bodies in the kinetic energy of modes (n, k), beside that of the steady state."""
+        """Shares (k, bodies) of the bodies in the kinetic energy of modes (n, k), without that of the steady state."""
         tree, inputs = self.local.tree, self.local.inputs
         still = Frame(*(np.eye(3) if k == 0 else np.zeros(3) for k in range(6)))
         prescribed = inputs.prescribed
-        alone = replace(
+        at_rest = replace(
             inputs, ground=still, prescribed=None if prescribed is None else prescribed * [[1.0], [0.0], [0.0]]
         )
         energies = np.zeros((modes.shape[1], len(tree.links)))
         for rates in (modes.real.T, modes.imag.T):
-            state = tree.motion(np.broadcast_to(self.local.y, rates.shape), rates, 0 * rates, alone)
+            state = tree.motion(np.broadcast_to(self.local.y, rates.shape), rates, 0 * rates, at_rest)
             for k, link in enumerate(tree.links):
                 energies[:, k] += link.body.moving(state.q[k][-1], state.qd[k][-1], state.roots[k])[0]
         return np.asarray(energies / np.maximum(energies.sum(axis=1, keepdims=True), 1e-300))
@@ -285,7 +286,7 @@ class SteadySystem(Steady):
         return tuple(names)
 
     def richer(self, system: System) -> SteadySystem:
-        """Steady state of the system with other bodies in it; a ComputationError where these leave it none."""
+        """Steady state of a system with richer bodies under the same drives; ComputationError if it has none."""
         try:
             return steady(system, self.drive)
         except InputError as error:
@@ -293,26 +294,26 @@ class SteadySystem(Steady):
 
     @property
     def changing(self) -> bool:
-        """True if the equations change as what turns goes on turning."""
+        """True if the residual, K, C or M are others after a turn: the state is not the same at all angles."""
         prescribed = self.local.inputs.prescribed
         if not self.drive.rate and (prescribed is None or not prescribed[1].any()):
             return False
         square, modes = symmetric_modes(*(symmetric(each) for each in (self.linear.stiffness, self.linear.mass)))
         rate = np.sqrt(np.abs(square))
         rate = np.maximum(rate, 1e-6 * rate.max(initial=0.0) or 1.0)
-        left, *at = self._slopes_after(0.0)
+        left, *before = self._slopes_after(0.0)
         for turn in TURNS:
-            beside, *other = self._slopes_after(turn)
-            moved = np.append(*balanced(beside - left, at[0], at[2], self.adrift))
+            left_after, *after = self._slopes_after(turn)
+            moved = np.append(*balanced(left_after - left, before[0], before[2], self.adrift))
             # K, C and M in modes of unit mass, over their frequencies.
-            parts = zip(at, other, (1.0, 0.5, 0.0), strict=True)
-            changes = [modes.T @ (b - a) @ modes / np.outer(rate, rate) ** power for a, b, power in parts]
+            pairs = zip(before, after, (1.0, 0.5, 0.0), strict=True)
+            changes = [modes.T @ (b - a) @ modes / np.outer(rate, rate) ** power for a, b, power in pairs]
             if np.abs(moved).max(initial=0.0) > STILL or np.abs(changes).max(initial=0.0) > SAME:
                 return True
         return False
 
     def _slopes_after(self, turn: float) -> tuple[Floats, ...]:
-        """Residual, K, C and M at the same coordinates after a turn."""
+        """Residual, K, C and M with all that turns ahead by an angle, rad, and the other coordinates as they are."""
         tree, inputs = self.point.tree, replace(self.drive, turn=turn).inputs(self.system)
         y, prescribed = np.array(self.point.y), inputs.prescribed
         if self.drive.coordinate:
@@ -329,7 +330,9 @@ class SteadySystem(Steady):
 
 
 def steady(system: System, drive: Drive, *, held: bool = False, start: Floats | None = None) -> SteadySystem:
-    """A system in equilibrium relative to what turns: freely, under the effort that this needs, unless it is held."""
+    """System in equilibrium relative to what turns, whose coordinate is free, under the effort that it needs, unless
+    `held`. The search begins at coordinates `start`, by default those of the joints.
+    """
     tree, inputs = _held(system, drive), drive.inputs(system)
     state = SteadySystem(system, drive, rested(system, tree, inputs, start))
     if state.accelerated and state.changing:
@@ -340,23 +343,21 @@ def steady(system: System, drive: Drive, *, held: bool = False, start: Floats | 
 
 
 def _held(system: System, drive: Drive) -> Tree:
-    """The system's tree in which the coordinate that turns is prescribed."""
+    """The system's tree with the coordinate that turns among the prescribed ones."""
     tree = system.tree
     k = system.coordinates.index(drive.coordinate) if drive.coordinate else -1
     return tree if k < 0 or k in tree.fixed else replace(tree, fixed=(*tree.fixed, k))
 
 
 def _released(state: SteadySystem, *, held: bool) -> SteadySystem:
-    """Free the coordinate that turns, unless it is to be held or is prescribed."""
+    """Free the coordinate that turns, under the effort that holds it; nothing changes if it is `held` or prescribed."""
     system, drive, fixed, tree = state.system, state.drive, state.point, state.system.tree
     if held or fixed.tree is tree:
         return state
     k, inputs = system.coordinates.index(drive.coordinate), fixed.inputs
     assert inputs.prescribed is not None
-    whole = [
-        fixed.tree.whole(each, prescribed)
-        for each, prescribed in zip((fixed.y, fixed.yd, fixed.ydd), inputs.prescribed, strict=True)
-    ]
+    pairs = zip((fixed.y, fixed.yd, fixed.ydd), inputs.prescribed, strict=True)
+    whole = [fixed.tree.whole(unknown, prescribed) for unknown, prescribed in pairs]
     efforts = np.zeros(tree.size) if inputs.efforts is None else np.array(inputs.efforts)
     efforts[k] += fixed.tree.rows(fixed.y, fixed.yd, fixed.ydd, inputs)[0][k]
     others = inputs.prescribed[:, :-1]
@@ -374,7 +375,7 @@ def open_loops(system: System) -> tuple[str, ...]:
 
 
 def turning_of(system: System, motion: Motion | None, turning: str | None) -> str:
-    """Name of the coordinate that turns: given, or the only prescribed angle, or the only one; empty for a hub."""
+    """Name of the coordinate that turns: `turning`, or the only prescribed angle, or the only angle; "" for a hub."""
     angles = [
         f"{name}.{each}"
         for name, joint in system.joints.items()
@@ -398,22 +399,22 @@ def turning_of(system: System, motion: Motion | None, turning: str | None) -> st
 
 
 class Equilibria:
-    """Workspace of a search: steady states, in which what turns is held, by a value with which drives grow. Of the same
-    system the next one begins where those at up to three lower values lead, and takes fewer corrections.
+    """Workspace of a search: steady states of systems, what turns held, by the rate or factor of their drives. A new
+    one begins at coordinates extrapolated from up to three lower values, and so takes fewer corrections.
     """
 
     def __init__(self) -> None:
         self._of: dict[int, tuple[System, dict[float, SteadySystem]]] = {}
 
     def steady(self, system: System, value: float, drive: Drive, *, held: bool = False) -> SteadySystem:
-        """Return the steady state of a system by its drives at a value."""
+        """Return the steady state of a system by its drive, whose rate or factor is the value."""
         known = self._known(system)
         if value not in known:
             known[value] = steady(system, drive, held=True, start=_continued(known, value))
         return _released(known[value], held=held)
 
     def ahead(self, system: System, drives: Mapping[float, Drive]) -> None:
-        """Find steady states by drives at several values at once; where that fails each is left for itself."""
+        """Solve for states at several values at once; those that fail are left to `steady`, one by one."""
         known = self._known(system)
         new = {value: drive for value, drive in drives.items() if value not in known}
         if not new or not known:
@@ -421,26 +422,27 @@ class Equilibria:
         starts = np.array([_continued(known, value) for value in new])
         tree = _held(system, next(iter(new.values())))
         points = rested_together(system, tree, [drive.inputs(system) for drive in new.values()], starts)
-        for (value, drive), each in zip(new.items(), points, strict=True):
-            if each is not None:
-                known[value] = SteadySystem(system, drive, each[0], each[1] if each[0].minimal else None)
+        for (value, drive), solved in zip(new.items(), points, strict=True):
+            if solved is not None:
+                point, slopes = solved
+                known[value] = SteadySystem(system, drive, point, slopes if point.minimal else None)
 
     def _known(self, system: System) -> dict[float, SteadySystem]:
         return self._of.setdefault(id(system), (system, {}))[1]
 
 
 def _continued(states: Mapping[float, SteadySystem], value: float) -> Floats | None:
-    """Polynomial through coordinates at lower values, as far apart as the value is; None where none is known."""
-    known = {each: state.coordinates for each, state in states.items()}
+    """Coordinates (n,) extrapolated to a value from states at up to three lower ones; None if there are none."""
     below: list[float] = []
-    for each in sorted(known, reverse=True):
-        if each <= value and len(below) < 3 and (not below or below[-1] - each >= value - below[0]):
-            below.append(each)
+    for lower in sorted(states, reverse=True):
+        # The nearest one, then those as far apart as it is from the value.
+        if lower <= value and len(below) < 3 and (not below or below[-1] - lower >= value - below[0]):
+            below.append(lower)
     if not below:
         return None
     from scipy.interpolate import KroghInterpolator
 
-    return np.asarray(KroghInterpolator(below, [known[each] for each in below])(value))
+    return np.asarray(KroghInterpolator(below, [states[lower].coordinates for lower in below])(value))
 
 
 @dataclass(frozen=True)
@@ -455,7 +457,7 @@ class Turning:
         return self.equilibria.steady(of, rate, replace(self.drive, rate=rate), held=self.held)
 
     def ahead(self, of: System, rates: Iterable[float]) -> None:
-        """Find those at several rates at once."""
+        """Solve for the states at several rates at once."""
         self.equilibria.ahead(of, {rate: replace(self.drive, rate=rate) for rate in rates})
 
     def refuse_changing(self, system: System, rate: float) -> None:
@@ -481,18 +483,21 @@ class Loaded:
         return self.equilibria.steady(of, factor, replace(self.drive, factor=factor))
 
     def ahead(self, of: System, factors: Iterable[float]) -> None:
-        """Find those at several factors at once."""
+        """Solve for the states at several factors at once."""
         self.equilibria.ahead(of, {factor: replace(self.drive, factor=factor) for factor in factors})
 
     def share(self, system: System) -> float:
-        """Stiffness that loads and forces bring, over the system's; if they only bend it, how far, over its extent."""
+        """The larger of two effects of loads and forces, to first order: stiffness over the system's, displacement over
+        its extent.
+        """
         inputs = self.drive.inputs(system)
         if not any(each is not None and np.any(each) for each in (*inputs.loads, inputs.wrenches)):
-            return 0.0  # as differences of what rests would not be, by rounding
+            return 0.0  # which the differences below are not, by rounding
         rest, pushed = self(system, 0.0), self(system, SLIGHT)
         square, modes = symmetric_modes(*(symmetric(each) for each in (rest.linear.stiffness, rest.linear.mass)))
-        held = modes[:, square > RIGID**2 * square[-1]] / np.sqrt(square[square > RIGID**2 * square[-1]])
-        brought = held.T @ (pushed.linear.stiffness - rest.linear.stiffness) @ held / SLIGHT
+        elastic = square > RIGID**2 * square[-1]
+        shapes = modes[:, elastic] / np.sqrt(square[elastic])  # of unit strain energy
+        added = shapes.T @ (pushed.linear.stiffness - rest.linear.stiffness) @ shapes / SLIGHT
         places, moved = (np.stack([frame.p for frame in each.frames]) for each in (rest, pushed))
         size = max(np.abs(places).max(), 1e-300)
-        return float(max(np.linalg.norm(brought, 2), np.abs(moved - places).max() / SLIGHT / size))
+        return float(max(np.linalg.norm(added, 2), np.abs(moved - places).max() / SLIGHT / size))
