@@ -1,8 +1,8 @@
 """Errors of the theory of slender beams: by shear, rotary inertia and twist, unless the model has them, and by plate
 action.
 
-A solution is put into the equations of thick beams, bent as it is; what it leaves there beyond those of slender ones is
-answered by the thick beams, without plate action and with it: the larger counts.
+A solution is put into the equations of thick beams, bent as it is. The residual there, beyond that of slender beams, is
+answered by the thick beams, without plate action and with it: the larger answer counts.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ WORDS = {"shear": "shear", "rotary": "rotary inertia", "twist": "twist", "plate"
 
 
 class Lacking(NamedTuple):
-    """Largest differences of quantities to the theory of thick beams, each cause's share of the energy by beam, and by
-    beam the distances (b,) m of its bodies; empty where thick beams have no answer.
+    """Largest difference of each quantity between slender and thick beams; by beam, each cause's share of the energy,
+    and the displacements (b,) m of its bodies between the two. Empty where thick beams have no answer.
     """
 
     sizes: Mapping[Quantity, float] = {}
@@ -42,44 +42,50 @@ def beyond(
     begun: Callable[[int], State | None],
     again: Callable[[Mapping[str, Structure]], Reading] | None = None,
 ) -> Lacking:
-    """Find what the beams of a solution lack by theory, posed with others in their places, by the state (of so many
-    unknowns) by which thick ones have `begun` elsewhere; or by running both `again`.
+    """Differences between slender and thick beams at a solution `of` the equations `solved`; `pose` returns equations
+    with other beams, `begun` the difference of the initial states of so many unknowns, or None for equilibrium. With
+    `again`, systems with either kind of beams are run instead.
     """
-    slender, thick = ({name: getattr(each, kind) for name, each in theories.items()} for kind in ("slender", "thick"))
+    slender, thick = (
+        {name: getattr(theory, kind) for name, theory in theories.items()} for kind in ("slender", "thick")
+    )
     thin = Within.lifted(pose(slender), solved, of)
     full = Within.lifted(pose(thick), thin.more, thin.of)
-    columns = {name: [k for k, each in enumerate(full.more.bodies) if each == name] for name in theories}
+    columns = {name: [k for k, body in enumerate(full.more.bodies) if body == name] for name in theories}
     bent = {name: full.of.q[:, columns[name]] for name in theories}
-    plates = {name: each.plate(bent[name]) for name, each in theories.items()}
+    plates = {name: theory.plate(bent[name]) for name, theory in theories.items()}
     added = np.zeros((full.of.q.shape[1],) * 2)
     for name, plate in plates.items():
         added[np.ix_(columns[name], columns[name])] = plate
     by, sizes, bodies = dict[str, Mapping[str, float]](), dict[Quantity, float](), dict[str, Floats]()
     try:
         residual = full.residual()
-        for name, each in theories.items():
-            by[name] = causes(each, bent[name], residual[:, columns[name]], bent[name] @ plates[name])
-        departures, without = full.departures(), thin.more.read(thin.of) if again is None else again(slender)
+        for name, theory in theories.items():
+            by[name] = causes(theory, bent[name], residual[:, columns[name]], bent[name] @ plates[name])
+        departures = full.departures()
+        without = thin.more.read(thin.of) if again is None else again(slender)
         for plate in (0 * added, added) if added.any() else (added,):
             if again is None:
                 answer = departures.stiffer(plate).answer(residual + full.of.q @ plate, begun(len(plate)))
                 truth = full.moved(answer)
-                for name, each in theories.items():
-                    moved = np.einsum("bai,ti->tba", each.bodies, answer.value[:, columns[name]])
-                    far = np.linalg.norm(moved, axis=2).max(axis=0)
-                    bodies[name] = np.maximum(bodies.get(name, 0.0), far)
+                for name, theory in theories.items():
+                    moved = np.einsum("bai,ti->tba", theory.bodies, answer.value[:, columns[name]])
+                    distance = np.linalg.norm(moved, axis=2).max(axis=0)
+                    bodies[name] = np.maximum(bodies.get(name, 0.0), distance)
             else:
-                stiff = {name: each.variants(plates[name])[1] for name, each in theories.items()}
+                stiff = {name: theory.variants(plates[name])[1] for name, theory in theories.items()}
                 truth = again(stiff if plate.any() else thick)
-            for key, values in without.items():
-                sizes[key] = max(sizes.get(key, 0.0), largest(truth[key] - values))
+            for quantity, values in without.items():
+                sizes[quantity] = max(sizes.get(quantity, 0.0), largest(truth[quantity] - values))
     except (ComputationError, np.linalg.LinAlgError):
         return Lacking()
     return Lacking(sizes, by, bodies)
 
 
 def causes(theory: Theory, p: Any, beam: Any, plate: Any) -> dict[str, float]:
-    """Share of each cause in the strain energy of solutions (t, n) that leave residuals (t, n), to first order."""
+    """Each cause's energy over the strain energy of solutions p (t, n), to first order, by the forces (t, n) that thick
+    beams (`beam`) and their plate action leave in the thick beams' equations.
+    """
     stiffness = theory.thick.coefficients.stiffness
     energy = np.abs(np.einsum("ti,ij,tj->t", p.conj(), stiffness, p)).max(initial=0.0)
     if energy == 0:
@@ -92,7 +98,7 @@ def causes(theory: Theory, p: Any, beam: Any, plate: Any) -> dict[str, float]:
     for name, columns in theory.columns.items():
         forces = beam[:, columns]
         work[name] = (forces.conj() * np.linalg.solve(stiffness[columns, columns], forces.T).T).sum(axis=1)
-    return {name: float(np.abs(each).max(initial=0.0) / energy) for name, each in work.items()}
+    return {name: float(np.abs(values).max(initial=0.0) / energy) for name, values in work.items()}
 
 
 def largest(values: Floats) -> float:
@@ -101,14 +107,14 @@ def largest(values: Floats) -> float:
 
 
 def words(causes: Mapping[str, float]) -> str:
-    """The causes that matter, the largest first: ``shear and rotary inertia``."""
+    """Names of the causes that are not negligible, the largest first: ``shear and rotary inertia``."""
     limit = max(NAMED * max(causes.values(), default=0.0), NONE)
     chosen = [WORDS[name] for name, share in sorted(causes.items(), key=lambda item: -item[1]) if share > limit]
     return " and ".join([", ".join(chosen[:-1]), chosen[-1]] if len(chosen) > 1 else chosen)
 
 
 def described(structure: Structure, causes: Mapping[str, float]) -> str:
-    """The causes that matter, and what the estimate assumes: ``shear; assumed: Poisson's ratio 0.3``."""
+    """Names of the causes, and the assumptions of the estimate: ``shear; assumed: Poisson's ratio 0.3``."""
     if structure.source is None or not causes:
         return ""
     named, assumed = words(causes), assumptions(structure.source.beam)

@@ -1,4 +1,4 @@
-"""Solutions put into equations with more shapes, what they leave there, and the small departures that answer it.
+"""Solutions put into equations with more shapes, their residuals there, and the small departures that cancel these.
 
 Modes that the samples resolve answer in time, by Gauss's method; the others follow statically.
 """
@@ -21,7 +21,7 @@ from gbeam.numerics.balance import balanced, loose
 from gbeam.numerics.eigen import UNSYMMETRIC, symmetric, symmetric_modes
 
 IntArray = NDArray[np.int_]
-Quantity = tuple[str, str]  # a body, or none, and what is read of it
+Quantity = tuple[str, str]  # a body or "", and the name of what is read: force, moment, stress, place
 Reading = Mapping[Quantity, Floats]  # over time, (t, ...)
 State = tuple[Floats, Floats]  # coordinates and rates, (n,) each
 PLACE: Quantity = ("", "place")
@@ -32,19 +32,19 @@ AT_ONCE = 20_000  # numbers of a state's frames computed together, times coordin
 
 
 def pieces(count: int, size: int) -> list[slice]:
-    """Stretches of so many times of which all frames are held in memory at once."""
+    """Slices of `count` times, each so short that all frames of a tree of `size` coordinates fit in memory."""
     step = max(1, AT_ONCE // max(size, 1))
     return [slice(first, first + step) for first in range(0, count, step)]
 
 
 def looked(count: int) -> IntArray:
-    """Indices of the times at which M, C and K are found, of so many."""
+    """Indices of those of `count` times at which M, C and K are found."""
     return np.unique(np.linspace(0, count - 1, min(count, LOOKED)).astype(int))
 
 
 class Posed(NamedTuple):
-    """Equations of motion at the times of a solution: their residual, what drives them at some (index) of the times,
-    names of their unknowns, those of bodies `body.q1`, and what is read of a solution.
+    """Equations of motion at the times of a solution: residual(q, q̇, q̈, inputs), the inputs at an index or slice of
+    the times, names of the unknowns (`body.q1` of a body's shapes), and a function that reads a trajectory.
     """
 
     residual: Any
@@ -54,7 +54,7 @@ class Posed(NamedTuple):
 
     @property
     def bodies(self) -> list[str]:
-        """Names of the bodies whose shapes the unknowns are; of a joint's none."""
+        """For each unknown the name of the body whose shape it is; "" for those of joints."""
         return [name.rpartition(".q")[0] for name in self.names]
 
 
@@ -66,12 +66,14 @@ class Correction(NamedTuple):
     acceleration: Floats
 
     def less(self, other: Correction) -> Correction:
-        """The part of it without another."""
+        """This correction minus another."""
         return Correction(*(a - b for a, b in zip(self, other, strict=True)))
 
 
 class Vibration(NamedTuple):
-    """Modes (n, n), columns of unit length in M, about a solution's mean stiffness, and which its samples resolve."""
+    """Squares of frequencies, rad²/s², and modes (n, n), columns of unit modal mass, of a solution's mean equations;
+    `resolved` flags the modes that its samples are close enough to follow.
+    """
 
     square: Floats
     modes: Floats
@@ -80,8 +82,8 @@ class Vibration(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Departures:
-    """Small departures from a solution at equal intervals of time: K, C and M (k, n, n) at the times `at` that are
-    looked at, and which of the unknowns are of bodies, and of balls that a state of rest turns ever faster (n,).
+    """Linear equations of small departures from a solution at equally spaced times: K, C and M (k, n, n) at the times
+    `at`; `elastic` flags the unknowns of bodies (n,), `turned` those of balls with an angular acceleration.
     """
 
     time: Floats
@@ -94,12 +96,12 @@ class Departures:
 
     @property
     def interval(self) -> float:
-        """Between two times, s."""
+        """Time between two samples, s."""
         return float(self.time[-1] - self.time[0]) / (len(self.time) - 1)
 
     @cached_property
     def vibration(self) -> Vibration:
-        """Modes about the mean, or, where unstable, about the start; joints by Euler parameters are held."""
+        """Modes of the mean K and M or, if unstable, of the first K; joints with Euler parameters are held."""
         mass, square, modes = self.m.mean(axis=0), np.zeros(len(self.elastic)), np.eye(len(self.elastic))
         held = ~self.elastic & (np.abs(mass - mass.T).max() > UNSYMMETRIC * np.abs(mass).max())
         inside = np.ix_(~held, ~held)
@@ -116,46 +118,48 @@ class Departures:
         return replace(self, k=self.k + by)
 
     def settled(self, residual: Floats) -> State:
-        """State of bodies that rest where they would leave nothing of a residual (n,); joints are accelerated."""
+        """Departure at rest in which bodies balance a residual (n,); joints are not displaced but accelerated."""
         unknown = np.where(self.elastic, self.k[0], self.m[0])
         return np.where(self.elastic, np.linalg.solve(unknown, -residual), 0.0), np.zeros_like(residual)
 
     def of_state(self, start: State) -> State:
-        """A state in all modes."""
-        displaced, moving = (np.asarray(np.linalg.solve(self.vibration.modes, each)) for each in start)
+        """Modal coordinates and rates (n,) of a state."""
+        displaced, moving = (np.asarray(np.linalg.solve(self.vibration.modes, values)) for values in start)
         return displaced, moving
 
     def shaken(self, residual: Floats, start: State | None) -> tuple[Floats, Floats]:
-        """Rates (k,) rad/s and amplitudes (n, k) at which the start, and corners and jumps of a residual (t, n), may
-        make unresolved modes ring: beside a corner the second difference of the force exceeds the ring's own.
+        """Frequencies (k,) rad/s of the unresolved modes, and bounds (n, k) of the amplitudes with which the start, and
+        corners and jumps of a residual (t, n), make them ring: a corner's second difference of force bounds the ring.
         """
         square, modes, kept = self.vibration
         rate, force = np.sqrt(square[~kept]), residual @ modes[:, ~kept]
-        displaced, moving = (each[~kept] for each in self.of_state(start or self.settled(residual[0])))
+        displaced, moving = (values[~kept] for values in self.of_state(start or self.settled(residual[0])))
         away = np.abs(displaced + force[0] / rate**2) + np.abs(moving) / rate
         return rate, modes[:, ~kept] * (np.abs(np.diff(force, n=2, axis=0)).max(axis=0) / rate**2 + away)
 
     def answer(self, residual: Floats, start: State | None = None) -> Correction:
-        """The response to −R, (t, n), from a state, or from where bodies rest; at one time at rest."""
+        """Correction that cancels a residual (t, n), from an initial departure, by default that of bodies at rest; of a
+        solution of one time, the static one.
+        """
         if len(self.time) == 1:
             which = loose(self.k[0], self.c[0]) | self.turned
             displaced, faster = balanced(residual[0], self.k[0], self.m[0], which)
             return Correction(displaced[None], np.zeros_like(residual), faster[None])
         square, modes, kept = self.vibration
         phi, stiff = modes[:, kept], modes[:, ~kept]
-        k, c, m = (phi.T @ each @ phi for each in (self.k, self.c, self.m))
-        back, count = np.linalg.inv(m), len(self.time)
-        c, k = back @ c, back @ k
-        force = -(_between(self.at, back, self.time) @ (residual @ phi)[..., None])[..., 0]
+        k, c, m = (phi.T @ matrices @ phi for matrices in (self.k, self.c, self.m))
+        inverse, count = np.linalg.inv(m), len(self.time)
+        c, k = inverse @ c, inverse @ k
+        force = -(_between(self.at, inverse, self.time) @ (residual @ phi)[..., None])[..., 0]
 
         def matrices(t: Any) -> tuple[Floats, Floats, Floats]:
             return _between(self.at, c, t), _between(self.at, k, t), _between(self.time, force, t)
 
         rest = symmetric(c.mean(axis=0)), np.diag(square[kept])
         equations = LinearEquations(np.eye(phi.shape[1]), matrices, np.asarray, rest=rest)
-        first, moving = (each[kept] for each in self.of_state(start or self.settled(residual[0])))
+        first, rate = (values[kept] for values in self.of_state(start or self.settled(residual[0])))
         moved = integrate(
-            equations, gauss(), first, moving, step=self.interval, count=count - 1, start=float(self.time[0])
+            equations, gauss(), first, rate, step=self.interval, count=count - 1, start=float(self.time[0])
         )
         static = -residual @ (stiff / square[~kept] @ stiff.T)
         if not moved.whole:
@@ -164,7 +168,7 @@ class Departures:
 
 
 def _between(at: Floats, values: Any, time: Floats) -> Floats:
-    """Values (k, ...) of times (k,) at others (t,), by straight lines."""
+    """Values (k, ...) at times (k,), interpolated linearly to other times (t,)."""
     place = np.interp(time, at, np.arange(len(at)))
     low = np.minimum(place.astype(int), len(values) - 2)
     share = (place - low).reshape(-1, *[1] * (values.ndim - 1))
@@ -172,7 +176,9 @@ def _between(at: Floats, values: Any, time: Floats) -> Floats:
 
 
 class Within(NamedTuple):
-    """A solution, which `less` solve, in equations with more shapes, where its unknowns are those `shared`."""
+    """A solution of the equations `less`, as a trajectory `of` the equations `more`, which have more shapes; `shared`
+    are the indices of its unknowns there.
+    """
 
     more: Posed
     less: Posed
@@ -181,40 +187,40 @@ class Within(NamedTuple):
 
     @classmethod
     def lifted(cls, more: Posed, less: Posed, of: Trajectory, shared: IntArray | None = None) -> Within:
-        """A solution of equations in others, which have unknowns of the same names, or in order those `shared`."""
+        """A solution put into other equations, by the names of its unknowns or by their indices `shared` there."""
         if shared is None:
-            shared = np.array([more.names.index(each) for each in less.names], dtype=int)
+            shared = np.array([more.names.index(name) for name in less.names], dtype=int)
         states = np.zeros((3, len(of.time), len(more.names)))
-        for onto, each in zip(states, (of.q, of.qd, of.qdd), strict=True):
-            onto[:, shared] = each
+        for state, values in zip(states, (of.q, of.qd, of.qdd), strict=True):
+            state[:, shared] = values
         return cls(more, less, shared, Trajectory(of.time, *states))
 
     def residual(self) -> Floats:
-        """Residual (t, n) of the equations with more shapes, less that of the others."""
+        """Residual (t, n) of the equations `more`, minus that of `less`."""
         out = []
-        for some in pieces(len(self.of.time), len(self.more.names)):
-            at, (more, less) = self.of.at(some), (each.inputs(some) for each in (self.more, self.less))
+        for times in pieces(len(self.of.time), len(self.more.names)):
+            at, more, less = self.of.at(times), self.more.inputs(times), self.less.inputs(times)
             left = np.array(self.more.residual(at.q, at.qd, at.qdd, more))
-            # At a jump of what drives it a solution leaves something of its own.
+            # Where inputs jump the solution has a residual in its own equations.
             left[:, self.shared] -= self.less.residual(*(each[:, self.shared] for each in (at.q, at.qd, at.qdd)), less)
             out.append(left)
         return np.concatenate(out)
 
     def of_new(self, residual: Floats) -> Floats:
-        """Part of a residual (t, n) in the new coordinates: what shapes lack; in the shared ones is what models do."""
+        """Part of a residual (t, n) in the new coordinates, by too few shapes; in the shared ones it is the model's."""
         new = residual.copy()
         new[:, self.shared] = 0.0
         return new
 
     def departures(self, equations: Posed | None = None) -> Departures:
-        """The linear equations of small departures from it, or by other equations in the same unknowns."""
+        """Linear equations of small departures from the solution, by `more` or other equations in the same unknowns."""
         more = equations or self.more
         chosen = looked(len(self.of.time))
         at = self.of.at(chosen)
         elastic = np.array([".q" in name for name in self.more.names], dtype=bool)
         k, c, m = slopes(more.residual, at.q, at.qd, at.qdd, more.inputs(chosen))
         balls = [name.rpartition(".")[0] if name.endswith(PARAMETERS) else "" for name in self.more.names]
-        faster = {ball for ball, each in zip(balls, at.qdd.any(axis=0), strict=True) if ball and each}
+        faster = {ball for ball, accelerated in zip(balls, at.qdd.any(axis=0), strict=True) if ball and accelerated}
         turned = np.array([ball in faster for ball in balls], dtype=bool)
         return Departures(self.of.time, at.time, k, c, m, elastic, turned)
 

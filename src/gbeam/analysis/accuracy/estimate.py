@@ -24,14 +24,14 @@ def percent(share: float) -> str:
 
 
 def cure_of_theory(theory: str) -> str:
-    """The cure of what the theory of slender beams leaves out, by its causes in words."""
+    """Advice against an error of the theory of slender beams, by its causes in words."""
     if theory.partition(";")[0] == WORDS["plate"]:
         return "no model of a beam has it: plate = true of its section says how much it is at most, a mesh how much"
     return 'kind = "exact" with modes.twist, shear_y, shear_z has all but plate action'
 
 
 def cause_and_cure(errors: ErrorEstimate, theory: str) -> tuple[str, str]:
-    """The largest of the errors from too few shapes, of the model, the mesh and the beam theory, and what helps."""
+    """Words for the largest of four errors (too few shapes, model, mesh, beam theory), and advice against it."""
     shapes, model = errors.shapes, errors.model
     if errors.mesh > np.nanmax([shapes, model, errors.beam_theory, 0.0]):
         return ROUGH_MESH
@@ -45,18 +45,18 @@ def cause_and_cure(errors: ErrorEstimate, theory: str) -> tuple[str, str]:
 
 
 def fuller(model: float) -> str:
-    """The model that tells an error, of which that of a model is a part, or not known."""
+    """Words for the model that an error is judged by; `model` is that part of the error, NaN if not known."""
     return "the model with more modes" if math.isnan(model) else "the exact model"
 
 
 def wrong_by(what: str, size: str, errors: ErrorEstimate, theory: str) -> str:
-    """Say by how much a quantity of a steady state is wrong, mostly from what, and what helps."""
+    """Warning that a quantity of a steady state is wrong by a `size` in words, with the largest cause and its cure."""
     cause, cure = cause_and_cure(errors, theory)
     return f"{what} is wrong by an estimated {size}: {cause}; {cure}"
 
 
 def apart(value: float, reference: float) -> float:
-    """Relative difference of two values, either of which may not be reached."""
+    """Relative difference of two values, either of which may be infinite (no critical value up to the limit)."""
     if math.isinf(reference):
         return 0.0 if value == reference else math.inf
     return math.inf if math.isinf(value) else abs(value / reference - 1)
@@ -97,8 +97,8 @@ def negligible(sizes: Mapping[Quantity, float], body: str, length: float, inerti
 
 
 def unjudged(structure: Structure) -> str:
-    """The errors of a structure that are not judged, in words."""
-    if structure.source is not None or not structure.size:  # of what does not deform nothing is left out
+    """Sentence about the errors of a structure that are not judged, or ""."""
+    if structure.source is not None or not structure.size:  # a rigid structure has neither shapes nor mesh
         return ""
     if structure.modes is None:
         return UNKNOWN
@@ -106,8 +106,8 @@ def unjudged(structure: Structure) -> str:
 
 
 class Judgement(NamedTuple):
-    """Readings that differ by too few shapes, and by the model, what the theory of slender beams lacks, errors of the
-    steps, the sizes to which all are relative, and what is `nothing` but rounding; by the mesh, where that is known.
+    """Pairs of readings that differ by too few shapes, by the model and, if known, by the mesh; differences by the beam
+    theory, relative errors of the steps, the sizes that others are relative to, and quantities that are rounding.
     """
 
     shapes: tuple[Reading, Reading]
@@ -119,23 +119,23 @@ class Judgement(NamedTuple):
     mesh: tuple[Reading, Reading] | None = None
 
     def apart(self, key: Quantity, *pairs: tuple[Reading, Reading]) -> float:
-        """Largest sum of differences of two readings, as a share of the size."""
+        """Largest size of the sum of the differences of pairs of readings, as a share of the quantity's size."""
         away = largest(np.sum([more[key] - less[key] for less, more in pairs], axis=0))
         size = 0.0 if key in self.nothing else self.sizes[key] or away
         return away / size if size else 0.0
 
     def error(self, key: Quantity) -> ErrorEstimate:
-        """The error of a quantity by its causes; unknown where its size is, as of the stress of matrices."""
+        """Error of a quantity by its causes; all unknown if its size is NaN, as of the stress of a body by matrices."""
         if math.isnan(self.sizes[key]):
             return ErrorEstimate()
         causes = (self.shapes,), (self.model,), (self.shapes, self.model)
-        shapes, model, total = (self.apart(key, *each) for each in causes)
+        shapes, model, total = (self.apart(key, *pairs) for pairs in causes)
         step = 0.0 if key in self.nothing else self.steps.get(key, math.nan)
-        away = ErrorEstimate(step, shapes, model, total=total + (0.0 if math.isnan(step) else step))
+        estimate = ErrorEstimate(step, shapes, model, total=total + (0.0 if math.isnan(step) else step))
         if self.mesh is not None:
-            away = away.adding(mesh=self.apart(key, self.mesh))
+            estimate = estimate.adding(mesh=self.apart(key, self.mesh))
         theory, size = self.theory.get(key, math.nan), self.sizes[key]
-        return away.adding(beam_theory=0.0 if key in self.nothing or size == 0 else theory / size)
+        return estimate.adding(beam_theory=0.0 if key in self.nothing or size == 0 else theory / size)
 
     def loads(self, body: str) -> ErrorEstimate:
         """The larger error of the force and the moment at a body's root."""
@@ -143,6 +143,6 @@ class Judgement(NamedTuple):
 
 
 def worst(errors: Iterable[ErrorEstimate]) -> ErrorEstimate:
-    """The largest in all of those that are known."""
+    """The estimate with the largest total, of those whose total is known; unknown if there are none."""
     known = (each for each in errors if not math.isnan(each.total))
     return max(known, key=lambda each: each.total, default=ErrorEstimate())

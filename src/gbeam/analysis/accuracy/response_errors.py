@@ -32,7 +32,7 @@ FORCE, MOMENT, STRESS, SHEARED = ((BEAM, each) for each in ("force", "moment", "
 Begin = Callable[[Structure], tuple[Floats, Floats]]
 SCAN = 200  # samples at which to look for directions without shapes that are moved
 BENT = 0.1  # of the length: a tip that moves by less leaves the beam straight for small departures
-IDLE = 1e-9  # of the largest force: a direction that feels less stays out
+IDLE = 1e-9  # of the largest force: a direction with a smaller one gets no shapes
 FEWEST, PER_PERIOD = 500, 6  # samples looked at, in all and in a period of the lowest mode
 MOST = 20_000  # samples where fast modes may ring
 LARGEST = 2.0  # times (v/L)²: error of a second-order model, up to what a beam that points inward on a hub has
@@ -41,8 +41,8 @@ TOO_FAR = "the solution is too far from the exact model's for an estimate; it is
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """A structure with its coordinates and rates at some times, and what drives it then: the motion of its base, or the
-    torque on a free hub, and its loads.
+    """A structure, its trajectory `of` (coordinates, rates and accelerations at times), and its inputs at these times:
+    the motion of its base, or the torque on a free `hub`, and its loads.
     """
 
     structure: Structure
@@ -52,7 +52,7 @@ class Solution:
 
     @classmethod
     def driven(cls, structure: Structure, motion: Any, of: Trajectory) -> Solution:
-        """Solution in the environment of a motion."""
+        """Solution with the inputs of a motion."""
         loads = None if structure.history is None else np.asarray(structure.history(of.time))
         if motion.free:
             return cls(structure, of, (np.asarray(motion.torque(of.time)), loads), motion)
@@ -65,7 +65,7 @@ class Solution:
 
     @property
     def loads(self) -> Floats | None:
-        """Components of the loads, (t, loads, 6)."""
+        """Components of the loads, (t, loads, 6); None without loads."""
         return self.inputs[1]
 
     @property
@@ -75,32 +75,32 @@ class Solution:
         base = self.inputs[0] if self.hub is None else self.hub.mount.base(of.q[:, 0], of.qd[:, 0], of.qdd[:, 0])
         return each_leaf(np.asarray, base)
 
-    def at(self, some: Any) -> Solution:
-        """It at some of the times."""
-        return replace(self, of=self.of.at(some), inputs=each_leaf(lambda leaf: leaf[some], self.inputs))
+    def at(self, times: Any) -> Solution:
+        """The solution at an index, slice or array of its times."""
+        return replace(self, of=self.of.at(times), inputs=each_leaf(lambda leaf: leaf[times], self.inputs))
 
     def posed(self, structure: Structure | None = None) -> Posed:
-        """The equations of its structure, or of another, driven so."""
+        """Equations of its structure, or of another, under its inputs."""
         structure = self.structure if structure is None else structure
         return Posed(
             structure.residual(self.hub),
-            lambda some: self.at(some).inputs,
+            lambda times: self.at(times).inputs,
             ["hub.angle"] * self.first + [f"{BEAM}.q{k + 1}" for k in range(structure.size)],
             lambda of: replace(self, structure=structure, of=of).read(),
         )
 
     def within(self, rich: Structure, index: IntArray | None = None) -> Within:
-        """It put into the equations of a structure with more shapes, its own at `index`, or of as many."""
+        """The solution put into the equations of another structure, where its shapes have the numbers `index`."""
         index = np.arange(self.structure.size) if index is None else index
         shared = np.append(np.arange(self.first), self.first + index)
         return Within.lifted(self.posed(rich), self.posed(), self.of, shared)
 
     def read(self) -> Reading:
-        """Displacement of the tip (t, 3) m, the root's force and moment (t, 3), and the largest size of the stress over
-        all sections (t,), or a solid's (t, c), of a structure without sections none.
+        """Displacement of the tip (t, 3) m, force and moment (t, 3) at the root, and the largest normal stress over the
+        sections (t,); of a solid the stress (t, c) of `recovery.felt`, of other structures NaN.
         """
         structure, of, base = self.structure, self.of, self.base
-        q, qd, qdd = (each[:, self.first :] for each in (of.q, of.qd, of.qdd))
+        q, qd, qdd = (values[:, self.first :] for values in (of.q, of.qd, of.qdd))
         if structure.sections is None:
             ends = section_forces(structure, base, q, qd, qdd, of.time)
             stress = np.full(len(q), np.nan) if structure.recovery is None else structure.recovery.felt(q)
@@ -113,13 +113,13 @@ class Solution:
         return {PLACE: tip, FORCE: loads.force[:, 0], MOMENT: loads.moment[:, 0], STRESS: stress}
 
     def along(self, more: Enrichment | Twin) -> tuple[bool, bool, bool]:
-        """True if new shapes along x, y and z would be moved by it."""
+        """Flags of x, y and z: True if the solution has shapes along the axis, or would move new ones."""
         structure = self.structure
         if isinstance(more, Twin) or all(structure.counts[:3]):
             return True, True, True
         rich, index = more.model(structure.kind)
         at, base, c = self.within(rich, index).of, self.base, rich.coefficients
-        p, pd, pdd = (each[:, self.first :] for each in (at.q, at.qd, at.qdd))
+        p, pd, pdd = (values[:, self.first :] for values in (at.q, at.qd, at.qdd))
         residual = c.residual(p, pd, pdd, base.a_WO_B, base.w_WB_B, base.alpha_WB_B, self.loads)
         counts = np.cumsum([0, *rich.counts])
         forces = [np.abs(residual[:, a:b]).max(initial=0.0) for a, b in pairwise(counts)]
@@ -128,7 +128,9 @@ class Solution:
         return axial, along_y, along_z
 
     def theory(self, begin: Begin | None = None, *, straight: bool) -> Lacking:
-        """Find what it lacks by the theory of slender beams, from where it begins, or from equilibrium."""
+        """Differences to the theory of thick beams, which begin by `begin`, or in equilibrium if it is None; `straight`
+        if they may be linearised about the straight beam.
+        """
         if self.structure.source is None:
             return Lacking()
         theory = theory_of(self.structure) if straight else theory_of(self.structure).exact
@@ -136,10 +138,10 @@ class Solution:
         def begun(_: int) -> State | None:
             if begin is None:
                 return None
-            slender, thick = (begin(each) for each in (theory.slender, theory.thick))
-            behind = theory.thick.size - theory.slender.size
+            slender, thick = (begin(structure) for structure in (theory.slender, theory.thick))
+            new = theory.thick.size - theory.slender.size
             q, qd = (
-                np.pad(more - np.pad(less, (0, behind)), (self.first, 0))
+                np.pad(more - np.pad(less, (0, new)), (self.first, 0))
                 for less, more in zip(slender, thick, strict=True)
             )
             return q, qd
@@ -159,7 +161,9 @@ class Rings(NamedTuple):
 def lacking(
     solution: Solution, computed: Reading, begin: Begin | None, *, straight: bool
 ) -> tuple[Reading, Reading, Rings]:
-    """Read a solution by the exact model with more shapes and with as many, and what its samples may hide."""
+    """Readings by the exact model with more shapes, and with the shapes of the solution; bounds of unresolved modes.
+    `straight` linearises the exact model about the straight beam, not about the solution.
+    """
     kind, count = solution.structure.kind, len(solution.of.time)
     more = enrichment(solution.structure, solution.base)
     directions = solution.at(np.linspace(0, count - 1, min(count, SCAN)).astype(int)).along(more)
@@ -171,16 +175,16 @@ def lacking(
     def start(richer: Structure) -> State | None:
         return None if begin is None else _departure(begin, richer, within.of)
 
-    begun, few = start(exact), computed
+    begun, few_shapes = start(exact), computed
     total = departures.answer(residual, begun)
     if kind != exact.kind:
         same = more.model(kind, directions=directions)[0]
-        few = within.moved(total.less(departures.answer(within.of_new(residual), start(same))))
-    return within.moved(total), few, _rings(exact, *departures.shaken(residual, begun))
+        few_shapes = within.moved(total.less(departures.answer(within.of_new(residual), start(same))))
+    return within.moved(total), few_shapes, _rings(exact, *departures.shaken(residual, begun))
 
 
 def by_mesh(solution: Solution, computed: Reading, begin: Begin | None) -> tuple[Reading, Reading] | None:
-    """Read what a solution would be by a coarser mesh, and what is computed; None where there is no such mesh."""
+    """Pair of readings: by a coarser mesh, and as computed; None if the structure has no coarser mesh."""
     rough = solution.structure.coarser
     if rough is None:
         return None
@@ -190,28 +194,28 @@ def by_mesh(solution: Solution, computed: Reading, begin: Begin | None) -> tuple
 
 
 def _rings(exact: Structure, rate: Floats, amplitude: Floats) -> Rings:
-    """Ringing of modes with amplitudes (first + n, k) at the tip and, by the elastic forces, at the root."""
+    """Bounds of ringing at the tip and, by the elastic forces, at the root, by amplitudes (first + n, k) of modes."""
     c, q = exact.coefficients, amplitude[-exact.size :]
     inertia = np.linalg.solve(c.mass, c.stiffness @ q)
-    at = exact.displacement(q.T)[:, -1], (c.f_a @ inertia).T, (c.f_al @ inertia).T
-    return Rings(rate, *(np.linalg.norm(each, axis=1) for each in at))
+    vectors = exact.displacement(q.T)[:, -1], (c.f_a @ inertia).T, (c.f_al @ inertia).T
+    return Rings(rate, *(np.linalg.norm(vector, axis=1) for vector in vectors))
 
 
 def _departure(begin: Begin, richer: Structure, of: Trajectory) -> State:
-    """Departure from the first state of that in which a richer structure begins; NaN where there is none."""
+    """Initial state of a richer structure, by `begin`, minus the first state; NaN if it has none."""
     departure = np.zeros((2, of.q.shape[1]))
     try:
         state = begin(richer)
     except ComputationError:
         departure[:] = np.nan
         return departure[0], departure[1]
-    for each, begun, coordinates in zip(departure, state, (of.q[0], of.qd[0]), strict=True):
-        each[-richer.size :] = begun - coordinates[-richer.size :]  # the axial shapes, which SFOAM lacks, come first
+    for row, begun, coordinates in zip(departure, state, (of.q[0], of.qd[0]), strict=True):
+        row[-richer.size :] = begun - coordinates[-richer.size :]  # the axial shapes, which SFOAM lacks, come first
     return departure[0], departure[1]
 
 
 def stated(structure: Structure, tip: Floats, loads: Loads, q: Floats) -> Reading:
-    """Read a response with the displacement of its tip (t, 3), its loads and coordinates (t, n)."""
+    """Readings of a response as it is stated, from its tip's displacement (t, 3) m, loads and coordinates (t, n)."""
     felt = loads.stress.max(axis=1) if structure.recovery is None else structure.recovery.felt(q)
     sheared = np.zeros(len(tip)) if loads.von_mises is None else np.nan_to_num(loads.von_mises).max(axis=1)
     return {PLACE: tip, FORCE: loads.force[:, 0], MOMENT: loads.moment[:, 0], STRESS: felt, SHEARED: sheared}
@@ -226,14 +230,14 @@ def errors_of(
     sizes: Mapping[Quantity, float],
     mesh: tuple[Reading, Reading] | None,
 ) -> Errors:
-    """Errors of a body alone by readings that differ by its shapes, its model (none of a solid) and its mesh."""
+    """Errors of a structure alone by pairs of readings that differ by shapes, model (of beams) and mesh."""
     nothing = negligible(sizes, BEAM, structure.length)
     if sizes[PLACE] <= UNMOVED * structure.length:
         nothing.add(PLACE)
     judgement = Judgement(shapes, model, beyond.sizes, steps, sizes, nothing, mesh)
     tip, loads, stress = judgement.error(PLACE), judgement.loads(BEAM), judgement.error(STRESS)
     if structure.source is None:
-        tip, loads, stress = (replace(each, model=math.nan) for each in (tip, loads, stress))
+        tip, loads, stress = (replace(error, model=math.nan) for error in (tip, loads, stress))
     return Errors(tip, loads, stress, unjudged(structure), described(structure, beyond.causes.get(BEAM, {})))
 
 
@@ -249,28 +253,30 @@ def response_errors(
     begin: Begin | None = None,
     tolerance: float = math.inf,
 ) -> tuple[Errors, tuple[str, ...]]:
-    """Estimated errors of a response, as fractions of the largest tip displacement (t, 3), load and stress, and
-    warnings; `steps` are those of the time step, and the solution has `stride` steps to each of the results.
+    """Estimated errors of a response, as fractions of the largest tip displacement, load and stress, and warnings.
+
+    `steps` are the errors of the time steps of these three; `tip` (t, 3) and `loads` are the results, one for every
+    `stride` steps of the solution `of`. A solution that does not resolve a mode that rings is judged at more steps.
     """
     if not structure.judged or loads is None or len(tip) < 3:
-        alone = [ErrorEstimate(step=step, total=step) for step in steps]
+        of_steps = [ErrorEstimate(step=step, total=step) for step in steps]
         if loads is None or not np.isfinite(loads.stress).any():  # such as that of particles, which is not known
-            alone[2] = ErrorEstimate()
-        return Errors(alone[0], alone[1], alone[2], unjudged(structure)), ()
-    every = stated(structure, tip, loads, of.q[::stride, -structure.size :])
-    sizes = {key: largest(each) for key, each in every.items()}
+            of_steps[2] = ErrorEstimate()
+        return Errors(of_steps[0], of_steps[1], of_steps[2], unjudged(structure)), ()
+    readings = stated(structure, tip, loads, of.q[::stride, -structure.size :])
+    sizes = {quantity: largest(values) for quantity, values in readings.items()}
     straight = sizes[PLACE] <= BENT * structure.length
     period = 2 * math.pi / float(structure.rest[0][0])
     step, least = float(of.time[1] - of.time[0]), math.ceil(len(of.time) / MOST)
-    few = max(1, min(int(period / PER_PERIOD / (stride * step)), len(tip) // FEWEST))
-    stride *= few
+    skipped = max(1, min(int(period / PER_PERIOD / (stride * step)), len(tip) // FEWEST))
+    stride *= skipped
     by_step = dict(zip((PLACE, FORCE, MOMENT, STRESS), (steps[0], steps[1], *steps[1:]), strict=True))
     solution = Solution.driven(structure, motion, of.at(slice(None, None, stride)))
     with np.errstate(all="ignore"):
         beyond = solution.theory(begin, straight=straight)
 
     def judged(solution: Solution, computed: Reading) -> tuple[Errors, float]:
-        """Errors by some of the steps, and the rate of the fastest mode that these may have missed, rad/s."""
+        """Errors by a solution at some of the steps, and the frequency, rad/s, of a mode that these do not resolve."""
         with np.errstate(all="ignore"):
             truth, exact, rings = lacking(solution, computed, begin, straight=straight)
             mesh = by_mesh(solution, computed, begin)
@@ -280,7 +286,7 @@ def response_errors(
         errors = errors_of(structure, (exact, truth), (computed, exact), beyond, by_step, sizes, mesh)
         return errors, _missed(rings, sizes, errors, RESOLVED / (least * step))
 
-    errors, rate = judged(solution, {key: each[::few] for key, each in every.items()})
+    errors, rate = judged(solution, {quantity: values[::skipped] for quantity, values in readings.items()})
     finer = max(least, int(RESOLVED / (rate * step))) if rate else stride
     if finer < stride:
         solution = Solution.driven(structure, motion, of.at(slice(None, None, finer)))
@@ -289,14 +295,15 @@ def response_errors(
 
 
 def _missed(rings: Rings, sizes: dict[Quantity, float], errors: Errors, fastest: float) -> float:
-    """Circular frequency, rad/s, of the fastest mode up to the `fastest` resolved that may ring too much, or zero."""
+    """Frequency, rad/s, of the fastest mode, below `fastest`, whose ringing may exceed the stated errors; 0 if none."""
     limits = zip((PLACE, FORCE, MOMENT), (errors.displacement, errors.loads, errors.loads), strict=True)
     visible = np.zeros(len(rings.rate), dtype=bool)
-    for key, stated in limits:
-        visible |= getattr(rings, key[1]) > stated.slender * sizes[key]
+    for quantity, error in limits:
+        visible |= getattr(rings, quantity[1]) > error.slender * sizes[quantity]
     return float(rings.rate[visible & (rings.rate < fastest)].max(initial=0.0))
 
 
 def _bounded(structure: Structure, size: float, step: float) -> Errors:
+    """Errors of a response too far from the exact model's for an estimate, by a bound on the largest displacement."""
     model = LARGEST * (size / structure.length) ** 2
     return Errors(ErrorEstimate(step, math.nan, model, total=step + model), note=TOO_FAR)
