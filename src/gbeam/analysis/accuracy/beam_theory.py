@@ -46,9 +46,7 @@ def beyond(
     with other beams, `begun` the difference of the initial states of so many unknowns, or None for equilibrium. With
     `again`, systems with either kind of beams are run instead.
     """
-    slender, thick = (
-        {name: getattr(theory, kind) for name, theory in theories.items()} for kind in ("slender", "thick")
-    )
+    slender, thick = ({name: getattr(each, kind) for name, each in theories.items()} for kind in ("slender", "thick"))
     thin = Within.lifted(pose(slender), solved, of)
     full = Within.lifted(pose(thick), thin.more, thin.of)
     columns = {name: [k for k, body in enumerate(full.more.bodies) if body == name] for name in theories}

@@ -1,4 +1,4 @@
-"""Responses of many cases: those of one shape are integrated together."""
+"""Responses of many cases: cases whose arrays have the same shapes are integrated together."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ from gbeam.results.errors import StepErrors
 from gbeam.results.response import Response
 
 Item = TypeVar("Item")
-TOGETHER = 32  # cases: what they carry stays in a cache, and a processor's vectors are full
-LONGEST = 20_000_000  # numbers of as many trajectories: longer ones together would fill the memory
-SHORT = 100_000  # numbers of the displacements that are read at once: more of them would leave a cache
+TOGETHER = 32  # cases: their states stay in a processor's cache, and its vectors are full
+LONGEST = 20_000_000  # numbers of that many trajectories: longer ones together would fill the memory
+SHORT = 100_000  # numbers of the displacements that are read at once: more of them would leave the cache
 
 
 @dataclass(frozen=True, eq=False)
 class _Case:
-    """A case by its index, whose plan waits for a run with a step, s."""
+    """A case by its index, whose plan waits for the `run` by steps of a length, s."""
 
     index: int
     posed: Posed
@@ -43,7 +43,7 @@ class _Case:
 
     @property
     def shape(self) -> Hashable | None:
-        """Key of cases that can be integrated together; None of one that is to be integrated alone."""
+        """Key, equal for cases that can be integrated together; None for a case to be integrated alone."""
         if 3 * self.run.q.size * len(self.run.steps) * TOGETHER > LONGEST:
             return None
         return None if self.run.shape is None else (self.posed.motion.kind, self.posed.structure.linear, self.run.shape)
@@ -51,7 +51,7 @@ class _Case:
 
 @dataclass(frozen=True, eq=False)
 class _Ended:
-    """A case whose runs are made: the one that counts, its errors, and what is known of its response."""
+    """A case whose runs are done: the run that counts, its errors, and parts of its response that are `known`."""
 
     index: int
     posed: Posed
@@ -147,16 +147,17 @@ def _told(
 def _responses(
     cases: Iterable[tuple[Structure, Motion]], settings: ResponseSettings, together: int, one_structure: bool
 ) -> Iterator[tuple[int, Response]]:
+    """Yield index and response of each case, integrating `together` cases as soon as so many of one shape wait."""
     waiting: dict[Hashable, list[_Case]] = {}
 
     def full(case: _Case) -> list[_Case]:
-        """Let a case wait for others; these, if they are enough now."""
+        """Put a case into its queue; return the queue if it is full, else an empty list."""
         queue = waiting.setdefault(case.shape, [])
         queue.append(case)
         return waiting.pop(case.shape) if len(queue) == together else []
 
     def through(queue: list[_Case]) -> Iterator[tuple[int, Response]]:
-        """Integrate cases together, and what becomes enough by those that go on."""
+        """Integrate a queue together, then the queues that its cases fill as they wait for their next runs."""
         ready = [queue]
         while ready:
             for answer in _together(ready.pop(), together):
@@ -178,9 +179,9 @@ def _responses(
         if traced or holds_jax(motion):
             raise InputError("simulate_batch", "is given what JAX traces", "map simulate over it with jax.vmap")
         chosen = settings.chosen(free=motion.free)
-        *few, step = first_steps(structure, motion, chosen)
+        *longer, step = first_steps(structure, motion, chosen)
         posed = pose(structure, motion, chosen, *step)
-        if few or posed.before or posed.after:
+        if longer or posed.before or posed.after:
             yield index, simulate(structure, motion, settings)
             continue
         case = _going_on(index, posed, structure.equations if one_structure else None, posed.plan())
@@ -200,7 +201,9 @@ def _going_on(
     run: StructureRun | None = None,
     known: dict[str, Any] | None = None,
 ) -> _Case | _Ended:
-    """A case with the run that its plan wants next, `known` reused if it counts, or one that has ended."""
+    """Send a run to a plan; return the case with the run that it wants next, or ended. `known` belongs to the run sent,
+    and is kept if that counts. Runs that cannot be integrated together are made at once.
+    """
     from gbeam.integrate import side_by_side
 
     scheme = scheme_of(posed.settings)
@@ -219,24 +222,25 @@ def _going_on(
 
 
 def _together(queue: list[_Case], together: int) -> Iterator[_Case | tuple[int, Response]]:
+    """Integrate a queue; yield cases that wait for another run, and index and response of those that have ended."""
     from gbeam.integrate.side_by_side import integrate_together
 
-    # Filled with its last case: one program serves every number of them, and no digit depends on it.
+    # Filled up with the last case: one compiled program serves queues of any length, without a change of digits.
     filling = [queue[-1].run] * (together - len(queue))
     trajectories = integrate_together([case.run for case in queue] + filling)[: len(queue)]
     numbers = 3 * len(queue[0].run.steps) * max(len(case.posed.structure.stations) for case in queue)
-    each = max(1, SHORT // numbers)
-    for some in (slice(k, k + each) for k in range(0, len(queue), each)):
-        yield from _read(queue[some], trajectories[some])
+    count = max(1, SHORT // numbers)
+    for k in range(0, len(queue), count):
+        yield from _read(queue[k : k + count], trajectories[k : k + count])
 
 
 def _read(queue: list[_Case], trajectories: list[Trajectory | None]) -> Iterator[_Case | tuple[int, Response]]:
-    """Read the trajectories that cases waited for, and let the cases go on or end."""
+    """Send the cases their trajectories; yield those that wait for another run, and the responses of the others."""
     ended = []
     for case, trajectory, moved in zip(queue, trajectories, _displaced(queue, trajectories), strict=True):
         posed, known = case.posed, None
         if trajectory is None or posed.too_far(trajectory.q, moved) is not None:
-            run = StructureRun.by_steps(posed, case.step)  # one that leaves what its model can mean stops there
+            run = StructureRun.by_steps(posed, case.step)  # which stops where its model ceases to hold
         else:
             run, known = StructureRun(trajectory, case.step, posed), {"moved": moved}
             if posed.structure.linear and not posed.motion.free and run.stride == 1:
@@ -250,37 +254,37 @@ def _read(queue: list[_Case], trajectories: list[Trajectory | None]) -> Iterator
 
 
 def _displaced(queue: list[_Case], trajectories: list[Trajectory | None]) -> list[Any]:
-    """Displacement of the stations at every step of each trajectory, m; None where that is None."""
+    """For each trajectory the displacements (t, s, 3) m of the stations at every step; None where it is None."""
     displacements: list[Any] = [None] * len(queue)
     completed = [
         (k, case.posed, t) for k, (case, t) in enumerate(zip(queue, trajectories, strict=True)) if t is not None
     ]
-    for some in _alike(completed, lambda each: (id(each[1].structure), len(each[2].time))):
-        posed = some[0][1]
-        q = np.stack([trajectory.q[:, posed.beam] for _, _, trajectory in some])
-        for (k, _, _), moved in zip(some, np.asarray(posed.structure.displacement(q)), strict=True):
+    for group in _alike(completed, lambda item: (id(item[1].structure), len(item[2].time))):
+        posed = group[0][1]
+        q = np.stack([trajectory.q[:, posed.beam] for _, _, trajectory in group])
+        for (k, _, _), moved in zip(group, np.asarray(posed.structure.displacement(q)), strict=True):
             displacements[k] = moved
     return displacements
 
 
 def _responses_of(ended: list[_Ended]) -> Iterator[tuple[int, Response]]:
-    """Places and responses of cases whose runs are made; peaks of those of one structure are found together."""
+    """Indices and responses of cases that have ended; peaks are computed together for each structure and grid."""
 
     def key(case: _Ended) -> Hashable:
         return id(case.posed.structure), case.run.trajectory.time.tobytes()
 
-    for some in _alike([case for case in ended if case.known], key):
-        posed, moved = some[0].posed, np.stack([case.known["moved"] for case in some])
-        trajectories, late = [case.run.trajectory for case in some], posed.settings.residual_from
+    for group in _alike([case for case in ended if case.known], key):
+        posed, moved = group[0].posed, np.stack([case.known["moved"] for case in group])
+        trajectories, late = [case.run.trajectory for case in group], posed.settings.residual_from
         peaks = displacement_peaks(posed.structure, trajectories, posed.problem.first, moved, late)
-        for case, displacement, case_peaks in zip(some, moved, peaks, strict=True):
+        for case, displacement, case_peaks in zip(group, moved, peaks, strict=True):
             case.known.update(moved=displacement.copy(), peaks=case_peaks)
     for case in ended:
         yield case.index, response_of(case.run, case.errors, "", **case.known)
 
 
 def _alike(items: Iterable[Item], key: Callable[[Item], Hashable]) -> Iterable[list[Item]]:
-    """Items in groups of equal keys."""
+    """Group items by equal keys, in the order of the first of each."""
     groups: dict[Hashable, list[Item]] = {}
     for item in items:
         groups.setdefault(key(item), []).append(item)

@@ -1,8 +1,8 @@
 """Responses with a little less and a little more of a parameter, by the derivative of one run.
 
-The derivative of every step is exact. A response of the pair is made of q ± ½ w ∂q/∂p by the lines that make any
-response, so that the difference of any two figures over the width w is the derivative of that figure, but for terms of
-second order in w: a peak needs no rule of its own, since to first order it does not matter when it occurs.
+The derivative of every step is exact. The two responses are made of q ± ½ w ∂q/∂p as any response is, so that the
+difference of any figure between them, over the width w, is its derivative, but for terms of second order in w. A peak
+needs no rule of its own, since to first order it does not matter when it occurs.
 
 The equations of motion are linearised about the run. A parameter enters by pairs of problems, a little less and a
 little more of it, whose residuals are evaluated at the run's states.
@@ -35,14 +35,12 @@ from gbeam.results.errors import StepErrors
 from gbeam.results.machine import AxesResult
 from gbeam.results.response import Response
 
-Pair = tuple[Posed, Posed]  # of less and of more of a parameter
-
-
-Within = tuple[Scheme, Steps]  # fitted steps, and whose
+Pair = tuple[Posed, Posed]  # the problems with less and with more of a parameter
+Within = tuple[Scheme, Steps]  # a scheme and its fitted steps
 
 
 def _residual(posed: Posed, within: Within | None) -> Any:
-    """The residual of a problem, or that which fitted steps solve."""
+    """The residual of a problem or, `within` fitted steps, that of the modified equations which these solve."""
     equations: Any = posed.problem.equations
     if not isinstance(equations, LinearEquations):
         return equations.residual if within is None else stepped(equations, *within, len(posed.problem.q))
@@ -54,8 +52,8 @@ def _residual(posed: Posed, within: Within | None) -> Any:
 
 
 def linearised(nominal: Posed, pairs: Sequence[Pair], width: Floats, within: Within | None = None) -> System:
-    """Return the equations (those that fitted steps solve `within`) linearised about states of the nominal
-    problem, for pairs of parameters that differ by `width` (p,).
+    """Function of times and states of the nominal problem that returns M, C, K (t, n, n) and the forces (t, n, p) by
+    parameters, each of which differs by its `width` (p,) in a pair; `within` as in `_residual`.
     """
     residual = _residual(nominal, within)
     residuals = [[_residual(posed, within) for posed in pair] for pair in pairs]
@@ -75,8 +73,8 @@ def linearised(nominal: Posed, pairs: Sequence[Pair], width: Floats, within: Wit
         for j, pair in enumerate(pairs):
             # A parameter of the beam alone leaves the motion as it is.
             less, more = (
-                of(q, qd, qdd, inputs if posed.driven_as(nominal) else posed.drive(time))
-                for of, posed in zip(residuals[j], pair, strict=True)
+                residual_of(q, qd, qdd, inputs if posed.driven_as(nominal) else posed.drive(time))
+                for residual_of, posed in zip(residuals[j], pair, strict=True)
             )
             forces[..., j] = -(more - less) / width[j]
         return mass, c, k, forces
@@ -84,8 +82,8 @@ def linearised(nominal: Posed, pairs: Sequence[Pair], width: Floats, within: Wit
     return system
 
 
-Variant = tuple[Structure | None, Motion | None]  # None where it is the run's own
-_BYTES = 256 * 2**20  # of derivatives at once
+Variant = tuple[Structure | None, Motion | None]  # None: that of the nominal problem
+_BYTES = 256 * 2**20  # of derivatives in memory at once
 _SAME_TIME = 1e-9  # of the duration
 
 
@@ -98,7 +96,7 @@ class Grid:
 
     @staticmethod
     def of(structure: Structure, motion: Motion, settings: ResponseSettings, done: Response) -> Grid:
-        """The grid of a run that is done."""
+        """Grid of the run that a response comes from."""
         if settings.step is not None:
             return Grid(done.step, 1)
         prepared = motion.over(settings.start, settings.start + settings.duration)
@@ -106,7 +104,7 @@ class Grid:
 
 
 class Differentiated:
-    """A run by given steps about which others of other parameters are made, with `loads` and `axes` if wanted."""
+    """A run by given steps, and the responses beside it for other parameters, with `loads` and `axes` if wanted."""
 
     def __init__(
         self,
@@ -147,7 +145,7 @@ class Differentiated:
             self.runs.append(run)
 
     def pair(self, less: Variant, more: Variant) -> Pair:
-        """The problems with a little less and a little more of a parameter."""
+        """Pose the problems with a little less and a little more of a parameter."""
         return self._posed(less), self._posed(more)
 
     def jumps_move(self, pair: Pair) -> bool:
@@ -161,23 +159,23 @@ class Differentiated:
         return False
 
     def unvaried(self) -> Response:
-        """The response of the run itself, made as those of the pairs are."""
+        """Response of the run itself."""
         return self._response(self.nominal, [None] * 3)
 
     def responses(self, pairs: Sequence[Pair], width: Floats) -> Iterator[tuple[Response, Response]]:
         """Responses with less and with more of each parameter, which differ by its `width` (p,)."""
-        each = 24 * self.nominal.problem.q.size * sum(len(part) + 1 for part in self.parts)
-        some = max(1, _BYTES // each)
-        for first in range(0, len(pairs), some):
-            chosen, by = pairs[first : first + some], width[first : first + some]
-            slopes = self._slopes(chosen, by)
-            for k, (pair, w) in enumerate(zip(chosen, by, strict=True)):
-                moved = [None if part is None else tuple(x[..., k] * w / 2 for x in part) for part in slopes]
-                back = [None if part is None else tuple(-x for x in part) for part in moved]
-                yield self._response(pair[0], back), self._response(pair[1], moved)
+        size = 24 * self.nominal.problem.q.size * sum(len(part) + 1 for part in self.parts)  # bytes of one parameter
+        count = max(1, _BYTES // size)
+        for first in range(0, len(pairs), count):
+            chosen, widths = pairs[first : first + count], width[first : first + count]
+            slopes = self._slopes(chosen, widths)
+            for k, (pair, w) in enumerate(zip(chosen, widths, strict=True)):
+                moves = [None if part is None else tuple(x[..., k] * w / 2 for x in part) for part in slopes]
+                back = [None if part is None else tuple(-x for x in part) for part in moves]
+                yield self._response(pair[0], back), self._response(pair[1], moves)
 
     def _slopes(self, pairs: Sequence[Pair], width: Floats) -> list[tuple[Floats, ...] | None]:
-        """Derivatives of q, q̇, q̈ (t, n, p) at the ends of the kept steps of each part."""
+        """Derivatives of q, q̇, q̈ (t, n, p) at the ends of kept steps of spin-up, flight and spin-down, or None."""
         system = linearised(self.nominal, pairs, width)
         less, more = zip(*pairs, strict=True)
         q, qd = (
@@ -198,6 +196,7 @@ class Differentiated:
         return slopes
 
     def _response(self, posed: Posed, moves: Sequence[tuple[Floats, ...] | None]) -> Response:
+        """Response of a problem by the nominal run's histories, changed by `moves` in each part."""
         up, flight, down = (
             None if run is None else _moved(run, steps, by)
             for run, steps, by in zip(self.runs, self.parts, moves, strict=True)
@@ -207,6 +206,7 @@ class Differentiated:
         return response_of(run, StepErrors(), self.name, axes_of=self._axes)
 
     def _axes(self, motion: Any, time: Floats) -> AxesResult | None:
+        """The machine's axes if wanted; those of the nominal motion are computed once."""
         if not self.axes:
             return None
         if self._own_axes is not None and motion is self.nominal.motion:
@@ -217,6 +217,7 @@ class Differentiated:
         return axes
 
     def _posed(self, variant: Variant) -> Posed:
+        """Pose the problem of a variant from the start of the nominal run."""
         structure, motion = variant
         structure = structure or self.nominal.structure
         if motion is None:
@@ -232,7 +233,7 @@ class Differentiated:
 
 
 def _moved(run: Trajectory, steps: Steps, by: tuple[Floats, ...] | None) -> Trajectory:
-    """A run at the ends of the kept steps, its histories moved."""
+    """Trajectory at the ends of the kept steps, with `by` added to its q, q̇ and q̈ (t, n)."""
     kept = np.append(True, steps.kept)
     histories = [x[kept] for x in (run.q, run.qd, run.qdd)]
     if by is not None:

@@ -1,8 +1,8 @@
 """The outcome of a run and warnings of its result, in words; when its frozen equations stop being stable.
 
-The straight beam, or wherever a complete model has bent to, is stable while the stiffness with all that the base's
-motion and the loads add to it is positive definite; where loads follow the beam the eigenvalues decide. What grows does
-so by exp ∫ Re λ dt: a load that acts for a moment does nothing, whatever its size.
+The straight beam (of a complete model, the bent one) is stable while its stiffness, with the terms of the base's motion
+and of the loads, is positive definite; where loads follow the beam the eigenvalues decide. A disturbance grows by
+exp ∫ Re λ dt: a load that acts for a moment does nothing, whatever its size.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ from gbeam.numerics.eigen import eigenvalues, growth_rate, stability_margin, sym
 from gbeam.results.errors import Errors
 from gbeam.results.parts import Base, LoadPeaks, Peaks
 
-_BLOCK = 2000  # times whose stiffness is looked at together
-_STRETCHES, _MOST = 4, 32  # whose growth is found, and at how many times of each
-_SHARE = 0.01  # of the elastic stiffness: what takes less of it is no cause
+_BLOCK = 2000  # times whose stiffness is computed together
+_STRETCHES, _MOST = 4, 32  # stretches whose growth is computed, and times of each, at most
+_SHARE = 0.01  # of the elastic stiffness: a term that takes less of it is no cause
 _ROW, _COLUMN = np.tril_indices(3, -1)
 
 
 class Loss(NamedTuple):
-    """A stretch of time in which a disturbance grows by exp(`growth`), and what base and loads do at its start."""
+    """A stretch of time, s, in which a disturbance grows by exp(`growth`), and its causes at the start, in words."""
 
     start: float
     end: float
@@ -43,7 +43,7 @@ class Loss(NamedTuple):
 
 
 class Drive(NamedTuple):
-    """Motion of the base and components of the loads, (t, ...) or of one time."""
+    """Motion of the base (t, 3) and components of the loads (t, loads, 6), or those of one time."""
 
     a_WO_B: Array
     w_WB_B: Array
@@ -51,17 +51,19 @@ class Drive(NamedTuple):
     loads: Array | None = None
 
     def at(self, times: Any) -> Drive:
-        """Base and loads at some times, or at one."""
-        return Drive(*(None if each is None else each[times] for each in self))
+        """Base and loads at an index, slice or array of the times."""
+        return Drive(*(None if values is None else values[times] for values in self))
 
     def between(self, before: int, after: int, share: float) -> Drive:
-        """Interpolate a share of the way from one time to another."""
+        """Base and loads interpolated a share of the way between two times, given by their indices."""
         ends = zip(self.at(before), self.at(after), strict=True)
         return Drive(*(None if a is None else a + share * (b - a) for a, b in ends))
 
 
 def worst_loss(structure: Structure, time: Array, base: Base, q: Array) -> Loss | None:
-    """Stretch in which a disturbance grows most, about q (t, n) of a complete model unless on its way to stability."""
+    """Stretch of time in which a disturbance grows most, or None; about q (t, n) of a complete model, of which growth
+    that ends within a stretch does not count: there it is on its way to a stable shape.
+    """
     c = structure.coefficients
     loads = None if c.loads is None or structure.history is None else structure.history(time)
     drive = Drive(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads)
@@ -71,11 +73,11 @@ def worst_loss(structure: Structure, time: Array, base: Base, q: Array) -> Loss 
         return about.mass, *about.frozen(*drive.at(i))
 
     def loss(part: Array) -> Loss | None:
-        """Loss over a stretch, at some of its times."""
+        """Loss over a stretch of indices, by growth rates at some of them."""
         some = part[:: -(-len(part) // _MOST)]
         until = np.append(some[1:], min(part[-1] + 1, len(time) - 1))
         rate = np.array([growth_rate(*matrices(i)) for i in some])
-        run = np.cumsum(np.diff(rate > 0, prepend=False))
+        run = np.cumsum(np.diff(rate > 0, prepend=False))  # numbers of runs of growth and of decay
         growth = np.bincount(run, rate * (time[until] - time[some]))
         if not structure.linear:
             growth[: run[-1]] = 0.0
@@ -99,15 +101,16 @@ def worst_loss(structure: Structure, time: Array, base: Base, q: Array) -> Loss 
     doubtful, most = _doubtful(c, drive)
     stretches = np.split(doubtful, np.flatnonzero(np.diff(doubtful) > 1) + 1) if len(doubtful) else []
     stretches.sort(key=lambda part: -most[part].sum())
-    losses = [each for part in stretches[:_STRETCHES] if (each := loss(part)) is not None]
-    return max(losses, key=lambda each: each.growth, default=None)
+    losses = [lost for part in stretches[:_STRETCHES] if (lost := loss(part)) is not None]
+    return max(losses, key=lambda lost: lost.growth, default=None)
 
 
 def _doubtful(c: Coefficients, drive: Drive) -> tuple[Array, Array]:
-    """Indices of the times at which the straight beam may not be stable, and bounds (t,) 1/s of growth: eigenvalues are
-    found only where bounds by the sizes of terms do not suffice, which do not cover loads that follow the beam.
+    """Indices of times at which the straight beam may be unstable, and bounds (t,) 1/s of the growth. Eigenvalues are
+    computed only where the sum of the terms' bounds reaches the elastic stiffness; loads that follow the beam, which
+    these bounds do not cover, make the growth infinite.
     """
-    scale = np.linalg.inv(np.linalg.cholesky(c.stiffness))  # measures a stiffness against the elastic one
+    scale = np.linalg.inv(np.linalg.cholesky(c.stiffness))  # by which the elastic stiffness is one
     w, most = drive.w_WB_B, np.zeros(len(drive.w_WB_B))
     terms = [c.k_a, c.k_al, c.k_ww[_ROW, _COLUMN], c.k_ww[range(3), range(3)]]
     sizes = [drive.a_WO_B, drive.alpha_WB_B, 2 * w[:, _ROW] * w[:, _COLUMN], w**2]
@@ -115,7 +118,7 @@ def _doubtful(c: Coefficients, drive: Drive) -> tuple[Array, Array]:
         slope, values = c.loads.slope[:, :, 6:].reshape(-1, c.size, c.size), drive.loads.reshape(len(w), -1)
         terms.append(-slope)
         sizes.append(values)
-        most[np.any(values[:, [unsymmetric(each) for each in slope]], axis=1)] = np.inf
+        most[np.any(values[:, [unsymmetric(matrix) for matrix in slope]], axis=1)] = np.inf
     size = np.concatenate(sizes, axis=1)
     driven = size.any(axis=0)
     size, term = size[:, driven], symmetric(np.concatenate(terms)[driven])
@@ -134,12 +137,13 @@ def lowest_over_time(c: Coefficients, drive: Drive) -> Array:
 
 
 def _causes(structure: Structure, drive: Drive, matrices: tuple[Array, Array, Array]) -> tuple[str, ...]:
-    """Name what of the drive takes stiffness from the motion that grows fastest, or feeds it."""
+    """Name the terms of base and loads that take stiffness from the fastest growing mode, or feed it."""
     c, (a, w, alpha, loads) = structure.coefficients, drive
     value, modes = eigenvalues(*matrices)
     mode = modes[:, value.real.argmax()]
 
     def taken(stiffness: Array) -> float:
+        """Share of the mode's elastic stiffness that a term takes away, or feeds by asymmetry."""
         share = (mode.conj() @ stiffness @ mode) / (mode.conj() @ c.stiffness @ mode).real
         return float(max(-share.real, abs(share.imag)))
 
@@ -159,9 +163,9 @@ def _causes(structure: Structure, drive: Drive, matrices: tuple[Array, Array, Ar
     return tuple(words for words, share in shares.items() if share > min(_SHARE, max(shares.values()) / 2))
 
 
-MANY = 100  # steps between two of the results' times, above which a run says why
-GROWN = math.log(1e3)  # a crookedness of a thousandth of the beam's length is its length then
-NOTICED = math.log(2)  # what grows less has hardly had the time
+MANY = 100  # steps between two of the results' times, above which a warning advises another integrator
+GROWN = math.log(1e3)  # growth of a crookedness of a thousandth of the beam's length to all of it
+NOTICED = math.log(2)  # growth below this is not warned of
 
 
 def describe(
@@ -187,7 +191,7 @@ def describe(
     if loss is not None:
         what = "equilibrium is not stable" if loss.flutter else "stiffness is not positive definite"
         lost = f"{structure.kind}'s {what} from t = {loss.start:.4g} s, where {' and '.join(loss.causes)}"
-    particles = structure.field is None  # which have no other model, and no length that bounds how far they move
+    particles = structure.field is None  # they have no other model, nor a length that bounds their displacement
     if trajectory.stopped and particles:
         cause = f": {lost}" if lost else "; give a smaller response.step"
         return "diverged", f"the displacement exceeded {BOUNDLESS:.0e} m at t = {end:.4g} s{cause}", ()
@@ -235,7 +239,7 @@ def describe(
 
 
 def inaccuracies(structure: Structure, errors: Errors, settings: ResponseSettings) -> tuple[str, ...]:
-    """Warn of estimated errors above the tolerance, or of none: causes and cures."""
+    """Warn of estimated errors above the tolerance, with causes and cures, or that no error could be estimated."""
     if not settings.estimate:
         return ()
     if math.isnan(errors.displacement.step):
@@ -267,6 +271,7 @@ def inaccuracies(structure: Structure, errors: Errors, settings: ResponseSetting
 
 
 def _cure_of_step(settings: ResponseSettings) -> str:
+    """Advice against an error of the steps."""
     if settings.step is not None:
         return 'give a smaller step, or "auto"'
     if settings.integrator == "gauss":
@@ -275,7 +280,7 @@ def _cure_of_step(settings: ResponseSettings) -> str:
 
 
 def effort(settings: ResponseSettings, steps: int, finer: int) -> tuple[str, ...]:
-    """Advise, of an automatic step so many times finer than the results', an integrator that needs fewer."""
+    """Advise another integrator if an automatic step is `finer` times finer than the results', and that is many."""
     if settings.step is not None or settings.integrator == "gauss" or finer < MANY:
         return ()
     return (

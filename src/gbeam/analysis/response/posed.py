@@ -39,16 +39,16 @@ from gbeam.results.response import HubResult
 
 @dataclass(frozen=True, eq=False)
 class Posed:
-    """A structure in an environment posed as a problem, to be run by any step; the results' is `kept`, s."""
+    """A structure in an environment posed as a problem, to be run by any step; `kept`, s, is that of the results."""
 
     structure: Structure
     motion: Motion
     settings: ResponseSettings
     problem: Problem
     kept: float
-    limit: int = MAX_STEPS  # of a run
+    limit: int = MAX_STEPS  # steps of a run at most
     before: int = 0  # steps of the results in which a machine spins up
-    after: int = 0
+    after: int = 0  # steps of the results in which it spins down
     up: Trajectory | None = None  # the spin-up, once it is run
 
     @property
@@ -58,16 +58,16 @@ class Posed:
 
     @property
     def drive(self) -> Any:
-        """Function of times (t,) that gives its inputs."""
+        """Function that returns the inputs of the equations at times (t,) s."""
         return self.problem.equations.drive
 
     def driven_as(self, other: Posed) -> bool:
-        """True if it is driven as another is."""
+        """True if motion and loads are the same objects as those of another."""
         return self.motion is other.motion and self.structure.history is other.structure.history
 
     @cached_property
     def felt(self) -> Corners:
-        """Corners and jumps of what drives it within the flight's times."""
+        """Corners and jumps of motion and loads within the flight's times."""
         times = corners(self.structure, self.motion, self.kept)
         start, end = self.settings.start, self.settings.start + self.settings.duration
         return Corners.of(times, self.drive, start, end)
@@ -75,7 +75,7 @@ class Posed:
     def moving(
         self, time: Floats, y: Array, yd: Array, ydd: Array, base: Base | None = None
     ) -> tuple[Base, HubResult | None]:
-        """Motion of the root over time, and of the hub if there is one; the `base` where it is known."""
+        """Motion of the root at times (t,) and unknowns (t, n), or the `base` if known; and of the hub, or None."""
         motion: Any = self.motion
         hub = None
         if motion.free:
@@ -91,7 +91,7 @@ class Posed:
 
     @property
     def stuck(self) -> bool:
-        """True if a spin-up came to no end."""
+        """True if the spin-up failed before its end."""
         return self.up is not None and not self.up.whole
 
     def plan(self) -> Plan[Any]:
@@ -103,38 +103,39 @@ class Posed:
         return planned(self.settings, self.kept, self.limit)
 
     def steps(self, step: float) -> Steps:
-        """Steps of about a length, s; one that does not divide the duration goes beyond the end."""
+        """Steps of a length, s, cut at corners; a length that does not divide the duration goes beyond the end."""
         count = math.ceil(self.settings.duration / step - 1e-6)
         return fitted(self.settings.start, step, count, self.felt.felt_by(scheme_of(self.settings)))
 
     def begun(self, progress: Progress) -> Posed:
-        """It after a machine's spin-up, if there is any that comes to its end."""
+        """Run a machine's spin-up, if there is any; return the problem that starts from its end."""
         up = self._ramp(-self.before, self.before, partial(tell, progress, "spinning up"))
         return self if up is None else replace(self, up=up, problem=self._after(up))
 
     def spun_down(self, run: Trajectory, progress: Progress) -> Trajectory | None:
-        """A machine's spin-down from the state in which a run ends, if there is any."""
+        """Run a machine's spin-down from the last state of a run; None if there is no spin-down."""
         first = round(self.settings.duration / self.kept)
         ended = replace(self, problem=self._after(run))
         return ended._ramp(first, self.after, partial(tell, progress, "spinning down"))
 
     def _after(self, run: Trajectory) -> Problem:
+        """The problem from the last state of a run."""
         return replace(self.problem, q=run.q[-1], qd=run.qd[-1])
 
     def _ramp(self, first: int, count: int, progress: Any) -> Trajectory | None:
-        """So many steps of the results from the `first`, counted from the flight's start."""
+        """Run `count` steps of the results from the one numbered `first`, counted from the flight's start."""
         if not count:
             return None
         start, scheme, problem = self.settings.start, scheme_of(self.settings), self.problem
         how: Any = {"step": self.kept, "count": count, "start": start + self.kept * first, "progress": progress}
         run = integrate(problem.equations, scheme, problem.q, problem.qd, stop=self.too_far, **how)
-        # The flight's own times to the last digit.
+        # The times of the flight's grid, to the last digit.
         time = start + self.kept * (first + np.arange(len(run.time)))
         return replace(run, time=np.asarray(time, dtype=np.float64))
 
     def too_far(self, y: Floats, moved: Floats | None = None) -> int | None:
-        """Steps until a projected field moved by the beam's length, or particles without bound, at unknowns (t, n), by
-        `moved` (t, s, 3) m where it is known: it means nothing from there. None if it did not.
+        """Number of steps until a displacement exceeds the beam's length, or the bound of particles, where the model
+        ceases to hold; None if none does. `moved` (t, s, 3) m are the displacements at unknowns y (t, n), if known.
         """
         if self.structure.kind == "exact":
             return None
@@ -144,27 +145,27 @@ class Posed:
         return int(np.argmax(far)) + 1 if far.any() else None
 
     def tip(self, y: Floats) -> Floats:
-        """Displacement of the tip, m, zero where it is the rounding of places: a torque alone does not move it."""
+        """Displacement (..., 3) m of the tip; components that are rounding, as under a torque alone, are zero."""
         tip = np.asarray(self.structure.tip(y[..., self.beam]))
         return np.where(np.abs(tip) > UNMOVED * self.structure.length, tip, 0.0)
 
     def moment(self, y: Floats) -> Floats:
-        """Root moment by the elastic forces K q, which the coordinates' inertia balances, of the straight beam."""
+        """Root moment (..., 3) N m of the straight beam by the inertia that balances the elastic forces K q."""
         c = self.structure.coefficients
         return np.asarray(y[..., self.beam] @ (c.f_al @ np.linalg.solve(c.mass, c.stiffness)).T)
 
     @cached_property
     def terms(self) -> Body:
-        """Terms of the structure's equations, by which loads at its root are found."""
+        """Terms of the structure's equations from which the loads at its root are computed."""
         return terms_of(self.structure)
 
 
 def pose(structure: Structure, motion: Motion, settings: ResponseSettings, kept: float, limit: int) -> Posed:
-    """Pose a run, from a machine's start if that comes before."""
-    each = 8.0 * (3 * structure.size + 9 * len(structure.stations))
-    most = min(STEPS, int(HISTORY_BYTES / each))
+    """Pose a problem with a step of the results, s, from the start of a machine's spin-up; InputError if too long."""
+    size = 8.0 * (3 * structure.size + 9 * len(structure.stations))  # bytes of a step
+    most = min(STEPS, int(HISTORY_BYTES / size))
     fix = f"give {most * kept:.3g} s or less, or fewer stations"
-    refuse_more("response.duration", "steps", settings.duration / kept, most, each, fix)
+    refuse_more("response.duration", "steps", settings.duration / kept, most, size, fix)
     before, after = steps_beyond(motion, settings, kept)
     problem = problem_of(structure, motion, settings.start - before * kept, settings.begin)
     return Posed(structure, motion, settings, problem, kept, limit, before, after)

@@ -33,14 +33,14 @@ from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress
 
-LEAST = 500  # steps of the results at least
+LEAST = 500  # steps of the results
 
 
 @dataclass(frozen=True, eq=False)
 class PosedSystem:
     """A system in an environment posed from coordinates and rates (n,) at the `start`, to be run by any step.
 
-    The `settings` are those of the run, from a machine's standstill to its standstill; the flight's are those given.
+    The times of `settings` are those of the run, from a machine's standstill to standstill, of `flight` the flight's.
     """
 
     system: System
@@ -53,31 +53,31 @@ class PosedSystem:
 
     @cached_property
     def equations(self) -> NonlinearEquations:
-        """Its equations, with its controllers, if any, in the loop."""
+        """Equations of the system, with its controllers, if any, in the loop."""
         control = SystemControllers(self.system) if self.system.controllers else None
         drive = partial(self.system.inputs, motion=self.motion)
         return NonlinearEquations(self.system.tree, drive, control, None if control is None else [])
 
     @property
     def sampling(self) -> Sampling | None:
-        """Samples of its controllers in the last run."""
+        """Samples of the controllers in the last run; None if there were none."""
         return self.equations.samplings[-1] if self.equations.samplings else None
 
     @cached_property
     def felt(self) -> Corners:
-        """Corners and jumps of what drives it, and jumps of its controllers' commands."""
+        """Corners and jumps of the inputs, and jumps of the controllers' commands."""
         end = self.settings.start + self.settings.duration
         felt = Corners.of(corners(self.system, self.motion, self.kept), self.equations.drive, self.settings.start, end)
         if self.equations.controllers is None:
             return felt
         commands = self.commands.time
         commands = commands[np.abs(commands[:, None] - felt.time).min(axis=1, initial=np.inf) > 1e-9]
-        both, jumps = np.append(felt.time, commands), np.append(felt.jump, np.ones(len(commands), dtype=bool))
-        return Corners(np.sort(both), jumps[np.argsort(both)])
+        times, jumps = np.append(felt.time, commands), np.append(felt.jump, np.ones(len(commands), dtype=bool))
+        return Corners(np.sort(times), jumps[np.argsort(times)])
 
     @property
     def commands(self) -> Corners:
-        """Times at which its controllers sample and their commands jump."""
+        """Times at which controllers sample and their commands jump, as jumps."""
         if self.equations.controllers is None:
             return Corners(np.zeros(0), np.zeros(0, dtype=bool))
         times = self.equations.controllers.corners(self.settings.start, self.settings.start + self.settings.duration)
@@ -85,7 +85,7 @@ class PosedSystem:
         return Corners(times, np.ones(len(times), dtype=bool))
 
     def begun(self, progress: Progress) -> PosedSystem:
-        """It where it starts: a machine's spin-up is a part of its run."""
+        """The problem itself: a machine's spin-up is a part of the run."""
         return self
 
     def plan(self) -> Plan[Any]:
@@ -93,7 +93,7 @@ class PosedSystem:
         return planned(self.settings, self.settings.step or self.kept, self.limit)
 
     def integrated(self, step: float, **how: Any) -> Trajectory:
-        """Integrate it by steps of a length, s."""
+        """Integrate by steps of a length, s; `how` are further arguments of the driver."""
         return integrated(Problem(self.equations, *self.start, 0, True), self.settings, step, **how)
 
     def of(self, system: System) -> PosedSystem:
@@ -102,19 +102,19 @@ class PosedSystem:
 
 
 def corners(system: System, motion: Motion | None, step: float) -> Floats:
-    """Times that steps of a length should not pass unseen, s."""
-    moved = [] if motion is None else [motion.corners(step)]
-    return np.concatenate([system.corners(step), *moved])
+    """Times, s, that steps of a length should not pass unseen, of a system and its motion."""
+    of_motion = [] if motion is None else [motion.corners(step)]
+    return np.concatenate([system.corners(step), *of_motion])
 
 
 def state_at(system: System, motion: Motion | None, settings: ResponseSettings) -> tuple[Floats, Floats]:
-    """Coordinates and rates in which a system begins."""
+    """Coordinates and rates (n,) of a system at the start of the settings."""
     point = started(system, motion, settings.start, settings.begin.state)
     return point.y, point.yd
 
 
 def refuse_long(system: System, settings: ResponseSettings, step: float) -> None:
-    """Refuse controllers that cannot be sampled, and a run of too many samples or steps."""
+    """Raise InputError for controllers that the run cannot sample, and for too many samples or steps."""
     for key, controller in system.controllers.items():
         fix = f"give {settings.duration / LOADS_STEPS:.3g} s or more, or a shorter run"
         samples = settings.duration / controller.sample
@@ -124,14 +124,14 @@ def refuse_long(system: System, settings: ResponseSettings, step: float) -> None
     if system.controllers and settings.integrator != "gauss":
         fix = "leave it out: controllers are sampled by Gauss's method"
         raise InputError("integrator", f"is {settings.integrator!r}", fix)
-    each = 8.0 * (3 * system.tree.size + 16 * len(system.points))
-    most = int(HISTORY_BYTES / each)
+    size = 8.0 * (3 * system.tree.size + 16 * len(system.points))  # bytes of a step
+    most = int(HISTORY_BYTES / size)
     fix = f"give {most * step:.3g} s or less, or longer steps"
-    refuse_more("response.duration", "steps", settings.duration / step, most, each, fix)
+    refuse_more("response.duration", "steps", settings.duration / step, most, size, fix)
 
 
 def with_ends(motion: Motion | None, settings: ResponseSettings, step: float) -> ResponseSettings:
-    """Settings of a run from a machine's standstill to its standstill, in whole steps beyond the flight's times."""
+    """Settings whose times go from a machine's standstill to standstill, whole steps beyond the flight's times."""
     if motion is None:
         return settings
     before, after = (step * count for count in steps_beyond(motion, settings, step))
@@ -139,8 +139,8 @@ def with_ends(motion: Motion | None, settings: ResponseSettings, step: float) ->
 
 
 def first_step(point: Point, corners: Callable[[float], Floats], settings: ResponseSettings) -> float:
-    """Step of the results, s: 500 at least, twenty to the period of the slowest vibration of which the most steps are
-    one to a period, and none over a corner, as far as there are not too many.
+    """Step of the results, s: 500 steps or more, twenty to the period of the slowest vibration (of those that the most
+    steps would resolve), none longer than from corner to corner; LOADS_STEPS at most.
     """
     _, k, _, m = point.local.slopes()
     square = np.abs(np.linalg.eigvals(np.linalg.solve(m, k))) if len(k) else np.zeros(0)

@@ -107,7 +107,7 @@ def _components(values: Mapping[Across, float], size: float, unit: str) -> str:
 
 
 def begun(initial: Initial | State) -> Initial:
-    """An initial state, or that of a name; InputError if it is neither."""
+    """The initial state, or that which a name stands for; InputError if it is neither."""
     if isinstance(initial, Initial):
         return initial
     choice("initial", initial, STATES)
@@ -115,7 +115,7 @@ def begun(initial: Initial | State) -> Initial:
 
 
 def initial_state(structure: Structure, base: Base | None, time: float, initial: Initial) -> tuple[Array, Array, bool]:
-    """Coordinates and rates (n,) at the start, and whether they are those of no equilibrium that is lost."""
+    """Coordinates and rates (n,) at the start; False if they belong to an equilibrium that is not stable, else True."""
     q, stable = np.zeros(structure.size), True
     if initial.acceleration is not None:
         q, stable = solve_equilibrium(structure, Base(np.asarray(initial.acceleration), *np.zeros((2, 3))), time)
@@ -127,7 +127,7 @@ def initial_state(structure: Structure, base: Base | None, time: float, initial:
 
 
 def _axes(structure: Structure, place: str, values: Mapping[Across, float]) -> tuple[tuple[int, ...], Array]:
-    """The axes along which the tip moves, and the values given of them (k,)."""
+    """Numbers of the axes of the tip's displacement or velocity, and its values (k,); InputError without shapes."""
     axes = tuple("xyz".index(axis) for axis in values)
     for axis in set(axes) & set(structure.axes_without_shapes):
         where, fix = f"response.initial.{place}.{'xyz'[axis]}", f"give model.modes.{'xyz'[axis]} = 1 or more"
@@ -136,7 +136,7 @@ def _axes(structure: Structure, place: str, values: Mapping[Across, float]) -> t
 
 
 def _displaced(structure: Structure, values: Mapping[Across, float]) -> Array:
-    """Coordinates of least strain energy at which the tip has a displacement: Lagrange's multipliers, by Newton."""
+    """Coordinates (n,) of least strain energy with a displacement of the tip, by Newton's method with multipliers."""
     axes, wanted = _axes(structure, "tip_displacement", values)
     if structure.traced:
         from gbeam.mechanics.equations.compiled import displaced
@@ -155,7 +155,7 @@ def _displaced(structure: Structure, values: Mapping[Across, float]) -> Array:
 
 
 def _moving(structure: Structure, q: Array, values: Mapping[Across, float]) -> Array:
-    """Rates at which the tip has a velocity, in the shape of least strain energy."""
+    """Rates (n,) with a velocity of the tip, in the shape of least strain energy; zero without values."""
     if not values:
         return 0.0 * q
     axes, wanted = _axes(structure, "tip_velocity", values)
@@ -164,7 +164,7 @@ def _moving(structure: Structure, q: Array, values: Mapping[Across, float]) -> A
 
 
 def _constrained(stiffness: Array, force: Array, slopes: Array, value: Array) -> Array:
-    """x of K x = f + Jᵀ λ with J x = v."""
+    """Solve K x = f + Jᵀ λ with J x = v for x (n,)."""
     solve = namespace(stiffness, force, slopes).linalg.solve
     unconstrained, shapes = solve(stiffness, force), solve(stiffness, slopes.T)
     return unconstrained + shapes @ solve(slopes @ shapes, value - slopes @ unconstrained)
@@ -175,7 +175,9 @@ EQUILIBRIUM = Initial()
 
 @dataclass(frozen=True)
 class Problem:
-    """Equations and initial state (n,) for the integrator, the beam's from `first`; `stable` is its equilibrium."""
+    """Equations and initial state (n,) for the integrator; the beam's coordinates are from `first` on; `stable` is
+    False if they start from an equilibrium that is not stable.
+    """
 
     equations: LinearEquations | NonlinearEquations
     q: Array
@@ -185,12 +187,12 @@ class Problem:
 
 
 def problem_of(structure: Structure, motion: Motion, start: float, initial: Initial = EQUILIBRIUM) -> Problem:
-    """Pose the problem: it starts in relative equilibrium, without vibration, or as `initial` says."""
+    """Pose the equations of a structure in a motion, from an initial state at the `start`, s."""
     hub: Any = motion if motion.free else None
 
     def drive(t: Array) -> tuple[Any, Any]:
-        moved = motion.base(t) if hub is None else hub.torque(t)
-        return moved, None if structure.history is None else structure.history(t)
+        of_root = motion.base(t) if hub is None else hub.torque(t)
+        return of_root, None if structure.history is None else structure.history(t)
 
     q, qd, stable = start_of(structure, motion, start, initial)
     if hub is None and structure.linear:
@@ -212,9 +214,9 @@ def problem_of(structure: Structure, motion: Motion, start: float, initial: Init
 
 
 def start_of(structure: Structure, motion: Any, start: float, initial: Initial) -> tuple[Array, Array, bool]:
-    """The beam's coordinates and rates (n,) at the start, and whether they are those of no equilibrium that is lost."""
+    """Coordinates and rates (n,) of the beam at the start, and its stability, as in `initial_state`."""
     if motion.free:
-        pulled, o = motion.mount.gravity is not None or structure.history is not None, np.zeros(())
-        return initial_state(structure, motion.mount.base(o, o, o) if pulled else None, start, initial)
+        loaded, zero = motion.mount.gravity is not None or structure.history is not None, np.zeros(())
+        return initial_state(structure, motion.mount.base(zero, zero, zero) if loaded else None, start, initial)
     base = motion.base(np.array([start]))
     return initial_state(structure, each_leaf(lambda x: x[0], base), start, initial)

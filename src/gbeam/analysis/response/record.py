@@ -1,4 +1,4 @@
-"""Runs of a structure, and the response that one leaves: what is read from it, and how well that is known."""
+"""Runs of a structure, and the response that is made of one, with its errors."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class StructureRun(Run):
 
     @classmethod
     def prepared(cls, structure: Structure, motion: Motion | None, settings: ResponseSettings) -> Prepared:
-        """The motion over the flight's times, and the settings, whose integrator is chosen."""
+        """The motion over the flight's times, and the settings with an integrator; InputError without a motion."""
         if motion is None:
             raise InputError("motion", "is missing", "give a Flight, a Hub or a Centrifuge; Flight(z=0.0) is at rest")
         structure.require_damping("the response")
@@ -60,12 +60,12 @@ class StructureRun(Run):
 
     @classmethod
     def poses(cls, structure: Structure, motion: Motion, settings: ResponseSettings) -> Iterator[Posed]:
-        """The problem posed with each of the steps of results to try."""
-        return (pose(structure, motion, settings, *each) for each in first_steps(structure, motion, settings))
+        """Yield the problem with each of the steps of results to try, the longest first."""
+        return (pose(structure, motion, settings, *step) for step in first_steps(structure, motion, settings))
 
     @classmethod
     def by_steps(cls, posed: Posed, step: float, progress: Progress = None) -> StructureRun:
-        """Run it by such steps, as far as its model means anything; what did not spin up has no other run."""
+        """Run by steps of a length, s, until the model ceases to hold; a spin-up that failed is the whole run."""
         if posed.up is not None and posed.stuck:
             return cls(posed.up, posed.kept, posed)
         how: Any = {"corners": posed.felt, "stop": posed.too_far, "progress": progress}
@@ -75,7 +75,7 @@ class StructureRun(Run):
     def traced(
         cls, structure: Structure, motion: Motion, settings: ResponseSettings, step: float, name: str
     ) -> Response:
-        """The response whose values JAX traces: of one program for all of it, which is then taken apart."""
+        """Response traced by JAX: one program runs spin-up, flight and spin-down, which are then split."""
         before, after = steps_beyond(motion, settings, step)
         start, count = settings.start - before * step, round(settings.duration / step)
         problem = problem_of(structure, motion, start, settings.begin)
@@ -86,7 +86,7 @@ class StructureRun(Run):
         return response_of(cls(trajectory, step, posed, up, down), StepErrors(), name)
 
     def described(self, errors: StepErrors, name: str, progress: Progress = None) -> Response:
-        """The response, after the spin-down."""
+        """Run the spin-down, if the run is whole, and return the response."""
         down = self.posed.spun_down(self.trajectory, progress) if self.whole else None
         return response_of(replace(self, down=down), errors, name)
 
@@ -103,7 +103,9 @@ class StructureRun(Run):
         return [peaks_of_coordinates(self.trajectory, values, of) for values, of in histories]
 
     def loads(self, stride: int) -> list[Floats]:
-        """Force and moment at the root and, where errors are estimated, both sides' stress at every section."""
+        """Root force and moment (t, 3), zero if rounding; if errors are estimated, stress at every section (t, s, 1),
+        or a solid's (t, c).
+        """
         posed, structure, at = self.posed, self.posed.structure, self.trajectory.at(slice(None, None, stride))
         base, _ = posed.moving(at.time, at.q, at.qd, at.qdd)
         q, qd, qdd = (x[:, posed.beam] for x in (at.q, at.qd, at.qdd))
@@ -115,7 +117,7 @@ class StructureRun(Run):
         forces = section_forces(structure, base, q, qd, qdd, at.time, motion=posed.motion)
         sides = [forces.stress_tension, forces.stress_compression]
         if forces.von_mises is not None and np.isfinite(forces.von_mises).all():
-            sides.append(forces.von_mises)  # of what is only twisted the others are rounding
+            sides.append(forces.von_mises)  # under torsion alone the normal stresses are rounding
         stress = np.concatenate(sides, axis=1)[..., None]
         if structure.recovery is not None:
             stress = np.asarray(structure.recovery.felt(q))
@@ -123,7 +125,9 @@ class StructureRun(Run):
 
 
 def influence(structure: Structure) -> Influence:
-    """Static answers of the straight beam to uniform, angular (α_z x, −α_y x) and centripetal (−ω² x) accelerations."""
+    """Static tip displacements and root loads of the straight beam by unit accelerations of the base: uniform (3,), and
+    growing with x: centripetal (−ω² x) and angular (α_z x, −α_y x).
+    """
     c = structure.coefficients
     linear = np.stack([-c.f_ww[2, 2], c.f_al[2], -c.f_al[1]])
     per_q = structure.station_places.first[-1]
@@ -131,12 +135,12 @@ def influence(structure: Structure) -> Influence:
     def tip(load: Array) -> Array:
         return np.diagonal(per_q @ np.linalg.solve(c.stiffness, load.T))
 
-    total, first, second = float(c.rigid[0]), float(c.rigid[1]), float(c.rigid[4])
+    mass, first, second = float(c.rigid[0]), float(c.rigid[1]), float(c.rigid[4])  # and moments ∫ x dm, ∫ x² dm
     across = np.array([0.0, 1.0, 1.0])
     return Influence(
         tip_uniform=tip(c.f_a),
         tip_linear=tip(linear),
-        force_uniform=np.full(3, -total),
+        force_uniform=np.full(3, -mass),
         force_linear=np.full(3, -first),
         moment_uniform=-first * across,
         moment_linear=-second * across,
@@ -153,10 +157,12 @@ def response_of(
     moved: Array | None = None,
     peaks: Peaks | None = None,
 ) -> Response:
-    """Sample spin-up, flight and spin-down on the coarse grid and describe them, with what a flight alone gave."""
+    """Response at the results' times through spin-up, flight and spin-down, with errors and warnings. `base`, `moved`
+    and `peaks` are computed unless given, which they may be of a flight alone.
+    """
     posed, trajectory, stride, up, down = run.posed, run.trajectory, run.stride, run.up, run.down
     structure, motion, settings, beam = posed.structure, posed.motion, posed.settings, posed.beam
-    every, flight = joined(up, trajectory, down, stride)
+    entire, flight = joined(up, trajectory, down, stride)
     last = trajectory if down is None else down
     traced = is_jax(trajectory.q)
     fine = structure.displacement(trajectory.q[:, beam]) if moved is None else moved
@@ -166,7 +172,7 @@ def response_of(
     def at(
         of: Trajectory, steps: Any, known: Base | None = None
     ) -> tuple[tuple[Any, ...], Base, HubResult | None, Loads | None]:
-        """Coordinates, base, hub and loads at some of the steps."""
+        """Times and coordinates, base, hub and loads at an index or slice of the steps of a trajectory."""
         of = of.at(steps)
         time, q, qd, qdd = of.time, of.q, of.qd, of.qdd
         base, hub = posed.moving(time, q, qd, qdd, known)
@@ -175,7 +181,7 @@ def response_of(
             loads = section_forces(structure, base, q[:, beam], qd[:, beam], qdd[:, beam], time, motion=motion)
         return (time, q, qd, qdd), base, hub, loads
 
-    (time, q, qd, qdd), over_time, hub, loads = at(every, slice(None), base)
+    (time, q, qd, qdd), over_time, hub, loads = at(entire, slice(None), base)
     frequencies, _ = structure.rest
     if loads is not None and not traced:
         of_flight = load_peaks(loads.during(flight), lambda steps: at(trajectory, steps)[3], trajectory.time, stride)
@@ -210,8 +216,8 @@ def response_of(
                 )
                 from_run += doubts
             else:
-                alone = [ErrorEstimate(step=step) for step in steps]
-                errors = Errors(alone[0], alone[1], alone[2], settings.not_estimated)
+                of_steps = [ErrorEstimate(step=step) for step in steps]
+                errors = Errors(of_steps[0], of_steps[1], of_steps[2], settings.not_estimated)
             from_run += inaccuracies(structure, errors, settings) + effort(settings, len(trajectory.time) - 1, stride)
         span = time[0], time[-1]
         from_inputs = input_warnings(structure, motion, name=name, span=span, base=over_time, rest=frequencies)
@@ -238,7 +244,7 @@ def response_of(
         peaks=peaks,
         integrator=scheme_of(settings).name,
         step=run.step,
-        steps=sum(len(each.time) - 1 for each in (up, trajectory, down) if each is not None),
+        steps=sum(len(part.time) - 1 for part in (up, trajectory, down) if part is not None),
         error_estimate=errors.displacement.total,
         errors=errors,
         residual_from=math.nan if settings.residual_from is None else settings.residual_from,
@@ -260,7 +266,7 @@ def response_of(
 
 
 def _recovered(structure: Structure, motion: Motion, time: Floats, base: Base, q: Floats, name: str) -> dict[str, Any]:
-    """Parts that only the response of a curved beam, a solid or a rigid specimen has."""
+    """Fields that only the responses of curved beams, solids and rigid specimens have, by name."""
     if structure.recovery is None:
         return {} if structure.source is None else {"envelope": structure.source.beam.envelope}
     parts = structure.recovery.parts(time, base, q, motion=name, model=structure.kind, environment=motion.kind)

@@ -1,4 +1,4 @@
-"""A run of a structure or of a system: how it is posed and made, what is read from it, and the response it leaves."""
+"""A run of a structure or of a system: how it is posed and made, and what errors and the response need of it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from gbeam.results.errors import StepErrors
 
 @dataclass(frozen=True)
 class Run(ABC):
-    """A trajectory with the length of its steps, s, of a structure or a system, and what is read from it."""
+    """A trajectory of a structure or a system, the length of its steps, s, and the problem that was run."""
 
     trajectory: Trajectory
     step: float
@@ -25,50 +25,50 @@ class Run(ABC):
     @classmethod
     @abstractmethod
     def prepared(cls, structure: Any, motion: Any, settings: ResponseSettings) -> tuple[Any, ResponseSettings]:
-        """The motion over the flight's times, and the settings of such runs; InputError of what they cannot be of."""
+        """The motion over the flight's times, and the settings with an integrator; InputError if they cannot be run."""
 
     @classmethod
     @abstractmethod
     def poses(cls, structure: Any, motion: Any, settings: ResponseSettings) -> Iterator[Any]:
-        """The problem posed with each of the steps of results to try, until one is enough."""
+        """Yield the problem with each of the steps of results to try, the longest first."""
 
     @classmethod
     @abstractmethod
     def by_steps(cls, posed: Any, step: float, progress: Progress = None) -> Self:
-        """Run what is posed by steps of a length, s."""
+        """Run a problem by steps of a length, s."""
 
     @classmethod
     @abstractmethod
     def traced(cls, structure: Any, motion: Any, settings: ResponseSettings, step: float, name: str) -> Any:
-        """The response whose values JAX traces, by given steps, without a look at them."""
+        """Response traced by JAX, by given steps: no branch depends on its values."""
 
     @abstractmethod
     def described(self, errors: StepErrors, name: str, progress: Progress = None) -> Any:
-        """The response that it leaves, with its errors beside those of the steps."""
+        """Response made of the run, with the errors of the steps and others that the settings ask for."""
 
     @property
     def stride(self) -> int:
-        """Number of its steps in one of the results, whose times all motions of a study share."""
+        """Number of steps of the run in one step of the results."""
         return 1 if self.posed.settings.step is not None else round(self.posed.kept / self.step)
 
     @property
     def bends(self) -> bool:
-        """True if a law bends within steps, whose error then depends on where."""
+        """True if a force law has corners within steps, so that errors do not fall by the order of the scheme."""
         return False
 
     @property
     def missed(self) -> tuple[str, ...]:
-        """Warning of what the steps may miss: then their error is unknown."""
+        """Warning of events that the steps may miss, which makes their error unknown; else empty."""
         return ()
 
     @property
     def followed(self) -> bool:
-        """True if steps are refined for the loads, too."""
+        """True if automatic steps are refined until errors of loads are small, too."""
         return True
 
     @property
     def whole(self) -> bool:
-        """True if it came to its end."""
+        """True if the run came to its end."""
         return self.trajectory.whole
 
     @property
@@ -79,10 +79,10 @@ class Run(ABC):
     @property
     @abstractmethod
     def peaks(self) -> list[Floats]:
-        """Peaks of the tip's displacement and of the root's moment, (4,) each; none where the history is judged."""
+        """Peaks of the tip's displacement and of the root's moment, (4,) each; empty if histories alone are judged."""
 
     @abstractmethod
     def loads(self, stride: int) -> Sequence[Floats]:
-        """Histories (t, ..., k) of force, moment and stress of each beam, at every so many steps; of one beam the
-        stress is left out where no errors are estimated.
+        """Histories (t, ..., k) of force, moment and stress of each body in turn, at every `stride`-th step; no stress of
+        a structure without an estimate of errors.
         """

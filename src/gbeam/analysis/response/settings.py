@@ -117,30 +117,30 @@ class ResponseSettings(Value):
 
     @property
     def begin(self) -> Initial:
-        """The initial state, where it was named too."""
+        """The initial state, as an object also if it was given by name."""
         return begun(self.initial)
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings of implausible settings, and of what is left out."""
+        """Warnings of implausible settings, and of results and errors that are not computed."""
         step = () if self.step is None else implausible("response.step", "step", self.step)
         left_out = tuple(filter(None, (self.not_estimated, "" if self.loads else NO_LOADS)))
         return (*implausible("response.duration", "duration", self.duration), *step, *left_out)
 
     @property
     def not_estimated(self) -> str:
-        """Errors that the settings leave out, in words."""
+        """Sentence about the errors that are not estimated; "" if all are."""
         lacking = "shapes and models are not judged" if self.step is None else "no error is estimated"
         return "" if self.estimate else f"{lacking}: the settings say estimate = false"
 
     def chosen(self, *, free: bool) -> ResponseSettings:
-        """Settings whose integrator is chosen: equations on a `free` base are not linear, and few steps cost less."""
+        """Settings with an integrator; gauss on a `free` base, whose nonlinear equations cost less in few steps."""
         if self.integrator is not None:
             return self
         return replace(self, integrator="gauss" if free and not self.parameters else "newmark")
 
     def kept_every(self, samples: int, step: float) -> int:
-        """Number of the `samples` of a history, `step` s apart, make one in a file."""
+        """Number n if every n-th of the `samples` of a history, `step` s apart, goes into a file."""
         wanted = -(-samples // KEPT) if self.histories is None else round(self.histories / step)
         return max(1, wanted)
 
@@ -151,5 +151,5 @@ class ResponseSettings(Value):
 
     @property
     def aim_of_peaks(self) -> float:
-        """Error of the peaks of tip and root moment that it aims at: a tenth of the tolerance, at most 1e-4."""
+        """Error of peaks of tip and root moment that an automatic step aims at: tolerance / 10, at most 1e-4."""
         return min(self.tolerance / 10, FINE)

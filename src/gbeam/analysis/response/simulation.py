@@ -118,11 +118,12 @@ def simulate(
 
 
 def _run(kind: type[Run], posed: Any, progress: Progress, step: float, what: str) -> Run:
+    """Run a problem by steps of a length, s, telling its progress as `what`."""
     return kind.by_steps(posed, step, partial(tell, progress, what))
 
 
 def settings_of(settings: ResponseSettings | None, options: Settings) -> ResponseSettings:
-    """The settings that a function is given, as such or by keyword; InputError if both or neither are."""
+    """The settings given as an object, or by keywords; InputError if both or neither are given."""
     for name in options:
         choice("keyword", name, Settings.__annotations__)
     if settings is not None:

@@ -1,9 +1,9 @@
 """The error of the time steps, observed from runs with different ones.
 
 Where the error goes as C hᵖ, runs with three steps give p and C. An order that has not been observed is taken as one.
-None of a history is believed above two: the first mode shows the order of Gauss's method at steps at which higher modes
-do not yet, and their error would be underestimated fivefold. Of its loads, which have most of the modes that steps so
-long do not resolve, none is believed above one.
+Of histories it counts as two at most: the first mode shows the order of Gauss's method at steps at which higher modes
+do not yet, and their error would be underestimated fivefold. Of loads, which contain more of the modes that such steps
+do not resolve, it counts as one at most.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from gbeam.analysis.response.run import Run
 from gbeam.arrays.types import Floats
 from gbeam.results.errors import StepErrors
 
-# Believed of a history; runs that hardly converge differ by less than their error.
+# Limits of the observed order of histories: runs that hardly converge differ by less than their error.
 LOWEST_ORDER, HIGHEST_ORDER = 0.5, 2.0
 _SAMPLES = 2000  # times at most at which the loads of two runs are compared
 
@@ -37,6 +37,7 @@ def observed_order(before: float, now: float, ratios: tuple[int, int], highest: 
     first, second = ratios
 
     def lack(p: float) -> float:
+        """Observed difference before the last, minus that which an order implies: falls with p."""
         return before - now * (first**p - 1) / (1 - second**-p)
 
     if not (math.isfinite(before) and math.isfinite(now)) or lack(LOWEST_ORDER) <= 0:
@@ -56,7 +57,9 @@ def ratio(coarse: Run, fine: Run) -> int:
 
 
 def share(runs: Sequence[Run], differences: Sequence[float], highest: float) -> float:
-    """Error of the last of two or three runs as a share of its difference from the one before, an order at most."""
+    """Error of the last of two or three runs over its difference from the one before, by the order observed, `highest`
+    at most.
+    """
     order = 1.0
     if len(runs) > 2 and runs[-3].whole:
         ratios = ratio(runs[-3], runs[-2]), ratio(runs[-2], runs[-1])
@@ -65,8 +68,8 @@ def share(runs: Sequence[Run], differences: Sequence[float], highest: float) -> 
 
 
 def left(runs: Sequence[Run], differences: Sequence[float], highest: float) -> float:
-    """Error that differences of two or three runs leave in the last, by the order observed. Of a law that bends within
-    steps none is, and two runs may agree by chance.
+    """Error of the last of two or three runs, by their differences and the order observed. A law that bends within
+    steps has no order, and two runs may agree by chance: there the larger difference counts.
     """
     if runs[-1].bends and len(runs) > 2:
         return max(differences[-1], differences[-2] / ratio(runs[-2], runs[-1]))
@@ -75,7 +78,7 @@ def left(runs: Sequence[Run], differences: Sequence[float], highest: float) -> f
 
 @dataclass(frozen=True)
 class Estimate:
-    """Estimated errors of the last of two or three runs, observed, and as promised by the scheme's order."""
+    """Estimated errors of the last of two or three runs: by the order observed, and by the scheme's order."""
 
     tip: float
     peaks: float
@@ -84,25 +87,26 @@ class Estimate:
 
     @staticmethod
     def of(runs: Sequence[Run], order: int) -> Estimate:
-        """Compare the runs."""
-        apart = [difference(a.moved, b.moved, ratio(a, b)) for a, b in pairwise(runs)]
+        """Estimate from runs with falling steps, by a scheme of an order."""
+        differences = [difference(a.moved, b.moved, ratio(a, b)) for a, b in pairwise(runs)]
         peaks = max((_apart(a, b) for a, b in zip(runs[-2].peaks, runs[-1].peaks, strict=True)), default=0.0)
         jump, highest = ratio(*runs[-2:]), min(order, HIGHEST_ORDER)
-        tip = left(runs, apart, highest)
+        tip = left(runs, differences, highest)
         return Estimate(
             tip,
-            peaks * share(runs, apart, order),
-            tip if runs[-1].bends else apart[-1] / (jump**highest - 1),
+            peaks * share(runs, differences, order),
+            tip if runs[-1].bends else differences[-1] / (jump**highest - 1),
             peaks / (jump**order - 1),
         )
 
 
 def _apart(coarse: Floats, fine: Floats) -> float:
+    """Largest difference of peaks over the largest peak."""
     return float(np.abs(coarse - fine).max() / fine.max()) if fine.max() > 0 else 0.0
 
 
 def of_everything(runs: Sequence[Run], order: int) -> StepErrors:
-    """Errors of the last run: of what moves, of the roots' loads and of the stress."""
+    """Errors of the last run: of displacements, of the roots' loads and of stress, which are NaN if not known."""
     displacement = Estimate.of(runs, order).tip
     if not all(run.whole for run in runs[-2:]):
         return StepErrors(displacement)
@@ -111,7 +115,8 @@ def of_everything(runs: Sequence[Run], order: int) -> StepErrors:
         stride = max(1, (len(coarse.trajectory.time) - 1) // _SAMPLES)
         both = coarse.loads(stride), fine.loads(stride * ratio(coarse, fine))
         differences.append([difference(a, b, 1) for a, b in zip(*both, strict=True)])
-    each = [left(runs, apart, 4 / order) for apart in zip(*differences, strict=True)]
-    if not each:
+    errors = [left(runs, of_history, 4 / order) for of_history in zip(*differences, strict=True)]
+    if not errors:
         return StepErrors(displacement)
-    return StepErrors(displacement, max(each[::3] + each[1::3]), max(each[2::3], default=math.nan), tuple(each))
+    # Force, moment and stress of each body in turn.
+    return StepErrors(displacement, max(errors[::3] + errors[1::3]), max(errors[2::3], default=math.nan), tuple(errors))

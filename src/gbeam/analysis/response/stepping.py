@@ -1,4 +1,4 @@
-"""The scheme and the step: divided until the error estimated from runs of several is within the tolerance."""
+"""The scheme and the step, which is divided until the error, estimated from several runs, is within the tolerance."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ from gbeam.results.errors import StepErrors
 
 MAX_STEPS = 4_000_000
 LOADS_STEPS = 50_000  # at most, where it is the loads that need them
-MANY = 20_000  # steps: where the periods ask for more, fewer are tried before
-FEW = 5_000, 20_000, 40_000  # steps that are tried, with which a third of the tolerance is enough
+MANY = 20_000  # steps: where the periods ask for more, fewer are tried first
+FEW = 5_000, 20_000, 40_000  # numbers of steps tried first; an error of a third of the tolerance is enough for them
 ONE_CORNER = 1e-6  # of the duration: corners nearer to one another are one
-JUMPS = 2, 3, 4, 6, 8, 12, 16  # into how many a step is divided; a check takes four, three or two of the new ones
-BENT = 4  # into how many at most where a law bends, for errors to be seen to fall
+JUMPS = 2, 3, 4, 6, 8, 12, 16  # numbers of steps that a step is divided into; a check joins four, three or two of these
+BENT = 4  # the largest division where a law bends, so that errors can be seen to fall
 RIGID = 2e-3  # s: step of a specimen without coordinates
 SPARE = 1.05  # how much finer a step is than the order promises to be enough
 # Yields a step, s, and what it is for; is sent the run; returns the run that counts with its errors.
@@ -55,8 +55,8 @@ def scheme_of(settings: ResponseSettings) -> Scheme:
 
 
 def first_step(structure: Structure, motion: Motion, settings: ResponseSettings) -> float:
-    """Step of the results, s: the given one, a whole number over the duration; otherwise an even number, at least 500
-    and 20 to the lowest period, none longer than the shortest time between corners of motion or loads.
+    """Step of the results, s: that of the settings, rounded to a whole number of steps; if automatic, an even number of
+    steps, at least 500 and 20 to the lowest period, none longer than the shortest time between corners.
     """
     if settings.step is not None:
         return settings.duration / max(1, round(settings.duration / settings.step))
@@ -76,10 +76,10 @@ def first_steps(structure: Structure, motion: Motion, settings: ResponseSettings
 def steps_to_try(
     step: float, most: int, corners: Callable[[float], Floats], settings: ResponseSettings
 ) -> list[tuple[float, int]]:
-    """Steps of the results to try, s, each with the most steps of a run: where the periods ask for many first those
-    that are enough for what hardly vibrates, unless they could pass a pulse unseen.
+    """Steps of the results to try, s, each with the most steps of a run. Where `step` asks for many steps, fewer ones
+    are tried first, enough for motions that hardly vibrate, unless they could miss a pulse.
 
-    `corners` gives the times that steps of a length should not pass unseen, s.
+    `corners` returns the times, s, that steps of a length should not pass unseen.
     """
     tries = [(step, most)]
     if settings.step is None and step < settings.duration / MANY:
@@ -94,7 +94,7 @@ def steps_to_try(
 
 
 def enough(run: Run, errors: StepErrors, settings: ResponseSettings) -> bool:
-    """True if a run by steps that were tried misses nothing, and its errors are within a third of the tolerance."""
+    """True if a run misses no stop, and its step errors are within a third of the tolerance."""
     return not run.missed and max(errors.displacement, errors.loads) <= settings.tolerance / 3
 
 
@@ -112,7 +112,7 @@ def corners(structure: Structure, motion: Motion, step: float) -> Floats:
 
 
 def answered(plan: Plan[R], run: Callable[[float, str], R]) -> tuple[R, StepErrors]:
-    """Compute the runs of a plan, one after the other."""
+    """Compute the runs that a plan asks for, one after the other; return the run that counts, and its errors."""
     try:
         wanted = next(plan)
         while True:
@@ -123,8 +123,8 @@ def answered(plan: Plan[R], run: Callable[[float, str], R]) -> tuple[R, StepErro
 
 
 def planned(settings: ResponseSettings, step: float, most: int = MAX_STEPS) -> Plan[R]:
-    """The runs of some settings from the step of the results: those of an automatic step, by so many steps at most, or
-    of the given one and what its estimate needs.
+    """Plan the runs of settings from the `step` of the results: with ever finer steps, `most` in a run, if the step is
+    automatic; else with that step and, for an estimate, two longer ones.
     """
     order = scheme_of(settings).order
     if settings.step is None:
@@ -135,12 +135,12 @@ def planned(settings: ResponseSettings, step: float, most: int = MAX_STEPS) -> P
 
 
 def once(step: float, errors: StepErrors) -> Plan[R]:
-    """One run, whose errors are known beforehand or unknown."""
+    """Plan one run, with errors that are known beforehand or unknown."""
     return (yield step, "integrating"), errors
 
 
 def check(step: float, order: int) -> Plan[R]:
-    """Run with a given step, and with twice and four times that, from which the error is estimated."""
+    """Plan runs with a given step, and with twice and four times that, from which the error is estimated."""
     runs = [(yield step, "integrating"), (yield 2 * step, "checking with twice the step")]
     if not runs[1].whole:
         return runs[0], StepErrors()
@@ -149,9 +149,9 @@ def check(step: float, order: int) -> Plan[R]:
 
 
 def refine(coarse: float, order: int, settings: ResponseSettings, limit: int = MAX_STEPS) -> Plan[R]:
-    """Divide the step, from twice the results', until the errors estimated of what moves and of the peaks are within
-    their aims; histories of root loads, if followed, only to a third of the tolerance and by LOADS_STEPS. Where steps
-    are to be no finer than the results' that is the only aim.
+    """Plan runs with ever finer steps, from twice the results', until the estimated errors of displacements and peaks
+    are within their aims, and those of the root's loads, if followed, within a third of the tolerance (by LOADS_STEPS
+    at most). Where the results' steps are as many as `limit`, a third of the tolerance is the aim of all.
     """
     aims = settings.aim, settings.aim_of_peaks
     if round(settings.duration / coarse) == limit:
@@ -166,15 +166,15 @@ def refine(coarse: float, order: int, settings: ResponseSettings, limit: int = M
         both, new = runs[-2].whole and runs[-1].whole, runs[-1]
         if both and promised <= 1 and (more := _check_needed(runs, left)):
             checked = yield more, f"checking with {1e3 * more:.3g} ms"
-            runs = sorted([*runs, checked], key=lambda each: -each.step)
+            runs = sorted([*runs, checked], key=lambda run: -run.step)
             left, _ = _left(runs[-3:], order, aims)
-        far, most = promised, limit
+        excess, most = promised, limit
         if both and left <= 1 and not new.missed and not (new.bends and len(runs) < 3):
             errors = of_everything(runs[-3:], order)
-            far, most = 3 * errors.loads / settings.tolerance, min(limit, LOADS_STEPS)
-            if not (far > 1 and new.followed):  # as NaN is not
+            excess, most = 3 * errors.loads / settings.tolerance, min(limit, LOADS_STEPS)
+            if not (excess > 1 and new.followed):  # errors of loads that are NaN are not followed
                 return new, errors
-        finer = min(finer_by(far, order), BENT if new.bends else JUMPS[-1])
+        finer = min(finer_by(excess, order), BENT if new.bends else JUMPS[-1])
         stuck = not (runs[-2].whole or new.whole) and (new.trajectory.stopped or len(runs) > 3)
         if stuck or settings.duration / new.step * finer > most:
             break
@@ -182,21 +182,21 @@ def refine(coarse: float, order: int, settings: ResponseSettings, limit: int = M
     return runs[-1], of_everything(runs[-3:], order)
 
 
-def finer_by(far: float, order: int) -> int:
-    """Into how many steps to divide one whose error the order promises to be so many times too large."""
-    times = SPARE * max(far, 1.0) ** (1 / order) if math.isfinite(far) else 2.0
+def finer_by(excess: float, order: int) -> int:
+    """Number of steps to divide a step into, if its error is `excess` times too large and falls by the order."""
+    times = SPARE * max(excess, 1.0) ** (1 / order) if math.isfinite(excess) else 2.0
     return next((jump for jump in JUMPS if jump >= times), JUMPS[-1])
 
 
 def _left(runs: Sequence[Run], order: int, aims: tuple[float, float]) -> tuple[float, float]:
-    """Error of tip or peaks over its aim, by the order observed and by the scheme's own."""
+    """Larger of the errors of tip and peaks over their aims: by the order observed, and by the scheme's order."""
     error, (tip, peaks) = Estimate.of(runs, order), aims
     return max(error.tip / tip, error.peaks / peaks), max(error.promised_tip / tip, error.promised_peaks / peaks)
 
 
 def _check_needed(runs: Sequence[Run], left: float) -> float | None:
-    """Step of a cheaper run, s, that tells whether an error is what the order promises, or None: unresolved modes after
-    a jump promise too well.
+    """Step, s, of a cheaper run to check that errors fall by the order, or None if no check is needed. After a large
+    jump of the step unresolved modes may make the error look too small.
     """
     jump, new = ratio(*runs[-2:]), runs[-1]
     if new.bends or (left <= 1 and jump <= 4):
@@ -217,20 +217,20 @@ def steps_beyond(motion: Motion, settings: ResponseSettings, step: float) -> tup
 
 
 def integrated(problem: Problem, settings: ResponseSettings, step: float, **how: Any) -> Trajectory:
-    """The run at the flight's times."""
+    """Integrate a problem over the times of the settings by steps of a length, s."""
     # A step that does not divide the duration, twice the one given, goes beyond the end.
     how |= {"step": step, "count": math.ceil(settings.duration / step - 1e-6), "start": settings.start}
     return integrate(problem.equations, scheme_of(settings), problem.q, problem.qd, **how)
 
 
 def split(trajectory: Trajectory, *counts: int) -> list[Trajectory | None]:
-    """Runs of so many steps, one after the other; None where there are none."""
+    """Split a trajectory into parts of so many steps, one after the other; None for a part without steps."""
     ends = [0, *np.cumsum(counts)]
     return [trajectory.at(slice(a, b + 1)) if b > a else None for a, b in pairwise(ends)]
 
 
 def joined(up: Trajectory | None, flight: Trajectory, down: Trajectory | None, stride: int) -> tuple[Trajectory, slice]:
-    """Every step of spin-up and spin-down with every `stride`-th of the flight's, and where these are."""
+    """Every step of spin-up and spin-down with every `stride`-th of the flight, and the slice of the flight's."""
     parts = [flight.at(slice(None, None, stride))]
     if up is not None:
         parts.insert(0, up.at(slice(None, -1)))

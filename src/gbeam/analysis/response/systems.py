@@ -47,9 +47,9 @@ from gbeam.results.parts import Loads
 from gbeam.results.system import BeamResponse, Invariants, Loop, SystemResponse
 from gbeam.structure.beam import names_at
 
-LOOKS = 30  # at the mass matrix of a run
+LOOKS = 30  # steps of a run at which its mass matrix is checked
 LOADS = "force", "moment", "stress"  # of a beam, whose errors are estimated
-BEYOND = 1e-8  # of a coordinate's range: less beyond a stop is no contact
+BEYOND = 1e-8  # of a coordinate's range: a stop is not met by less
 
 Prepared = tuple[Motion | None, ResponseSettings]
 
@@ -64,7 +64,7 @@ class SystemRun(Run):
 
     @classmethod
     def prepared(cls, system: System, motion: Motion | None, settings: ResponseSettings) -> Prepared:
-        """The motion over the flight's times, and the settings, whose integrator is chosen."""
+        """The motion over the flight's times, and the settings with an integrator; InputError for what systems lack."""
         settings = settings.chosen(free=True)
         if motion is not None:
             if motion.free:
@@ -82,7 +82,7 @@ class SystemRun(Run):
 
     @classmethod
     def poses(cls, system: System, motion: Motion | None, settings: ResponseSettings) -> Iterator[PosedSystem]:
-        """The problem posed with each of the steps of results to try."""
+        """Yield the problem with each of the steps of results to try, the longest first."""
         point, bends = started(system, motion, settings.start, settings.begin.state), partial(corners, system, motion)
         for kept, limit in steps_to_try(first_step(point, bends, settings), LOADS_STEPS, bends, settings):
             ends = with_ends(motion, settings, settings.step or kept)
@@ -92,7 +92,7 @@ class SystemRun(Run):
 
     @classmethod
     def by_steps(cls, posed: PosedSystem, step: float, progress: Progress = None) -> SystemRun:
-        """Run it by steps of a length, s."""
+        """Run the problem by steps of a length, s."""
         trajectory = posed.integrated(step, corners=posed.felt, progress=progress)
         return cls(trajectory, step, posed, posed.sampling)
 
@@ -100,7 +100,7 @@ class SystemRun(Run):
     def traced(
         cls, system: System, motion: Motion | None, settings: ResponseSettings, step: float, name: str
     ) -> SystemResponse:
-        """The response whose values JAX traces, by given steps, without a look at them."""
+        """Response traced by JAX, by given steps: no branch depends on its values."""
         ends = with_ends(motion, settings, step)
         start = started_traced(system, motion, ends.start, settings.begin.state)
         refuse_long(system, ends, step)
@@ -128,109 +128,110 @@ class SystemRun(Run):
 
     @cached_property
     def peaks(self) -> list[Floats]:
-        """None: the history of the points is judged."""
+        """Empty: errors of the steps are estimated from the history of the points."""
         return []
 
     @cached_property
     def bends(self) -> bool:
-        """True if the law of a joint bends."""
+        """True if the force law of a joint has corners within steps, as friction and stops."""
         return any(joint.holder.bends for joint in self.posed.system.joints.values())
 
     def loads(self, stride: int) -> list[Floats]:
-        """Force and moment at the root and the stress of every beam that can be judged, at every so many steps."""
+        """Root force, root moment and stress of every body that can be judged, at every `stride`-th step."""
         beams = judged_bodies(self.posed.system)
         if not beams or not self.posed.settings.estimate:
             return []
         values = self.every(stride).read(beams)
-        return [values[name, each] for name in beams for each in LOADS]
+        return [values[name, load] for name in beams for load in LOADS]
 
     @cached_property
     def loop(self) -> Loop | None:
-        """Record of its controllers at its times."""
+        """Record of the controllers at the times of the run; None without controllers."""
         controllers = self.posed.equations.controllers
         return None if self.sampling is None else loop_of(controllers, self.sampling, self.trajectory.time)
 
     @cached_property
     def moved(self) -> Floats:
-        """Displacements of all points, and of three on each body whose points do not turn, side by side, (t, 3 p) m."""
-        every = self.every(1)
-        places = np.concatenate([every.read(())[PLACE], every.turning()], axis=1)
+        """Displacements (t, 3 p) m of all points, and of three on each rigid body that has none off its root."""
+        solution = self.every(1)
+        places = np.concatenate([solution.read(())[PLACE], solution.turning()], axis=1)
         moved = np.asarray((places - places[0]).reshape(len(places), -1))
         return np.zeros_like(moved) if unmoved(np.abs(moved).max(initial=0.0), places) else moved
 
     @cached_property
     def without_mass(self) -> int | None:
-        """Step at which a motion is first seen to have no kinetic energy: energies that end at second order may have
-        none where little inertia but that of deformed bodies is on a joint.
+        """Index of the first step looked at where M is not positive definite, or None. Second-order models may come to
+        that where a joint carries little inertia but that of deformed bodies.
         """
-        system, every = self.posed.system, self.trajectory
-        if is_jax(every.q) or not any(isinstance(link.body, LinearBody) for link in system.tree.links):
+        system, run = self.posed.system, self.trajectory
+        if is_jax(run.q) or not any(isinstance(link.body, LinearBody) for link in system.tree.links):
             return None
-        steps = np.unique(np.linspace(0, len(every.time) - 1, LOOKS).astype(int))
-        q, qd, still = every.q[steps], every.qd[steps], np.zeros_like(every.q[steps])
+        steps = np.unique(np.linspace(0, len(run.time) - 1, LOOKS).astype(int))
+        q, qd, still = run.q[steps], run.qd[steps], np.zeros_like(run.q[steps])
         if Point(system.tree, q[0], qd[0], still[0], self.inputs(system, steps[0])).minimal:
             mass = slopes(system.tree, q, qd, still, self.inputs(system, steps))[2]
-        else:  # of Euler parameters it is no matrix of energies
-            each = ((q[k], qd[k], still[k], self.inputs(system, step)) for k, step in enumerate(steps))
-            mass = np.array([Point(system.tree, *state).local.slopes()[3] for state in each])
-        return next((int(step) for step, one in zip(steps, mass, strict=True) if not positive_definite(one)), None)
+        else:  # by Euler parameters it is singular
+            states = ((q[k], qd[k], still[k], self.inputs(system, step)) for k, step in enumerate(steps))
+            mass = np.array([Point(system.tree, *state).local.slopes()[3] for state in states])
+        return next((int(step) for step, m in zip(steps, mass, strict=True) if not positive_definite(m)), None)
 
     @cached_property
     def missed(self) -> tuple[str, ...]:
-        """Warning of a stop that its steps may miss."""
+        """Warning of a stop that the steps may miss; empty if there is none."""
         return _missed_stop(self.posed.system, self.trajectory, self.inputs(self.posed.system, slice(None)))
 
     @cached_property
     def turned_over(self) -> tuple[str, ...]:
-        """Warning of springs that hold a ball the other way round."""
+        """Warning of springs that a ball's turn of more than 180° makes pull the other way; empty if none do."""
         return _turned_over(self.posed.system, self.trajectory, self.inputs(self.posed.system, slice(None)))
 
     def inputs(self, of: System, steps: Any) -> Inputs:
-        """Inputs at some of its steps of its system, or of another with the same controllers."""
+        """Inputs, at an index or slice of the steps, of its system or of another one with the same controllers."""
         plain = of.inputs(self.trajectory.time[steps], self.posed.motion)
         return plain if self.loop is None else SystemControllers(of).driven(plain, self.loop.applied[steps])
 
     def every(self, stride: int) -> Solution:
-        """Each `stride`-th of its steps."""
+        """Solution at every `stride`-th step."""
         steps = np.arange(len(self.trajectory.time))[::stride]
-        return Solution(self.posed.system, self.trajectory.at(steps), lambda of, some: self.inputs(of, steps[some]))
+        return Solution(self.posed.system, self.trajectory.at(steps), lambda of, times: self.inputs(of, steps[times]))
 
     def histories(self, steps: Any, *, loads: bool) -> tuple[dict[str, Any], dict[str, Loads]]:
-        """Histories at some of its steps, and loads along the beams by name."""
+        """Histories by key at an index or slice of the steps and, if `loads`, the loads along each beam by name."""
         system, inertial = self.posed.system, self.posed.motion is None
         chosen = np.arange(len(self.trajectory.time))[steps]
         columns, beams = dict[str, list[Floats]](), dict[str, list[Carried]]()
-        for part in pieces(len(chosen), system.tree.size):  # of which all frames are held in memory at once
+        for part in pieces(len(chosen), system.tree.size):  # for memory: all frames of a part are held at once
             at, inputs = self.trajectory.at(chosen[part]), self.inputs(system, chosen[part])
             values, carried = histories(system, at.q, at.qd, at.qdd, inputs, inertial=inertial)
             for key, value in values.items():
                 columns.setdefault(key, []).append(value)
-            for name, each in carried.items():
-                beams.setdefault(name, []).append(each)
+            for name, beam in carried.items():
+                beams.setdefault(name, []).append(beam)
         time = self.trajectory.time[chosen]
-        along = {name: loads_of(beams_of(system)[name], each, time) for name, each in beams.items() if loads}
+        along = {name: loads_of(beams_of(system)[name], parts, time) for name, parts in beams.items() if loads}
         over_time = {key: namespace(*values).concatenate(values) for key, values in columns.items()}
         return over_time | {"attitude": continuous(over_time["attitude"])}, along
 
 
 def _held(system: System, run: Trajectory, inputs: Inputs) -> Iterator[tuple[str, Joint, Floats, Floats]]:
-    """Joints with springs or stops, by name, and what these hold over the times of a run, (t, h), and its rates: of
-    balls the rotation vector.
+    """Yield name, joint, held coordinates (t, h) over the times of a run and their rates, of every joint with springs
+    or stops; of a ball the rotation vector is held.
     """
     states = [run.q, run.qd]
     if inputs.prescribed is not None:
-        states = [system.tree.whole(each, inputs.prescribed[..., k, :]) for k, each in enumerate(states)]
+        states = [system.tree.whole(state, inputs.prescribed[..., k, :]) for k, state in enumerate(states)]
     names = {joint.body: name for name, joint in system.joints.items()}
-    parted = zip(*map(system.tree.parted, states), strict=True)
-    for body, link, (q, qd) in zip(system.order, system.tree.links, parted, strict=True):
+    by_link = zip(*map(system.tree.parted, states), strict=True)
+    for body, link, (q, qd) in zip(system.order, system.tree.links, by_link, strict=True):
         if not link.loose:
-            ahead = [at + 1j * STEP * rate for at, rate in zip(q[:-1], qd[:-1], strict=True)]
-            values, further = (link.held(each, qd[:-1])[0] for each in (q[:-1], ahead))
+            # The last part is the body's own coordinates. Rates are derivatives along time, by a complex step.
+            ahead = [value + 1j * STEP * rate for value, rate in zip(q[:-1], qd[:-1], strict=True)]
+            values, further = (link.held(of_joint, qd[:-1])[0] for of_joint in (q[:-1], ahead))
             yield names[body], system.joints[names[body]], values, further.imag / STEP
 
 
 def _missed_stop(system: System, run: Trajectory, inputs: Inputs) -> tuple[str, ...]:
-    """Warn of a stop that a coordinate meets and leaves between two times of a run, which steps may not know."""
+    """Warn of a stop that a coordinate meets and leaves between two times of a run, so that the steps may miss it."""
     if len(run.time) < 2 or not any(np.any(joint.holder.stop) for joint in system.joints.values()):
         return ()
     from scipy.interpolate import CubicHermiteSpline  # which takes a while to import
@@ -254,7 +255,7 @@ def _missed_stop(system: System, run: Trajectory, inputs: Inputs) -> tuple[str, 
 
 
 def _turned_over(system: System, run: Trajectory, inputs: Inputs) -> tuple[str, ...]:
-    """Warn of a ball whose springs or stops hold it the other way round from somewhere on."""
+    """Warn of a ball that turns beyond 180°, from where its springs and stops act in the opposite direction."""
     if not any(joint.holds_turns for joint in system.joints.values()):
         return ()
     for name, joint, values, _ in _held(system, run, inputs):
@@ -268,10 +269,10 @@ def _turned_over(system: System, run: Trajectory, inputs: Inputs) -> tuple[str, 
 
 
 def _described(run: SystemRun, errors: SystemErrors, name: str, warnings: tuple[str, ...] = ()) -> SystemResponse:
-    """Describe a run at the times of its results; its residual is of the flight's times."""
-    every, stride, system, motion = run.trajectory, run.stride, run.posed.system, run.posed.motion
+    """Response at the times of the results; the residual vibration is measured over the flight's times alone."""
+    trajectory, stride, system, motion = run.trajectory, run.stride, run.posed.system, run.posed.motion
     settings, flight = run.posed.settings, run.posed.flight
-    time, traced = every.time[::stride], is_jax(every.q)
+    time, traced = trajectory.time[::stride], is_jax(trajectory.q)
     over_time, along = run.histories(slice(None, None, stride), loads=settings.loads)
     beams, yielded = dict[str, BeamResponse](), []
     for body, loads in along.items():
@@ -280,7 +281,7 @@ def _described(run: SystemRun, errors: SystemErrors, name: str, warnings: tuple[
         def between(steps: Any, body: str = body) -> Loads:
             return run.histories(steps, loads=True)[1][body]
 
-        peaks = None if traced else load_peaks(loads, between, every.time, stride)
+        peaks = None if traced else load_peaks(loads, between, trajectory.time, stride)
         first = system.coordinates.index(f"{body}.q1")
         q = over_time["q"][:, first : first + beam.size]
         names = () if traced or beam.source is None else names_at(beam.source.beam, beam.stations)
@@ -295,18 +296,16 @@ def _described(run: SystemRun, errors: SystemErrors, name: str, warnings: tuple[
     base: Any = None if motion is None else motion.base(time)
     loop = run.loop
     if loop is not None:
-        histories = {each: getattr(loop, each)[::stride] for each in ("measured", "asked", "applied")}
+        histories = {key: getattr(loop, key)[::stride] for key in ("measured", "asked", "applied")}
         loop = replace(loop, **histories)
     outcome, message = "done", ""
-    if not every.whole:
-        outcome = "not converged"
-        message = (
-            f"Newton's method failed at {every.time[-1]:.4g} s: give a smaller step, or look for what breaks there"
-        )
+    if not trajectory.whole:
+        outcome, end = "not converged", trajectory.time[-1]
+        message = f"Newton's method failed at {end:.4g} s: give a smaller step, or look for what breaks there"
     if (step := run.without_mass) is not None:
         free = [system.coordinates[k] for k in system.tree.free]
-        words = f"at {every.time[step]:.4g} s, {massless(system, free, every.q[step])}"
-        if not every.whole or bent_most(system, free, every.q)[1] > 1:
+        words = f"at {trajectory.time[step]:.4g} s, {massless(system, free, trajectory.q[step])}"
+        if not trajectory.whole or bent_most(system, free, trajectory.q)[1] > 1:
             outcome, message = MASSLESS, words
         else:
             warnings += (f"{words}; what moves so grows without bound where steps resolve it",)
@@ -315,11 +314,12 @@ def _described(run: SystemRun, errors: SystemErrors, name: str, warnings: tuple[
     warnings += () if traced else run.every(1).unstiffened
     residual: Any = None
     if settings.residual_from is not None:
-        deflected = (deflection(system, each, over_time["q"]) for each in system.points)
-        moved = [over_time["place"][:, k] if each is None else each for k, each in enumerate(deflected)]
-        every_point = namespace(*moved).concatenate(moved, axis=1)
+        # Points of flexible bodies vibrate about their roots, others about the ground.
+        relative = (deflection(system, point, over_time["q"]) for point in system.points)
+        moved = [over_time["place"][:, k] if bent is None else bent for k, bent in enumerate(relative)]
+        all_points = namespace(*moved).concatenate(moved, axis=1)
         flown = time <= flight.start + flight.duration * (1 + 1e-9)
-        residual = half_ranges(time[flown], every_point[flown], settings.residual_from).reshape(-1, 3)
+        residual = half_ranges(time[flown], all_points[flown], settings.residual_from).reshape(-1, 3)
     return SystemResponse(
         name=name,
         environment=kind,
@@ -339,7 +339,7 @@ def _described(run: SystemRun, errors: SystemErrors, name: str, warnings: tuple[
         assembly=assembly_of(system) if drawn else None,
         integrator=scheme_of(settings).name,
         step=run.step,
-        steps=len(every.time) - 1,
+        steps=len(trajectory.time) - 1,
         errors=errors,
         residual_from=math.nan if settings.residual_from is None else settings.residual_from,
         residual_amplitude=residual,
