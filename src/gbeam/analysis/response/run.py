@@ -83,6 +83,6 @@ class Run(ABC):
 
     @abstractmethod
     def loads(self, stride: int) -> Sequence[Floats]:
-        """Histories (t, ..., k) of force, moment and stress of each body in turn, at every `stride`-th step; no stress of
-        a structure without an estimate of errors.
+        """Histories (t, ..., k) of force, moment and stress of each body in turn, at every `stride`-th step; no stress
+        of a structure without an estimate of errors.
         """

@@ -206,7 +206,7 @@ def _departing(
 
 
 def _beyond(solution: Solution, theories: Mapping[str, Theory], loop: Rerun | None, begun: Begun) -> Lacking:
-    """What the theory of slender beams lacks: by runs with thick beams in a `loop`, else by the residual in theirs."""
+    """Differences to thick beams: by runs of these in a `loop`, else by the residual in their equations."""
     bent = partial(with_beams, solution.system)
     return beyond(
         solution.posed(theories),
