@@ -76,6 +76,7 @@ def hdf5_columns(path: str | os.PathLike[str], *, matlab: bool = False) -> list[
 
 
 def _netcdf_3(path: str | os.PathLike[str]) -> list[Column]:
+    """Columns of a netCDF file of version 3."""
     from scipy.io import netcdf_file  # 0.4 s to import
 
     columns: list[Column] = []
@@ -128,6 +129,7 @@ def read_mat(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
 
 
 def _any_version(path: str | os.PathLike[str], words: Sequence[str]) -> list[Column]:
+    """Columns of a MAT file: of its vectors and matrices, and of the structures that `words` may name."""
     import scipy.io  # 0.2 s to import
 
     try:
@@ -187,38 +189,38 @@ def read_uff(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
     with _refused(path, "is not a universal file", "export it as UFF 58"):
         file = pyuff.UFF(os.fspath(path))
         sets = [file.read_sets(i) for i, kind in enumerate(file.get_set_types()) if int(kind) == 58]
-    sets = [one for one in sets if one["func_type"] in _RESPONSES and np.isrealobj(one["data"])]
+    sets = [data_set for data_set in sets if data_set["func_type"] in _RESPONSES and np.isrealobj(data_set["data"])]
     if not sets:
         raise InputError("record.file", f"{path} holds no time response", "export data sets of type 58")
     time = _samples(sets[0], "x")
-    names = Counter(_name(one) for one in sets)
+    names = Counter(_name(data_set) for data_set in sets)
     columns = [Column(_TIME, lambda: time, _unit(sets[0]["abscissa_axis_units_lab"]))]
-    for one in sets:
-        point = _point(one)
-        name = _name(one) if names[_name(one)] == 1 else point
-        abscissa = _samples(one, "x")
+    for data_set in sets:
+        point = _point(data_set)
+        name = _name(data_set) if names[_name(data_set)] == 1 else point
+        abscissa = _samples(data_set, "x")
         if abscissa.shape != time.shape or not np.allclose(abscissa, time, rtol=0, atol=1e-6 * np.ptp(time)):
             raise InputError(
                 "record.file", f"{path} has responses at different times, such as {name!r}", "export them at one rate"
             )
-        values = _samples(one, "data")
-        unit = _unit(one["ordinate_axis_units_lab"])
+        values = _samples(data_set, "data")
+        unit = _unit(data_set["ordinate_axis_units_lab"])
         columns.append(Column(name, lambda values=values: values, unit, (point,)))  # type: ignore[misc]
     return Table(tuple(columns))
 
 
-def _samples(one: dict[str, Any], key: str) -> np.ndarray[Any, np.dtype[np.float64]]:
-    return np.asarray(one[key], dtype=np.float64)[: int(one["num_pts"])]
+def _samples(data_set: dict[str, Any], key: str) -> np.ndarray[Any, np.dtype[np.float64]]:
+    return np.asarray(data_set[key], dtype=np.float64)[: int(data_set["num_pts"])]
 
 
-def _name(one: dict[str, Any]) -> str:
-    name = one["id1"].strip()
-    return _point(one) if name.upper() in _NO_NAME else name
+def _name(data_set: dict[str, Any]) -> str:
+    name = data_set["id1"].strip()
+    return _point(data_set) if name.upper() in _NO_NAME else name
 
 
-def _point(one: dict[str, Any]) -> str:
-    direction = int(one["rsp_dir"])
-    return f"{int(one['rsp_node'])}{'-' if direction < 0 else '+'}{_DIRECTIONS[abs(direction)]}"
+def _point(data_set: dict[str, Any]) -> str:
+    direction = int(data_set["rsp_dir"])
+    return f"{int(data_set['rsp_node'])}{'-' if direction < 0 else '+'}{_DIRECTIONS[abs(direction)]}"
 
 
 def _unit(label: str) -> str:
@@ -250,7 +252,7 @@ def read_binary(path: str | os.PathLike[str], words: Iterable[str] = ()) -> Tabl
 
 @lru_cache(maxsize=4)  # the cases of a sweep have one record, as have the edits of a scenario
 def _kept(path: str, words: Sequence[str], folder: str, version: tuple[int, ...]) -> Table | InputError:
-    """Return a table, or why it cannot be read, which is not tried twice."""
+    """Return the table of a file, or the error that it cannot be read by; `folder` and `version` tell files apart."""
 
     def refuse(problem: str) -> InputError:
         return InputError("record.file", f"{path} {problem}", "export the record again, with fewer variables")
@@ -272,7 +274,7 @@ def _column(name: str, unit: str, aliases: Sequence[str], samples: Any = None, r
 
 
 def columns_of(path: str, words: list[str]) -> list[dict[str, Any]]:
-    """Read the columns of a file in the process that may end as it does."""
+    """Return names, units and aliases of the columns of a file, and the samples of those that `words` name."""
     table = _READERS[Path(path).suffix.lower()](path, words)
     needed = set()
     for word in words:
@@ -285,6 +287,7 @@ def columns_of(path: str, words: list[str]) -> list[dict[str, Any]]:
 
 
 def _sampled(column: Column) -> dict[str, Any]:
+    """Samples of a column, or the problem and the fix where they cannot be read."""
     try:
         return {"samples": np.asarray(column.read(), dtype=np.float64)}
     except MemoryError:

@@ -61,7 +61,7 @@ def write_commands(plan: MachinePlan, commands: Commands, folder: Path) -> list[
 
 
 def header(plan: MachinePlan, commands: Commands) -> list[str]:
-    """Purpose of the motions, with frame, units, zeros and signs of the numbers."""
+    """Lines above the commands: what they are for, and the frame, units, zeros and signs of their numbers."""
     first, last = plan.axes.span
     lines = [
         f"gbeam: axis motions of {plan.name}" + (f", which imitates {plan.tracks}" if plan.tracks else ""),
@@ -91,19 +91,19 @@ def header(plan: MachinePlan, commands: Commands) -> list[str]:
 def _mounted(plan: MachinePlan) -> str:
     """Place and turn of the specimen in the machine, in words."""
     place, turn = plan.axes.place, plan.axes.turn
-    at = f"{plan.axes.control_point:g} m from the root along the beam"
+    point = f"{plan.axes.control_point:g} m from the root along the beam"
     if place is not None:
-        at = "({:g}, {:g}, {:g}) m from the root".format(*place)
-    way = (
+        point = "({:g}, {:g}, {:g}) m from the root".format(*place)
+    turned = (
         ""
         if turn is None
         else "; specimen turned from axis 3's axes by the rotation vector ({:g}, {:g}, {:g}) rad".format(*turn)
     )
-    return f"Control point {at}; mounting {plan.mounting}{way}."
+    return f"Control point {point}; mounting {plan.mounting}{turned}."
 
 
 def _limits(plan: MachinePlan) -> dict[str, list[float]]:
-    """Limits of each quantity, of axes 1, 2, 3; of the power, of the arm."""
+    """Limits by quantity: one for each of axes 1, 2, 3; of the power one, of the arm."""
     allowed: dict[str, list[float]] = {}
     for use in plan.axes.limits:
         allowed.setdefault(use.quantity, []).append(use.allowed)

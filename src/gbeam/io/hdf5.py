@@ -37,11 +37,11 @@ def image(groups: Mapping[str, Group]) -> bytes:
         for path, group in groups.items():
             place = file.create_group(path) if path else file
             _describe(place, group.attrs)
-            for name, each in (group.coordinates | group.variables).items():
-                for dim, size in zip(each.dims, each.values.shape, strict=True):
+            for name, variable in (group.coordinates | group.variables).items():
+                for dim, size in zip(variable.dims, variable.values.shape, strict=True):
                     if dim not in place.dimensions:
                         place.dimensions[dim] = size
-                _create(place, name, each)
+                _create(place, name, variable)
     return buffer.getvalue()
 
 

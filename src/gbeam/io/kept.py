@@ -69,7 +69,7 @@ def kept(what: str, source: Any, make: Callable[[], T]) -> T:
 
 
 def content_of(file: str | os.PathLike[str]) -> bytes | None:
-    """SHA-256 of a file's content; nothing of what is no file, or is not read."""
+    """Return the SHA-256 of a file; None if it is no file, is too large, or cannot be read."""
     try:
         if not os.path.isfile(file) or os.path.getsize(file) > BINARY_BYTES:
             return None
@@ -81,7 +81,7 @@ def content_of(file: str | os.PathLike[str]) -> bytes | None:
 
 @contextmanager
 def unkept() -> Iterator[None]:
-    """Keep nothing that is made within, as of the trials of a search, which would take the room of all else."""
+    """Keep no value that is computed in this context, such as trials of a search, which would displace all else."""
     token = _KEEPING.set(False)
     try:
         yield
@@ -120,9 +120,9 @@ def _write(file: Path, value: Any) -> None:
     content = pickle.dumps(value)
     file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     write_whole(file, hashlib.sha256(content).digest(), content, private=True)
-    others = [(each.stat(), each) for each in file.parent.glob(f"*{_ENDING}") if each != file]
+    others = [(other.stat(), other) for other in file.parent.glob(f"*{_ENDING}") if other != file]
     room = MOST - file.stat().st_size
-    for about, each in sorted(others, key=lambda pair: -pair[0].st_mtime):
-        room -= about.st_size
+    for status, other in sorted(others, key=lambda pair: -pair[0].st_mtime):
+        room -= status.st_size
         if room < 0:
-            each.unlink(missing_ok=True)
+            other.unlink(missing_ok=True)

@@ -60,24 +60,25 @@ def labels(name: str, values: list[str] | tuple[str, ...]) -> dict[str, Variable
 
 
 def thinned(group: Group, every: int) -> Group:
-    """The group with one of so many samples of its histories, and with words that say so."""
+    """Return a group with every so-many-th sample of its histories, and an attribute that says so."""
     if every == 1:
         return group
 
-    def some(of: dict[str, Variable]) -> dict[str, Variable]:
-        cuts = {name: tuple(slice(None, None, every if dim == "time" else 1) for dim in of[name].dims) for name in of}
-        return {
-            name: each._replace(values=np.ascontiguousarray(each.values[cuts[name]])) if "time" in each.dims else each
-            for name, each in of.items()
-        }
+    def cut(each: Variable) -> Variable:
+        if "time" not in each.dims:
+            return each
+        samples = tuple(slice(None, None, every if dim == "time" else 1) for dim in each.dims)
+        return each._replace(values=np.ascontiguousarray(each.values[samples]))
 
+    variables = {name: cut(each) for name, each in group.variables.items()}
+    coordinates = {name: cut(each) for name, each in group.coordinates.items()}
     count = len(group.coordinates["time"].values)
-    said = {"histories": f"one of {every} samples, of {count}; peaks, errors and comparisons are of all"}
-    return Group(some(group.variables), some(group.coordinates), group.attrs | said | {"histories_every": every})
+    attrs = {"histories": f"one of {every} samples, of {count}; peaks, errors and comparisons are of all"}
+    return Group(variables, coordinates, group.attrs | attrs | {"histories_every": every})
 
 
 def known(variables: dict[str, Variable]) -> dict[str, Variable]:
-    """The variables but those of which no value is known: a file has no column of nothing."""
+    """Return the variables but those of which no value is known: a file has no column of nothing."""
     return {name: each for name, each in variables.items() if not _unknown(each.values)}
 
 
@@ -103,16 +104,19 @@ _NUMBERED = {
 }
 
 
-def name_of(key: str, each: Declaration, pattern: str) -> str:
-    """Name of a field in files, of a record whose names have a pattern."""
+def name_of(key: str, declaration: Declaration, pattern: str) -> str:
+    """Return the name of a field in files, which stands for the ``*`` of the pattern of its record."""
     before, _, after = pattern.partition("*")
-    return before.rstrip("_") if each.name == INSIDE else f"{before}{each.name or key}{after}".rpartition("/")[2]
+    if declaration.name == INSIDE:
+        return before.rstrip("_")
+    return f"{before}{declaration.name or key}{after}".rpartition("/")[2]
 
 
-def pattern_of(each: Declaration, pattern: str) -> str:
-    """Pattern of the names of a part in files."""
-    assert each.name is not None
-    return pattern.replace("*", each.name if "*" in each.name else f"{each.name.removesuffix(INSIDE)}*")
+def pattern_of(declaration: Declaration, pattern: str) -> str:
+    """Return the pattern of the names of a part's fields in files, from that of its record."""
+    name = declaration.name
+    assert name is not None
+    return pattern.replace("*", name if "*" in name else f"{name.removesuffix(INSIDE)}*")
 
 
 def group_of(record: Any, over: tuple[str, ...] = (), pattern: str = "*", unit: str = "") -> Group:
@@ -122,49 +126,50 @@ def group_of(record: Any, over: tuple[str, ...] = (), pattern: str = "*", unit: 
     of the fields that have none of their own.
     """
     group = Group()
-    for key, each in declarations(type(record)):
+    for key, declaration in declarations(type(record)):
         value = getattr(record, key)
-        if each.name is None or (value is None and (each.role != "variable" or each.dims)):
+        if declaration.name is None or (value is None and (declaration.role != "variable" or declaration.dims)):
             continue
-        if each.optional and unknown(value):
+        if declaration.optional and unknown(value):
             continue
-        name, after = name_of(key, each, pattern), pattern.partition("*")[2]
-        dims = tuple(dim + after.lstrip("_") if dim.endswith("_") else dim for dim in (*over, *each.dims))
-        si = unit if each.unit is BESIDE and unit else each.unit(record) if callable(each.unit) else str(each.unit)
-        within = pattern_of(each, pattern)
-        if each.role == "part":
-            inner = group_of(value, dims, within, si or unit)
+        name, after = name_of(key, declaration, pattern), pattern.partition("*")[2]
+        dims = tuple(dim + after.lstrip("_") if dim.endswith("_") else dim for dim in (*over, *declaration.dims))
+        stated = declaration.unit
+        si = unit if stated is BESIDE and unit else stated(record) if callable(stated) else str(stated)
+        part_pattern = pattern_of(declaration, pattern)
+        if declaration.role == "part":
+            inner = group_of(value, dims, part_pattern, si or unit)
             _merge(group, Group(known(inner.variables), inner.coordinates, inner.attrs))
-        elif each.role == "rows" and isinstance(value, Mapping):
-            units = each.unit if isinstance(each.unit, dict) else {}
-            for row, of in value.items():
-                inner = group_of(of, (), within.replace("*", f"{row}_*"), units.get(row, ""))
-                alone = {dim for each in inner.variables.values() for dim in each.dims} - {"time", *_LABELLED}
-                inner = _renamed(inner, {dim: f"{row}_{dim}" for dim in alone})
-                group.coordinates.update({dim: each for dim, each in inner.coordinates.items() if dim})
-                for label, one in known(inner.variables).items():
-                    words = f"{row.replace('_', ' ')}, {one.attrs['long_name']}"
-                    group.variables[label] = one._replace(attrs=one.attrs | {"long_name": words})
-        elif each.role == "rows":
-            _merge(group, _columns([group_of(row, (), within) for row in value], dims))
-        elif each.role == "fact" and isinstance(value, Mapping):
-            group.attrs.update({f"{name}{part}".replace("-", "_"): one for part, one in value.items()})
-        elif each.role == "fact":
+        elif declaration.role == "rows" and isinstance(value, Mapping):
+            units = declaration.unit if isinstance(declaration.unit, dict) else {}
+            for row, part in value.items():
+                inner = group_of(part, (), part_pattern.replace("*", f"{row}_*"), units.get(row, ""))
+                dims_of_row = {dim for entry in inner.variables.values() for dim in entry.dims} - {"time", *_LABELLED}
+                inner = _renamed(inner, {dim: f"{row}_{dim}" for dim in dims_of_row})
+                group.coordinates.update({dim: entry for dim, entry in inner.coordinates.items() if dim})
+                for label, entry in known(inner.variables).items():
+                    long_name = f"{row.replace('_', ' ')}, {entry.attrs['long_name']}"
+                    group.variables[label] = entry._replace(attrs=entry.attrs | {"long_name": long_name})
+        elif declaration.role == "rows":
+            _merge(group, _columns([group_of(row, (), part_pattern) for row in value], dims))
+        elif declaration.role == "fact" and isinstance(value, Mapping):
+            group.attrs.update({f"{name}{entry}".replace("-", "_"): fact for entry, fact in value.items()})
+        elif declaration.role == "fact":
             group.attrs[name] = _attribute(value)
-        elif each.role == "labels":
+        elif declaration.role == "labels":
             where = dims[-1] if dims else ""  # of a row its own name, which `_columns` places
             group.coordinates[where] = Variable((where,), np.array(value, dtype=object), {})
-        elif each.role == "coordinate":
-            group.coordinates[dims[-1]] = _variable(dims[-1:], value, each, si)
-        elif each.dims[-1:] == ("ends",):
-            for end, order, one in zip(("from", "to"), ("first", "last"), value, strict=True):
-                group.variables[f"{name}_{end}"] = _variable(dims[:-1], one, each, si, before=f"{order} ")
+        elif declaration.role == "coordinate":
+            group.coordinates[dims[-1]] = _variable(dims[-1:], value, declaration, si)
+        elif declaration.dims[-1:] == ("ends",):
+            for suffix, order, bound in zip(("from", "to"), ("first", "last"), value, strict=True):
+                group.variables[f"{name}_{suffix}"] = _variable(dims[:-1], bound, declaration, si, before=f"{order} ")
         elif np.iscomplexobj(value):
-            for end, part in (("real", value.real), ("imag", value.imag)):
-                group.variables[f"{name}_{end}"] = _variable(dims, part, each, si, f": {end[:4]} part")
+            for suffix, values in (("real", value.real), ("imag", value.imag)):
+                group.variables[f"{name}_{suffix}"] = _variable(dims, values, declaration, si, f": {suffix} part")
         else:
             where = f", {after.strip('_')}" if after else ""
-            group.variables[name] = _variable(dims, value, each, si, where)
+            group.variables[name] = _variable(dims, value, declaration, si, where)
     return group
 
 
@@ -175,8 +180,8 @@ def whole_group(record: Any) -> Group:
 
 def completed(group: Group) -> Group:
     """Return a group with the coordinates of dimensions that are the same everywhere, without what is empty."""
-    every = group.variables.values()
-    sizes = {dim: size for each in every for dim, size in zip(each.dims, each.values.shape, strict=True)}
+    variables = group.variables.values()
+    sizes = {dim: size for each in variables for dim, size in zip(each.dims, each.values.shape, strict=True)}
     for dim, names in _LABELLED.items():
         if dim in sizes:
             group.coordinates.update(labels(dim, names))
@@ -189,23 +194,24 @@ def completed(group: Group) -> Group:
 
 def in_files(unit: str) -> str:
     """Return a unit as the conventions of netCDF write it: ``m s-2`` of ``m/s^2``, ``1`` where there is none."""
-    above, _, below = unit.partition("/")
-    divisor = re.sub(r"\^|$", "-", below, count=1) + ("" if "^" in below else "1") if below else ""
-    return " ".join(filter(None, (above if above != "1" or not below else "", divisor))) or "1"
+    numerator, _, denominator = unit.partition("/")
+    divisor = re.sub(r"\^|$", "-", denominator, count=1) + ("" if "^" in denominator else "1") if denominator else ""
+    return " ".join(filter(None, (numerator if numerator != "1" or not denominator else "", divisor))) or "1"
 
 
 def _variable(
-    dims: tuple[str, ...], value: Any, each: Declaration, unit: str, more: str = "", before: str = ""
+    dims: tuple[str, ...], value: Any, declaration: Declaration, unit: str, after: str = "", before: str = ""
 ) -> Variable:
+    """Variable of a field by its declaration: text, flags, or numbers with their unit and frame."""
     values = np.asarray(np.nan if value is None else value)
     if values.dtype.kind in "OU":
-        return words(dims, value, each.words)
-    if each.flags:
-        return flags(dims, values, each.words, *each.flags)
+        return words(dims, value, declaration.words)
+    if declaration.flags:
+        return flags(dims, values, declaration.words, *declaration.flags)
     if values.dtype == bool:
         values = values.astype(np.int64)
-    frame = {"frame": each.frame} if each.frame else {}
-    return variable(dims, values, in_files(unit), f"{before}{each.words}{more}", **frame)
+    frame = {"frame": declaration.frame} if declaration.frame else {}
+    return variable(dims, values, in_files(unit), f"{before}{declaration.words}{after}", **frame)
 
 
 def _attribute(value: Any) -> Any:
@@ -216,21 +222,21 @@ def _attribute(value: Any) -> Any:
     return int(value) if isinstance(value, bool) else value
 
 
-def _columns(every: list[Group], dims: tuple[str, ...]) -> Group:
-    """One variable of each name along a further dimension, NaN or empty where one has none; of words, what were
-    attributes.
+def _columns(rows: list[Group], dims: tuple[str, ...]) -> Group:
+    """Return the variables of rows stacked along a further dimension, NaN or empty where a row has none; attributes are
+    those of the first row that has one, with the unit mixed where they differ.
     """
     group = Group()
-    for name in dict.fromkeys(name for each in every for name in each.variables):
-        some = [each.variables.get(name) for each in every]
-        first, *others = (each for each in some if each is not None)
-        none = np.full(np.shape(first.values), "" if np.asarray(first.values).dtype.kind in "UO" else np.nan)
-        values = np.stack([none if each is None else each.values for each in some])
+    for name in dict.fromkeys(name for each in rows for name in each.variables):
+        cells = [each.variables.get(name) for each in rows]
+        first, *others = (each for each in cells if each is not None)
+        missing = np.full(np.shape(first.values), "" if np.asarray(first.values).dtype.kind in "UO" else np.nan)
+        values = np.stack([missing if each is None else each.values for each in cells])
         units = {each.attrs.get("units") for each in (first, *others)}
         mixed = {"units": "mixed"} if len(units) > 1 else {}
         group.variables[name] = Variable((*dims, *first.dims), values, first.attrs | mixed)
-    if every and "" in every[0].coordinates:
-        group.coordinates.update(labels(dims[-1], [each.coordinates[""].values.item() for each in every]))
+    if rows and "" in rows[0].coordinates:
+        group.coordinates.update(labels(dims[-1], [each.coordinates[""].values.item() for each in rows]))
     return group
 
 
@@ -239,11 +245,11 @@ def _renamed(group: Group, names: Mapping[str, str]) -> Group:
     if not names:
         return group
 
-    def of(variables: dict[str, Variable]) -> dict[str, Variable]:
+    def renamed(variables: dict[str, Variable]) -> dict[str, Variable]:
         dims = {key: tuple(names.get(dim, dim) for dim in each.dims) for key, each in variables.items()}
         return {names.get(key, key): each._replace(dims=dims[key]) for key, each in variables.items()}
 
-    return Group(of(group.variables), of(group.coordinates), group.attrs)
+    return Group(renamed(group.variables), renamed(group.coordinates), group.attrs)
 
 
 def _merge(group: Group, other: Group) -> None:

@@ -146,15 +146,15 @@ def _statistics(sweep: Sweep) -> dict[str, Variable]:
     """Statistics at every point of the grid."""
     grid = tuple(name for name in sweep.dimensions if name != SAMPLE)
     variables = {}
-    for name, each in sweep.statistics.items():
+    for name, statistic in sweep.statistics.items():
         dims = (*grid, "time") if name in sweep.histories else grid
         words = f"{name}: estimates with bounds of 95 % confidence"
-        if PROBABILITY in each.names:
-            variables[f"{name} probability"] = variable((*dims, "bound"), each[PROBABILITY], "1", words)
+        if PROBABILITY in statistic.names:
+            variables[f"{name} probability"] = variable((*dims, "bound"), statistic[PROBABILITY], "1", words)
         else:
             unit = sweep.units[name] or "1"
-            variables[f"{name} statistics"] = variable((*dims, "statistic", "bound"), each.values, unit, words)
-        variables[f"{name} count"] = variable(dims, each.count, "1", f"{name}: draws that the estimates come from")
+            variables[f"{name} statistics"] = variable((*dims, "statistic", "bound"), statistic.values, unit, words)
+        variables[f"{name} count"] = variable(dims, statistic.count, "1", f"{name}: draws that the estimates come from")
     for name, shares in sweep.indices.items():
         dims = (*grid, "parameter", "order", "bound")
         variables[f"{name} indices"] = variable(dims, shares.values, "1", f"{name}: Sobol indices")
@@ -192,9 +192,9 @@ def groups_of(result: Result, *, every: bool = True) -> dict[str, Group]:
     groups = _study(result, every=every) if isinstance(result, Answers) else {"": _group(result, every=every)}
     origin = result.provenance or Provenance()
     root = groups[""]
-    about = provenance_attrs(origin) | {"warnings": "\n".join(result.warnings)}
+    attrs = provenance_attrs(origin) | {"warnings": "\n".join(result.warnings)}
     variables = provenance_variables(origin) if origin.scenario else {}
-    groups[""] = Group(variables | root.variables, root.coordinates, root.attrs | about)
+    groups[""] = Group(variables | root.variables, root.coordinates, root.attrs | attrs)
     return groups
 
 
@@ -219,6 +219,7 @@ def _group(result: Result, *, every: bool) -> Group:
 
 
 def _study(study: Answers, *, every: bool) -> dict[str, Group]:
+    """Groups of a study: the root with its attributes, every motion, and every comparison."""
     attrs = {
         "title": study.title,
         "outcome": study.outcome,
@@ -310,8 +311,8 @@ def csv_of(stored: Stored) -> str:
     names = [path.split("/")[1] for path in stored.variables if path.startswith("motions/") and path.endswith("/time")]
     columns = [
         f"{name}_{part}_{unit}"
-        for stands, (name, unit) in _VECTORS.items()
-        for part in ("123" if stands.startswith("axis") else "xyz")
+        for variable, (name, unit) in _VECTORS.items()
+        for part in ("123" if variable.startswith("axis") else "xyz")
     ]
     lines = [",".join([_HEAD, *columns, "stress_Pa"])]
     for name in names:
@@ -320,13 +321,14 @@ def csv_of(stored: Stored) -> str:
 
 
 def _rows(stored: Stored, name: str, count: int) -> Iterator[str]:
+    """Lines of one motion: its name, the time, `count` components of vectors, and the stress of the root."""
     place = f"motions/{name}/"
     time = stored.variables[f"{place}time"]
     values = np.full((len(time), count + 1), np.nan)
-    for k, name_of in enumerate(_VECTORS):
-        array = stored.variables.get(place + ("displacement" if name_of == "tip" else name_of))
+    for k, vector in enumerate(_VECTORS):
+        array = stored.variables.get(place + ("displacement" if vector == "tip" else vector))
         if array is not None:
-            station = -1 if name_of == "tip" else 0
+            station = -1 if vector == "tip" else 0
             values[:, 3 * k : 3 * k + 3] = array[:, station] if array.ndim == 3 else array
     stress = stored.variables.get(f"{place}stress")
     if stress is not None:

@@ -34,7 +34,7 @@ class Clock:
     first: str  # that time, as the file has it
 
     def seconds(self, text: str) -> float | None:
-        """Seconds from the first time to that of a text, the next of its kind where a date is missing; None if none."""
+        """Return the seconds from the first time to a text, within a day if a date is missing; None if it is none."""
         first, now = _reading(self.first), _reading(text)
         return None if first is None or now is None else _since(first, now) / _SECOND
 
@@ -50,16 +50,18 @@ def read_clock(cells: Sequence[str]) -> tuple[Clock, NDArray[np.float64]] | None
     if first is None:
         return None
     readings = (_reading(cell) for cell in cells)
-    since = [np.nan if one is None else _since(first, one) / _SECOND for one in readings]
-    return Clock(cells[0]), np.array(since)
+    seconds = [np.nan if reading is None else _since(first, reading) / _SECOND for reading in readings]
+    return Clock(cells[0]), np.array(seconds)
 
 
 def _since(first: _Reading, now: _Reading) -> int:
+    """Nanoseconds from one reading to another, within a day where the day of either is not known."""
     passed = now[1] - first[1]
     return passed % _DAY if first[0] is None or now[0] is None else (now[0] - first[0]) * _DAY + passed
 
 
 def _reading(text: str) -> _Reading | None:
+    """Day, if known, and ns from its midnight, in UTC if it has a zone; None if a text is no time of day."""
     match = _CLOCK.fullmatch(text)
     if match is None:
         return None
@@ -113,30 +115,30 @@ class Table:
 
     def column(self, axis: str, name: str) -> Column:
         """Find a column by its name, or else by an alias."""
-        columns = [one for one in self.columns if one.name == name]
-        columns = columns or [one for one in self.columns if name in one.aliases]
+        columns = [column for column in self.columns if column.name == name]
+        columns = columns or [column for column in self.columns if name in column.aliases]
         if len(columns) == 1:
             return columns[0]
         if columns:
             raise InputError(f"record.{axis}", f"names {name!r}, given {len(columns)} times", "name each column once")
-        names = [one.name for one in self.columns]
-        every = [*names, *(alias for one in self.columns for alias in one.aliases)]
-        near = closest(name, every)
+        names = [column.name for column in self.columns]
+        candidates = [*names, *(alias for column in self.columns for alias in column.aliases)]
+        near = closest(name, candidates)
         guess = f"did you mean {near!r}? " if near else ""
         more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
         listed = ", ".join(names[:_LISTED]) + more
         raise InputError(f"record.{axis}", f"names no column {name!r}", f"{guess}the columns are {listed}")
 
     def numbers(self, axis: str, name: str, part: slice = slice(None)) -> Floats:
-        """Return a column as numbers, shape (t,), finite ones in a part; outside it NaN stands for what is none."""
+        """Return a column as numbers (t,), NaN where a cell is none; InputError unless all are finite in `part`."""
         samples = self._samples(axis, name)
         return self._finite(axis, name, samples, _numbers(samples), part)
 
     def times(self, name: str) -> tuple[Floats, Clock | None]:
-        """Return the column of times, shape (t,), finite, and the clock where it holds times of day, which are in s."""
+        """Return the column of times (t,), all finite; times of day are s from the first, with their clock."""
         samples = self._samples("time", name)
-        known = None if isinstance(samples, np.ndarray) else read_clock(samples)
-        clock, values = (None, _numbers(samples)) if known is None else known
+        by_clock = None if isinstance(samples, np.ndarray) else read_clock(samples)
+        clock, values = (None, _numbers(samples)) if by_clock is None else by_clock
         return self._finite("time", name, samples, values, slice(None)), clock
 
     def _samples(self, axis: str, name: str) -> Sequence[str] | NDArray[Any]:
@@ -147,6 +149,7 @@ class Table:
             raise InputError(f"record.{axis}", f"column {name!r} {error.problem}", error.fix) from None
 
     def _finite(self, axis: str, name: str, samples: Any, values: Floats, part: slice) -> Floats:
+        """Return the values; InputError, with the place in the file, unless they are finite within `part`."""
         bad = np.flatnonzero(~(np.abs(values[part]) <= LARGEST))
         if bad.size:
             i = int(bad[0]) + (part.start or 0)
@@ -175,7 +178,9 @@ class Table:
         return np.stack(parts, axis=-1)
 
     def stated_units(self, names: dict[str, str]) -> Iterator[tuple[str, str]]:
-        """Columns of some components or of the time, each with the unit that the file states, or "": :meth:`vector`."""
+        """Yield the columns of components or the time, named as in :meth:`vector`, with the units that the file states
+        or "".
+        """
         for axis, name in names.items():
             _, column = self.signed(name)
             if column is not None:
@@ -183,7 +188,7 @@ class Table:
 
     def signed(self, name: str) -> tuple[float, str | None]:
         """Sign and column of a component; no column of one that is zero."""
-        known = {word for one in self.columns for word in (one.name, *one.aliases)}
+        known = {word for column in self.columns for word in (column.name, *column.aliases)}
         if name in known:
             return 1.0, name
         if name == NO_COLUMN:

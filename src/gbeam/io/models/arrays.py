@@ -45,38 +45,40 @@ def sparse_parts(matrix: Any) -> dict[str, Any]:
 
 
 def mirrored(values: Any, rows: Any, columns: Any, size: int) -> dict[str, Any]:
-    """A symmetric sparse matrix in parts, of which each entry is given once, or also the one across."""
+    """Return a symmetric sparse matrix in parts, from the entries of one triangle or of both."""
     from scipy.sparse import coo_array, diags_array
 
     matrix = coo_array((np.asarray(values, dtype=float), (rows, columns)), shape=(size, size)).tocsr()
     diagonal = diags_array(matrix.diagonal()).tocsr()
-    across = (matrix - diagonal).T
-    once = not abs((matrix - diagonal).multiply(across)).max()
-    return sparse_parts((matrix + across).tocsr() if once else matrix)
+    transposed = (matrix - diagonal).T
+    one_triangle = not abs((matrix - diagonal).multiply(transposed)).max()
+    return sparse_parts((matrix + transposed).tocsr() if one_triangle else matrix)
 
 
 def read(path: str) -> Contents:
-    """Read everything that is a matrix of numbers."""
+    """Read the matrices of numbers in a file, and places of nodes, or of the frames of Simscape, by their names."""
     from scipy.sparse import issparse
 
     contents: Contents = {"matrices": {}}
-    every = everything(path)
-    for key, each in every.items():
-        if issparse(each):
-            contents["matrices"][key] = sparse_parts(each)
-        elif getattr(each, "ndim", 0) == 2 and each.dtype.kind in "fiu" and (min(each.shape) > 1 or len(every) == 1):
-            contents["matrices"][key] = each
-    if NODES in every and len(every) > 1:
+    values = everything(path)
+    for key, value in values.items():
+        if issparse(value):
+            contents["matrices"][key] = sparse_parts(value)
+        elif (
+            getattr(value, "ndim", 0) == 2 and value.dtype.kind in "fiu" and (min(value.shape) > 1 or len(values) == 1)
+        ):
+            contents["matrices"][key] = value
+    if NODES in values and len(values) > 1:
         contents["matrices"].pop(NODES, None)
-        contents["places"] = np.atleast_2d(np.asarray(every[NODES], dtype=float))
-    origins = every.get(ORIGINS)
-    if origins is not None and {"K", "M"} <= set(every):
+        contents["places"] = np.atleast_2d(np.asarray(values[NODES], dtype=float))
+    origins = values.get(ORIGINS)
+    if origins is not None and {"K", "M"} <= set(values):
         places = np.atleast_2d(np.asarray(origins, dtype=float))
-        count, size = len(places), every["K"].shape[0]
+        count, size = len(places), values["K"].shape[0]
         contents["matrices"].pop(ORIGINS, None)
         if places.shape[1] == 3 and size >= 6 * count:
-            node, way = np.repeat(np.arange(1, count + 1), 6), np.tile(np.arange(1, 7), count)
-            frames = np.stack([node, way], axis=1)
+            node, direction = np.repeat(np.arange(1, count + 1), 6), np.tile(np.arange(1, 7), count)
+            frames = np.stack([node, direction], axis=1)
             modes = np.zeros((size - 6 * count, 2), dtype=int)
             contents |= {"unknowns": {"": np.concatenate([frames, modes])}, "numbers": np.arange(1, count + 1)}
             contents["places"] = places
@@ -88,9 +90,9 @@ def everything(path: str) -> dict[str, Any]:
     from scipy.io import loadmat, mmread
     from scipy.sparse import load_npz
 
-    ending, alone = Path(path).suffix.lower(), Path(path).stem
+    ending, stem = Path(path).suffix.lower(), Path(path).stem
     if ending == ".mtx":
-        return {alone: mmread(path, spmatrix=False)}
+        return {stem: mmread(path, spmatrix=False)}
     if ending == ".mat":
         try:
             loaded = {k: v for k, v in loadmat(path, spmatrix=False).items() if not k.startswith("__")}
@@ -100,8 +102,8 @@ def everything(path: str) -> dict[str, Any]:
         return loaded | {name: each[name] for each in fields for name in each.dtype.names}
     loaded = np.load(path, allow_pickle=False)
     if isinstance(loaded, np.ndarray):
-        return {alone: loaded}
-    return {alone: load_npz(path)} if {"format", "shape", "data"} <= set(loaded.files) else dict(loaded)
+        return {stem: loaded}
+    return {stem: load_npz(path)} if {"format", "shape", "data"} <= set(loaded.files) else dict(loaded)
 
 
 def _of_hdf5(path: str) -> dict[str, Any]:
@@ -109,24 +111,24 @@ def _of_hdf5(path: str) -> dict[str, Any]:
     import h5py  # 0.2 s to import
     from scipy.sparse import csc_array
 
-    every = dict[str, Any]()
+    arrays = dict[str, Any]()
 
     def add(name: str, node: Any) -> None:
         sparse = node.attrs.get("MATLAB_sparse")
         if sparse is not None:
             values, rows, starts = (node[key][()] if key in node else np.zeros(0) for key in ("data", "ir", "jc"))
-            every[name] = csc_array((values, rows, starts), shape=(int(sparse), len(starts) - 1))
+            arrays[name] = csc_array((values, rows, starts), shape=(int(sparse), len(starts) - 1))
         elif isinstance(node, h5py.Group):
             for key, each in node.items():
                 add(key, each)
         elif node.dtype.kind in "fiu" and "MATLAB_empty" not in node.attrs:
-            every[name] = node[()].T
+            arrays[name] = node[()].T
 
     with h5py.File(path) as file:
         for key, each in file.items():
             if not key.startswith("#"):
                 add(key, each)
-    return every
+    return arrays
 
 
 NAMES = "abcd"
@@ -144,11 +146,11 @@ def read_state_space(path: str | os.PathLike[str]) -> SimpleNamespace:
         return InputError("file", problem, FIX)
 
     if ending == ".json":
-        every = read_json(Path(path), FIX)
+        arrays = read_json(Path(path), FIX)
     else:
         refuse_large_file("file", path, BINARY_BYTES, "reduce the law before it is saved")
-        every = confined(_numbers, os.fspath(path), refuse=refuse)
-    named = {key.lower(): each for key, each in every.items()}
+        arrays = confined(_numbers, os.fspath(path), refuse=refuse)
+    named = {key.lower(): each for key, each in arrays.items()}
     lacking = ", ".join(name.upper() for name in NAMES if name not in named)
     if lacking:
         raise refuse(f"holds no {lacking}")
@@ -165,10 +167,10 @@ def read_state_space(path: str | os.PathLike[str]) -> SimpleNamespace:
 def _numbers(path: str) -> dict[str, Any]:
     """Arrays of numbers in a file by their names."""
     try:
-        every = everything(path)
+        contents = everything(path)
     except MemoryError:
         raise
     except Exception as error:  # of many kinds
         raise InputError("file", f"cannot be read: {shortened(str(error), 100)}", FIX) from None
-    arrays = {key: np.asarray(each) for key, each in every.items() if hasattr(each, "dtype")}
+    arrays = {key: np.asarray(each) for key, each in contents.items() if hasattr(each, "dtype")}
     return {key: each for key, each in arrays.items() if each.dtype.kind in "fiu"}

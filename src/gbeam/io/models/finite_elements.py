@@ -26,8 +26,8 @@ def read_op4(path: str) -> Contents:
     """Read matrices of an OUTPUT4 file, text or binary."""
     *_, op4 = _pyyeti()
     matrices = {}
-    for name, each in op4.read(path, sparse=None).items():
-        matrices[name.upper()] = _parts(each)
+    for name, matrix in op4.read(path, sparse=None).items():
+        matrices[name.upper()] = _parts(matrix)
     return {"matrices": matrices}
 
 
@@ -114,7 +114,7 @@ def read_storage(path: str) -> Contents:
 
 def read_nodes(path: str) -> Contents:
     """Read the nodes of an input file."""
-    at: dict[int, list[float]] = {}
+    place_of: dict[int, list[float]] = {}
     inside = False
     for line in Path(path).read_text(encoding="ascii", errors="replace").splitlines():
         if line.startswith("**") or not line.strip():
@@ -123,8 +123,8 @@ def read_nodes(path: str) -> Contents:
             inside = line.split(",")[0].strip().upper() == "*NODE"
         elif inside:
             number, *place = _numbers(line)
-            at[int(number)] = [*place, 0.0, 0.0, 0.0][:3]
-    return {"numbers": np.array(list(at), dtype=int), "places": np.array(list(at.values())).reshape(-1, 3)}
+            place_of[int(number)] = [*place, 0.0, 0.0, 0.0][:3]
+    return {"numbers": np.array(list(place_of), dtype=int), "places": np.array(list(place_of.values())).reshape(-1, 3)}
 
 
 def _numbers(line: str) -> list[float]:
@@ -132,6 +132,7 @@ def _numbers(line: str) -> list[float]:
 
 
 def _entries(rows: np.ndarray, name: str) -> Contents:
+    """Matrix of entries (n, 3) by row and column, or (n, 5) by node and direction of each."""
     if rows.shape[1] == 3:
         i, j = rows[:, :2].astype(int).T - 1
         return {"matrices": {name: mirrored(rows[:, 2], i, j, int(max(i.max(), j.max())) + 1)}}
@@ -187,4 +188,4 @@ def _directions(nodes: list[int], directions: list[list[int]]) -> Iterator[tuple
     active: list[int] = []
     for place, node in enumerate(nodes, 1):
         active = changes.get(place, active)
-        yield from ((node, way) for way in active)
+        yield from ((node, direction) for direction in active)

@@ -40,9 +40,9 @@ def read_universal(path: str) -> Contents:
         length, mass = 1 / each["length"], each["length"] / each["force"]
     for i, each in sets.items():
         if kinds[i] in NODES:
-            more, at = _nodes(path, each, length)
-            new = ~np.isin(more, numbers)
-            numbers, places = np.append(numbers, more[new]), np.concatenate([places, at[new]])
+            node_numbers, node_places = _nodes(path, each, length)
+            new = ~np.isin(node_numbers, numbers)
+            numbers, places = np.append(numbers, node_numbers[new]), np.concatenate([places, node_places[new]])
             contents |= {"numbers": numbers, "places": places}
     # Results are of many kinds, as of stress beside displacements.
     results = [_as_mode(sets[i]) for i, kind in enumerate(kinds) if kind == RESULTS and _moves(sets[i])]
@@ -105,7 +105,7 @@ def _as_mode(each: dict[str, Any]) -> dict[str, Any]:
 
 
 def _mode(path: str, each: dict[str, Any]) -> dict[str, Any]:
-    """Frequency, Hz, damping ratio, modal mass and shape (k, 3); not a number what is not given."""
+    """Frequency, Hz, damping ratio, modal mass and shape (k, 3); NaN for a modal mass that is not given."""
     kind = int(each["spec_data_type"])
     if kind not in DERIVATIVES or each["data_ch"] not in MOVES:
         problem = f"{path} has mode {each['mode_n']} in data of type {kind}, characteristic {each['data_ch']}"
@@ -174,16 +174,16 @@ def _number(text: str) -> float:
 def _arrays(block: dict[str, Any], swapped: bool) -> dict[str, Any]:
     """Constant (rows, columns), and change with each coordinate (rows, coordinates, columns)."""
     rows, columns, count = (int(block.get(key, 0)) for key in ("nrow", "ncol", "nq"))
-    shape = {at for at in block["m1"]}
-    count = max([count, *(at[2 if swapped else 1] + 1 for at in shape)])
+    indices = {index for index in block["m1"]}
+    count = max([count, *(index[2 if swapped else 1] + 1 for index in indices)])
     constant, slope = np.zeros((rows, columns)), np.zeros((rows, count, columns))
     kind = int(block.get("structure", 3))
     if kind == UNIT:
         constant[:] = np.eye(rows, columns)
-    for at, value in block["m0"].items():
-        constant[at] = value
+    for index, value in block["m0"].items():
+        constant[index] = value
         if kind == SYMMETRIC:
-            constant[at[::-1]] = value
+            constant[index[::-1]] = value
     for (i, j, k), value in block["m1"].items():
         j, k = (k, j) if swapped else (j, k)
         slope[i, j, k] = value

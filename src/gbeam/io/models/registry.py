@@ -121,11 +121,13 @@ class Model:
                 problem = f"are {k.shape[0]}, and the files name {len(unknowns)} unknowns"
                 raise InputError("stiffness", f"has rows that {problem}", "give the files of one export")
             return m, k, unknowns
-        every = np.unique(np.concatenate([of_m, of_k]), axis=0)
-        return *(_spread(each, rows, every) for each, rows in ((m, of_m), (k, of_k))), every
+        all_unknowns = np.unique(np.concatenate([of_m, of_k]), axis=0)
+        return *(_spread(each, rows, all_unknowns) for each, rows in ((m, of_m), (k, of_k))), all_unknowns
 
     def nodes_of(self, nodes: Any, unknowns: Any) -> tuple[Any, Any, Any, Any]:
-        """Places (k, 3), numbers (k,), unknowns (u, 2) by the places of nodes in these, and axes (k, 3, 3) or None."""
+        """Return places (k, 3), numbers (k,), unknowns (u, 2) by index of the node and direction, and axes (k, 3, 3),
+        of the nodes that have unknowns; None for what is not known.
+        """
         if nodes is not None:
             if self.places is not None:
                 raise InputError("nodes", "are given, and the files have some", "leave them out")
@@ -142,9 +144,9 @@ class Model:
         known = np.arange(len(places)) if numbers is None else np.asarray(numbers)
         lacking = np.setdiff1d(used, known)
         if lacking.size:
-            some = ", ".join(map(str, lacking[:3])) + (", ..." if lacking.size > 3 else "")
+            listed = ", ".join(map(str, lacking[:3])) + (", ..." if lacking.size > 3 else "")
             raise InputError(
-                "nodes", f"lack {lacking.size} that matrices or shapes are of: {some}", "give the file that has them"
+                "nodes", f"lack {lacking.size} that matrices or shapes are of: {listed}", "give the file that has them"
             )
         order = np.argsort(known, kind="stable")
         chosen = order[np.searchsorted(known[order], used)]
@@ -166,7 +168,7 @@ def model_of(paths: Sequence[str | os.PathLike[str]]) -> Model:
 
 
 def _joined(first: dict[str, Any], then: Any) -> dict[str, Any]:
-    """Nodes of two files."""
+    """Return the contents of the second file with the nodes of both."""
     if not ("numbers" in first and "numbers" in then):
         raise InputError("nodes", "are in two of the files", "give them once")
     new = ~np.isin(then["numbers"], first["numbers"])
@@ -174,15 +176,15 @@ def _joined(first: dict[str, Any], then: Any) -> dict[str, Any]:
     return then | {key: np.concatenate(pair) for key, pair in pairs.items()}
 
 
-def _spread(matrix: Any, rows: Any, every: Any) -> Any:
-    """The matrix among more rows."""
+def _spread(matrix: Any, rows: Any, all_unknowns: Any) -> Any:
+    """Return a matrix with a row and a column for each of `all_unknowns`, zero for those that `rows` lack."""
     from scipy.sparse import coo_array
 
-    place = {tuple(row): i for i, row in enumerate(every.tolist())}
-    at = np.array([place[tuple(row)] for row in rows.tolist()])
+    index_of = {tuple(row): i for i, row in enumerate(all_unknowns.tolist())}
+    index = np.array([index_of[tuple(row)] for row in rows.tolist()])
     entries = coo_array(matrix)
     i, j = entries.coords
-    return coo_array((entries.data, (at[i], at[j])), shape=(len(every), len(every)))
+    return coo_array((entries.data, (index[i], index[j])), shape=(len(all_unknowns), len(all_unknowns)))
 
 
 def _read(path: str | os.PathLike[str]) -> Contents:
@@ -200,6 +202,7 @@ def _read(path: str | os.PathLike[str]) -> Contents:
 
 
 def _reading(path: str) -> Contents:
+    """Contents of a file by the reader of its ending; InputError whatever is wrong with it."""
     reader = READERS[Path(path).suffix.lower()]
     if Path(path).suffix.lower() == ".mtx":
         with open(path, "rb") as file:
