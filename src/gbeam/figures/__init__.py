@@ -73,8 +73,8 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
         case Comparison():
             return _of_comparison(result, title, "parts", "parts ")
         case Deflection():
-            along = result.loads and {"loads": partial(response.loads_along, result, result.loads, title)}
-            return {"shape": partial(steady.static, [result], title), **(along or {})}
+            loads = result.loads and {"loads": partial(response.loads_along, result, result.loads, title)}
+            return {"shape": partial(steady.static, [result], title), **(loads or {})}
         case MachinePlan():
             return _of_machine(result, result.axes, title)
         case Critical():
@@ -82,8 +82,8 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
         case Sweep():
             return _of_sweep(result, title)
         case SystemStudy():
-            named = {name: _of_system(each, title or result.title) for name, each in result.responses.items()}
-            every = next(iter(named.values())) if len(named) == 1 else _by_motion(named)
+            by_name = {name: _of_system(each, title or result.title) for name, each in result.responses.items()}
+            every = next(iter(by_name.values())) if len(by_name) == 1 else _by_motion(by_name)
             return every | _compared(result.comparisons, title or result.title)
         case SystemResponse():
             return _of_system(result, title)
@@ -109,50 +109,51 @@ def figure_names(kind: type[Figured[Any]]) -> tuple[str, ...]:
 
 def _by_motion(named: Mapping[str, dict[str, Describe]]) -> dict[str, Describe]:
     """Figures of several results of one kind, each with the name of its motion."""
-    return {f"{what} {name}": each for name, every in named.items() for what, each in every.items()}
+    return {f"{kind} {name}": describe for name, described in named.items() for kind, describe in described.items()}
 
 
 def _of_system(result: SystemResponse, title: str) -> dict[str, Describe]:
-    every: dict[str, Describe] = {}
+    """Functions that describe the figures of a system, of what its response holds, by name."""
+    described: dict[str, Describe] = {}
     if result.largest.any() or not named(result):
-        every["points"] = partial(systems.points, result, title)
+        described["points"] = partial(systems.points, result, title)
     if named(result):
-        every["coordinates"] = partial(systems.coordinates, result, title)
+        described["coordinates"] = partial(systems.coordinates, result, title)
     if result.readings is not None:
-        every["sensors"] = partial(response.sensors, result, result.readings, title)
+        described["sensors"] = partial(response.sensors, result, result.readings, title)
     if result.loop is not None:
-        every["loop"] = partial(systems.loop, result, title)
-    every |= {f"loads {body}": partial(systems.loads, result, body, title) for body in result.beams}
-    every |= {f"stress {body}": partial(systems.stress, each, title) for body, each in result.solids.items()}
+        described["loop"] = partial(systems.loop, result, title)
+    described |= {f"loads {body}": partial(systems.loads, result, body, title) for body in result.beams}
+    described |= {f"stress {body}": partial(systems.stress, each, title) for body, each in result.solids.items()}
     if result.axes is not None:
-        every |= _of_machine(result, result.axes, title)
+        described |= _of_machine(result, result.axes, title)
     if result.invariants is not None:
-        every["energy"] = partial(systems.energy, result, title)
-    return every
+        described["energy"] = partial(systems.energy, result, title)
+    return described
 
 
 def _of_deflections(deflections: Sequence[Deflection], title: str = "") -> dict[str, Describe]:
     """Return what describes the figures of a beam's rest in several motions: all together, then the loads of each."""
-    bending = [each for each in deflections if each.solid is None and each.specimen is None]
-    every: dict[str, Describe] = {"static": partial(steady.static, bending, title)} if bending else {}
-    for each in bending:
-        if each.loads is not None:
-            every[f"loads_{each.motion}"] = partial(response.loads_along, each, each.loads, title)
-    return every
+    bending = [deflection for deflection in deflections if deflection.solid is None and deflection.specimen is None]
+    described: dict[str, Describe] = {"static": partial(steady.static, bending, title)} if bending else {}
+    for deflection in bending:
+        if deflection.loads is not None:
+            described[f"loads_{deflection.motion}"] = partial(response.loads_along, deflection, deflection.loads, title)
+    return described
 
 
 def _of_sweep(result: Sweep, title: str) -> dict[str, Describe]:
-    """Measures over two dimensions at most, a probability over one parameter, indices and histories."""
-    every: dict[str, Describe] = {}
+    """Figures of a sweep: measures over two dimensions at most, probabilities over one, indices and histories."""
+    described: dict[str, Describe] = {}
     few = len(result.dimensions) <= 2
     for name in result.measures:
-        likely = name in result.statistics and PROBABILITY in result.statistics[name].names
-        if likely and len(result.dimensions) == 2:
-            every[name] = partial(studies.probability, result, name, title)
-        elif few and not likely:
-            every[name] = partial(studies.sweep, result, name, title)
-    every |= {f"{name} indices": partial(studies.indices, result, name, title) for name in result.indices}
-    return every | {f"{name} history": partial(studies.history, result, name, title) for name in result.histories}
+        is_probability = name in result.statistics and PROBABILITY in result.statistics[name].names
+        if is_probability and len(result.dimensions) == 2:
+            described[name] = partial(studies.probability, result, name, title)
+        elif few and not is_probability:
+            described[name] = partial(studies.sweep, result, name, title)
+    described |= {f"{name} indices": partial(studies.indices, result, name, title) for name in result.indices}
+    return described | {f"{name} history": partial(studies.history, result, name, title) for name in result.histories}
 
 
 def _of_machine(
@@ -166,49 +167,51 @@ def _of_machine(
 
 
 def _of_response(result: Response, title: str, flight: Response | None = None) -> dict[str, Describe]:
-    every: dict[str, Describe] = {}
+    """Functions that describe the figures of a response but for its tip, of what it holds, by name."""
+    described: dict[str, Describe] = {}
     if result.specimen is not None:
-        every["specimen"] = partial(systems.specimen, result.specimen, title)
-    every["base"] = partial(response.base, result, title)
+        described["specimen"] = partial(systems.specimen, result.specimen, title)
+    described["base"] = partial(response.base, result, title)
     if result.readings is not None:
-        every["sensors"] = partial(response.sensors, result, result.readings, title)
+        described["sensors"] = partial(response.sensors, result, result.readings, title)
     if result.loads is not None and result.specimen is None:
-        every["loads"] = partial(response.loads, result, result.loads, title)
+        described["loads"] = partial(response.loads, result, result.loads, title)
     if result.axes is not None:
-        every |= _of_machine(result, result.axes, title, flight)
+        described |= _of_machine(result, result.axes, title, flight)
     if result.hub is not None:
-        every["hub"] = partial(response.hub, result, result.hub, title)
+        described["hub"] = partial(response.hub, result, result.hub, title)
     if result.solid is not None:
-        every["stress"] = partial(systems.stress, result.solid, title)
-    return every
+        described["stress"] = partial(systems.stress, result.solid, title)
+    return described
 
 
 def _of_comparison(result: Comparison, title: str, main: str, other: str, end: str = "") -> dict[str, Describe]:
+    """Figures of a comparison: `main` along the axis in which the tip moves most, `other` along others; shock."""
     first, *others = imitation.moved(result)
-    every: dict[str, Describe] = {f"{main}{end}": partial(imitation.parts, result, first, title)}
-    every |= {f"{other}{'xyz'[i]}{end}": partial(imitation.parts, result, i, title) for i in others}
+    described: dict[str, Describe] = {f"{main}{end}": partial(imitation.parts, result, first, title)}
+    described |= {f"{other}{'xyz'[i]}{end}": partial(imitation.parts, result, i, title) for i in others}
     if result.shock is not None:
-        every[f"shock{end}"] = partial(imitation.shock, result, result.shock, title)
-    return every
+        described[f"shock{end}"] = partial(imitation.shock, result, result.shock, title)
+    return described
 
 
 def _of_study(study: Study, title: str) -> dict[str, Describe]:
     moving = any(each.specimen is None for each in study.responses.values())
-    every: dict[str, Describe] = {"tip": partial(response.tip, study)} if moving else {}
+    described: dict[str, Describe] = {"tip": partial(response.tip, study)} if moving else {}
     if sum(each.loads is not None for each in study.responses.values()) > 1:
-        every["sizes"] = partial(response.sizes, study)
+        described["sizes"] = partial(response.sizes, study)
     flights = {each.centrifuge: study.responses.get(each.flight) for each in study.comparisons}
     for name, each in study.responses.items():
         of_each = _of_response(each, title, flights.get(name))
-        every |= {f"{kind} {name}": describe for kind, describe in of_each.items()}
-    return every | _compared(study.comparisons, title)
+        described |= {f"{kind} {name}": describe for kind, describe in of_each.items()}
+    return described | _compared(study.comparisons, title)
 
 
 def _compared(comparisons: Sequence[Comparison], title: str) -> dict[str, Describe]:
-    every: dict[str, Describe] = {}
+    described: dict[str, Describe] = {}
     for compared in comparisons:
         of_pair = _of_comparison(compared, title, "comparison", "comparison_", f" {compared.centrifuge}")
         parts = compared.root or compared.stations or compared.mismatch
         # Without parts a comparison is the difference that the tip's figure has.
-        every |= {name: each for name, each in of_pair.items() if parts or name.startswith("shock")}
-    return every
+        described |= {name: each for name, each in of_pair.items() if parts or name.startswith("shock")}
+    return described

@@ -133,8 +133,8 @@ class Figure:
 
 def declared(kind: type, name: str) -> tuple[str, str]:
     """Words and unit of a field of a result, as they are declared."""
-    each = dict(declarations(kind))[name]
-    return each.words.partition(";")[0], each.unit if isinstance(each.unit, str) else ""
+    declaration = dict(declarations(kind))[name]
+    return declaration.words.partition(";")[0], declaration.unit if isinstance(declaration.unit, str) else ""
 
 
 def of_motion(name: str, subject: str) -> str:
@@ -156,7 +156,7 @@ def moving(*values: Floats) -> list[int]:
 
 
 def not_drawn(shown: Sequence[int], *lengths: Floats) -> tuple[str, ...]:
-    """Sizes of those components (of the last axis) of lengths that are not shown."""
+    """Note on the largest sizes of the components (last axis) of lengths, m, that are not `shown`; none of rounding."""
     sizes = [max(largest(each[..., i]) for each in lengths) for i in range(3)]
     hidden = [i for i in range(3) if i not in shown and sizes[i] > ROUNDING * max(sizes)]
     units = {i: scale_of("m", sizes[i]) for i in hidden}
@@ -167,9 +167,11 @@ def not_drawn(shown: Sequence[int], *lengths: Floats) -> tuple[str, ...]:
 def components(x: Floats, values: Floats, names: Sequence[str], panel: Panel) -> Panel:
     """Put the components (n, 3) that are more than a hundredth of the largest into a panel, and name the others."""
     shown, sizes = moving(values), np.abs(values).max(axis=0)
-    left = [names[i] for i in range(3) if i not in shown and sizes[i] > ROUNDING * sizes.max()]
+    omitted = [names[i] for i in range(3) if i not in shown and sizes[i] > ROUNDING * sizes.max()]
     lines = tuple(Line(x, values[:, i], names[i], colour=i, dash=_DASHES[i]) for i in shown)
-    return replace(panel, lines=lines, title=f"{' and '.join(left)}: below 1 %, not drawn" if left else panel.title)
+    return replace(
+        panel, lines=lines, title=f"{' and '.join(omitted)}: below 1 %, not drawn" if omitted else panel.title
+    )
 
 
 def imitating(index: int) -> dict[str, Any]:
@@ -189,7 +191,7 @@ def limit_levels(allowed: float, values: Floats, label: str = "limit") -> tuple[
 
 
 def ends_of(covered: Flags, *values: Floats) -> tuple[float, float] | None:
-    """Zero and what happens while the target is not held, with a margin; None where it never or always is."""
+    """Return ends of an axis: zero and the values at covered times, with a margin; None if all or none are covered."""
     if covered.all() or not covered.any():
         return None
     low = min(0.0, *(float(each[covered].min()) for each in values))
@@ -250,7 +252,7 @@ def raised(unit: str) -> str:
 
 
 def scaled(name: str, unit: str, values: Floats) -> tuple[float, str]:
-    """A factor of a power of ten, of three, that makes values readable, and the label of an axis in that unit."""
+    """Return a factor 1000^n by which values become readable, and the label of an axis in the unit so scaled."""
     low, high = _READABLE
     size, unit = largest(values), raised(unit)
     power = 0 if size == 0 or low <= size < high else 3 * math.floor(math.log10(size) / 3)

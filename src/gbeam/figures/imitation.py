@@ -28,7 +28,7 @@ def parts(comparison: Comparison, axis: int, title: str = "") -> Figure:
     return Figure(title, f"{c.centrifuge} and {c.flight}, along {'xyz'[axis]}", panels)
 
 
-def _panel(c: Comparison, about: str, si: str, quantity: str, lines: dict[str, Floats]) -> Panel:
+def _panel(c: Comparison, title: str, si: str, quantity: str, lines: dict[str, Floats]) -> Panel:
     covered = c.covered if c.covered.any() else ~c.covered
     scale, unit = scale_of(si, *(each[covered] for each in lines.values()))
     others = [name for name in lines if name != c.flight]
@@ -36,7 +36,7 @@ def _panel(c: Comparison, about: str, si: str, quantity: str, lines: dict[str, F
     values = {name: scale * each for name, each in lines.items()}
     drawn = tuple(Line(c.time, each, name, **looks[name]) for name, each in values.items())
     limits = ends_of(c.covered, *values.values())
-    return Panel(f"{quantity}, {unit}", drawn, about, limits=limits, zero=limits is None)
+    return Panel(f"{quantity}, {unit}", drawn, title, limits=limits, zero=limits is None)
 
 
 def moved(comparison: Comparison) -> list[int]:
@@ -61,16 +61,17 @@ def _root(c: Comparison, axis: int) -> Iterator[_Part]:
 
 
 def _tip(c: Comparison, axis: int) -> Iterator[_Part]:
-    apart = c.stations
-    if apart is None:
+    """Slow difference of the tip, beside that which a slow mismatch implies, and the tip's elastic vibrations."""
+    stations = c.stations
+    if stations is None:
         return
-    lines = {_less(c): apart.trend_difference[:, axis]}
+    lines = {_less(c): stations.trend_difference[:, axis]}
     if c.mismatch is not None and np.isfinite(c.mismatch.tip_bound[axis]):
         envelope = c.mismatch.tip_envelope[:, axis]
         lines |= {"what a slow mismatch implies": envelope, "and its negative": -envelope}
-    yield f"tip's trend, below {apart.cutoff:.3g} Hz", "m", "difference", lines
-    lines = {c.flight: apart.vibration_flight[:, axis], c.centrifuge: apart.vibration_centrifuge[:, axis]}
-    yield f"tip's elastic vibration, above {apart.cutoff:.3g} Hz", "m", "displacement", lines
+    yield f"tip's trend, below {stations.cutoff:.3g} Hz", "m", "difference", lines
+    lines = {c.flight: stations.vibration_flight[:, axis], c.centrifuge: stations.vibration_centrifuge[:, axis]}
+    yield f"tip's elastic vibration, above {stations.cutoff:.3g} Hz", "m", "displacement", lines
 
 
 def _mismatch(c: Comparison, axis: int) -> Iterator[_Part]:
@@ -90,14 +91,14 @@ def shock(comparison: Comparison, spectra: Shock, title: str = "") -> Figure:
         )
         label = f"largest acceleration along {'xyz'[axis]}, m/s²"
         panels.append(Panel(label, lines, x="frequency of the oscillator, Hz", logarithmic=True, height=1.6))
-    about = f"shock response of the acceleration of {spectra.control}, Q = {spectra.quality:g}"
-    return Figure(title, about, tuple(panels))
+    subject = f"shock response of the acceleration of {spectra.control}, Q = {spectra.quality:g}"
+    return Figure(title, subject, tuple(panels))
 
 
 def placement(result: Placement, title: str = "") -> Figure:
     """Describe what a placement leaves of each measure of the mismatch, beside other control points."""
     measures = tuple(next(iter(result.values.values()), {}))
-    bars = {of: 100 * np.array([values[each] for each in measures]) for of, values in result.values.items()}
+    bars = {place: 100 * np.array([values[each] for each in measures]) for place, values in result.values.items()}
     panel = Panel(
         "", x="mismatch over flight's peak, %", bars=Bars(measures, bars), height=max(1.0, 0.3 * len(measures))
     )

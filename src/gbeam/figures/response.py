@@ -61,20 +61,20 @@ def tip(study: Study) -> Figure:
     """Describe the tip's displacement along every axis in which it moves."""
     responses, compared = study.responses, study.comparisons
     sizes = [each.peaks.max_abs for each in responses.values()]
-    shown = sorted(moving(*sizes), key=lambda axis: -max(each[axis] for each in sizes))
+    axes = sorted(moving(*sizes), key=lambda axis: -max(each[axis] for each in sizes))
     spans = [_spans(responses, each) for each in compared]
-    common = spans[0] if len(compared) == 1 else ()
+    shaded = spans[0] if len(compared) == 1 else ()
     if not compared and len(responses) == 1:
-        common = tuple(span for each in responses.values() for span in stretches(each.axes, each.time))
+        shaded = tuple(span for each in responses.values() for span in stretches(each.axes, each.time))
     panels = []
-    for axis in shown:
-        panel = _displacement(study, axis, named=len(responses) > 1 and axis == shown[0])
-        panels.append(replace(panel, spans=common, height=1.6 if len(shown) == 1 else 1.2))
+    for axis in axes:
+        panel = _displacement(study, axis, named=len(responses) > 1 and axis == axes[0])
+        panels.append(replace(panel, spans=shaded, height=1.6 if len(axes) == 1 else 1.2))
         panels += [_difference(study, each, axis, span) for each, span in zip(compared, spans, strict=True)]
     if len(panels) == 1:
         panels[0] = replace(panels[0], height=2.0)
     errors = {name if len(responses) > 1 else "": each.error_estimate for name, each in responses.items()}
-    notes = (*not_drawn(shown, *sizes), *estimated(errors))
+    notes = (*not_drawn(axes, *sizes), *estimated(errors))
     outcomes = tuple(each.outcome for each in responses.values())
     return Figure(study.title, "tip displacement relative to the base", tuple(panels), notes, outcomes)
 
@@ -104,6 +104,7 @@ def _displacement(study: Study, axis: int, *, named: bool) -> Panel:
 
 
 def _difference(study: Study, compared: Comparison, axis: int, spans: tuple[Span, ...]) -> Panel:
+    """Panel of the difference from flight along an axis, scaled to the times at which the target was not held."""
     difference, covered = compared.difference[:, axis], compared.covered
     held = difference[covered] if covered.any() else difference
     scale, unit = scale_of("m", held)
@@ -146,8 +147,8 @@ def sizes(study: Study) -> Figure:
 
 def loads_along(deflection: Deflection, loads: Loads, title: str = "") -> Figure:
     """Describe, along the beam at rest, the sections' force and moment and the largest and smallest stress."""
-    about = of_motion(deflection.motion, f"internal loads at rest, {deflection.model}, t = {deflection.time:.4g} s")
-    return Figure(title, about, carried_along(loads), _judged(deflection.errors, loads))
+    subject = of_motion(deflection.motion, f"internal loads at rest, {deflection.model}, t = {deflection.time:.4g} s")
+    return Figure(title, subject, carried_along(loads), _judged(deflection.errors, loads))
 
 
 def carried_along(loads: Loads) -> tuple[Panel, ...]:
@@ -169,9 +170,9 @@ def loads(response: Response, carried: Loads, title: str = "") -> Figure:
     words = (
         "loads in the root's section, and stress anywhere along the beam" if beam else "loads on the base, base axes"
     )
-    about = of_motion(response.name, words)
+    subject = of_motion(response.name, words)
     shaded = tuple(replace(each, spans=spans) for each in panels)
-    return Figure(title, about, shaded, _judged(response.errors, carried), (response.outcome,))
+    return Figure(title, subject, shaded, _judged(response.errors, carried), (response.outcome,))
 
 
 def carried_at_root(time: Floats, carried: Loads, names: Names = SECTION) -> Iterator[Panel]:
@@ -193,12 +194,12 @@ def _carried(
     carried: Loads,
     names: Names = SECTION,
 ) -> Iterator[Panel]:
-    """Forces and moments (k, 3) and, where they are known, the largest and the smallest stress (k,)."""
+    """Panels of forces and moments (k, 3) over `where` (k,) and, if known, of the largest and smallest stress (k,)."""
     lever = largest(force) * float(np.max(carried.stations, initial=0.0))
     moment = np.where(np.abs(moment) <= ROUNDING * lever, 0.0, moment)  # what is no number stays a gap
-    for kind, si, values, each in (("force", "N", force, names[0]), ("moment", "N m", moment, names[1])):
+    for kind, si, values, labels in (("force", "N", force, names[0]), ("moment", "N m", moment, names[1])):
         scale, unit = scale_of(si, values)
-        yield components(where, scale * values, each, Panel(f"{kind}, {unit}", zero=True))
+        yield components(where, scale * values, labels, Panel(f"{kind}, {unit}", zero=True))
     if np.isfinite(carried.stress).all():
         scale, unit = scale_of("Pa", *stress)
         lines = [Line(where, scale * stress[k], name, colour=k) for k, name in enumerate(("largest", "smallest"))]
@@ -216,8 +217,8 @@ def base(response: Response, title: str = "") -> Figure:
         scale, unit = scale_of(si, values) if name == "a_WO_B" else (1.0, raised(si))
         panel = Panel(f"{words}, {unit}", spans=spans, height=1.0 if turning else 1.6)
         panels.append(components(response.time, scale * values, "xyz", panel))
-    about = of_motion(response.name, "motion of the base, base axes")
-    return Figure(title, about, tuple(panels), outcomes=(response.outcome,))
+    subject = of_motion(response.name, "motion of the base, base axes")
+    return Figure(title, subject, tuple(panels), outcomes=(response.outcome,))
 
 
 def sensors(response: Response | SystemResponse, readings: Readings, title: str = "") -> Figure:
@@ -227,14 +228,14 @@ def sensors(response: Response | SystemResponse, readings: Readings, title: str 
         components(response.time, scale * readings.acceleration[:, k], "xyz", Panel(f"{point}, {unit}", height=1.2))
         for k, point in enumerate(readings.points)
     ]
-    about = of_motion(response.name, "readings of the accelerometers, along their axes")
-    return Figure(title, about, tuple(panels), outcomes=(response.outcome,))
+    subject = of_motion(response.name, "readings of the accelerometers, along their axes")
+    return Figure(title, subject, tuple(panels), outcomes=(response.outcome,))
 
 
-def hub(response: Response, turned: HubResult, title: str = "") -> Figure:
+def hub(response: Response, motion: HubResult, title: str = "") -> Figure:
     """Describe the turning of a hub about z."""
-    shown = [(f"{of}, {declared(HubResult, of)[1]}", getattr(turned, of)) for of in ("angle", "rate")]
-    torque = turned.drive_torque
+    shown = [(f"{field}, {declared(HubResult, field)[1]}", getattr(motion, field)) for field in ("angle", "rate")]
+    torque = motion.drive_torque
     if torque is None and response.loads is not None:
         torque = response.loads.drive_torque
     if torque is not None:
@@ -259,8 +260,8 @@ def axes_of(response: PlotHeading, axes: AxesResult, quantity: str, title: str =
         panels.append(Panel(f"{quantity}, {unit}", lines, title_of, levels=levels, spans=spans, zero=True))
     if quantity == "acceleration":
         panels[0] = _with_power(panels[0], axes)
-    about = of_motion(response.name, f"{quantity} of the machine's axes")
-    return Figure(title, about, tuple(panels), outcomes=(response.outcome,))
+    subject = of_motion(response.name, f"{quantity} of the machine's axes")
+    return Figure(title, subject, tuple(panels), outcomes=(response.outcome,))
 
 
 def _with_power(panel: Panel, axes: AxesResult) -> Panel:
@@ -270,8 +271,8 @@ def _with_power(panel: Panel, axes: AxesResult) -> Panel:
     most = max([float(size.max()), *(abs(each.value) for each in panel.levels)])
     for use in axes.limits:
         if use.quantity == "power" and math.isfinite(use.allowed) and use.used > 0:
-            left = float((rate * size).max()) / use.share / np.maximum(rate, 1e-12)
-            bound = np.where(left < 1.3 * most, left, np.nan)
+            available = float((rate * size).max()) / use.share / np.maximum(rate, 1e-12)
+            bound = np.where(available < 1.3 * most, available, np.nan)
             power = Line(line.x, bound, "limit of the power", colour=REFERENCE, dash="dotted")
             panel = replace(panel, lines=(*panel.lines, power, replace(power, y=-bound, label=f"_{power.label}")))
     return panel

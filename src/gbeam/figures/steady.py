@@ -46,48 +46,49 @@ def _few(stations: Floats) -> Marks:
 
 def static(deflections: Sequence[Deflection], title: str = "") -> Figure:
     """Describe where the beam rests, one panel for each direction in which it moves."""
-    moved = [each.displacement for each in deflections]
-    axes, (_, si) = moving(*moved), declared(Deflection, "displacement")
-    along, at = scale_of("m", *(each.stations for each in deflections))
+    shapes = [each.displacement for each in deflections]
+    axes, (_, si) = moving(*shapes), declared(Deflection, "displacement")
+    x_scale, x_unit = scale_of("m", *(each.stations for each in deflections))
     errors = [each.errors.displacement.total for each in deflections]
     panels = []
     for i in axes:
-        scale, unit = scale_of(si, *(each[:, i] for each in moved))
-        looks = [FLIGHT, *(imitating(k) for k in range(len(moved) - 1))] if len(moved) > 1 else [imitating(0)]
+        scale, unit = scale_of(si, *(each[:, i] for each in shapes))
+        looks = [FLIGHT, *(imitating(k) for k in range(len(shapes) - 1))] if len(shapes) > 1 else [imitating(0)]
         lines = tuple(
-            Line(along * d.stations, scale * d.displacement[:, i], d.motion, marks=_few(d.stations), **look)
+            Line(x_scale * d.stations, scale * d.displacement[:, i], d.motion, marks=_few(d.stations), **look)
             for d, look in zip(deflections, looks, strict=True)
         )
-        named = len(moved) > 1 and i == axes[0]
-        panels.append(Panel(f"{'xyz'[i]}, {unit}", lines, x=f"position from the root, {at}", zero=True, named=named))
-    about = f"displacement at rest relative to the base, {deflections[0].model}, t = {deflections[0].time:.4g} s"
-    known = {"": max((each for each in errors if math.isfinite(each)), default=math.nan)}
-    return Figure(title, about, tuple(panels), (*not_drawn(axes, *moved), *estimated(known)))
+        named = len(shapes) > 1 and i == axes[0]
+        along = f"position from the root, {x_unit}"
+        panels.append(Panel(f"{'xyz'[i]}, {unit}", lines, x=along, zero=True, named=named))
+    subject = f"displacement at rest relative to the base, {deflections[0].model}, t = {deflections[0].time:.4g} s"
+    error = {"": max((each for each in errors if math.isfinite(each)), default=math.nan)}
+    return Figure(title, subject, tuple(panels), (*not_drawn(axes, *shapes), *estimated(error)))
 
 
 def modes(result: Modes, title: str = "") -> Figure:
     """Describe the lowest modes, each in the direction in which it moves most."""
-    along, at = scale_of("m", result.stations)
+    x_scale, x_unit = scale_of("m", result.stations)
     lines = []
     for k in range(min(SHOWN, len(result.frequency))):
-        way = result.direction[k]
-        shape = result.edge[k] if way == "twist" else result.shape[k, :, "xyz".index(way)]
-        label = f"{result.frequency[k]:.4g} Hz, {way}"
-        real = Line(along * result.stations, shape.real, label, colour=k, marks=_few(result.stations))
+        direction = result.direction[k]
+        shape = result.edge[k] if direction == "twist" else result.shape[k, :, "xyz".index(direction)]
+        label = f"{result.frequency[k]:.4g} Hz, {direction}"
+        real = Line(x_scale * result.stations, shape.real, label, colour=k, marks=_few(result.stations))
         lines.append(real)
         if np.abs(shape.imag).max() > 1e-6:
             lines.append(replace(real, y=shape.imag, label=f"{label}, a quarter later", dash="dotted", marks=""))
-    about = of_motion(result.motion, f"modes about the equilibrium at {result.time:.4g} s, {result.model}")
+    subject = of_motion(result.motion, f"modes about the equilibrium at {result.time:.4g} s, {result.model}")
     words = declared(Modes, "shape")[0]
-    panel = Panel(words, tuple(lines), x=f"position from the root, {at}", height=2.0)
+    panel = Panel(words, tuple(lines), x=f"position from the root, {x_unit}", height=2.0)
     errors = {"": math.nan if result.errors is None else result.errors.largest}
-    return Figure(title, about, (panel,), estimated(errors))
+    return Figure(title, subject, (panel,), estimated(errors))
 
 
 def campbell(diagram: Campbell, title: str = "", unit: tuple[float, str] = (1.0, "rad/s")) -> Figure:
     """Describe a Campbell diagram; `unit` is that of the speed: how many of it are 1 rad/s, and its name."""
     shown = near_multiples(diagram.frequency.T, diagram.speed, diagram.orders)
-    left = len(diagram.direction) - len(shown)
+    omitted = len(diagram.direction) - len(shown)
     factor, name = unit
     speed, top = factor * diagram.speed, 1.05 * float(np.nanmax(diagram.frequency[:, shown]))
     lines, texts = [], []
@@ -99,13 +100,13 @@ def campbell(diagram: Campbell, title: str = "", unit: tuple[float, str] = (1.0,
         if end * diagram.speed[-1] > diagram.speed[0]:
             texts.append((end * speed[-1], end * multiple[-1], f"{order}P"))
     for k in shown:
-        way = diagram.direction[k]
-        dash = _DASHES[way.rpartition(" ")[2]]  # of a system it has the body's name before
-        lines.append(Line(speed, diagram.frequency[:, k], f"mode {k + 1}, {way}", colour=k % 6, dash=dash))
+        direction = diagram.direction[k]
+        dash = _DASHES[direction.rpartition(" ")[2]]  # of a system it has the body's name before
+        lines.append(Line(speed, diagram.frequency[:, k], f"mode {k + 1}, {direction}", colour=k % 6, dash=dash))
     if diagram.crossings:
         met = sorted((factor * each.speed, each.frequency) for each in diagram.crossings)
-        at, frequency = np.array(met).T
-        lines.append(Line(at, frequency, "crossings", colour=REFERENCE, marks="rings"))
+        speeds, frequency = np.array(met).T
+        lines.append(Line(speeds, frequency, "crossings", colour=REFERENCE, marks="rings"))
     marks: tuple[Mark, ...] = ()
     if diagram.critical is not None and diagram.critical.value is not None:
         marks = (Mark(factor * diagram.critical.value, diagram.critical.kind),)
@@ -115,10 +116,10 @@ def campbell(diagram: Campbell, title: str = "", unit: tuple[float, str] = (1.0,
     panel = Panel(
         f"{words}, {unit_name}", tuple(lines), x=over, marks=marks, texts=tuple(texts), limits=(0.0, top), height=2.4
     )
-    about = of_motion(diagram.motion, f"frequencies about the equilibrium, {diagram.model}")
-    about += f"; {left} higher mode{'s' if left > 1 else ''} not drawn" if left else ""
+    subject = of_motion(diagram.motion, f"frequencies about the equilibrium, {diagram.model}")
+    subject += f"; {omitted} higher mode{'s' if omitted > 1 else ''} not drawn" if omitted else ""
     errors = {"": math.nan if diagram.errors is None else diagram.errors.largest}
-    return Figure(title, about, (panel,), estimated(errors))
+    return Figure(title, subject, (panel,), estimated(errors))
 
 
 def critical(lost: Critical, title: str = "") -> Figure:
@@ -147,18 +148,18 @@ def critical(lost: Critical, title: str = "") -> Figure:
 
 def critical_map(critical: CriticalMap, title: str = "") -> Figure:
     """Describe a map of critical speeds, one line per mass (2009 Fig. 9 shows the stiffness at one speed instead)."""
-    along, at = scale_of("m", critical.position)
+    x_scale, x_unit = scale_of("m", critical.position)
     lines = tuple(
-        Line(along * critical.position, speed, f"{mass:g} kg", colour=k % 6, marks="joined")
+        Line(x_scale * critical.position, speed, f"{mass:g} kg", colour=k % 6, marks="joined")
         for k, (mass, speed) in enumerate(zip(critical.mass, critical.speed, strict=True))
     )
-    panel = Panel("hub rate, rad/s", lines, x=f"position of the mass from the root, {at}", zero=True, height=2.0)
+    panel = Panel("hub rate, rad/s", lines, x=f"position of the mass from the root, {x_unit}", zero=True, height=2.0)
     if np.isnan(critical.speed).all():
         none = f"no loss of equilibrium up to {critical.searched_to:.4g} rad/s"
-        middle = along * float(np.mean(critical.position)), critical.searched_to / 2
+        middle = x_scale * float(np.mean(critical.position)), critical.searched_to / 2
         panel = replace(panel, texts=((*middle, none),), limits=(0.0, critical.searched_to))
-    about = of_motion(critical.motion, f"critical hub rate with one more mass, {critical.model}")
-    return Figure(title, about, (panel,))
+    subject = of_motion(critical.motion, f"critical hub rate with one more mass, {critical.model}")
+    return Figure(title, subject, (panel,))
 
 
 def poles(linear: StateSpace, title: str = "") -> Figure:
@@ -166,12 +167,12 @@ def poles(linear: StateSpace, title: str = "") -> Figure:
     values = np.sort(linear.eigenvalue[linear.eigenvalue.imag >= 0])  # by growth
     grows = values.real > ROUNDING * np.abs(values).max(initial=0.0)
     lines = tuple(
-        Line(those.real, those.imag / (2 * np.pi), label, colour=colour, marks="dots")
-        for label, colour, those in (("decays or stays", 0, values[~grows]), ("grows", REFERENCE, values[grows]))
-        if those.size
+        Line(group.real, group.imag / (2 * np.pi), label, colour=colour, marks="dots")
+        for label, colour, group in (("decays or stays", 0, values[~grows]), ("grows", REFERENCE, values[grows]))
+        if group.size
     )
     marks = (Mark(0.0, "neither grows nor decays"),) if lines else ()
     panel = Panel("frequency, Hz", lines, x="growth, 1/s", marks=marks, height=2.0)
     sampled = f", sampled every {linear.step:.4g} s" if linear.step else ""
-    about = f"poles about the equilibrium at {linear.time:.4g} s, {linear.model}{sampled}"
-    return Figure(title, of_motion(linear.motion, about), (panel,))
+    subject = f"poles about the equilibrium at {linear.time:.4g} s, {linear.model}{sampled}"
+    return Figure(title, of_motion(linear.motion, subject), (panel,))

@@ -44,8 +44,8 @@ def sweep(result: Sweep, name: str, title: str = "") -> Figure:
 
 def _over(parameter: Parameter, draw: Any, values: Floats, label: str) -> Panel:
     """A panel over a parameter, whose words stand at 0, 1, 2 …"""
-    at, ticks = _places(parameter)
-    panel: Panel = draw(at, values, label)
+    x, ticks = _places(parameter)
+    panel: Panel = draw(x, values, label)
     return replace(panel, x=_named(parameter), ticks=ticks)
 
 
@@ -55,23 +55,23 @@ def _places(parameter: Parameter) -> tuple[Floats, tuple[str, ...]]:
     return np.arange(len(parameter.values), dtype=float), tuple(map(str, parameter.values))
 
 
-def _line(at: Floats, values: Floats, label: str) -> Panel:
-    order = np.argsort(at, kind="stable")
-    return Panel(label, (Line(at[order], values[order], label, marks="joined"),), named=False)
+def _line(x: Floats, values: Floats, label: str) -> Panel:
+    order = np.argsort(x, kind="stable")
+    return Panel(label, (Line(x[order], values[order], label, marks="joined"),), named=False)
 
 
 def _drawn(parameter: Parameter, values: Floats, label: str) -> Panel:
     order = np.argsort(np.asarray(parameter.values, dtype=float))
-    at = np.asarray(parameter.values, dtype=float)[order]
-    return Panel(label, (Line(at, values[order], label, marks="dots"),), x=_named(parameter), named=False)
+    x = np.asarray(parameter.values, dtype=float)[order]
+    return Panel(label, (Line(x, values[order], label, marks="dots"),), x=_named(parameter), named=False)
 
 
-def _bands(at: Floats, values: Floats, label: str) -> Panel:
+def _bands(x: Floats, values: Floats, label: str) -> Panel:
     """Median and the middle nine tenths of the samples over a parameter."""
     known, quantiles = np.isfinite(values).any(axis=1), np.full((3, len(values)), np.nan)
     quantiles[:, known] = np.nanquantile(values[known], [0.05, 0.5, 0.95], axis=1)
     low, middle, high = quantiles
-    return Panel(label, (Line(at, middle, "median", marks="joined"),), areas=(Area(at, low, high, "5 % to 95 %"),))
+    return Panel(label, (Line(x, middle, "median", marks="joined"),), areas=(Area(x, low, high, "5 % to 95 %"),))
 
 
 def _histogram(values: Floats, label: str) -> Panel:
@@ -79,9 +79,9 @@ def _histogram(values: Floats, label: str) -> Panel:
     if not len(known):
         return Panel("cases", title=title, x=label)
     counts, edges = np.histogram(known, bins=max(5, round(math.sqrt(len(known)))))
-    at, high = np.repeat(edges, 2), np.array([0, *np.repeat(counts, 2), 0], dtype=float)
+    x, high = np.repeat(edges, 2), np.array([0, *np.repeat(counts, 2), 0], dtype=float)
     marks = tuple(Mark(float(np.quantile(known, share)), f"{100 * share:g} %") for share in (0.05, 0.5, 0.95))
-    return Panel("cases", title=title, x=label, areas=(Area(at, 0 * high, high, "cases"),), marks=marks, named=False)
+    return Panel("cases", title=title, x=label, areas=(Area(x, 0 * high, high, "cases"),), marks=marks, named=False)
 
 
 def _surface(result: Sweep, values: Floats, label: str) -> Panel:
@@ -90,13 +90,13 @@ def _surface(result: Sweep, values: Floats, label: str) -> Panel:
     if len(first.values) < len(second.values) or not first.numeric:
         first, second, values = second, first, values.T
     if len(second.values) > FAMILY and first.numeric and second.numeric:
-        ended = result.outcome if first is result.parameters[0] else result.outcome.T
-        outcome = tuple(map(str, ended.ravel()))
+        outcomes = result.outcome if first is result.parameters[0] else result.outcome.T
+        outcome = tuple(map(str, outcomes.ravel()))
         cells = Map(first.values.tolist(), second.values.tolist(), values, label, outcome)
         return Panel(_named(second), title=label, x=_named(first), map=cells)
-    at, ticks = _places(first)
+    x, ticks = _places(first)
     lines = tuple(
-        Line(at, values[:, k], _value(second, k), colour=k % 6, marks="joined") for k in range(len(second.values))
+        Line(x, values[:, k], _value(second, k), colour=k % 6, marks="joined") for k in range(len(second.values))
     )
     return Panel(label, lines, second.path.replace("motion.", "", 1), x=_named(first), ticks=ticks)
 
@@ -115,26 +115,26 @@ def history(result: Sweep, name: str, title: str = "") -> Figure:
     values, time = result.histories[name], result.time
     factor, label = scaled(name, result.units[name], values)
     lines: list[Line] = []
-    areas, about = [], ""
+    areas, note = [], ""
     if name in result.statistics:
-        known, about = result.statistics[name], "dotted: 95 % confidence of the band's edges"
-        for k, at in enumerate(list(np.ndindex(known.values.shape[:-3]))[:_POINTS]):
-            low, middle, high = (factor * known[each][at] for each in ("5 %", "median", "95 %"))
-            areas.append(Area(time, low[:, 0], high[:, 0], f"5 to 95 %{_place(result, at)}", k))
+        statistics, note = result.statistics[name], "dotted: 95 % confidence of the band's edges"
+        for k, place in enumerate(list(np.ndindex(statistics.values.shape[:-3]))[:_POINTS]):
+            low, middle, high = (factor * statistics[each][place] for each in ("5 %", "median", "95 %"))
+            areas.append(Area(time, low[:, 0], high[:, 0], f"5 to 95 %{_place(result, place)}", k))
             for edge in (low[:, 1], high[:, 2]):
                 lines.append(Line(time, edge, "_95 % confidence", colour=k, dash="dotted"))
-            lines.append(Line(time, middle[:, 0], f"median{_place(result, at)}", colour=k))
+            lines.append(Line(time, middle[:, 0], f"median{_place(result, place)}", colour=k))
     else:
-        for k, at in enumerate(np.ndindex(values.shape[:-1])):
-            lines.append(Line(time, factor * values[at], f"_case{_place(result, at)}", colour=k % 6))
-    panel = Panel(label, tuple(lines), about, areas=tuple(areas), height=2.0)
+        for k, place in enumerate(np.ndindex(values.shape[:-1])):
+            lines.append(Line(time, factor * values[place], f"_case{_place(result, place)}", colour=k % 6))
+    panel = Panel(label, tuple(lines), note, areas=tuple(areas), height=2.0)
     return Figure(title or result.title, f"{name} over time", (panel,))
 
 
-def _place(result: Sweep, at: tuple[int, ...]) -> str:
+def _place(result: Sweep, place: tuple[int, ...]) -> str:
     """A point of the grid, in words."""
     grid = [each for each in result.parameters if not each.drawn]
-    return "".join(f", {_value(each, i)}" for each, i in zip(grid, at, strict=True))
+    return "".join(f", {_value(each, i)}" for each, i in zip(grid, place, strict=True))
 
 
 def indices(result: Sweep, name: str, title: str = "") -> Figure:
@@ -153,10 +153,10 @@ def indices(result: Sweep, name: str, title: str = "") -> Figure:
 def probability(result: Sweep, name: str, title: str = "") -> Figure:
     """Describe a probability with its bounds over the one parameter of the grid."""
 
-    def draw(at: Floats, values: Floats, label: str) -> Panel:
+    def draw(x: Floats, values: Floats, label: str) -> Panel:
         middle, low, high = values.T
-        areas = (Area(at, low, high, "95 % confidence"),)
-        return Panel(label, (Line(at, middle, "estimate", marks="joined"),), areas=areas, zero=True, height=2.0)
+        areas = (Area(x, low, high, "95 % confidence"),)
+        return Panel(label, (Line(x, middle, "estimate", marks="joined"),), areas=areas, zero=True, height=2.0)
 
     (parameter,) = (each for each in result.parameters if not each.drawn)
     panel = _over(parameter, draw, result.statistics[name][PROBABILITY], f"probability of {name}")
@@ -172,29 +172,30 @@ def fit(result: Fit, title: str = "") -> Figure:
 
 
 def _values(result: Fit | Optimum) -> str:
-    each = zip(result.parameters, result.values, result.units, strict=True)
-    last = isinstance(result, Fit)
+    rows = zip(result.parameters, result.values, result.units, strict=True)
+    short = isinstance(result, Fit)
     return ", ".join(
-        f"{path.rpartition('.')[2] if last else path.replace('motion.', '', 1)} {value:.4g} {raised(unit)}".rstrip()
-        for path, value, unit in each
+        f"{path.rpartition('.')[2] if short else path.replace('motion.', '', 1)} {value:.4g} {raised(unit)}".rstrip()
+        for path, value, unit in rows
     )
 
 
 def _of_time(result: Fit, column: FittedColumn) -> Sequence[Panel]:
+    """Panels of a column over time: data with the fitted values, and what is left, with its standard deviation."""
     factor, label = scaled(column.name, column.unit, column.measured)
-    every, at = max(1, len(result.at) // _DOTS), result.at
+    stride, x = max(1, len(result.at) // _DOTS), result.at
     lines = (
-        Line(at, factor * column.before, "scenario as it was", colour=GREY),
-        Line(at, factor * column.fitted, "fitted"),
-        Line(at[::every], factor * column.measured[::every], "measured", colour=REFERENCE, marks="dots"),
+        Line(x, factor * column.before, "scenario as it was", colour=GREY),
+        Line(x, factor * column.fitted, "fitted"),
+        Line(x[::stride], factor * column.measured[::stride], "measured", colour=REFERENCE, marks="dots"),
     )
     data = Panel(label, lines, height=1.2)
     factor, label = scaled("", column.unit, column.residual)
-    line = Line(at, factor * column.residual, "measured less fitted", colour=REFERENCE, marks="dots")
-    wide = np.full(len(at), _SIGMAS * column.noise * factor)
-    band = Area(at, -wide, wide, "twice its standard deviation")
-    about = "measured less fitted, and twice its standard deviation"
-    return data, Panel(label or "1", (line,), about, areas=(band,), named=False, height=0.6)
+    line = Line(x, factor * column.residual, "measured less fitted", colour=REFERENCE, marks="dots")
+    half_width = np.full(len(x), _SIGMAS * column.noise * factor)
+    band = Area(x, -half_width, half_width, "twice its standard deviation")
+    title = "measured less fitted, and twice its standard deviation"
+    return data, Panel(label or "1", (line,), title, areas=(band,), named=False, height=0.6)
 
 
 def _of_modes(result: Fit, column: FittedColumn) -> Panel:
@@ -209,16 +210,16 @@ def _of_modes(result: Fit, column: FittedColumn) -> Panel:
 
 def optimum(result: Optimum, title: str = "") -> Figure:
     """Describe the figure over the improving tries, and where the values lie between their bounds."""
-    o, at = result, np.arange(len(result.history), dtype=float)
+    o, x = result, np.arange(len(result.history), dtype=float)
     factor, label = scaled(o.minimise, o.unit, o.history)
-    line = Line(at, factor * o.history, o.minimise, colour=REFERENCE, marks="joined")
+    line = Line(x, factor * o.history, o.minimise, colour=REFERENCE, marks="joined")
     low, high = o.bounds.T
     shares = 100 * (o.path - low) / (high - low)
-    values = tuple(Line(at, shares[:, k], path, colour=k % 6, marks="joined") for k, path in enumerate(o.parameters))
-    over = "tries that were better"
+    values = tuple(Line(x, shares[:, k], path, colour=k % 6, marks="joined") for k, path in enumerate(o.parameters))
+    axis_label = "tries that were better"
     panels = (
-        Panel(label, (line,), x=over, named=False, height=1.2),
-        Panel("between bounds, %", values, x=over, limits=(-3.0, 103.0)),
+        Panel(label, (line,), x=axis_label, named=False, height=1.2),
+        Panel("between bounds, %", values, x=axis_label, limits=(-3.0, 103.0)),
     )
     subject = f"{o.minimise} from {o.figure_before:.4g} to {o.figure:.4g} {raised(o.unit)}".rstrip()
     return Figure(title or o.title, subject, panels, (_values(o),), (o.outcome,))

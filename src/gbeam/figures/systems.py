@@ -54,26 +54,26 @@ def points(response: SystemResponse, title: str = "") -> Figure:
         )
         for i in axes
     )
-    about = "displacement of the points from the start, axes of the ground"
+    subject = "displacement of the points from the start, axes of the ground"
     notes = (*not_drawn(axes, moved), *estimated({"": response.error_estimate}))
-    return Figure(title, about, panels, notes, (response.outcome,))
+    return Figure(title, subject, panels, notes, (response.outcome,))
 
 
 def _moving(moved: np.ndarray) -> list[int]:
-    """Numbers of the points that move, and not as an earlier one does."""
+    """Indices of the points that move; of points that move alike only the first."""
     size, chosen = np.abs(moved).max(initial=0.0), list[int]()
     for k in range(moved.shape[1]):
-        apart = [np.abs(moved[:, k] - moved[:, other]).max(initial=0.0) for other in chosen]
-        if np.abs(moved[:, k]).max(initial=0.0) > ROUNDING * size and min(apart, default=np.inf) > ROUNDING * size:
+        distances = [np.abs(moved[:, k] - moved[:, other]).max(initial=0.0) for other in chosen]
+        if np.abs(moved[:, k]).max(initial=0.0) > ROUNDING * size and min(distances, default=np.inf) > ROUNDING * size:
             chosen.append(k)
     return chosen
 
 
 def coordinates(response: SystemResponse, title: str = "") -> Figure:
     """Describe the joints' coordinates and the efforts of their drives."""
-    panels, every = [], named(response)
-    size = max((np.abs(history).max(initial=0.0) for history, *_ in every.values()), default=0.0)
-    for name, (history, unit, effort) in every.items():
+    panels, histories = [], named(response)
+    size = max((np.abs(history).max(initial=0.0) for history, *_ in histories.values()), default=0.0)
+    for name, (history, unit, effort) in histories.items():
         if 0 < np.abs(history).max(initial=0.0) <= ROUNDING * size:  # rounding
             continue
         panels.append(Panel(f"{name}, {unit}", (Line(response.time, history),)))
@@ -103,15 +103,15 @@ def loop(response: SystemResponse, title: str = "") -> Figure:
 
 def loads(response: SystemResponse, body: str, title: str = "") -> Figure:
     """Describe over time what the root's section of a beam carries, and the extreme stresses along it."""
-    about = f"loads in the root's section of {body}, and stress anywhere along it"
+    subject = f"loads in the root's section of {body}, and stress anywhere along it"
     panels = carried_at_root(response.time, response.beams[body].loads)
-    return Figure(title, about, tuple(panels), outcomes=(response.outcome,))
+    return Figure(title, subject, tuple(panels), outcomes=(response.outcome,))
 
 
 def loads_at_rest(result: SystemRest, body: str, title: str = "") -> Figure:
     """Describe the sections' force and moment and the stress along a beam at rest."""
-    about = f"internal loads of {body} at rest, t = {result.time:.4g} s"
-    return Figure(title, of_motion(result.name, about), carried_along(result.loads[body]))
+    subject = f"internal loads of {body} at rest, t = {result.time:.4g} s"
+    return Figure(title, of_motion(result.name, subject), carried_along(result.loads[body]))
 
 
 def energy(response: SystemResponse, title: str = "") -> Figure:
@@ -153,10 +153,10 @@ def stress(result: SolidStress, title: str = "") -> Figure:
     near = result.nearest_yield
     if near is not None and near.yield_strength is not None and near.yield_strength < NEAR * result.von_mises.max():
         levels = (Level(scale * near.yield_strength, f"yield of {near.material or 'the material'}"),)
-    about = of_motion(result.motion, f"von Mises stress, {result.model}")
+    subject = of_motion(result.motion, f"von Mises stress, {result.model}")
     panel = Panel(f"von Mises stress, {unit}", tuple(lines), levels=levels, zero=True, height=2.0)
     where = f"at {place_words(result.worst.place)}, {result.worst.time:.4g} s{result.worst.apart}"
-    return Figure(title, about, (panel,), (f"largest: {where}", *filter(None, [result.left_out])))
+    return Figure(title, subject, (panel,), (f"largest: {where}", *filter(None, [result.left_out])))
 
 
 def specimen(result: SpecimenLoads, title: str = "") -> Figure:
@@ -171,15 +171,15 @@ def specimen(result: SpecimenLoads, title: str = "") -> Figure:
     ]
     panels = [Panel(f"load, {unit}", tuple(lines), zero=True)]
     for values, si, name in ((result.force, "N", "force"), (result.moment, "N m", "moment")):
-        factor, named = scale_of(si, values)
-        axes = [f"{name} {way}" for way in "xyz"]
-        panels.append(components(result.time, factor * values, axes, Panel(f"{name} on the specimen, {named}")))
+        factor, factor_unit = scale_of(si, values)
+        axes = [f"{name} {axis}" for axis in "xyz"]
+        panels.append(components(result.time, factor * values, axes, Panel(f"{name} on the specimen, {factor_unit}")))
     if len(result.bolts):
         panels.append(_bolts(result, result.tension, "tension"))
         panels.append(_bolts(result, result.shear, "shear"))
-    about = of_motion(result.motion, f"rigid specimen of {result.mass:g} kg")
+    subject = of_motion(result.motion, f"rigid specimen of {result.mass:g} kg")
     spread = f"largest spread over the specimen: {100 * result.spread_max:.3g} % of the largest load"
-    return Figure(title, about, tuple(panels), (spread,))
+    return Figure(title, subject, tuple(panels), (spread,))
 
 
 def _bolts(result: SpecimenLoads, values: Floats, name: str) -> Panel:

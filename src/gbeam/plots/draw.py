@@ -40,11 +40,11 @@ def line(panel: Axes, x: Floats, y: Floats, **options: Any) -> None:
         return
     (drawn,) = panel.plot(*bins.middle(x, y, runs), **options)
     named = any(each.get_label() == ENVELOPE for other in drawn.figure.axes for each in other.collections)
-    at, low, high = (np.concatenate(each) for each in zip(*(bins.envelope(x, y, run) for run in runs), strict=True))
+    xs, low, high = (np.concatenate(each) for each in zip(*(bins.envelope(x, y, run) for run in runs), strict=True))
     look: dict[str, Any] = {"color": drawn.get_color(), "zorder": drawn.get_zorder()}
-    panel.fill_between(at, low, high, **look, lw=0, alpha=0.35, label=None if named else ENVELOPE)
+    panel.fill_between(xs, low, high, **look, lw=0, alpha=0.35, label=None if named else ENVELOPE)
     for edge in (low, high):
-        panel.plot(at, edge, **look, lw=0.6, label="_edge")
+        panel.plot(xs, edge, **look, lw=0.6, label="_edge")
 
 
 class _Bins:
@@ -69,8 +69,8 @@ class _Bins:
             parts.append((self.centre[run], (self.low[run] + self.high[run]) / 2))
             begin = self._ends[run.stop]
         parts.append(thinned(x[begin:], y[begin:], COLUMNS))
-        at, values = zip(*parts, strict=True)
-        return np.concatenate(at), np.concatenate(values)
+        xs, values = zip(*parts, strict=True)
+        return np.concatenate(xs), np.concatenate(values)
 
     def envelope(self, x: Floats, y: Floats, run: slice) -> tuple[Floats, Floats, Floats]:
         """Times of a stretch, its low and its high edge: it begins and ends on the line, then there is a gap."""
@@ -176,17 +176,18 @@ def draw(described: Figure) -> Shown:
         FigureCanvasAgg(figure)
         figure.suptitle(title, x=0.01, ha="left", fontsize=10.5, fontweight="bold")
         linked = len({panel.x for panel in described.panels}) == 1
-        every: list[Axes] = list(
+        all_axes: list[Axes] = list(
             figure.subplots(len(heights), squeeze=False, sharex=linked, height_ratios=heights)[:, 0]
         )
-        for k, (axes, panel) in enumerate(zip(every, described.panels, strict=True)):
+        for k, (axes, panel) in enumerate(zip(all_axes, described.panels, strict=True)):
             _fill(axes, panel, first=k == 0)
-            if not linked or k == len(every) - 1:
+            if not linked or k == len(all_axes) - 1:
                 axes.set_xlabel(panel.x)
     return figure
 
 
 def _fill(axes: Axes, panel: Panel, *, first: bool) -> None:
+    """Draw all parts of a panel; the `first` panel of a figure names what is shaded in its legend."""
     if panel.logarithmic:
         axes.set_xscale("log")
         axes.set_yscale("log")
@@ -194,20 +195,20 @@ def _fill(axes: Axes, panel: Panel, *, first: bool) -> None:
             scale.set_major_locator(LogLocator(subs=(1, 2, 5)))
             scale.set_minor_locator(NullLocator())
             scale.set_major_formatter("{x:g}")
-    for each in panel.areas:
-        look: dict[str, Any] = {"color": PALETTE[each.colour], "alpha": 0.25, "lw": 0, "label": each.label}
-        axes.fill_between(each.x, each.low, each.high, **look)
-    for one in panel.lines:
-        _line(axes, one, named=panel.named)
-    if panel.lines and not any(np.isfinite(one.y).any() for one in panel.lines):
-        along = np.concatenate([one.x for one in panel.lines])  # no limits follow from points without a height
-        margin = 0.05 * (np.ptp(along) or abs(along[0]) or 1.0)
-        axes.set_xlim(along.min() - margin, along.max() + margin)
-    named = ""
+    for area in panel.areas:
+        look: dict[str, Any] = {"color": PALETTE[area.colour], "alpha": 0.25, "lw": 0, "label": area.label}
+        axes.fill_between(area.x, area.low, area.high, **look)
+    for curve in panel.lines:
+        _line(axes, curve, named=panel.named)
+    if panel.lines and not any(np.isfinite(curve.y).any() for curve in panel.lines):
+        x_all = np.concatenate([curve.x for curve in panel.lines])  # no limits follow from points without a height
+        margin = 0.05 * (np.ptp(x_all) or abs(x_all[0]) or 1.0)
+        axes.set_xlim(x_all.min() - margin, x_all.max() + margin)
+    last_label = ""
     for level in panel.levels:
-        label = level.label if level.label != named else None  # both sides of a limit have one name
+        label = level.label if level.label != last_label else None  # both sides of a limit have one name
         axes.axhline(level.value, color="black", lw=0.9, ls=_DASHES[level.dash], zorder=2.4, label=label)
-        named = level.label
+        last_label = level.label
     for mark in panel.marks:
         axes.axvline(mark.value, color="black", lw=0.9, ls=_DASHES["dashed"], label=mark.label if panel.named else None)
     if panel.bars is not None:
@@ -218,7 +219,7 @@ def _fill(axes: Axes, panel: Panel, *, first: bool) -> None:
         white = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
         axes.text(x, y, words, ha="center", va="center", color="0.35", fontsize=8, zorder=1.2, bbox=white)
     if panel.lines and all(
-        one.marks == "joined" and not np.any(one.x % 1) for one in panel.lines
+        curve.marks == "joined" and not np.any(curve.x % 1) for curve in panel.lines
     ):  # counted, as tries are
         axes.xaxis.set_major_locator(MaxNLocator("auto", integer=True))
     if panel.ticks:
@@ -234,25 +235,25 @@ def _fill(axes: Axes, panel: Panel, *, first: bool) -> None:
     _legend(axes)
 
 
-def _line(axes: Axes, one: Line, *, named: bool) -> None:
-    look = {"color": PALETTE[one.colour], "ls": _DASHES[one.dash], "label": one.label if named else ""}
-    look |= _MARKS[one.marks]
-    if one.broad:
+def _line(axes: Axes, curve: Line, *, named: bool) -> None:
+    look = {"color": PALETTE[curve.colour], "ls": _DASHES[curve.dash], "label": curve.label if named else ""}
+    look |= _MARKS[curve.marks]
+    if curve.broad:
         look |= {"lw": BROAD, "zorder": 1.9, "solid_capstyle": "butt"}
-    line(axes, one.x, one.y, **look)
+    line(axes, curve.x, curve.y, **look)
 
 
 def _bars(axes: Axes, bars: Bars) -> None:
     """Groups beside each other, the first name on top."""
-    at, wide = -np.arange(len(bars.names), dtype=float), 0.8 / len(bars.values)
+    base, width = -np.arange(len(bars.names), dtype=float), 0.8 / len(bars.values)
     for k, (label, values) in enumerate(bars.values.items()):
-        place = at + wide * ((len(bars.values) - 1) / 2 - k)
-        axes.barh(place, values, height=0.9 * wide, color=PALETTE[k % len(PALETTE)], label=label)
+        place = base + width * ((len(bars.values) - 1) / 2 - k)
+        axes.barh(place, values, height=0.9 * width, color=PALETTE[k % len(PALETTE)], label=label)
         if bars.low:
             ends = [values - bars.low[label], bars.high[label] - values]
             axes.errorbar(values, place, xerr=ends, fmt="none", ecolor="black", elinewidth=0.9, capsize=2.5)
     axes.axvline(0, color="black", lw=0.8)
-    axes.set_yticks(at, bars.names)
+    axes.set_yticks(base, bars.names)
     axes.grid(axis="y", visible=False)
 
 
@@ -276,9 +277,9 @@ def _include(axes: Axes, panel: Panel) -> None:
 def _shade(axes: Axes, spans: Sequence[Span], *, named: bool) -> None:
     """Shade stretches in a panel, with their reasons in the legend of the first."""
     ordered = sorted(spans, key=lambda span: [each[2] for each in spans].index(span[2]))
-    for reason, some in groupby(ordered, key=lambda span: span[2]):
+    for reason, group in groupby(ordered, key=lambda span: span[2]):
         face, hatch = _PATTERNS.get(reason, _LIMIT)
-        corners = [[(a, 0.0), (a, 1.0), (b, 1.0), (b, 0.0)] for a, b, _ in some]
+        corners = [[(a, 0.0), (a, 1.0), (b, 1.0), (b, 0.0)] for a, b, _ in group]
         shaded = PolyCollection(
             corners,
             transform=axes.get_xaxis_transform(),
@@ -297,7 +298,7 @@ def _legend(axes: Axes) -> None:
     entries = list(zip(*axes.get_legend_handles_labels(), strict=True))
     if not entries:
         return
-    entries.sort(key=lambda each: (not isinstance(each[0], Line2D), each[1] != ENVELOPE))
+    entries.sort(key=lambda entry: (not isinstance(entry[0], Line2D), entry[1] != ENVELOPE))
     handles, labels = zip(*entries, strict=True)
     # Columns are as wide as their longest label; a handle takes about five letters.
     room = _ROW - len(axes.get_title(loc="left"))
