@@ -164,11 +164,11 @@ def reference_of_results() -> str:
 
 def _rows(kind: type) -> Iterator[tuple[str, str, str]]:
     """Yield path, unit and words of the quantities of a kind; of what is another kind of result only a link to it."""
-    others = {each.key or name for name, each in declarations(kind) if each.role == "rows"}
+    others = {entry.key or name for name, entry in declarations(kind) if entry.role == "rows"}
     responses = {"Study": "Response", "SystemStudy": "SystemResponse"}.get(kind.__name__, "")
     links = {"motions": responses, "comparisons": "Comparison"} if responses else {}
     for key in sorted(links.keys() & others):
         yield f"{key}.*" if key == "motions" else f"{key}[i]", "–", f"a [{links[key]}](#{links[key].lower()})"
-    for path, each in paths_of(tree_of_answers(kind)):
+    for path, entry in paths_of(tree_of_answers(kind)):
         if path.partition(".")[0].partition("[")[0] not in links:
-            yield path, each.unit, each.words.replace("|", "\\|")
+            yield path, entry.unit, entry.words.replace("|", "\\|")

@@ -117,11 +117,11 @@ def at_points(facts: Facts, points: Facts) -> Iterator[Facts]:
     """Yield rows of named points (``body.point`` of systems) with the readings of their accelerometers, and the largest
     stress and strain of a mesh.
     """
-    for name, each in points.items():
+    for name, row in points.items():
         body, _, point = name.rpartition(".")
         solid = facts.get("solids", {}).get(body) if body else facts.get("solid")
         of_solid = solid["points"].get(point) if solid else None
-        yield {"name": name, **each, "sensor": facts.get("sensors", {}).get(name), "solid": of_solid}
+        yield {"name": name, **row, "sensor": facts.get("sensors", {}).get(name), "solid": of_solid}
 
 
 def points_table(motions: Facts) -> Block:

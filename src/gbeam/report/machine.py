@@ -137,24 +137,24 @@ def peak_lines(peaks: Mapping[str, PeakPair]) -> Iterator[str]:
     """Yield a line on the largest root loads and stress over the flight; none if no ratio is known."""
     words = []
     for name in ("root_force", "root_moment", "stress", STRESS_AT):
-        pair, (what, _, unit) = peaks.get(name, PeakPair()), QUANTITIES[name]
+        pair, (quantity, _, unit) = peaks.get(name, PeakPair()), QUANTITIES[name]
         if math.isfinite(pair.ratio):
             flight, machine = (f"{factor(unit) * each:.4g} {unit}" for each in (pair.flight, pair.machine))
-            what = what.replace("the point", pair.place_flight)
-            words.append(f"{what} {flight} in flight, {machine} ({change(pair.ratio)})")
+            quantity = quantity.replace("the point", pair.place_flight)
+            words.append(f"{quantity} {flight} in flight, {machine} ({change(pair.ratio)})")
     if words:
         yield f"{'; '.join(words)} on the centrifuge"
 
 
 def machine_plan(facts: Facts) -> Blocks:
     """Use of every limit, how well the load is followed, and the verdict on it, of every machine."""
-    for name, each in facts["motions"].items():
-        state = each.get("state", each["outcome"])  # files of 0.2 have none
-        tracks = f", tracks {each['tracks']}" if each["tracks"] else ""
-        title = f"{name} ({each['arm']:g} m{tracks}): {state}"
-        yield Section(title, tuple(_planned(each)), titled=True, tone="good" if state in GOOD else "bad")
-        yield from verdict(each, (each["tracks"] or "flight", name))
-        yield said(each)
+    for name, plan in facts["motions"].items():
+        state = plan.get("state", plan["outcome"])  # files of 0.2 have none
+        tracks = f", tracks {plan['tracks']}" if plan["tracks"] else ""
+        title = f"{name} ({plan['arm']:g} m{tracks}): {state}"
+        yield Section(title, tuple(_planned(plan)), titled=True, tone="good" if state in GOOD else "bad")
+        yield from verdict(plan, (plan["tracks"] or "flight", name))
+        yield said(plan)
     yield Section("Histories", (FIGURES,))
 
 

@@ -39,15 +39,15 @@ ROUNDING = 1e-10  # a damping ratio smaller than this is none
 def deflection(facts: Facts) -> Blocks:
     """Displacement of the tip in every motion, loads of the root, stress, and the errors."""
     motions = facts["motions"]
-    for name, each in motions.items():
-        if not each["stable"]:
+    for name, rest in motions.items():
+        if not rest["stable"]:
             yield Sentence(f"motion {name}: UNSTABLE, no beam would stay there", "bad")
     yield Section("View", (Place("viewer"),))
     tips: Columns = {"motion": "name", "at, s": "time", "model": "model"}
     tips |= {f"{axis}, mm": f"tip.{axis}:.6g" for axis in "xyz"}
-    bending = [each for each in named(motions) if "specimen" not in each]
+    bending = [rest for rest in named(motions) if "specimen" not in rest]
     yield Section("Deflection", (table(bending, tips, "Displacement of the tip"),))
-    loads = {name: each["loads"] for name, each in motions.items() if "loads" in each}
+    loads = {name: rest["loads"] for name, rest in motions.items() if "loads" in rest}
     yield Section("Loads", (resting_loads(loads), *parts_tables(motions)))
     yield Section("Accuracy", tuple(errors(motions)))
     yield Section("Along the beam", (FIGURES,))

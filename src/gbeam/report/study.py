@@ -202,14 +202,14 @@ HINT = "Drag across a plot to zoom all of them, double-click to see all again, c
 
 def study(facts: Facts) -> Blocks:
     """The verdicts on centrifuges, the largest displacements and loads, the machines, the errors, and all in words."""
-    motions = {name: each for name, each in facts["motions"].items() if "environment" in each}
+    motions = {name: motion for name, motion in facts["motions"].items() if "environment" in motion}
     yield from verdicts(facts)
     yield Section("Motion", (Place("viewer"),))
     yield Section("Histories", (Place("figures", HINT),))
     yield Section("Response", (_tips(motions), points_table(motions), loads_table(motions), *parts_tables(motions)))
-    for name, each in motions.items():
-        if "limits" in each:
-            yield Section(f"Machine: {name}", (limits(each), Sentence(followed(each))), titled=True, detail=True)
+    for name, motion in motions.items():
+        if "limits" in motion:
+            yield Section(f"Machine: {name}", (limits(motion), Sentence(followed(motion))), titled=True, detail=True)
     yield Section("Accuracy", tuple(errors(motions)), detail=True)
     yield from in_words_of(facts)
 
@@ -225,13 +225,13 @@ def verdicts(facts: Facts) -> Blocks:
 
 def in_words_of(facts: Facts) -> Blocks:
     """Outcome and sentences of every run, and every verdict with the figures that it rests on."""
-    for name, each in facts["motions"].items():
-        kind = each.get("environment", name)
-        title = f"{name}{'' if kind == name else f' ({kind})'}: {each['outcome']}"
-        folded, tone = (title, "good") if each["outcome"] == "done" else ("", "bad")
-        message = (Sentence(sentence(each["message"]), "bad"),) if each.get("message") else ()
-        limits_used = (limits(each),) if "limits" in each else ()
-        lines = Items(tuple(each.get("lines", ())))
+    for name, run in facts["motions"].items():
+        kind = run.get("environment", name)
+        title = f"{name}{'' if kind == name else f' ({kind})'}: {run['outcome']}"
+        folded, tone = (title, "good") if run["outcome"] == "done" else ("", "bad")
+        message = (Sentence(sentence(run["message"]), "bad"),) if run.get("message") else ()
+        limits_used = (limits(run),) if "limits" in run else ()
+        lines = Items(tuple(run.get("lines", ())))
         yield Section(title, (*message, *limits_used, lines), titled=True, folded=folded, tone=tone)
     yield from map(said, facts["comparisons"])
 
@@ -239,12 +239,12 @@ def in_words_of(facts: Facts) -> Blocks:
 def _tips(motions: Facts) -> Block:
     """Largest displacements of the tip along the axes in which it moves."""
     rows = []
-    for name, each in motions.items():
-        sizes = {axis: known(peak["max_abs"]) for axis, peak in each["tip"].items()}
+    for name, motion in motions.items():
+        sizes = {axis: known(peak["max_abs"]) for axis, peak in motion["tip"].items()}
         # A direction that nothing drives holds rounding errors, whose time would mean nothing.
         axes = [axis for axis, size in sizes.items() if size > ROUNDING * max(sizes.values())]
         shown = [axis for axis in axes if axis != "size" or len(axes) > 2]
-        rows += [{"motion": name, "axis": axis, **each["tip"][axis]} for axis in shown]
+        rows += [{"motion": name, "axis": axis, **motion["tip"][axis]} for axis in shown]
     cells: Columns = {
         "motion": "motion",
         "tip along": "axis",

@@ -48,9 +48,9 @@ def system_modes(facts: Facts) -> Blocks:
 def system_rest(facts: Facts) -> Blocks:
     """Displacements of the points at rest, and the loads of the ground and of every beam."""
     yield Section("View", (Place("viewer"),))
-    for name, each in facts["motions"].items():
-        of_motion = _rest({**each, "units": _units(facts)})
-        yield Section(f"motion {name} at {each['time']:.4g} s", tuple(of_motion), titled=True)
+    for name, rest in facts["motions"].items():
+        of_motion = _rest({**rest, "units": _units(facts)})
+        yield Section(f"motion {name} at {rest['time']:.4g} s", tuple(of_motion), titled=True)
     yield Section("Figures", (FIGURES,))
 
 
@@ -112,9 +112,9 @@ def system_study(facts: Facts) -> Blocks:
     yield from verdicts(facts)
     yield Section("Motion", (Place("viewer"),))
     yield Section("Histories", (Place("figures", HINT),))
-    for name, each in facts["motions"].items():
-        if "points" in each:
-            yield Section(f"motion {name}", tuple(_of_points({**each, "units": _units(facts)})), titled=True)
+    for name, motion in facts["motions"].items():
+        if "points" in motion:
+            yield Section(f"motion {name}", tuple(_of_points({**motion, "units": _units(facts)})), titled=True)
     yield from in_words_of(facts)
 
 

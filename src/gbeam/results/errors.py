@@ -72,8 +72,8 @@ class Errors(Part):
 
     def above(self, tolerance: float) -> dict[str, ErrorEstimate]:
         """Return the errors whose total is above a tolerance, by what they are of, in words."""
-        every = {"tip's displacement": self.displacement, "root's loads": self.loads, "stress": self.stress}
-        return {name: each for name, each in every.items() if each.total > tolerance}
+        estimates = {"tip's displacement": self.displacement, "root's loads": self.loads, "stress": self.stress}
+        return {name: each for name, each in estimates.items() if each.total > tolerance}
 
     def __repr__(self) -> str:
         parts = {name: getattr(self, name) for name in ("displacement", "loads", "stress")}

@@ -202,8 +202,8 @@ class Optimum(Figured[Literal["optimum"]]):
             for path, value, old, unit in zip(self.parameters, self.values, self.before, self.units, strict=True)
         ]
         end = "" if self.outcome == "done" else f" ({self.outcome})"
-        what = f"Optimum of {self.minimise}: {self.figure:.4g} {self.unit}".rstrip()
-        return self._with_warnings(f"{what}, was {self.figure_before:.4g}{end}", *rows)
+        heading = f"Optimum of {self.minimise}: {self.figure:.4g} {self.unit}".rstrip()
+        return self._with_warnings(f"{heading}, was {self.figure_before:.4g}{end}", *rows)
 
 
 GOALS = {"angle": "by {:.4g} rad", "distance": "by {:.4g} m", "rate": "to {:.4g} rad/s", "speed": "to {:.4g} m/s"}

@@ -186,8 +186,8 @@ def _plot(panel: Panel, subject: str, numbers: Numbers, specs: list[dict[str, An
 
 def _said(panel: Panel) -> Iterator[str]:
     """Yield in words the marks, texts and ticks that a plot of Matplotlib writes where they are."""
-    for each in panel.marks:
-        yield f"{each.label} at {number(each.value)}"
+    for mark in panel.marks:
+        yield f"{mark.label} at {number(mark.value)}"
     named = {line.label.removeprefix("_") for line in panel.lines}
     yield from (words for *_, words in panel.texts if words not in named)
     if panel.ticks:
