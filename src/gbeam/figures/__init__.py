@@ -159,6 +159,7 @@ def _of_sweep(result: Sweep, title: str) -> dict[str, Describe]:
 def _of_machine(
     result: Response | MachinePlan | SystemResponse, axes: AxesResult, title: str, flight: Response | None = None
 ) -> dict[str, Describe]:
+    """Figures of a machine: tracking of the load, and rate, acceleration and, if known, jerk of its axes."""
     quantities = ("rate", "acceleration", *(["jerk"] if axes.jerk is not None else []))
     return {
         "tracking": partial(response.tracking, result, axes, title, flight),
@@ -196,6 +197,7 @@ def _of_comparison(result: Comparison, title: str, main: str, other: str, end: s
 
 
 def _of_study(study: Study, title: str) -> dict[str, Describe]:
+    """Figures of a study: the tips, the sizes of the loads, every response, and comparisons."""
     moving = any(each.specimen is None for each in study.responses.values())
     described: dict[str, Describe] = {"tip": partial(response.tip, study)} if moving else {}
     if sum(each.loads is not None for each in study.responses.values()) > 1:
@@ -208,6 +210,7 @@ def _of_study(study: Study, title: str) -> dict[str, Describe]:
 
 
 def _compared(comparisons: Sequence[Comparison], title: str) -> dict[str, Describe]:
+    """Figures of comparisons, by the names of their centrifuges."""
     described: dict[str, Describe] = {}
     for compared in comparisons:
         of_pair = _of_comparison(compared, title, "comparison", "comparison_", f" {compared.centrifuge}")

@@ -143,13 +143,13 @@ def of_motion(name: str, subject: str) -> str:
 
 
 def estimated(errors: Mapping[str, float]) -> tuple[str, ...]:
-    """The estimated errors, as fractions by name, of those that are known."""
+    """Note on the estimated errors that are known, fractions by name; none where none is."""
     known = [f"{name} {100 * error:.2g} %".strip() for name, error in errors.items() if math.isfinite(error)]
     return (f"estimated error: {', '.join(known)}",) if known else ()
 
 
 def moving(*values: Floats) -> list[int]:
-    """Components (of the last axis) that are more than a hundredth of the largest; the largest where none is."""
+    """Indices of components (last axis) larger than a hundredth of the largest; that one alone where none moves."""
     finite = [np.nan_to_num(each, nan=0.0, posinf=0.0, neginf=0.0) for each in values]
     size = np.max([np.abs(each).reshape(-1, each.shape[-1]).max(axis=0) for each in finite], axis=0)
     return [i for i in range(len(size)) if size[i] > SMALL * size.max()] or [int(size.argmax())]

@@ -18,7 +18,7 @@ _Part = tuple[str, str, str, dict[str, Floats]]  # what it shows, SI unit, quant
 
 
 def parts(comparison: Comparison, axis: int, title: str = "") -> Figure:
-    """Describe those parts of a comparison over time that it has, of one axis."""
+    """Describe root loads, tip and mismatch along an axis over time, as a comparison has them; else the difference."""
     c = comparison
     shown = [*_root(c, axis), *_tip(c, axis), *_mismatch(c, axis)]
     shown = shown or [("tip displacement", "m", "difference", {_less(c): c.difference[:, axis]})]
@@ -29,6 +29,7 @@ def parts(comparison: Comparison, axis: int, title: str = "") -> Figure:
 
 
 def _panel(c: Comparison, title: str, si: str, quantity: str, lines: dict[str, Floats]) -> Panel:
+    """Panel of lines by name, that of flight broad, scaled to the times at which the target is not held."""
     covered = c.covered if c.covered.any() else ~c.covered
     scale, unit = scale_of(si, *(each[covered] for each in lines.values()))
     others = [name for name in lines if name != c.flight]
@@ -50,6 +51,7 @@ def _less(c: Comparison) -> str:
 
 
 def _root(c: Comparison, axis: int) -> Iterator[_Part]:
+    """Force along an axis at the root, and the moment that bends along it."""
     if c.root is None:
         return
     history, k = c.root.history, _BENDS[axis]

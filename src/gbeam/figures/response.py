@@ -94,6 +94,7 @@ def models(study: ModelStudy, title: str = "") -> Figure:
 
 
 def _displacement(study: Study, axis: int, *, named: bool) -> Panel:
+    """Panel of the tip's displacement along an axis, a line for every environment."""
     scale, unit = scale_of("m", *(each.tip[:, axis] for each in study.responses.values()))
     lines = [
         # A run that diverged at once is no line.
@@ -313,6 +314,7 @@ def tracking(response: PlotHeading, axes: AxesResult, title: str = "", flight: R
 
 
 def _error(time: Floats, axes: AxesResult) -> Panel:
+    """Panel of the tracking error, scaled to the times that are followed."""
     error, followed = axes.tracking_error, ~axes.not_followed
     scale, unit = scale_of("m/s^2", error[followed])
     ends = ends_of(followed, scale * error)

@@ -75,6 +75,7 @@ def _bands(x: Floats, values: Floats, label: str) -> Panel:
 
 
 def _histogram(values: Floats, label: str) -> Panel:
+    """Histogram of the cases that have a value, with median, 5 and 95 %."""
     known, title = values[np.isfinite(values)], "lines: median, 5 and 95 %"
     if not len(known):
         return Panel("cases", title=title, x=label)
@@ -172,6 +173,7 @@ def fit(result: Fit, title: str = "") -> Figure:
 
 
 def _values(result: Fit | Optimum) -> str:
+    """Write the values of a fit or an optimum with their units."""
     rows = zip(result.parameters, result.values, result.units, strict=True)
     short = isinstance(result, Fit)
     return ", ".join(
@@ -199,6 +201,7 @@ def _of_time(result: Fit, column: FittedColumn) -> Sequence[Panel]:
 
 
 def _of_modes(result: Fit, column: FittedColumn) -> Panel:
+    """Panel of the residual of every mode over its measured value, before and after the fit."""
     size = np.abs(column.measured)
     shares = {
         label: 100 * (column.measured - values) / size
@@ -261,7 +264,7 @@ def shaping(command: ShapedCommand, title: str = "") -> Figure:
 
 
 def robustness(command: ShapedCommand, title: str = "") -> Figure:
-    """Describe what each command leaves in the design's modes, were all their frequencies others."""
+    """Describe the amplitude that each command leaves, over the ratio of all frequencies to the design's."""
     c = command
     top = 1.2 * 1e3 * float(c.runs[-1].by_ratio.max())
     lines = tuple(Line(c.ratio, 1e3 * run.by_ratio, run.name, colour=k) for k, run in enumerate(c.runs))

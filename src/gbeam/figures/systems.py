@@ -183,6 +183,7 @@ def specimen(result: SpecimenLoads, title: str = "") -> Figure:
 
 
 def _bolts(result: SpecimenLoads, values: Floats, name: str) -> Panel:
+    """Panel of one quantity of every bolt."""
     factor, unit = scale_of("N", values)
     lines = tuple(
         Line(result.time, factor * values[:, k], f"bolt {k + 1}", colour=k % 6) for k in range(values.shape[1])

@@ -157,6 +157,7 @@ def _loaded(path: str | os.PathLike[str], name: str) -> Any:
 
 
 def _array(path: str | os.PathLike[str], name: str, shape: tuple[int, ...]) -> NDArray[Any]:
+    """Values of a variable of a MAT file; InputError if they are too many or complex."""
     refuse_more("", "numbers", math.prod(shape), ELEMENTS, 8.0, "save fewer at a time")
     values: NDArray[Any] = _loaded(path, name)
     if values.dtype.kind not in "iuf":
@@ -165,6 +166,7 @@ def _array(path: str | os.PathLike[str], name: str, shape: tuple[int, ...]) -> N
 
 
 def _columns(name: str, value: Any) -> list[Column]:
+    """Columns of a value of a MAT file, or of the fields of a structure; none of what is no array of real numbers."""
     if isinstance(value, dict):
         return [column for field, part in value.items() for column in _columns(f"{name}.{field}", part)]
     if not isinstance(value, np.ndarray) or value.dtype.kind not in "iuf":
@@ -265,6 +267,8 @@ def _kept(path: str, words: Sequence[str], folder: str, version: tuple[int, ...]
 
 
 def _column(name: str, unit: str, aliases: Sequence[str], samples: Any = None, refusal: Sequence[str] = ()) -> Column:
+    """Column that was read in another process: its samples, or the refusal when they are asked for."""
+
     def read() -> Any:
         if refusal:
             raise InputError("", *refusal)

@@ -117,7 +117,7 @@ def _limit_words(plan: MachinePlan) -> str:
 
 
 def origin_lines(provenance: Provenance) -> list[str]:
-    """Provenance of the numbers."""
+    """Lines on the origin of the numbers: version, command, scenario and records."""
     provenance, environment = provenance.stated()
     records = [f"Record of {each.motion}: {each.file}, SHA-256 {each.sha256}." for each in provenance.records]
     origin = f"Made by gbeam {environment.gbeam}, Python {environment.python}, {environment.platform}"

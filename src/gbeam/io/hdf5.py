@@ -80,6 +80,7 @@ def _present(value: Any) -> Any:
 
 
 def _create(place: h5netcdf.Group, name: str, variable: Variable) -> None:
+    """Create a variable of a group, text as UTF-8, with NaN as the missing number."""
     values = variable.values
     kind = values.dtype
     if kind.kind in "OU":
@@ -98,7 +99,7 @@ _LEVEL = 4  # of compression: more saves 3 % of a record's text in six times the
 
 
 def provenance_attrs(provenance: Provenance) -> dict[str, str]:
-    """Attributes of the root: what is short."""
+    """Return the short parts of a provenance as attributes of the root."""
     provenance, environment = provenance.stated()
     return {
         "gbeam_version": environment.gbeam,
@@ -113,7 +114,7 @@ def provenance_attrs(provenance: Provenance) -> dict[str, str]:
 
 
 def provenance_variables(provenance: Provenance) -> dict[str, Variable]:
-    """Variables of the root: the scenario's text, since an attribute ends at 64 KiB, and the records."""
+    """Return a scenario's text, for which attributes are too short (64 KiB), and records as variables of the root."""
     text = np.array(provenance.scenario, dtype=object)
     variables = {"scenario": Variable((), text, {"long_name": "text of the scenario file"})}
     for record in provenance.records:
@@ -128,7 +129,7 @@ def provenance_variables(provenance: Provenance) -> dict[str, Variable]:
 
 
 def provenance_of(variables: Mapping[str, Any], attrs: Mapping[str, Mapping[str, Any]]) -> Provenance:
-    """The provenance that a file holds."""
+    """Return the provenance in the variables and attributes of a file."""
     root = attrs[""]
     dependencies = dict(line.split(" ", 1) for line in str(root.get("dependencies", "")).splitlines())
     versions = [str(root.get(name, "")) for name in ("gbeam_version", "python_version", "platform")]

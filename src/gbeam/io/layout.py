@@ -83,7 +83,7 @@ def known(variables: dict[str, Variable]) -> dict[str, Variable]:
 
 
 def known_attrs(attrs: dict[str, Any]) -> dict[str, Any]:
-    """The attributes but those of which no value is known."""
+    """Return the attributes but those of which no value is known."""
     return {name: value for name, value in attrs.items() if isinstance(value, str) or not _unknown(np.asarray(value))}
 
 
@@ -215,6 +215,7 @@ def _variable(
 
 
 def _attribute(value: Any) -> Any:
+    """Value of an attribute: a text with a line for each word, an array of a tuple of numbers, 0 or 1 of a flag."""
     if isinstance(value, tuple) and (not value or isinstance(value[0], str)):
         return "\n".join(value)
     if isinstance(value, tuple):
@@ -241,7 +242,7 @@ def _columns(rows: list[Group], dims: tuple[str, ...]) -> Group:
 
 
 def _renamed(group: Group, names: Mapping[str, str]) -> Group:
-    """The group with other names of some dimensions."""
+    """Return the group with other names for some dimensions, and for their coordinates."""
     if not names:
         return group
 

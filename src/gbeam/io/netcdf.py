@@ -93,7 +93,7 @@ def plan_group(plan: MachinePlan) -> Group:
 
 
 def limits_variables(uses: tuple[LimitUse, ...]) -> dict[str, Variable]:
-    """Used, allowed and when, per quantity: of the three axes, and of the arm its power."""
+    """Return variables of use, limit and time for each quantity: of the three axes, or of the arm its power."""
     variables = {}
     for quantity in dict.fromkeys(use.quantity for use in uses):
         rows = [use for use in uses if use.quantity == quantity]
@@ -210,6 +210,7 @@ def to_xarray(result: Any) -> Any:
 
 
 def _group(result: Result, *, every: bool) -> Group:
+    """Group of a result, with the samples of histories that files keep, or with `every` one."""
     group = _GROUPS.get(type(result), whole_group)(result)
     return (
         thinned(group, result.kept_every)

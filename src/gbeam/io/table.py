@@ -219,6 +219,7 @@ def array_columns(
 
 
 def _numbers(samples: Sequence[str] | NDArray[Any]) -> Floats:
+    """Return samples as numbers, NaN for text that is none."""
     try:
         return np.asarray(samples, dtype=np.float64)
     except ValueError:

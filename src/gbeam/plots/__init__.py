@@ -82,6 +82,7 @@ def signature(file: Path) -> str:
 
 
 def _in_png(beginning: bytes) -> str:
+    """Source that the text of a PNG file states; empty where there is none."""
     match = _TEXT.search(beginning)
     if match is None:
         return ""
@@ -91,6 +92,7 @@ def _in_png(beginning: bytes) -> str:
 
 
 def _in_svg(beginning: bytes) -> str:
+    """Source that the metadata of an SVG file state; empty where there are none."""
     match = _ELEMENT.search(beginning)
     text = match[1].decode(errors="replace") if match else ""
     for escaped, letter in _ESCAPED:

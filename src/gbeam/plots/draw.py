@@ -80,7 +80,7 @@ class _Bins:
 
 
 def _closed(fast: Flags) -> Flags:
-    """Stretches with small gaps between them joined, then short ones dropped."""
+    """Join stretches of bins that small gaps separate, then drop short ones."""
     joined = fast.copy()
     for gap in true_runs(~fast):
         if gap.start > 0 and gap.stop < len(fast) and gap.stop - gap.start <= _GAP:
@@ -167,7 +167,7 @@ def style() -> Iterator[None]:
 
 
 def draw(described: Figure) -> Shown:
-    """Draw a figure."""
+    """Draw a described figure, and return it."""
     with style():
         heights = [panel.height for panel in described.panels]
         title = "\n".join(textwrap.fill(line, _HEAD) for line in printable(described.heading).split("\n"))
@@ -244,7 +244,7 @@ def _line(axes: Axes, curve: Line, *, named: bool) -> None:
 
 
 def _bars(axes: Axes, bars: Bars) -> None:
-    """Groups beside each other, the first name on top."""
+    """Draw groups of bars beside each other, the first name on top."""
     base, width = -np.arange(len(bars.names), dtype=float), 0.8 / len(bars.values)
     for k, (label, values) in enumerate(bars.values.items()):
         place = base + width * ((len(bars.values) - 1) / 2 - k)

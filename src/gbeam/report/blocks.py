@@ -51,7 +51,7 @@ class Table:
     detail: bool = False  # whether it is for a page only
 
     def numeric(self, column: int) -> bool:
-        """Return whether all that a column has are numbers, which stand to the right."""
+        """Return True if all cells of a column are numbers, which stand to the right."""
         return all(_NUMERIC.fullmatch(row[column].text) for row in self.rows)
 
 
@@ -228,7 +228,7 @@ def _cell(value: Value, form: str = "") -> Cell:
 
 
 def six(value: float | str | None) -> Cell:
-    """A value that is to be copied, with six digits."""
+    """Cell of a value that is to be copied, with six digits."""
     return _cell(value, ".6g")
 
 

@@ -80,7 +80,7 @@ def _ends(values: list[Any]) -> str:
 
 
 def _cases(facts: Facts, outcomes: Any) -> Block:
-    """Parameters and figures of every case, and its outcome where not all are done."""
+    """Table of the parameters and figures of every case, with its outcome where not all are done."""
 
     parameters, measures = facts["parameters"], facts["measures"]
     axes = [facts["dimensions"].index("sample" if each["distribution"] else each["path"]) for each in parameters]

@@ -95,7 +95,7 @@ def _system(case: SystemDescription) -> list[str]:
 
 
 def _lines(record: RecordSummary) -> Iterator[str]:
-    """Summary of a record, loads in g; its notes are among the warnings."""
+    """Yield lines on a record, loads in g; its notes are among the warnings."""
     span = f"{record.span[0]:.6g} to {record.span[1]:.6g} s"
     part = span if record.span == record.whole else part_words(record.span, record.whole)
     clock = f", 0 s being {record.clock}" if record.clock else ""

@@ -70,14 +70,14 @@ def _root_moment(loads: Facts) -> float | None:
 
 
 def margin(value: float | None) -> Cell:
-    """A margin on yield, which must not be overlooked below zero."""
+    """Cell of a margin on yield, marked where it is negative."""
     if value is None:
         return Cell("–")
     return Cell(margin_words(value).removeprefix("margin on yield "), "bad" if value < 0 else "")
 
 
 def parts_tables(motions: Facts, row_of: str = "motion") -> tuple[Block, ...]:
-    """Largest stress of meshes, and loads of rigid specimens."""
+    """Tables of the largest stress of meshes, and of the loads of rigid specimens."""
     solids, rigid = ({n: each[key] for n, each in motions.items() if key in each} for key in ("solid", "specimen"))
     return *stress_table(solids, row_of), *specimen_tables(rigid)
 
@@ -144,7 +144,7 @@ def _place(path: str) -> Columns:
 
 
 def specimen_tables(rigid: Facts) -> Blocks:
-    """Load at the corners of a rigid specimen in every motion, on its fixture and on its bolts."""
+    """Tables of the loads of rigid specimens in every motion: at the corners, on the fixture and on the bolts."""
 
     def spread(each: Facts) -> Value:
         verdicts = {True: (", accepted", "good"), False: (", NOT accepted", "bad"), None: ("", "")}
@@ -169,7 +169,7 @@ def specimen_tables(rigid: Facts) -> Blocks:
 
 
 def errors(motions: Facts) -> Blocks:
-    """Estimated errors by their causes, and what is not estimated."""
+    """Table of the estimated errors in every motion by their causes, and sentences on what is not estimated."""
     rows = [
         {"name": name, "of": quantity, **each["errors"][quantity]}
         for name, each in motions.items()

@@ -35,7 +35,7 @@ _EXACT = 1e-9  # of the load: a smaller error is rounding
 
 
 def tracked(driven: Driven) -> str:
-    """Tracking of the load, in words."""
+    """Words for how well a machine follows the load."""
     errors = {"tracking_error": driven.tracking_error, "flight_error": driven.flight_error}
     return followed({name: None if each is None else asdict(each) for name, each in errors.items()})
 
@@ -53,6 +53,7 @@ def followed(facts: Mapping[str, Any]) -> str:
 
 
 def _within(error: Mapping[str, Any]) -> str:
+    """Words for an error of the load, in m/s² and as a share, and its time."""
     if error["fraction"] is not None and error["fraction"] < _EXACT:
         return "exactly"
     share = math.nan if error["fraction"] is None else error["fraction"]
@@ -147,7 +148,7 @@ def peak_lines(peaks: Mapping[str, PeakPair]) -> Iterator[str]:
 
 
 def machine_plan(facts: Facts) -> Blocks:
-    """Use of every limit, how well the load is followed, and the verdict on it, of every machine."""
+    """Plan of every machine: limits, tracking, stretches in which the target is held, and the verdict."""
     for name, plan in facts["motions"].items():
         state = plan.get("state", plan["outcome"])  # files of 0.2 have none
         tracks = f", tracks {plan['tracks']}" if plan["tracks"] else ""
@@ -159,6 +160,7 @@ def machine_plan(facts: Facts) -> Blocks:
 
 
 def _planned(plan: Facts) -> Blocks:
+    """Message, limits, tracking, stretches in which the target is held, and loads out of reach, of one plan."""
     if plan["message"]:
         yield Sentence(plan["message"], "bad")
     yield limits(plan)
@@ -171,7 +173,7 @@ def _planned(plan: Facts) -> Blocks:
 
 
 def limits(machine: Facts) -> Block:
-    """Largest use of each limit, its time, and its share of the limit."""
+    """Table of the largest use of each limit, its time, and its share of the limit."""
 
     def used(use: Facts) -> Value:
         if use["allowed"] is None or not math.isfinite(use["allowed"]):
@@ -190,26 +192,26 @@ def limits(machine: Facts) -> Block:
 
 
 def held(machine: Facts) -> Block:
-    """Stretches in which the target is held, and why."""
+    """Table of the stretches in which the target is held, and why."""
     cells = {"from, s": "start:.3f", "to, s": "end:.3f", "why": "reason"}
     return table(machine["not_followed"], cells, "The target is held", most=SHOWN, detail="lines" not in machine)
 
 
 def comparison(facts: Facts) -> Blocks:
-    """The verdict on a centrifuge's imitation of a flight."""
+    """Verdict on the imitation of a flight, the sentences that it rests on, and the figures."""
     yield from verdict(facts, (facts["flight"], facts["centrifuge"]))
     yield said(facts)
     yield Section("Histories", (FIGURES,))
 
 
 def verdict(judged: Facts, names: tuple[str, str]) -> Blocks:
-    """The verdict on an imitation; `names` are those of flight and machine."""
+    """Section for a page, of the verdict on an imitation and its tables; `names` are those of flight and machine."""
     tables = _criteria(judged), _peaks(judged, names), _load_peaks(judged), _not_followed(judged)
     yield Section("Verdict", (Sentence(judged["verdict"], "verdict"), *tables), detail=True)
 
 
 def said(judged: Facts) -> Block:
-    """The verdict and what it rests on, in words."""
+    """Section of the verdict and the sentences that it rests on."""
     lines = Items(tuple(judged["lines"]))
     tone = "bad" if judged["accepted"] is False else "verdict"
     return Section(sentence(judged["verdict"]), (lines,), titled=True, folded="Verdict in words", tone=tone)
@@ -241,7 +243,9 @@ def _criteria(judged: Facts) -> Block:
 
 
 def _peaks(judged: Facts, names: tuple[str, str]) -> Block:
-    """Largest sizes over the whole flight, and of the load over all of the machine's run."""
+    """Table of the largest sizes over the whole flight, in flight and on the machine; loads over the machine's whole
+    run.
+    """
 
     def size(key: str) -> Column:
         return lambda pair: factor(QUANTITIES[pair["name"]][2]) * known(pair[key])

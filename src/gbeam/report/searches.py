@@ -31,7 +31,7 @@ from gbeam.results.searches import COMMANDS, GOALS
 
 
 def sensitivity(facts: Facts) -> Blocks:
-    """A table for each measure, those parameters first by which it changes most."""
+    """A table for each measure, with the parameters that change it most first."""
     for name, measure in facts["measures"].items():
         yield Section(f"{name} = {_with_unit(measure)}", (_effects(measure),), titled=True)
     methods = [each["method"] for each in next(iter(facts["measures"].values()))["parameters"]]
@@ -179,6 +179,7 @@ def placement(facts: Facts) -> Blocks:
 
 
 def _best(facts: Facts) -> Iterator[tuple[str, Value]]:
+    """Rows of the best placement: control point, largest load, mounting and smoothing, beside those now."""
     share, before, best = facts["fraction_of_length"], facts["before"], facts["options"][0]
     now = _point(before) if before else f"{1e3 * facts['current_control_point']:.2f} mm"
     length = f", {share:.4f} of the length" if share else ""
@@ -215,7 +216,7 @@ def _range(facts: Facts) -> str:
 
 
 def _measures(values: Facts, places: dict[str, str], title: str) -> Block:
-    """Every measure at every place, of flight's peak."""
+    """Table of every measure at every place, as a share of flight's peak."""
 
     def at(place: str) -> Column:
         return lambda name: _of_peak(values.get(place, {}).get(name))

@@ -171,7 +171,7 @@ def critical(facts: Facts) -> Blocks:
 
 
 def _stated(errors: Facts) -> str:
-    """Error of a critical value, as the end of a sentence."""
+    """Clause on the estimated error of a critical value; empty where there is none."""
     if errors.get("total") is not None:
         return f"; estimated error {errors_in_words(errors)}"
     shapes = errors.get("shapes")

@@ -49,7 +49,7 @@ SHORTFALLS = 2
 
 
 def of_beam(response: Response) -> Iterator[str]:
-    """Sentences on accuracy, beginning, root loads, hub, and the samples that a file keeps."""
+    """Yield sentences on accuracy, start, root loads, stress, hub, and the samples that a file keeps."""
     rigid = response.specimen is not None
     if not rigid:
         yield _accuracy(response)
@@ -125,7 +125,7 @@ _FELT = 0.01  # of flight's peak: a mismatch that bends the tip by less is no re
 
 
 def comparison_lines(comparison: Comparison) -> Iterator[str]:
-    """Acceptance, load peaks, differences, vibration, and a bound on what the mismatch field can do."""
+    """Yield sentences on acceptance, load peaks, differences, stress cycles, shock, vibration and mismatch."""
     main = comparison.main_axis
     if "." in comparison.point:
         yield f"the tip is {comparison.point}, the root the ground, the stress the largest of all beams and meshes"
@@ -170,7 +170,7 @@ def comparison_lines(comparison: Comparison) -> Iterator[str]:
 
 
 def of_system(response: SystemResponse) -> Iterator[str]:
-    """Sentences on joints, loads, energy and the error."""
+    """Yield sentences on joints, controllers, loads, stress, energy and the error."""
     histories = named_histories(response)
     size = max((float(np.abs(history).max()) for history, *_ in histories.values()), default=0.0)
     at_end = [float(history[-1]) for history, *_ in histories.values()]

@@ -41,7 +41,7 @@ def terminal_width() -> int:
 
 
 def known(value: float | None) -> float:
-    """Return a number of JSON, which has null for what is none."""
+    """Return a number of JSON as a float: NaN for null."""
     return math.nan if value is None else float(value)
 
 

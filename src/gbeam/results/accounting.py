@@ -222,6 +222,7 @@ def verdict(
 
 
 def _largest(flight: str, machine: str, load: PeakPair) -> str:
+    """Clause on the largest load anywhere on the specimen, in flight and on the machine."""
     extremes = (
         f"{name} {in_g(size)}{f' at {place}' if place else ''} at {time:.2f} s"
         for name, size, place, time in (
@@ -234,6 +235,7 @@ def _largest(flight: str, machine: str, load: PeakPair) -> str:
 
 
 def _tip(flight: str, machine: str, tip: PeakPair, within: float, point: str) -> str:
+    """Clause on the peaks of the tip, or of another point; reproduced if they differ by at most the share `within`."""
     deflection = metres(tip.machine)
     if not math.isfinite(tip.ratio):
         return f"{point}: not moved by {flight}, by up to {deflection} on {machine}"
@@ -245,6 +247,7 @@ def _tip(flight: str, machine: str, tip: PeakPair, within: float, point: str) ->
 
 
 def _load_peaks(accounting: Accounting) -> str:
+    """Clause on how many load peaks are reproduced, and how well."""
     count = len(accounting.peaks)
     above = f" above {in_g(accounting.idle)}" if accounting.idle else ""
     if not count:
@@ -264,6 +267,7 @@ def _missed(accounting: Accounting, main: LoadPeak | None) -> Iterator[str]:
 
 
 def _time(accounting: Accounting) -> str:
+    """Clause on the share of the time that is followed, and why the rest is not."""
     followed = f"{100 * accounting.followed_share:.0f} % of the time followed within {against(accounting)}"
     shares = accounting.shares
     if len(shares) == 1:

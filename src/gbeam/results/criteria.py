@@ -182,7 +182,7 @@ class Rule:
         return max((value for value in values if not math.isnan(value[0])), key=use, default=values[0])
 
     def written(self, value: float) -> str:
-        """Return a value in its unit."""
+        """Write a value with its unit: dB of a level, % of a share, none of a ratio."""
         if not math.isfinite(value):
             return "unknown"
         if self.kind == "level":
@@ -190,7 +190,7 @@ class Rule:
         return f"{value:.3g}" if self.kind == "ratio" else f"{100 * value:.3g} %"
 
     def limit_written(self, limit: Limit) -> str:
-        """Return a limit in its unit."""
+        """Write a limit, or the least and the largest value, with the unit."""
         if not isinstance(limit, tuple):
             if not self.band:
                 return f"{'at least' if self.kind == 'least' else 'limit'} {self.written(limit)}"

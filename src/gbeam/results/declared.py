@@ -148,7 +148,7 @@ def declared(
     key: str | EllipsisType | None = ...,
     optional: bool = False,
 ) -> Callable[[Callable[[Any], _T]], Declared[_T]]:
-    """Make a declared property of a getter."""
+    """Return a decorator that makes a declared property of a getter; see :func:`quantity`."""
     dim_names, json_key = _placed(dims, key)
     return lambda getter: Declared(getter, Declaration(words, unit, dim_names, role, name, json_key, optional=optional))
 

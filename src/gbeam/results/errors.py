@@ -38,7 +38,7 @@ class ErrorEstimate(Part):
 
     @property
     def slender(self) -> float:
-        """All but the beam theory's: against an exact slender beam."""
+        """Total error but for that of the beam theory: against an exact slender beam."""
         return self.total - (0.0 if math.isnan(self.beam_theory) else self.beam_theory)
 
     def adding(self, *, beam_theory: float = math.nan, mesh: float = math.nan) -> ErrorEstimate:
@@ -152,7 +152,7 @@ class FrequencyErrors(Part):
 
     @property
     def slender(self) -> Floats:
-        """All but the beam theory's: against an exact slender beam."""
+        """Total errors but for those of the beam theory: against an exact slender beam."""
         return self.total - np.nan_to_num(self.beam_theory)
 
     @property

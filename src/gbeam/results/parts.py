@@ -292,7 +292,7 @@ def yield_margin(yield_strength: float, stress: Floats) -> Floats:
 
 
 def margin_words(margin: float) -> str:
-    """Say a margin on yield."""
+    """Write a margin on yield, in capitals where it is negative."""
     if margin == math.inf:
         return "no stress to yield by"
     return f"margin on yield {margin:.3g}" if margin >= 0 else f"ABOVE YIELD: margin {margin:.3g}"

@@ -17,7 +17,7 @@ MEASURES = get_args(Measure)
 
 
 def degrees(turn: Sequence[float]) -> str:
-    """A rotation vector in words."""
+    """Write a rotation vector, rad, in degrees."""
     return "({}) deg".format(", ".join(f"{math.degrees(angle):.4g}" for angle in turn))
 
 

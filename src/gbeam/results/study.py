@@ -248,7 +248,7 @@ class Reproduction(Part):
 
     @property
     def reproduced(self) -> bool:
-        """True if no difference is larger."""
+        """True if no difference is larger than the tolerance."""
         return all(each.size <= self.tolerance for each in self.differences)
 
     def __repr__(self) -> str:
@@ -260,7 +260,7 @@ class Reproduction(Part):
         return "\n  ".join(lines)
 
     def circumstances(self) -> list[str]:
-        """Changes since then, and defaults of then, in words."""
+        """Lines on what has changed since the file was written, and on its version's defaults that were read."""
         lines = [f"{name} was {then}, is {now}" for name, (then, now) in self.changed.items()]
         if self.restated:
             lines.insert(0, f"besides {len(self.restated)} stated errors, words and times of equal peaks are otherwise")

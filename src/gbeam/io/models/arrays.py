@@ -38,7 +38,7 @@ class Contents(TypedDict, total=False):
 
 
 def sparse_parts(matrix: Any) -> dict[str, Any]:
-    """A sparse matrix in parts."""
+    """Return a sparse matrix by its values, rows, columns and shape."""
     entries = matrix.tocoo()
     rows, columns = entries.coords
     return {"values": entries.data, "rows": rows, "columns": columns, "shape": list(matrix.shape)}
@@ -86,7 +86,7 @@ def read(path: str) -> Contents:
 
 
 def everything(path: str) -> dict[str, Any]:
-    """Everything in a file by its name, a structure's fields by theirs; what has none by that of the file."""
+    """Return what a file holds by name, with the fields of structures; what has no name by that of the file."""
     from scipy.io import loadmat, mmread
     from scipy.sparse import load_npz
 

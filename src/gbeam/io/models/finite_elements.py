@@ -167,7 +167,7 @@ def _substructure(lines: list[str]) -> Contents:
 
 
 def _blocks(lines: list[str]) -> Iterator[tuple[str, list[str]]]:
-    """Headings and the lines after them."""
+    """Yield headings, in capitals, with the lines below each; first those before any heading."""
     head: str = ""
     body: list[str] = []
     for line in lines:

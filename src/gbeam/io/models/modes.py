@@ -82,7 +82,7 @@ def _moves(each: dict[str, Any]) -> bool:
 
 
 def _as_mode(each: dict[str, Any]) -> dict[str, Any]:
-    """A data set 2414 by the names of those of a data set 55."""
+    """Return a data set 2414 with the keys of a data set 55."""
     shape = np.array(each["data_at_node"], dtype=float)
     if each["data_type"] in OF_COMPLEX:
         shape = shape[:, ::2] + 1j * shape[:, 1::2]

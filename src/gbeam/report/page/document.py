@@ -196,7 +196,7 @@ def _hash(text: str) -> str:
 
 
 def html_of(result: Result) -> str:
-    """Return the inside of a result's page, without its figures and the viewer."""
+    """Return a result as HTML for a notebook: the blocks of its page, without figures and viewer."""
     facts = json.loads(facts_text(result))
     blocks = drawn_blocks([*warnings_of(facts), *blocks_of(str(facts["form"]["kind"]), facts)], "", "")
     title, state = facts.get("title", ""), badge(facts.get("state", facts["outcome"]))

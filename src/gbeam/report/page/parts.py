@@ -23,7 +23,7 @@ from gbeam.results.result import Floats
 
 
 def escaped(text: object) -> str:
-    """Text as HTML shows it, whatever is in it."""
+    """Return text as HTML shows it, whatever characters it has."""
     return html.escape(printable(str(text)))
 
 
@@ -71,7 +71,7 @@ def _drawn_block(block: Block, viewer: str, figures: str, level: int) -> str:
 
 
 def table(block: Table) -> str:
-    """A table whose columns of numbers stand to the right; nothing where it has no row."""
+    """Return a table as HTML, columns of numbers flush right; empty where it has no row."""
     if not block.rows:
         return ""
     numeric = [block.numeric(k) for k in range(len(block.heads))]
@@ -136,11 +136,11 @@ class Numbers:
 
     @property
     def array(self) -> np.ndarray[Any, np.dtype[np.float32]]:
-        """All of them."""
+        """All arrays one after the other, flat."""
         return np.concatenate(self._parts) if self._parts else np.empty(0, dtype="<f4")
 
     def encoded(self) -> str:
-        """All of them in base64."""
+        """All arrays one after the other, in base64."""
         return base64.b64encode(self.array.tobytes()).decode("ascii")
 
 
@@ -206,6 +206,7 @@ def _series(panel: Panel) -> Iterator[tuple[dict[str, Any], Floats, Floats]]:
 
 
 def _look(line: Line, quantity: str) -> dict[str, Any]:
+    """Look of a line for the page's script: label, colour, breadth, dash and points."""
     look: dict[str, Any] = {"label": line.label.removeprefix("_") or quantity, "colour": min(line.colour, REFERENCE)}
     if line.broad:
         look["broad"] = True

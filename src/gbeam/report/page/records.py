@@ -285,6 +285,7 @@ def _indices(facts: Facts) -> Indices:
 
 
 def _fit(facts: Facts, v: Facts) -> Facts:
+    """Fields of a Fit: columns and abscissa from variables."""
     abscissa, names = "time" if "time" in v else "mode", ("measured", "fitted", "computed_before")
     columns = [
         read(FittedColumn, column, {key: v[key][k] for key in names}, name=name)
@@ -294,6 +295,7 @@ def _fit(facts: Facts, v: Facts) -> Facts:
 
 
 def _shaped(facts: Facts, v: Facts) -> Facts:
+    """Fields of a ShapedCommand: goal and runs."""
     ((goal, size),) = facts["goal"].items()
     runs = []
     for k, (name, command) in enumerate(facts["commands"].items()):

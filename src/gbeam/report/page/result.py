@@ -98,7 +98,7 @@ def _page_of(file: Path) -> str:
 
 
 def file_in(folder: Path) -> Path:
-    """File of the only result in a folder."""
+    """Return the file of the only result in a folder; InputError if there is none, or several."""
     candidates = [folder / "result.nc"] if (folder / "result.nc").is_file() else sorted(folder.glob("*.json"))
     if len(candidates) != 1:
         named = ", ".join(each.name for each in candidates[:4])

@@ -287,7 +287,7 @@ def shapes(modes: Modes, variables: Variables, numbers: Numbers) -> dict[str, An
 
 
 def _of_surface(k: int, label: str, surface: dict[str, Any], numbers: Numbers) -> dict[str, Any]:
-    """One mode of a solid's surface."""
+    """Mode k of a solid's surface as a motion of one period."""
     view = _around(surface["vertices"], numbers)
     moved = _in_mode(surface, k)
     amplitude = _amplitude(view["length"], moved, 0.0)
@@ -305,7 +305,7 @@ def _complex(v: Mapping[str, Any], name: str) -> Any:
 
 
 def shapes_of_system(facts: Mapping[str, Any], v: Variables, numbers: Numbers) -> dict[str, Any]:
-    """Every mode of a system as a motion of a period."""
+    """Return every mode of a system as a motion of one period."""
     rows = enumerate(zip(facts["modes"], v["share"], strict=True), 1)
     labels = [f"{i}: {number(each['frequency'])} Hz, {v['body'][share.argmax()]}" for i, (each, share) in rows]
     beams, motions = [body for body in v["body"] if f"{body}_outline" in v], []
