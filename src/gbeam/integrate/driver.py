@@ -16,7 +16,7 @@ from gbeam.integrate.steps import Corners, Steps, fitted
 from gbeam.integrate.windows import windows
 
 _LINEAR_CHUNK = 500  # steps whose maps are found at once: as many as stay in a cache
-Piece = tuple[Any, ...]  # q, q̇ and perhaps q̈ (k, n), and which of the steps were solved (k,)
+Piece = tuple[Any, ...]  # q, q̇ and, unless they are computed later, q̈ (k, n), and flags of steps that were solved (k,)
 
 
 def integrate(
@@ -49,7 +49,7 @@ def through(
     stop: Callable[[Floats], int | None] | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Trajectory:
-    """Integrate by given steps; the result has the ends of those that are kept."""
+    """Integrate by `steps` as :func:`integrate` does; the result has the start and the ends of the kept ones."""
     run = _linear if isinstance(equations, LinearEquations) else _nonlinear
     time = np.append(steps.begin[:1], steps.end[steps.kept])
     if not np.size(q):
@@ -61,9 +61,9 @@ def through(
             good = solved & np.isfinite(piece[-1]).all(axis=1)
             valid = len(good) if good.all() else int(np.argmin(good))
             converged = valid == len(good)
-            last = None if stop is None or valid == 0 or not pieces else stop(piece[0][:valid])
-            stopped = last is not None
-            kept = valid if last is None else last
+            stop_after = None if stop is None or valid == 0 or not pieces else stop(piece[0][:valid])
+            stopped = stop_after is not None
+            kept = valid if stop_after is None else stop_after
             # The initial state is kept even where it has no acceleration.
             piece = [x[: kept if pieces else 1] for x in piece]
         pieces.append(tuple(piece))
@@ -72,14 +72,15 @@ def through(
             progress(done / (len(time) - 1))
         if stopped or not converged:
             break
-    q, qd, *qdd = (namespace(part[0]).concatenate(part) for part in zip(*pieces, strict=True))
+    q, qd, *qdd = (namespace(parts[0]).concatenate(parts) for parts in zip(*pieces, strict=True))
     known = qdd[0] if qdd else Demanded(equations, steps, q, qd)
     return Trajectory(time[: len(q)], q, qd, known, converged, stopped)
 
 
 def _linear(equations: LinearEquations, scheme: Scheme, q: Any, qd: Any, steps: Steps) -> Iterator[Piece]:
     z, state = linear.start(equations, scheme, steps, q, qd)
-    size, fit = len(steps) if is_jax(state[-1]) else _LINEAR_CHUNK, added(equations, scheme, steps.longest)
+    size = len(steps) if is_jax(state[-1]) else _LINEAR_CHUNK
+    fit = added(equations, scheme, steps.longest)
     yield *(namespace(state[-1]).asarray(x)[None] for x in state), np.array([True])
     for done in range(0, len(steps), size):
         z, piece = linear.chunk(equations, scheme, z, steps[done : done + size], fit)
@@ -97,5 +98,5 @@ def _traced(equations: NonlinearEquations, scheme: Scheme, q: Any, qd: Any, step
     from gbeam.integrate.traced import traced
 
     run = traced(equations, scheme, q, qd, steps)
-    yield *(each[:1] for each in run), np.array([True])
-    yield *(each[1:][steps.kept] for each in run), np.ones(np.count_nonzero(steps.kept), dtype=bool)
+    yield *(history[:1] for history in run), np.array([True])
+    yield *(history[1:][steps.kept] for history in run), np.ones(np.count_nonzero(steps.kept), dtype=bool)

@@ -34,11 +34,11 @@ class LinearTerms:
         return self.velocity, self.stiffness, self.force
 
     def at(self, features: Array) -> tuple[Array, Array, Array]:
-        """C, K (..., n, n) and F (..., n) at features (..., k), of which the last may be left out."""
+        """C, K (..., n, n) and F (..., n) at features (..., k); where there are fewer than terms, the last are zero."""
         xp, count = namespace(features, self.force), features.shape[-1]
-        flat = (features @ xp.reshape(each[:count], (count, -1)) for each in self.each)
+        flat = (features @ xp.reshape(terms[:count], (count, -1)) for terms in self.each)
         velocity, stiffness, force = (
-            xp.reshape(part, (*part.shape[:-1], *each.shape[1:])) for part, each in zip(flat, self.each, strict=True)
+            xp.reshape(sums, (*sums.shape[:-1], *terms.shape[1:])) for sums, terms in zip(flat, self.each, strict=True)
         )
         return velocity, stiffness, force
 
@@ -65,9 +65,9 @@ class LinearEquations:
     def accelerations(self, q: Array, qd: Array, inputs: Any) -> Array:
         """q̈ (t, n) demanded at q, q̇ (t, n) and inputs (t, ...)."""
         pieces = []
-        for some_q, some_qd, part in _pieces(q.shape[1], q, qd, inputs):
-            c, k, f = self.matrices(part)
-            force = f - (k @ some_q[..., None] + c @ some_qd[..., None])[..., 0]
+        for q_piece, qd_piece, inputs_piece in _pieces(q.shape[1], q, qd, inputs):
+            c, k, f = self.matrices(inputs_piece)
+            force = f - (k @ q_piece[..., None] + c @ qd_piece[..., None])[..., 0]
             pieces.append(solved(self.mass, force.T).T)
         return namespace(*pieces).concatenate(pieces)
 
@@ -109,20 +109,20 @@ def exact(residual: Any) -> Any:
 
 @dataclass(frozen=True)
 class Trajectory:
-    """Coordinates (t, n) over time (t,), as far as the integration got before it failed or was stopped; accelerations
-    of which a scheme has none at the ends of steps are found where they are asked for.
+    """Coordinates q, qd (t, n) over time (t,), as far as the integration got before it failed or was stopped; where the
+    scheme has no accelerations at the ends of steps, they are computed when they are asked for.
     """
 
     time: Floats
     q: Any
     qd: Any
-    known: Any  # q̈, or a function that finds it at some steps (k,)
+    known: Any  # q̈ (t, n), or a function that computes it at times of indices (k,)
     converged: bool = True
     stopped: bool = False
 
     @property
     def whole(self) -> bool:
-        """True if it came to its end."""
+        """True if the integration reached the end of its steps."""
         return self.converged and not self.stopped
 
     @property
@@ -131,10 +131,10 @@ class Trajectory:
         return self.known(np.arange(len(self.time))) if callable(self.known) else self.known
 
     def at(self, steps: Any) -> Trajectory:
-        """The trajectory at some of its steps."""
+        """The trajectory at the times that `steps`, indices or a slice, chooses."""
         known, index = self.known, np.arange(len(self.time))[steps]
-        some = (lambda each: known(index[each])) if callable(known) else known[steps]
-        return replace(self, time=self.time[steps], q=self.q[steps], qd=self.qd[steps], known=some)
+        chosen = (lambda part: known(index[part])) if callable(known) else known[steps]
+        return replace(self, time=self.time[steps], q=self.q[steps], qd=self.qd[steps], known=chosen)
 
 
 AT_ONCE = 5_000  # numbers of the states that are evaluated at once: of more, all sections of beams fill memory
@@ -143,11 +143,11 @@ FEWEST = 50  # states evaluated at once: of fewer, each call costs more than its
 
 
 def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
-    """Derivatives K, C, M (3, t, r, n) of a function (t, r) of the state by q, q̇, q̈ (t, n) at inputs (t, ...)."""
+    """Derivatives (3, t, r, n) of a function (t, r) by q, q̇, q̈ (t, n), of a residual K, C, M, at inputs (t, ...)."""
     n, pieces = q.shape[1], []
     steps = 1j * STEP * np.eye(3 * n).reshape(3 * n, 1, 3, n)
-    for *at, part in _pieces(n**2, q, qd, qdd, inputs):
-        values = residual(*(each + steps[:, :, k] for k, each in enumerate(at)), part)
+    for *state, inputs_piece in _pieces(n**2, q, qd, qdd, inputs):
+        values = residual(*(value + steps[:, :, k] for k, value in enumerate(state)), inputs_piece)
         pieces.append(values.imag / STEP)
     return np.concatenate(pieces, axis=1).reshape(3, n, len(q), pieces[0].shape[-1]).transpose(0, 2, 3, 1)
 
@@ -155,9 +155,9 @@ def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array
 def accelerations(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
     """q̈ (t, n) that equations linear in q̈ demand at q, q̇ (t, n) and inputs (t, ...); NaN where M is singular."""
     pieces, n = [], q.shape[1]
-    units = HUGE * np.eye(n + 1, n, k=-1)[:, None]  # none, and each alone
-    for some_q, some_qd, part in _pieces(n, q, qd, inputs):
-        forces = residual(some_q, some_qd, np.broadcast_to(units, (n + 1, *some_q.shape)), part)
+    units = HUGE * np.eye(n + 1, n, k=-1)[:, None]  # no acceleration, and one of each coordinate alone
+    for q_piece, qd_piece, inputs_piece in _pieces(n, q, qd, inputs):
+        forces = residual(q_piece, qd_piece, np.broadcast_to(units, (n + 1, *q_piece.shape)), inputs_piece)
         pieces.append(solved(forces[1:].transpose(1, 2, 0) / HUGE, -forces[0][..., None])[..., 0])
     return np.concatenate(pieces)
 
@@ -176,21 +176,21 @@ class Demanded:
             self.held = np.concatenate([0 * held[:1], held[steps.kept]])
         self.values, self.computed = np.zeros(q.shape), np.zeros(len(q), dtype=bool)
 
-    def __call__(self, some: Any) -> Any:
-        """Accelerations (k, n) at some of the times (k,)."""
-        new = np.unique(some[~self.computed[some]])
+    def __call__(self, index: Any) -> Any:
+        """Accelerations (k, n) at the times of indices (k,)."""
+        new = np.unique(index[~self.computed[index]])
         if len(new):
             inputs = self.equations.drive(self.time[new])
             if self.held is not None:
                 inputs = self.equations.controllers.driven(inputs, self.held[new])
             self.values[new] = self.equations.accelerations(self.q[new], self.qd[new], inputs)
             self.computed[new] = True
-        return self.values[some]
+        return self.values[index]
 
 
-def _pieces(each: int, *parts: Any) -> list[Any]:
-    """Arrays and records (t, ...) in pieces that are evaluated at once, of so many numbers a time."""
-    count, size = len(parts[0]), max(FEWEST, AT_ONCE // max(each, 1))
+def _pieces(numbers: int, *parts: Any) -> list[Any]:
+    """Arrays and records (t, ...) cut along time, to fit memory at so many numbers a time; JAX's are whole."""
+    count, size = len(parts[0]), max(FEWEST, AT_ONCE // max(numbers, 1))
     if count <= size or is_jax(parts[0]):
         return [parts]
     return [each_leaf(lambda leaf: leaf[first : first + size], parts) for first in range(0, count, size)]  # noqa: B023

@@ -42,22 +42,22 @@ def chunk(
     steps: Steps,
     added: tuple[Array | float, Array | float] = (0.0, 0.0),
 ) -> tuple[Array, tuple[Array, ...]]:
-    """Take steps from z (m, n) with terms `added` to M and C; returns the next z, and kept q, q̇ and, where the scheme
-    has them or JAX traces them, q̈ (k, n).
+    """Take steps from z (m, n) with terms `added` to M and C; returns the next z, and q, q̇ and, where the scheme has
+    them or JAX traces them, q̈ (k, n) at the ends of kept steps.
     """
     t = scheme.tableau(steps.length[:1] if steps.equal else steps.length)
     count, stages, (m, n) = len(steps), len(scheme.offsets), z.shape
     times = np.stack([steps.times(offset) for offset in scheme.offsets], axis=1)
-    inputs, which = equations.drive(times.ravel()), slice(None)
+    inputs, which = equations.drive(times.ravel()), slice(None)  # `which` map each step has
     if steps.equal and not holds_jax(inputs):
         inputs, which = _distinct(inputs, count)
-    at = equations.matrices(inputs)
-    xp, mass = namespace(equations.mass, z, *at), equations.mass + added[0]
-    c, k, f = (xp.reshape(each, (-1, stages, *each.shape[1:])) for each in at)
-    at = c + added[1], k, f
+    matrices = equations.matrices(inputs)
+    xp, mass = namespace(equations.mass, z, *matrices), equations.mass + added[0]
+    c, k, f = (xp.reshape(values, (-1, stages, *values.shape[1:])) for values in matrices)
+    c = c + added[1]
     anew = scheme.ends and not steps.equal
-    groups = [np.arange(n)] if xp is not np or anew else _uncoupled(mass, *at)
-    answers = [_stages(xp, t, mass, *at, group) for group in groups]
+    groups = [np.arange(n)] if xp is not np or anew else _uncoupled(mass, c, k)
+    answers = [_stages(xp, t, mass, c, k, f, group) for group in groups]
     maps = answers[0][1] if len(groups) == 1 else np.zeros((len(c), m, n, m * n + 1))
     if anew:
         ends = _sum(t.end_z, _unit(m, n)) + _sum(t.end_x, answers[0][0])
@@ -66,15 +66,15 @@ def chunk(
         if len(groups) > 1:
             columns = np.append((n * np.arange(m)[:, None] + group).ravel(), m * n)
             maps[:, :, group[:, None], columns] = part
-    every = recurrence(xp, xp.reshape(maps, (-1, m * n, m * n + 1))[which], xp.reshape(z, (-1,)))
-    states, last, parts = xp.reshape(every[:-1], (count, m, n)), xp.reshape(every[-1], (m, n)), []
+    flat_states = recurrence(xp, xp.reshape(maps, (-1, m * n, m * n + 1))[which], xp.reshape(z, (-1,)))
+    states, last, parts = xp.reshape(flat_states[:-1], (count, m, n)), xp.reshape(flat_states[-1], (m, n)), []
     for group, (x, _) in zip(groups, answers, strict=True):
         state = xp.reshape(states if len(groups) == 1 else states[:, :, group], (count, -1, 1))
         flat = xp.reshape(x, (len(c), stages * len(group), -1))[which]
         parts.append(xp.reshape((flat[..., :-1] @ state)[..., 0] + flat[..., -1], (count, stages, -1)))
     x = parts[0] if len(groups) == 1 else np.concatenate(parts, axis=-1)[..., np.argsort(np.concatenate(groups))]
     ends = _sum(t.end_z, states) + _sum(t.end_x, x)
-    kept = tuple(each if steps.kept.all() else each[steps.kept] for each in (ends[:, 0], ends[:, 1], x[:, -1]))
+    kept = tuple(values if steps.kept.all() else values[steps.kept] for values in (ends[:, 0], ends[:, 1], x[:, -1]))
     if xp is np and not scheme.ends:
         return last, kept[:2]
     q, qd, qdd = kept
@@ -90,8 +90,8 @@ def chunk(
 
 
 def _distinct(inputs: Any, count: int) -> tuple[Any, Array]:
-    """Inputs of the steps, of `count`, in which they are not those of the step before, and which of these each has: a
-    base at rest, or turning steadily, has one map for all steps.
+    """Inputs of the steps, of `count`, at which they are not those of the step before, and indices (count,) into them
+    for every step: a base at rest, or turning steadily, has one map for all steps.
     """
     leaves = [leaf.reshape(count, -1) for leaf in leaves_of(inputs)]
     changed = np.append(True, np.any([(leaf[1:] != leaf[:-1]).any(axis=1) for leaf in leaves], axis=0))
@@ -102,13 +102,13 @@ def _distinct(inputs: Any, count: int) -> tuple[Any, Array]:
     return each_leaf(chosen, inputs), np.cumsum(changed) - 1
 
 
-def _uncoupled(mass: Array, *at: Array) -> list[Array]:
+def _uncoupled(mass: Array, c: Array, k: Array) -> list[Array]:
     """Groups of coordinates that no matrix couples, such as the directions of a beam that does not turn."""
     coupled = (mass != 0) | np.eye(len(mass), dtype=bool)
-    for each in at[:2]:
-        coupled = coupled | each.any(axis=(0, 1))
+    for matrices in (c, k):
+        coupled = coupled | matrices.any(axis=(0, 1))
     coupled = coupled | coupled.T
-    for _ in range(len(mass).bit_length()):  # twice as far each time
+    for _ in range(len(mass).bit_length()):  # chains of couplings, twice as long each time
         coupled = coupled @ coupled
     return [np.flatnonzero(row) for i, row in enumerate(coupled) if row.argmax() == i]
 
@@ -119,7 +119,7 @@ def _unit(m: int, n: int) -> Array:
 
 
 def _stages(xp: Any, t: Tableau, mass: Array, c: Array, k: Array, f: Array, group: Array) -> tuple[Array, Array]:
-    """Affine maps of the own part of z to the stages' x, (t, stages, n, m n + 1), and to the next z, (t, m, n, ...)."""
+    """Affine maps of a group's part of z to its x at stages, (t, s, n, m n + 1), and to its next z, (t, m, n, ...)."""
     (*_, stages, m), n = t.w_q.shape, len(group)
     if n < len(mass):
         pair = np.ix_(group, group)
@@ -132,16 +132,18 @@ def _stages(xp: Any, t: Tableau, mass: Array, c: Array, k: Array, f: Array, grou
 
 
 def _started_anew(equations: LinearEquations, scheme: Scheme, maps: Array, ends: Array, steps: Steps) -> Array:
-    """Maps (t, m, n, m n + 1) to the next z; where the scheme starts anew, by q, q̇ and the equations' accelerations."""
-    some = np.flatnonzero(steps.anew)
-    if not some.size:
+    """`maps` (t, m, n, m n + 1) to the next z, replaced after steps where the scheme starts anew: from q and q̇ at the
+    `ends` of these, (t, 2, n, m n + 1), and the accelerations that the equations demand.
+    """
+    anew = np.flatnonzero(steps.anew)
+    if not anew.size:
         return maps
-    c, k, f = equations.matrices(equations.drive(steps.resume[some]))
-    q, qd = ends[some, 0], ends[some, 1]
+    c, k, f = equations.matrices(equations.drive(steps.resume[anew]))
+    q, qd = ends[anew, 0], ends[anew, 1]
     force = -(k @ q + c @ qd)
     force[..., -1] += f
     qdd = solved(equations.mass, force)
-    maps[some] = _sum(scheme.tableau(steps.following[some]).first, np.stack([q, qd, qdd], axis=1))
+    maps[anew] = _sum(scheme.tableau(steps.following[anew]).first, np.stack([q, qd, qdd], axis=1))
     return maps
 
 
@@ -150,13 +152,13 @@ def recurrence(xp: Any, maps: Array, z: Array) -> Array:
     if xp is np:
         states = np.ones((len(maps) + 1, z.size + 1))
         states[0, :-1] = z
-        for one, before, after in zip(maps, states[:-1], states[1:, :-1], strict=True):
-            np.dot(one, before, out=after)
+        for of_step, before, after in zip(maps, states[:-1], states[1:, :-1], strict=True):
+            np.dot(of_step, before, out=after)
         return states[:, :-1]
     import jax
 
-    def step(z: Array, one: Array) -> tuple[Array, Array]:
-        return one[:, :-1] @ z + one[:, -1], z
+    def step(z: Array, of_step: Array) -> tuple[Array, Array]:
+        return of_step[:, :-1] @ z + of_step[:, -1], z
 
     last, before = jax.lax.scan(step, z, maps)
     return xp.concatenate([before, last[None]])

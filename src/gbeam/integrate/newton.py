@@ -28,8 +28,8 @@ _AT_ONCE = 20  # chunks whose inputs are computed at once
 
 @dataclass(frozen=True)
 class Chunk:
-    """Steps of one compiled call in groups; `last` (groups,) is −1 where a group only fills, `inputs` (groups, steps,
-    s, ...).
+    """Steps of one compiled call in groups of equal size, filled up by repetition: `last` (groups,) is the index of a
+    group's last step that counts, −1 of none; `inputs` (groups, steps, s, ...), `at_ends` without the stages.
     """
 
     steps: Steps
@@ -40,17 +40,17 @@ class Chunk:
 
     @cached_property
     def inside(self) -> Any:
-        """Flags of the steps that are no fillings."""
+        """Flags (steps,) of the steps that count."""
         return (np.arange(len(self.steps) // len(self.last)) <= self.last[:, None]).ravel()
 
     @property
     def count(self) -> int:
-        """Groups that are not of fillings."""
+        """Number of groups with a step that counts."""
         return int(np.count_nonzero(self.last >= 0))
 
     @property
     def end(self) -> Steps:
-        """The last step that is no filling."""
+        """The last step that counts."""
         return self.steps[np.flatnonzero(self.inside)[-1]]
 
 
@@ -66,17 +66,17 @@ class Stretch:
 
 
 def stretches(scheme: Scheme, steps: Steps, size: int) -> Iterator[Stretch]:
-    """Steps in groups of `size`, some chunks at a time."""
-    all_groups = list(_groups(steps, size, restart=scheme.ends))
-    for some in (all_groups[k : k + _AT_ONCE] for k in range(0, len(all_groups), _AT_ONCE)):
-        index = np.concatenate([each for each, _ in some])
+    """Divide steps into groups of `size`, those of at most `_AT_ONCE` chunks at a time."""
+    all_chunks = list(_groups(steps, size, restart=scheme.ends))
+    for some_chunks in (all_chunks[k : k + _AT_ONCE] for k in range(0, len(all_chunks), _AT_ONCE)):
+        index = np.concatenate([groups for groups, _ in some_chunks])
         chosen, tableau = steps[index.ravel()], scheme.tableau(steps.length[index[:, 0]])
         times = [chosen.times(offset) for offset in scheme.offsets] + ([] if scheme.ends else [chosen.end])
-        yield Stretch(chosen, index.shape, [last for _, last in some], tableau, np.stack(times, axis=1))
+        yield Stretch(chosen, index.shape, [last for _, last in some_chunks], tableau, np.stack(times, axis=1))
 
 
 def chunks(drive: Drive, scheme: Scheme, of: Iterable[Stretch]) -> Iterator[Chunk]:
-    """The chunks with what drives them, which is computed for many at once."""
+    """Chunks of stretches with their inputs from `drive`, which is evaluated once a stretch."""
     import jax
 
     stages = len(scheme.offsets)
@@ -94,7 +94,9 @@ def chunks(drive: Drive, scheme: Scheme, of: Iterable[Stretch]) -> Iterator[Chun
 
 
 def _groups(steps: Steps, size: int, *, restart: bool) -> Iterator[tuple[Any, Any]]:
-    """Indices (groups, size) of the steps of each chunk, of one length a group, and the last real group's (groups,)."""
+    """Of each chunk, indices (groups, size) of its steps, of one length a group, and of each group's last step that
+    counts (groups,): −1 of none; with `restart` a chunk ends where the scheme starts anew.
+    """
     ends = np.append(np.flatnonzero(steps.anew[:-1]), len(steps) - 1)
     starts = [np.arange(a, b + 1, size) for a, b in zip(np.append(0, ends[:-1] + 1), ends, strict=True)]
     spans = [np.stack([first, np.full(len(first), end)]) for first, end in zip(starts, ends, strict=True)]
@@ -135,14 +137,14 @@ def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> tuple
 
 
 def _inverse_jacobian(residual: Any, t: Tableau, z: Array, inputs: Any, x: Array) -> Array:
-    """Inverse Jacobian (s n, s n) of a step, the residual's derivatives being those between its stages."""
+    """Inverse Jacobian (s n, s n) of a step, by the residual's derivatives at the mean of its stages."""
     q, qd, qdd = (jnp.mean(values, axis=0) for values in (t.w_q @ z + t.c_q @ x, t.w_v @ z + t.c_v @ x, x))
     k, c, m = slopes(residual, q, qd, qdd, jax.tree.map(lambda leaf: jnp.mean(leaf, axis=0), inputs))
     return jnp.linalg.inv(jnp.kron(t.c_q, k) + jnp.kron(t.c_v, c) + jnp.kron(jnp.eye(len(x)), m))
 
 
 def _size(correction: Array, x: Array) -> Array:
-    # An error in q̈ matters as it moves q: measure against what the step itself can move.
+    """Largest correction as a share of the largest acceleration of the step, as an error in q̈ matters by moving q."""
     return jnp.max(jnp.abs(correction)) / (LEAST + jnp.max(jnp.abs(x)))
 
 
@@ -152,7 +154,7 @@ def _left(last: Array, before: Array) -> Array:
 
 
 def _guess(t: Tableau, carry: Carry) -> Array:
-    """Accelerations of the stages on the line through the last two that are known."""
+    """First guess of a step's accelerations (s, n), extrapolated linearly: from the last two steps, or two stages."""
     x = carry.x
     if len(x) == 1:
         return 2 * x - carry.before
@@ -187,7 +189,7 @@ def steps(
     count: Any,
 ) -> Any:
     """Take `count` groups of steps, inputs (groups, steps, s, ...), one Jacobian a group; returns the carry, q, q̇, q̈
-    (groups · steps, n) and each step's relative error; groups after `last` are fillings.
+    (groups · steps, n) and each step's relative error. `last` (groups,) is each group's last step that counts.
     """
     stages, n = carry.x.shape
 
@@ -197,7 +199,7 @@ def steps(
         inverse = _inverse_jacobian(residual, t, carry.z, first, _guess(t, carry))
 
         def step(carry: Carry, at: Any) -> Any:
-            def far(state: tuple[Array, ...]) -> Array:
+            def unconverged(state: tuple[Array, ...]) -> Array:
                 _, size, before, tries = state
                 return (tries < FEWEST) | (tries < MOST) & (_left(size, before) > NEAR)
 
@@ -207,7 +209,7 @@ def steps(
                 x = x - correction
                 return x, _size(correction, x), size, tries + 1
 
-            x, size, before, _ = jax.lax.while_loop(far, corrected, (_guess(t, carry), jnp.inf, jnp.inf, 0))
+            x, size, before, _ = jax.lax.while_loop(unconverged, corrected, (_guess(t, carry), jnp.inf, jnp.inf, 0))
             after, q, qd = _next(t, carry, x)
             return after, (q, qd, x[-1], _left(size, before))
 
@@ -216,8 +218,8 @@ def steps(
             q, qd, qdd, _ = (values[end] for values in history)
             filled = end < len(history[0]) - 1
             guess = jnp.broadcast_to(qdd, (stages, n))
-            other = Carry(jnp.stack([q, qd]), guess, guess)
-            after = jax.tree.map(lambda a, b: jnp.where(filled, a, b), other, after)
+            from_last = Carry(jnp.stack([q, qd]), guess, guess)
+            after = jax.tree.map(lambda a, b: jnp.where(filled, a, b), from_last, after)
         q, qd, qdd, left = history
         return after, (q, qd, qdd if group_ends is None else accelerations(residual, q, qd, group_ends), left)
 
@@ -227,15 +229,15 @@ def steps(
 
 
 def _first(group: Any, carry: Carry, by_group: Any, count: Any, shape: tuple[int, ...]) -> Any:
-    """A scan over the first `count` of some groups; its results are three arrays of a shape, and one less."""
+    """Scan over the first `count` groups; the history has three arrays of `shape` (groups, steps, n), one without n."""
 
     def turn(k: Any, state: Any) -> Any:
         carry, history = state
         carry, new = group(
             carry, jax.tree.map(lambda leaf: jax.lax.dynamic_index_in_dim(leaf, k, keepdims=False), by_group)
         )
-        at = partial(jax.lax.dynamic_update_index_in_dim, index=k, axis=0)
-        return carry, tuple(at(whole, part) for whole, part in zip(history, new, strict=True))
+        put = partial(jax.lax.dynamic_update_index_in_dim, index=k, axis=0)
+        return carry, tuple(put(whole, part) for whole, part in zip(history, new, strict=True))
 
     history = (*[jnp.zeros(shape)] * 3, jnp.zeros(shape[:-1]))
     return jax.lax.fori_loop(0, count, turn, (carry, history))

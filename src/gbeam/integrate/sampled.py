@@ -21,7 +21,7 @@ NEAR = 1e-6  # of a step: nearer to its beginning a sample is taken there
 
 
 class Controllers(Protocol):
-    """Controllers of some equations: what each measures, at which times, and what it commands."""
+    """Controllers of some equations, by number: what each measures, at which times, and what it commands."""
 
     @property
     def timing(self) -> list[tuple[float, float]]:
@@ -30,37 +30,37 @@ class Controllers(Protocol):
 
     @property
     def drives(self) -> list[slice]:
-        """Numbers that each commands among those of all."""
+        """Each controller's part of the commands (m,) of all."""
         ...
 
     def measured(self, controller: int, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
-        """Measurements (t, k) of one at states and inputs with a leading axis t."""
+        """Measurements (t, k) of a controller at states and inputs with a leading axis t."""
         ...
 
     def accelerates(self, controller: int) -> bool:
-        """Return whether one measures accelerations."""
+        """True if a controller measures accelerations."""
         ...
 
     def started(self, controller: int) -> Any:
-        """State of one at the start."""
+        """State of a controller's law at the start."""
         ...
 
     def commanded(self, controller: int, t: float, measured: Array, state: Any) -> tuple[Array, Array, Any]:
-        """Command of one, as its law has it and as its limits leave it, and its next state."""
+        """Command of a controller at time t, s, as its law asks for it and within its limits, and the next state."""
         ...
 
     def driven(self, inputs: Any, held: Array) -> Any:
-        """Inputs with what is commanded (t, m) added."""
+        """Inputs with the commands `held` (t, m) added."""
         ...
 
     @property
     def traced(self) -> bool:
-        """True if JAX traces one."""
+        """True if JAX traces values of a controller."""
         ...
 
 
 class Uncontrolled:
-    """No controllers, where some may be."""
+    """Stands for controllers where there are none."""
 
     timing: tuple[()] = ()
     drives: tuple[()] = ()
@@ -84,6 +84,8 @@ class Sampling:
         self.controllers, self.residual, self.drive, self.steps = controllers, residual, drive, steps
         self.held = np.zeros((len(steps), max((part.stop for part in controllers.drives), default=0)))
         start, begun = steps.begin[0], steps.begin + NEAR * steps.length
+        # By controllers: of each step the number of the sample taken at its beginning, −1 of none; of each sample the
+        # first step in which its command acts.
         self.taken, self.since = [], []
         for period, delay in controllers.timing:
             number = np.floor((begun - start) / period).astype(int)
@@ -94,17 +96,17 @@ class Sampling:
         self.samples: list[list[tuple[Array, Array, Array, Any]]] = [[] for _ in self.taken]
 
     def hold(self, end: int) -> None:
-        """Hold the last commands until a step."""
+        """Let the last commands act until step `end`."""
         for part, since, samples in zip(self.controllers.drives, self.since, self.samples, strict=True):
             if samples:
                 self.held[since[len(samples)] : end, part] = samples[-1][2]
 
     def take(self, c: int, s: int, step: int, measured: Array) -> None:
-        """Take a sample of a controller at the beginning of a step."""
+        """Take sample number `s` of controller `c`, measured at the beginning of a step, and forget later ones."""
         samples, since = self.samples[c], self.since[c]
         state = samples[s - 1][3] if s else self.started[c]
         asked, limited, after = self.controllers.commanded(c, float(self.steps.begin[step]), measured, state)
-        samples[s:] = [(measured, asked, limited, after)]  # those of earlier iterates go
+        samples[s:] = [(measured, asked, limited, after)]
         self.held[since[s] : since[s + 1], self.controllers.drives[c]] = limited
 
     def sampled(self, c: int) -> tuple[Array, ...]:
@@ -112,18 +114,18 @@ class Sampling:
         return tuple(map(np.stack, tuple(zip(*self.samples[c], strict=True))[:3]))
 
     def onto(self, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
-        """Derivatives (t, n, m) of the residual with respect to what is commanded, at states and inputs (t, ...)."""
+        """Derivatives (t, n, m) of the residual with respect to the commands, at states and inputs (t, ...)."""
         return self._by_command(self.residual, q, qd, qdd, inputs)
 
     def _by_command(self, function: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
-        """Derivatives (t, k, m) of a function (t, k) of states and inputs (t, ...) by what is commanded."""
+        """Derivatives (t, k, m) of a function (t, k) of states and inputs (t, ...) with respect to the commands."""
         count = self.held.shape[1]
         units = np.broadcast_to(1j * STEP * np.eye(count)[:, None], (count, len(q), count))
         values = function(q, qd, qdd, self.controllers.driven(inputs, units))
         return np.moveaxis(np.broadcast_to(values, (count, *values.shape[-2:])).imag, 0, -1) / STEP
 
     def measured(self, c: int, q: Array, qd: Array, inputs: Any) -> Array:
-        """Measurements (t, k) of a controller by the states at its samples, and inputs with the commands before."""
+        """Measurements (t, k) of controller `c` at states and inputs, which include the commands held until then."""
         qdd = accelerations(self.residual, q, qd, inputs) if self.controllers.accelerates(c) else 0 * q
         return self.controllers.measured(c, q, qd, qdd, inputs)
 
@@ -165,38 +167,44 @@ class Held:
         self.before = sampling.held[first - 1] if first else 0 * self.u[0]
         self.change = np.zeros_like(self.u)
         self.settled = False
-        self.due: list[list[tuple[int, int, int]]] = [[] for _ in self.u]  # of a step: controllers, which of the window
-        self.samples, self.inputs = {}, {}  # of the window, by controllers, and the inputs without commands
+        # Samples due in each step: controller, number in the window, number in the run.
+        self.due: list[list[tuple[int, int, int]]] = [[] for _ in self.u]
+        # By controllers: steps of the window with a sample, and the inputs there without commands.
+        self.samples, self.inputs = {}, {}
         for c, taken in enumerate(sampling.taken):
-            at = np.flatnonzero(taken[first : first + count] >= 0)
-            if len(at):
-                self.samples[c], self.inputs[c] = at, sampling.drive(sampling.steps.begin[first + at])
-            for i, k in enumerate(at):  # and of all
+            steps = np.flatnonzero(taken[first : first + count] >= 0)
+            if len(steps):
+                self.samples[c], self.inputs[c] = steps, sampling.drive(sampling.steps.begin[first + steps])
+            for i, k in enumerate(steps):
                 self.due[k].append((c, i, int(taken[first + k])))
 
     def begin(self, z: Array) -> None:
-        """Find how measurements follow the states z (t, m, n) at the beginnings of steps."""
+        """Linearise the measurements about the states z (t, m, n) at the beginnings of steps."""
         self.slope = self._at_samples(self.sampling.slopes, z)
 
     def measure(self, z: Array) -> None:
-        """Measure at the states of the iterate."""
+        """Measure at the states z (t, m, n) of the iterate."""
         self.values = self._at_samples(self.sampling.measured, z)
 
     def _at_samples(self, function: Any, z: Array) -> dict[int, Any]:
-        """Values of a function of the states and the inputs at each controller's samples."""
+        """Values, by controllers, of a function of the states and inputs at their samples, with the commands before."""
         before, driven = np.concatenate([self.before[None], self.u]), self.sampling.controllers.driven
-        inputs = {c: driven(each, before[self.samples[c]]) for c, each in self.inputs.items()}
-        return {c: function(c, z[at, 0], z[at, 1], inputs[c]) for c, at in self.samples.items()}
+        inputs = {c: driven(values, before[self.samples[c]]) for c, values in self.inputs.items()}
+        return {c: function(c, z[steps, 0], z[steps, 1], inputs[c]) for c, steps in self.samples.items()}
 
     def push(self, inverse: Array, t: Any, onto: Array) -> None:
-        """Find how a step answers to its commands, J⁻¹ of their derivatives (t s, n, m)."""
+        """Find what commands change: accelerations by J⁻¹ ∂r/∂u, the next z by −d J⁻¹ ∂r/∂u, with d of the tableau `t`
+        and ∂r/∂u `onto` (t s, n, m).
+        """
         count, n = len(self.u), onto.shape[1]
         self.answer = inverse @ onto.reshape(count, -1, onto.shape[-1])
         through = t.d @ self.answer.reshape(count, -1, n * onto.shape[-1])
         self.step = -through.reshape(count, -1, onto.shape[-1])
 
     def sampled(self, k: int, moved: Array) -> Array:
-        """Take the samples of a step whose state is to be moved (m n,), and return what its commands change."""
+        """Take the samples of step `k` of the window, whose state is to change by `moved` (m n,); return the change of
+        the next state by the change of commands, (m n,).
+        """
         step = self.first + k
         for c, i, s in self.due[k]:
             by_state, by_command = self.slope[c]
@@ -208,10 +216,10 @@ class Held:
         return self.step[k].dot(change)
 
     def changed(self, shape: tuple[int, ...]) -> Array:
-        """Hold the new commands; returns what they change of the accelerations, to be taken away from these."""
+        """Hold the new commands; return the change of the stages' accelerations, to be subtracted from these."""
         self.u = self.u + self.change
         return (self.answer @ self.change[..., None]).reshape(shape)
 
     def driven(self, inputs: Any, stages: int) -> Any:
-        """Inputs at all stages with the commands."""
+        """Inputs (t s, ...) at all stages with the commands."""
         return self.sampling.controllers.driven(inputs, np.repeat(self.u, stages, axis=0))

@@ -48,11 +48,11 @@ class Tableau:
         """Derivatives of the residuals of stages (t, s n) by their accelerations, J (t, s n, s n), and by the state
         before, L (t, s n, m n), from their slopes K, C and M (1 or t, s, n, n).
         """
-        k, c, m = (each[:, :, None] for each in (k, c, m))
-        c_q, c_v, w_q, w_v = (each[..., None, None] for each in (self.c_q, self.c_v, self.w_q, self.w_v))
+        k, c, m = (slope[:, :, None] for slope in (k, c, m))
+        c_q, c_v, w_q, w_v = (weights[..., None, None] for weights in (self.c_q, self.c_v, self.w_q, self.w_v))
         (*_, stages, states), n = self.w_q.shape, k.shape[-1]
         blocks = c_q * k + c_v * c + np.eye(stages)[..., None, None] * m, w_q * k + w_v * c
-        J, L = (each.swapaxes(2, 3) for each in blocks)
+        J, L = (matrices.swapaxes(2, 3) for matrices in blocks)
         return J.reshape(-1, stages * n, stages * n), L.reshape(-1, stages * n, states * n)
 
 
@@ -74,7 +74,7 @@ class Scheme:
         return self.offsets[-1] == 1.0
 
     def tableau(self, step: Any) -> Tableau:
-        """At a length of step, s, or at several (t,)."""
+        """Tableau of steps of a length, s, or of several (t,)."""
         h = np.asarray(step, dtype=np.float64)[..., None, None]
         return Tableau(**{name: unit * h**power for name, (unit, power) in self._powers.items()})
 
@@ -212,25 +212,25 @@ def added(equations: LinearEquations, scheme: Scheme, step: float) -> tuple[Floa
 
 
 def stepped(equations: NonlinearEquations, scheme: Scheme, steps: Any, n: int) -> Any:
-    """Residual of n coordinates that steps solve: fitted to its modes at q = 0 without drive; itself where it has none,
-    the scheme does not fit, or JAX traces it.
+    """Residual of n coordinates that steps solve: fitted to its modes at q = 0 without drive, or the equations' own
+    where these do not vibrate, the scheme does not fit steps, or JAX traces the residual.
     """
     residual = equations.residual
     if scheme.exponent is None or not equations.vibrates or holds_jax(residual):
         return residual
     still = each_leaf(lambda leaf: np.zeros(np.shape(leaf)), equations.drive(steps.first[:1]))
     zero = np.zeros((1, n))
-    stiffness, damping, mass = (symmetric(each[0]) for each in slopes(residual, zero, zero, zero, still))
+    stiffness, damping, mass = (symmetric(slope[0]) for slope in slopes(residual, zero, zero, zero, still))
     return Fitted(residual, *to_modes(scheme.exponent, steps.longest, mass, damping, stiffness))
 
 
 def to_modes(exponent: Any, step: Any, mass: Floats, damping: Floats, stiffness: Floats) -> tuple[Floats, Floats]:
-    """Matrices (..., n, n) that M and C of steps of a length (...) s need more, so that modes keep their times."""
+    """Matrices (..., n, n) to add to M and C, so that modes keep their periods in steps of a length (...), s."""
     square, modes = symmetric_modes(stiffness, mass)
     frequency = np.sqrt(np.maximum(square, 0.0))
     rate = ((damping @ modes) * modes).sum(axis=-2)
     fits = (frequency > 0) & (np.abs(rate) < 2 * frequency)
-    frequency = np.where(fits, frequency, 1.0)  # of others, which are left as they are, any
+    frequency = np.where(fits, frequency, 1.0)  # any value for modes that are left as they are
     angle = np.minimum(frequency * np.asarray(step)[..., None], FITTED)
     ratio = np.where(fits, rate / (2 * frequency), 0.0)
     z = angle * (-ratio + 1j * np.sqrt(1 - ratio**2))
@@ -239,9 +239,11 @@ def to_modes(exponent: Any, step: Any, mass: Floats, damping: Floats, stiffness:
     factor = np.abs(z / mu) ** 2
     slower = np.divide(mu.real, z.real, out=np.ones_like(ratio), where=ratio > 0)
     shapes = mass @ modes
-    every = np.where(fits, factor - 1, 0.0), np.where(fits, rate * (slower * factor - 1), 0.0)
-    more_mass, more_damping = (shapes * each[..., None, :] @ np.swapaxes(shapes, -1, -2) for each in every)
-    return more_mass, more_damping
+    added_masses, added_rates = np.where(fits, factor - 1, 0.0), np.where(fits, rate * (slower * factor - 1), 0.0)
+    mass_term, damping_term = (
+        shapes * values[..., None, :] @ np.swapaxes(shapes, -1, -2) for values in (added_masses, added_rates)
+    )
+    return mass_term, damping_term
 
 
 SCHEMES: dict[str, Callable[..., Scheme]] = {

@@ -46,22 +46,26 @@ def taken_together(
     parts: Parts,
     ends: bool,
 ) -> tuple[Array, tuple[Array, ...]]:
-    """Take the first `count` of t steps of b runs from z (m, n, b), matrices (n, n, b), features (t, s, k, b) at the
-    stages and, unless the last one `ends` the step, at its end; returns z, and q, q̇, q̈ (b, t, n).
+    """Take the first `count` of t steps of b runs from z (m, n, b), with matrices (n, n, b), `lengths` (t, b), and
+    features (t, s, k, b) at the stages and, unless the last one `ends` the step, at its end; `inverse` is that of the
+    true mass. Returns z, and q, q̇, q̈ (b, t, n).
     """
 
     def step(z: Array, h: Array, phi: Array) -> tuple[Array, tuple[Array, Array, Array]]:
         t = _tableau(unit, h)
         stages, (_, n, b) = len(t.c_q), z.shape
-        c, k, f = ([_sum(of, at, chosen) for at in phi] for of, chosen in zip(terms.each, parts, strict=True))
+        c, k, f = (
+            [_sum(matrix_terms, at_time, chosen) for at_time in phi]
+            for matrix_terms, chosen in zip(terms.each, parts, strict=True)
+        )
         # The compiler would compute these anew wherever they are read, and the matrix below for each of its pivots.
         c, k, f = jax.lax.optimization_barrier((c, k, f))
         q0, v0 = _combined(t.w_q, z), _combined(t.w_v, z)
-        rows, within = [], [at + damping for at in c[:stages]]
+        rows, damped = [], [c_stage + damping for c_stage in c[:stages]]
         for i in range(stages):
-            blocks = [t.c_v[i, j] * within[i] + t.c_q[i, j] * k[i] + (mass if i == j else 0.0) for j in range(stages)]
-            side = f[i] - _times(within[i], v0[i]) - _times(k[i], q0[i])
-            rows.append(jnp.concatenate([*blocks, side[:, None]], axis=1))
+            blocks = [t.c_v[i, j] * damped[i] + t.c_q[i, j] * k[i] + (mass if i == j else 0.0) for j in range(stages)]
+            right = f[i] - _times(damped[i], v0[i]) - _times(k[i], q0[i])
+            rows.append(jnp.concatenate([*blocks, right[:, None]], axis=1))
         x = eliminated(jax.lax.optimization_barrier(jnp.concatenate(rows))).reshape(stages, n, b)
         q, qd = _combined(t.end_z, z) + _combined(t.end_x, x)
         qdd = x[-1] if ends else _times(inverse, f[-1] - _times(k[-1], q) - _times(c[-1], qd))
@@ -78,7 +82,7 @@ def taken_together(
 
 
 def eliminated(rows: Array) -> Array:
-    """Solve many small systems (n, n + 1, b), nearly definite, by elimination without pivots, (n, b)."""
+    """Solutions (n, b) of b small systems, matrix and right-hand side (n, n + 1, b), by elimination without pivots."""
     pivots = []
     while len(rows):
         pivots.append(rows[0, 1:] / rows[0, :1])
@@ -96,19 +100,19 @@ def stage_count(scheme: Scheme) -> int:
 
 def accelerations(inverse: Array, terms: LinearTerms, features: Array, parts: Parts, q: Array, qd: Array) -> Array:
     """q̈ (n, b) that the equations demand at features (k, b)."""
-    c, k, f = (_sum(of, features, chosen) for of, chosen in zip(terms.each, parts, strict=True))
+    c, k, f = (_sum(matrix_terms, features, chosen) for matrix_terms, chosen in zip(terms.each, parts, strict=True))
     return _times(inverse, f - _times(k, q) - _times(c, qd))
 
 
 def _tableau(unit: Tableau, h: Array) -> Tableau:
-    """The scheme at steps of lengths (b,), with a last axis of these."""
+    """The scheme's tableau at steps of lengths h (b,), which are the last axis of its arrays."""
     powers = jnp.stack([1 / h**2, 1 / h, jnp.ones_like(h), h, h**2])
     shapes = powers_of_step(*unit.d.shape)
     return Tableau(**{name: getattr(unit, name)[..., None] * powers[power + 2] for name, power in shapes.items()})
 
 
 def _sum(terms: Array, features: Array, chosen: tuple[int, ...]) -> Array:
-    """Sum of terms (k, ..., b) weighted with their features, of all (k, b); zero where there are none."""
+    """Sum (..., b) of terms (j, ..., b), each multiplied by its feature: `chosen` (j,) among features (k, b)."""
     if not chosen:
         return namespace(terms).zeros(terms.shape[1:])
     return sum(term * features[i] for term, i in zip(terms, chosen, strict=True))
@@ -129,7 +133,7 @@ Histories = tuple[Array, Array, Array]  # q, q̇, q̈ of b runs at the start and
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """A run from q, qd (n,); `common` is what all runs' nonlinear residuals share, multiplied for all at once."""
+    """A run from q, qd (n,); `common` is a tree of the arrays that the residuals of all nonlinear runs share."""
 
     equations: LinearEquations | NonlinearEquations
     q: Array
@@ -142,7 +146,7 @@ class Run:
     def shape(self) -> Hashable | None:
         """Key of runs that can be integrated together; None of one that has to be integrated alone."""
         steps = self.steps
-        about = ceil(log(len(steps), NEARLY))
+        about = ceil(log(len(steps), NEARLY))  # equal for numbers of steps that are nearly equal
         if isinstance(self.equations, NonlinearEquations):
             leaves, form = self.residual
             return "nonlinear", form, *map(np.shape, leaves), self.equations.vibrates, about
@@ -164,14 +168,14 @@ class Run:
 
     @cached_property
     def inputs(self) -> Any:
-        """Inputs (1 + t s, ...) of linear equations: first, at every stage, and at the end of a step without one."""
+        """Inputs (1 + t s, ...) of linear equations: at the start, at stages, and at ends that are no stages."""
         steps, offsets = self.steps, self.scheme.offsets
-        at = [steps.times(offset) for offset in offsets] + ([] if self.scheme.ends else [steps.end])
-        return self.equations.drive(np.append(steps.first[:1], np.stack(at, axis=1)))
+        times = [steps.times(offset) for offset in offsets] + ([] if self.scheme.ends else [steps.end])
+        return self.equations.drive(np.append(steps.first[:1], np.stack(times, axis=1)))
 
     @property
     def at_times(self) -> Any:
-        """Inputs at the result's times; None where these are not known, for they jump at the first."""
+        """Inputs at the times of the result; None where they jump at the start, as `inputs` begin just after that."""
         if self.steps.first[0] != self.steps.begin[0]:
             return None
         kept = np.append(True, self.steps.kept)
@@ -185,31 +189,31 @@ class Run:
 
     @cached_property
     def parts(self) -> Parts:
-        """Indices for C, K and F of features with a term that is not zero, and that are not zero all the time."""
+        """Indices, for C, K and F each, of the features that are not always zero and whose term is not zero."""
         assert self.terms is not None
         driven = np.any(self.features, axis=0)
-        c, k, f = (tuple(np.flatnonzero(driven & some).tolist()) for some in self.terms.nonzero)
+        c, k, f = (tuple(np.flatnonzero(driven & nonzero).tolist()) for nonzero in self.terms.nonzero)
         return c, k, f
 
     @property
     def alive(self) -> LinearTerms:
-        """The terms of these features."""
+        """The terms of the features in `parts`."""
         assert self.terms is not None
         return LinearTerms(*(term[list(part)] for term, part in zip(self.terms.each, self.parts, strict=True)))
 
 
 def integrate_together(runs: Sequence[Run]) -> list[Trajectory | None]:
-    """Integrate runs of one shape; None in place of one that has to be integrated alone, for its corrections failed."""
+    """Integrate runs of one shape; None in place of one whose corrections failed, to be integrated alone."""
     solve = _linear if isinstance(runs[0].equations, LinearEquations) else _nonlinear
-    histories, solved = solve(runs)
+    histories, converged = solve(runs)
     trajectories = []
-    for run, fine, *state in zip(runs, solved, *histories, strict=True):
+    for run, sound, *state in zip(runs, converged, *histories, strict=True):
         kept = np.append(True, run.steps.kept)
         time = np.append(run.steps.begin[0], run.steps.end)
         state = [x[: len(kept)] for x in state]
         if not kept.all():
             time, *state = (x[kept] for x in (time, *state))
-        trajectories.append(Trajectory(time, *state) if fine and np.isfinite(state[2]).all() else None)
+        trajectories.append(Trajectory(time, *state) if sound and np.isfinite(state[2]).all() else None)
     return trajectories
 
 
@@ -217,19 +221,20 @@ def _stacked(parts: Sequence[Any], axis: int = 0) -> Any:
     """Leaves of trees side by side along a new axis, the first or the last."""
 
     def stack(*leaves: Any) -> Array:
-        both = np.asarray(leaves)
-        return both if axis == 0 else np.moveaxis(both, 0, axis)
+        stacked = np.asarray(leaves)
+        return stacked if axis == 0 else np.moveaxis(stacked, 0, axis)
 
     return jax.tree.map(stack, *parts)
 
 
 def _filled(values: Array, count: int) -> Array:
-    """Values (t, ...) and, as often as are missing, the last of them."""
+    """Values (t, ...) repeated at their end to (count, ...)."""
     missing = count - len(values)
     return np.concatenate([values, np.repeat(values[-1:], missing, axis=0)]) if missing else values
 
 
 def _linear(runs: Sequence[Run]) -> tuple[Histories, Array]:
+    """Histories of linear runs, and flags (b,) of those that converged: all."""
     scheme, stages = runs[0].scheme, stage_count(runs[0].scheme)
     count = max(len(run.steps) for run in runs)
     needed = np.unique(np.concatenate(runs[0].parts)).astype(int)
@@ -250,16 +255,18 @@ def _linear(runs: Sequence[Run]) -> tuple[Histories, Array]:
     features = features[1:].reshape(count, stages, *features.shape[1:])
     for begin in range(0, count, STEPS):
         # The last piece is filled, so that one program serves every duration.
-        chosen, those = np.minimum(np.arange(begin, begin + STEPS), count - 1), min(STEPS, count - begin)
-        arguments = mass + of_mass, damping, inverse, terms, scheme.unit, z, lengths[chosen], features[chosen], those
+        chosen, taken = np.minimum(np.arange(begin, begin + STEPS), count - 1), min(STEPS, count - begin)
+        arguments = mass + of_mass, damping, inverse, terms, scheme.unit, z, lengths[chosen], features[chosen], taken
         z, piece = taken_together(*arguments, parts=parts, ends=scheme.ends)
         for whole, part in zip(histories, piece, strict=True):
-            whole[:, begin + 1 : begin + 1 + those] = np.asarray(part)[:, :those]
+            whole[:, begin + 1 : begin + 1 + taken] = np.asarray(part)[:, :taken]
     return (histories[0], histories[1], histories[2]), np.ones(len(runs), dtype=bool)
 
 
 def _over_runs(solve: Callable[..., Any], *more_axes: int | None) -> Callable[..., Any]:
-    """A function of a residual and more for many runs, (form, axes, leaves, ...): the residual's by arrays and axes."""
+    """Compiled `solve(residual, ...)` over many runs, as a function of (form, axes, leaves), which are their residuals
+    as :data:`Residuals`, and of its other arguments, whose axes of runs are `more_axes`.
+    """
 
     @partial(jax.jit, static_argnums=(0, 1))
     def over_runs(form: Any, axes: tuple[int | None, ...], leaves: list[Array], *args: Any) -> Any:
@@ -280,11 +287,11 @@ Residuals = tuple[Any, tuple[int | None, ...], list[Array]]  # form, axes and ar
 
 
 def _residuals(runs: Sequence[Run]) -> Residuals:
-    """The runs' residuals."""
+    """The runs' residuals: their arrays stacked along a first axis of runs, or without it where `common` has them."""
     common = {id(leaf) for leaf in jax.tree.leaves(runs[0].common)}
-    every = list(zip(*(run.residual[0] for run in runs), strict=True))
-    axes = [None if id(leaf[0]) in common and all(x is leaf[0] for x in leaf) else 0 for leaf in every]
-    leaves = [leaf[0] if axis is None else np.asarray(leaf) for leaf, axis in zip(every, axes, strict=True)]
+    of_runs = list(zip(*(run.residual[0] for run in runs), strict=True))
+    axes = [None if id(leaf[0]) in common and all(x is leaf[0] for x in leaf) else 0 for leaf in of_runs]
+    leaves = [leaf[0] if axis is None else np.asarray(leaf) for leaf, axis in zip(of_runs, axes, strict=True)]
     return runs[0].residual[1], tuple(axes), leaves
 
 
@@ -296,13 +303,14 @@ def _fitted(runs: Sequence[Run], residuals: Residuals) -> Residuals:
     form, axes, leaves = residuals
     zero, first = np.zeros((len(runs), len(runs[0].q))), runs[0].steps.first[:1]
     still = jax.tree.map(lambda leaf: np.zeros((len(runs), *np.shape(leaf)[1:])), equations.drive(first))
-    k, c, m = (symmetric(np.asarray(each)) for each in _slopes(*residuals, zero, zero, zero, still))
-    more = to_modes(exponent, [run.steps.longest for run in runs], m, c, k)
-    leaves, form = jax.tree.flatten(Fitted(jax.tree.unflatten(form, leaves), *more))
+    k, c, m = (symmetric(np.asarray(slope)) for slope in _slopes(*residuals, zero, zero, zero, still))
+    added_terms = to_modes(exponent, [run.steps.longest for run in runs], m, c, k)
+    leaves, form = jax.tree.flatten(Fitted(jax.tree.unflatten(form, leaves), *added_terms))
     return form, (*axes, 0, 0), leaves
 
 
 def _nonlinear(runs: Sequence[Run]) -> tuple[Histories, Array]:
+    """Histories of nonlinear runs, and flags (b,) of those whose steps have all converged."""
     scheme = runs[0].scheme
     equations: list[Any] = [run.equations for run in runs]
     residual = _fitted(runs, _residuals(runs))
@@ -319,34 +327,35 @@ def _nonlinear(runs: Sequence[Run]) -> tuple[Histories, Array]:
     qdd = accelerations([run.steps.first[0] for run in runs], q, qd)
     carry = begun(q, qd, qdd, [run.steps.length[0] for run in runs])
     pieces, sound = [[x[:, None] for x in (q, qd, qdd)]], np.ones(len(runs), dtype=bool)
-    counted = [np.ones((len(runs), 1), dtype=bool)]
+    counted = [np.ones((len(runs), 1), dtype=bool)]  # flags of the states that are no fillings
     equal, size = Counter(run.steps for run in runs), newton.PER_JACOBIAN[scheme.order]
-    laid = {steps: iter(tee(stretches(scheme, steps, size), count)) for steps, count in equal.items()}  # most are equal
-    of_runs = [chunks(run.equations.drive, scheme, next(laid[run.steps])) for run in runs]
-    every = [next(each) for each in of_runs]
+    # Most runs have equal steps, which are divided once.
+    divided = {steps: iter(tee(stretches(scheme, steps, size), count)) for steps, count in equal.items()}
+    of_runs = [chunks(run.equations.drive, scheme, next(divided[run.steps])) for run in runs]
+    now = [next(run_chunks) for run_chunks in of_runs]
     going = np.ones(len(runs), dtype=bool)
     while going.any():
-        inside, ends = np.stack([chunk.inside for chunk in every]) & going[:, None], [chunk.end for chunk in every]
-        tableau, inputs, at_ends = _stacked([(chunk.tableau, chunk.inputs, chunk.at_ends) for chunk in every])
-        last, count = np.stack([chunk.last for chunk in every]), max(chunk.count for chunk in every)
+        inside, ends = np.stack([chunk.inside for chunk in now]) & going[:, None], [chunk.end for chunk in now]
+        tableau, inputs, at_ends = _stacked([(chunk.tableau, chunk.inputs, chunk.at_ends) for chunk in now])
+        last, count = np.stack([chunk.last for chunk in now]), max(chunk.count for chunk in now)
         carry, history = _steps(*residual, tableau, carry, inputs, at_ends, last, count)
         *piece, left = (np.asarray(values) for values in history)
         sound &= ((left <= newton.ACCEPTED) | ~inside).all(axis=1)  # NaN is not
         anew = going & [end.anew for end in ends]
         if scheme.ends and anew.any():
-            at = np.arange(len(runs)), inside.shape[1] - 1 - inside[:, ::-1].argmax(axis=1)
-            q, qd = piece[0][at], piece[1][at]
+            at_last = np.arange(len(runs)), inside.shape[1] - 1 - inside[:, ::-1].argmax(axis=1)
+            q, qd = piece[0][at_last], piece[1][at_last]
             begin, final = (accelerations([getattr(end, time) for end in ends], q, qd) for time in ("resume", "end"))
             new = begun(q, qd, begin, [end.following for end in ends])
             carry = newton.Carry(*(np.where(anew[:, None, None], *both) for both in zip(new, carry, strict=True)))
             piece[2] = piece[2].copy()
-            piece[2][at[0][anew], at[1][anew]] = final[anew]
+            piece[2][at_last[0][anew], at_last[1][anew]] = final[anew]
         pieces.append(piece)
         counted.append(inside)
-        after = [next(each, None) for each in of_runs]
+        after = [next(run_chunks, None) for run_chunks in of_runs]
         going = np.array([chunk is not None for chunk in after])
-        every = [new or old for new, old in zip(after, every, strict=True)]  # one that has ended repeats its last
-    counts = np.concatenate(counted, axis=1)
-    whole = [np.concatenate(part, axis=1) for part in zip(*pieces, strict=True)]
-    each: Any = ([run[of] for run, of in zip(values, counts, strict=True)] for values in whole)
-    return tuple(each), sound
+        now = [new or old for new, old in zip(after, now, strict=True)]  # a run that has ended repeats its last chunk
+    flags = np.concatenate(counted, axis=1)
+    filled = [np.concatenate(parts, axis=1) for parts in zip(*pieces, strict=True)]
+    histories: Any = ([run[counts] for run, counts in zip(values, flags, strict=True)] for values in filled)
+    return tuple(histories), sound

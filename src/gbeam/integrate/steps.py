@@ -34,7 +34,7 @@ class Corners:
 
     @staticmethod
     def of(times: Any, drive: Drive, start: float, end: float) -> Corners:
-        """Times among `times` (s) that lie from `start` to before `end`, judged by the drive's values on both sides."""
+        """Corners at those `times` (s) that lie in [start, end): a jump where the drive differs on both sides."""
         time = np.unique(np.asarray(times, dtype=np.float64))
         time = time[(time >= start) & (time < end)]
         if not len(time):
@@ -53,13 +53,15 @@ class Corners:
         return Corners(time, jump)
 
     def felt_by(self, scheme: Scheme) -> Corners:
-        """Times at which a scheme's steps have to end."""
+        """The corners at which a scheme's steps have to end: all, or the jumps alone for schemes of second order."""
         return self if scheme.order > 2 else Corners(self.time[self.jump], self.jump[self.jump])
 
 
 @dataclass(frozen=True, eq=False)
 class Steps:
-    """Steps in order, (t,) each: `first`, `last` just inside a step at a jump; `resume`, `following` the next one's."""
+    """Steps in order, (t,) each: times at which they begin and end, and `first` and `last`, at which the drive is read,
+    just inside of a jump; `resume` and `following` are `first` and `length` of the next step.
+    """
 
     begin: Floats
     length: Floats
@@ -86,12 +88,12 @@ class Steps:
 
     @property
     def longest(self) -> float:
-        """Length of the longest, s: of those that are not split."""
+        """Length of the longest step, s."""
         return float(self.length.max())
 
     @property
     def equal(self) -> bool:
-        """True if all have one length, and the scheme starts anew after none."""
+        """True if all steps have one length, and the scheme starts anew after none."""
         return bool((self.length == self.length[0]).all() and not self.anew.any())
 
 

@@ -36,9 +36,9 @@ def tangent(
     within: System | None = None,
     accelerations: bool = True,
 ) -> tuple[Floats, Floats, Floats]:
-    """Derivatives (t + 1, n, p) of a run's q, q̇, q̈ by p parameters, from those of its start (n, p), by equations
-    linearised about its states; `within` are those that fitted steps solve. Without accelerations, q̈'s may be those of
-    the last stage.
+    """Derivatives (t + 1, n, p) of a run's q, q̇, q̈ with respect to p parameters, from those of its start, q and qd
+    (n, p), by the equations `system` linearised about its states; `within` are those that its fitted steps solve.
+    Without `accelerations` the result's q̈ may be those of the last stage.
     """
     shape = (len(steps) + 1, *q.shape)
     histories = np.empty(shape), np.empty(shape), np.empty(shape)
@@ -63,12 +63,13 @@ def tangent(
 
 
 def _part(run: Trajectory, steps: slice) -> Trajectory:
-    at = slice(steps.start, steps.stop + 1)
-    return Trajectory(run.time[at], run.q[at], run.qd[at], run.qdd[at])
+    """The run from the beginning of some steps to their end."""
+    times = slice(steps.start, steps.stop + 1)
+    return Trajectory(run.time[times], run.q[times], run.qd[times], run.qdd[times])
 
 
 def _accelerations(system: System, time: Floats, run: Trajectory, at: Any, q: Floats, qd: Floats) -> Floats:
-    """δq̈ (k, n, p) that the linearised equations demand at times, where the run's states have the indices `at`."""
+    """δq̈ (k, n, p) demanded at δq, δq̇, `q` and `qd`, by equations linearised about the run's states of indices `at`."""
     mass, c, k, f = system(time, run.q[at], run.qd[at])
     return np.asarray(np.linalg.solve(mass, f - c @ qd - k @ q), dtype=np.float64)
 
@@ -80,10 +81,10 @@ def _chunk(
     t = scheme.tableau(steps.length)
     stages, (m, n, p) = len(scheme.offsets), z.shape
     states = _states(run, scheme, t)
-    at = [within(steps.times(offset), *state) for offset, state in zip(scheme.offsets, states, strict=True)]
-    mass, c, k, f = (np.stack(each, axis=1) for each in zip(*at, strict=True))
+    at_stages = [within(steps.times(offset), *state) for offset, state in zip(scheme.offsets, states, strict=True)]
+    mass, c, k, f = (np.stack(matrices, axis=1) for matrices in zip(*at_stages, strict=True))
     jacobian, by_state = t.jacobians(k, c, mass)
-    # x = onto z + own at all stages.
+    # x = onto z + constant at all stages.
     x = np.linalg.solve(jacobian, np.concatenate([-by_state, f.reshape(len(steps), stages * n, p)], axis=-1))
     onto, constant = x[..., : m * n], x[..., m * n :]
     by_stage = x.reshape(len(steps), stages, n, m * n + p)
@@ -92,14 +93,14 @@ def _chunk(
     maps = maps.reshape(len(steps), m * n, m * n + p)
     before = np.empty((len(steps), m * n, p))
     state = z.reshape(m * n, p)
-    for index, one in enumerate(maps):
+    for index, of_step in enumerate(maps):
         before[index] = state
-        state = one[:, : m * n] @ state + one[:, m * n :]
+        state = of_step[:, : m * n] @ state + of_step[:, m * n :]
     x = (onto @ before + constant).reshape(len(steps), stages, n, p)
     ends = np.einsum("tij,tjnp->tinp", t.end_z, before.reshape(len(steps), m, n, p))
     ends += np.einsum("tis,tsnp->tinp", t.end_x, x)
     q, qd, qdd = ends[:, 0], ends[:, 1], x[:, -1]
-    # The last stage's is that at the end, unless the stage lies before it, or just before a jump.
+    # The last stage's q̈ is that at the end, unless the stage lies before it, or just before a jump.
     again = np.flatnonzero(steps.jump) if scheme.ends else np.arange(len(steps))
     if again.size and accelerations:
         qdd[again] = _accelerations(system, steps.end[again], run, again + 1, q[again], qd[again])

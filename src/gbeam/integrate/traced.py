@@ -74,9 +74,9 @@ class TracedLoop:
         plan = Sampling(controllers, None, None, steps)
         self.controllers, self.steps, self.taken = controllers, steps, plan.taken
         self.at = [np.flatnonzero(taken >= 0) for taken in plan.taken]  # steps at whose beginning a sample is taken
-        each = np.arange(len(steps))
+        numbers = np.arange(len(steps))
         self.active = [
-            np.searchsorted(since[: len(at)], each, side="right") - 1
+            np.searchsorted(since[: len(at)], numbers, side="right") - 1
             for since, at in zip(plan.since, self.at, strict=True)
         ]  # of a step: the sample that acts, −1 before the first does
         self.laws = controllers.laws([steps.begin[at] for at in self.at])
@@ -88,8 +88,8 @@ class TracedLoop:
         return [(law.parameters, law.references, law.start) for law in self.laws]
 
     def laws_of(self, inputs: Any) -> list[TracedLaw]:
-        """The laws with other parameters, references and first states."""
-        return [TracedLaw(law.times, law.function, *each) for law, each in zip(self.laws, inputs, strict=True)]
+        """The laws with other parameters, references and first states, `inputs` as above."""
+        return [TracedLaw(law.times, law.function, *values) for law, values in zip(self.laws, inputs, strict=True)]
 
     @property
     def shapes(self) -> list[Samples]:
@@ -103,16 +103,16 @@ class TracedLoop:
         ]
 
     def recorded(self, sampling: Sampling, inputs: Any) -> list[Samples]:
-        """Arrays of the samples that were taken; NaN of the others."""
-        every = []
+        """Samples of each controller as arrays, NaN of those that were not taken; `inputs` have the first states."""
+        recorded = []
         for shapes, taken, (*_, start) in zip(self.shapes, sampling.samples, inputs, strict=True):
             arrays = Samples(*(np.full(each.shape, np.nan) for each in shapes))
             before = [start, *(after for *_, after in taken[:-1])]
             for k, ((*values, _), state) in enumerate(zip(taken, before, strict=False)):
                 for array, value in zip(arrays, (*values, state), strict=True):
                     array[k] = value
-            every.append(arrays)
-        return every
+            recorded.append(arrays)
+        return recorded
 
     def sampled(self, c: int) -> tuple[Array, ...]:
         """Measurements (s, k) and commands (s, m) of a controller, as asked and as limited."""
@@ -121,27 +121,31 @@ class TracedLoop:
     def held(self, samples: list[Samples]) -> Array:
         """Commands that act in the steps, (t, m)."""
         parts = [
-            jnp.where(active[:, None] >= 0, each.limited[np.maximum(active, 0)], 0.0)
-            for active, each in zip(self.active, samples, strict=True)
+            jnp.where(active[:, None] >= 0, sample.limited[np.maximum(active, 0)], 0.0)
+            for active, sample in zip(self.active, samples, strict=True)
         ]
         return jnp.concatenate([jnp.zeros((len(self.steps), 0)), *parts], axis=1)
 
-    def changes(self, of: Any, changed: Any, run: Any, inputs: Any, by_inputs: Any, samples: list[Samples]) -> _Changes:
-        """Changes of the samples along a run with those of residual and drives where steps begin, and of laws."""
+    def changes(self, of: Any, by: Any, run: Any, inputs: Any, by_inputs: Any, samples: list[Samples]) -> _Changes:
+        """Changes of samples along a run: `of` are the residual and its drives where steps begin, `inputs` the laws'
+        values; `by` and `by_inputs` are their tangents.
+        """
         held = self.held(samples)
         before = jnp.concatenate([0 * held[:1], held[:-1]])
-        every = zip(self.at, self.laws_of(inputs), self.laws_of(by_inputs), samples, strict=True)
+        laws = zip(self.at, self.laws_of(inputs), self.laws_of(by_inputs), samples, strict=True)
         parts = [
-            self._along(c, of, changed, [part[at] for part in run[:2]], before[at], at) + self._through(law, by, values)
-            for c, (at, law, by, values) in enumerate(every)
+            self._along(c, of, by, [part[at] for part in run[:2]], before[at], at) + self._through(law, by_law, values)
+            for c, (at, law, by_law, values) in enumerate(laws)
         ]
         return _Changes(self, parts)
 
-    def _along(self, c: int, of: Any, changed: Any, state: Any, before: Array, at: Array) -> tuple[Array, ...]:
-        """Derivatives of measurements by states (s, k, 2 n) and commands before (s, k, m), and their direct change."""
+    def _along(self, c: int, of: Any, by: Any, state: Any, before: Array, at: Array) -> tuple[Array, ...]:
+        """Derivatives of a controller's measurements by states (s, k, 2 n) and by the commands `before` (s, k, m), and
+        their change (s, k) by tangents of residual and drives alone; samples are taken at the beginning of steps `at`.
+        """
         q, qd = state
-        (residual, driven), (by_residual, by_driven) = of, changed
-        driven, by_driven = (jax.tree.map(lambda leaf: leaf[at], each) for each in (driven, by_driven))
+        (residual, driven), (by_residual, by_driven) = of, by
+        driven, by_driven = (jax.tree.map(lambda leaf: leaf[at], tree) for tree in (driven, by_driven))
 
         def measured(residual: Any, driven: Any) -> Array:
             inputs, controllers = self.controllers.driven(driven, before), self.controllers.of(exact(residual))
@@ -164,25 +168,26 @@ class TracedLoop:
         return *slope, direct
 
     def _through(self, law: TracedLaw, by: TracedLaw, values: Samples) -> tuple[Array, ...]:
-        """Derivatives of commands and next states by measurements and states, and their direct change, of all samples;
-        that of the state at the start.
+        """Derivatives of commands and next states, (s, 2 m + x, ...), by measurements and by states; their change by
+        the tangents `by` of parameters and references alone; the change of the first state.
         """
 
-        def whole(parameters: Any, references: Array, y: Array, state: Array, t: Array) -> Array:
+        def commands_and_state(parameters: Any, references: Array, y: Array, state: Array, t: Array) -> Array:
             return jnp.concatenate(law.function(parameters, references, t, y, state))
 
-        sampled, each = (values.measured, values.state, law.times), (None, 0, 0, 0, 0)
-        by_y, by_state = jax.vmap(jax.jacfwd(whole, (2, 3)), each)(law.parameters, law.references, *sampled)
+        sampled, axes = (values.measured, values.state, law.times), (None, 0, 0, 0, 0)
+        slope = jax.vmap(jax.jacfwd(commands_and_state, (2, 3)), axes)
+        by_y, by_state = slope(law.parameters, law.references, *sampled)
 
         def direct(parameters: Any, references: Array) -> Array:
-            return jax.vmap(whole, each)(parameters, references, *sampled)
+            return jax.vmap(commands_and_state, axes)(parameters, references, *sampled)
 
         _, change = jax.jvp(direct, (law.parameters, law.references), (by.parameters, by.references))
         return by_y, by_state, change, by.start
 
 
 class _Changes:
-    """Changes of samples, taken through the steps of a run, of which each is given those of its state."""
+    """Changes of samples, carried through the steps of a run; each step passes the change of its state."""
 
     def __init__(self, loop: TracedLoop, parts: list[tuple[Array, ...]]) -> None:
         self.drives, self.at = loop.controllers.drives, loop.at
@@ -191,7 +196,7 @@ class _Changes:
         newest = [np.maximum.accumulate(taken) for taken in loop.taken]
         self.rings = [int((new - act).max()) + 1 for new, act in zip(newest, loop.active, strict=True)]
         self.by_step = [
-            (taken, active, *(each[np.maximum(new, 0)] for each in part[:-1]))
+            (taken, active, *(values[np.maximum(new, 0)] for values in part[:-1]))
             for taken, active, new, part in zip(loop.taken, loop.active, newest, parts, strict=True)
         ]
 
@@ -203,15 +208,17 @@ class _Changes:
         return list(zip(self.starts, rings, strict=True)), jnp.zeros(sum(sizes))
 
     def step(self, carried: Any, dz: Array, at: Any) -> tuple[Any, Array, Any]:
-        """States and rings after a step, the change of the commands that act in it, and those of its samples."""
-        every, before = carried
+        """Changes of laws' states and rings after a step, of the commands that act in it and of its samples, by that of
+        its state, dz (m, n); `at` has the entries of `by_step` for this step.
+        """
+        laws, before = carried
         after, acting, sampled = [], [], []
-        for (state, ring), (taken, active, by_z, by_command, y, by_y, by_state, direct) in zip(every, at, strict=True):
+        for (state, ring), (taken, active, by_z, by_command, y, by_y, by_state, direct) in zip(laws, at, strict=True):
             count, m = ring.shape
             measured = by_z @ dz.ravel() + by_command @ before + y
-            asked, limited, moved = jnp.split(by_y @ measured + by_state @ state + direct, (m, 2 * m))
+            asked, limited, following = jnp.split(by_y @ measured + by_state @ state + direct, (m, 2 * m))
             sampled.append(Samples(measured, asked, limited, state))
-            state = jnp.where(taken >= 0, moved, state)
+            state = jnp.where(taken >= 0, following, state)
             ring = jnp.where(taken >= 0, ring.at[taken % count].set(limited), ring)
             after.append((state, ring))
             acting.append(jnp.where(active >= 0, ring[active % count], 0.0))
@@ -220,33 +227,34 @@ class _Changes:
 
 
 def traced(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, steps: Steps) -> tuple[Array, ...]:
-    """q, q̇, q̈ (t + 1, n) at the beginning and the ends of steps; NaN from one that fails on, as their derivatives."""
+    """q, q̇, q̈ (t + 1, n) at the beginning and the ends of steps; they and their derivatives are NaN from a step on that
+    fails.
+    """
     ends = [] if scheme.ends else [steps.end]
     loop = TracedLoop(equations.controllers or Uncontrolled(), steps)
     times = np.concatenate([steps.first[:1], *(steps.times(offset) for offset in scheme.offsets), *ends, steps.begin])
     steps = replace(steps, kept=np.ones(len(steps), dtype=bool))
     shape = (len(steps) + 1, len(q))
-
-    of_steps = stepped(equations, scheme, steps, len(q))
+    step_residual = stepped(equations, scheme, steps, len(q))
 
     def solved(residual: Any, q: Any, qd: Any, driven: Any, inputs: Any) -> Any:
         residual, q, qd, driven, inputs = jax.tree.map(np.asarray, (residual, q, qd, driven, inputs))
         order = np.argsort(times)
 
         def drive(t: Any) -> Any:
-            at = order[np.searchsorted(times, t, sorter=order)]
-            return each_leaf(lambda leaf: leaf[at], driven)
+            index = order[np.searchsorted(times, t, sorter=order)]
+            return each_leaf(lambda leaf: leaf[index], driven)
 
-        of, out, done = NonlinearEquations(residual, drive), np.full((3, *shape), np.nan), 0
+        untraced, out, done = NonlinearEquations(residual, drive), np.full((3, *shape), np.nan), 0
         if laws := loop.laws_of(inputs):
-            of = replace(of, controllers=loop.controllers.of(exact(residual), laws), samplings=[])
+            untraced = replace(untraced, controllers=loop.controllers.of(exact(residual), laws), samplings=[])
         with np.errstate(all="ignore"):  # of what is no number
-            for *piece, _ in windows(of, scheme, q, qd, steps):
+            for *piece, _ in windows(untraced, scheme, q, qd, steps):
                 out[: len(piece), done : done + len(piece[0])] = piece
                 done += len(piece[0])
             if not scheme.ends:
-                out[2, :done] = Demanded(of, steps, *out[:2])(np.arange(done))
-        return tuple(out), loop.recorded(of.samplings[-1], inputs) if laws else []
+                out[2, :done] = Demanded(untraced, steps, *out[:2])(np.arange(done))
+        return tuple(out), loop.recorded(untraced.samplings[-1], inputs) if laws else []
 
     @jax.custom_jvp
     def run(residual: Any, q: Array, qd: Array, driven: Any, inputs: Any) -> Any:
@@ -255,24 +263,22 @@ def traced(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, s
 
     @run.defjvp
     def _(primals: Any, tangents: Any) -> Any:
-        (residual, _, _, driven, inputs), (changed, dq, dqd, redriven, by_inputs) = primals, tangents
-        every, in_loop = run(*primals), (loop, inputs, by_inputs)
-        return every, _changes(scheme, steps, every, (residual, driven), (changed, redriven), dq, dqd, in_loop)
+        (residual, _, _, driven, inputs), (by_residual, dq, dqd, by_driven, by_inputs) = primals, tangents
+        results, in_loop = run(*primals), (loop, inputs, by_inputs)
+        return results, _changes(scheme, steps, results, (residual, driven), (by_residual, by_driven), dq, dqd, in_loop)
 
     inputs = jax.tree.map(lambda leaf: jnp.asarray(leaf, dtype=float), loop.inputs)
     start = jnp.asarray(q, dtype=float), jnp.asarray(qd, dtype=float)
-    histories, samples = run(of_steps, *start, equations.drive(times), inputs)
+    histories, samples = run(step_residual, *start, equations.drive(times), inputs)
     if loop.laws:
         loop.values = samples
         equations.samplings.append(loop)
     return tuple(histories)
 
 
-def _changes(
-    scheme: Scheme, steps: Steps, results: Any, of: Any, changed: Any, dq: Array, dqd: Array, in_loop: Any
-) -> Any:
-    """Derivatives of a run's q, q̇, q̈ and samples along changes of its residual and drives, of q, q̇ at the start, and of
-    the laws of its controllers.
+def _changes(scheme: Scheme, steps: Steps, results: Any, of: Any, by: Any, dq: Array, dqd: Array, in_loop: Any) -> Any:
+    """Changes of a run's `results`, q, q̇, q̈ (t + 1, n) and samples, by the tangents `by` of its residual and drives
+    `of`, by dq, dqd (n,) at the start, and by the tangents of its controllers' laws in `in_loop`.
     """
     (run, samples), (loop, *laws), t = results, in_loop, scheme.tableau(steps.length)
     q, qd, qdd = run
@@ -287,17 +293,18 @@ def _changes(
         z = jnp.stack([q, qd], axis=1)
         x, z = jnp.linalg.solve(t.d, z[1:] - t.g @ z[:-1]), z[:-1]
     at_stages = t.w_q @ z + t.c_q @ x, t.w_v @ z + t.c_v @ x, x
-    parts = [[each[:1], *(part[:, k] for k in range(stages))] for each, part in zip(run, at_stages, strict=True)]
+    # At the start, at every first stage, at every second one and, unless a stage is there, at the ends of steps.
     states = tuple(
-        jnp.concatenate([*part, *([] if scheme.ends else [each[1:]])]) for part, each in zip(parts, run, strict=True)
+        jnp.concatenate([whole[:1], *jnp.moveaxis(at_stage, 1, 0), *([] if scheme.ends else [whole[1:]])])
+        for whole, at_stage in zip(run, at_stages, strict=True)
     )
-    solved_at, begun = (
-        [jax.tree.map(lambda leaf, some=some: leaf[some], each) for each in (of[1], changed[1])]
-        for some in (slice(len(states[0])), slice(len(states[0]), None))
+    driven, begun = (
+        [jax.tree.map(lambda leaf, part=part: leaf[part], drives) for drives in (of[1], by[1])]
+        for part in (slice(len(states[0])), slice(len(states[0]), None))
     )
     held, driven_by = loop.held(samples), loop.controllers.driven
     commands = jnp.concatenate([0 * held[:1], *[held] * ((len(states[0]) - 1) // count)])
-    follow = loop.changes((of[0], begun[0]), (changed[0], begun[1]), run, *laws, samples)
+    follow = loop.changes((of[0], begun[0]), (by[0], begun[1]), run, *laws, samples)
 
     def host(*arguments: Any) -> Any:
         (q, qd, qdd), residual, driven, commands = jax.tree.map(np.asarray, arguments)
@@ -308,19 +315,19 @@ def _changes(
 
     square = (jax.ShapeDtypeStruct((len(states[0]), n, n), float),) * 3
     wide = jax.ShapeDtypeStruct((len(states[0]), n, commands.shape[1]), float)
-    arguments = states, of[0], solved_at[0], commands
+    arguments = states, of[0], driven[0], commands
     *slope, onto = jax.pure_callback(host, (*square, wide), *arguments, vmap_method="sequential")
     _, direct = jax.jvp(
         lambda residual, driven: residual(*states, driven_by(driven, commands)),
-        (of[0], solved_at[0]),
-        (changed[0], solved_at[1]),
+        (of[0], driven[0]),
+        (by[0], driven[1]),
     )
 
-    def accelerated(some: slice, dq: Array, dqd: Array, du: Array) -> Array:
-        k, c, m = (each[some] for each in slope)
+    def accelerated(part: slice, dq: Array, dqd: Array, du: Array) -> Array:
+        k, c, m = (matrices[part] for matrices in slope)
         if isinstance(of[0], Fitted):
             c, m = c - of[0].damping, m - of[0].mass
-        left = direct[some] + (k @ dq[..., None] + c @ dqd[..., None] + onto[some] @ du[..., None])[..., 0]
+        left = direct[part] + (k @ dq[..., None] + c @ dqd[..., None] + onto[part] @ du[..., None])[..., 0]
         return -jnp.linalg.solve(m, left[..., None])[..., 0]
 
     def by_stage(values: Array) -> Array:

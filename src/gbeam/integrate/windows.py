@@ -55,8 +55,8 @@ EARLIER = 0.01  # of the largest acceleration before a step, whose own may all v
 
 
 def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, steps: Steps) -> Iterator[Piece]:
-    """Integrate; yields the initial state, then by pieces the kept q, q̇ (k, n), of a scheme whose last stage is the end
-    q̈, too, and whether each was solved.
+    """Integrate; yields pieces of kept q, q̇, q̈ (k, n) and flags (k,) of those solved, first the initial state. q̈ is
+    left out unless the scheme's last stage is the end of the step.
     """
     if not q.size:  # all motion is prescribed
         still = np.zeros((1 + np.count_nonzero(steps.kept), 0))
@@ -70,32 +70,32 @@ def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, 
     with np.errstate(all="ignore"):  # of iterates that diverge
         qdd = demanded(steps.first[0], q, qd)
     yield *(each[None] for each in (q, qd, qdd)[: 2 + scheme.ends]), np.array([True])
-    window, begin, solved = _Window(residual, drive, scheme, steps, sampling_of(equations, steps)), 0, True
+    window, begin = _Window(residual, drive, scheme, steps, sampling_of(equations, steps)), 0
     # A scheme whose last stage is the end of a step begins anew after a jump: no window goes beyond one.
     for end in np.append(np.flatnonzero(steps.anew[:-1]) + 1 if scheme.ends else [], len(steps)).astype(int):
         window.begin(scheme.tableau(steps.length[begin]).first @ np.stack([q, qd, qdd]), qdd)
         while begin < end:
             with np.errstate(all="ignore"):
-                solved = window.solve(end, min(end, begin + ENOUGH))
+                converged = window.solve(end, min(end, begin + ENOUGH))
                 if window.first > begin:
                     ended = window.ended()
                     q, qd = (each[-1] for each in ended[:2])
                     if scheme.ends and window.first == end and steps.anew[end - 1]:
-                        qdd, ended[2][-1] = (demanded(at[end - 1], q, qd) for at in (steps.resume, steps.end))
+                        qdd, ended[2][-1] = (demanded(time[end - 1], q, qd) for time in (steps.resume, steps.end))
                     kept = steps.kept[begin : window.first]
                     yield *(each[kept] for each in ended), np.ones(np.count_nonzero(kept), dtype=bool)
-            if not solved:
+            if not converged:
                 yield *np.full((2 + scheme.ends, 1, len(qdd)), np.nan), np.array([False])
                 return
             begin = window.first
 
 
 class _Window:
-    """Steps under way, from the `first` on: their states z (t + 1, m, n) and accelerations x (t, s, n), corrected in
-    place, the residual `left` (t, s n), and the `slope` of the equations, K, C and M (1 or t, s, 3, n, n), from stages
-    so far `apart`; `reached` (3, n, n) is that of a state that was. Rows (5, t) of `corrections` are their last size,
-    absolute and of the accelerations, how many there were, how far all since its derivatives were found have moved a
-    step, and the least factor by which one by the same derivatives shrank.
+    """The steps under way, from number `first` on, corrected in place: states z (t + 1, m, n) and accelerations x
+    (t, s, n) of stages, with their residual `left` (t, s n). `slope` holds K, C and M (1 or t, s, 3, n, n), found at
+    stages `apart` from one another, `reached` (3, n, n) those where the window began. Rows of `corrections` (5, t) are
+    the size of a step's last one, the same as a share of its accelerations, their number, the sum of the shares since
+    its derivatives were found, and the least factor by which one shrank by the same derivatives.
     """
 
     z: Array
@@ -179,47 +179,47 @@ class _Window:
         return True
 
     def _follow(self, end: int) -> None:
-        """Let more steps follow where the last one is near."""
+        """Append steps before `end`, at first like the last one, if that is near its solution."""
         count = len(self.x)
         if count and (self.sampling is not None or count > FEW or self.again == 1):
             return
         if count and not self.corrections[1, -1] <= MOVED:
             return
         longest = LONGEST if self.slope is not None and len(self.slope) == 1 else MOST
-        more = min(self.more, end - self.first - count, longest - count)
-        if more <= 0:
+        added = min(self.more, end - self.first - count, longest - count)
+        if added <= 0:
             return
         last = self.x[-1:, -1:] if count else self.start
         if not count and self.even:
             self.slope = None
-        self.z = np.concatenate([self.z, np.repeat(self.z[-1:], more, axis=0)])
-        self.x = np.concatenate([self.x, np.broadcast_to(last, (more, *self.x.shape[1:]))])
+        self.z = np.concatenate([self.z, np.repeat(self.z[-1:], added, axis=0)])
+        self.x = np.concatenate([self.x, np.broadcast_to(last, (added, *self.x.shape[1:]))])
         if self.slope is not None and len(self.slope) == count > 1 and not self.even:
-            alike = np.broadcast_to(self.slope[-1:, -1:], (more, *self.slope.shape[1:]))
-            self.slope = np.concatenate([self.slope, alike])
+            of_last = np.broadcast_to(self.slope[-1:, -1:], (added, *self.slope.shape[1:]))
+            self.slope = np.concatenate([self.slope, of_last])
         elif self.slope is not None:
             self.slope, self.maps = self.slope[-1:, -1:], None
-        begun = np.repeat([[np.inf], [np.inf], [0.0], [0.0], [np.inf]], more, axis=1)
-        self.corrections = np.concatenate([self.corrections, begun], axis=1)
+        uncorrected = np.repeat([[np.inf], [np.inf], [0.0], [0.0], [np.inf]], added, axis=1)
+        self.corrections = np.concatenate([self.corrections, uncorrected], axis=1)
         self._place()
 
     def _place(self) -> None:
-        """Find the tableau and the inputs of the steps."""
-        stages, last, length = len(self.scheme.offsets), self.first + len(self.x), self.steps.length
+        """Set tableau, times and inputs of the steps under way; drives are evaluated for `AHEAD` steps at once."""
+        stages, last = len(self.scheme.offsets), self.first + len(self.x)
         if last > self.ahead.stop:
             self.ahead = range(self.first, min(max(last, self.first + AHEAD), len(self.steps)))
-            some = self.steps[self.ahead.start : self.ahead.stop]
-            self.times = np.stack([some.times(offset) for offset in self.scheme.offsets], axis=1).ravel()
+            ahead = self.steps[self.ahead.start : self.ahead.stop]
+            self.times = np.stack([ahead.times(offset) for offset in self.scheme.offsets], axis=1).ravel()
             self.driven = self.drive(self.times)
-        length, begin = length[self.first : last], self.first - self.ahead.start
+        length, begin = self.steps.length[self.first : last], self.first - self.ahead.start
         lengths = length[:1] if (length == length[0]).all() else length
         if not np.array_equal(lengths, self.lengths):
             t: Tableau = self.scheme.tableau(lengths)
             rows = [np.concatenate(pair, axis=-1) for pair in ((t.w_q, t.c_q), (t.w_v, t.c_v))]
-            self.lengths, self.t, self.onto = lengths, t, np.stack(rows, axis=1)
-        at = slice(stages * begin, stages * (begin + len(length)))
-        self.at = self.times[at]
-        self.inputs = self.free = each_leaf(lambda leaf: leaf[at], self.driven)
+            self.lengths, self.t, self.weights = lengths, t, np.stack(rows, axis=1)
+        under_way = slice(stages * begin, stages * (begin + len(length)))
+        self.stage_times = self.times[under_way]
+        self.inputs = self.free = each_leaf(lambda leaf: leaf[under_way], self.driven)
         if self.sampling is not None:
             self.maps = None
             self.held = Held(self.sampling, self.first, len(length))
@@ -227,7 +227,7 @@ class _Window:
             self.inputs = self.held.driven(self.free, stages)
 
     def _leave(self, count: int, rounding: Array) -> None:
-        """Take out the first steps, which have converged to their rounding (t,)."""
+        """Move the first `count` steps, which have converged to their `rounding` (t,), out of the window to `done`."""
         if not count:
             return
         z, x, t = self.z[:count], self.x[:count], self.t
@@ -238,18 +238,20 @@ class _Window:
         self.first, self.again = self.first + count, LONGEST
         self._keep(slice(count, None))
 
-    def _keep(self, some: slice) -> None:
-        """Keep some of the steps, the first or the last."""
-        z, many = slice(some.start, some.stop if some.stop is None else some.stop + 1), len(self.x)
-        self.z, self.x, self.corrections = self.z[z], self.x[some], self.corrections[:, some]
-        if len(self.slope) == many > 1:
-            self.slope = self.slope[some] if len(self.x) else self.slope[-1:, -1:]
-        self.maps = self._known(some)
+    def _keep(self, kept: slice) -> None:
+        """Reduce the window to a slice of its steps, the first or the last."""
+        states, count = slice(kept.start, kept.stop if kept.stop is None else kept.stop + 1), len(self.x)
+        self.z, self.x, self.corrections = self.z[states], self.x[kept], self.corrections[:, kept]
+        if len(self.slope) == count > 1:
+            self.slope = self.slope[kept] if len(self.x) else self.slope[-1:, -1:]
+        self.maps = self._maps_of(kept)
         if len(self.x):
             self._place()
 
     def _withdraw(self, first: int) -> bool:
-        """Take out steps from one on that stay far; false where a single step does."""
+        """Take out the steps from `first` on, which stay far, or begin anew with fewer where that is the window's own
+        first; return False where the window is a single step.
+        """
         if first:
             self.more = max(min(self.more, len(self.x)) // 2, 1)
             self._keep(slice(None, first))
@@ -261,18 +263,20 @@ class _Window:
         return True
 
     def ended(self) -> tuple[Array, ...]:
-        """q, q̇ (t, n), and q̈ if they have it, at the ends of the steps that have left since the last call."""
+        """q, q̇ and, where the scheme has them, q̈ (t, n) at the ends of the steps that have left since the last call."""
         ends = tuple(map(np.concatenate, zip(*self.done, strict=True)))
         self.done = []
         return ends
 
     def _states(self) -> Array:
         """q, q̇, q̈ (3, t s, n) at the stages."""
-        both = self.onto @ np.concatenate([self.z[:-1], self.x], axis=1)[:, None]
+        both = self.weights @ np.concatenate([self.z[:-1], self.x], axis=1)[:, None]
         return np.concatenate([both, self.x[:, None]], axis=1).swapaxes(0, 1).reshape(3, -1, self.x.shape[-1])
 
     def _differentiate(self, states: Array) -> None:
-        """Find K, C and M at some stages from the first old one on, and between these; at the very first alone."""
+        """Renew K, C and M from the first step on whose derivatives are old, found at some stages and interpolated;
+        where there are none yet, find them at the first stage alone.
+        """
         (count, stages, n), since = self.x.shape, self.corrections[3]
 
         def function(*state: Any) -> Array:
@@ -287,32 +291,35 @@ class _Window:
         first = int(np.argmax(stale))
         renewed = self._between(function, states, first).reshape(-1, stages, 3, n, n)
         self.slope = np.concatenate([np.broadcast_to(self.slope, (count, *renewed.shape[1:]))[:first], renewed])
-        since[first:], self.maps = 0.0, self._known(slice(first))
+        since[first:], self.maps = 0.0, self._maps_of(slice(first))
 
     def _between(self, function: Any, states: Array, first: int | None = 0) -> Array:
-        """Values (t s, ...) of a function of states and inputs from a step on; of the first stage alone without one."""
+        """Values (t s, ...) of a function of states and inputs at all stages from step `first` on, interpolated between
+        some; at the first stage of the window alone where `first` is None.
+        """
         steps, stages, _ = self.x.shape
         begin, count = (0, 1) if first is None else (stages * first, stages * (steps - first))
-        samples = 1 + math.ceil((count - 1) / (1 if steps == 1 else self.apart))
-        at = begin + np.linspace(0, count - 1, samples).round().astype(int)
+        size = 1 + math.ceil((count - 1) / (1 if steps == 1 else self.apart))
+        chosen = begin + np.linspace(0, count - 1, size).round().astype(int)
         if first is not None:  # of the first step all, so that it converges as by Newton's method
-            at = np.union1d(at, begin + np.arange(stages))
-        values = function(*states[:, at], each_leaf(lambda leaf: leaf[at], self.inputs))
-        return _interpolated(self.at[at], values, self.at[begin : begin + count]) if len(at) > 1 else values
+            chosen = np.union1d(chosen, begin + np.arange(stages))
+        values = function(*states[:, chosen], each_leaf(lambda leaf: leaf[chosen], self.inputs))
+        if len(chosen) == 1:
+            return values
+        return _interpolated(self.stage_times[chosen], values, self.stage_times[begin : begin + count])
 
     def _factor(self, states: Array) -> None:
-        """Find what corrects steps that have none or new derivatives: inverse J⁻¹ (t, s n, s n), J⁻¹ L (t, s n, m n),
-        and maps of δz over the steps, (t, m n, m n); one of each where all steps are alike.
+        """Complete `maps` by those of steps that have none or new derivatives: J⁻¹ (t, s n, s n), J⁻¹ L (t, s n, m n)
+        and S = g − d J⁻¹ L, from δz to δz₊ (t, m n, m n); one of each where all steps are alike.
         """
         (*_, stages, m), (count, _, n) = self.t.w_q.shape, self.x.shape
         done = 0 if self.maps is None else len(self.maps[0])
         if done in (1, count):
             return
         t = self.t if len(self.t.d) == 1 else each_leaf(lambda leaf: leaf[done:], self.t)
-        jacobian, onto = t.jacobians(*np.moveaxis(self.slope if len(self.slope) == 1 else self.slope[done:], 2, 0))
+        jacobian, by_state = t.jacobians(*np.moveaxis(self.slope if len(self.slope) == 1 else self.slope[done:], 2, 0))
         unit = np.broadcast_to(np.eye(stages * n), jacobian.shape)
-        both = solved(jacobian, np.concatenate([unit, onto], axis=-1))
-        inverse, answer = both[..., : stages * n], both[..., stages * n :]
+        inverse, answer = np.split(solved(jacobian, np.concatenate([unit, by_state], axis=-1)), [stages * n], axis=-1)
         step = (t.g[:, :, None, :, None] * np.eye(n)[:, None, :]).reshape(-1, m * n, m * n)
         if self.held is not None:
             self.held.push(inverse, t, self._between(self.held.sampling.onto, states))
@@ -321,41 +328,43 @@ class _Window:
         self.maps = maps if not done else tuple(map(np.concatenate, zip(self.maps, maps, strict=True)))
 
     def _forces(self, states: Array) -> Array:
-        """Sizes (t, s n) of the forces that cancel at stages, by derivatives at a state that was reached."""
+        """Sizes (t, s n) of the forces that cancel at stages, |K| |q| + |C| |q̇| + |M| |q̈|, derived where it began."""
         return (np.abs(self.reached) @ np.abs(states).swapaxes(1, 2)).sum(axis=0).T.reshape(len(self.x), -1)
 
     def _of_inputs(self, states: Array) -> Array:
-        """Sizes (t, s n) of the forces of inputs in any direction, as of a weight across all that a joint lets move."""
-        astray = each_leaf(lambda leaf: leaf + CANCELLED * np.abs(leaf).max(initial=0.0), self.inputs)
-        apart = self.residual(*states, astray) - self.residual(*states, self.inputs)
-        return np.asarray(np.abs(apart).reshape(len(self.x), -1) / CANCELLED)
+        """Sizes (t, s n) of the forces if every component of an input changed by the largest: a weight counts even
+        where it acts across all that a joint lets move.
+        """
+        shifted = each_leaf(lambda leaf: leaf + CANCELLED * np.abs(leaf).max(initial=0.0), self.inputs)
+        change = self.residual(*states, shifted) - self.residual(*states, self.inputs)
+        return np.asarray(np.abs(change).reshape(len(self.x), -1) / CANCELLED)
 
     def _left_of(self, forces: Array) -> Array:
-        """Accelerations (t,) left of forces that cancel."""
+        """Largest accelerations (t,) that the rounding of forces (t, s n) makes where they cancel."""
         return _largest(CANCELLED * _products(np.abs(self.maps[0]), forces))
 
     def _rounding(self, forces: Array) -> Array:
-        """Accelerations (t,) left of forces that cancel at stages, which no correction takes away."""
+        """Accelerations (t,) that are rounding, which no correction takes away; a window's first ones bound all."""
         rounding = self._left_of(forces)
         if self.most == np.inf:
             self.most = GROWN * float(rounding.max())
         return rounding
 
-    def _known(self, some: slice) -> Any:
-        """Inverses and maps of some of the steps, where each has its own and controllers do not change them."""
+    def _maps_of(self, kept: slice) -> Any:
+        """Maps of a slice of the steps, to be kept; None where they are found anew: one for all, or by controllers."""
         if self.maps is None or self.held is not None:
             return None
-        maps = tuple(each[some] for each in self.maps)
+        maps = tuple(each[kept] for each in self.maps)
         return maps if len(maps[0]) > 1 else None
 
     def _correct(self, states: Array, inverse: Array, answer: Array, step: Array) -> Array:
-        """Correct every step by its stages; returns the sizes of the corrections, (t,)."""
+        """Correct states and stages of all steps by Newton's method; return each step's largest change of x, (t,)."""
         t, count = self.t, len(self.x)
         self.left = self.residual(*states, self.inputs).reshape(count, -1)
-        alone = _products(inverse, self.left)
-        defect = t.g @ self.z[:-1] + t.d @ (self.x - alone.reshape(self.x.shape)) - self.z[1:]
+        by_residual = _products(inverse, self.left)
+        defect = t.g @ self.z[:-1] + t.d @ (self.x - by_residual.reshape(self.x.shape)) - self.z[1:]
         moved = self._moved(step, defect.reshape(count, -1))
-        change = (alone + _products(answer, moved[:-1])).reshape(self.x.shape)
+        change = (by_residual + _products(answer, moved[:-1])).reshape(self.x.shape)
         if self._sampled is not None:
             change = change + self._sampled.changed(self.x.shape)
             self.inputs = self._sampled.driven(self.free, self.x.shape[1])
@@ -365,7 +374,7 @@ class _Window:
         return _largest(change)
 
     def _moved(self, step: Array, defect: Array) -> Array:
-        """Changes δz (t + 1, m n) of the states by δz₊ = S δz + the defects (t, m n)."""
+        """Changes δz (t + 1, m n) of states, δz₊ = S δz + defect, by `step` S (1 or t, m n, m n), `defect` (t, m n)."""
         count, held = len(defect), self._sampled
         if len(step) > 1 and held is None:
             return recurrence(np, np.concatenate([step, defect[..., None]], axis=-1), np.zeros(defect.shape[1]))
@@ -377,13 +386,13 @@ class _Window:
                 power, reach = power @ power, 2 * reach
             return moved
         held.measure(self.z[:-1])
-        every = zip(np.broadcast_to(step, (count, *step.shape[1:])), defect, moved[:-1], moved[1:], strict=True)
-        for k, (one, more, before, after) in enumerate(every):
-            after[:] = one.dot(before) + more + held.sampled(k, before)
+        by_step = zip(np.broadcast_to(step, (count, *step.shape[1:])), defect, moved[:-1], moved[1:], strict=True)
+        for k, (of_step, gap, before, after) in enumerate(by_step):
+            after[:] = of_step.dot(before) + gap + held.sampled(k, before)
         return moved
 
     def _shorten(self, inverse: Array) -> None:
-        """Halve a single step's correction until the next is smaller: a friction or a stop bends within a step."""
+        """Halve a single step's correction until the next would be smaller: friction or a stop bends the residual."""
         (state, change), share = self.change, 1.0
         whole = np.linalg.norm(change)
         for _ in range(HALVINGS):
@@ -401,14 +410,14 @@ def _products(matrices: Array, vectors: Array) -> Array:
 
 
 def _interpolated(at: Array, values: Array, points: Array) -> Array:
-    """Values (k, ...) at times (k,), interpolated at others (p,) by the polynomials through the nearest."""
+    """Values (p, ...) at times `points` (p,), by polynomials through the nearest of values (k, ...) at times (k,)."""
     size = min(NEAREST, len(at))
     first: Array = np.clip(np.searchsorted(at, points) - size // 2, 0, len(at) - size)
     index = first[:, None] + np.arange(size)
-    near, itself = at[index], np.eye(size, dtype=bool)
-    apart = np.where(itself, 1.0, points[:, None, None] - near[:, None, :])
-    between = np.where(itself, 1.0, near[:, :, None] - near[:, None, :])
-    weight = (apart / between).prod(axis=-1)
+    near, diagonal = at[index], np.eye(size, dtype=bool)
+    numerator = np.where(diagonal, 1.0, points[:, None, None] - near[:, None, :])
+    denominator = np.where(diagonal, 1.0, near[:, :, None] - near[:, None, :])
+    weight = (numerator / denominator).prod(axis=-1)
     weights = np.zeros((len(points), len(at)))
     np.put_along_axis(weights, index, weight, axis=1)
     return (weights @ values.reshape(len(at), -1)).reshape(len(points), *values.shape[1:])
@@ -425,19 +434,18 @@ def _largest(values: Array) -> Array:
 
 
 def _reach(x: Array) -> Array:
-    """Accelerations (t,) by which errors in those of steps x (t, ..., n) are measured, in whatever units."""
+    """Size (t,) of the accelerations x (t, ..., n) of steps, to which errors are related: beside what came before."""
     largest = _largest(x)
     return largest + EARLIER * np.maximum.accumulate(largest) + TINY
 
 
 def _converged(size: Array, before: Array, reach: Array, noise: Array, *, fresh: Array, quick: Array) -> Array:
-    """True if the last two sizes (t,) of corrections, which shrink by a constant factor, leave no more than a tolerance
-    and rounding; by `fresh` derivatives the factor is unknown. The first one moves states of which it does not know
-    what acts there: it leaves any. Where they stall at less than a part of the accelerations' `reach` (t,), all that is
-    left is rounding; as where they have been quick and no longer are, for the rounding of earlier steps adds to a
-    step's own.
+    """Flags (t,) of steps whose last correction, `size`, leaves no more error than a tolerance and rounding, `noise`.
+    Corrections shrink by a constant factor, size / before; by `fresh` derivatives it is unknown and taken as 1. After
+    the first correction any error may be left. What is left is rounding, too, where small corrections stall: by fresh
+    derivatives, or after `quick` ones, for the rounding of earlier steps adds to a step's own.
     """
-    again, shrunk = np.isfinite(before), size / np.maximum(before, 1e-300)
-    left = np.where(again, size * np.where(fresh, 1.0, np.clip(shrunk, QUICKEST, 1.0)), np.inf)
-    ended = fresh & again & (shrunk > STALLED) | quick & (shrunk > SLOW) & (size <= SUMMED * reach)
-    return (left <= TOLERANCE * reach + noise) | (ended & (size <= ROUNDING * reach))
+    again, factor = np.isfinite(before), size / np.maximum(before, 1e-300)
+    left = np.where(again, size * np.where(fresh, 1.0, np.clip(factor, QUICKEST, 1.0)), np.inf)
+    stalled = (fresh & again & (factor > STALLED)) | (quick & (factor > SLOW) & (size <= SUMMED * reach))
+    return (left <= TOLERANCE * reach + noise) | (stalled & (size <= ROUNDING * reach))
