@@ -95,8 +95,8 @@ class Flight:
         """Motion of the base at times `t` (s, any shape)."""
         a_WO_B = self.acceleration(t)
         if self.rates is None:
-            none = namespace(a_WO_B).zeros_like(a_WO_B)
-            return Base(a_WO_B, none, none)
+            zero = namespace(a_WO_B).zeros_like(a_WO_B)
+            return Base(a_WO_B, zero, zero)
         return Base(a_WO_B, *self.rates.derivatives(t))
 
     def corners(self, step: float) -> Floats:
@@ -116,15 +116,15 @@ class Flight:
     def part_of(self, start: float, end: float) -> tuple[float, float] | None:
         """First and last time of the whole flight, s, of which the times from `start` to `end` are a part.
 
-        Of a record that of its file. None where they are all of it but an interval of the record, nothing ends, or JAX
-        traces the flight.
+        The whole of a record is its file's. None if at most an interval of the record is left out, if the flight has
+        no ends, or if JAX traces it.
         """
         if holds_jax(self):
             return None
         if self.record is not None:
             (first, last), slack = self.record.whole, (1 + _ROUNDING) / self.record.rate
         else:
-            extent = merged_extent(*(each for each in (self.acceleration, self.rates) if each is not None))
+            extent = merged_extent(*(profile for profile in (self.acceleration, self.rates) if profile is not None))
             if extent is None:
                 return None
             (first, last), slack = extent, _ROUNDING * (extent[1] - extent[0])

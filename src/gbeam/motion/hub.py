@@ -223,7 +223,7 @@ class Hub:
         return self.rate
 
     def _angles(self) -> tuple[Any, Any]:
-        """Times and angles at them, from zero at time zero; fine enough for `_turned` between them."""
+        """Times, s, and the hub's angles there, rad, zero at time zero; so close that `_turned` is exact in between."""
         rate = self._prescribed()
         marks = np.append(np.asarray(rate.breaks), 0.0)
         traced = is_traced(rate(marks))
@@ -242,6 +242,7 @@ class Hub:
         return times, sums - sums[np.searchsorted(times, 0.0)]
 
     def _turned(self, start: Any, end: Any) -> Any:
+        """Angles, rad, by which the hub turns from times to others, s: Gauss's rule."""
         half = (end - start)[..., None] / 2
         values = self._prescribed()(start[..., None] + half * (1 + _POINTS))
         return (half * _WEIGHTS * values).sum(axis=-1)

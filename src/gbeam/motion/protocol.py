@@ -70,13 +70,13 @@ def implausible_values(motion: Any, where: str, span: tuple[float, float], base:
     if isinstance(motion, Flight):
         yield from _of_flight(motion, where, span)
     base = motion.base(times(motion, span)) if base is None else base
-    rate, load = (float(np.linalg.norm(each, axis=-1).max()) for each in (base.w_WB_B, base.a_WO_B))
+    rate, load = (float(np.linalg.norm(vectors, axis=-1).max()) for vectors in (base.w_WB_B, base.a_WO_B))
     odd = tuple(implausible(f"{where}.rate", "rate", rate))
     yield from odd or implausible(f"{where}.acceleration", "acceleration", load)
 
 
 def _of_flight(flight: Flight, where: str, span: tuple[float, float]) -> Iterator[str]:
-    """Notes on its record: steps taken, oddities, and that only a part of it is flown."""
+    """Notes on a flight's record: steps taken, oddities, and that only a part of it is flown."""
     if flight.record is not None:
         yield from (f"{where}.record: {note}" for note in flight.record.notes)
     whole = flight.part_of(*span) if span[1] > span[0] else None

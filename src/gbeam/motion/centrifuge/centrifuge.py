@@ -322,6 +322,7 @@ class Centrifuge:
         return next(name for name, sign in MOUNTINGS.items() if sign == self.geometry.sign)
 
     def _prepared(self, start: float, end: float) -> Course:
+        """Course over a span of the flight's time, s, in the axes of the module that axis 3 turns."""
         load: Profile = self.flight.acceleration
         if any(self.turn):
             load = Turned(load, rotation_of(self.turn))

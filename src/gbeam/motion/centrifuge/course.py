@@ -53,7 +53,7 @@ class Planned(Inverse):
 
 @lru_cache(maxsize=4)  # keyed by values: equal machines of a study wait once
 def planned(target: Target, geometry: Geometry, limits: Limits, ends: Ends) -> Planned:
-    """Plan the axes.
+    """Plan the motion of the axes, as splines of finer and finer knots while that lowers the tracking error.
 
     With `ends.start` ``idle`` the motion begins and ends at the flight's first and last time, with the arm turning at a
     constant rate and the gimbals at rest. Otherwise all is at rest at both ends; with ``pre-yawed`` the search begins
@@ -69,35 +69,38 @@ def planned(target: Target, geometry: Geometry, limits: Limits, ends: Ends) -> P
         raise InputError("idle", problem, "give less, or a machine with a longer arm or a faster axis 1")
     ramps = build_ramps(target, QuasiStatic(geometry), geometry, limits, ends)
     begin, end = target.span if ramps is None else (float(ramp.still) for ramp in ramps)
-    lasts = {"spin_up": target.span[0] - begin, "": target.span[1] - target.span[0], "spin_down": end - target.span[1]}
+    first, last = target.span
+    durations = {"spin_up": first - begin, "": last - first, "spin_down": end - last}
     fix = f"give {KNOTS * _FINE:g} s or less altogether"
-    refuse_more(max(lasts, key=lambda name: lasts[name]), "knots", (end - begin) / _FINE, KNOTS, 4000.0, fix)
+    longest = max(durations, key=lambda name: durations[name])
+    refuse_more(longest, "knots", (end - begin) / _FINE, KNOTS, 4000.0, fix)
     lengths = [end - begin] if ramps is None else [ramp.length for ramp in ramps]
     step = min(_COARSE, *(length / _PER_RAMP for length in lengths))
     grid = Grid(float(begin), float(end), step, _POINTS)
-    c, best, within = grid.fit(_guess(grid.time, target, geometry, ramps)), np.inf, False
+    c = grid.fit(_guess(grid.time, target, geometry, ramps))
+    best, within_limits = np.inf, False
     while True:
         splines = AxisSplines(grid, standstill=ramps is not None)
         kept = KeptLimits(splines, geometry, limits, target)
         x = splines.unknowns(c)
-        near = x if within else nearest_within(kept, x)
-        if near is not None:
-            tracking, x = Tracking(splines, geometry, target, ramps), near
-            for factor in (1.0,) if within else _GENTLER:
+        feasible = x if within_limits else nearest_within(kept, x)
+        if feasible is not None:
+            tracking, x = Tracking(splines, geometry, target, ramps), feasible
+            for factor in (1.0,) if within_limits else _GENTLER:
                 x, cost = minimise(tracking.gentler(factor), kept, x)
-            c, gain, best, within = splines.coefficients(x), best - cost, cost, True
+            c, gain, best, within_limits = splines.coefficients(x), best - cost, cost, True
             if grid.step <= _FINE and gain <= _GAIN * (cost - tracking.bound):
                 break
         if grid.step / 2 < _FINEST:
             break
         c, grid = grid.refined(c), grid.halved()
-    if not within:
+    if not within_limits:
         raise _refusal(limits, ends, ramps)
     return Planned(grid.spline(c))
 
 
 def _guess(time: Floats, target: Target, geometry: Geometry, ramps: tuple[Ramp, Ramp] | None) -> Floats:
-    """The quasi-static motion of the target, from standstill to standstill, (times, 3)."""
+    """Rate of axis 1 and angles of axes 2 and 3, (times, 3), of the target's quasi-static motion with its ramps."""
     pose = [part.value for part in QuasiStatic(geometry).pose(target.load, np.clip(time, *target.span), 0)]
     for ramp in ramps or ():
         on_way = (time - ramp.steady) * (ramp.still - ramp.steady) > 0
@@ -108,7 +111,7 @@ def _guess(time: Floats, target: Target, geometry: Geometry, ramps: tuple[Ramp, 
 
 
 def _refusal(limits: Limits, ends: Ends, ramps: tuple[Ramp, Ramp] | None) -> InputError:
-    """Name the time that is too short for the limits."""
+    """The error that names the spin-up or spin-down that is too short for the limits, or else the limits."""
     for name, ramp in zip(("spin_up", "spin_down"), ramps or (), strict=False):
         duration, more = getattr(ends, name), ramp.lengthened(limits).length - ramp.length
         if duration is not None and more > 0:
@@ -141,7 +144,7 @@ INVERSES: dict[str, Method] = {
 
 @record
 class Course:
-    """The target over a span, the inverse solved for it, or yet to be :meth:`solved`, and the way there and back."""
+    """The target over a span, the inverse that :meth:`solved` finds for it, and the spin-up and spin-down."""
 
     target: Target
     geometry: Geometry
@@ -176,16 +179,17 @@ class Course:
         return tuple(series.derivatives() for series in self._pose(as_array(t), order))
 
     def _pose(self, t: Any, order: int) -> Pose:
+        """Pose of the axes at times `t`: that of the inverse within the span, of the ramps before and after."""
         inverse, load = self.inverse, self.target.load
         if self.ramps is None:
             return inverse.pose(load, t if inverse.extent is None else namespace(t).clip(t, *inverse.extent), order)
         first, last = (ramp.steady for ramp in self.ramps)
-        ways = list(zip(self.ramps, (t < first, t > last), strict=True))
-        for ramp, on_way in ways:
+        ramps = list(zip(self.ramps, (t < first, t > last), strict=True))
+        for ramp, on_way in ramps:
             if not is_jax(on_way) and np.all(on_way):  # what the target costs is spared
                 return ramp.pose(t, order)
         pose = inverse.pose(load, namespace(t, first, last).clip(t, first, last), order)
-        for ramp, on_way in ways:
+        for ramp, on_way in ramps:
             if is_jax(on_way) or np.any(on_way):
                 rate, yaw, roll = (where(on_way, a, b) for a, b in zip(ramp.pose(t, order), pose, strict=True))
                 pose = rate, yaw, roll
@@ -204,10 +208,12 @@ class Course:
         if self.start == "idle" or not (is_jax(outside) or np.any(outside)):
             return load
         (rate, acceleration), *_ = self.derivatives(now, 1)
-        return namespace(load, rate).where(outside[..., None], self._partly(load, rate, acceleration), load)
+        return namespace(load, rate).where(outside[..., None], self._reduced(load, rate, acceleration), load)
 
-    def _partly(self, load: Any, rate: Any, acceleration: Any) -> Any:
-        """A load with only the part p of what is horizontal; what is across the beam keeps its direction."""
+    def _reduced(self, load: Any, rate: Any, acceleration: Any) -> Any:
+        """A load whose horizontal part is reduced to what the arm makes at a rate, rad/s, and an acceleration, rad/s²;
+        the part across the beam keeps its direction.
+        """
         xp = namespace(load, rate)
         gravity, across = self.geometry.gravity, xp.sum(load[..., 1:] ** 2, axis=-1)
         horizontal = self.geometry.arm * xp.hypot(rate**2, acceleration if self.start == "pre-yawed" else 0.0)

@@ -139,7 +139,7 @@ def _broken_promise(
     not_followed: Floats,
     limits: tuple[LimitUse, ...],
 ) -> tuple[str, ...]:
-    """Say where the load is followed worse than the inverse promises; nothing where it is not."""
+    """Warn where the load is followed worst, if worse than the inverse promises."""
     size = np.linalg.norm(error, axis=1)
     share = np.where(not_followed, 0.0, size / np.maximum(np.linalg.norm(reference, axis=1), 1e-12))
     missed = share > motion.inverse.within
@@ -155,7 +155,7 @@ def _broken_promise(
 
 
 def _short_ramps(motion: Centrifuge) -> tuple[str, ...]:
-    """Say how long a spin-up and a spin-down the limits need, which were given shorter; nothing where they are not."""
+    """Warn of a spin-up and a spin-down that are too short for the limits, with the time that they need."""
     course = motion.course
     if course is None or course.ramps is None:
         return ()

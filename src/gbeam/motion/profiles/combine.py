@@ -198,6 +198,7 @@ def clamped(profile: Profile, first: float, last: float) -> Profile:
 
 
 def _cut(table: PiecewiseLinear, first: float, last: float) -> PiecewiseLinear:
+    """The table from `first` to `last`, s, with knots there."""
     times = np.asarray(table.times)
     if first <= times[0] and times[-1] <= last:
         return table
@@ -239,7 +240,7 @@ class Clamped(Profile):
         return np.unique(np.clip(self.profile.knots(step), float(self.first), float(self.last)))
 
     def smoothed(self, width: Any) -> Profile:
-        """By quadrature; of a table where the profile is itself one, since one within the other costs minutes."""
+        """By quadrature; if the profile is a convolution itself, of a table of it: nested quadrature costs minutes."""
         inner = self.profile
         if not isinstance(inner, Convolved) or is_traced(width, inner.width, self.first, self.last):
             return Convolved(self, width)

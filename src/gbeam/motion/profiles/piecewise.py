@@ -139,10 +139,10 @@ class SmoothedPiecewiseLinear(Rounded):
         xp = namespace(now, self.times, self.bends, self.width)
         times, bends = xp.asarray(self.times), xp.asarray(self.bends)
         first, count = xp.searchsorted(times[:-1], now - self.width / 2, side="right"), self.count
-        if xp is np and now.size:  # no more knots than these windows hold
+        if xp is np and now.size:  # no more knots than the windows of these times hold
             count = int((np.searchsorted(times[:-1], now + self.width / 2, side="right") - first).max())
             if now.ndim == 1 and now.size * count > TOGETHER:
-                return Series.in_pieces(lambda some: self.series(some, order), now, 1 + now.size * count // TOGETHER)
+                return Series.in_pieces(lambda piece: self.series(piece, order), now, 1 + now.size * count // TOGETHER)
         near = xp.minimum(first[..., None] + np.arange(count), times.size - 1)
         ramps = hann_orders(0, order, (now[..., None] - times[near]) / self.width)
         bent = bends[near]

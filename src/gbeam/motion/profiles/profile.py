@@ -120,11 +120,13 @@ def smoothed(profile: Profile, width: Any) -> Profile:
 
 
 def rounded_corners(corners: Any, width: float, step: float) -> Floats:
-    """Corners that a kernel rounds: none where steps resolve its `width`, else no nearer than they then would be."""
-    apart, times = float(width) / STEPS_PER_EVENT, np.asarray(corners, dtype=np.float64)
-    if apart >= step or not times.size:
+    """Corners, s, that steps should not pass unseen if a kernel rounds them: none where steps resolve its `width`, else
+    at least a quarter of it apart.
+    """
+    spacing, times = float(width) / STEPS_PER_EVENT, np.asarray(corners, dtype=np.float64)
+    if spacing >= step or not times.size:
         return times[:0]
-    return np.asarray(times[0] + apart * np.unique(np.round((times - times[0]) / apart)))
+    return np.asarray(times[0] + spacing * np.unique(np.round((times - times[0]) / spacing)))
 
 
 def sampled(start: float, end: float, step: float) -> Floats:
@@ -190,6 +192,7 @@ def hann_orders(first: int, last: int, x: Any) -> list[Any]:
 
 
 def _orders(xp: Any, first: int, last: int, x: Any) -> list[Any]:
+    """Derivatives of the rounded ramp as :func:`hann_orders`, by the array library `xp`."""
     u = xp.clip(x, -0.5, 0.5)
     orders = range(first, last + 1)
     # Orders 0 and 2 need no sine, order 1 no cosine.
@@ -272,16 +275,17 @@ class Convolved(Rounded):
         nodes = (breaks.size + 1) * _POINTS.size
         if xp is np and now.ndim == 1 and now.size > 1 and now.size * nodes > TOGETHER:
             return Series.in_pieces(
-                lambda some: self.series(some, order), now, min(now.size, 1 + now.size * nodes // TOGETHER)
+                lambda piece: self.series(piece, order), now, min(now.size, 1 + now.size * nodes // TOGETHER)
             )
         low, high = now[..., None] - width / 2, now[..., None] + width / 2
-        one, fixed = xp.ones_like(low), (breaks > low) & (breaks < high)
-        at, weight = _panels(xp, xp.concatenate([low, xp.clip(breaks, low, high), high], axis=-1))
-        speed, widening = _panels(xp, xp.concatenate([one, xp.where(fixed, 0.0, 1.0), one], axis=-1))
-        inner = self.profile.series(at, order)
-        axes = inner.value.ndim - at.ndim
+        # Panels end at breaks, which stand still, and at the ends of the window, which move with t: at speed one.
+        one, still = xp.ones_like(low), (breaks > low) & (breaks < high)
+        node, weight = _panels(xp, xp.concatenate([low, xp.clip(breaks, low, high), high], axis=-1))
+        speed, widening = _panels(xp, xp.concatenate([one, xp.where(still, 0.0, 1.0), one], axis=-1))
+        inner = self.profile.series(node, order)
+        axes = inner.value.ndim - node.ndim
         values = Series(tuple(beside(speed**k, axes) * c for k, c in enumerate(inner.coefficients)))
-        orders = hann_orders(2, 2 + order, (now[..., None] - at) / width)
+        orders = hann_orders(2, 2 + order, (now[..., None] - node) / width)
         kernel = Series(tuple(((1 - speed) / width) ** k * h / factorial(k) for k, h in enumerate(orders)))
         weighted = Series.of([weight / width, widening / width], order) * kernel
         return (weighted.each(lambda c: beside(c, axes)) * values).each(lambda c: c.sum(axis=now.ndim))

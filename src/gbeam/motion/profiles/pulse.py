@@ -183,8 +183,8 @@ class SplineProfile(Profile):
         xp = namespace(since, self.coefficients)
         inside = self._spline.series(xp.clip(since, 0.0, self.duration), order)
         beyond = (since < 0) | (since > self.duration)
-        first, *rest = (each[..., 0] for each in inside.coefficients)
-        return Series((first, *(xp.where(beyond, 0.0, each) for each in rest)))
+        value, *rates = (coefficient[..., 0] for coefficient in inside.coefficients)
+        return Series((value, *(xp.where(beyond, 0.0, rate) for rate in rates)))
 
     def integral(self, t: Any) -> Any:
         since = as_array(t) - self.start
@@ -208,10 +208,10 @@ class SplineProfile(Profile):
 
 
 def through(duration: float, time: Any, values: Any, pieces: int) -> SplineProfile:
-    """The spline nearest to values at times from 0 to the duration (s), which begin and end flat."""
+    """Least-squares spline of values (t,) at times (t,) from 0 to the duration, s, flat at the first and last value."""
     basis = Spline(0.0, duration / pieces, np.eye(pieces + DEGREE))(time)
-    ends = np.zeros(pieces + DEGREE)
-    ends[:DEGREE], ends[-DEGREE:] = values[0], values[-1]
-    inner, *_ = np.linalg.lstsq(basis[:, DEGREE:-DEGREE], values - basis @ ends, rcond=None)
-    ends[DEGREE:-DEGREE] = inner
-    return SplineProfile(duration, ends)
+    coefficients = np.zeros(pieces + DEGREE)
+    coefficients[:DEGREE], coefficients[-DEGREE:] = values[0], values[-1]
+    inner, *_ = np.linalg.lstsq(basis[:, DEGREE:-DEGREE], values - basis @ coefficients, rcond=None)
+    coefficients[DEGREE:-DEGREE] = inner
+    return SplineProfile(duration, coefficients)

@@ -52,8 +52,8 @@ _TELLING = ("acceleration", "rate")  # of which a unit is one of nothing else
 
 def words_of(name: str) -> list[str]:
     """Words of a column's name, in small letters: ``acc_Z [m/s^2]`` has acc, z, m, s and 2."""
-    parted = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
-    return re.findall(r"[^\W_]+", parted.lower())
+    separated = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
+    return re.findall(r"[^\W_]+", separated.lower())
 
 
 def unit_in_name(name: str) -> str:
@@ -138,7 +138,7 @@ def refuse_other_kinds(table: Table, names: dict[str, str]) -> None:
         table.column(axis, column)
         kind = _other_kind(column)
         if kind:
-            loads = [one.name for one in table.columns if any(map(_is_load, words_of(one.name)))]
+            loads = [other.name for other in table.columns if any(map(_is_load, words_of(other.name)))]
             fix = f"name a column of load, such as {loads[0]!r}" if loads else "name a column of load"
             raise InputError(f"record.{axis}", f"names {column!r}, by its name {kind} and no load", f"{fix}; {_TRUST}")
         if column in used:
@@ -148,7 +148,7 @@ def refuse_other_kinds(table: Table, names: dict[str, str]) -> None:
 
 
 def mirrored(table: Table, names: dict[str, str]) -> Iterator[str]:
-    """Say where the columns' axes, right-handed by their names, become left-handed ones of the beam."""
+    """Warn where the columns' axes, right-handed by their names, become left-handed ones of the beam."""
     mapping = np.zeros((3, 3))
     for row, name in zip(mapping, names.values(), strict=True):
         sign, column = table.signed(name)
@@ -165,7 +165,7 @@ def mirrored(table: Table, names: dict[str, str]) -> Iterator[str]:
 
 
 def load_factors(table: Table, names: dict[str, str], unit: str, *, specific: bool) -> Iterator[str]:
-    """Say where columns are load factors by their names, and are taken for something else."""
+    """Warn of columns that are load factors by their names, and are taken for something else."""
     columns = [column for _, column in map(table.signed, names.values()) if column is not None]
     factors = [column for column in columns if _FACTOR.search(" ".join(words_of(column)))]
     if factors and unit != "g":
@@ -178,6 +178,7 @@ def load_factors(table: Table, names: dict[str, str], unit: str, *, specific: bo
 
 
 def _other_kind(name: str) -> str:
+    """Kind of quantity that a column's name says it is, such as "a speed"; empty for a load, or an unknown name."""
     words = words_of(name)
     if any(map(_is_load, words)):
         return ""

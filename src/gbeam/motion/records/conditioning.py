@@ -54,7 +54,7 @@ def dropout(values: Floats, step: float) -> tuple[int, int] | None:
 
 
 def spikes(load: Floats) -> Flags:
-    """Single samples far off, per channel, (t, 3), by both of two tests.
+    """Flags (t, 3) of single samples far off, per channel, by either of two tests.
 
     Hampel's: off the median of the seven around them. On a flank beside a peak these deviate from their median as much
     as a spike does, so the other is: off the straight line between their neighbours, which themselves are off by half
@@ -78,7 +78,7 @@ def _windows(values: Floats, beside: int, reflected: Literal["odd", "even"]) -> 
 
 
 def _far(off: Floats, around: Floats) -> Flags:
-    """True if samples are six deviations off, of the windows `around` them and of the median window."""
+    """Flags of samples `off` by more than six deviations of the windows `around` them, and of the median window."""
     spread = 1.4826 * np.median(around, axis=-1)
     spread = np.maximum(spread, np.median(spread, axis=0))
     return np.asarray(np.abs(off) > np.maximum(_OUTLIER * spread, _LEAST_JUMP))
@@ -95,6 +95,7 @@ def flat_tops(values: Floats) -> Iterator[tuple[float, list[slice]]]:
         runs = [run for run in true_runs(values == extreme) if run.start > 0 and run.stop < len(values)]
         runs = [run for run in runs if run.stop - run.start >= _FLAT]
         rise, finest = sign * np.diff(values), np.diff(np.unique(values)).min(initial=np.inf)
+        # Steps that lead to the extreme, from before a run and, backwards, from after it.
         ways = [way for run in runs for way in (rise[: run.start][-_STEADY:], -rise[run.stop - 1 :][:_STEADY][::-1])]
         if outwards and any(way[-1] > _STEP * finest or (len(way) == _STEADY and way.min() > 0) for way in ways):
             yield extreme, runs
@@ -129,8 +130,9 @@ def filtered(time: Floats, values: Floats, cutoff: float | None, resample: float
     if length * rate < FEWEST - 1:
         problem = f"is {rate:g} Hz, which leaves fewer than {FEWEST} samples of {length:g} s"
         raise InputError("record.resample", problem, f"give {(FEWEST - 1) / length:.3g} Hz or more")
-    each = 24.0 * values[0].size  # a sample and the spline through it
-    refuse_more("record.resample", "samples", length * rate, SAMPLES, each, f"give {SAMPLES / length:.3g} Hz or less")
+    per_sample = 24.0 * values[0].size  # bytes, with the spline
+    fix = f"give {SAMPLES / length:.3g} Hz or less"
+    refuse_more("record.resample", "samples", length * rate, SAMPLES, per_sample, fix)
     fresh = time[0] + np.arange(int(np.floor((time[-1] - time[0]) * rate * (1 + 1e-12))) + 1) / rate
     fresh = np.minimum(fresh, time[-1])
     return fresh, _splined(time, values, fresh)

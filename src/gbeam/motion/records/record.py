@@ -206,10 +206,10 @@ def read_flight(
     if "columns" not in skip:
         notes += [*mirrored(table, names), *load_factors(table, names, unit, specific=flown.specific)]
     notes += oddities(flown)
-    calm, spiky = _despiked(flown, despike=conditioning.despike)
-    notes += spiky
-    turning = rate_scale * table.vector(turns, len(clock), part)[part] if turns else np.empty((len(when), 0))
-    new, both = filtered(when, np.concatenate([calm, turning], axis=1), conditioning.cutoff, conditioning.resample)
+    calm, spike_notes = _despiked(flown, despike=conditioning.despike)
+    notes += spike_notes
+    body_rates = rate_scale * table.vector(turns, len(clock), part)[part] if turns else np.empty((len(when), 0))
+    new, both = filtered(when, np.concatenate([calm, body_rates], axis=1), conditioning.cutoff, conditioning.resample)
     if jitter:
         notes.append(f"times up to {1e3 * jitter:.3g} ms off even ones: a spline through the samples is flown")
     if conditioning.cutoff is not None:
@@ -218,8 +218,8 @@ def read_flight(
         notes.append(f"resampled at {conditioning.resample:g} Hz")
     zero = "" if of_day is None else of_day.first
     facts = summary(flown, os.fspath(path), (float(clock[0]), float(clock[-1])), zero, tuple(notes))
-    about = None if rates is None else PiecewiseLinear(new, both[:, 3:])
-    return FlightRecord(PiecewiseLinear(new, both[:, :3], record=facts), about)
+    flown_rates = None if rates is None else PiecewiseLinear(new, both[:, 3:])
+    return FlightRecord(PiecewiseLinear(new, both[:, :3], record=facts), flown_rates)
 
 
 def _scale(
@@ -249,10 +249,10 @@ def _times(table: Table, name: str, unit: str | None, *, trust: bool) -> tuple[F
 
 
 def _despiked(record: Samples, *, despike: bool) -> tuple[Floats, list[str]]:
-    """The load, without its spikes where they are to go, and what is said of them."""
+    """The load, without its spikes if `despike`, and a note on them."""
     odd = spikes(record.load)
     count, first = int(odd.any(axis=1).sum()), int(np.argmax(odd.any(axis=1)))
     done = "were replaced" if despike else "are kept; despike = true replaces them"
     where = f"the first at {record.time[first]:g} s ({record.place(first)})"
-    said = [f"{count} sample(s) that look like spikes, {where}, {done}"] if count else []
-    return without_spikes(record.time, record.load, odd) if despike and count else record.load, said
+    notes = [f"{count} sample(s) that look like spikes, {where}, {done}"] if count else []
+    return without_spikes(record.time, record.load, odd) if despike and count else record.load, notes

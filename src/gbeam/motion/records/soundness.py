@@ -166,6 +166,7 @@ def _check_sign(record: Samples, upwards: Floats, size: Floats) -> None:
 
 
 def _check_dropouts(record: Samples) -> None:
+    """Refuse a channel that stands still where a sensor dropped out."""
     step = float(np.median(np.diff(record.time)))
     for values, (axis, name) in zip(record.load.T, record.names.items(), strict=True):
         still = dropout(values, step)
@@ -216,7 +217,7 @@ def summary(
 
 
 def oddities(record: Samples) -> Iterator[str]:
-    """Say where a sensor seems to have been at the end of its range, and whether the load is along the beam."""
+    """Warn where a sensor seems to have been at the end of its range, and of a largest load along the beam."""
     for (axis, name), values in zip(record.names.items(), record.load.T, strict=True):
         for extreme, runs in flat_tops(values):
             listed = ", ".join(
@@ -240,6 +241,7 @@ def oddities(record: Samples) -> Iterator[str]:
 
 
 def _level(record: Samples) -> Level | None:
+    """Longest stretch of level flight, with its mean load; None without any."""
     in_g = np.linalg.norm(record.load, axis=1) / STANDARD_GRAVITY
     runs = true_runs((in_g > LEVEL[0]) & (in_g < LEVEL[1]))
     if not runs:

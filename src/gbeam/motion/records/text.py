@@ -27,7 +27,9 @@ _GAP = 1.9  # of the median interval: a sample is missing, and no clock that jit
 
 
 def check_sampling(time: Floats, place: Callable[[int], str], *, jitter: bool) -> float:
-    """Refuse times (t,) s that stand still, go back, jump or wander; return how far off even ones they are, s."""
+    """Refuse times (t,) s that stand still, go back, jump or, unless `jitter` is allowed, are uneven; return the
+    largest distance, s, from even times.
+    """
     steps = np.diff(time)
 
     def at(i: int) -> str:
@@ -157,6 +159,7 @@ def read_text(path: str | os.PathLike[str]) -> Table:
 
 
 def _decoded(path: str | os.PathLike[str]) -> str:
+    """Text of a file, in the encoding of its mark, or UTF-8, or Latin-1."""
     try:
         fix = f"cut the record, or save it as HDF5, of which {in_bytes(BINARY_BYTES)} are read"
         refuse_large_file("record.file", path, TEXT_BYTES, fix)
@@ -180,7 +183,7 @@ def _decoded(path: str | os.PathLike[str]) -> str:
 
 
 def _dialect(path: str | os.PathLike[str], body: list[str]) -> tuple[str, int]:
-    """Delimiter and number of columns by which most of some lines of data are numbers, or times of day."""
+    """Delimiter and number of columns for which the most cells of some lines are numbers or times of day."""
     best, delimiter, width = 0.0, "", 0
     for candidate in _DELIMITERS:
         rows = [_cells(line, candidate) for line in body]
@@ -197,6 +200,7 @@ def _dialect(path: str | os.PathLike[str], body: list[str]) -> tuple[str, int]:
 
 
 def _cells(line: str, delimiter: str) -> list[str]:
+    """Cells of a line, stripped and unquoted."""
     if delimiter == " ":  # a unit in brackets belongs to the name before it
         line = _BEFORE_BRACKET.sub("\0", " ".join(line.split()))
     if '"' in line:
@@ -210,6 +214,7 @@ def _cells(line: str, delimiter: str) -> list[str]:
 
 
 def _count(cells: list[str]) -> int:
+    """Number of cells with a number or a time of day."""
     return sum(_NUMBER.fullmatch(cell) is not None or is_clock(cell) for cell in cells)
 
 
@@ -245,6 +250,7 @@ def _header(path: str | os.PathLike[str], lines: list[str], delimiter: str, widt
 
 
 def _column(header: str, unit: str, data: list[Row], i: int) -> Column:
+    """Column `i` of the data, with a decimal point; its unit may stand in brackets behind its name."""
     bracket = _BRACKETS.fullmatch(header)
     aliases: tuple[str, ...] = ()
     if bracket is not None:

@@ -43,16 +43,16 @@ class AxisSplines:
             number = np.arange(-1, AXES * (place[-1] + 1) - 1).reshape(-1, AXES)
             number[-1] -= 1
             number[-1, RATE] = -1
-        self.number = number[place]  # of the unknown that each coefficient is, (grid.size, 3); -1: it is zero
+        self.number = number[place]  # of the unknown that is each coefficient, (grid.size, 3); −1 where it is zero
         self.size = int(self.number.max()) + 1
         first, last = np.clip(np.arange(self.size) + np.array([[1 - NEAR], [NEAR]]), 0, self.size)
         starts = np.append(0, np.cumsum(last - first))  # of the columns of a matrix on x
         rows = np.arange(starts[-1]) - np.repeat(starts[:-1] - first, last - first)
         self._banded = rows, starts
-        every = np.append(self.number.ravel(), np.full(NEAR, -1))
-        ends = np.lib.stride_tricks.sliding_window_view(every, NEAR)[:-1].T, every[:-NEAR]
-        used = (ends[0] >= 0) & (ends[1] >= 0)
-        self._places = [np.where(used, starts[c] + r - first[c], starts[-1]).ravel() for r, c in (ends, ends[::-1])]
+        padded = np.append(self.number.ravel(), np.full(NEAR, -1))
+        pair = np.lib.stride_tricks.sliding_window_view(padded, NEAR)[:-1].T, padded[:-NEAR]  # (later, earlier) unknown
+        used = (pair[0] >= 0) & (pair[1] >= 0)
+        self._places = [np.where(used, starts[c] + r - first[c], starts[-1]).ravel() for r, c in (pair, pair[::-1])]
 
     def on_unknowns(self, rows: Any, axis: int) -> Any:
         """Rows (m, grid.size) that act on the coefficients of one axis as rows (m, size) that act on x."""
@@ -70,7 +70,7 @@ class AxisSplines:
         return np.asarray(np.append(x, 0.0)[self.number])
 
     def unknowns(self, coefficients: Floats) -> Floats:
-        """The unknowns x of coefficients (grid.size, 3); those of the outermost knots count at the ends."""
+        """The unknowns x of coefficients (grid.size, 3); where several are one unknown, the outermost counts."""
         x = np.zeros(self.size + 1)
         half = self.grid.size // 2
         x[self.number[half - 1 :: -1]] = coefficients[half - 1 :: -1]
@@ -78,7 +78,9 @@ class AxisSplines:
         return x[:-1]
 
     def assembled(self, pieces: Floats) -> Any:
-        """The symmetric matrix on x, sparse (size, size), of matrices (171, pieces) on a piece's coefficients each."""
+        """Sparse symmetric matrix (size, size) for x: the sum of matrices for the 18 coefficients that act on one piece
+        each; `pieces` (171, pieces) are their lower triangles.
+        """
         band = np.zeros((NEAR, AXES * self.grid.size))  # row d couples every coefficient with the d-th after it
         for i, j, values in zip(*np.tril_indices(NEAR), pieces, strict=True):
             band[i - j, j : j + AXES * self.grid.pieces : AXES] += values
@@ -129,7 +131,7 @@ class Tracking:
         self.states = scipy.sparse.vstack([splines.derivative(*state) for state in states], format="csr")
         # Weights of a piece's coefficients in its states, (points, 4, 18).
         near = np.stack([_on_axis(grid.rows(order), axis) for axis, order in states], axis=1)
-        # The lower triangles of what the states' second derivatives are by the coefficients, (171, points · 10).
+        # Lower triangles (171, points · 10) that turn second derivatives by the states into those by the coefficients.
         by_pair = np.einsum("qsi,qtj->ijqst", near, near)[np.tril_indices(NEAR)]
         by_pair = by_pair + by_pair.swapaxes(2, 3)
         by_pair[:, :, range(4), range(4)] /= 2
@@ -146,7 +148,7 @@ class Tracking:
         self.ease = splines.assembled(np.broadcast_to(self.eased, (self.eased.size, grid.pieces)))
 
     def gentler(self, factor: float) -> Tracking:
-        """Cost with a larger EASE."""
+        """The cost with `EASE` multiplied by a factor."""
         other = copy.copy(self)
         other.ease, other.eased = factor**2 * self.ease, factor**2 * self.eased
         return other
@@ -172,7 +174,9 @@ class Tracking:
         return hessian, self.states.T @ by_states + self.ease @ x
 
     def error(self, state: Floats, order: int) -> tuple[Floats, ...]:
-        """Weighted tracking error in g0 and what follows from it, of states (4, times)."""
+        """Weighted tracking error (3, times), g0, of states (4, times); for order 0 with the load, m/s², for order 2
+        with its slope (3, 4, times) and the second derivatives (times, 4, 4) of half its square, by the states.
+        """
         arm, gravity, (rate, acceleration, yaw, roll) = self.arm, self.gravity, state
         radial, tangential = -arm * rate**2, arm * acceleration
         sin2, cos2, sin3, cos3 = np.sin(yaw), np.cos(yaw), np.sin(roll), np.cos(roll)
@@ -182,9 +186,9 @@ class Tracking:
         error = self.weight * (load - self.flight.T)
         if order == 0:
             return error, load
-        none, by_rate = 0.0 * along, -2 * arm * rate
-        d_along = np.stack([by_rate * cos2, arm * sin2, across, none])
-        d_across = np.stack([-by_rate * sin2, arm * cos2, -along, none])
+        zero, by_rate = 0.0 * along, -2 * arm * rate
+        d_along = np.stack([by_rate * cos2, arm * sin2, across, zero])
+        d_across = np.stack([-by_rate * sin2, arm * cos2, -along, zero])
         slope = np.stack([d_along, d_across * cos3, -d_across * sin3])
         slope[1, 3], slope[2, 3] = load[2], -load[1]
         slope *= self.weight
@@ -193,7 +197,7 @@ class Tracking:
         by_along, by_across, by_turned = self.weight * np.stack(
             [error[0], error[1] * cos3 - error[2] * sin3, -error[1] * sin3 - error[2] * cos3]
         )
-        bent = {
+        curvature = {
             (0, 0): 2 * arm * (sin2 * by_across - cos2 * by_along),
             (0, 2): -by_rate * (sin2 * by_along + cos2 * by_across),
             (1, 2): arm * (cos2 * by_along - sin2 * by_across),
@@ -203,7 +207,7 @@ class Tracking:
             (2, 3): d_across[2] * by_turned,
             (3, 3): -self.weight * (error[1] * load[1] + error[2] * load[2]),
         }
-        for (i, j), value in bent.items():
+        for (i, j), value in curvature.items():
             second[:, i, j] += value
             if i != j:
                 second[:, j, i] += value
@@ -259,7 +263,7 @@ class KeptLimits:
         return least
 
     def at(self, x: Floats) -> tuple[Any, Floats, Floats]:
-        """Rows, lower and upper limits; those of the power as its tangents at x."""
+        """Rows (m, size), lower and upper limits (m,) for the unknowns; the power's are its tangents at x."""
         if self.power == np.inf:
             return self.rows, self.lower, self.upper
         rate = np.repeat(np.max((self.rate @ x).reshape(-1, PIECE), axis=1), PIECE)
@@ -272,7 +276,7 @@ class KeptLimits:
 
 
 def _differences(grid: Grid, order: int) -> Any:
-    """Rows (size − order, size) that give the coefficients of a time derivative."""
+    """Rows (size − order, size) that give the coefficients of a spline's time derivative of an order."""
     rows = scipy.sparse.eye_array(grid.size, format="csr")
     for _ in range(order):
         rows = (rows[1:] - rows[:-1]) / grid.step

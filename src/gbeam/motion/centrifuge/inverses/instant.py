@@ -75,7 +75,9 @@ def across_beam(load: Series, geometry: Geometry) -> Series:
 
 
 def gimbals(load: Series, lag: Series | float, geometry: Geometry) -> tuple[Series, Series]:
-    """Angles of axes 2 and 3 that put a load (..., 3) m/s² where the specimen wants it; θ3 of one along it is zero."""
+    """Angles of axes 2 and 3, rad, at which the specimen feels a load (..., 3) m/s², axis 2 lagging by `lag`, rad; θ3
+    is zero where the load lies along the beam.
+    """
     fx, fy, fz = load[..., 0], load[..., 1], load[..., 2]
     across = across_beam(load, geometry)
     bent = across.value != 0
@@ -146,7 +148,7 @@ class Exact(Inverse):
 
 
 def exact(target: Target, geometry: Geometry) -> Exact:
-    """Solve for the lag."""
+    """Solve for the lag, by finer and finer knots until the load is tracked within `TRACKING`."""
     first, last = _times(target)
     lag: Spline | None = None
     for step in _STEPS:
@@ -184,17 +186,20 @@ def _times(target: Target) -> tuple[float, float]:
 
 
 def _solve(grid: Grid, target: Target, geometry: Geometry, start: Spline | None) -> tuple[Spline, Floats]:
-    """The lag, and the tracking error at the collocation points over the horizontal load; from a coarser solution."""
+    """Spline of the lag, rad, by Gauss-Newton from a coarser solution or None, and the tracking error at collocation
+    points (pieces, points) as a share of the horizontal load.
+    """
     shape = grid.pieces, _POINTS.size
     size, rate, _ = (x.reshape(shape) for x in size_and_rates(target.load, geometry.gravity, grid.time))
     a, growth = size / float(geometry.arm), rate / size
     value, slope = grid.rows(0), grid.rows(1)
-    # Without one, the slow solution to first order, which is flat's.
-    first = np.arctan(growth / (2 * np.sqrt(a))).ravel() if start is None else start(grid.time)[:, 0]
-    c = grid.fit(first[:, None])[:, 0]
+    # Without a coarser solution, the slow one to first order, which is flat's.
+    guess = np.arctan(growth / (2 * np.sqrt(a))).ravel() if start is None else start(grid.time)[:, 0]
+    c = grid.fit(guess[:, None])[:, 0]
     bends = [(piece, _SMOOTH * grid.step**3 * grid.rows(3)[point]) for piece, point in ((0, 0), (-1, -1))]
 
     def state(c: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+        """The terms of the equation for the lag, and its residual, at collocation points."""
         near = np.lib.stride_tricks.sliding_window_view(c, PIECE)
         lag, dlag = np.clip(near @ value.T, -1.5, 1.5), near @ slope.T
         sine, cosine = np.sin(lag), np.cos(lag)
@@ -212,26 +217,26 @@ def _solve(grid: Grid, target: Target, geometry: Geometry, start: Spline | None)
             move = normal.solve(1e-13)
         except np.linalg.LinAlgError:
             return grid.spline(c[:, None]), np.full_like(residual, np.inf)
-        size = np.abs(move).max()
+        largest = np.abs(move).max()
         # Far from the solution a whole step may leave the range of the lag; near to it rounding decides what gains.
-        for part in (1.0, 0.5, 0.25, 0.1) if size > _NEAR else (1.0,):
-            new = state(c + part * move)
+        for share in (1.0, 0.5, 0.25, 0.1) if largest > _NEAR else (1.0,):
+            new = state(c + share * move)
             if np.sum(new[-1] ** 2) < np.sum(residual**2) * (1 + 1e-9):
                 break
-        c = c + part * move
+        c = c + share * move
         sine, cosine, dlag, turn, residual = new
-        if size < _CLOSE:
+        if largest < _CLOSE:
             break
     # |R dω1/dt − a sin δ| / a
     return grid.spline(c[:, None]), np.asarray(np.abs(residual) / turn)
 
 
 def _refusal(target: Target, geometry: Geometry, grid: Grid, errors: Floats) -> InputError:
-    """Name the place and the smoothing that would do."""
+    """The error that names the place and, if one is enough, the smoothing with which the load can be followed."""
     turns = sharp_turns(target, float(geometry.arm))
     if not turns:
-        at = grid.time[int(np.argmax(np.where(np.isfinite(errors), errors, 0.0).ravel()))]
-        problem = f"is too small for the exact inverse: no smooth motion follows the load about {at:.3f} s"
+        when = grid.time[int(np.argmax(np.where(np.isfinite(errors), errors, 0.0).ravel()))]
+        problem = f"is too small for the exact inverse: no smooth motion follows the load about {when:.3f} s"
         return InputError("smoothing", problem, 'give more, or inverse = "planned" or "flat"')
     worst = max((turn for turn, _ in turns), key=lambda turn: turn.reference / turn.possible)
     widths = [width for _, width in turns if width is not None]

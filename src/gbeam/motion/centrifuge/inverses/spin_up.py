@@ -35,15 +35,15 @@ LEAST_TURNED = 2.982
 USUAL_TURNED = 4 * math.pi
 _MARGIN = 0.9  # of a limit is used by a length that is found
 _SAMPLES = 401  # of a ramp
-# How a use of a limit falls with the length T: with what power of 1/T. The arm's rate does not.
+# Power of 1/T, T the length, with which the use of a limit falls. The arm's rate does not.
 _ARM, _GIMBAL = {"acceleration": 1, "power": 1, "jerk": 2}, {"rate": 1, "acceleration": 2, "jerk": 3}
 
 
 @record
 class Ramp:
-    """From standstill to a steady state of the machine, or from there to standstill."""
+    """Motion from standstill to a steady state of the machine, or from there to standstill."""
 
-    still: Any  # its time, s
+    still: Any  # time of standstill, s
     steady: Any  # time of the steady state, s
     rate: Any  # ω1, rad/s
     yaw: Any  # θ2, rad
@@ -57,33 +57,33 @@ class Ramp:
         """Rate of axis 1 (rad/s) and angles of axes 2 and 3 (rad) at times `t` (s), with derivatives up to `order`."""
         s = (Series.variable(t, order) - self.still) / (self.steady - self.still)
         s = where(s.value < 0, 0.0, where(s.value > 1, 1.0, s))
-        none = 0.0 * s
+        zero = 0.0 * s
         turned = self.rate * abs(self.steady - self.still)
         # S over s⁵, where S = s⁵ (126 − 420 s + 540 s² − 315 s³ + 70 s⁴) and S' = 630 s⁴ (1 − s)⁴.
         quotient = 126 - s * (420 - s * (540 - s * (315 - 70 * s)))
         rise = s**5 * quotient
-        yaw, roll = none + self.yaw, none + self.roll
+        yaw, roll = zero + self.yaw, zero + self.roll
         if self.yawed:
             # tan δ = (dω1/dt)/ω1² = S'/(ΩT S²), with the powers of s and 1 − s that both hold taken out.
             lag = math.pi / 2 - arctan2(turned * s**6 * quotient**2, 630 * (1 - s) ** 4)
             yaw = yaw + self.outward * lag
         if self.gravity:
-            down = none + self.gravity
+            down = zero + self.gravity
             share = s**4 * sqrt(s**12 * quotient**4 + (630 * (1 - s) ** 4 / turned) ** 2) if self.yawed else rise**2
-            roll = roll + arctan2(down, share * self.across) - arctan2(down, none + self.across)
+            roll = roll + arctan2(down, share * self.across) - arctan2(down, zero + self.across)
         return rise * self.rate, yaw, roll
 
     def load(self, t: Any, arm: Any) -> Any:
         """Load that the ramp makes at the control point at times `t` (s), base axes, m/s², shape (..., 3)."""
         arm_rate, yaw, roll = self.pose(t, 1)
         rate, acceleration = arm_rate.derivatives()
-        none = 0.0 * rate
-        axes = Axes(rate, acceleration, yaw.value, none, none, roll.value, none, none)
+        zero = 0.0 * rate
+        axes = Axes(rate, acceleration, yaw.value, zero, zero, roll.value, zero, zero)
         return control_point_load(axes, arm, self.gravity)
 
     @property
     def length(self) -> float:
-        """From standstill to the steady state or back, s."""
+        """Time from standstill to the steady state or back, s."""
         return abs(float(self.steady) - float(self.still))
 
     def of_length(self, length: Any) -> Ramp:
@@ -96,11 +96,11 @@ class Ramp:
         time = np.linspace(first, last, _SAMPLES)
         arm, *gimbals = (series.derivatives() for series in self.pose(time, 3))
         orders = zip(arm[:3], *(angle[1:] for angle in gimbals), strict=True)
-        rate, acceleration, jerk = (np.stack(each, axis=1) for each in orders)
+        rate, acceleration, jerk = (np.stack(of_axes, axis=1) for of_axes in orders)
         return usage(time, rate, acceleration, jerk, limits)
 
     def lengthened(self, limits: Limits, share: float = 1.0) -> Ramp:
-        """The ramp, as much longer as it must be to use no more than a share of any limit."""
+        """The ramp, or one so much longer that it uses at most a share of every limit."""
         ramp = self
         for _ in range(50):
             factor = 0.0
@@ -124,14 +124,17 @@ def build_ramps(
 
 
 def _build(name: str, target: Target, inverse: Inverse, geometry: Geometry, limits: Limits, ends: Ends) -> Ramp:
+    """The spin-up or spin-down, by name, with the length given in `ends`, or one found within the limits."""
     outward, edge = (-1.0, target.span[0]) if name == "spin_up" else (1.0, target.span[1])
-    # From here on outwards the target stands still: a corner at the flight's edge is rounded within half a width of it.
+    # Beyond `steady` the target stands still: a corner at the flight's edge is rounded within half a width of it.
     lead = target.half_width
     steady = as_array(edge + outward * lead)
     rate, yaw, roll = (part.value for part in inverse.pose(target.load, steady, 0))
-    across = across_beam(target.load.series(steady, 0), geometry).value
-    parts = (rate, yaw, roll, across, geometry.gravity, ends.start == "pre-yawed", outward)
-    ramp = Ramp(steady + outward * USUAL_TURNED / rate, steady, *parts)
+    ramp = Ramp(
+        still=steady + outward * USUAL_TURNED / rate, steady=steady, rate=rate, yaw=yaw, roll=roll,
+        across=across_beam(target.load.series(steady, 0), geometry).value, gravity=geometry.gravity,
+        yawed=ends.start == "pre-yawed", outward=outward,
+    )  # fmt: skip
     length, traced = getattr(ends, name), is_traced(rate, steady)
     if length is None:
         if not traced:

@@ -128,8 +128,8 @@ def build_target(
         load = smoothed(corners, width) if is_traced(width) or width else corners
         if gravity:
             load = _nearest(load, None, None, None, gravity)
-        none = padded_rows([]), merged_edges([], last)
-        return target_of(load=load, corners=corners, stretches=none[0], edges=none[1], rounded=True, turns=True)
+        rows, edges = padded_rows([]), merged_edges([], last)
+        return target_of(load=load, corners=corners, stretches=rows, edges=edges, rounded=True, turns=True)
     if width:
         fix = f"give {_PER_WIDTH * (last - first) / KNOTS:.2g} s or more, or a shorter duration"
         refuse_more("smoothing", "knots", _PER_WIDTH * (last - first) / width, KNOTS, 4000.0, fix)
@@ -140,27 +140,27 @@ def build_target(
     times = _knots(corners, first, last, width / _PER_WIDTH or _GRID)
     loads = np.asarray(flight(times))
     size, across = np.linalg.norm(loads, axis=1), np.linalg.norm(loads[:, 1:], axis=1)
-    far = across < MIN_TRANSVERSE_LOAD * (1 - _ROUNDING) if gravity else np.zeros(times.size, bool)
-    if far.any() and least is None and not clip:
+    out_of_reach = across < MIN_TRANSVERSE_LOAD * (1 - _ROUNDING) if gravity else np.zeros(times.size, bool)
+    if out_of_reach.any() and least is None and not clip:
         at_corners = np.asarray(corners(times))
-        far |= np.linalg.norm(at_corners[:, 1:], axis=1) < MIN_TRANSVERSE_LOAD * (1 - _ROUNDING)
-        refuse_far(times, at_corners, far)
+        out_of_reach |= np.linalg.norm(at_corners[:, 1:], axis=1) < MIN_TRANSVERSE_LOAD * (1 - _ROUNDING)
+        refuse_far(times, at_corners, out_of_reach)
     low = np.zeros(times.size, bool) if least is None else size < least * (1 - _ROUNDING)
     gate = _gate(times, size, least, leave_out)
-    out = np.zeros(times.size, bool) if gate is None else np.asarray(gate(times)) == 0
+    left_out = np.zeros(times.size, bool) if gate is None else np.asarray(gate(times)) == 0
     load = _nearest(flight, None, None, None, gravity)
-    if (low | far | out).any():
+    if (low | out_of_reach | left_out).any():
         if least is not None:
             refuse_undirected(loads, least)
             if not gravity and not across.any():
                 refuse_reversal(times, loads, least)
-        path = _path(times, loads, low | out, far, least, gravity, arm)
+        path = _path(times, loads, low | left_out, out_of_reach, least, gravity, arm)
         load = _nearest(flight, smoothed(path, _PATH * width) if width else path, gate, least, gravity)
     values = np.asarray(load(times))
     if not gravity:
         refuse_singular(times, values, least)
     steady = values if gravity else values / np.maximum(np.linalg.norm(values, axis=1), 1e-12)[:, None]
-    reasons = np.select([low, out, far], [BELOW_IDLE, LEFT_OUT, GIMBALS], -1)
+    reasons = np.select([low, left_out, out_of_reach], [BELOW_IDLE, LEFT_OUT, GIMBALS], -1)
     rows = stretches(times, reasons, size - (least or 0.0), across - MIN_TRANSVERSE_LOAD, corners)
     return target_of(
         load=load, corners=corners, stretches=padded_rows(rows), edges=merged_edges(rows, last),
@@ -170,7 +170,7 @@ def build_target(
 
 
 def _nearest(flight: Profile, path: Profile | None, gate: Profile | None, idle: float | None, gravity: bool) -> Profile:
-    """The nearest load; the flight's own where nothing limits it."""
+    """Load nearest to the flight's within idle and the gimbals' reach; the flight's own where neither is asked for."""
     if not gravity and path is None:
         return flight
     return NearestLoad(
@@ -182,17 +182,19 @@ def _nearest(flight: Profile, path: Profile | None, gate: Profile | None, idle: 
 def _path(
     times: Floats, loads: Floats, held: Flags, far: Flags, idle: float | None, gravity: bool, arm: Any | None
 ) -> PiecewiseLinear:
-    """Angles about the beam and from it, (k, 2), on knots: the flight's where followed, gentle between."""
+    """Direction of the load on knots: angles about the beam and from it, (k, 2) rad, those of the flight's loads (k, 3)
+    where it is neither held nor far out of the gimbals' reach, (k,), gentle between.
+    """
     whole = MIN_TRANSVERSE_LOAD if idle is None else idle
     scale = _QUICK if arm is None else float(np.sqrt(_number(arm) / whole))
     across = np.linalg.norm(loads[:, 1:], axis=1)
-    about, weight = unwrapped(times, loads[:, 2], loads[:, 1], whole)
-    about = gentle(times, about, weight, _and_next(~(held | far)) & (weight > 0), scale)
-    away, weight = unwrapped(times, across, loads[:, 0], whole)
-    away = gentle(times, away, weight, _and_next(~held), scale)
+    about_beam, weight = unwrapped(times, loads[:, 2], loads[:, 1], whole)
+    about_beam = gentle(times, about_beam, weight, _and_next(~(held | far)) & (weight > 0), scale)
+    from_beam, weight = unwrapped(times, across, loads[:, 0], whole)
+    from_beam = gentle(times, from_beam, weight, _and_next(~held), scale)
     if not gravity:
-        away = np.where(held, off_axis(away), away)
-    return PiecewiseLinear(*_padded(times, np.stack([about, away], axis=1)))
+        from_beam = np.where(held, off_axis(from_beam), from_beam)
+    return PiecewiseLinear(*_padded(times, np.stack([about_beam, from_beam], axis=1)))
 
 
 def _and_next(flags: Flags) -> Flags:
@@ -201,6 +203,7 @@ def _and_next(flags: Flags) -> Flags:
 
 
 def _number(arm: Any) -> float:
+    """The arm's length as a number; InputError if JAX traces it."""
     if is_traced(arm):
         problem = "is traced by JAX, and by its number the target turns where it is held, below idle or out of reach"
         raise InputError("arm", problem, "give a number, or times at which the flight's load is followed")
@@ -208,14 +211,15 @@ def _number(arm: Any) -> float:
 
 
 def _gate(times: Floats, size: Floats, idle: float | None, leave_out: Stretches) -> PiecewiseLinear | None:
-    """One, and zero over the returns above idle that are to be left out; it changes while the load is below idle."""
+    """Gate over time: zero on returns above idle that are to be left out, one on others, straight from one to the next;
+    None if it is one throughout.
+    """
     if idle is None or not leave_out:
         return None
-    # Every knot of a return is open or closed; from one return to the next the gate is straight.
     gate = np.full(times.size, np.nan)
     for run in joined(true_runs(size > PARTED * idle), np.arange(times.size, dtype=float), 4):
-        left = any(times[run.start] <= end and start <= times[run.stop - 1] for start, end in leave_out)
-        gate[run] = 0.0 if left else 1.0
+        closed = any(times[run.start] <= end and start <= times[run.stop - 1] for start, end in leave_out)
+        gate[run] = 0.0 if closed else 1.0
     known = np.isfinite(gate)
     return PiecewiseLinear(times[known], gate[known]) if known.any() else None
 
@@ -230,7 +234,7 @@ def _padded(times: Floats, values: Floats) -> tuple[Floats, Floats]:
 
 
 def _knots(raw: Profile, start: float, end: float, step: float) -> Floats:
-    """Knots of `raw` and a grid, without points so near a knot that a slope would be mere rounding."""
+    """Knots of `raw` and a grid of `step`, s, without points so near a knot that a slope would be mere rounding."""
     least = 1e-4 * step
     first, last = raw.extent or (start, end)
     knots = raw.knots(min(step, max(_CURVE, (last - first) / _MOST)))
@@ -243,7 +247,7 @@ def _knots(raw: Profile, start: float, end: float, step: float) -> Floats:
 
 
 def _has_corners(load: Profile, start: float, end: float) -> bool:
-    """Tell whether the slope jumps anywhere between `start` and `end`."""
+    """True if the slope jumps anywhere between `start` and `end`."""
     breaks = np.asarray(load.breaks)
     inside = breaks[(breaks > start) & (breaks < end)]
     before, after = (load.derivatives(inside + side)[1] for side in (-1e-7, 1e-7))

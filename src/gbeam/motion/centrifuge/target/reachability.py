@@ -106,10 +106,10 @@ def nearest_to_zero(times: Floats, points: Floats) -> tuple[float, float]:
         return float(times[0]), float(np.linalg.norm(points[0]))
     start, along = points[:-1], np.diff(points, axis=0)
     length2 = np.sum(along**2, axis=1)
-    part = np.clip(-np.sum(start * along, axis=1) / np.where(length2 > 0, length2, 1.0), 0.0, 1.0)
-    distance = np.linalg.norm(start + part[:, None] * along, axis=1)
+    share = np.clip(-np.sum(start * along, axis=1) / np.where(length2 > 0, length2, 1.0), 0.0, 1.0)
+    distance = np.linalg.norm(start + share[:, None] * along, axis=1)
     i = int(np.argmin(distance))
-    return float(times[i] + part[i] * (times[i + 1] - times[i])), float(distance[i])
+    return float(times[i] + share[i] * (times[i + 1] - times[i])), float(distance[i])
 
 
 _WIDEST, _LADDER = 3.0, 1.05  # s; ratio of two widths tried one after the other
@@ -187,17 +187,17 @@ def sharp_turns(target: Target, arm: float) -> list[tuple[Shortfall, float | Non
     a maximum somewhat more can be followed, and axis 2 pays: 2.3 times the acceleration for 1.3 times the turn.
     """
     time = _times(target)
-    size, _, turn = size_and_rates(target.load, target.gravity, time)
+    size, _, second_rate = size_and_rates(target.load, target.gravity, time)
     not_followed = np.asarray(target.not_followed(time))
     allowed = size**2 / arm
-    runs = joined(true_runs((-turn > allowed * (1 + _ROUNDING)) & ~not_followed), time, _JOINED)
+    runs = joined(true_runs((-second_rate > allowed * (1 + _ROUNDING)) & ~not_followed), time, _JOINED)
     if not runs:
         return []
     gravity, width = float(target.gravity), 2 * float(target.half_width)
     widths = required_smoothing(target.corners, gravity, float(target.idle), arm, time, runs, width)
     total = np.linalg.norm(target.flight(time), axis=-1)
     remedies = [_sharp_remedy(wide, float(np.max(total[run]))) for wide, run in zip(widths, runs, strict=True)]
-    return list(zip(_too_sharp(time, -turn, allowed, runs, remedies), widths, strict=True))
+    return list(zip(_too_sharp(time, -second_rate, allowed, runs, remedies), widths, strict=True))
 
 
 def _times(target: Target) -> Floats:
@@ -234,6 +234,7 @@ def _sharp_remedy(width: float | None, load: float) -> str:
 
 
 def _below(time: Floats, load: Floats, least: float, reason: str, remedy: Callable[[slice], str]) -> list[Shortfall]:
+    """Stretches in which a load (t,) m/s² is below the least that a machine makes."""
     stretches = []
     for run in joined(true_runs(load < least * (1 - _ROUNDING)), time, _JOINED):
         worst = run.start + int(np.argmin(load[run]))
@@ -244,6 +245,7 @@ def _below(time: Floats, load: Floats, least: float, reason: str, remedy: Callab
 
 
 def _too_sharp(time: Floats, turn: Floats, allowed: Floats, runs: list[slice], remedies: list[str]) -> list[Shortfall]:
+    """Stretches, `runs` of times, in which −ä `turn` exceeds what the arm allows, (t,) m/s⁴ both."""
     stretches = []
     for run, remedy in zip(runs, remedies, strict=True):
         worst = run.start + int(np.argmax(turn[run] / allowed[run]))

@@ -29,7 +29,9 @@ Row = tuple[float, float, float, float]  # start s, end s, number of the reason,
 
 
 def stretches(times: Floats, reasons: NDArray[np.int64], size: Floats, reach: Floats, flight: Profile) -> list[Row]:
-    """Rows of the runs of knots at times (k,) s with one reason, by start."""
+    """Rows of the stretches in which all knots, at times (k,) s, have one reason (k,) of `REASONS`, by start; an edge
+    is where `size` or `reach`, (k,) m/s² above idle and above the least that the gimbals reach, is zero.
+    """
 
     def edge(outside: int, inside: int) -> float:
         """Time at which a reason ends and another, or none, begins: between two neighbouring knots, or at the last."""
@@ -38,8 +40,8 @@ def stretches(times: Floats, reasons: NDArray[np.int64], size: Floats, reach: Fl
         pair = reasons[outside], reasons[inside]
         values = reach if GIMBALS in pair and BELOW_IDLE not in pair else size
         rise = values[outside] - values[inside]
-        part = np.clip(-values[inside] / rise, 0.0, 1.0) if rise != 0 else 1.0
-        return float(times[inside] + part * (times[outside] - times[inside]))
+        share = np.clip(-values[inside] / rise, 0.0, 1.0) if rise != 0 else 1.0
+        return float(times[inside] + share * (times[outside] - times[inside]))
 
     rows: list[Row] = []
     for number in range(len(REASONS)):
@@ -52,14 +54,14 @@ def stretches(times: Floats, reasons: NDArray[np.int64], size: Floats, reach: Fl
 
 
 def padded_rows(rows: list[Row]) -> Floats:
-    """By start, up to a multiple of eight, so that targets share their programs; unused rows are infinite."""
+    """Rows (8 k, 4), filled up with infinite ones, so that targets share their programs."""
     padded = np.full((8 * (len(rows) // 8 + 1), 4), np.inf)
     padded[: len(rows)] = np.reshape(rows, (-1, 4))
     return padded
 
 
 def merged_edges(rows: list[Row], last: float) -> Floats:
-    """Starts and ends, those of stretches that touch left out; up to a multiple of 16, unused ones infinite.
+    """Ascending starts and ends, (16 k,) s, of stretches, joined where they touch; filled up with infinite ones.
 
     A stretch that lasts until `last`, the end of the span, goes on beyond.
     """
@@ -127,7 +129,9 @@ _WIDENING = 0.3  # s per s: how its time scale grows from there
 
 
 def unwrapped(times: Floats, y: Floats, x: Floats, whole: float) -> tuple[Floats, Floats]:
-    """Angle atan2(y, x) of a load (k,) m/s² over times (k,) s, and how much it counts, (k,)."""
+    """Angle atan2(y, x), rad, of a load (k,) m/s² over times (k,) s without jumps, and its weight (k,): the load's
+    share of a whole one, at most 1, and 0 where it is too small to have a direction.
+    """
     size = np.hypot(y, x)
     directed = size >= _DIRECTED * whole
     if not directed.any():
@@ -173,7 +177,7 @@ def gentle(times: Floats, values: Floats, weight: Floats, fixed: Flags, time_sca
 
 
 def _time_scales(times: Floats, values: Floats, fixed: Flags, longest: float) -> Floats:
-    """T at every knot: from a slope v beside it a path goes on by about v T."""
+    """T at every knot, s: less near fixed values with a slope v, from which the path goes on by about v T."""
     scale = np.full(times.size, longest)
     for run in true_runs(~fixed):
         for edge, inward in ((run.start - 1, -1), (run.stop, 1)):
@@ -239,26 +243,27 @@ class NearestLoad(Profile):
             reached = soft_floor(across, self.least, REACH_BAND * self.least)
             share = share * soft_step(across, (1 + _FREE) / 2 * self.least, (_FREE - 1) * self.least)
         if self.path is None:
-            return stack([along, *(reached * each for each in unit)])
+            return stack([along, *(reached * component for component in unit)])
         sine, cosine = sin_cos(self.path.series(now, order))
         if not self.has_idle:
-            return stack([along, *(reached * each for each in _blend(share, unit, [cosine[..., 0], sine[..., 0]]))])
+            direction = _blend(share, unit, [cosine[..., 0], sine[..., 0]])
+            return stack([along, *(reached * component for component in direction)])
         size = sqrt(where(size2.value > (self.idle / 2) ** 2, size2, self.idle**2 / 4))
         sized, directed = (
-            gate * soft_step(size, (1 + each) / 2 * self.idle, (each - 1) * self.idle) for each in (_SIZED, _FOLLOWED)
+            gate * soft_step(size, (1 + end) / 2 * self.idle, (end - 1) * self.idle) for end in (_SIZED, _FOLLOWED)
         )
         held = self.idle + gate * (soft_floor(size, self.idle, IDLE_BAND * self.idle) - self.idle)
         y, z = _blend(share * directed, unit, [cosine[..., 0], sine[..., 0]])
-        x, part = _blend(directed, [along / size, across / size], [cosine[..., 1], sine[..., 1]])
+        x, yz = _blend(directed, [along / size, across / size], [cosine[..., 1], sine[..., 1]])
         if self.has_least:
             full = sqrt(where(bent | (size2.value > 0), along * along + reached * reached, 1.0))
             held = held + sized * (full - size)
             # Idle is above the least across the beam, by little where it is lowest.
             band = xp.minimum(REACH_BAND * self.least, self.idle - self.least)
-            x, part = _reached(held * x, held * part, self.least, band)
+            x, yz = _reached(held * x, held * yz, self.least, band)
         else:
-            x, part = held * x, held * part
-        load = stack([x, part * y, part * z])
+            x, yz = held * x, held * yz
+        load = stack([x, yz * y, yz * z])
         return where(xp.asarray(beside(free, 1)), flight, load)
 
     @property
@@ -275,14 +280,14 @@ class NearestLoad(Profile):
 
 
 def _blend(share: Series, flight: list[Series], path: list[Series]) -> list[Series]:
-    """A unit vector between two: a share of one and the rest of the other."""
-    mixed = [share * one + (1 - share) * other for one, other in zip(flight, path, strict=True)]
+    """Unit vector along `share` times the flight's plus the rest times the path's."""
+    mixed = [share * of_flight + (1 - share) * of_path for of_flight, of_path in zip(flight, path, strict=True)]
     size = sqrt(square(stack(mixed)))
-    return [each / size for each in mixed]
+    return [component / size for component in mixed]
 
 
 def _reached(along: Series, across: Series, least: Any, band: Any) -> tuple[Series, Series]:
-    """The part across the beam at its least at least, the size kept."""
+    """Parts along and across the beam, the latter raised to `least` where it is less, the former reduced for it."""
     low = across.value < least + band / 2
     raised = soft_floor(across, least, band)
     # Where it is raised the part along the beam is not small: idle is above the least across the beam.
