@@ -50,14 +50,14 @@ def meshed(path: Path, size: float) -> Any:
     with tempfile.TemporaryDirectory() as folder, Bar(f"meshing {path.name}", patience=PATIENCE):
         out = os.path.join(folder, "solid.msh")
         limits = {"memory": MESHER_BYTES, "seconds": MESHER_SECONDS}
-        about = confined(_mesh_into, path, size, out, refuse=refuse, **limits)
+        places = confined(_mesh_into, path, size, out, refuse=refuse, **limits)
         mesh = read_mesh(out)
-    mesh.info = about
+    mesh.info = places
     return mesh
 
 
 def _mesh_into(path: str, size: float, out: str) -> dict[str, str]:
-    """Mesh the solids of a file; returns where each group is."""
+    """Mesh the solids of a file into another one, `out`; return the place of each group in words, by its name."""
     try:
         import gmsh
     except ModuleNotFoundError:
@@ -77,7 +77,7 @@ def _mesh_into(path: str, size: float, out: str) -> dict[str, str]:
     for name, value in options.items():
         gmsh.option.setNumber(name, value)
     gmsh.option.setString("Geometry.OCCTargetUnit", "M")
-    model, about = gmsh.model, dict[str, str]()
+    model, places = gmsh.model, dict[str, str]()
     try:
         refuse_large_file("mesh", path, BINARY_BYTES, "export fewer parts")
         model.occ.importShapes(path)
@@ -86,11 +86,11 @@ def _mesh_into(path: str, size: float, out: str) -> dict[str, str]:
         for dim, noun in ((3, "solid"), (2, "surface")):
             for _, tag in model.getEntities(dim):
                 label = model.getEntityName(dim, tag).rpartition("/")[2]
-                name = label if label and label not in about and not label.startswith(UNNAMED) else f"{noun} {tag}"
+                name = label if label and label not in places and not label.startswith(UNNAMED) else f"{noun} {tag}"
                 model.addPhysicalGroup(dim, [tag], name=name)
-                x, y, z = (1e3 * each for each in model.occ.getCenterOfMass(dim, tag))
+                x, y, z = (1e3 * metres for metres in model.occ.getCenterOfMass(dim, tag))
                 area = f", {1e6 * model.occ.getMass(dim, tag):.4g} mm²" if dim == 2 else ""
-                about[name] = f"at ({x:.4g}, {y:.4g}, {z:.4g}) mm{area}"
+                places[name] = f"at ({x:.4g}, {y:.4g}, {z:.4g}) mm{area}"
         if not model.getEntities(3):
             raise InputError("mesh", f"{path} has no solids", "export the part as a solid, not its surfaces")
         volume = sum(model.occ.getMass(dim, tag) for dim, tag in model.getEntities(3))
@@ -102,4 +102,4 @@ def _mesh_into(path: str, size: float, out: str) -> dict[str, str]:
     except Exception as error:  # Gmsh raises no narrower one
         problem = f"{path} is not meshed by Gmsh: {' '.join(str(error).split())}"
         raise InputError("mesh", problem, "give another element_size, or repair the shape") from None
-    return about
+    return places

@@ -41,8 +41,8 @@ class Spring(NamedTuple):
 
 @dataclass
 class Cards:
-    """Statements of a file besides its mesh: the words of it that are read, nodes that a rigid link holds, by its name,
-    masses, springs, and those of a link that has the mean motion of others, with their weights.
+    """Statements of a file besides its mesh: nodes of each rigid link by its name, masses, springs, and by name the
+    node that has the `mean` motion of others, with their weights; `words` are the statements that are read.
     """
 
     mesh: Any
@@ -97,23 +97,24 @@ class _Nastran(Cards):
 
     def _rows(self, word: str) -> Iterator[list[Any]]:
         """Rows of a card, with as many blanks behind as any has fields."""
-        return ([*map(_value, each.rows[0]), *[""] * 24] for each in self.mesh.statements if each.word == word)
+        return ([*map(_value, card.rows[0]), *[""] * 24] for card in self.mesh.statements if card.word == word)
 
     def _rbe2(self, name: str, row: list[Any]) -> None:
         if row[2] not in (123, 123456):
             raise refused(name, f"holds the components {row[2]} alone")
-        self.rigid[name] = int(row[1]), *(int(each) for each in row[3:] if isinstance(each, int))
+        self.rigid[name] = int(row[1]), *(int(field) for field in row[3:] if isinstance(field, int))
 
     def _rbar(self, name: str, row: list[Any]) -> None:
-        held = [str(each or "") for each in row[3:5]]
+        held = [str(components or "") for components in row[3:5]]
         if sorted(held) != ["", "123456"]:
             raise refused(name, f"holds the components {' and '.join(filter(None, held))} of its ends")
         self.rigid[name] = int(row[1]), int(row[2])
 
     def _rbe3(self, name: str, row: list[Any]) -> None:
-        held, *rest = [each for each in row[3:] if each != ""]
-        end = next((i for i, each in enumerate(rest) if isinstance(each, str)), len(rest))
-        weights, starts = dict[int, float](), [i for i, each in enumerate(rest[:end]) if isinstance(each, float)]
+        """Read the components held, then groups of a weight (with a point), components and nodes, up to a word."""
+        held, *rest = [field for field in row[3:] if field != ""]
+        end = next((i for i, field in enumerate(rest) if isinstance(field, str)), len(rest))
+        weights, starts = dict[int, float](), [i for i, field in enumerate(rest[:end]) if isinstance(field, float)]
         for start, stop in pairwise([*starts, end]):
             weight, ways, *nodes = rest[start:stop]
             if ways not in (123, 123456) or held not in (123, 123456):
@@ -145,7 +146,7 @@ class _Nastran(Cards):
             raise refused(name, "has axes of its own", "give it CID 0, the basic system")
         if row[1] not in self._bush:
             raise refused(name, f"names PBUSH {row[1]}, whose K is not there", "export it too")
-        self._spring(name, [int(each) for each in row[2:4] if each not in ("", 0)], self._bush[row[1]])
+        self._spring(name, [int(field) for field in row[2:4] if field not in ("", 0)], self._bush[row[1]])
 
     def _spring(self, name: str, nodes: list[int], stiffness: Floats) -> None:
         if self._turned.intersection(nodes):
@@ -154,7 +155,7 @@ class _Nastran(Cards):
 
 
 def _value(entry: str) -> Any:
-    """A whole number, another one or a text, as Nastran tells them apart."""
+    """Value of a field of Nastran: an int, a float or a text."""
     for read in (int, real):
         try:
             return read(entry) if entry else ""
@@ -164,7 +165,7 @@ def _value(entry: str) -> Any:
 
 
 def _numbers(values: list[Any]) -> Floats:
-    return np.array([each if each != "" else 0.0 for each in values], dtype=float)
+    return np.array([value if value != "" else 0.0 for value in values], dtype=float)
 
 
 def _joined(rigid: Mapping[str, tuple[int, ...]]) -> dict[str, tuple[int, ...]]:
@@ -172,8 +173,8 @@ def _joined(rigid: Mapping[str, tuple[int, ...]]) -> dict[str, tuple[int, ...]]:
     joined = dict[str, tuple[int, ...]]()
     for name, nodes in rigid.items():
         shared = [other for other, held in joined.items() if set(nodes) & set(held)]
-        every = [number for other in shared for number in joined.pop(other)]
-        joined[shared[0] if shared else name] = tuple(dict.fromkeys([*every, *nodes]))
+        before = [number for other in shared for number in joined.pop(other)]
+        joined[shared[0] if shared else name] = tuple(dict.fromkeys([*before, *nodes]))
     return joined
 
 
@@ -189,21 +190,21 @@ class _Abaqus(Cards):
             if word in self.words:
                 name = f"*{word} {options.get('ELSET', options.get('NSET', ''))}".strip()
                 group = [[options["ELSET"]]] if "ELSET" in options else []
-                on = [self.mesh.elements[each][1] for each in members(group, self.mesh.groups)]
+                on = [self.mesh.elements[number][1] for number in members(group, self.mesh.groups)]
                 getattr(self, f"_{word.lower().replace(' ', '_')}")(name, options, rows, on)
 
     def _mass(self, name: str, _: Options, rows: Rows, on: Nodes) -> None:
         self.lumps += [Lump(name, nodes[0], float(rows[0][0]), np.zeros(3), np.zeros((3, 3))) for nodes in on]
 
     def _rotary_inertia(self, name: str, options: Options, rows: Rows, on: Nodes) -> None:
-        moments = [float(each or 0) for each in rows[0]]
+        moments = [float(cell or 0) for cell in rows[0]]
         if any(moments[3:]) or "ORIENTATION" in options:
             raise refused(name, "has products of inertia, or axes of its own")
         self.lumps += [Lump(name, nodes[0], 0.0, np.zeros(3), np.diag(moments[:3])) for nodes in on]
 
     def _spring(self, name: str, options: Options, rows: Rows, on: Nodes) -> None:
         count = {len(nodes) for nodes in on}
-        ways = {int(float(each or 0)) for each in rows[0][: max(count, default=1)]}
+        ways = {int(float(cell or 0)) for cell in rows[0][: max(count, default=1)]}
         axial = not ways <= {*range(1, 7)}
         if len(ways) != 1 or len(count) > 1 or axial or {"ORIENTATION", "NONLINEAR"} & {*options}:
             raise refused(name, "joins unlike components, is not linear, or has axes of its own")
@@ -227,8 +228,8 @@ class _Abaqus(Cards):
 
     def _kinematic(self, _: str, __: Options, rows: Rows, ___: Nodes) -> None:
         name, node, weights = self._surface()
-        ends = [[int(each) for each in row if each] for row in rows]
-        held = {way for row in ends if row for way in range(row[0], row[min(1, len(row) - 1)] + 1)}
+        spans = [[int(cell) for cell in row if cell] for row in rows]  # first and last component
+        held = {way for span in spans if span for way in range(span[0], span[min(1, len(span) - 1)] + 1)}
         if held and not held >= {1, 2, 3}:
             raise refused(name, f"holds the components {', '.join(map(str, sorted(held)))} alone")
         self.rigid[name] = node, *sorted({*weights} - {node})
@@ -244,11 +245,8 @@ class _Abaqus(Cards):
 
 def _surface(mesh: TextMesh, name: str) -> dict[int, float]:
     """Weights of the nodes of a surface of nodes, or of the faces of elements by Abaqus's numbers: their areas."""
-    named = [
-        each
-        for each in mesh.statements
-        if each.word == "SURFACE" and each.options.get("NAME", "").upper() == name.upper()
-    ]
+    surfaces = [statement for statement in mesh.statements if statement.word == "SURFACE"]
+    named = [surface for surface in surfaces if surface.options.get("NAME", "").upper() == name.upper()]
     if not named:
         raise refused(f"a coupling of surface {name!r}", "is not there", "export it too")
     _, options, rows = named[0]
@@ -262,7 +260,7 @@ def _surface(mesh: TextMesh, name: str) -> dict[int, float]:
                 on = tuple(on[i] for i in on_face(kind, int(face[0][1:]) - 1)[:8])
             elif face and face[0].upper() not in ("SPOS", "SNEG", "S1", "S2"):
                 raise refused(f"surface {name!r}", f"has the edge {face[0]} of a shell", "give its nodes")
-            areas = shared_area(SHAPES[2][len(on)], np.array([mesh.nodes[each] for each in on]))
+            areas = shared_area(SHAPES[2][len(on)], np.array([mesh.nodes[node] for node in on]))
             for node, area in zip(on, areas, strict=True):
                 weights[node] = weights.get(node, 0.0) + area
     return weights

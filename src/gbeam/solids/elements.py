@@ -79,8 +79,8 @@ def masses(points: Floats, block: Block) -> Floats:
 
 
 def chunks(points: Floats, blocks: Sequence[Block], degree: str, most: int = CHUNK) -> Iterator[Part]:
-    """Parts of all elements at the rules of stiffness or stress; that of a shell has no shear across it, which vanishes
-    on its faces.
+    """Parts of all elements at the rule of `degree`, stiffness or stress, of at most `most` points; at that of stress
+    shells have no transverse shear, which vanishes on their faces.
     """
     for block in blocks:
         rule = getattr(KINDS[block.kind], degree)
@@ -97,12 +97,12 @@ def chunks(points: Floats, blocks: Sequence[Block], degree: str, most: int = CHU
 
 
 def _assembled(size: int, blocks: Sequence[Block], width: int, parts: Iterable[Floats]) -> Any:
-    """Sparse matrix of `size` nodes of the matrices of elements, part by part: for each pair of an element's nodes, in
-    the order of the blocks, an entry of (width, width).
+    """Sparse sum of the matrices of elements, for `size` nodes of `width` unknowns each. The parts, in the order of
+    the blocks, have a matrix (width, width) for each pair of an element's nodes.
     """
     from scipy.sparse import bsr_array, csr_array
 
-    pairs = np.concatenate([(size * each.nodes[:, :, None] + each.nodes[:, None]).ravel() for each in blocks])
+    pairs = np.concatenate([(size * block.nodes[:, :, None] + block.nodes[:, None]).ravel() for block in blocks])
     order = np.argsort(pairs, kind="stable")
     pairs = pairs[order]
     first = np.flatnonzero(np.diff(pairs, prepend=-1))
@@ -161,15 +161,15 @@ def geometric_stiffness(points: Floats, blocks: Sequence[Block], static: Floats,
     stressed, turned = np.zeros((2, m, n, n))
     for part in chunks(points, blocks, "stiffness", FEW):
         weights = part.volume.ravel()[:, None, None, None]
-        slopes, moved = (part.slopes(each) for each in (shapes, static))
+        slopes, moved = (part.slopes(u) for u in (shapes, static))
         of_shapes, stress = (
-            part.stress(u, each).reshape(len(weights), 6, -1)[:, TENSOR] * weights
-            for u, each in ((shapes, slopes), (static, moved))
+            part.stress(u, slopes_of_u).reshape(len(weights), 6, -1)[:, TENSOR] * weights
+            for u, slopes_of_u in ((shapes, slopes), (static, moved))
         )
         tall, wide = slopes.reshape(-1, n), slopes.reshape(-1, 3, 3 * n)
         across = np.ascontiguousarray(slopes.swapaxes(2, 3)).reshape(-1, 3, 3 * n)
         # Load by load in one piece each: products of small matrices that lie apart take four times as long.
-        pulls, turns = (np.moveaxis(each.reshape(-1, 3, 3, m), -1, 0).copy() for each in (stress, moved))
+        pulls, turns = (np.moveaxis(tensors.reshape(-1, 3, 3, m), -1, 0).copy() for tensors in (stress, moved))
         for load in range(m):
             stressed[load] += tall.T @ (pulls[load] @ wide).reshape(-1, n)
             turned[load] += of_shapes.reshape(-1, n).T @ (turns[load] @ across).reshape(-1, n)

@@ -24,7 +24,7 @@ _NOUNS = {"eb": "block", "ns": "node set", "ss": "side set"}
 
 
 class _Variable(NamedTuple):
-    """Values of a variable, and the type of the elements whose nodes they are."""
+    """Values of a variable and, where they are nodes of elements, `of`: the type of these."""
 
     values: Any
     of: str
@@ -39,7 +39,7 @@ def read_exodus(path: Path) -> TextMesh:
         raise ValueError(f"its nodes have {len(places)} coordinates")
     mesh.nodes = dict(zip(_numbers(stored, "node", places.shape[1]), places.T.tolist(), strict=True))
     blocks = dict(_numbered(stored, "connect"))
-    ends = np.cumsum([0, *(len(each.values) for each in blocks.values())])
+    ends = np.cumsum([0, *(len(block.values) for block in blocks.values())])
     numbers = _numbers(stored, "elem", int(ends[-1]))
     for (k, (values, of)), first in zip(blocks.items(), ends, strict=False):
         kind = _kind(of, values.shape[1])
@@ -50,14 +50,14 @@ def read_exodus(path: Path) -> TextMesh:
         group[len(mesh.cells) - 1] = np.arange(len(nodes))
     for k, (values, _) in _numbered(stored, "node_ns"):
         mesh.point_sets[_name(stored, "ns", k)] = np.unique(values) - 1
-    types = [each.of for each in blocks.values()]
+    types = [block.of for block in blocks.values()]
     for k, (values, _) in _numbered(stored, "elem_ss"):
         element, side = np.asarray(values, dtype=int) - 1, np.asarray(stored[f"side_ss{k}"].values, dtype=int)
         block = np.searchsorted(ends, element, side="right") - 1
         parts = [np.empty(0, dtype=int)]
         for i, number in np.unique(np.stack([block, side]), axis=1).T:
-            cells, some = mesh.cells[i], element[(block == i) & (side == number)] - ends[i]
-            parts.append(cells.data[some][:, _on_side(cells.type, types[i], int(number))].ravel())
+            cells, chosen = mesh.cells[i], element[(block == i) & (side == number)] - ends[i]
+            parts.append(cells.data[chosen][:, _on_side(cells.type, types[i], int(number))].ravel())
         mesh.point_sets.setdefault(_name(stored, "ss", k), np.unique(np.concatenate(parts)))
     return mesh
 
@@ -66,9 +66,10 @@ def _classic(path: Path) -> dict[str, _Variable]:
     from scipy.io import netcdf_file  # 0.4 s to import
 
     with netcdf_file(path, mmap=False) as file:
-        chosen = {name: each for name, each in file.variables.items() if _READ.fullmatch(name)}
+        chosen = {name: variable for name, variable in file.variables.items() if _READ.fullmatch(name)}
         return {
-            name: _Variable(each.data.copy(), _text(getattr(each, "elem_type", b""))) for name, each in chosen.items()
+            name: _Variable(variable.data.copy(), _text(getattr(variable, "elem_type", b"")))
+            for name, variable in chosen.items()
         }
 
 
@@ -76,8 +77,8 @@ def _of_hdf5(path: Path) -> dict[str, _Variable]:
     import h5py  # 0.2 s to import
 
     with h5py.File(path) as file:
-        chosen = {name: each for name, each in file.items() if _READ.fullmatch(name)}
-        return {name: _Variable(each[()], _text(each.attrs.get("elem_type", b""))) for name, each in chosen.items()}
+        chosen = {name: data for name, data in file.items() if _READ.fullmatch(name)}
+        return {name: _Variable(data[()], _text(data.attrs.get("elem_type", b""))) for name, data in chosen.items()}
 
 
 def _text(value: Any) -> str:
@@ -86,9 +87,9 @@ def _text(value: Any) -> str:
 
 
 def _numbered(stored: Mapping[str, _Variable], prefix: str) -> Iterator[tuple[int, _Variable]]:
-    """Variables of a kind by their numbers."""
+    """Numbers and values of the variables whose names are a prefix and a number, in order."""
     matches = (re.fullmatch(rf"{prefix}(\d+)", name) for name in stored)
-    for k in sorted(int(each[1]) for each in matches if each):
+    for k in sorted(int(match[1]) for match in matches if match):
         yield k, stored[f"{prefix}{k}"]
 
 
@@ -113,7 +114,7 @@ def _kind(of: str, count: int) -> str:
 
 
 def _on_side(kind: str, of: str, side: int) -> Any:
-    """Nodes of elements on a side, by its number; all of those that have no sides, or are not computed."""
+    """Indices of an element's nodes on a side, by its number; all nodes if it has no sides, or is not computed."""
     if DIMENSIONS[kind] == 3 and kind in KINDS:
         return on_face(kind, _SIDES[corners_of(kind)][side - 1])
     corners = 3 if kind.startswith("triangle") else 4

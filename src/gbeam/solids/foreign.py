@@ -131,7 +131,7 @@ def _of_med(mesh: Any) -> Any:
     ):
         for name in dict.fromkeys(name for names in tags.values() for name in names):
             numbers = [number for number, names in tags.items() if name in names]
-            chosen = [np.flatnonzero(np.isin(each, numbers)) for each in values]
+            chosen = [np.flatnonzero(np.isin(families, numbers)) for families in values]
             sets[name] = chosen if sets is mesh.cell_sets else chosen[0]
     return mesh
 
@@ -143,10 +143,10 @@ def _with_masks(mesh: Any) -> Any:
         (mesh.cell_sets, mesh.cell_data),
     ):
         for name, values in arrays.items():
-            flat = [np.asarray(each) for each in values]
-            known = {*np.unique(np.concatenate(flat)).tolist()} if all(each.ndim == 1 for each in flat) else set()
-            if known == {0, 1} and all(each.dtype.kind in "iub" for each in flat):
-                chosen = [np.flatnonzero(each) for each in flat]
+            masks = [np.asarray(mask) for mask in values]
+            levels = {*np.unique(np.concatenate(masks)).tolist()} if all(mask.ndim == 1 for mask in masks) else set()
+            if levels == {0, 1} and all(mask.dtype.kind in "iub" for mask in masks):
+                chosen = [np.flatnonzero(mask) for mask in masks]
                 sets.setdefault(name, chosen if sets is mesh.cell_sets else chosen[0])
     return mesh
 
@@ -161,10 +161,10 @@ def unit_size(where: str, unit: str, kind: str) -> float:
 
 
 def left_out(source: Any, mesh: Any, read: Collection[str] = ()) -> list[str]:
-    """Warnings of what a file says of masses, stiffness and constraints and that is not read."""
+    """Warning of a file's statements on masses, stiffness and constraints that are not read."""
     counts = Counter[str]()
     for word, options, _ in mesh.statements if isinstance(mesh, TextMesh) else ():
-        name = ", ".join([word, *(each for each in ("COMPOSITE", "OFFSET") if each in options)])
+        name = ", ".join([word, *(option for option in ("COMPOSITE", "OFFSET") if option in options)])
         counts[name] += bool(_CARRYING.fullmatch(name)) and name not in read
     counts = +counts
     if not counts:
@@ -174,7 +174,7 @@ def left_out(source: Any, mesh: Any, read: Collection[str] = ()) -> list[str]:
 
 
 class Elements(NamedTuple):
-    """Elements of one block of a mesh: the number of the block, which of it, their kind, their nodes (e, k), and, of
+    """Elements of one block of a mesh: the index of the block, theirs in it, their kind, their nodes (e, k) and, of
     shells, their thicknesses (e,), m.
     """
 
@@ -202,7 +202,7 @@ def elements_of(mesh: Any, thickness: float | Mapping[str, float] | None) -> lis
     chosen: list[tuple[int, Indices, Floats | None]] = []
     for i, owner in assigned(mesh, "thickness", thickness, flat).items() if thickness is not None else ():
         named = thickness if isinstance(thickness, Mapping) else {"": thickness}
-        values = [positive(f"thickness.{name}".rstrip("."), each, "m") for name, each in named.items()]
+        values = [positive(f"thickness.{name}".rstrip("."), value, "m") for name, value in named.items()]
         which = np.flatnonzero(owner >= 0)
         if len(which) < len(owner) and 3 not in dims:
             fix = "name the groups of all elements"
@@ -216,7 +216,7 @@ def elements_of(mesh: Any, thickness: float | Mapping[str, float] | None) -> lis
         if kind == "quad9":  # whose middle is left out
             kind, nodes = "quad8", nodes[:, :8]
         if kind not in KINDS:
-            known = ", ".join(each for each in KINDS if (KINDS[each].shell > 0) == (thick is not None))
+            known = ", ".join(name for name in KINDS if (KINDS[name].shell > 0) == (thick is not None))
             raise InputError("mesh", f"has {counts[kind]} elements of kind {kind}", f"use {known}")
         elements.append(Elements(i, which, kind, nodes, thick))
     return elements
@@ -226,7 +226,7 @@ def numbers_of(mesh: Any) -> list[Indices]:
     """Numbers of the elements of each block, by which a text file names them, or from 1."""
     ends = np.cumsum([len(block.data) for block in mesh.cells])
     counted = [np.arange(end - len(block.data), end) + 1 for end, block in zip(ends, mesh.cells, strict=True)]
-    return [getattr(block, "numbers", each) for block, each in zip(mesh.cells, counted, strict=True)]
+    return [getattr(block, "numbers", default) for block, default in zip(mesh.cells, counted, strict=True)]
 
 
 def node_numbers_of(mesh: Any) -> Indices:
@@ -237,14 +237,16 @@ def node_numbers_of(mesh: Any) -> Indices:
 def refuse_missing(mesh: Any, elements: Iterable[Elements]) -> None:
     """Refuse elements on nodes that are not in the mesh."""
     numbers = numbers_of(mesh)
-    for each in elements:
-        for i, k in np.argwhere((each.nodes < 0) | (each.nodes >= len(mesh.points)))[:1]:
-            element, node = numbers[each.block][each.which[i]], each.nodes[i, k] + 1
+    for part in elements:
+        for i, k in np.argwhere((part.nodes < 0) | (part.nodes >= len(mesh.points)))[:1]:
+            element, node = numbers[part.block][part.which[i]], part.nodes[i, k] + 1
             raise InputError("mesh", f"has element {element} on node {node} of {len(mesh.points)}", AGAIN)
 
 
 def assigned(mesh: Any, where: str, values: Any, blocks: Iterable[int]) -> dict[int, Indices]:
-    """Number of the one of some values by group, or of a single one, that each element has, -1 where none."""
+    """Of each of some blocks, the index (e,) of the value that an element has: in `values` by group, -1 of none; 0 of
+    a single one.
+    """
     owner = {i: np.full(len(mesh.cells[i].data), -1 if isinstance(values, Mapping) else 0) for i in blocks}
     if not isinstance(values, Mapping):
         return owner
@@ -252,13 +254,13 @@ def assigned(mesh: Any, where: str, values: Any, blocks: Iterable[int]) -> dict[
         chosen = elements_in(mesh, name)
         if chosen is None:
             raise no_group(mesh, f"{where}.{name}", name)
-        for i, each in owner.items():
-            taken = each[chosen[i]]
+        for i, index in owner.items():
+            taken = index[chosen[i]]
             if (taken >= 0).any():
                 both = f"{list(values)[taken.max()]!r} and {name!r}"
                 verb = "gives" if where == "thickness" else "give"
                 raise InputError(where, f"{verb} {(taken >= 0).sum()} elements two: {both}", "give each one")
-            each[chosen[i]] = number
+            index[chosen[i]] = number
     return owner
 
 
@@ -273,15 +275,16 @@ def group_names(mesh: Any) -> list[str]:
 def elements_in(mesh: Any, name: str) -> list[Indices] | None:
     """Elements of a group in each block of the mesh; None where it is none of elements."""
     if name in mesh.cell_sets:
-        return [np.asarray([] if each is None else each, dtype=int) for each in mesh.cell_sets[name]]
+        return [np.asarray([] if members is None else members, dtype=int) for members in mesh.cell_sets[name]]
     if name not in mesh.field_data and not name.lstrip("-").isdigit():
         return None
     tag, dim = mesh.field_data[name] if name in mesh.field_data else (int(name), None)
     for values in _tags(mesh):
-        blocks = [
-            np.asarray(each) if dim in (None, block.dim) else () for each, block in zip(values, mesh.cells, strict=True)
+        tags = [
+            np.asarray(of_block) if dim in (None, block.dim) else ()
+            for of_block, block in zip(values, mesh.cells, strict=True)
         ]
-        chosen = [np.flatnonzero(np.equal(each, int(tag))) for each in blocks]
+        chosen = [np.flatnonzero(np.equal(of_block, int(tag))) for of_block in tags]
         if any(map(len, chosen)):
             return chosen
     return None
@@ -294,13 +297,13 @@ def nodes_in(mesh: Any, where: str, name: str) -> Indices:
     elements = elements_in(mesh, name)
     if elements is None:
         raise no_group(mesh, where, name)
-    parts = [block.data[each].ravel() for block, each in zip(mesh.cells, elements, strict=True)]
+    parts = [block.data[chosen].ravel() for block, chosen in zip(mesh.cells, elements, strict=True)]
     return np.unique(np.concatenate(parts))
 
 
 def no_group(mesh: Any, where: str, name: str) -> InputError:
     """Error of a group that is not in the mesh."""
-    names = [f"{each}, {about}" for each, about in (mesh.info or {}).items()] or group_names(mesh)
+    names = [f"{group}, {place}" for group, place in (mesh.info or {}).items()] or group_names(mesh)
     listed = shortened("; ".join(names) if mesh.info else ", ".join(names), 2000 if mesh.info else 200)
     known = f"choose from {listed}" if names else "the mesh has no groups: name some in it"
     return InputError(where, f"is {name!r}, which is no group of the mesh", known)
@@ -312,7 +315,7 @@ def _tags(mesh: Any) -> list[list[Any]]:
         values
         for name, values in mesh.cell_data.items()
         if name != _ENTITIES
-        and all(np.asarray(each).ndim == 1 and np.asarray(each).dtype.kind in "iu" for each in values)
+        and all(np.asarray(tags).ndim == 1 and np.asarray(tags).dtype.kind in "iu" for tags in values)
     ]
 
 
@@ -329,11 +332,11 @@ def skin(path: str) -> dict[str, Any]:
     points = np.asarray(mesh.points, dtype=float)
     flat = not any(block.dim == 3 and len(block.data) for block in mesh.cells) and points.size
     elements = elements_of(mesh, SHEET * float(np.ptp(points)) if flat else None)
-    used = np.unique(np.concatenate([each.nodes.ravel() for each in elements]))
+    used = np.unique(np.concatenate([block.nodes.ravel() for block in elements]))
     if points.ndim != 2 or points.shape[1] != 3 or used[-1] >= len(points) or not np.isfinite(points[used]).all():
         raise InputError("mesh", "has elements whose nodes have no place in space", "write it again")
     points, numbers, nodes_of = points_of(points, elements)
-    blocks = [each._replace(nodes=nodes) for each, nodes in zip(elements, nodes_of, strict=True)]
+    blocks = [block._replace(nodes=nodes) for block, nodes in zip(elements, nodes_of, strict=True)]
     nodes, triangles = surface_of(SimpleNamespace(points=points, blocks=blocks), VERTICES)
     groups = list[dict[str, Any]]()
     seen = set[bytes]()

@@ -172,12 +172,12 @@ class ImportedModel(Value):
         if unknowns is None:
             unknowns = every_unknown(len(at), m.shape[0])
         if axes is not None:
-            m, k = (_in_base_axes(each, unknowns, axes) for each in (m, k))
+            m, k = (_in_base_axes(matrix, unknowns, axes) for matrix in (m, k))
         # Displacements in m, rotations and modes' coordinates as they are.
         from scipy.sparse import diags_array
 
         scale = diags_array(np.where((unknowns[:, 1] > 0) & (unknowns[:, 1] < 4), 1.0, size))
-        m, k = (weight * (scale @ each @ scale) for each in (m, k))
+        m, k = (weight * (scale @ matrix @ scale) for matrix in (m, k))
         return cls(m, k, size * np.asarray(at, dtype=float), unknowns, numbers)
 
     @typed
@@ -257,17 +257,17 @@ class ImportedModel(Value):
         loads = np.concatenate([-(self.mass @ fields), attached], axis=1)
         length = extent_of(at, body)
         tip = self._number(named[TIP])
-        still = [f"the tip, node {tip}, is clamped and stays at 0"] if named[TIP] in held else []
+        tip_clamped = [f"the tip, node {tip}, is clamped and stays at 0"] if named[TIP] in held else []
         reduction = reduce(self.stiffness[free][:, free], self.mass[free][:, free], loads[free], modes)
-        every = np.zeros((len(free), len(reduction.stiffness)))
-        every[free] = reduction.shapes
+        all_shapes = np.zeros((len(free), len(reduction.stiffness)))
+        all_shapes[free] = reduction.shapes
 
         def build(n: int, damping_ratio: Any) -> Structure:
             """Structure in the first coordinates."""
-            shapes = every[:, :n]
+            shapes = all_shapes[:, :n]
             products = (fields.T @ (self.mass @ shapes)).reshape(3, 4, -1)
-            stress, doubts = _geometric(geometric, shapes)
-            terms, particles, more = self._terms(shapes, reduction.stiffness[:n, :n], products, body, stress)
+            stress, unstressed = _geometric(geometric, shapes)
+            terms, particles, omitted = self._terms(shapes, reduction.stiffness[:n, :n], products, body, stress)
             first, turns = self._outputs(list(named.values()), shapes)
             return linear_structure(
                 terms,
@@ -278,19 +278,20 @@ class ImportedModel(Value):
                 damping_ratio=damping_ratio,
                 points=tuple(named),
                 kind=kind,
-                warnings=(*doubts, *more, *still),
-                unstiffened=bool(doubts or more),
+                warnings=(*unstressed, *omitted, *tip_clamped),
+                unstiffened=bool(unstressed or omitted),
                 modes=modes,
             )
 
         return reduction.structure(build, damping_ratio)
 
     def _node(self, where: str, number: int) -> int:
+        """Place of the node with a number; InputError without one."""
         numbers = np.asarray(self.numbers)
         which = np.flatnonzero(numbers == number)
         if not which.size:
-            some = f"from {numbers.min()} to {numbers.max()}"
-            raise InputError(where, f"is {number}, which is no node", f"give the number of one, {some}")
+            known = f"from {numbers.min()} to {numbers.max()}"
+            raise InputError(where, f"is {number}, which is no node", f"give the number of one, {known}")
         return int(which[0])
 
     def _number(self, node: int) -> int:
@@ -324,7 +325,9 @@ class ImportedModel(Value):
     def _terms(
         self, shapes: Floats, stiffness: Floats, products: Floats, body: Floats, stress: Geometric
     ) -> tuple[Coefficients, tuple[Floats, Places], list[str]]:
-        """Coefficients, particles and what is left out of them."""
+        """Coefficients, particles with their places, and warnings of what is left out; `products` (3, 4, n) are those
+        of the shapes with the fields 1, x, y, z along each axis, `body` (10,) that of :func:`rigid_body`.
+        """
         nodes, rows = displaced(np.asarray(self.unknowns), len(np.asarray(self.nodes)))
         of_nodes, moved = mass_of_nodes(self.mass, rows), shapes[rows]
         sums, moments, missing = products[:, 0], products[:, 1:], left_out(of_nodes, moved)
@@ -339,14 +342,14 @@ class ImportedModel(Value):
         if missing <= EXACT:
             return terms, (mass, places), []
         if not unknown:
-            said = f"up to {100 * missing:.2g} % of a mode's mass does not feel Coriolis and centrifugal forces"
-            return terms, (mass, places), [said]
+            warning = f"up to {100 * missing:.2g} % of a mode's mass does not feel Coriolis and centrifugal forces"
+            return terms, (mass, places), [warning]
         terms = replace(terms, gyroscopic=0 * terms.gyroscopic, k_ww=stress.ww, k_al=stress.al)
-        said = (
+        warning = (
             "the matrices do not say where the mass of their modes is: Coriolis forces, and the change of the "
             "centrifugal force from the root to the rest of the body, are left out"
         )
-        return terms, (mass, places), [said]
+        return terms, (mass, places), [warning]
 
 
 def _in_base_axes(matrix: Any, unknowns: Indices, axes: Floats) -> Any:
@@ -370,7 +373,7 @@ def _in_base_axes(matrix: Any, unknowns: Indices, axes: Floats) -> Any:
 
 
 def _geometric(geometric: Mapping[InertialLoad, Any] | None, shapes: Floats) -> tuple[Geometric, list[str]]:
-    """Geometric stiffness in coordinates, and which of it is missing."""
+    """Geometric stiffness in the coordinates of shapes (u, n), and a warning of the loads for which it is missing."""
     n = shapes.shape[1]
     matrices: dict[str, Any] = {}
     for name, matrix in (geometric or {}).items():
@@ -378,11 +381,11 @@ def _geometric(geometric: Mapping[InertialLoad, Any] | None, shapes: Floats) -> 
         if matrix.shape != (len(shapes), len(shapes)):
             raise InputError(f"geometric.{name}", f"has the shape {matrix.shape}", f"give {(len(shapes),) * 2}")
         matrices[name] = shapes.T @ ((matrix + matrix.T) / 2 @ shapes)
-    none = np.zeros((n, n))
-    a, al = (np.stack([matrices.get(f"{way}_{axis}", none) for axis in "xyz"]) for way in ("a", "alpha"))
+    zero = np.zeros((n, n))
+    a, al = (np.stack([matrices.get(f"{way}_{axis}", zero) for axis in "xyz"]) for way in ("a", "alpha"))
     ww = np.zeros((3, 3, n, n))
     for name, (i, j) in zip(LOADS[6:], PAIRS, strict=True):
-        ww[i, j] = ww[j, i] = matrices.get(name, none)
+        ww[i, j] = ww[j, i] = matrices.get(name, zero)
     missing = [name for name in LOADS if name not in matrices]
     if not missing:
         return Geometric(a, al, ww), []

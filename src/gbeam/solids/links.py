@@ -109,8 +109,8 @@ class Links(Value):
         """Read links by the groups of a mesh."""
         nodes: dict[str, Indices] = {}
         for name, groups in links.items():
-            some = [groups] if isinstance(groups, str) else groups
-            nodes[name] = np.unique(np.concatenate([group(f"links.{name}", each) for each in some]))
+            listed = [groups] if isinstance(groups, str) else groups
+            nodes[name] = np.unique(np.concatenate([group(f"links.{name}", part) for part in listed]))
             coupling(f"links.{name}", points[nodes[name]])
             for other in list(nodes)[:-1]:
                 if shared := len(np.intersect1d(nodes[name], nodes[other])):
@@ -129,21 +129,21 @@ class Links(Value):
         for name in carried:
             known(f"carried.{name}", name)
         held: dict[str, tuple[tuple[str, ...], Floats, Floats | None]] = {}
-        for name, each in springs.items():
-            for key in each:
+        for name, spring in springs.items():
+            for key in spring:
                 choice(f"springs.{name}", key, LinkSpring.__annotations__)
             for key in LinkSpring.__annotations__:
-                if key not in each:
+                if key not in spring:
                     raise InputError(f"springs.{name}.{key}", "is missing", "give between and stiffness")
-            between = tuple(known(f"springs.{name}.between[{i}]", one) for i, one in enumerate(each["between"]))
+            between = tuple(known(f"springs.{name}.between[{i}]", end) for i, end in enumerate(spring["between"]))
             if len(between) not in (1, 2) or len(set(between)) < len(between):
                 fix = "name one link, for a spring to the base, or two"
                 raise InputError(f"springs.{name}.between", f"is {list(between)}", fix)
-            if unknown := [way for way in each["stiffness"] if way not in WAYS]:
+            if unknown := [way for way in spring["stiffness"] if way not in WAYS]:
                 fix = f"choose from {', '.join(WAYS)}"
                 raise InputError(f"springs.{name}.stiffness", f"has {unknown[0]!r}", fix)
             stiffness = [
-                positive(f"springs.{name}.stiffness.{way}", each["stiffness"].get(way, 0.0), "", zero=True)
+                positive(f"springs.{name}.stiffness.{way}", spring["stiffness"].get(way, 0.0), "", zero=True)
                 for way in WAYS
             ]
             held[name] = between, np.array(stiffness), None
@@ -151,15 +151,15 @@ class Links(Value):
 
     @property
     def joined(self) -> list[Indices]:
-        """Nodes that move together, of every link and of the two of every spring."""
+        """Groups of nodes that hang together: those of every rigid link, and one of each link that a spring joins."""
         pairs = [
             [self.nodes[name][0] for name in between if len(self.nodes[name])] for between, *_ in self.springs.values()
         ]
         rigid = [nodes for name, nodes in self.nodes.items() if name not in self.weights]
-        return [each for each in (*rigid, *map(np.array, pairs)) if len(each) > 1]
+        return [nodes for nodes in (*rigid, *map(np.array, pairs)) if len(nodes) > 1]
 
     def moving(self, name: str) -> Any:
-        """Ways (6,) in which a link moves: of a single node it turns only where a spring or a body resists it."""
+        """Flags (6,) of the ways in which a link moves; one of a single node turns only if a spring or body resists."""
         if len(self.nodes[name]) > 1:
             return np.ones(6, dtype=bool)
         held = [stiffness[3:] > 0 for between, stiffness, _ in self.springs.values() if name in between]
@@ -175,9 +175,9 @@ class Links(Value):
 
 
 class Linked:
-    """Points of a mesh, of its bodies and of the ends of springs, by the independent unknowns: the displacements of
-    free nodes, and one displacement and rotation of each link; a node of a shell is a link of its points, which does
-    not turn about the line on which they are.
+    """Displacements of all points, of a mesh, of its bodies and of ends of springs, as linear maps of the independent
+    unknowns: displacements of free nodes, and displacement and rotation of each link. A node of a shell is a link of
+    its points, which does not turn about the line on which they are. Tied points are those of links.
     """
 
     def __init__(self, mesh: SolidMesh) -> None:
@@ -195,6 +195,7 @@ class Linked:
         points, masses, self._ends = [*mesh.points], [*mesh.point_masses], list[tuple[int, ...]]()
 
         def add(name: str, place: Floats, mass: float) -> int:
+            """Add a point to a link; return its number."""
             members[name].append(len(points))
             points.append(place)
             masses.append(mass)
@@ -203,13 +204,13 @@ class Linked:
         for name, body in links.bodies.items():
             for place, mass in zip(*_particles(body), strict=True):
                 add(name, named[self._number[name]] + place, mass)
-        for between, _, at in links.springs.values():
-            place = named[self._number[between[0]]] if at is None else at
+        for between, _, spring_place in links.springs.values():
+            place = named[self._number[between[0]]] if spring_place is None else spring_place
             self._ends.append(tuple(add(name, place, 0.0) for name in between))
         self.points, self.masses = np.array(points), np.array(masses)
-        of_link = np.full(len(points), -1)
-        for name, each in members.items():
-            of_link[each] = self._number[name]
+        of_link = np.full(len(points), -1)  # of each point, named links first, then nodes of shells
+        for name, linked in members.items():
+            of_link[linked] = self._number[name]
         _, node, shared = np.unique(mesh.numbers, return_inverse=True, return_counts=True)
         of_shell = (shared[node] > 1) & ~mesh.clamped & (of_link[: self.count] < 0)
         within = np.unique(node[of_shell], return_inverse=True)[1]
@@ -217,7 +218,7 @@ class Linked:
         self._tied = np.flatnonzero(of_link >= 0)
         self._of = of = of_link[self._tied]
         count = np.bincount(of, minlength=len(named))
-        sums = [np.bincount(of, at, minlength=len(named)) for at in self.points[self._tied].T]
+        sums = [np.bincount(of, x, minlength=len(named)) for x in self.points[self._tied].T]
         middles = np.stack(sums, axis=1) / np.maximum(count, 1)[:, None]
         middles[: len(named)] = named
         for name, weights in links.weights.items():
@@ -230,22 +231,22 @@ class Linked:
         on_line = (size[:, 1] <= ON_A_LINE * size[:, 2]) & (size[:, 2] > 0)
         self._axes = np.where(on_line[:, None, None], axes, np.eye(3))
         turning = np.stack([np.ones_like(on_line), np.ones_like(on_line), ~on_line], axis=1)
-        alone, moving = np.flatnonzero(of_link < 0), np.ones((len(middles), 6), dtype=bool)
+        untied, moving = np.flatnonzero(of_link < 0), np.ones((len(middles), 6), dtype=bool)
         for name, i in self._number.items():
             moving[i] = links.moving(name)
         unknown = np.concatenate([np.ones_like(turning), turning], axis=1)
         unknown[[self._number[name] for name in links.weights]] = False
-        free = np.concatenate([np.repeat(~mesh.clamped[alone], 3), moving[unknown]])
-        numbers = np.where(unknown, 3 * len(alone) + np.cumsum(unknown).reshape(unknown.shape) - 1, -1)
+        free = np.concatenate([np.repeat(~mesh.clamped[untied], 3), moving[unknown]])
+        numbers = np.where(unknown, 3 * len(untied) + np.cumsum(unknown).reshape(unknown.shape) - 1, -1)
         move = np.concatenate([np.tile(np.eye(3), (len(of), 1, 1)), self._about(self._arms)], axis=2)
         used = np.broadcast_to((numbers[of] >= 0)[:, None], move.shape)
         row = np.broadcast_to((3 * self._tied[:, None] + np.arange(3))[..., None], move.shape)[used]
         column = np.broadcast_to(numbers[of][:, None], move.shape)[used]
-        alike = (3 * alone[:, None] + np.arange(3)).ravel()
+        untied_rows = (3 * untied[:, None] + np.arange(3)).ravel()
         self._map = coo_array(
             (
-                np.concatenate([np.ones(len(alike)), move[used]]),
-                (np.concatenate([alike, row]), np.concatenate([np.arange(len(alike)), column])),
+                np.concatenate([np.ones(len(untied_rows)), move[used]]),
+                (np.concatenate([untied_rows, row]), np.concatenate([np.arange(len(untied_rows)), column])),
             ),
             shape=(3 * len(points), len(free)),
         ).tocsr()[:, free]
@@ -259,7 +260,7 @@ class Linked:
             self._follow(self._number[name], members[name], links.nodes[name], weights)
 
     def _follow(self, link: int, members: list[int], nodes: Indices, weights: Floats) -> None:
-        """Let points of a link, and its rotation, follow the mean motion of nodes."""
+        """Let the `members` of a link, points, and its rotation follow the mean motion of nodes."""
         from scipy.sparse import coo_array
 
         centre, mean = coupling("", self.points[nodes], weights)
@@ -280,11 +281,11 @@ class Linked:
         return np.einsum("pai,pb,abc->pci", self._axes[self._of], arms, CROSS, optimize=True)
 
     def widened(self, matrix: Any, unknowns: int) -> Any:
-        """A matrix of the nodes with rows and columns of the other points; `unknowns` of each."""
+        """A matrix of the nodes with empty rows and columns for the other points, as many as `unknowns` of each."""
         from scipy.sparse import block_diag, csr_array
 
-        more = unknowns * (len(self.points) - self.count)
-        return block_diag([matrix, csr_array((more, more))], format="csr") if more else matrix
+        added = unknowns * (len(self.points) - self.count)
+        return block_diag([matrix, csr_array((added, added))], format="csr") if added else matrix
 
     def widened_loads(self, loads: Floats) -> Floats:
         """Loads (3 k, m) of the nodes, and none on the other points."""
@@ -302,12 +303,12 @@ class Linked:
             values = np.einsum("i,j,a->ija", signs, signs, stiffness[:3])
             pairs = np.broadcast_to(rows[:, None], values.shape), np.broadcast_to(rows[None], values.shape)
             total = (
-                total + coo_array((values.ravel(), tuple(each.ravel() for each in pairs)), shape=(size, size)).tocsr()
+                total + coo_array((values.ravel(), tuple(index.ravel() for index in pairs)), shape=(size, size)).tocsr()
             )
         return total
 
     def condensed(self, matrix: Any) -> Any:
-        """A matrix or loads of all points by the independent unknowns."""
+        """A sparse matrix, or loads, of all points in terms of the independent unknowns."""
         from scipy.sparse import issparse
 
         if not len(self._tied):
@@ -316,13 +317,13 @@ class Linked:
         return left @ self._map if issparse(matrix) else left
 
     def condensed_stiffness(self, matrix: Any) -> Any:
-        """A stiffness of all points, with the springs about x, y and z between links."""
+        """A stiffness of all points in terms of the unknowns, with the springs about x, y and z between links added."""
         from scipy.sparse import diags_array
 
         total = self.condensed(matrix)
         for between, stiffness, _ in self._links.springs.values():
-            turn, *other = (self._turn[3 * self._number[name] :][:3] for name in between)
-            turn = turn - other[0] if other else turn
+            turn, *second = (self._turn[3 * self._number[name] :][:3] for name in between)
+            turn = turn - second[0] if second else turn
             total = total + turn.T @ diags_array(stiffness[3:]) @ turn
         return total
 
@@ -336,7 +337,7 @@ class Linked:
         return np.asarray((3 * self._tied[:, None] + np.arange(3)).ravel())
 
     def held(self, stiffness: Any) -> Any:
-        """Rows of a stiffness of all points, those of the tied ones."""
+        """Rows of the tied points in a stiffness of all points."""
         return stiffness[self._rows]
 
     def geometric_stiffness(self, held: Any, mass: Any, loads: Floats, static: Floats, reduced: Reduced) -> Floats:
@@ -351,9 +352,9 @@ class Linked:
         halves = np.zeros((2, loads.shape[-1], shapes.shape[-1], shapes.shape[-1]))
         if not len(self._tied):
             return halves
-        still, moved = self._map @ static, self._map @ shapes
+        static_moved, moved = self._map @ static, self._map @ shapes
         inertia = (mass @ moved.reshape(len(self.points), -1)).reshape(moved.shape) @ reduced.stiffness
-        pulling = self._moments(held @ still - loads[self._rows])
+        pulling = self._moments(held @ static_moved - loads[self._rows])
         holding = self._moments(held @ moved - inertia[self._rows])
         holding += np.swapaxes(holding, 1, 2)
         turn, turned = self._rotations(shapes), self._rotations(static)

@@ -37,9 +37,9 @@ def sparse_matrix(where: str, matrix: Any, size: int | None = None) -> Any:
         raise InputError(where, f"has {square.shape[0]} rows", f"give {size}, as the other matrix has")
     if not np.isfinite(square.data).all():
         raise InputError(where, "has values that are not finite", "give finite ones")
-    apart, largest = abs(square - square.T), abs(square).max()
-    if apart.max() > SYMMETRIC * largest:
-        i, j = (int(each[apart.tocoo().data.argmax()]) for each in apart.tocoo().coords)
+    difference, largest = abs(square - square.T), abs(square).max()
+    if difference.max() > SYMMETRIC * largest:
+        i, j = (int(index[difference.tocoo().data.argmax()]) for index in difference.tocoo().coords)
         problem = f"is not symmetric: {square[i, j]:.4g} in row {i}, column {j}, and {square[j, i]:.4g} across"
         raise InputError(where, problem, "write it with both triangles, and without damping or rotation in it")
     negative = np.flatnonzero(square.diagonal() < 0)
@@ -56,8 +56,8 @@ def every_unknown(nodes: int, unknowns: int) -> Indices:
 
 
 def fields_of(points: Floats, unknowns: Indices) -> Floats:
-    """Motions (u, 12) of unknowns in displacements 1, x, y and z along x, then along y, then along z, which turn nodes
-    by half their curl.
+    """Motions (u, 12) of unknowns in twelve displacement fields, 1, x, y and z along x, then along y, then along z;
+    nodes turn by half the curl.
     """
     node, way = unknowns.T
     linear = linear_fields(points)
@@ -70,7 +70,7 @@ def fields_of(points: Floats, unknowns: Indices) -> Floats:
 
 
 def rigid_motions(fields: Floats) -> Floats:
-    """Translations along and rotations about the axes, (u, 6), of the fields of :func:`fields_of`."""
+    """Motions (u, 6) of unknowns in translations along and rotations about the axes, by those of :func:`fields_of`."""
     by_axis = fields.reshape(-1, 3, 4)
     return np.concatenate([by_axis[:, :, 0], np.einsum("acf,uaf->uc", EPSILON, by_axis[:, :, 1:])], axis=1)
 
@@ -82,7 +82,7 @@ def rigid_body(mass: Any, rigid: Floats) -> Floats:
     if not total > 0:
         raise InputError("mass", f"weighs {total:.4g} kg", "give the matrix with its mass, and the nodes that have it")
     if np.abs(body[:3, :3] - total * np.eye(3)).max() > NEAR * total:
-        shown = ", ".join(f"{each:.4g}" for each in np.diagonal(body)[:3])
+        shown = ", ".join(f"{weight:.4g}" for weight in np.diagonal(body)[:3])
         problem = f"weighs {shown} kg along x, y and z"
         raise InputError("mass", problem, "give the mass matrix of every direction, of a structure without joints")
     first = np.einsum("abc,bc->a", EPSILON, body[:3, 3:]) / 2  # Σ m e_c × r
@@ -96,8 +96,8 @@ def extent_of(at: Floats, body: Floats) -> float:
     """Reach of a structure from the root, m: its farthest node (k, 3); where its mass is beyond all of them, as of one
     interface and modes, the length of an even beam with the radius of gyration of the body (10,).
     """
-    far, gyration = float(np.linalg.norm(at, axis=1).max()), float(np.sqrt(body[4:7].sum() / body[0]))
-    return far if far >= gyration else 3**0.5 * gyration
+    farthest, gyration = float(np.linalg.norm(at, axis=1).max()), float(np.sqrt(body[4:7].sum() / body[0]))
+    return farthest if farthest >= gyration else 3**0.5 * gyration
 
 
 def refuse_held(stiffness: Any, rigid: Floats) -> None:
@@ -118,8 +118,8 @@ def displaced(unknowns: Indices, nodes: int) -> tuple[Indices, Indices]:
     for axis in range(3):
         which = np.flatnonzero(unknowns[:, 1] == axis + 1)
         rows[unknowns[which, 0], axis] = which
-    every = np.flatnonzero((rows >= 0).all(axis=1))
-    return every, rows[every]
+    complete = np.flatnonzero((rows >= 0).all(axis=1))
+    return complete, rows[complete]
 
 
 def with_tip(points: dict[str, int], at: Floats, held: Sequence[int] = ()) -> dict[str, int]:
@@ -145,7 +145,7 @@ def mass_of_nodes(mass: Any, rows: Indices) -> Any:
 
 
 def left_out(of_nodes: Any, moved: Floats) -> float:
-    """Largest part of a modal mass that the mass of the nodes leaves out, of displacements (d, 3, n) of modes."""
+    """Largest difference from 1 of the modal masses that the mass (d, d) of the nodes has in modes (d, 3, n)."""
     kept = sum(np.einsum("kn,kn->n", moved[:, i], of_nodes @ moved[:, i]) for i in range(3))
     return float(np.abs(1 - kept).max())
 

@@ -213,7 +213,7 @@ class SolidMesh(Value):
         if places.ndim != 2 or places.shape[1] != 3 or not np.isfinite(places).all():
             raise InputError("mesh", f"has points of shape {places.shape}, or not finite", "give x, y and z of each")
         elements = elements_of(mesh, thickness)
-        used = np.unique(np.concatenate([each.nodes.ravel() for each in elements]))
+        used = np.unique(np.concatenate([block.nodes.ravel() for block in elements]))
         refuse_cost("mesh", 3 * len(used) * (1 if thickness is None else 2))
         refuse_missing(mesh, elements)
         for i, factor in enumerate(scale):
@@ -246,25 +246,27 @@ class SolidMesh(Value):
         blocks = _blocks(mesh, at, elements, nodes_of, materials, rotation)
         by_group = materials if isinstance(materials, Mapping) else {"": materials}
         names = _names(by_group)
-        kinds = {names[name]: each for name, each in by_group.items()}
-        strengths = {name: each.yield_strength for name, each in kinds.items() if each.yield_strength is not None}
+        kinds = {names[name]: material for name, material in by_group.items()}
+        strengths = {name: metal.yield_strength for name, metal in kinds.items() if metal.yield_strength is not None}
         refuse_names(interfaces or {}, named | {TIP: tip})
         hung = {name: group(f"interfaces.{name}", of) for name, of in (interfaces or {}).items()}
-        exponents = {name: float(each.fatigue_exponent) for name, each in kinds.items()}
-        about: dict[str, Any] = {"strengths": strengths, "exponents": exponents, "interfaces": hung}
-        tied, read = Links.of(group, links or {}, carried or {}, springs or {}, at, clamped), tuple[str, ...]()
+        exponents = {name: float(material.fatigue_exponent) for name, material in kinds.items()}
+        fields: dict[str, Any] = {"strengths": strengths, "exponents": exponents, "interfaces": hung}
+        tied = Links.of(group, links or {}, carried or {}, springs or {}, at, clamped)
+        statements_read = tuple[str, ...]()
         if mass_unit is not None:
             cards, weight = cards_of(source, mesh), unit_size("mass_unit", mass_unit, "mass")
-            tied, more = with_cards(cards, tied, Placed(middles, rotation, at, numbers, clamped), size, weight)
-            weights, read = weights + more, cards.words
+            tied, lumped = with_cards(cards, tied, Placed(middles, rotation, at, numbers, clamped), size, weight)
+            weights, statements_read = weights + lumped, cards.words
         if thickness is not None:
-            read += THICKNESS
-        about["links"] = tied
-        about["turns"] = {name: tuple(place.turn) for name, place in (points or {}).items() if isinstance(place, Place)}
-        solid = cls(at, blocks, clamped, node_numbers_of(mesh)[numbers], weights, named | {TIP: tip}, **about)
+            statements_read += THICKNESS
+        fields["links"] = tied
+        turned = {name: place for name, place in (points or {}).items() if isinstance(place, Place)}
+        fields["turns"] = {name: tuple(place.turn) for name, place in turned.items()}
+        solid = cls(at, blocks, clamped, node_numbers_of(mesh)[numbers], weights, named | {TIP: tip}, **fields)
         refuse_folded(solid)
         refuse_loose(solid)
-        doubts = [*doubts_of(solid, unit or "that of the file"), *left_out(source, mesh, read)]
+        doubts = [*doubts_of(solid, unit or "that of the file"), *left_out(source, mesh, statements_read)]
         for name, material in by_group.items():
             doubts += implausible_material(f"materials.{name}" if name else "material", material)
         return replace(solid, warnings=tuple(doubts))
@@ -279,8 +281,8 @@ class SolidMesh(Value):
     @property
     def mass(self) -> float:
         """Mass with that on the nodes and of the bodies that it carries, kg."""
-        parts = sum(masses(self.points, block).sum() for block in self.blocks)
-        return float(parts + self.point_masses.sum() + sum(each.mass for each in self.links.bodies.values()))
+        elements = sum(masses(self.points, block).sum() for block in self.blocks)
+        return float(elements + self.point_masses.sum() + sum(body.mass for body in self.links.bodies.values()))
 
     @typed
     def reduced(
@@ -342,12 +344,12 @@ class SolidMesh(Value):
             modes,
         )
         del stiffness
-        everywhere, still = (linked.displacements(each) for each in (reduced.shapes, reduced.static))
+        everywhere, static = (linked.displacements(unknowns) for unknowns in (reduced.shapes, reduced.static))
         shapes = everywhere[:count]
         # Of moments on interfaces the stress is left out.
         pushed = [12 + 6 * i + axis for i in range(len(centres)) for axis in range(3)]
         stressed = [*range(12), *pushed]
-        halves = geometric_stiffness(self.points, self.blocks, still[:count, :, stressed], shapes)
+        halves = geometric_stiffness(self.points, self.blocks, static[:count, :, stressed], shapes)
         halves += linked.geometric_stiffness(held, mass, loads[:, stressed], reduced.static[:, stressed], reduced)
         frequency = np.sqrt(np.diagonal(reduced.stiffness)[:modes]) / (2 * np.pi)
         doubts = () if coarser is None else hardly_coarser(coarser.mesh, self)
@@ -400,23 +402,27 @@ class SolidMesh(Value):
         return np.asarray(Rotation.from_rotvec(self.turns.get(point, (0.0, 0.0, 0.0))).as_matrix())
 
     def _outputs(self, centres: Floats, forces: Floats, shapes: Floats, pushed: Floats) -> tuple[Places, Floats | None]:
-        """Places of the named points, and their rotations (s, 3, n), not a number where unknown."""
+        """Places of the named points, of interfaces by the `forces` on their centres and, to second order, what these
+        add to the stiffness, `pushed`; and rotations (s, 3, n), not a number where unknown, or None without interfaces.
+        """
         *nodes, tip = self.stations.values()
         ends, n, count = [*nodes, tip], shapes.shape[-1], len(centres)
         r0, first = self.points[ends], shapes[ends]
         if not count:
             return Places(r0, first), None
         moved = (forces.T @ shapes.reshape(-1, n)).reshape(count, 2, 3, n)
-        at, none = len(nodes), np.zeros((len(ends), 3, n, n))
+        before_tip = [len(nodes)] * count
         # Work of a force in displacements of second order: what its stress adds to the stiffness, with the other sign.
-        second = np.insert(none, [at] * count, -pushed.reshape(count, 3, n, n), axis=0)
-        turns = np.insert(np.full((len(ends), 3, n), np.nan), [at] * count, moved[:, 1], axis=0)
-        r0, first = np.insert(r0, [at] * count, centres, axis=0), np.insert(first, [at] * count, moved[:, 0], axis=0)
+        second = np.insert(np.zeros((len(ends), 3, n, n)), before_tip, -pushed.reshape(count, 3, n, n), axis=0)
+        turns = np.insert(np.full((len(ends), 3, n), np.nan), before_tip, moved[:, 1], axis=0)
+        r0, first = np.insert(r0, before_tip, centres, axis=0), np.insert(first, before_tip, moved[:, 0], axis=0)
         return Places(r0, first, second), turns
 
 
 def _node(at: Floats, middles: Floats, name: str, place: Any, group: Any) -> int:
-    """The node of a named point: of a shell that on the face to whose side it is, or on the upper one."""
+    """Number of the node nearest to a place, or of a group's only one; of a shell on the face on the place's side, or
+    the upper one.
+    """
     where = f"points.{name}"
     if name != TIP:
         try:
@@ -455,8 +461,8 @@ def _blocks(
 ) -> tuple[Block, ...]:
     """Elements of each kind and material, whose axes are turned with the mesh."""
     by_group = materials if isinstance(materials, Mapping) else {"": materials}
-    owner = assigned(mesh, "materials", materials, (each.block for each in elements))
-    without = sum(int((owner[each.block][each.which] < 0).sum()) for each in elements)
+    owner = assigned(mesh, "materials", materials, (part.block for part in elements))
+    without = sum(int((owner[part.block][part.which] < 0).sum()) for part in elements)
     if without:
         raise InputError("materials", f"give {without} elements none", "name the groups of all elements")
     numbers, names, blocks = numbers_of(mesh), _names(by_group), []

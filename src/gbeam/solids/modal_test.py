@@ -164,10 +164,10 @@ class ModalTest(Value):
                 raise InputError(f"points.{name}", f"is {number}, which is no node", "give the number of one")
         chosen = with_tip({name: known.index(number) for name, number in numbers.items()}, at)
         n = shapes.shape[-1]
-        none = np.zeros((3, n, n))
+        zero = np.zeros((3, n, n))
         stiffness = np.diag(modal * (2 * np.pi * np.asarray(self.frequency)) ** 2)
         places = Places(at, shapes)
-        geometric = Geometric(none, none, np.zeros((3, 3, n, n)))
+        geometric = Geometric(zero, zero, np.zeros((3, 3, n, n)))
         return linear_structure(
             replace(coefficients(weights, places, stiffness, geometric=geometric), mass=np.diag(modal)),
             weights,
@@ -194,7 +194,7 @@ def _numbers(where: str, value: Any) -> Any:
 
 
 def _in_phase(shapes: Floats, mass: Floats) -> tuple[Floats, Floats]:
-    """The parts of shapes in phase, and the modal masses that go with them."""
+    """Real shapes: the parts in phase of complex ones (k, 3, m), with the modal masses (m,) that go with them."""
     if np.isrealobj(shapes):
         return shapes.astype(float), np.real(mass).astype(float)
     turn = np.exp(-0.5j * np.angle((shapes**2).sum(axis=(0, 1))))

@@ -65,7 +65,7 @@ class SolidModel(Value):
         return np.asarray(np.abs(rough / self.frequency - 1))
 
     def __repr__(self) -> str:
-        shown = ", ".join(f"{each:.4g}" for each in self.frequency[:6])
+        shown = ", ".join(f"{frequency:.4g}" for frequency in self.frequency[:6])
         known = np.isfinite(self.mesh_error)
         error = f"up to {100 * self.mesh_error[known].max():.2g} %" if known.any() else "unknown, give a coarser mesh"
         return f"SolidModel({self.structure.size} coordinates; {shown} Hz; error of the mesh {error})"
@@ -116,13 +116,13 @@ class SolidModel(Value):
             raise InputError("answer", problem, f"give one of this {self.structure.kind} with {self.structure.size}")
         time = np.atleast_1d(np.asarray(answer.time, dtype=float))
         name = answer.name if isinstance(answer, Response) else answer.motion
-        about = {"motion": name, "model": answer.model, "warnings": answer.warnings, "provenance": answer.provenance}
-        return solid_stress(self._nodal, time, q, **about)
+        origin = {"motion": name, "model": answer.model, "warnings": answer.warnings, "provenance": answer.provenance}
+        return solid_stress(self._nodal, time, q, **origin)
 
 
 def beside(coarser: SolidModel, finer: Structure) -> Structure:
-    """A structure with that of a coarser mesh: in coordinates as like its own as can be, put out at its points and
-    stressed where it is.
+    """The `finer` structure with that of a coarser mesh as its `coarser`: in coordinates whose shapes are most like its
+    own, with the same named points, and with stress compared at the same places.
     """
     from scipy.spatial import cKDTree
 
@@ -134,48 +134,48 @@ def beside(coarser: SolidModel, finer: Structure) -> Structure:
     if structure.size < n or coarser.structure.resolved < finer.resolved:
         problem = f"has {coarser.structure.resolved} modes, and the mesh {finer.resolved}"
         raise InputError("coarser", problem, "give it as many, or more nodes")
-    for what, have, want in (
+    for noun, have, want in (
         ("points", structure.points, finer.points),
         ("materials", tuple(dict.fromkeys(rough.material)), tuple(dict.fromkeys(fine.material))),
     ):
         if set(have) != set(want):
-            problem = f"has the {what} {', '.join(have)}, and the mesh {', '.join(want)}"
+            problem = f"has the {noun} {', '.join(have)}, and the mesh {', '.join(want)}"
             raise InputError("coarser", problem, "give it the same")
     known, mesh = max(n, coarser.structure.size), rough.mesh
     shapes = rough.every_shape[..., :known]
     mass = mass_matrix(mesh.points, mesh.blocks)
     moved = (mass @ shapes.reshape(len(shapes), -1)).reshape(shapes.shape) + mesh.point_masses[:, None, None] * shapes
     _, near = cKDTree(fine.mesh.points).query(mesh.points)
-    alike = np.tensordot(moved, fine.shapes[near], ((0, 1), (0, 1)))
+    likeness = np.tensordot(moved, fine.shapes[near], ((0, 1), (0, 1)))  # products of inertia of both meshes' shapes
     # Of stiff shapes a soft one has what the coarser mesh bends by the forces that hold it: less would strain it more.
-    rates = (np.diagonal(each.coefficients.stiffness) for each in (structure, finer))
-    forced = np.minimum(1.0, 1 / np.divide.outer(next(rates)[:known], next(rates)))
-    turn, size = np.linalg.qr(alike * forced)
+    rough_rates, fine_rates = (np.diagonal(s.coefficients.stiffness) for s in (structure, finer))
+    forced = np.minimum(1.0, 1 / np.divide.outer(rough_rates[:known], fine_rates))
+    turn, size = np.linalg.qr(likeness * forced)
     basis = np.zeros((structure.size, n))
     basis[:known] = turn * np.where(np.diagonal(size) < 0, -1.0, 1.0)
-    every = np.pad(basis, ((0, rough.every_shape.shape[-1] - len(basis)), (0, 0)))
+    padded = np.pad(basis, ((0, rough.every_shape.shape[-1] - len(basis)), (0, 0)))
     without_limit = singular(fine, rough, _static(finer), _static(coarser.structure))
-    apart = replace(fine, singular=without_limit, compared=True)
     # Where both have a node: stress changes fast near those where it is largest.
     of_both = np.unique(_nearest(fine, rough, np.arange(len(rough.known))))
-    felt = replace(apart, felt_at=fine.most(of_both[~apart.singular[of_both]]))
+    felt_at = fine.most(of_both[~without_limit[of_both]])
+    compared = replace(fine, singular=without_limit, compared=True, felt_at=felt_at)
     nodal = replace(
         rough,
-        every_shape=rough.every_shape @ every,
-        every_table=rough.every_table @ every,
+        every_shape=rough.every_shape @ padded,
+        every_table=rough.every_table @ padded,
         size=n,
-        felt_at=_nearest(rough, felt, felt.felt_at),
+        felt_at=_nearest(rough, compared, felt_at),
     )
-    other = structure.turned(basis)
-    first, places = np.array(other.station_places.first), finer.station_places
+    turned = structure.turned(basis)
+    first, places = np.array(turned.station_places.first), finer.station_places
     tip = np.linalg.norm(mesh.points - places.r0[-1], axis=1).argmin()  # of several as far from the root the same
     first[-1] = nodal.shapes[tip]
-    stations = Places(places.r0, first, other.station_places.second)
-    other = replace(
-        other, station_places=stations, stations=finer.stations, length=finer.length, recovery=nodal, richer=None
+    stations = Places(places.r0, first, turned.station_places.second)
+    turned = replace(
+        turned, station_places=stations, stations=finer.stations, length=finer.length, recovery=nodal, richer=None
     )
-    richer = finer.richer and replace(finer.richer, recovery=replace(felt, size=finer.richer.size))
-    return replace(finer, recovery=felt, richer=richer, coarser=other)
+    richer = finer.richer and replace(finer.richer, recovery=replace(compared, size=finer.richer.size))
+    return replace(finer, recovery=compared, richer=richer, coarser=turned)
 
 
 def _static(structure: Structure) -> Floats:
@@ -185,7 +185,7 @@ def _static(structure: Structure) -> Floats:
 
 
 def singular(fine: NodalStress, rough: NodalStress, of_fine: Floats, of_rough: Floats) -> Flags:
-    """Pairs (p,) of a mesh in elements of a coarser one where the stress of answers (n, l) does not converge.
+    """Flags (p,) of the pairs of a mesh in elements of a coarser one where the stress of answers (n, l) diverges.
 
     There the stress of an element and the mean at its nodes differ as much on both meshes, where their difference falls
     with the elements' size elsewhere, and somewhere in such a patch of elements stress grows.
@@ -198,7 +198,7 @@ def singular(fine: NodalStress, rough: NodalStress, of_fine: Floats, of_rough: F
     top = np.where(top > 0, top, np.inf)
     small, large = _elements(fine, of_fine / top), _elements(rough, of_rough / top)
     count, (_, inside) = len(large.middle), cKDTree(large.middle).query(small.middle)
-    apart, stress, size = np.zeros((3, count))
+    apart, stress, size = np.zeros((3, count))  # of the small elements in each large one, the largest
     np.maximum.at(apart, inside, small.apart)
     np.maximum.at(stress, inside, small.stress)
     np.maximum.at(size, inside, small.size)
@@ -206,23 +206,24 @@ def singular(fine: NodalStress, rough: NodalStress, of_fine: Floats, of_rough: F
         finer = np.log(large.size / size)
         order, growth = np.log(large.apart / apart) / finer, np.log(stress / large.stress) / finer
         unlike = (order < CONVERGING) & (apart > UNLIKE * stress) & (finer > np.log(REFINED))
-    some = np.flatnonzero(unlike)
+    suspects = np.flatnonzero(unlike)
     sharing = csr_array(
         (np.ones(large.pairs.size), (np.repeat(np.arange(count), large.counts), large.pairs)),
         shape=(count, len(rough.known)),
-    )[some]
+    )[suspects]
     number, patch = connected_components(sharing @ sharing.T)
-    grows = np.bincount(patch, growth[some] > GROWING, number) > 0
-    left_out = np.zeros(count, dtype=bool)
-    left_out[some[grows[patch]]] = True
-    out = np.zeros(len(fine.known), dtype=bool)
-    out[small.pairs[np.repeat(left_out[inside], small.counts)]] = True
-    return out if not out.all() else ~out
+    grows = np.bincount(patch, growth[suspects] > GROWING, number) > 0
+    diverging = np.zeros(count, dtype=bool)
+    diverging[suspects[grows[patch]]] = True
+    flags = np.zeros(len(fine.known), dtype=bool)
+    flags[small.pairs[np.repeat(diverging[inside], small.counts)]] = True
+    return flags if not flags.all() else ~flags
 
 
 class _Elements(NamedTuple):
-    """Elements of a mesh under some answers: of all together the largest von Mises stress (e,) at their nodes, and how
-    far the stress of the element and the mean at its nodes are apart (e,).
+    """Elements (e,) of a mesh under several answers: middles (e, 3) and sizes, m, the largest von Mises `stress` at
+    their nodes, that of the difference, `apart`, of an element's stress to the mean at the node, and their pairs, of
+    which each element has so many as `counts` says, one element after the other.
     """
 
     middle: Floats
@@ -234,31 +235,32 @@ class _Elements(NamedTuple):
 
 
 def _elements(nodal: NodalStress, answers: Floats) -> _Elements:
+    """Elements of a mesh under answers (n, l), whose von Mises stresses are summed as squares."""
     mean, places = nodal.table @ answers, nodal.mesh.points[nodal.node]
     under = replace(nodal, every_shape=nodal.shapes @ answers, size=answers.shape[1])
 
-    def largest(stress: Floats) -> Floats:
+    def total(stress: Floats) -> Floats:
         return np.asarray(np.linalg.norm(von_mises(np.moveaxis(stress, -2, -1)), axis=-1))
 
-    size, parts = largest(mean), []
+    size, parts = total(mean), []
     for pairs, stress in under.elements(nodal.mesh.blocks):
         box, counts = np.ptp(places[pairs], axis=1), np.full(len(pairs), pairs.shape[1])
-        apart = largest(stress - mean[pairs]).max(axis=1)
-        middle, long = places[pairs].mean(axis=1), np.linalg.norm(box, axis=1)
-        parts.append((middle, long, apart, size[pairs].max(axis=1), counts, pairs.ravel()))
+        apart = total(stress - mean[pairs]).max(axis=1)
+        middle, diagonal = places[pairs].mean(axis=1), np.linalg.norm(box, axis=1)
+        parts.append((middle, diagonal, apart, size[pairs].max(axis=1), counts, pairs.ravel()))
     return _Elements(*map(np.concatenate, zip(*parts, strict=True)))
 
 
 def _nearest(of: NodalStress, to: NodalStress, pairs: Indices) -> Indices:
-    """Pairs of a mesh nearest to pairs of another one, of the same materials."""
+    """Pairs of the mesh `of` that are nearest to `pairs` of the mesh `to`, of the same materials."""
     from scipy.spatial import cKDTree
 
-    out, kinds, wanted = np.zeros_like(pairs), np.array(of.material), np.array(to.material)[pairs]
+    nearest, kinds, wanted = np.zeros_like(pairs), np.array(of.material), np.array(to.material)[pairs]
     for name in np.unique(wanted):
-        some, which = np.flatnonzero(kinds == name), wanted == name
-        tree = cKDTree(of.mesh.points[of.node[some]])
-        out[which] = some[tree.query(to.mesh.points[to.node[pairs[which]]])[1]]
-    return out
+        candidates, which = np.flatnonzero(kinds == name), wanted == name
+        tree = cKDTree(of.mesh.points[of.node[candidates]])
+        nearest[which] = candidates[tree.query(to.mesh.points[to.node[pairs[which]]])[1]]
+    return nearest
 
 
 def hardly_coarser(coarser: SolidMesh, finer: SolidMesh) -> tuple[str, ...]:

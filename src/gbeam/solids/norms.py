@@ -49,8 +49,8 @@ class LargestNorms:
         forms, products = _single(forms[:, i, j]), _single(np.where(i == j, 1, 2) * along[:, i] * along[:, j]).T
         columns, rest, rounding = map(_single, (columns, rest[:, None], SINGLE * np.square(reach)[:, None]))
         middle, apart, cell = _cells(along)
-        left = order[FOREMOST:]
-        for group in np.array_split(left, -(-len(left) // GROUP)):
+        hindmost = order[FOREMOST:]
+        for group in np.array_split(hindmost, -(-len(hindmost) // GROUP)):
             # Maps that are largest in the same cell are likely to be so at the same times.
             group = group[np.argsort((forms[group] @ products[:, middle]).argmax(axis=1), kind="stable")]
             over, over_cells = self.over / unit, np.full(len(middle), np.inf)
@@ -63,7 +63,7 @@ class LargestNorms:
                 self._compute(times[held], some)
 
     def _compute(self, times: Indices, some: Indices) -> None:
-        """Compute the norms of some maps at times in order, among which they are the largest."""
+        """Compute the norms of maps `some` at ascending times, among which they are largest, and note the largest."""
         norms = np.sqrt(np.square(self.maps[:, some] @ self.q[times].T).sum(axis=0))
         self.size[some] = size = norms.max(axis=1)
         self.when[some] = times[(norms >= (1 - ROUNDING) * size[:, None]).argmax(axis=1)]
@@ -71,8 +71,9 @@ class LargestNorms:
 
 
 def _could_be_largest(squares: Any, rounding: Any, rest: Any, over: Floats, apart: Any = 0.0) -> Any:
-    """True for times (t,) at which a norm, of squares (p, t) but for their rounding, what the rest of the coordinates
-    add (p, 1) and what the times in a cell are apart (p, t), could be the largest of its map or of `over` all (t,).
+    """Flags of times (t,) at which a norm could be the largest of its map, or exceed `over` (t,), the largest so far of
+    all maps. Norms are known by their squares (p, t) but for rounding, and for what the rest of the coordinates (p, 1)
+    and other times of a cell, `apart` (p, t), may add.
     """
     most = np.sqrt(np.maximum(squares + rounding, 0)) + rest + apart
     least = np.sqrt(np.maximum(squares.max(axis=1, keepdims=True) - rounding, 0)) - rest

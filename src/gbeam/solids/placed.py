@@ -19,7 +19,7 @@ APART = 1e-6  # of the size of a mesh: nodes that are farther apart are not one 
 @dataclass(frozen=True)
 class Placed:
     """Nodes of a file: places (f, 3) m in base axes, and rotation to these from the file's; points (k, 3) of the solid,
-    the nodes (k,) for which they stand, and whether they follow the base.
+    the indices (k,) of the nodes for which they stand, and flags (k,) of those that follow the base.
     """
 
     places: Floats
@@ -30,8 +30,8 @@ class Placed:
 
 
 def with_cards(cards: Cards, links: Links, nodes: Placed, size: float, mass: float) -> tuple[Links, Floats]:
-    """Links with those of a file, whose units of length and mass are given, m and kg, and of time s; and its masses on
-    nodes of the solid (k,), kg.
+    """Links of a solid with those of a file's cards added, and the cards' masses (k,) on its points, kg; `size` and
+    `mass` are the file's units, m and kg, of time the second.
     """
     ends = np.cumsum(np.bincount(nodes.numbers, minlength=len(nodes.places)))[:-1]
     points_of = np.split(np.argsort(nodes.numbers, kind="stable"), ends)
@@ -44,16 +44,17 @@ def with_cards(cards: Cards, links: Links, nodes: Placed, size: float, mass: flo
     base, weights = "the base", np.zeros(len(nodes.clamped))
 
     def refuse_unknown(name: str, numbers: Iterable[int]) -> None:
-        if unknown := [each for each in numbers if each not in solid_of]:
+        if unknown := [number for number in numbers if number not in solid_of]:
             raise refused(name, f"names node {unknown[0]}, which is not there", "export it too")
 
     def link(name: str, numbers: tuple[int, ...]) -> None:
+        """Make nodes of the file, by number, a rigid link, or let the base own them if all their points are clamped."""
         refuse_unknown(name, numbers)
-        chosen = np.unique(np.concatenate([solid_of[each] for each in numbers]))
+        chosen = np.unique(np.concatenate([solid_of[number] for number in numbers]))
         if len(chosen) and nodes.clamped[chosen].all():
             owner.update(dict.fromkeys(numbers, base))
             return
-        shared = [owner[each] for each in numbers if each in owner]
+        shared = [owner[number] for number in numbers if number in owner]
         shared += [other for other, held in members.items() if other not in mean and np.isin(chosen, held).any()]
         if shared or nodes.clamped[chosen].any():
             raise refused(name, f"shares nodes with {shared[0] if shared else 'the clamp'}", "make them one")
@@ -62,7 +63,8 @@ def with_cards(cards: Cards, links: Links, nodes: Placed, size: float, mass: flo
         members[name], places[name] = chosen, place_of[numbers[0]]
         owner.update(dict.fromkeys(numbers, name))
 
-    def owned(name: str, number: int) -> str:
+    def owner_of(name: str, number: int) -> str:
+        """Name of the link that moves a node; a node that has none becomes one of its own."""
         if number not in owner:
             link(f"node {number}" if number in solid_of else name, (number,))
         return owner[number]
@@ -73,56 +75,56 @@ def with_cards(cards: Cards, links: Links, nodes: Placed, size: float, mass: flo
         refuse_unknown(name, (number, *shares))
         if len(solid_of[number]) or number in owner:
             raise refused(name, f"moves node {number}, which the solid or a rigid link moves too", "leave one out")
-        members[name] = np.concatenate([solid_of[each] for each in shares])
-        parts = [(solid_of[each], weight) for each, weight in shares.items()]
+        members[name] = np.concatenate([solid_of[followed] for followed in shares])
+        parts = [(solid_of[followed], weight) for followed, weight in shares.items()]
         mean[name] = np.concatenate([np.full(len(points), weight / max(len(points), 1)) for points, weight in parts])
         coupling(f"mesh, {name}:", nodes.points[members[name]], mean[name])
         places[name], owner[number] = place_of[number], name
     carried: dict[str, list[tuple[float, Floats, Floats]]] = {}
     # First those that turn, which a mass on the same node joins.
-    for each in sorted(cards.lumps, key=lambda lump: not (lump.inertia.any() or lump.offset.any())):
-        tensor = mass * size**2 * nodes.rotation @ each.inertia @ nodes.rotation.T
-        offset = size * nodes.rotation @ each.offset
-        alike = solid_of.get(each.node, ())
-        if each.node not in owner and len(alike):
+    for lump in sorted(cards.lumps, key=lambda lump: not (lump.inertia.any() or lump.offset.any())):
+        tensor = mass * size**2 * nodes.rotation @ lump.inertia @ nodes.rotation.T
+        offset = size * nodes.rotation @ lump.offset
+        points = solid_of.get(lump.node, ())
+        if lump.node not in owner and len(points):
             if not tensor.any() and not offset.any():
-                weights[alike] += mass * each.mass / len(alike)
+                weights[points] += mass * lump.mass / len(points)
                 continue
-            if len(alike) == 1:
+            if len(points) == 1:
                 fix = "join it to the solid by a rigid link"
-                raise refused(each.name, f"has an offset or inertia on node {each.node}, which does not turn", fix)
-        name = owned(each.name, each.node)
+                raise refused(lump.name, f"has an offset or inertia on node {lump.node}, which does not turn", fix)
+        name = owner_of(lump.name, lump.node)
         if name != base:
-            at = place_of[each.node] + offset - places[name]
-            carried.setdefault(name, []).append((mass * each.mass, at, tensor))
-    held = dict(links.springs)
+            centre = place_of[lump.node] + offset - places[name]
+            carried.setdefault(name, []).append((mass * lump.mass, centre, tensor))
+    springs = dict(links.springs)
     for k, spring in enumerate(cards.springs):
-        joined = [owned(spring.name, number) for number in spring.nodes]
-        across = max(float(np.linalg.norm(place_of[each] - place_of[spring.nodes[0]])) for each in spring.nodes)
+        joined = [owner_of(spring.name, number) for number in spring.nodes]
+        across = max(float(np.linalg.norm(place_of[node] - place_of[spring.nodes[0]])) for node in spring.nodes)
         if across > within:
             raise refused(spring.name, f"joins nodes {across:.3g} m apart", "let it join nodes at one place")
-        between = tuple(dict.fromkeys(each for each in joined if each != base))
+        between = tuple(dict.fromkeys(name for name in joined if name != base))
         if not between or (len(spring.nodes) == 2 and joined[0] == joined[1]):
             continue  # between what moves together
         if not np.allclose(nodes.rotation, np.eye(3)):
             raise refused(spring.name, "lies along the mesh's axes, and turn turns them", "leave turn out")
-        alone = [each for each in between if len(members[each]) == 1]
-        if spring.stiffness[3:].any() and alone:
-            raise refused(spring.name, f"turns {alone[0]} of the solid, which does not", "join it by a rigid link")
-        held[f"{spring.name}, {k + 1}"] = (
+        single = [name for name in between if len(members[name]) == 1]
+        if spring.stiffness[3:].any() and single:
+            raise refused(spring.name, f"turns {single[0]} of the solid, which does not", "join it by a rigid link")
+        springs[f"{spring.name}, {k + 1}"] = (
             between,
             mass * spring.stiffness * np.repeat([1.0, size**2], 3),
             place_of[spring.nodes[0]],
         )
     bodies = dict(links.bodies) | {name: _together(name, parts) for name, parts in carried.items()}
-    used = {*bodies, *(each for between, *_ in held.values() for each in between)}
-    members = {name: each for name, each in members.items() if len(each) or name in used}
+    used = {*bodies, *(name for between, *_ in springs.values() for name in between)}
+    members = {name: points for name, points in members.items() if len(points) or name in used}
     tied = Links(
-        members,
-        bodies,
-        held,
-        {name: places[name] for name in members if name in places},
-        {name: mean[name] for name in members if name in mean},
+        nodes=members,
+        bodies=bodies,
+        springs=springs,
+        places={name: places[name] for name in members if name in places},
+        weights={name: mean[name] for name in members if name in mean},
     )
     for name, chosen in members.items():
         if not len(chosen):
@@ -132,7 +134,7 @@ def with_cards(cards: Cards, links: Links, nodes: Placed, size: float, mass: flo
 
 def _refuse_unheld(name: str, links: Links) -> None:
     """Refuse a link of no node of the solid that no spring holds."""
-    stiffness = sum((each for between, each, _ in links.springs.values() if name in between), np.zeros(6))
+    stiffness = sum((values for between, values, _ in links.springs.values() if name in between), np.zeros(6))
     body = links.bodies.get(name)
     resisting = np.zeros(3) if body is None else np.diag(body.tensor) + np.abs(body.centre).sum()
     loose = stiffness[:3].min() == 0 or (stiffness[3:] == 0)[resisting > 0].any()
@@ -141,12 +143,12 @@ def _refuse_unheld(name: str, links: Links) -> None:
 
 
 def _together(name: str, parts: list[tuple[float, Floats, Floats]]) -> RigidBody:
-    """One body of masses, centres and inertias about these."""
+    """One body of several parts, each its mass, kg, centre (3,) m and inertia (3, 3) about that, kg m²."""
     whole = sum(mass for mass, *_ in parts)
-    centre = sum((mass * at for mass, at, _ in parts), np.zeros(3)) / whole if whole else np.zeros(3)
+    centre = sum((mass * part_centre for mass, part_centre, _ in parts), np.zeros(3)) / whole if whole else np.zeros(3)
     tensor = np.zeros((3, 3))
-    for mass, at, inertia in parts:
-        arm = at - centre
+    for mass, part_centre, inertia in parts:
+        arm = part_centre - centre
         tensor += inertia + mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
     if tensor.any() and not whole:
         raise refused(name, "has inertia and no mass")

@@ -27,13 +27,13 @@ def refuse_folded(mesh: SolidMesh) -> None:
     """Refuse elements that are turned inside out or folded."""
     bad: list[int] = []
     for block in mesh.blocks:
-        grown = determinants(mesh.points, block)
-        bad += block.numbers[~(grown.min(axis=1) > FLAT * np.abs(grown).max(axis=1))].tolist()
+        volumes = determinants(mesh.points, block)
+        bad += block.numbers[~(volumes.min(axis=1) > FLAT * np.abs(volumes).max(axis=1))].tolist()
     if bad:
-        some = ", ".join(map(str, bad[:3])) + (", ..." if len(bad) > 3 else "")
+        listed = ", ".join(map(str, bad[:3])) + (", ..." if len(bad) > 3 else "")
         count = "1 element" if len(bad) == 1 else f"{len(bad)} elements"
         fix = "mesh it again, or number their nodes the other way round"
-        raise InputError("mesh", f"has {count} turned inside out or folded: {some}", fix)
+        raise InputError("mesh", f"has {count} turned inside out or folded: {listed}", fix)
 
 
 def refuse_loose(mesh: SolidMesh) -> None:
@@ -47,18 +47,18 @@ def refuse_loose(mesh: SolidMesh) -> None:
     _, first, node = np.unique(mesh.numbers, return_index=True, return_inverse=True)
     pairs += [(first[node], np.arange(len(node)))]  # of shells the points that stand for a node
     pairs += [(np.full(len(nodes), nodes[0]), nodes) for nodes in mesh.links.joined]
-    rows, columns = (np.concatenate(each) for each in zip(*pairs, strict=True))
+    rows, columns = (np.concatenate(indices) for indices in zip(*pairs, strict=True))
     graph = coo_array((np.ones(len(rows), dtype=bool), (rows, columns)), shape=(len(mesh.points),) * 2)
     count, part = connected_components(graph, directed=False)
     for i in range(count):
         nodes = part == i
-        if any(nodes[each].any() for each in mesh.links.on_base):
+        if any(nodes[sprung].any() for sprung in mesh.links.on_base):
             continue  # whether the springs hold it the factors say
         held = mesh.points[nodes & mesh.clamped]
         size = np.linalg.svd(held - held.mean(axis=0), compute_uv=False) if len(held) > 2 else np.zeros(3)
         if size[1] > STRAIGHT * np.linalg.norm(np.ptp(mesh.points[nodes], axis=0)):
             continue
-        middle = ", ".join(f"{each:.3g}" for each in mesh.points[nodes].mean(axis=0))
+        middle = ", ".join(f"{x:.3g}" for x in mesh.points[nodes].mean(axis=0))
         where = "the mesh" if count == 1 else f"a part of {nodes.sum()} nodes about ({middle}) m"
         fix = "clamp three nodes or more that lie on no line" + ("" if count == 1 else ", or merge coincident nodes")
         raise InputError("clamp", f"holds {where} at {len(held)} nodes, so that it moves without strain", fix)
@@ -72,8 +72,8 @@ def doubts_of(mesh: SolidMesh, unit: str) -> list[str]:
         other = "mm" if size > LARGE or mass > HEAVY else "m"
         other = other if other != unit else "another one"
         doubts.append(f"the mesh is {size:.3g} m across and weighs {mass:.3g} kg with unit = {unit!r}; is it {other}?")
-    alone = _alone(mesh)
-    linear = [each for block, each in zip(mesh.blocks, alone, strict=True) if KINDS[block.kind].linear]
+    of_blocks = _slenderness(mesh)
+    linear = [ratios for block, ratios in zip(mesh.blocks, of_blocks, strict=True) if KINDS[block.kind].linear]
     if linear:
         ratios = np.concatenate(linear)
         thin = ratios[np.isfinite(ratios)]
@@ -91,11 +91,11 @@ def doubts_of(mesh: SolidMesh, unit: str) -> list[str]:
             "quadrilaterals, or triangles of six nodes"
         )
     locking = [
-        each[np.isfinite(each) & (each > KINDS[block.kind].long)]
-        for block, each in zip(mesh.blocks, alone, strict=True)
+        ratios[np.isfinite(ratios) & (ratios > KINDS[block.kind].long)]
+        for block, ratios in zip(mesh.blocks, of_blocks, strict=True)
     ]
     long = np.concatenate(locking)
-    if len(long) > SLIVERS * sum(len(each) for each in alone):
+    if len(long) > SLIVERS * sum(map(len, of_blocks)):
         doubts.append(
             f"{len(long)} elements fill a thickness alone and are up to {long.max():.2g} times as long as it: they may "
             "lock in bending; make them shorter, or use hexahedra of 27 nodes"
@@ -103,9 +103,9 @@ def doubts_of(mesh: SolidMesh, unit: str) -> list[str]:
     return doubts
 
 
-def _alone(mesh: SolidMesh) -> list[Floats]:
-    """Ratios of length to thickness of the elements of each block, those of the axes of inertia of their corners; not
-    a number where an element has a corner inside the solid, so that others share its thickness.
+def _slenderness(mesh: SolidMesh) -> list[Floats]:
+    """Ratios (e,) of length to thickness of the elements of each block, along principal axes of their corners; NaN of
+    an element with a corner inside the solid, which does not fill the solid's thickness alone.
     """
     outside = np.zeros(len(mesh.points), dtype=bool)
     outside[outer_triangles(mesh)] = True

@@ -201,8 +201,10 @@ class RigidSpecimen(Value):
         return self._loads(time, moving.base(time), name, motion.kind)
 
     def _loads(self, time: Floats, base: Any, name: str, environment: str) -> SpecimenLoads:
+        """Loads at times (t,), s, by the motion of the root there."""
         corners = np.asarray(self.corners)
-        a, w, alpha = (np.broadcast_to(each, (len(time), 3)) for each in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B))
+        vectors = base.a_WO_B, base.w_WB_B, base.alpha_WB_B
+        a, w, alpha = (np.broadcast_to(vector, (len(time), 3)) for vector in vectors)
 
         def accelerations(places: Floats) -> Floats:
             spin, turn = w[:, None], alpha[:, None]
@@ -213,7 +215,7 @@ class RigidSpecimen(Value):
         force = self.mass * of_centre
         about_centre = alpha @ inertia + np.cross(w, w @ inertia)  # Euler's equations; the inertia is symmetric
         moment = about_centre + np.cross(centre, force)
-        held: dict[str, Any] = {} if self.bolts is None else self._shared(np.asarray(self.bolts), force, moment)
+        of_bolts: dict[str, Any] = {} if self.bolts is None else self._shared(np.asarray(self.bolts), force, moment)
         return SpecimenLoads(
             motion=name,
             environment=environment,
@@ -225,13 +227,13 @@ class RigidSpecimen(Value):
             force=force,
             moment=moment,
             spread_limit=self.spread_limit,
-            **held,
+            **of_bolts,
         )
 
     @property
     def structure(self) -> Structure:
         """The specimen as analyses take it, without coordinates; its tip is the farthest corner unless it is named."""
-        corners, centre, inertia = (np.asarray(each) for each in (self.corners, self.centre, self.inertia))
+        corners, centre, inertia = map(np.asarray, (self.corners, self.centre, self.inertia))
         second = (np.trace(inertia) / 2 * np.eye(3) - inertia) + self.mass * np.outer(centre, centre)
         products = (second[i, j] for i, j in PAIRS)
         named = dict(self.points)
@@ -321,7 +323,9 @@ class RigidSpecimen(Value):
         raise InputError("at", f"is {point!r}, on a rigid body, which has no strain", "give a mesh, or leave it out")
 
     def _shared(self, bolts: Floats, force: Floats, moment: Floats) -> dict[str, Any]:
-        """Forces (t, b, 3) of bolts that are alike, between rigid bodies, with their places and direction."""
+        """Fields of the bolts: forces (t, b, 3) that share a force and a moment (t, 3), as of bolts alike between rigid
+        bodies, their places and direction.
+        """
         centroid, axis = bolts.mean(axis=0), np.asarray(self.bolt_axis)
         turn = np.linalg.solve(_second_moments(bolts), (moment - np.cross(centroid, force)).T).T
         forces = force[:, None] / len(bolts) + np.cross(turn[:, None], bolts - centroid)

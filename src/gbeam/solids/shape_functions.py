@@ -105,13 +105,10 @@ def shape_functions(kind: str, degree: int) -> tuple[Floats, Floats, Floats, Flo
     upright = kind.startswith("wedge")
     if upright or KINDS[kind].shell:
         # scikit-fem 12's rule of wedges has the triangle across another axis, and half the weights.
-        rules = get_quadrature(RefTri if upright else domain, degree)
-        (flat, over), (line, along) = (
-            rules,
-            get_quadrature(RefLine, (KINDS[kind].along or degree) if upright else ACROSS),
-        )
-        points = np.concatenate([np.repeat(flat, len(along), axis=1), np.tile(line, len(over))])
-        weights = np.outer(over, along).ravel()
+        flat, flat_weights = get_quadrature(RefTri if upright else domain, degree)
+        line, line_weights = get_quadrature(RefLine, (KINDS[kind].along or degree) if upright else ACROSS)
+        points = np.concatenate([np.repeat(flat, len(line_weights), axis=1), np.tile(line, len(flat_weights))])
+        weights = np.outer(flat_weights, line_weights).ravel()
     else:
         points, weights = get_quadrature(domain, degree)
     return points.T, weights, *shapes_at(kind, points.T)
@@ -136,17 +133,17 @@ def _basis(kind: str, points: Floats) -> tuple[Floats, Floats]:
     element, at = getattr(import_skfem(), KINDS[kind].element)(), np.ascontiguousarray(points.T)
     pairs = [element.lbasis(at, i) for i in _order(kind)]
     values = np.stack([np.broadcast_to(value, len(points)) for value, _ in pairs], axis=1)
-    slopes = [np.stack([np.broadcast_to(each, len(points)) for each in slope], axis=1) for _, slope in pairs]
+    slopes = [np.stack([np.broadcast_to(along, len(points)) for along in slope], axis=1) for _, slope in pairs]
     return values, np.stack(slopes, axis=1)
 
 
 def _monomials(at: Floats, powers: Sequence[tuple[int, int, int]], along: int | None = None) -> Floats:
     """Monomials (q, m) of some powers at points (q, 3), or their derivatives along an axis."""
-    each, factor = np.array(powers), np.ones(len(powers))
+    exponents, factor = np.array(powers), np.ones(len(powers))
     if along is not None:
-        factor = each[:, along].astype(float)
-        each = np.maximum(each - np.eye(3, dtype=int)[along], 0)
-    return np.asarray(factor * np.prod(at[:, None, :] ** each, axis=-1))
+        factor = exponents[:, along].astype(float)
+        exponents = np.maximum(exponents - np.eye(3, dtype=int)[along], 0)
+    return np.asarray(factor * np.prod(at[:, None, :] ** exponents, axis=-1))
 
 
 def tangents(kind: str, points: Floats, nodes: Indices, at: Floats) -> Floats:
@@ -164,14 +161,14 @@ def shared_area(kind: str, places: Floats) -> Floats:
 
 
 def both_faces(kind: str, below: Any, above: Any) -> Any:
-    """Values (e, k, ...) of the nodes of the middle surface on the two faces in the order of a shell's nodes."""
+    """Values (e, 2 k, ...) in the order of a shell's nodes, of those (e, k, ...) of the nodes of its two faces."""
     corners = KINDS[kind].shell
     return np.concatenate([below[:, :corners], above[:, :corners], below[:, corners:], above[:, corners:]], axis=1)
 
 
 @cache
 def extrapolation(kind: str) -> Floats:
-    """Values at the nodes of a polynomial by those at the points of stress, (k, q)."""
+    """Matrix (k, q) that extrapolates values at the points of stress to the nodes, by a polynomial."""
     points, powers = shape_functions(kind, KINDS[kind].stress)[0], KINDS[kind].monomials
     return np.asarray(_monomials(reference(kind), powers) @ np.linalg.pinv(_monomials(points, powers)))
 
@@ -192,10 +189,10 @@ def reference(kind: str) -> Floats:
 
 @cache
 def _order(kind: str) -> tuple[int, ...]:
-    """Numbers in scikit-fem of an element's nodes."""
+    """Numbers in scikit-fem of an element's nodes, of shells those of its middle surface."""
     theirs = middle_nodes(kind)
-    apart = np.abs((theirs if KINDS[kind].shell else reference(kind))[:, None] - theirs).max(axis=-1)
-    return tuple(int(i) for i in apart.argmin(axis=1))
+    distance = np.abs((theirs if KINDS[kind].shell else reference(kind))[:, None] - theirs).max(axis=-1)
+    return tuple(int(i) for i in distance.argmin(axis=1))
 
 
 def jacobians(points: Floats, nodes: Indices, slopes: Floats) -> Floats:

@@ -33,8 +33,8 @@ SOFTER = {"triangle": 0.1, "triangle6": 0.025, "quad8": 0.005}
 FACTOR = 5 / 6  # of transverse shear in a plate, Reissner's
 # Components of the strain of the surface, of its shear across, and of that across its thickness.
 PAIRS = ((0, 0), (1, 1), (0, 1), (0, 2), (1, 2))
-# Strains that quadrilaterals have besides: component, and the coordinate in which it is linear.
-BESIDES = ((0, 0), (1, 1), (2, 0), (2, 1))
+# Enhanced strains of quadrilaterals: component, and the coordinate in which it is linear.
+ENHANCED = ((0, 0), (1, 1), (2, 0), (2, 1))
 TYING = {
     "triangle": np.array([[0.5, 0.0], [0.0, 0.5], [0.5, 0.5]]),
     "quad": np.array([[0.5, 0.0], [0.5, 1.0], [0.0, 0.5], [1.0, 0.5]]),
@@ -42,8 +42,8 @@ TYING = {
 
 
 def _tied(kind: str, at: Floats) -> tuple[Floats, Floats]:
-    """Points (p, 2) of the middle surface whose shears across, and by how much of each (q, 2, p, 2), make those at
-    points (q, 2).
+    """Points (p, 2) of the middle surface from which transverse shear is interpolated, and the shares (q, 2, p, 2) of
+    its two components there in those at points (q, 2).
     """
     x, y = at.T
     if kind not in TYING:
@@ -58,19 +58,21 @@ def _tied(kind: str, at: Floats) -> tuple[Floats, Floats]:
 
 
 def _covariant(base: Floats, slopes: Floats, pair: tuple[int, int]) -> Floats:
-    """Component (e, q, k, 3) of strain by displacements, along base vectors (e, q, 3, 3) of slopes (q, k, 3)."""
+    """Covariant component a, b of strain per displacement of nodes, (e, q, k, 3), by base vectors (e, q, 3, 3) and
+    slopes (q, k, 3) of shape functions.
+    """
     a, b = pair
-    one, other = slopes[None, ..., a, None], slopes[None, ..., b, None]
-    return (base[:, :, None, a] * other + base[:, :, None, b] * one) / 2
+    slope_a, slope_b = slopes[None, ..., a, None], slopes[None, ..., b, None]
+    return (base[:, :, None, a] * slope_b + base[:, :, None, b] * slope_a) / 2
 
 
 def _cartesian(dual: Floats, pair: tuple[int, int]) -> Floats:
     """Strains (..., 6) xx, yy, zz, yz, xz, xy of a unit component, by the dual base vectors (..., 3, 3), in columns."""
     a, b = dual[..., pair[0]], dual[..., pair[1]]
-    times = 1.0 if pair[0] == pair[1] else 2.0
-    straight = times * a * b
-    crossed = [times * (a[..., i] * b[..., j] + a[..., j] * b[..., i]) for i, j in ((1, 2), (0, 2), (0, 1))]
-    return np.concatenate([straight, np.stack(crossed, axis=-1)], axis=-1)
+    factor = 1.0 if pair[0] == pair[1] else 2.0
+    normal = factor * a * b
+    shear = [factor * (a[..., i] * b[..., j] + a[..., j] * b[..., i]) for i, j in ((1, 2), (0, 2), (0, 1))]
+    return np.concatenate([normal, np.stack(shear, axis=-1)], axis=-1)
 
 
 def plane_stress(elasticity: Floats, normal: Floats) -> Floats:
@@ -83,7 +85,9 @@ def plane_stress(elasticity: Floats, normal: Floats) -> Floats:
 def shell_strains(
     points: Floats, nodes: Indices, kind: str, elasticity: Floats, degree: int, shear: Any
 ) -> tuple[Floats, Floats]:
-    """Strains (e, q, 6, k, 3) by displacements, with a factor on those of shear across, and elasticity (e, q, 6, 6)."""
+    """Strains (e, q, 6, k, 3) per displacement of nodes, transverse shear times a factor `shear`, and elasticity in
+    plane stress (e, q, 6, 6).
+    """
     at, weights, _, slopes = shape_functions(kind, degree)
     base = jacobians(points, nodes, slopes).swapaxes(2, 3)
     dual = np.asarray(np.linalg.inv(base), dtype=float)
@@ -97,43 +101,44 @@ def shell_strains(
     if kind in SOFTER:
         first, second = base[..., 0, :], base[..., 1, :]
         sides = (first, second, first - second) if KINDS[kind].shell == 3 else (first, second)
-        thin = (dual[..., 2] ** 2).sum(axis=-1) * np.max([(each**2).sum(axis=-1) for each in sides], axis=0)
+        thin = (dual[..., 2] ** 2).sum(axis=-1) * np.max([(side**2).sum(axis=-1) for side in sides], axis=0)
         shear = shear / np.sqrt(1 + SOFTER[kind] * thin)[..., None, None]
     across = shear * np.einsum("qapb,epbkc->aeqkc", share, tied, optimize=True)
     along = np.stack([_cartesian(dual, pair) for pair in PAIRS], axis=-1)
     strain = np.einsum("eqvp,peqkc->eqvkc", along, np.stack([*parts, *across]), optimize=True)
     if kind == "quad":
         volume = np.linalg.det(base)
-        more = _besides(points, nodes, kind, at, volume)
-        pulled = np.einsum("eqvw,eqwa,eq->eqva", law, more, volume * weights, optimize=True)
-        stiffness = np.einsum("eqva,eqvb->eab", pulled, more, optimize=True)
+        enhanced = _enhanced(points, nodes, kind, at, volume)
+        pulled = np.einsum("eqvw,eqwa,eq->eqva", law, enhanced, volume * weights, optimize=True)
+        stiffness = np.einsum("eqva,eqvb->eab", pulled, enhanced, optimize=True)
         forces = np.einsum("eqva,eqvkc->eakc", pulled, strain, optimize=True)
         sizes = np.linalg.solve(stiffness, forces.reshape(*forces.shape[:2], -1)).reshape(forces.shape)
-        strain = strain - np.einsum("eqva,eakc->eqvkc", more, sizes, optimize=True)
+        strain = strain - np.einsum("eqva,eakc->eqvkc", enhanced, sizes, optimize=True)
     return strain, law
 
 
-def _besides(points: Floats, nodes: Indices, kind: str, at: Floats, volume: Floats) -> Floats:
-    """Strains (e, q, 6, 4) that quadrilaterals have besides, at points (q, 3) of volumes (e, q)."""
+def _enhanced(points: Floats, nodes: Indices, kind: str, at: Floats, volume: Floats) -> Floats:
+    """Enhanced strains (e, q, 6, 4) of quadrilaterals at points (q, 3), where `volume` (e, q) is the determinant."""
     middle = jacobians(points, nodes, shapes_at(kind, np.full((1, 3), 0.5))[1]).swapaxes(2, 3)
     dual = np.asarray(np.linalg.inv(middle), dtype=float)
     ratio = np.linalg.det(middle) / volume
     return np.stack(
-        [_cartesian(dual, PAIRS[pair]) * (ratio * (2 * at[:, i] - 1))[..., None] for pair, i in BESIDES], axis=-1
+        [_cartesian(dual, PAIRS[pair]) * (ratio * (2 * at[:, i] - 1))[..., None] for pair, i in ENHANCED], axis=-1
     )
 
 
 def _normals(places: Floats, kind: str, nodes: Indices) -> Floats:
-    """Unit normals (e, k, 3) of elements at their nodes, all on the side of that in the middle."""
+    """Unit normals (e, k, 3) of elements at their nodes, all on the side of the normal in the middle."""
 
     def across(at: Floats) -> Floats:
-        one, other = np.moveaxis(tangents(kind, places, nodes, at), 2, 0)
-        return np.cross(one, other)
+        first, second = np.moveaxis(tangents(kind, places, nodes, at), 2, 0)
+        return np.cross(first, second)
 
     corners = middle_nodes(kind)
-    every, middle = across(corners), across(corners[: KINDS[kind].shell].mean(axis=0, keepdims=True))
-    size = np.linalg.norm(every, axis=-1, keepdims=True)
-    return every / np.where(size > 0, size, 1.0) * np.where((every * middle).sum(axis=-1, keepdims=True) < 0, -1.0, 1.0)
+    normals, middle = across(corners), across(corners[: KINDS[kind].shell].mean(axis=0, keepdims=True))
+    size = np.linalg.norm(normals, axis=-1, keepdims=True)
+    side = np.where((normals * middle).sum(axis=-1, keepdims=True) < 0, -1.0, 1.0)
+    return normals / np.where(size > 0, size, 1.0) * side
 
 
 def layered(places: Floats, elements: Sequence[tuple[str, Indices, Floats]]) -> tuple[Floats, Indices, list[Indices]]:
@@ -145,7 +150,8 @@ def layered(places: Floats, elements: Sequence[tuple[str, Indices, Floats]]) -> 
     """
     normal = np.concatenate([_normals(places, kind, nodes).reshape(-1, 3) for kind, nodes, _ in elements])
     node = np.concatenate([nodes.ravel() for _, nodes, _ in elements])
-    thickness = np.concatenate([np.repeat(each, nodes.shape[1]) for _, nodes, each in elements])
+    thickness = np.concatenate([np.repeat(thick, nodes.shape[1]) for _, nodes, thick in elements])
+    # A family shares one normal at a node; `along` is 1 where an element's has its sense, −1 where not, 0 if undecided.
     along, family = np.zeros(len(node)), np.zeros(len(node), dtype=int)
     rounds = 0
     while (left := np.flatnonzero(along == 0)).size:
@@ -153,7 +159,7 @@ def layered(places: Floats, elements: Sequence[tuple[str, Indices, Floats]]) -> 
         first[node[left[::-1]]] = left[::-1]
         leader = first[node[left]]
         together = (normal[left] * normal[leader]).sum(axis=1)
-        same = (np.abs(together) >= SMOOTH) & (thickness[left] == thickness[leader]) | (left == leader)
+        same = ((np.abs(together) >= SMOOTH) & (thickness[left] == thickness[leader])) | (left == leader)
         along[left[same]] = np.where(together[same] < 0, -1.0, 1.0)
         family[left[same]] = rounds * len(places) + node[left[same]]
         rounds += 1
@@ -174,15 +180,17 @@ def layered(places: Floats, elements: Sequence[tuple[str, Indices, Floats]]) -> 
 
 
 def points_of(places: Floats, elements: Sequence[Any]) -> tuple[Floats, Indices, list[Indices]]:
-    """Points (k, 3), the places of their nodes in the file, and the points of the elements."""
-    solids = [each for each in elements if each.thickness is None]
-    used = np.unique(np.concatenate([np.empty(0, dtype=int), *(each.nodes.ravel() for each in solids)]))
+    """Points (p, 3), the nodes (p,) for which they stand, and the points (e, k) of the elements of each block: a node
+    of solids is one, a node of shells two or more.
+    """
+    solids = [block for block in elements if block.thickness is None]
+    used = np.unique(np.concatenate([np.empty(0, dtype=int), *(block.nodes.ravel() for block in solids)]))
     new = np.full(len(places), -1)
     new[used] = np.arange(len(used))
-    shells = [(each.kind, each.nodes, each.thickness) for each in elements if each.thickness is not None]
+    shells = [(block.kind, block.nodes, block.thickness) for block in elements if block.thickness is not None]
     points, numbers, nodes = layered(places, shells) if shells else (np.empty((0, 3)), np.empty(0, dtype=int), [])
     rest = iter(nodes)
-    of_elements = [new[each.nodes] if each.thickness is None else len(used) + next(rest) for each in elements]
+    of_elements = [new[block.nodes] if block.thickness is None else len(used) + next(rest) for block in elements]
     return np.concatenate([places[used], points]), np.concatenate([used, numbers]), of_elements
 
 

@@ -118,11 +118,12 @@ def _slope(block: Mapping[str, Floats], count: int) -> Floats:
 
 
 def _coefficients(body: Mapping[str, Any], path: str) -> Coefficients:
+    """Coefficients of the linear equations by the blocks of a body, named as in the standard."""
     n = body["Me"]["m0"].shape[0]
     if "ksigma" in body and body["ksigma"]["m0"].any():
         raise InputError("path", f"{path} has stress at rest (ksigma)", "export the body at rest, without a load")
-    total, (x, y, z), about = float(body["mass"]), body["mdCM"]["m0"][:, 0], body["J"]["m0"]
-    second = np.trace(about) / 2 * np.eye(3) - about
+    total, (x, y, z), inertia = float(body["mass"]), body["mdCM"]["m0"][:, 0], body["J"]["m0"]
+    second = np.trace(inertia) / 2 * np.eye(3) - inertia
     f_ww = np.moveaxis(_slope(body["J"], n), 1, -1) / 2  # J = J₀ + J₁ q, ½ ω J₁ ω is the centrifugal force
     along = -body["Oe"]["m0"]
     for order in ORDERS:
@@ -154,7 +155,7 @@ def _coefficients(body: Mapping[str, Any], path: str) -> Coefficients:
 
 
 def _by_pairs(columns: Floats, order: Any) -> Floats:
-    """Symmetric in two rates (3, 3, ...) of the columns (6, ...) of their products."""
+    """Coefficients (3, 3, ...) of pairs of rates, symmetric, by those (6, ...) of their products in an order."""
     full = np.zeros((3, 3, *columns.shape[1:]))
     for column, (i, j) in zip(columns, order, strict=True):
         full[i, j] += column / 2
@@ -163,7 +164,7 @@ def _by_pairs(columns: Floats, order: Any) -> Floats:
 
 
 def _moments(terms: Coefficients) -> Floats:
-    """Σ m r_b ∂r_a (3, 3, n): its symmetric part by the centrifugal, its other part by Euler's force."""
+    """Σ m r_b ∂r_a/∂q (3, 3, n): its symmetric part by the centrifugal, its antisymmetric one by Euler's force."""
     half = np.einsum("aai->i", terms.f_ww) / 2
     even = -terms.f_ww + np.eye(3)[..., None] * half
     return even + np.einsum("cab,ci->abi", EPSILON, terms.f_al) / 2

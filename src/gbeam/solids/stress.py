@@ -19,7 +19,7 @@ from gbeam.solids.norms import LargestNorms
 from gbeam.solids.shape_functions import KINDS, extrapolation, reference
 
 VERTICES, TIMES = 1500, 1000  # of pictures, about
-AROUND = np.array([each for each in product((1.0, 0.0, -1.0), repeat=3) if each > (0.0, 0.0, 0.0)])  # half of all ways
+AROUND = np.array([way for way in product((1.0, 0.0, -1.0), repeat=3) if way > (0.0, 0.0, 0.0)])  # half of all ways
 HALVES = np.array([1.0, 1.0, 1.0, 0.5, 0.5, 0.5])  # of strains with twice the tensor's shear, in the tensor
 SETTLED = 1e-9  # of a range of stress
 ENOUGH = 1e-3  # of the largest shape: one that is less is not seen
@@ -33,10 +33,10 @@ FACES = {
 
 @dataclass(frozen=True, eq=False)
 class NodalStress(Value):
-    """Stresses of a mesh by the first `size` of coordinates with shapes (k, 3, n): at all pairs `known` (p,), a node
-    and the number of a material of its elements in one, those of unit coordinates (p, 6, n); `felt_at` are the pairs
-    that one of all coordinates stresses most, and `singular` (p,) those where stress grows without limit as a mesh
-    gets finer, as a coarser mesh tells with which it is `compared`.
+    """Stresses of a mesh by the first `size` of n coordinates: displacements `every_shape` (k, 3, n) of its nodes and
+    stresses `every_table` (p, 6, n) per unit coordinate. A pair is a node and a material of its elements, `known` (p,)
+    its number, material · nodes + node. `felt_at` are the pairs that some coordinate stresses most; `singular` (p,)
+    flags those where stress grows without limit as a mesh gets finer, once a coarser mesh was `compared`.
     """
 
     mesh: Any
@@ -57,20 +57,20 @@ class NodalStress(Value):
         count, names, n = len(mesh.points), _materials(mesh), shapes.shape[-1]
         pairs = [names.index(block.material) * count + np.unique(block.nodes) for block in mesh.blocks]
         known = np.unique(np.concatenate(pairs))
-        none = np.zeros(len(known), dtype=bool)
-        empty = cls(mesh, shapes, hull(mesh.points), known, np.empty((0, 6, n)), n, known[:0], none)
+        no_flags = np.zeros(len(known), dtype=bool)
+        empty = cls(mesh, shapes, hull(mesh.points), known, np.empty((0, 6, n)), n, known[:0], no_flags)
         total, shared = np.zeros((len(known), 6, n)), np.zeros(len(known))
         for pairs_of, stresses in empty.elements(mesh.blocks):
             pair, stress = pairs_of.ravel(), stresses.reshape(-1, 6, n)
-            some, place = np.unique(pair, return_inverse=True)
-            sums = csr_array((np.ones(len(pair)), (place, np.arange(len(pair)))), shape=(len(some), len(pair)))
-            total[some] += (sums @ stress.reshape(len(pair), -1)).reshape(len(some), *stress.shape[1:])
-            shared[some] += np.bincount(place)
+            met, place = np.unique(pair, return_inverse=True)
+            sums = csr_array((np.ones(len(pair)), (place, np.arange(len(pair)))), shape=(len(met), len(pair)))
+            total[met] += (sums @ stress.reshape(len(pair), -1)).reshape(len(met), *stress.shape[1:])
+            shared[met] += np.bincount(place)
         whole = replace(empty, every_table=total / shared[:, None, None])
         return replace(whole, felt_at=whole.most(np.arange(len(known))))
 
     def most(self, pairs: Indices) -> Indices:
-        """Choose of some pairs those that one of all coordinates stresses most."""
+        """Those of `pairs` at which the von Mises stress of one coordinate or another is largest."""
         sizes = von_mises(np.moveaxis(self.every_table[pairs], 1, 2))
         return np.asarray(pairs[np.unique(sizes.argmax(axis=0))])
 
@@ -104,8 +104,8 @@ class NodalStress(Value):
         return np.asarray(shares @ self.strained(self.pairs_at(point)))
 
     def pairs_at(self, point: str, size: Floats | None = None) -> Indices:
-        """Pairs of the node of a named point, or of the nodes of an interface: of two materials at a node that of the
-        larger size (p,), or the first.
+        """Pairs, one for the node of a named point or for each node of an interface: where a node has several materials
+        that of the largest `size` (p,), or the first.
         """
         nodes = self.mesh.interfaces.get(point, [self.mesh.stations.get(point)])
         order = np.flatnonzero(np.isin(self.node, nodes))
@@ -113,19 +113,19 @@ class NodalStress(Value):
         return np.asarray(order[np.unique(self.node[order], return_index=True)[1]])
 
     def strained(self, pairs: Indices) -> Floats:
-        """Strains of unit coordinates (6, n) with twice the tensor's shear, their mean at pairs."""
+        """Strains (6, n) of unit coordinates, with twice the tensor's shear: their mean over pairs."""
         materials, total = self.material, np.zeros(self.table.shape[1:])
         for name in {materials[pair] for pair in pairs}:
             elasticity = next(block.elasticity for block in self.mesh.blocks if block.material == name)
-            some = [pair for pair in pairs if materials[pair] == name]
-            total += np.linalg.solve(elasticity, self.table[some].sum(axis=0))
+            alike = [pair for pair in pairs if materials[pair] == name]
+            total += np.linalg.solve(elasticity, self.table[alike].sum(axis=0))
         return np.asarray(total / len(pairs))
 
     def parts(self, time: Floats, base: Any, q: Floats, *, motion: str, model: str, environment: str) -> dict[str, Any]:
-        """The stress of a response."""
-        some = np.unique(np.linspace(0, len(time) - 1, TIMES).round().astype(int))
-        skin, sizes = self._skin(q[some])
-        surface = Surface(**skin, time=time[some], sizes=sizes)
+        """Fields of a response to coordinates q (t, n): the stress, and the surface in motion at some of the times."""
+        shown = np.unique(np.linspace(0, len(time) - 1, TIMES).round().astype(int))
+        skin, sizes = self._skin(q[shown])
+        surface = Surface(**skin, time=time[shown], sizes=sizes)
         return {"solid": solid_stress(self, time, q, motion=motion, model=model), "surface": surface}
 
     def in_modes(self, modes: Complex) -> SurfaceModes:
@@ -134,7 +134,7 @@ class NodalStress(Value):
         return SurfaceModes(**skin, sizes=sizes[: len(modes)] + 1j * sizes[len(modes) :])
 
     def _skin(self, q: Floats) -> tuple[dict[str, Any], Floats]:
-        """The surface in the few shapes in which coordinates (t, n) move and stress it most, and their sizes (t, s)."""
+        """Fields of the surface with its s principal shapes under coordinates q (t, n), and their sizes (t, s)."""
         vertices, triangles = surface_of(self.mesh)
         count = len(self.mesh.points)
         # At a vertex of two materials the first.
@@ -163,19 +163,19 @@ class NodalStress(Value):
             yield pair, np.einsum("kq,eqvn->ekvn", outward, stress, optimize=True)
 
     def spread(self, pair: int, q: Floats) -> float:
-        """Difference of the elements at a pair in von Mises stress, as a fraction of that of their mean."""
+        """Range of von Mises stress at q (n,) among the elements of a pair, as a fraction of that of their mean."""
         number, node = divmod(int(self.known[pair]), len(self.mesh.points))
         around = [
             replace(block, nodes=block.nodes[(block.nodes == node).any(axis=1)])
             for block in self.mesh.blocks
             if block.material == _materials(self.mesh)[number]
         ]
-        parts = [stress[at == pair] @ q for at, stress in self.elements(around)]
+        parts = [stress[pairs == pair] @ q for pairs, stress in self.elements(around)]
         mean = float(von_mises(self.table[pair] @ q))
         return float(np.ptp(von_mises(np.concatenate(parts)))) / mean if mean > 0 else 0.0
 
     def felt(self, q: Floats) -> Floats:
-        """Stress over time (t, c) where it is felt most."""
+        """Components of stress over time (t, c) at the pairs `felt_at`."""
         return np.asarray(np.tensordot(q, self.table[self.felt_at], (1, 2)).reshape(len(q), -1))
 
     def histories(self, q: Floats) -> tuple[Floats, Indices, Floats]:
@@ -184,8 +184,8 @@ class NodalStress(Value):
         """
         table, size, when = deviatoric(self.table), np.zeros(len(self.known)), np.zeros(len(self.known), dtype=int)
         if self.singular.any():
-            apart = LargestNorms(table[:, self.singular], q)
-            size[self.singular], when[self.singular] = apart.size, apart.when
+            largest = LargestNorms(table[:, self.singular], q)
+            size[self.singular], when[self.singular] = largest.size, largest.when
             table = table[:, ~self.singular]
         largest = LargestNorms(table, q)
         size[~self.singular], when[~self.singular] = largest.size, largest.when
@@ -216,8 +216,8 @@ def on_face(kind: str, face: int) -> Indices:
     """Nodes of a solid element on a face: its corners, and the middles of its edges and of itself that are nodes."""
     places, corners = reference(kind), list(FACES[corners_of(kind)][face])
     middles = [*(places[corners] + places[np.roll(corners, -1)]) / 2, places[corners].mean(axis=0)]
-    apart = np.abs(places[:, None] - middles).max(axis=2)
-    return np.array([*corners, *apart.argmin(axis=0)[apart.min(axis=0) < 1e-9]])
+    distance = np.abs(places[:, None] - middles).max(axis=2)
+    return np.array([*corners, *distance.argmin(axis=0)[distance.min(axis=0) < 1e-9]])
 
 
 def outer_triangles(mesh: Any) -> Indices:
@@ -228,11 +228,11 @@ def outer_triangles(mesh: Any) -> Indices:
             block.nodes[:, face] for block in mesh.blocks for face in FACES[corners_of(block.kind)] if len(face) == size
         ]
         if faces:
-            every = np.concatenate(faces)
-            first, second, third = np.sort(every, axis=1).T[:3]  # no two faces share three corners
+            corners = np.concatenate(faces)
+            first, second, third = np.sort(corners, axis=1).T[:3]  # no two faces share three corners
             _, edge = np.unique(first * count + second, return_inverse=True)
             _, index, shared = np.unique(edge * count + third, return_index=True, return_counts=True)
-            outer = every[index[shared == 1]]
+            outer = corners[index[shared == 1]]
             triangles += [outer[:, [0, k, k + 1]] for k in range(1, size - 1)]
     return np.concatenate(triangles)
 
@@ -244,16 +244,15 @@ def surface_of(mesh: Any, most: int = VERTICES) -> tuple[Indices, Indices]:
     outside = outer_triangles(mesh)
     nodes, flat = np.unique(outside, return_inverse=True)
     if len(nodes) > most:
-        at = mesh.points[nodes] - mesh.points[nodes].min(axis=0)
+        places = mesh.points[nodes] - mesh.points[nodes].min(axis=0)
         cell = np.sqrt(_area(mesh.points[outside]) / most)
-        _, group = np.unique(np.floor(at / cell).astype(int), axis=0, return_inverse=True)
+        _, group = np.unique(np.floor(places / cell).astype(int), axis=0, return_inverse=True)
         group = group.ravel()
-        totals = np.stack([np.bincount(group, each) for each in at.T], axis=1) / np.bincount(group)[:, None]
-        order = np.lexsort((np.linalg.norm(at - totals[group], axis=1), group))
+        means = np.stack([np.bincount(group, x) for x in places.T], axis=1) / np.bincount(group)[:, None]
+        order = np.lexsort((np.linalg.norm(places - means[group], axis=1), group))
         nodes, flat = nodes[order[np.unique(group[order], return_index=True)[1]]], group[flat]
-    thin = flat.reshape(-1, 3)
-    whole = (thin[:, 0] != thin[:, 1]) & (thin[:, 1] != thin[:, 2]) & (thin[:, 2] != thin[:, 0])
-    return nodes, thin[whole]
+    a, b, c = flat.reshape(-1, 3).T
+    return nodes, flat.reshape(-1, 3)[(a != b) & (b != c) & (c != a)]
 
 
 def _area(corners: Floats) -> float:
@@ -265,7 +264,7 @@ def _area(corners: Floats) -> float:
 def deviatoric(table: Floats) -> Floats:
     """Five numbers (5, ..., n) of stresses xx, yy, zz, yz, xz, xy (..., 6, n), whose norm is the von Mises stress."""
     xx, yy, zz, yz, xz, xy = np.moveaxis(table, -2, 0)
-    return np.stack([xx - (yy + zz) / 2, *(np.sqrt(3) * each for each in ((yy - zz) / 2, yz, xz, xy))])
+    return np.stack([xx - (yy + zz) / 2, *(np.sqrt(3) * shear for shear in ((yy - zz) / 2, yz, xz, xy))])
 
 
 def principal(stress: Floats) -> Floats:
@@ -280,7 +279,7 @@ def turned(tensor: Floats, axes: Floats) -> Floats:
 
 
 def ranging(stress: Floats) -> Floats:
-    """Normal stress (t,) of stresses (t, 6) on the plane where it ranges most."""
+    """Normal stress (t,) of stresses (t, 6) on the plane on which its range over time is largest."""
     normal = AROUND / np.linalg.norm(AROUND, axis=1, keepdims=True)
     most, rounding = np.full(len(normal), -np.inf), SETTLED * np.abs(stress).max()  # by which a plane may come to less
     while True:
@@ -298,7 +297,7 @@ def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> S
     """Return the stress at coordinates (t, n) at times (t,)."""
     from scipy.spatial import cKDTree
 
-    mesh, of_pair, materials = nodal.mesh, nodal.node, nodal.material
+    mesh, node_of, materials = nodal.mesh, nodal.node, nodal.material
     largest, when, over = nodal.histories(q)
     strengths = np.array([mesh.strengths.get(name, np.inf) for name in materials])
     exponents = np.array([mesh.exponents.get(name, np.nan) for name in materials])
@@ -306,8 +305,8 @@ def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> S
     of_kind = (np.flatnonzero(np.array(materials) == name) for name in kinds)
     foremost = [int(pairs[judged[pairs].argmax()]) for pairs in of_kind]
 
-    def at(pair: int) -> StressAt:
-        t, node, strength = int(when[pair]), int(of_pair[pair]), float(strengths[pair])
+    def stress_at(pair: int) -> StressAt:
+        t, node, strength = int(when[pair]), int(node_of[pair]), float(strengths[pair])
         return StressAt(
             von_mises=float(largest[pair]),
             principal=principal(nodal.table[pair] @ q[t]),
@@ -321,36 +320,36 @@ def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> S
 
     singular: dict[str, Any] = {"singular_nodes": 0 if nodal.compared else None}
     if nodal.singular.any():
-        without = np.unique(of_pair[nodal.singular])
-        deep = cKDTree(mesh.points[of_pair[~nodal.singular]]).query(mesh.points[without])[0].max()
+        nodes = np.unique(node_of[nodal.singular])
+        depth = cKDTree(mesh.points[node_of[~nodal.singular]]).query(mesh.points[nodes])[0].max()
         top = int(np.where(nodal.singular, largest, 0.0).argmax())
-        singular = {"singular": at(top), "singular_nodes": len(without), "singular_depth": float(deep)}
+        singular = {"singular": stress_at(top), "singular_nodes": len(nodes), "singular_depth": float(depth)}
     names = mesh.named_points
     chosen = [nodal.pairs_at(name, largest) for name in names]
     tables = np.stack([[nodal.table[pairs].mean(axis=0), nodal.strained(pairs)] for pairs in chosen], axis=1)
     stress, strain = np.einsum("kpvn,tn->ktpv", tables, q, optimize=True)
     axes = [mesh.axes(name) for name in names]
-    along = [turned(each, of) for each, of in zip(stress.swapaxes(0, 1), axes, strict=True)]
-    strains = [turned(each * HALVES, of) / HALVES for each, of in zip(strain.swapaxes(0, 1), axes, strict=True)]
-    every = np.zeros(len(mesh.points))
-    np.maximum.at(every, of_pair, largest)
+    stresses = [turned(tensor, to) for tensor, to in zip(stress.swapaxes(0, 1), axes, strict=True)]
+    strains = [turned(tensor * HALVES, to) / HALVES for tensor, to in zip(strain.swapaxes(0, 1), axes, strict=True)]
+    at_nodes = np.zeros(len(mesh.points))
+    np.maximum.at(at_nodes, node_of, largest)
     return SolidStress(
         time=time,
         von_mises=over,
-        worst=at(int(judged.argmax())),
-        nearest_yield=at(int((judged / strengths).argmax())) if np.isfinite(strengths).any() else None,
+        worst=stress_at(int(judged.argmax())),
+        nearest_yield=stress_at(int((judged / strengths).argmax())) if np.isfinite(strengths).any() else None,
         **singular,
         points=names,
         point_von_mises=von_mises(stress),
         point_principal=principal(stress),
-        point_stress=np.stack(along, axis=1),
+        point_stress=np.stack(stresses, axis=1),
         point_strain=np.stack(strains, axis=1),
         materials=tuple(kinds),
         exponents=exponents[foremost],
         material_normal=np.stack([ranging(q @ nodal.table[pair].T) for pair in foremost], axis=1),
-        point_normal=np.stack([ranging(each) for each in stress.swapaxes(0, 1)], axis=1),
+        point_normal=np.stack([ranging(tensor) for tensor in stress.swapaxes(0, 1)], axis=1),
         point_exponent=exponents[[pairs[0] for pairs in chosen]],
         nodes=mesh.points,
-        node_von_mises=every,
+        node_von_mises=at_nodes,
         **about,
     )

@@ -40,7 +40,7 @@ class Statement(NamedTuple):
 
 
 class Cells(NamedTuple):
-    """Elements of a kind, with the places of their nodes (e, k) and their numbers (e,)."""
+    """Elements of a kind: indices of their nodes (e, k), their dimension, and their numbers (e,) in the file."""
 
     type: str
     data: Indices
@@ -50,8 +50,8 @@ class Cells(NamedTuple):
 
 @dataclass
 class TextMesh:
-    """Mesh with what meshio's has: places of nodes, and kinds and nodes of elements, by their numbers; numbers of the
-    nodes of sets and of the elements of groups, by their names; and all statements.
+    """A mesh as it is read: places of nodes, kinds and nodes of elements, by their numbers in the file; numbers of the
+    nodes of `sets` and of the elements of `groups`, by name; all statements. :meth:`place` makes meshio's fields of it.
     """
 
     nodes: dict[int, tuple[float, ...]] = field(default_factory=dict)
@@ -78,22 +78,22 @@ class TextMesh:
             raise InputError("mesh", f"has two of {noun} {number}", "number them apart, in one part")
 
     def place(self, order: Mapping[str, list[int]], file: str) -> None:
-        """Make blocks of elements, and sets, by the places of nodes and elements in place of their numbers."""
-        index, at = {number: i for i, number in enumerate(self.nodes)}, dict[int, tuple[int, int]]()
-        numbers = dict[str, list[int]]()
+        """Make meshio's blocks and sets, with indices for numbers and its `order` of the nodes of kinds."""
+        index = {number: i for i, number in enumerate(self.nodes)}
+        place_of, numbers = dict[int, tuple[int, int]](), dict[str, list[int]]()  # (block, index); elements by kind
         for number, (kind, nodes) in self.elements.items():
             numbers.setdefault(kind, []).append(number)
             if missing := [node for node in nodes if node not in index]:
                 raise InputError("mesh", f"has element {number} on node {missing[0]}, which is not in {file}", AGAIN)
-        for block, (kind, some) in enumerate(numbers.items()):
-            at |= {number: (block, i) for i, number in enumerate(some)}
-            data = np.array([[index[node] for node in self.elements[number][1]] for number in some])
-            self.cells.append(Cells(kind, data[:, order.get(kind, slice(None))], DIMENSIONS[kind], np.array(some)))
-        for group, some in self.groups.items():
-            pairs = np.array([at[each] for each in {*some} if each in at], dtype=int).reshape(-1, 2)
+        for block, (kind, listed) in enumerate(numbers.items()):
+            place_of |= {number: (block, i) for i, number in enumerate(listed)}
+            data = np.array([[index[node] for node in self.elements[number][1]] for number in listed])
+            self.cells.append(Cells(kind, data[:, order.get(kind, slice(None))], DIMENSIONS[kind], np.array(listed)))
+        for group, listed in self.groups.items():
+            pairs = np.array([place_of[n] for n in {*listed} if n in place_of], dtype=int).reshape(-1, 2)
             self.cell_sets[group] = [np.sort(pairs[pairs[:, 0] == block, 1]) for block in range(len(numbers))]
         self.point_sets = {
-            group: np.array([index[each] for each in some], dtype=int) for group, some in self.sets.items()
+            group: np.array([index[node] for node in nodes], dtype=int) for group, nodes in self.sets.items()
         }
 
 
@@ -103,7 +103,7 @@ def ending_of(source: Any) -> str:
 
 
 def text_mesh(source: str | os.PathLike[str]) -> TextMesh | None:
-    """Read a mesh in a text file of Abaqus, CalculiX, Nastran or Gmsh; nothing of a file of another kind."""
+    """Read a mesh in a text file of Abaqus, CalculiX, Nastran or Gmsh; None if the file is of another kind."""
     path, mesh, (read, order) = Path(source), TextMesh(), TEXTS.get(ending_of(source), (None, {}))
     if read is None or not read(mesh, path.read_text(encoding="utf-8", errors="replace"), path.name):
         return None
@@ -112,6 +112,7 @@ def text_mesh(source: str | os.PathLike[str]) -> TextMesh | None:
 
 
 def _read_abaqus(mesh: TextMesh, text: str, _: str) -> bool:
+    """Read the statements of a file, then those of `_ABAQUS` into the mesh."""
     lines = [line for line in text.splitlines() if line.strip() and not line.startswith("**")]
     starts = [i for i, line in enumerate(lines) if line.startswith("*")]
     for first, end in pairwise([*starts, len(lines)]):
@@ -119,10 +120,10 @@ def _read_abaqus(mesh: TextMesh, text: str, _: str) -> bool:
             lines[first + 1] = lines[first].rstrip() + lines[first + 1]
             first += 1
         word, *options = lines[first][1:].split(",")
-        pairs = (each.partition("=") for each in options if each.strip())
-        about = {key.strip().upper(): value.strip() for key, _, value in pairs}
-        rows = [[each.strip() for each in line.split(",")] for line in lines[first + 1 : end]]
-        mesh.statements.append(Statement(" ".join(word.upper().split()), about, rows))
+        pairs = (option.partition("=") for option in options if option.strip())
+        values = {key.strip().upper(): value.strip() for key, _, value in pairs}
+        rows = [[cell.strip() for cell in line.split(",")] for line in lines[first + 1 : end]]
+        mesh.statements.append(Statement(" ".join(word.upper().split()), values, rows))
     for statement in mesh.statements:
         if read := _ABAQUS.get(statement.word):
             (_refuse if {"INPUT", "SYSTEM"} & {*statement.options} else read)(mesh, statement)
@@ -131,23 +132,24 @@ def _read_abaqus(mesh: TextMesh, text: str, _: str) -> bool:
 
 def _node(mesh: TextMesh, statement: Statement) -> None:
     for number, *place in statement.rows:
-        mesh.add("node", int(number), tuple(float(each or 0) for each in [*place, "", "", ""][:3]))
+        mesh.add("node", int(number), tuple(float(x or 0) for x in [*place, "", "", ""][:3]))
     _extend(mesh.sets, statement, "NSET", (int(row[0]) for row in statement.rows))
 
 
 def _element(mesh: TextMesh, statement: Statement) -> None:
-    name, entries = statement.options["TYPE"].upper(), [[int(each) for each in row if each] for row in statement.rows]
+    """Add the elements of a statement, each its number and its nodes, and its set."""
+    name, entries = statement.options["TYPE"].upper(), [[int(cell) for cell in row if cell] for row in statement.rows]
     known = [(dim, match) for pattern, dim in TYPES.items() if (match := re.fullmatch(pattern, name))]
     if not known:
         raise ValueError(f"elements of type {name} are not known")
-    (dim, match), every = known[0], list(chain.from_iterable(entries))
+    (dim, match), flat = known[0], list(chain.from_iterable(entries))
     # Solids may go on in the next line.
     count = int(match[1]) if dim == 3 else len(entries[0]) - 1 if entries else 1
-    if count not in SHAPES[dim] or len(every) % (count + 1):
+    if count not in SHAPES[dim] or len(flat) % (count + 1):
         raise ValueError(f"elements of type {name} have not {count} nodes each")
-    numbers, *nodes = np.reshape(every, (-1, count + 1)).T.tolist()
-    for number, on in zip(numbers, zip(*nodes, strict=True), strict=True):
-        mesh.add("element", number, (SHAPES[dim][count], on))
+    numbers, *nodes = np.reshape(flat, (-1, count + 1)).T.tolist()
+    for number, nodes_of in zip(numbers, zip(*nodes, strict=True), strict=True):
+        mesh.add("element", number, (SHAPES[dim][count], nodes_of))
     _extend(mesh.groups, statement, "ELSET", numbers)
 
 
@@ -178,8 +180,8 @@ _ABAQUS |= dict.fromkeys(_REFUSED, _refuse)
 
 
 def alike(sets: Mapping[str, list[int]], name: str) -> str:
-    """The name of a set, of which Abaqus has capital and small letters alike."""
-    return next((each for each in sets if each.upper() == name.upper()), name)
+    """Name under which a set is known, since Abaqus does not tell capital letters from small ones."""
+    return next((known for known in sets if known.upper() == name.upper()), name)
 
 
 def members(rows: list[list[str]], sets: Mapping[str, list[int]], generated: bool = False) -> Iterator[int]:
@@ -189,8 +191,8 @@ def members(rows: list[list[str]], sets: Mapping[str, list[int]], generated: boo
             first, last, *step = map(int, filter(None, row))
             yield from range(first, last + 1, step[0] if step else 1)
         else:
-            for each in filter(None, row):
-                yield from [int(each)] if each.isdigit() else sets[alike(sets, each)]
+            for cell in filter(None, row):
+                yield from [int(cell)] if cell.isdigit() else sets[alike(sets, cell)]
 
 
 def real(value: str) -> float:
@@ -202,13 +204,14 @@ def real(value: str) -> float:
 
 
 def _read_nastran(mesh: TextMesh, text: str, file: str) -> bool:
+    """Read the cards of bulk data: nodes, elements by property, and nodes that SPC cards hold as sets."""
     cards, bulk = list[list[str]](), re.split(r"^ *BEGIN +\w.*$", text, maxsplit=1, flags=re.M | re.I)[-1]
     for line in re.split(r"^ *ENDDATA\b", bulk, maxsplit=1, flags=re.M | re.I)[0].splitlines():
         bare = line.partition("$")[0].expandtabs().rstrip()
         count = 4 if "*" in bare[:8].partition(",")[0] else 8
         width = 64 // count
         parts = bare.split(",") if "," in bare else [bare[:8], *(bare[i : i + width] for i in range(8, 72, width))]
-        first, *fields = [each.strip() for each in [*parts, *[""] * count][: count + 1]]
+        first, *fields = [field.strip() for field in [*parts, *[""] * count][: count + 1]]
         if first[:1].isalpha():
             cards.append([first.rstrip("* _").upper(), *fields])  # meshio 5.3.5 writes CHEXA_
         elif bare and cards:
@@ -231,29 +234,30 @@ def _read_nastran(mesh: TextMesh, text: str, file: str) -> bool:
             _refuse(mesh, mesh.statements[-1])
     for name, parts in held.items():
         if all({*"123"} <= {*ways} for ways, _ in parts):  # one that leaves a way free is no clamp
-            mesh.sets[name] = [each for _, some in parts for each in some if each in mesh.nodes]
+            mesh.sets[name] = [node for _, nodes in parts for node in nodes if node in mesh.nodes]
     return True
 
 
 def _nastran_held(word: str, row: list[str]) -> Iterator[tuple[str, Iterable[int]]]:
-    """Components that a card holds, and of which nodes."""
+    """Pairs of the components, such as "123", that a card holds, and the nodes of which it does."""
     if word == "SPC":
         yield from ((ways, [int(node)]) for node, ways in (row[1:3], row[4:6]) if node)
         return
     ways, *nodes = filter(None, row[1:])
-    if "THRU" in (words := [each.upper() for each in nodes]):
+    if "THRU" in (words := [cell.upper() for cell in nodes]):
         yield ways, range(int(nodes[0]), int(nodes[words.index("THRU") + 1]) + 1)
     else:
         yield ways, map(int, nodes)
 
 
 def _nastran_element(mesh: TextMesh, word: str, row: list[str]) -> None:
+    """Add the element of a card to the mesh, and to the group of its property."""
     (dim, *counts), number = CARDS[word], int(row[0])
-    nodes, rest = tuple(int(each) for each in row[2 : 2 + counts[-1]] if each), row[2 + counts[-1] :]
+    nodes, rest = tuple(int(cell) for cell in row[2 : 2 + counts[-1]] if cell), row[2 + counts[-1] :]
     if len(nodes) not in counts:
         raise ValueError(f"{word} {number} has {len(nodes)} nodes")
     angle = 4 if word == "CQUAD8" else 0
-    if dim == 2 and any(real(each) for i, each in enumerate(rest) if i != angle):
+    if dim == 2 and any(real(cell) for i, cell in enumerate(rest) if i != angle):
         raise InputError(
             "mesh", f"has {word} {number}, which has an offset or thicknesses of its own", "leave them out"
         )
@@ -262,7 +266,7 @@ def _nastran_element(mesh: TextMesh, word: str, row: list[str]) -> None:
 
 
 def _read_gmsh(mesh: TextMesh, text: str, _: str) -> bool:
-    """Read version 2.2 or 4.1 as text, of which alone it returns that it is read."""
+    """Read a file of version 2.2 or 4.1 as text; return False of another one, or of a binary one."""
 
     def section(name: str) -> list[list[str]]:
         inside = text.partition(f"${name}\n")[2].partition(f"$End{name}")[0]
@@ -272,26 +276,26 @@ def _read_gmsh(mesh: TextMesh, text: str, _: str) -> bool:
         return False
     nodes, elements = section("Nodes")[1:], section("Elements")[1:]
     names = {(int(row[0]), row[1]): " ".join(row[2:]).strip('"') for row in section("PhysicalNames")[1:]}
-    numbered, once = dict[str, list[int]](), dict[Any, int]()
+    numbered, number_of = dict[str, list[int]](), dict[Any, int]()  # elements by tag; number by kind and nodes
     mesh.groups |= {name: [] for name in names.values()}
 
-    def add(number: str, kind: str, on: list[str], tags: list[str]) -> None:
+    def add(number: str, kind: str, nodes: list[str], tags: list[str]) -> None:
         dim = GMSH.get(int(kind), 3)
-        if len(on) not in SHAPES[dim] or int(kind) not in GMSH:
+        if len(nodes) not in SHAPES[dim] or int(kind) not in GMSH:
             raise ValueError(f"element {number} is of Gmsh's type {kind}")
-        element = SHAPES[dim][len(on)], tuple(map(int, on))
-        each = once.setdefault(element, int(number))  # one of two groups is there twice, by two numbers
-        mesh.add("element", each, element)
+        element = SHAPES[dim][len(nodes)], tuple(map(int, nodes))
+        known = number_of.setdefault(element, int(number))  # one of two groups is there twice, by two numbers
+        mesh.add("element", known, element)
         for tag in tags:
-            numbered.setdefault(tag, []).append(each)
+            numbered.setdefault(tag, []).append(known)
             if (dim, tag) in names:
-                mesh.groups[names[dim, tag]].append(each)
+                mesh.groups[names[dim, tag]].append(known)
 
     if form[1].startswith("2"):
         for number, *place in nodes:
             mesh.add("node", int(number), tuple(map(float, place)))
         for number, kind, count, *rest in elements:
-            add(number, kind, rest[int(count) :], [each for each in rest[: int(count)][:1] if each != "0"])
+            add(number, kind, rest[int(count) :], [tag for tag in rest[: int(count)][:1] if tag != "0"])
     else:
         physical = _physical(section("Entities"))
         for _head, rows in _blocks(nodes, 2):
@@ -299,20 +303,20 @@ def _read_gmsh(mesh: TextMesh, text: str, _: str) -> bool:
             for (number,), place in zip(rows[:half], rows[half:], strict=True):
                 mesh.add("node", int(number), tuple(map(float, place[:3])))
         for (dim, entity, kind, _), rows in _blocks(elements, 1):
-            for number, *on in rows:
-                add(number, kind, on, physical.get((int(dim), entity), []))
-    named = {name: some for name, some in mesh.groups.items() if some}
+            for number, *on_nodes in rows:
+                add(number, kind, on_nodes, physical.get((int(dim), entity), []))
+    named = {name: members for name, members in mesh.groups.items() if members}
     mesh.groups = named | {tag: numbered[tag] for tag in sorted(numbered, key=int)}
     return True
 
 
 def _blocks(rows: list[list[str]], times: int) -> Iterator[tuple[list[str], list[list[str]]]]:
-    """Heads of blocks, which end with a number, and so many lines of each, or so many times that."""
-    at = 0
-    while at < len(rows):
-        end = at + 1 + times * int(rows[at][3])
-        yield rows[at], rows[at + 1 : end]
-        at = end
+    """Head and lines of each block: the head ends with a number, and `times` that many lines follow."""
+    head = 0
+    while head < len(rows):
+        end = head + 1 + times * int(rows[head][3])
+        yield rows[head], rows[head + 1 : end]
+        head = end
 
 
 def _physical(rows: list[list[str]]) -> dict[tuple[int, str], list[str]]:
