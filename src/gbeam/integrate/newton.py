@@ -75,12 +75,12 @@ def stretches(scheme: Scheme, steps: Steps, size: int) -> Iterator[Stretch]:
         yield Stretch(chosen, index.shape, [last for _, last in some_chunks], tableau, np.stack(times, axis=1))
 
 
-def chunks(drive: Drive, scheme: Scheme, of: Iterable[Stretch]) -> Iterator[Chunk]:
+def chunks(drive: Drive, scheme: Scheme, all_stretches: Iterable[Stretch]) -> Iterator[Chunk]:
     """Chunks of stretches with their inputs from `drive`, which is evaluated once a stretch."""
     import jax
 
     stages = len(scheme.offsets)
-    for stretch in of:
+    for stretch in all_stretches:
         (groups, size), first = stretch.shape, 0
         driven = drive(stretch.times.ravel())
         driven = jax.tree.map(lambda leaf, to=(groups, size, -1): leaf.reshape(*to, *leaf.shape[1:]), driven)
@@ -194,18 +194,20 @@ def steps(
     stages, n = carry.x.shape
 
     def group(carry: Carry, of_group: Any) -> Any:
+        """Take a group's steps by one inverse Jacobian; a scheme of many stages goes on from the last that counts."""
         t, group_inputs, group_ends, end = of_group
         first = jax.tree.map(lambda leaf: leaf[0], group_inputs)
         inverse = _inverse_jacobian(residual, t, carry.z, first, _guess(t, carry))
 
-        def step(carry: Carry, at: Any) -> Any:
+        def step(carry: Carry, stage_inputs: Any) -> Any:
             def unconverged(state: tuple[Array, ...]) -> Array:
                 _, size, before, tries = state
-                return (tries < FEWEST) | (tries < MOST) & (_left(size, before) > NEAR)
+                return (tries < FEWEST) | ((tries < MOST) & (_left(size, before) > NEAR))
 
             def corrected(state: tuple[Array, ...]) -> tuple[Array, ...]:
                 x, size, _, tries = state
-                correction = (inverse @ _stage_residual(residual, t, carry.z, at, x).ravel()).reshape(stages, n)
+                left = _stage_residual(residual, t, carry.z, stage_inputs, x)
+                correction = (inverse @ left.ravel()).reshape(stages, n)
                 x = x - correction
                 return x, _size(correction, x), size, tries + 1
 

@@ -146,13 +146,13 @@ class Run:
     def shape(self) -> Hashable | None:
         """Key of runs that can be integrated together; None of one that has to be integrated alone."""
         steps = self.steps
-        about = ceil(log(len(steps), NEARLY))  # equal for numbers of steps that are nearly equal
+        magnitude = ceil(log(len(steps), NEARLY))  # equal for numbers of steps that are nearly equal
         if isinstance(self.equations, NonlinearEquations):
             leaves, form = self.residual
-            return "nonlinear", form, *map(np.shape, leaves), self.equations.vibrates, about
+            return "nonlinear", form, *map(np.shape, leaves), self.equations.vibrates, magnitude
         if self.terms is None or (self.scheme.ends and steps.anew.any()):
             return None
-        return "linear", len(self.q), about, self.parts
+        return "linear", len(self.q), magnitude, self.parts
 
     @cached_property
     def residual(self) -> tuple[list[Array], Any]:

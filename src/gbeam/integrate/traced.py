@@ -106,7 +106,7 @@ class TracedLoop:
         """Samples of each controller as arrays, NaN of those that were not taken; `inputs` have the first states."""
         recorded = []
         for shapes, taken, (*_, start) in zip(self.shapes, sampling.samples, inputs, strict=True):
-            arrays = Samples(*(np.full(each.shape, np.nan) for each in shapes))
+            arrays = Samples(*(np.full(field.shape, np.nan) for field in shapes))
             before = [start, *(after for *_, after in taken[:-1])]
             for k, ((*values, _), state) in enumerate(zip(taken, before, strict=False)):
                 for array, value in zip(arrays, (*values, state), strict=True):
@@ -281,7 +281,7 @@ def _changes(scheme: Scheme, steps: Steps, results: Any, of: Any, by: Any, dq: A
     `of`, by dq, dqd (n,) at the start, and by the tangents of its controllers' laws in `in_loop`.
     """
     (run, samples), (loop, *laws), t = results, in_loop, scheme.tableau(steps.length)
-    q, qd, qdd = run
+    (q, qd, qdd), (residual, drives), (by_residual, by_drives) = run, of, by
     count, n, stages, first = len(steps), q.shape[1], len(scheme.offsets), scheme.tableau(steps.length[0]).first
     x: Array
     z: Array
@@ -299,12 +299,12 @@ def _changes(scheme: Scheme, steps: Steps, results: Any, of: Any, by: Any, dq: A
         for whole, at_stage in zip(run, at_stages, strict=True)
     )
     driven, begun = (
-        [jax.tree.map(lambda leaf, part=part: leaf[part], drives) for drives in (of[1], by[1])]
+        [jax.tree.map(lambda leaf, part=part: leaf[part], values) for values in (drives, by_drives)]
         for part in (slice(len(states[0])), slice(len(states[0]), None))
     )
     held, driven_by = loop.held(samples), loop.controllers.driven
     commands = jnp.concatenate([0 * held[:1], *[held] * ((len(states[0]) - 1) // count)])
-    follow = loop.changes((of[0], begun[0]), (by[0], begun[1]), run, *laws, samples)
+    follow = loop.changes((residual, begun[0]), (by_residual, begun[1]), run, *laws, samples)
 
     def host(*arguments: Any) -> Any:
         (q, qd, qdd), residual, driven, commands = jax.tree.map(np.asarray, arguments)
@@ -315,18 +315,19 @@ def _changes(scheme: Scheme, steps: Steps, results: Any, of: Any, by: Any, dq: A
 
     square = (jax.ShapeDtypeStruct((len(states[0]), n, n), float),) * 3
     wide = jax.ShapeDtypeStruct((len(states[0]), n, commands.shape[1]), float)
-    arguments = states, of[0], driven[0], commands
+    arguments = states, residual, driven[0], commands
     *slope, onto = jax.pure_callback(host, (*square, wide), *arguments, vmap_method="sequential")
     _, direct = jax.jvp(
         lambda residual, driven: residual(*states, driven_by(driven, commands)),
-        (of[0], driven[0]),
-        (by[0], driven[1]),
+        (residual, driven[0]),
+        (by_residual, driven[1]),
     )
 
     def accelerated(part: slice, dq: Array, dqd: Array, du: Array) -> Array:
+        """Changes of q̈ at some of the states, by those of q, q̇ and commands there."""
         k, c, m = (matrices[part] for matrices in slope)
-        if isinstance(of[0], Fitted):
-            c, m = c - of[0].damping, m - of[0].mass
+        if isinstance(residual, Fitted):
+            c, m = c - residual.damping, m - residual.mass
         left = direct[part] + (k @ dq[..., None] + c @ dqd[..., None] + onto[part] @ du[..., None])[..., 0]
         return -jnp.linalg.solve(m, left[..., None])[..., 0]
 
@@ -353,4 +354,4 @@ def _changes(scheme: Scheme, steps: Steps, results: Any, of: Any, by: Any, dq: A
     at_ends = dx[:, -1] if scheme.ends else accelerated(slice(-count, None), *changes, du)
     before = dq[None], dqd[None], dqdd
     histories = tuple(jnp.concatenate(pair) for pair in zip(before, (*changes, at_ends), strict=True))
-    return histories, [Samples(*(part[k] for part in each)) for each, k in zip(taken, follow.at, strict=True)]
+    return histories, [Samples(*(values[k] for values in of_law)) for of_law, k in zip(taken, follow.at, strict=True)]

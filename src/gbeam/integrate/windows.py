@@ -231,8 +231,8 @@ class _Window:
         if not count:
             return
         z, x, t = self.z[:count], self.x[:count], self.t
-        weights = [each if len(each) == 1 else each[:count] for each in (t.end_z, t.end_x)]
-        ends = weights[0] @ z + weights[1] @ x
+        end_z, end_x = (weights if len(weights) == 1 else weights[:count] for weights in (t.end_z, t.end_x))
+        ends = end_z @ z + end_x @ x
         self.done.append((ends[:, 0], ends[:, 1], *([x[:, -1]] if self.scheme.ends else [])))
         self.start, self.most = x[-1, -1], GROWN * float(rounding[:count].max())
         self.first, self.again = self.first + count, LONGEST

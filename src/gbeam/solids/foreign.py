@@ -66,7 +66,7 @@ def read_mesh(source: str | os.PathLike[str] | Any) -> Any:
     refuse_large_file("mesh", source, BINARY_BYTES, "mesh it more coarsely")
     if not os.path.getsize(source):
         raise InputError("mesh", f"{os.fspath(source)} is empty", "write it again")
-    said = io.StringIO()
+    printed = io.StringIO()
     try:
         if (mesh := text_mesh(source)) is not None:
             return mesh
@@ -77,19 +77,19 @@ def read_mesh(source: str | os.PathLike[str] | Any) -> Any:
         _refuse_node_0(Path(source))
         _refuse_in_parts(Path(source))
         # It prints what fails and exits.
-        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+        with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
             mesh = meshio.read(source)
         return _with_masks(_of_med(mesh) if ending_of(source) == ".med" else mesh)
     except InputError:
         raise
     except ModuleNotFoundError as error:  # meshio, or what it reads some formats by
-        of = "gbeam[mesh]" if error.name == "meshio" else error.name
-        raise InputError("", f"{error.name} is not installed", f'install it with: pip install "{of}"') from None
+        package = "gbeam[mesh]" if error.name == "meshio" else error.name
+        raise InputError("", f"{error.name} is not installed", f'install it with: pip install "{package}"') from None
     except (Exception, SystemExit) as error:
         if error.args == ("wedge15",):
             fix = "write it for Gmsh as text, or for Nastran, Abaqus, CalculiX or Exodus"
             raise InputError("mesh", f"{os.fspath(source)} has wedges of 15 nodes, which meshio lacks", fix) from None
-        words = shortened(" ".join((said.getvalue() or str(error)).split()) or "it breaks off", 200)
+        words = shortened(" ".join((printed.getvalue() or str(error)).split()) or "it breaks off", 200)
         if isinstance(error, KeyError):
             noun = "number" if isinstance(error.args[0], int) else "set"
             listed = ending_of(source) in TEXTS

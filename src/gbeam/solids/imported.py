@@ -90,29 +90,29 @@ class ImportedModel(Value):
     def __post_init__(self) -> None:
         m = sparse_matrix("mass", self.mass)
         k = sparse_matrix("stiffness", self.stiffness, m.shape[0])
-        at = np.asarray(array("nodes", self.nodes), dtype=float)
+        places = np.asarray(array("nodes", self.nodes), dtype=float)
         size = m.shape[0]
-        if at.ndim != 2 or at.shape[1:] != (3,) or not len(at) or not np.isfinite(at).all():
-            raise InputError("nodes", f"has the shape {at.shape}", "give a row of x, y, z for each node, finite")
+        if places.ndim != 2 or places.shape[1:] != (3,) or not len(places) or not np.isfinite(places).all():
+            raise InputError("nodes", f"has the shape {places.shape}", "give a row of x, y, z for each node, finite")
         if self.unknowns is None:
-            if size not in (3 * len(at), 6 * len(at)):
+            if size not in (3 * len(places), 6 * len(places)):
                 fix = "give a row of x, y, z for each three or six rows of the matrices, or give unknowns"
-                raise InputError("nodes", f"has the shape {at.shape}, and the matrices {size} rows", fix)
-            unknowns = every_unknown(len(at), size)
+                raise InputError("nodes", f"has the shape {places.shape}, and the matrices {size} rows", fix)
+            unknowns = every_unknown(len(places), size)
         else:
             unknowns = np.asarray(self.unknowns, dtype=int)
             if unknowns.shape != (size, 2):
                 raise InputError("unknowns", f"has the shape {unknowns.shape}", f"give ({size}, 2): node and direction")
             bad = (unknowns[:, 1] < 0) | (unknowns[:, 1] > 6)
-            bad |= (unknowns[:, 1] != OWN) & ((unknowns[:, 0] < 0) | (unknowns[:, 0] >= len(at)))
+            bad |= (unknowns[:, 1] != OWN) & ((unknowns[:, 0] < 0) | (unknowns[:, 0] >= len(places)))
             if bad.any():
                 i = int(np.flatnonzero(bad)[0])
-                fix = f"give nodes from 0 to {len(at) - 1} and directions from 0 to 6"
+                fix = f"give nodes from 0 to {len(places) - 1} and directions from 0 to 6"
                 raise InputError(f"unknowns[{i}]", f"is {unknowns[i].tolist()}", fix)
-        numbers = np.arange(len(at)) if self.numbers is None else np.asarray(self.numbers, dtype=int)
-        if numbers.shape != (len(at),) or len(np.unique(numbers)) < len(at):
-            raise InputError("numbers", f"are {numbers.shape}, or repeat", f"give {len(at)} different ones")
-        checked = {"mass": m, "stiffness": k, "nodes": at, "unknowns": unknowns, "numbers": numbers}
+        numbers = np.arange(len(places)) if self.numbers is None else np.asarray(self.numbers, dtype=int)
+        if numbers.shape != (len(places),) or len(np.unique(numbers)) < len(places):
+            raise InputError("numbers", f"are {numbers.shape}, or repeat", f"give {len(places)} different ones")
+        checked = {"mass": m, "stiffness": k, "nodes": places, "unknowns": unknowns, "numbers": numbers}
         for name, value in checked.items():
             object.__setattr__(self, name, value)
 
@@ -167,10 +167,10 @@ class ImportedModel(Value):
             raise InputError("paths", "are none", "give one file or more")
         model = model_of(paths)
         m, k, unknowns = model.pair(mass, stiffness)
-        at, numbers, unknowns, axes = model.nodes_of(nodes, unknowns)
+        places, numbers, unknowns, axes = model.nodes_of(nodes, unknowns)
         size, weight = unit_size("length_unit", length_unit, "length"), unit_size("mass_unit", mass_unit, "mass")
         if unknowns is None:
-            unknowns = every_unknown(len(at), m.shape[0])
+            unknowns = every_unknown(len(places), m.shape[0])
         if axes is not None:
             m, k = (_in_base_axes(matrix, unknowns, axes) for matrix in (m, k))
         # Displacements in m, rotations and modes' coordinates as they are.
@@ -178,7 +178,7 @@ class ImportedModel(Value):
 
         scale = diags_array(np.where((unknowns[:, 1] > 0) & (unknowns[:, 1] < 4), 1.0, size))
         m, k = (weight * (scale @ matrix @ scale) for matrix in (m, k))
-        return cls(m, k, size * np.asarray(at, dtype=float), unknowns, numbers)
+        return cls(m, k, size * np.asarray(places, dtype=float), unknowns, numbers)
 
     @typed
     def reduced(
@@ -242,20 +242,20 @@ class ImportedModel(Value):
         >>> model.reduced(modes=3, damping_ratio=0.01, total_mass=2.0)
         Structure(matrices, 3 coordinates, 2 kg)
         """
-        at, unknowns = np.asarray(self.nodes), np.asarray(self.unknowns)
+        places, unknowns = np.asarray(self.nodes), np.asarray(self.unknowns)
         held = [self._node(f"clamp[{i}]", number) for i, number in enumerate(clamp)]
         named = {name: self._node(f"points.{name}", number) for name, number in (points or {}).items()}
-        named = with_tip(named, at, held)
-        fields = fields_of(at, unknowns)
+        named = with_tip(named, places, held)
+        fields = fields_of(places, unknowns)
         rigid = rigid_motions(fields)
         body = rigid_body(self.mass, rigid)
-        compare_mass(body, float(np.linalg.norm(np.ptp(at, axis=0))), total_mass, centre, inertia)
+        compare_mass(body, float(np.linalg.norm(np.ptp(places, axis=0))), total_mass, centre, inertia)
         if held:
             refuse_held(self.stiffness, rigid)
         free = (unknowns[:, 1] == OWN) | ~np.isin(unknowns[:, 0], held)
         attached = self._attached(interfaces, named)
         loads = np.concatenate([-(self.mass @ fields), attached], axis=1)
-        length = extent_of(at, body)
+        length = extent_of(places, body)
         tip = self._number(named[TIP])
         tip_clamped = [f"the tip, node {tip}, is clamped and stays at 0"] if named[TIP] in held else []
         reduction = reduce(self.stiffness[free][:, free], self.mass[free][:, free], loads[free], modes)
@@ -272,7 +272,7 @@ class ImportedModel(Value):
             return linear_structure(
                 terms,
                 *particles,
-                Places(at[list(named.values())], first),
+                Places(places[list(named.values())], first),
                 length=length,
                 turns=turns,
                 damping_ratio=damping_ratio,
@@ -389,7 +389,7 @@ def _geometric(geometric: Mapping[InertialLoad, Any] | None, shapes: Floats) -> 
     missing = [name for name in LOADS if name not in matrices]
     if not missing:
         return Geometric(a, al, ww), []
-    of = "" if len(missing) == len(LOADS) else f" of {', '.join(missing)}"
+    loads = "" if len(missing) == len(LOADS) else f" of {', '.join(missing)}"
     return Geometric(a, al, ww), [
-        f"no geometric stiffness{of} is given: what the stress of loads stiffens or softens is left out"
+        f"no geometric stiffness{loads} is given: what the stress of loads stiffens or softens is left out"
     ]

@@ -216,7 +216,7 @@ class Linked:
         within = np.unique(node[of_shell], return_inverse=True)[1]
         of_link[np.flatnonzero(of_shell)] = len(named) + within
         self._tied = np.flatnonzero(of_link >= 0)
-        self._of = of = of_link[self._tied]
+        self._of = of = of_link[self._tied]  # the link of each tied point
         count = np.bincount(of, minlength=len(named))
         sums = [np.bincount(of, x, minlength=len(named)) for x in self.points[self._tied].T]
         middles = np.stack(sums, axis=1) / np.maximum(count, 1)[:, None]
@@ -237,6 +237,7 @@ class Linked:
         unknown = np.concatenate([np.ones_like(turning), turning], axis=1)
         unknown[[self._number[name] for name in links.weights]] = False
         free = np.concatenate([np.repeat(~mesh.clamped[untied], 3), moving[unknown]])
+        # Of links' displacements and rotations (l, 6) numbers among the unknowns, −1 of none, and those of tied points.
         numbers = np.where(unknown, 3 * len(untied) + np.cumsum(unknown).reshape(unknown.shape) - 1, -1)
         move = np.concatenate([np.tile(np.eye(3), (len(of), 1, 1)), self._about(self._arms)], axis=2)
         used = np.broadcast_to((numbers[of] >= 0)[:, None], move.shape)
@@ -252,9 +253,9 @@ class Linked:
         ).tocsr()[:, free]
         self._kept = np.flatnonzero(free)
         number = np.where((numbers >= 0) & free[numbers], np.cumsum(free)[numbers] - 1, -1)[:, None, 3:]
-        turned = np.broadcast_to(number >= 0, self._axes.shape)
-        row = np.broadcast_to(np.arange(3 * len(middles)).reshape(-1, 3, 1), turned.shape)[turned]
-        entries = self._axes[turned], (row, np.broadcast_to(number, turned.shape)[turned])
+        turns = np.broadcast_to(number >= 0, self._axes.shape)
+        row = np.broadcast_to(np.arange(3 * len(middles)).reshape(-1, 3, 1), turns.shape)[turns]
+        entries = self._axes[turns], (row, np.broadcast_to(number, turns.shape)[turns])
         self._turn = coo_array(entries, shape=(3 * len(middles), len(self._kept))).tocsr()
         for name, weights in links.weights.items():
             self._follow(self._number[name], members[name], links.nodes[name], weights)

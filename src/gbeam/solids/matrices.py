@@ -63,9 +63,9 @@ def fields_of(points: Floats, unknowns: Indices) -> Floats:
     linear = linear_fields(points)
     fields = np.zeros((len(unknowns), 3, 4))
     for axis in range(3):
-        moved, turned = way == axis + 1, way == axis + 4
-        fields[moved, axis] = linear[node[moved]]
-        fields[turned, :, 1:] = EPSILON[axis].T / 2  # θ_c = ½ ε_cfa for u_a = x_f
+        moves, turns = way == axis + 1, way == axis + 4
+        fields[moves, axis] = linear[node[moves]]
+        fields[turns, :, 1:] = EPSILON[axis].T / 2  # θ_c = ½ ε_cfa for u_a = x_f
     return fields.reshape(-1, 12)
 
 
@@ -86,8 +86,8 @@ def rigid_body(mass: Any, rigid: Floats) -> Floats:
         problem = f"weighs {shown} kg along x, y and z"
         raise InputError("mass", problem, "give the mass matrix of every direction, of a structure without joints")
     first = np.einsum("abc,bc->a", EPSILON, body[:3, 3:]) / 2  # Σ m e_c × r
-    about = body[3:, 3:]
-    second = np.trace(about) / 2 * np.eye(3) - about
+    inertia = body[3:, 3:]
+    second = np.trace(inertia) / 2 * np.eye(3) - inertia
     pairs = (second[i, j] for i, j in PAIRS)
     return np.array([total, *first, *pairs])
 
@@ -126,9 +126,9 @@ def with_tip(points: dict[str, int], at: Floats, held: Sequence[int] = ()) -> di
     """Nodes of points by name, the tip the last: where none is called so, of nodes at (k, 3) that are not held the one
     farthest from the root.
     """
-    away = np.linalg.norm(at, axis=1)
-    away[[*held]] = 0.0
-    tip = points.get(TIP, int(away.argmax()))
+    distance = np.linalg.norm(at, axis=1)
+    distance[[*held]] = 0.0
+    tip = points.get(TIP, int(distance.argmax()))
     return {name: node for name, node in points.items() if name != TIP} | {TIP: tip}
 
 
@@ -155,13 +155,13 @@ def compare_mass(body: Floats, size: float, total: float | None, centre: Any, in
     known, middle = body[0], body[1:4] / body[0]
     xx, yy, zz, xy, yz, zx = body[4:]
     second = np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]]) - known * np.outer(middle, middle)
-    about = np.trace(second) * np.eye(3) - second
+    about_centre = np.trace(second) * np.eye(3) - second
     fix = "are the units those of SI, and the places in the order of the matrices?"
     if total is not None and abs(known / total - 1) > NEAR:
         raise InputError("total_mass", f"is {total:.6g} kg, and the matrix has {known:.6g} kg", fix)
     if centre is not None and np.linalg.norm(np.subtract(centre, middle)) > NEAR * size:
-        shown = ", ".join(f"{each:.4g}" for each in np.where(np.abs(middle) < ROUNDING * size, 0.0, middle))
+        shown = ", ".join(f"{x:.4g}" for x in np.where(np.abs(middle) < ROUNDING * size, 0.0, middle))
         raise InputError("centre", f"is not that of the matrix, ({shown}) m", fix)
-    if inertia is not None and np.abs(np.subtract(inertia, about)).max() > NEAR * np.trace(about):
-        shown = ", ".join(f"{each:.4g}" for each in np.diagonal(about))
+    if inertia is not None and np.abs(np.subtract(inertia, about_centre)).max() > NEAR * np.trace(about_centre):
+        shown = ", ".join(f"{moment:.4g}" for moment in np.diagonal(about_centre))
         raise InputError("inertia", f"is not that of the matrix, {shown} kg m² on the diagonal", fix)

@@ -64,12 +64,12 @@ class ModalTest(Value):
 
     def __post_init__(self) -> None:
         frequency, ratio = (np.atleast_1d(np.asarray(array(n, getattr(self, n)), dtype=float)) for n in _RATES)
-        at = np.asarray(array("nodes", self.nodes), dtype=float)
+        nodes = np.asarray(array("nodes", self.nodes), dtype=float)
         shapes, mass = (_numbers(name, getattr(self, name)) for name in ("shapes", "modal_mass"))
         m = len(frequency)
-        if at.ndim != 2 or at.shape[1:] != (3,) or shapes.shape != (len(at), 3, m):
-            fix = f"give a row of x, y, z for each node, and shapes ({len(at)}, 3, {m})"
-            raise InputError("shapes", f"are {shapes.shape}, of {len(at)} nodes and {m} frequencies", fix)
+        if nodes.ndim != 2 or nodes.shape[1:] != (3,) or shapes.shape != (len(nodes), 3, m):
+            fix = f"give a row of x, y, z for each node, and shapes ({len(nodes)}, 3, {m})"
+            raise InputError("shapes", f"are {shapes.shape}, of {len(nodes)} nodes and {m} frequencies", fix)
         if mass.shape not in ((), (m,)):
             raise InputError("modal_mass", f"has the shape {mass.shape}", f"give {m}, or one for all")
         shapes, mass = _in_phase(shapes, np.broadcast_to(mass, (m,)))
@@ -79,13 +79,13 @@ class ModalTest(Value):
             if not np.isfinite(value).all() or low.any():
                 i = int(np.argmax(low | ~np.isfinite(value)))
                 raise InputError(f"{name}[{i}]", f"is {value[i]:g}", "give a positive one; a file may lack it")
-        numbers = np.arange(len(at)) if self.numbers is None else np.asarray(self.numbers, dtype=int)
-        if not np.isfinite(shapes).all() or numbers.shape != (len(at),):
+        numbers = np.arange(len(nodes)) if self.numbers is None else np.asarray(self.numbers, dtype=int)
+        if not np.isfinite(shapes).all() or numbers.shape != (len(nodes),):
             raise InputError("shapes", "or numbers are not finite, or not one for each node", "give them so")
         order = np.argsort(frequency, kind="stable")
         for name, value in measured.items():
             object.__setattr__(self, name, value[order])
-        for name, value in (("shapes", shapes[..., order]), ("nodes", at), ("numbers", numbers)):
+        for name, value in (("shapes", shapes[..., order]), ("nodes", nodes), ("numbers", numbers)):
             object.__setattr__(self, name, value)
 
     @classmethod

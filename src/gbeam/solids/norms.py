@@ -33,9 +33,9 @@ class LargestNorms:
         scale = columns.max(axis=0)
         scale = np.where(scale > 0, scale, 1.0)
         directions = np.linalg.svd(q * scale, full_matrices=False)[2][:DIRECTIONS]
-        along, turned = q * scale @ directions.T, maps @ (directions / scale).T
+        along, maps_along = q * scale @ directions.T, maps @ (directions / scale).T
         rest = columns @ np.abs(q - along @ directions / scale).max(axis=0)
-        forms = np.einsum("mpi,mpj->pij", turned, turned)
+        forms = np.einsum("mpi,mpj->pij", maps_along, maps_along)
         columns = np.sqrt(np.einsum("pii->pi", forms))
         reach = columns @ np.abs(along).max(axis=0)
         order = np.argsort(-reach)
@@ -55,18 +55,19 @@ class LargestNorms:
             group = group[np.argsort((forms[group] @ products[:, middle]).argmax(axis=1), kind="stable")]
             over, over_cells = self.over / unit, np.full(len(middle), np.inf)
             np.minimum.at(over_cells, cell, over)
-            for some in np.array_split(group, -(-len(group) // TOGETHER)):
-                bounds = rounding[some], rest[some]
-                held = _could_be_largest(forms[some] @ products[:, middle], *bounds, over_cells, columns[some] @ apart)
-                times = np.flatnonzero(held[cell])
-                held = _could_be_largest(forms[some] @ products[:, times], *bounds, over[times])
-                self._compute(times[held], some)
+            for which in np.array_split(group, -(-len(group) // TOGETHER)):
+                bounds = rounding[which], rest[which]
+                between = columns[which] @ apart
+                kept = _could_be_largest(forms[which] @ products[:, middle], *bounds, over_cells, between)
+                times = np.flatnonzero(kept[cell])
+                kept = _could_be_largest(forms[which] @ products[:, times], *bounds, over[times])
+                self._compute(times[kept], which)
 
-    def _compute(self, times: Indices, some: Indices) -> None:
-        """Compute the norms of maps `some` at ascending times, among which they are largest, and note the largest."""
-        norms = np.sqrt(np.square(self.maps[:, some] @ self.q[times].T).sum(axis=0))
-        self.size[some] = size = norms.max(axis=1)
-        self.when[some] = times[(norms >= (1 - ROUNDING) * size[:, None]).argmax(axis=1)]
+    def _compute(self, times: Indices, which: Indices) -> None:
+        """Compute the norms of some maps at ascending times, among which they are largest, and keep the largest."""
+        norms = np.sqrt(np.square(self.maps[:, which] @ self.q[times].T).sum(axis=0))
+        self.size[which] = size = norms.max(axis=1)
+        self.when[which] = times[(norms >= (1 - ROUNDING) * size[:, None]).argmax(axis=1)]
         self.over[times] = np.maximum(self.over[times], norms.max(axis=0))
 
 

@@ -146,7 +146,7 @@ class RigidSpecimen(Value):
         >>> gb.RigidSpecimen.box(3.0, (0.3, 0.2, 0.1), (0, 0, 0.05)).corners.shape
         (8, 3)
         """
-        edges = np.array([positive(f"size[{i}]", each, "m") for i, each in enumerate(size)])
+        edges = np.array([positive(f"size[{i}]", edge, "m") for i, edge in enumerate(size)])
         if edges.shape != (3,):
             raise InputError("size", f"has {len(edges)} edges", "give three")
         inertia = np.diag(mass / 12 * (edges @ edges - edges**2))

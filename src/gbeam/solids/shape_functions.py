@@ -130,8 +130,8 @@ def _basis(kind: str, points: Floats) -> tuple[Floats, Floats]:
         of_nodes = np.linalg.inv(_monomials(_NODES[kind], _WEDGE15))
         slopes = [_monomials(points, _WEDGE15, along) @ of_nodes for along in range(3)]
         return _monomials(points, _WEDGE15) @ of_nodes, np.stack(slopes, axis=2)
-    element, at = getattr(import_skfem(), KINDS[kind].element)(), np.ascontiguousarray(points.T)
-    pairs = [element.lbasis(at, i) for i in _order(kind)]
+    element, columns = getattr(import_skfem(), KINDS[kind].element)(), np.ascontiguousarray(points.T)
+    pairs = [element.lbasis(columns, i) for i in _order(kind)]
     values = np.stack([np.broadcast_to(value, len(points)) for value, _ in pairs], axis=1)
     slopes = [np.stack([np.broadcast_to(along, len(points)) for along in slope], axis=1) for _, slope in pairs]
     return values, np.stack(slopes, axis=1)

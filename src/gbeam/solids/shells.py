@@ -101,8 +101,8 @@ def shell_strains(
     if kind in SOFTER:
         first, second = base[..., 0, :], base[..., 1, :]
         sides = (first, second, first - second) if KINDS[kind].shell == 3 else (first, second)
-        thin = (dual[..., 2] ** 2).sum(axis=-1) * np.max([(side**2).sum(axis=-1) for side in sides], axis=0)
-        shear = shear / np.sqrt(1 + SOFTER[kind] * thin)[..., None, None]
+        slenderness = (dual[..., 2] ** 2).sum(axis=-1) * np.max([(side**2).sum(axis=-1) for side in sides], axis=0)
+        shear = shear / np.sqrt(1 + SOFTER[kind] * slenderness)[..., None, None]
     across = shear * np.einsum("qapb,epbkc->aeqkc", share, tied, optimize=True)
     along = np.stack([_cartesian(dual, pair) for pair in PAIRS], axis=-1)
     strain = np.einsum("eqvp,peqkc->eqvkc", along, np.stack([*parts, *across]), optimize=True)

@@ -74,17 +74,17 @@ def read_sid(
     terms = _coefficients(body, os.fspath(path))
     if damping_ratio is None and not terms.damping.any():
         raise InputError("damping_ratio", "is missing, and the file has no damping", "give one, such as 0.01, or 0")
-    at = np.stack([node["origin"]["m0"][:, 0] for node in body["nodes"]])
+    places = np.stack([node["origin"]["m0"][:, 0] for node in body["nodes"]])
     numbers = list(body["numbers"])
     for name, number in (points or {}).items():
         if number not in numbers:
             fix = f"choose from {', '.join(map(str, numbers))}"
             raise InputError(f"points.{name}", f"is {number}, which is no node of the file", fix)
-    chosen = with_tip({name: numbers.index(number) for name, number in (points or {}).items()}, at)
+    chosen = with_tip({name: numbers.index(number) for name, number in (points or {}).items()}, places)
     nodes = [body["nodes"][k] for k in chosen.values()]
     second = np.stack([np.moveaxis(_slope(node["phi"], terms.size), 1, 2) for node in nodes])
     stations = Places(
-        at[list(chosen.values())],
+        places[list(chosen.values())],
         np.stack([node["phi"]["m0"] for node in nodes]),
         (second + second.swapaxes(2, 3)) / 2,
     )
@@ -96,7 +96,7 @@ def read_sid(
         mass,
         Places(*paths),
         stations,
-        length=float(np.linalg.norm(at, axis=1).max()),
+        length=float(np.linalg.norm(places, axis=1).max()),
         turns=np.stack([node["psi"]["m0"] for node in nodes]),
         damping_ratio=0.0 if damping_ratio is None else damping_ratio,
         points=tuple(chosen),

@@ -113,11 +113,11 @@ def _guess(time: Floats, target: Target, geometry: Geometry, ramps: tuple[Ramp, 
 def _refusal(limits: Limits, ends: Ends, ramps: tuple[Ramp, Ramp] | None) -> InputError:
     """The error that names the spin-up or spin-down that is too short for the limits, or else the limits."""
     for name, ramp in zip(("spin_up", "spin_down"), ramps or (), strict=False):
-        duration, more = getattr(ends, name), ramp.lengthened(limits).length - ramp.length
-        if duration is not None and more > 0:
+        duration, lacking = getattr(ends, name), ramp.lengthened(limits).length - ramp.length
+        if duration is not None and lacking > 0:
             problem = f"is {duration:.3g} s: within the limits of axis 1 that is too short for the arm to reach idle"
             return InputError(
-                name, problem, f'give "{np.ceil(10 * (duration + more)) / 10:g} s" or more, or leave it out'
+                name, problem, f'give "{np.ceil(10 * (duration + lacking)) / 10:g} s" or more, or leave it out'
             )
     return InputError("limits", "leave no motion that keeps idle during the flight", "give less idle, or wider limits")
 
@@ -248,9 +248,9 @@ def prepare(
     if method.solved and is_traced(target.load(span[0]), geometry.arm):
         fix = 'choose "flat" or "quasi-static", or prepare the machine of numbers: over(start, end)'
         raise InputError("inverse", f"is {inverse}, solved for numerically, and JAX traces the machine", fix)
-    left: list[tuple[float, float]] = []
-    while method.leaves_out is not None and (more := method.leaves_out(target, geometry)):
-        left += more
-        target = build(leave_out=left)
+    left_out: list[tuple[float, float]] = []
+    while method.leaves_out is not None and (stretches := method.leaves_out(target, geometry)):
+        left_out += stretches
+        target = build(leave_out=left_out)
     course = Course(target, geometry, ends.start)
     return course if method.plans else course.solved(inverse, limits, ends)

@@ -193,9 +193,9 @@ def read_flight(
         check_interval(when, seconds)
     load = load_scale * table.vector(names, len(clock), part)
 
-    def samples(at: Indices) -> Samples:
+    def samples(index: Indices) -> Samples:
         specific = quantity == "specific-force"
-        return Samples(clock[at], load[at], names, unit, specific, lambda i: table.place(int(at[i])))
+        return Samples(clock[index], load[index], names, unit, specific, lambda i: table.place(int(index[i])))
 
     flown = samples(np.arange(part.start, part.stop))
     known = np.flatnonzero(np.isfinite(load).all(axis=1))  # outside the part there may be what is no number

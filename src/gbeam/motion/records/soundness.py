@@ -225,10 +225,10 @@ def oddities(record: Samples) -> Iterator[str]:
                 f"({rows(record.place(run.start), record.place(run.stop - 1))})"
                 for run in runs[:_LISTED]
             )
-            more = f" and {len(runs) - _LISTED} times more" if len(runs) > _LISTED else ""
+            rest = f" and {len(runs) - _LISTED} times more" if len(runs) > _LISTED else ""
             yield (
                 f"{axis}, column {name.lstrip('-')!r}, stands at its extreme, {record.said(extreme)}, from "
-                f"{listed}{more}: its sensor seems to be at the end of its range, and what is beyond is lost"
+                f"{listed}{rest}: its sensor seems to be at the end of its range, and what is beyond is lost"
             )
     size = np.linalg.norm(record.load, axis=1)
     top = int(size.argmax())

@@ -128,8 +128,8 @@ def build_target(
         load = smoothed(corners, width) if is_traced(width) or width else corners
         if gravity:
             load = _nearest(load, None, None, None, gravity)
-        rows, edges = padded_rows([]), merged_edges([], last)
-        return target_of(load=load, corners=corners, stretches=rows, edges=edges, rounded=True, turns=True)
+        edges = merged_edges([], last)
+        return target_of(load=load, corners=corners, stretches=padded_rows([]), edges=edges, rounded=True, turns=True)
     if width:
         fix = f"give {_PER_WIDTH * (last - first) / KNOTS:.2g} s or more, or a shorter duration"
         refuse_more("smoothing", "knots", _PER_WIDTH * (last - first) / width, KNOTS, 4000.0, fix)

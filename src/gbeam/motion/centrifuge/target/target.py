@@ -224,6 +224,7 @@ class NearestLoad(Profile):
         now = as_array(t)
         flight = self.flight.series(now, order)
         xp = namespace(now, flight.value, self.idle)
+        # The load is the flight's own where `free`; it has a part across the beam, with a direction, where `bent`.
         size2, across2 = square(flight), square(flight[..., 1:])
         free = (size2.value >= (_FOLLOWED * self.idle) ** 2) & (across2.value >= (_FREE * self.least) ** 2)
         gate: Any = 1.0
