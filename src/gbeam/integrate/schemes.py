@@ -218,9 +218,9 @@ def stepped(equations: NonlinearEquations, scheme: Scheme, steps: Any, n: int) -
     residual = equations.residual
     if scheme.exponent is None or not equations.vibrates or holds_jax(residual):
         return residual
-    still = each_leaf(lambda leaf: np.zeros(np.shape(leaf)), equations.drive(steps.first[:1]))
+    no_drive = each_leaf(lambda leaf: np.zeros(np.shape(leaf)), equations.drive(steps.first[:1]))
     zero = np.zeros((1, n))
-    stiffness, damping, mass = (symmetric(slope[0]) for slope in slopes(residual, zero, zero, zero, still))
+    stiffness, damping, mass = (symmetric(slope[0]) for slope in slopes(residual, zero, zero, zero, no_drive))
     return Fitted(residual, *to_modes(scheme.exponent, steps.longest, mass, damping, stiffness))
 
 

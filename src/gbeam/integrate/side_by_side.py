@@ -302,8 +302,8 @@ def _fitted(runs: Sequence[Run], residuals: Residuals) -> Residuals:
         return residuals
     form, axes, leaves = residuals
     zero, first = np.zeros((len(runs), len(runs[0].q))), runs[0].steps.first[:1]
-    still = jax.tree.map(lambda leaf: np.zeros((len(runs), *np.shape(leaf)[1:])), equations.drive(first))
-    k, c, m = (symmetric(np.asarray(slope)) for slope in _slopes(*residuals, zero, zero, zero, still))
+    no_drive = jax.tree.map(lambda leaf: np.zeros((len(runs), *np.shape(leaf)[1:])), equations.drive(first))
+    k, c, m = (symmetric(np.asarray(slope)) for slope in _slopes(*residuals, zero, zero, zero, no_drive))
     added_terms = to_modes(exponent, [run.steps.longest for run in runs], m, c, k)
     leaves, form = jax.tree.flatten(Fitted(jax.tree.unflatten(form, leaves), *added_terms))
     return form, (*axes, 0, 0), leaves

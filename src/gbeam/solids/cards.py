@@ -18,7 +18,7 @@ from gbeam.solids.texts import ABAQUS, NASTRAN, TextMesh, alike, ending_of, memb
 
 Options = Mapping[str, str]
 Rows = list[list[str]]
-Nodes = list[tuple[int, ...]]
+Nodes = list[tuple[int, ...]]  # of elements
 
 
 class Lump(NamedTuple):
@@ -190,26 +190,26 @@ class _Abaqus(Cards):
             if word in self.words:
                 name = f"*{word} {options.get('ELSET', options.get('NSET', ''))}".strip()
                 group = [[options["ELSET"]]] if "ELSET" in options else []
-                on = [self.mesh.elements[number][1] for number in members(group, self.mesh.groups)]
-                getattr(self, f"_{word.lower().replace(' ', '_')}")(name, options, rows, on)
+                elements = [self.mesh.elements[number][1] for number in members(group, self.mesh.groups)]
+                getattr(self, f"_{word.lower().replace(' ', '_')}")(name, options, rows, elements)
 
-    def _mass(self, name: str, _: Options, rows: Rows, on: Nodes) -> None:
-        self.lumps += [Lump(name, nodes[0], float(rows[0][0]), np.zeros(3), np.zeros((3, 3))) for nodes in on]
+    def _mass(self, name: str, _: Options, rows: Rows, elements: Nodes) -> None:
+        self.lumps += [Lump(name, nodes[0], float(rows[0][0]), np.zeros(3), np.zeros((3, 3))) for nodes in elements]
 
-    def _rotary_inertia(self, name: str, options: Options, rows: Rows, on: Nodes) -> None:
+    def _rotary_inertia(self, name: str, options: Options, rows: Rows, elements: Nodes) -> None:
         moments = [float(cell or 0) for cell in rows[0]]
         if any(moments[3:]) or "ORIENTATION" in options:
             raise refused(name, "has products of inertia, or axes of its own")
-        self.lumps += [Lump(name, nodes[0], 0.0, np.zeros(3), np.diag(moments[:3])) for nodes in on]
+        self.lumps += [Lump(name, nodes[0], 0.0, np.zeros(3), np.diag(moments[:3])) for nodes in elements]
 
-    def _spring(self, name: str, options: Options, rows: Rows, on: Nodes) -> None:
-        count = {len(nodes) for nodes in on}
+    def _spring(self, name: str, options: Options, rows: Rows, elements: Nodes) -> None:
+        count = {len(nodes) for nodes in elements}
         ways = {int(float(cell or 0)) for cell in rows[0][: max(count, default=1)]}
         axial = not ways <= {*range(1, 7)}
         if len(ways) != 1 or len(count) > 1 or axial or {"ORIENTATION", "NONLINEAR"} & {*options}:
             raise refused(name, "joins unlike components, is not linear, or has axes of its own")
         stiffness = float(rows[1][0]) * np.eye(6)[min(ways) - 1]
-        self.springs += [Spring(name, nodes, stiffness) for nodes in on]
+        self.springs += [Spring(name, nodes, stiffness) for nodes in elements]
 
     def _rigid_body(self, name: str, options: Options, *_: Any) -> None:
         group = alike(self.mesh.sets, options.get("NSET", ""))
@@ -238,9 +238,9 @@ class _Abaqus(Cards):
         name, node, weights = self._surface()
         self.mean[name] = node, weights
 
-    def _distributing_coupling(self, name: str, _: Options, rows: Rows, on: Nodes) -> None:
+    def _distributing_coupling(self, name: str, _: Options, rows: Rows, elements: Nodes) -> None:
         pairs = ((number, row[1]) for row in rows for number in members([row[:1]], self.mesh.sets))
-        self.mean[name] = on[0][0], {number: float(weight) for number, weight in pairs}
+        self.mean[name] = elements[0][0], {number: float(weight) for number, weight in pairs}
 
 
 def _surface(mesh: TextMesh, name: str) -> dict[int, float]:
@@ -255,12 +255,12 @@ def _surface(mesh: TextMesh, name: str) -> dict[int, float]:
     weights = dict[int, float]()
     for part, *face in rows:
         for number in members([[part]], mesh.groups):
-            kind, on = mesh.elements[number]
+            kind, nodes = mesh.elements[number]
             if DIMENSIONS[kind] == 3:
-                on = tuple(on[i] for i in on_face(kind, int(face[0][1:]) - 1)[:8])
+                nodes = tuple(nodes[i] for i in on_face(kind, int(face[0][1:]) - 1)[:8])
             elif face and face[0].upper() not in ("SPOS", "SNEG", "S1", "S2"):
                 raise refused(f"surface {name!r}", f"has the edge {face[0]} of a shell", "give its nodes")
-            areas = shared_area(SHAPES[2][len(on)], np.array([mesh.nodes[node] for node in on]))
-            for node, area in zip(on, areas, strict=True):
+            areas = shared_area(SHAPES[2][len(nodes)], np.array([mesh.nodes[node] for node in nodes]))
+            for node, area in zip(nodes, areas, strict=True):
                 weights[node] = weights.get(node, 0.0) + area
     return weights

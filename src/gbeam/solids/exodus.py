@@ -41,8 +41,8 @@ def read_exodus(path: Path) -> TextMesh:
     blocks = dict(_numbered(stored, "connect"))
     ends = np.cumsum([0, *(len(block.values) for block in blocks.values())])
     numbers = _numbers(stored, "elem", int(ends[-1]))
-    for (k, (values, of)), first in zip(blocks.items(), ends, strict=False):
-        kind = _kind(of, values.shape[1])
+    for (k, (values, element_type)), first in zip(blocks.items(), ends, strict=False):
+        kind = _kind(element_type, values.shape[1])
         nodes = np.asarray(values, dtype=int)[:, EXODUS_ORDER.get(kind, slice(None))] - 1
         named = np.array(numbers[first : first + len(nodes)], dtype=int)
         mesh.cells.append(Cells(kind, nodes, DIMENSIONS[kind], named))

@@ -51,7 +51,7 @@ class NodalStress(Value):
 
     @classmethod
     def of(cls, mesh: Any, shapes: Floats) -> Self:
-        """Stresses of a mesh."""
+        """Stresses in shapes (k, 3, n) of nodes, extrapolated to these, and averaged over elements of one material."""
         from scipy.sparse import csr_array
 
         count, names, n = len(mesh.points), _materials(mesh), shapes.shape[-1]
@@ -60,8 +60,8 @@ class NodalStress(Value):
         no_flags = np.zeros(len(known), dtype=bool)
         empty = cls(mesh, shapes, hull(mesh.points), known, np.empty((0, 6, n)), n, known[:0], no_flags)
         total, shared = np.zeros((len(known), 6, n)), np.zeros(len(known))
-        for pairs_of, stresses in empty.elements(mesh.blocks):
-            pair, stress = pairs_of.ravel(), stresses.reshape(-1, 6, n)
+        for element_pairs, stresses in empty.elements(mesh.blocks):
+            pair, stress = element_pairs.ravel(), stresses.reshape(-1, 6, n)
             met, place = np.unique(pair, return_inverse=True)
             sums = csr_array((np.ones(len(pair)), (place, np.arange(len(pair)))), shape=(len(met), len(pair)))
             total[met] += (sums @ stress.reshape(len(pair), -1)).reshape(len(met), *stress.shape[1:])
@@ -70,7 +70,7 @@ class NodalStress(Value):
         return replace(whole, felt_at=whole.most(np.arange(len(known))))
 
     def most(self, pairs: Indices) -> Indices:
-        """Those of `pairs` at which the von Mises stress of one coordinate or another is largest."""
+        """Pairs, among `pairs`, at which the von Mises stress of one coordinate or another is largest."""
         sizes = von_mises(np.moveaxis(self.every_table[pairs], 1, 2))
         return np.asarray(pairs[np.unique(sizes.argmax(axis=0))])
 
