@@ -12,6 +12,7 @@ from gbeam.results.criteria import Limits
 def respond(structure: gb.Structure, motion: gb.Flight) -> None:
     """The first call is right; the others are misspelt or of a wrong type."""
     gb.simulate(structure, motion, duration=10.0, step=1e-3, parameters={"beta": 0.3}, initial="undeformed")
+    gb.simulate(structure, motion, duration="10 s", step="1 ms", tolerance="0.5 %")
     gb.simulate(structure, motion, duratoin=10.0)  # type: ignore[call-overload]
     gb.simulate(structure, motion, duration=[10.0])  # type: ignore[call-overload]
     gb.simulate_batch([(structure, motion)], duration=1.0, stpe=0.1)  # type: ignore[call-arg]
@@ -51,6 +52,7 @@ def choose(beam: gb.Beam, flight: gb.Flight, case: gb.Case) -> None:
 def imitate(case: gb.Case, flight: gb.Response, spun: gb.Response, machine: gb.Centrifuge) -> None:
     """Limits of acceptance and their settings, and how a place is judged."""
     gb.compare(flight, spun, accept={"tip": 0.02, "srs": (0.7, 1.5), "damage": 2.0}, tolerance_of="instant")
+    gb.compare(flight, spun, accept={"tip": "2 %", "srs": "3 dB", "damage": [0.5, 2.0]})
     gb.compare(flight, spun, accept={"tipp": 0.02})  # type: ignore[arg-type]
     gb.compare(flight, spun, accept={"tip": (0.5, 2.0)})  # type: ignore[arg-type]
     gb.compare(flight, spun, tolerance_of="moment")  # type: ignore[arg-type]

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 
 Limit = float | tuple[float, float]
 Value = tuple[float, str]  # and where it occurs
-Band = float | tuple[float, float] | list[float]  # a limit either way, or the least and the largest
+Share = float | str  # text such as "2 %"
+Band = Share | tuple[Share, Share] | list[Share]  # a limit either way, or the least and the largest, such as "3 dB"
 STRESS_AT = "stress_at"
 _AtPoint = Literal["damage_at", "stress_at"]
 AT_POINTS: tuple[_AtPoint, ...] = get_args(_AtPoint)  # settings that name a point with a stress
@@ -325,31 +326,31 @@ def _damage(judged: Judged) -> Iterator[Value]:
 class Limits(TypedDict, total=False):
     """Limits of acceptance by name, as :func:`gbeam.compare` takes them."""
 
-    tip: Annotated[float, Rule(
+    tip: Annotated[Share, Rule(
         "largest change of the tip's peak displacement", "most", 0.02, _change("tip"), needs=DISPLACEMENT
     )]
-    root_force: Annotated[float, Rule(
+    root_force: Annotated[Share, Rule(
         "largest change of the peak force at the root", "most", 0.05, _change("root_force")
     )]
-    root_moment: Annotated[float, Rule(
+    root_moment: Annotated[Share, Rule(
         "largest change of the peak moment at the root", "most", 0.05, _change("root_moment")
     )]
-    stress: Annotated[float, Rule(
+    stress: Annotated[Share, Rule(
         "largest change of the peak stress, anywhere or at stress_at", "most", 0.05, _stress, needs=STRESS
     )]
-    largest_load: Annotated[float, Rule(
+    largest_load: Annotated[Share, Rule(
         "largest change of the largest load anywhere on the specimen, which is that of the machine's whole run, "
         "spin-up and spin-down included",
         "most", 0.1, _change("largest_load"), response=False,
     )]
-    peaks: Annotated[float, Rule(
+    peaks: Annotated[Share, Rule(
         "largest error of any peak of the flight's load above idle, as a vector", "most", 0.03, _peaks, response=False
     )]
-    spread: Annotated[float, Rule(
+    spread: Annotated[Share, Rule(
         "largest difference of the load at the root or the tip from the control point's at these peaks",
         "most", 0.1, _spread, response=False,
     )]
-    followed: Annotated[float, Rule(
+    followed: Annotated[Share, Rule(
         "least share of the flight's time that must be followed", "least", 0.7, _followed, response=False
     )]
     srs: Annotated[Band, Rule(
@@ -369,7 +370,7 @@ class Limits(TypedDict, total=False):
 class Acceptance(Limits, total=False):
     """Limits of acceptance and their settings, as a case has them for one centrifuge."""
 
-    tolerance: float
+    tolerance: Share
     tolerance_of: ToleranceOf
     point: str
     control: Mapping[str, float]

@@ -20,19 +20,19 @@ NO_LOADS = "no loads are computed, nor whether the material yields: the settings
 
 
 class Settings(TypedDict, total=False):
-    """Keywords of :class:`ResponseSettings`, as :func:`gbeam.simulate` takes them."""
+    """Keywords of :class:`ResponseSettings`, as :func:`gbeam.simulate` takes them; quantities may be text."""
 
-    duration: float
-    start: float
-    step: float | None
+    duration: float | str
+    start: float | str
+    step: float | str | None
     integrator: Integrator | None
     parameters: Mapping[Parameter, float]
-    tolerance: float
-    residual_from: float | None
+    tolerance: float | str
+    residual_from: float | str | None
     initial: Initial | State
     estimate: bool
     loads: bool
-    histories: float | None
+    histories: float | str | None
 
 
 @typed

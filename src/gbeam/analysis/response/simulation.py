@@ -132,4 +132,4 @@ def settings_of(settings: ResponseSettings | None, options: Settings) -> Respons
         return settings
     if "duration" not in options:
         raise InputError("duration", "is missing", "give the response's, s, or settings")
-    return ResponseSettings(**options)
+    return ResponseSettings(**dict[str, Any](options))  # which reads texts
