@@ -61,7 +61,7 @@ class _InEnvironments(Value):
     motions: Mapping[str, Motion]
     response: ResponseSettings | None
     accept: Mapping[str, Acceptance]
-    no_beam: ClassVar[tuple[str, str]] = ("", "")  # why it is none, and what to ask in place of what is of one beam
+    no_beam: ClassVar[tuple[str, str]] = ("", "")  # problem and fix of the error of `one_beam`
 
     def __post_init__(self, read_from: AnyScenario | None) -> None:
         if read_from is not None and not hasattr(type(read_from), "model_fields"):  # pydantic's, not imported for it
@@ -73,10 +73,10 @@ class _InEnvironments(Value):
         object.__setattr__(self, "scenario", read_from)
 
     def __repr__(self) -> str:
-        motions = ", ".join(f"{name}: {each.kind}" if each else name for name, each in self.environments.items())
-        of = self.model.kind if isinstance(self, Case) else repr(self.assemble())  # type: ignore[attr-defined]
-        lasting = "" if self.response is None else f", {self.response.duration:g} s"
-        return f"{type(self).__name__}({self.title!r}, {of}, {{{motions}}}{lasting})"
+        motions = ", ".join(f"{name}: {motion.kind}" if motion else name for name, motion in self.environments.items())
+        subject = self.model.kind if isinstance(self, Case) else repr(self.assemble())  # type: ignore[attr-defined]
+        duration = "" if self.response is None else f", {self.response.duration:g} s"
+        return f"{type(self).__name__}({self.title!r}, {subject}, {{{motions}}}{duration})"
 
     @property
     def automatic(self) -> bool:
@@ -113,14 +113,14 @@ class _InEnvironments(Value):
             raise InputError("motion", "is missing", fix)
 
     def _stress_limits(self, lacking: Mapping[str, str]) -> Iterator[tuple[str, str]]:
-        """Places and points of the limits on stress; InputError of a limit of what is lacking."""
+        """Yield place in the scenario and point of every limit on stress; InputError for limits on what is lacking."""
         for name, limits in self.accept.items():
             where = f"motion.{name}.accept"
             refuse_lacking(where, limits, lacking)
             yield from ((f"{where}.{key}", limits[key]) for key in AT_POINTS if limits.get(key) is not None)
 
     def one_beam(self, where: str, what: str) -> Case:
-        """Refuse an answer, `what`, that is of one beam, by an error at `where`; return the case where it is of one."""
+        """Return the case if it is of one beam; else raise InputError at `where`: the answer `what` needs a beam."""
         problem, fix = self.no_beam
         raise InputError(where, f"{problem}, and {what} is of one beam", fix)
 
@@ -392,7 +392,7 @@ AnyCase = Case | SpecimenCase | SystemCase
 
 
 def extent_of(specimen: Beam | Structure | System) -> dict[str, Any]:
-    """Argument of :func:`gbeam.plan` that says where a specimen is, undeformed; none of bare matrices, which do not."""
+    """Argument of :func:`gbeam.plan` for the extent of an undeformed specimen; none for matrices, which have none."""
     if isinstance(specimen, Beam):
         return {"beam": specimen}
     if isinstance(specimen, System):
@@ -438,11 +438,11 @@ def describe(case: Case | SpecimenCase | SystemCase) -> Description | SpecimenDe
         system, doubts = case.system, [case.system.warnings]
         return SystemDescription(
             bodies={name: _body(system, name) for name in system.order},
-            joints={name: _joint(each) for name, each in system.joints.items()},
-            forces={name: ForceOfSystem(each.on, each.follower) for name, each in system.forces.items()},
+            joints={name: _joint(joint) for name, joint in system.joints.items()},
+            forces={name: ForceOfSystem(force.on, force.follower) for name, force in system.forces.items()},
             controllers={
-                name: ControllerOfSystem(tuple(each.measure), tuple(each.drive), each.sample, each.delay)
-                for name, each in system.controllers.items()
+                name: ControllerOfSystem(tuple(law.measure), tuple(law.drive), law.sample, law.delay)
+                for name, law in system.controllers.items()
             },
             gravity=None if system.gravity is None else tuple(map(float, system.gravity)),  # type: ignore[arg-type]
             **_described(case, doubts),
@@ -452,7 +452,7 @@ def describe(case: Case | SpecimenCase | SystemCase) -> Description | SpecimenDe
     doubts = [input_warnings(structure, motion, name=name, span=span) for name, motion in case.motions.items()]
     doubts = doubts or [input_warnings(structure)]
     if isinstance(case, SpecimenCase):
-        total, *moment = (float(each) for each in structure.coefficients.rigid[:4])
+        total, *moment = (float(value) for value in structure.coefficients.rigid[:4])
         return SpecimenDescription(
             name=case.name,
             kind=structure.kind,
@@ -465,7 +465,7 @@ def describe(case: Case | SpecimenCase | SystemCase) -> Description | SpecimenDe
         )
     beam = case.beam
     frequencies, modes = structure.rest
-    # Which group of coordinates moves most says along which axis a mode bends.
+    # A mode bends along the axis of the group of coordinates that moves most.
     groups = np.repeat(FAMILIES, structure.counts)
     rule = quadrature(beam.length, 4, beam.section.stations)
     return Description(
@@ -486,7 +486,7 @@ def _described(case: AnyCase, doubts: Sequence[Sequence[str]]) -> dict[str, Any]
     settings = None if case.response is None else case.response.chosen(free=free)
     over_time: dict[str, Any] = {}
     if settings is not None:
-        over_time = {each: getattr(settings, each) for each in ("start", "duration", "step", "integrator")}
+        over_time = {key: getattr(settings, key) for key in ("start", "duration", "step", "integrator")}
         doubts = (*doubts, settings.warnings)
     return dict(
         title=case.title,
@@ -498,7 +498,7 @@ def _described(case: AnyCase, doubts: Sequence[Sequence[str]]) -> dict[str, Any]
             if isinstance(motion, Flight) and motion.record is not None
         },
         **over_time,
-        warnings=tuple(dict.fromkeys(warning for each in doubts for warning in each)),
+        warnings=tuple(dict.fromkeys(warning for warnings in doubts for warning in warnings)),
     )
 
 
@@ -511,5 +511,5 @@ def _body(system: System, name: str) -> BodyOfSystem:
 
 def _joint(joint: Joint) -> JointOfSystem:
     driven, prescribed = tuple(joint.efforts), tuple(joint.rates)
-    moving = (each for each in joint.rate_names if each not in (*driven, *prescribed))
+    moving = (kind for kind in joint.rate_names if kind not in (*driven, *prescribed))
     return JointOfSystem(joint.kind, joint.body, joint.on, tuple(moving), driven, prescribed)

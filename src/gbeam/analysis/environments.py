@@ -1,4 +1,4 @@
-"""A whole case answered: the response in every environment, and the comparisons of those that track one another."""
+"""A whole case: the response in every environment, and the comparison of each centrifuge with the flight it tracks."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def study(case: Case | SpecimenCase | SystemCase, progress: Progress = None) -> 
 def study_of(
     case: AnyCase, responses: Mapping[str, Any], failures: Mapping[str, Failure] = MappingProxyType({})
 ) -> Any:
-    """The study of responses that are computed: those of a centrifuge and its flight are compared."""
+    """Study made of responses by name, with a comparison for each centrifuge and its flight that are both done."""
     if not responses:
         first = next(iter(failures.values()))
         raise ComputationError(
@@ -87,7 +87,7 @@ def study_of(
         )
 
     if case.sensors:
-        responses = {name: replace(each, readings=_readings(each, case.sensors)) for name, each in responses.items()}
+        responses = {name: replace(run, readings=_readings(run, case.sensors)) for name, run in responses.items()}
 
     def compared(name: str, flight: str) -> Comparison:
         settings = judging(case.accept.get(name, {})) | {"sensors": case.sensors}
@@ -98,25 +98,25 @@ def study_of(
         for name, flight in case.tracks.items()
         if {flight, name} <= responses.keys() and responses[flight].outcome == responses[name].outcome == "done"
     )
-    of = SystemStudy if isinstance(case, SystemCase) else Study
-    return of(case.title, dict(responses), comparisons, dict(failures), provenance=case.provenance)
+    kind = SystemStudy if isinstance(case, SystemCase) else Study
+    return kind(case.title, dict(responses), comparisons, dict(failures), provenance=case.provenance)
 
 
 def _readings(response: Response | SystemResponse, sensors: Mapping[str, Sensor]) -> Readings | None:
     """Readings of accelerometers; None in a response that is not done or has no accelerations."""
     if response.outcome != "done" or getattr(response, "accelerations", ()) is None:
         return None
-    read = []
+    readings = []
     for point, sensor in sensors.items():
         with placing_within(f"sensors.{point}"):
-            read.append(response.reading_at(point, sensor))
-    value, time = np.stack([vector_peaks(response.time, each) for each in read], axis=1)
+            readings.append(response.reading_at(point, sensor))
+    value, time = np.stack([vector_peaks(response.time, reading) for reading in readings], axis=1)
     peaks = VectorPeaks(Extremes(value[:, :3], time[:, :3]), Extremes(value[:, 3], time[:, 3]))
-    return Readings(tuple(sensors), np.stack(read, axis=1), peaks)
+    return Readings(tuple(sensors), np.stack(readings, axis=1), peaks)
 
 
 def _answers(case: AnyCase, progress: Progress) -> tuple[dict[str, Any], dict[str, Failure]]:
-    """The responses in all environments, and why some have none."""
+    """Responses by environment, and the failures of those that have no start to run from."""
     structure: Any = case.assemble()
 
     def answer(name: str) -> Response | SystemResponse:

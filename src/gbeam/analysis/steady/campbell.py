@@ -29,13 +29,13 @@ from gbeam.progress import Progress, tell
 from gbeam.results.errors import PARTS, ErrorEstimate, FrequencyErrors
 from gbeam.results.modal import Campbell, Crossing
 
-CONFIDENT = 0.9  # a mode that resembles itself less from one speed to the next is looked at in between
+CONFIDENT = 0.9  # MAC: a mode less like itself from one speed to the next is looked at in between
 SURE = 0.95  # of a critical speed: nearer, a frequency goes to zero and has no relative error
-DEPTH = 8  # halvings of a step at most: what veers faster is a crossing to every eye
+DEPTH = 8  # halvings of a step at most: faster veering looks like a crossing
 
 
 class _Speed(NamedTuple):
-    """Modes at one speed, and the measure of the coordinates."""
+    """Oscillating modes at one speed, rad/s: frequencies, Hz, damping ratios, coordinates (k, n), and M."""
 
     rate: float
     frequency: Floats
@@ -46,17 +46,17 @@ class _Speed(NamedTuple):
     modes: Complex
 
     def direction(self, which: Any) -> tuple[str, ...]:
-        """Directions in which some of the modes move most."""
+        """Directions in which the modes chosen by an index move most."""
         return self.state.directions(self.modes[:, which])
 
 
 def _paired(before: _Speed, after: _Speed) -> tuple[np.ndarray, Floats]:
-    """For each mode of `before` the one of `after` that resembles it most, −1 for none, and their MAC."""
+    """For each mode of `before` the index of the most similar one of `after`, −1 for none, and their MAC."""
     return matched(mac(before.coordinates, after.coordinates, after.mass))
 
 
 def _fill(at: Callable[[float], _Speed], low: _Speed, high: _Speed, count: int, depth: int) -> list[_Speed]:
-    """Speeds between two at which the first `count` modes can be recognised from one to the next."""
+    """Speeds between two, by halving, such that the first `count` modes are recognised from each to the next."""
     _, alike = _paired(low, high)
     if depth == 0 or np.nanmin(alike[:count], initial=1.0) > CONFIDENT:
         return []
@@ -153,7 +153,7 @@ def campbell(
     def point_at(rate: float) -> Any:
         return path(structure, rate)
 
-    @cache  # crossings ask for speeds beside them that are known
+    @cache  # crossings ask again for speeds beside them
     def at(rate: float) -> _Speed:
         tell(progress, f"frequencies at {rate:.4g} rad/s", (rate - start) / (end - start))
         state = point_at(rate)
@@ -177,23 +177,23 @@ def campbell(
     frequency, damping, alike = np.full((3, len(followed), kept), np.nan)
     track = np.arange(kept)
     index = [track]
-    for i, at_speed in enumerate(followed):
+    for i, speed in enumerate(followed):
         if i == 0:
-            value = np.ones(kept)
+            likeness = np.ones(kept)
         else:
-            match, likeness = _paired(followed[i - 1], at_speed)
-            value = np.where(track >= 0, likeness[track], np.nan)
+            match, of_all = _paired(followed[i - 1], speed)
+            likeness = np.where(track >= 0, of_all[track], np.nan)
             track = np.where(track >= 0, match[track], -1)
             index.append(track)
         valid = track >= 0
-        frequency[i, valid], damping[i, valid] = at_speed.frequency[track[valid]], at_speed.damping_ratio[track[valid]]
-        alike[i] = value
+        frequency[i, valid], damping[i, valid] = speed.frequency[track[valid]], speed.damping_ratio[track[valid]]
+        alike[i] = likeness
     rates = np.array([speed.rate for speed in followed])
     met = [
-        each
+        crossing
         for k in range(kept)
         for order in orders
-        for each in _crossings(at, followed, index, rates, frequency[:, k], k, order)
+        for crossing in _crossings(at, followed, index, rates, frequency[:, k], k, order)
     ]
     crossings, errors = [crossing for crossing, _, _ in met], unknown_errors(structure, kept)
     if judgeable(structure):
@@ -212,15 +212,15 @@ def campbell(
     if isinstance(structure, System):
         doubts = lost.warnings
     else:
-        fast = point_at(last).base if structure.unstiffened else None  # where most is left out
+        fast = point_at(last).base if structure.unstiffened else None  # where the missing stiffness is largest
         doubts = input_warnings(structure, motion, name=name, base=fast)
     warnings = doubts + (() if errors is None else doubtful(errors))
     warnings += doubtful_crossings(crossings, "" if errors is None else errors.theory)
     if (more := len(coarse[-1].frequency) - len(coarse[0].frequency)) > 0:
-        what = "a motion begins" if more == 1 else f"{more} motions begin"
-        warnings += (f"{what} to oscillate as it turns faster, and is not followed from {start:g} rad/s: begin later",)
+        begun = "a motion begins" if more == 1 else f"{more} motions begin"
+        warnings += (f"{begun} to oscillate as it turns faster, and is not followed from {start:g} rad/s: begin later",)
     if lost.value is not None:
-        warnings += tuple(each for each in lost.warnings if each not in warnings)
+        warnings += tuple(warning for warning in lost.warnings if warning not in warnings)
     return Campbell(
         motion=name,
         model=structure.kind,
@@ -238,14 +238,14 @@ def campbell(
 
 
 def _errors(richer: Richer, point: Any, speed: _Speed, track: np.ndarray) -> FrequencyErrors:
-    """Errors of the modes followed, at one speed; NaN for those that no longer oscillate."""
+    """Errors of the followed modes at one speed, by their indices `track`; NaN for those that no longer oscillate."""
     oscillating = track >= 0
     chosen = track[oscillating]
     value = 2j * np.pi * speed.frequency[chosen]
     errors = richer.errors(point, value, speed.coordinates[chosen])
-    every = np.full((len(PARTS), len(track)), np.nan)
-    every[:, oscillating] = [*errors.parts.values()]
-    parts: dict[str, Any] = dict(zip(PARTS, every, strict=True))
+    table = np.full((len(PARTS), len(track)), np.nan)
+    table[:, oscillating] = [*errors.parts.values()]
+    parts: dict[str, Any] = dict(zip(PARTS, table, strict=True))
     return replace(errors, **parts)
 
 
@@ -258,7 +258,7 @@ def _crossings(
     track: int,
     order: int,
 ) -> list[tuple[Crossing, Complex, float]]:
-    """Speeds at which a followed mode meets an engine order, with the mode and its frequency's slope there."""
+    """Crossings of a followed mode and an engine order, each with the mode (n,) and its frequency's slope there."""
     from scipy.optimize import brentq
 
     gap = frequency - order * rates / (2 * np.pi)
@@ -267,6 +267,7 @@ def _crossings(
         mode = speeds[i].coordinates[index[i][track]][None]
 
         def difference(rate: float, mode: Complex = mode) -> float:
+            """Frequency of the mode most like this one, less that of the order, Hz."""
             speed = at(rate)
             like = int(mac(mode, speed.coordinates, speed.mass)[0].argmax())
             return float(speed.frequency[like] - order * rate / (2 * np.pi))
@@ -274,7 +275,7 @@ def _crossings(
         ends = difference(rates[i]), difference(rates[i + 1])
         if ends[0] * ends[1] <= 0:
             rate = brentq(difference, float(rates[i]), float(rates[i + 1]), xtol=1e-10, maxiter=200)
-        else:  # the mode veers within the step: keep what the curve says
+        else:  # the mode veers within the step: interpolate the curve
             rate = rates[i] - gap[i] * (rates[i + 1] - rates[i]) / (gap[i + 1] - gap[i])
         speed = at(rate)
         like = int(mac(mode, speed.coordinates, speed.mass)[0].argmax())
@@ -287,17 +288,21 @@ def _crossings(
 def crossing_errors(
     crossing: Crossing, mode: Complex, slope: float, richer: Richer, point_at: Callable[[float], Any]
 ) -> ErrorEstimate:
-    """Errors of a crossing's speed, by the mode (n,) of richer models at the same multiple; infinite if not near."""
+    """Errors of a crossing's speed, by those at which richer models' modes most like `mode` (n,) meet the same order;
+    infinite if they do not meet it near.
+    """
     speed, order = crossing.speed, crossing.order
 
     def gaps(rate: float) -> list[float]:
-        """Gaps of the same model with more shapes, of the exact one, and of one with coarser meshes, rad/s."""
-        return [float(each[0]) - order * rate for each in richer.references(point_at(rate), mode[None])]
+        """Frequency less order × rate, rad/s, of the same model with more shapes, the exact one, and coarser meshes."""
+        return [float(frequency[0]) - order * rate for frequency in richer.references(point_at(rate), mode[None])]
 
     first = gaps(speed)
 
     def root(which: int) -> float:
-        """By a step of Newton's with the model's own slope; where that is a long one, one of the secant method more."""
+        """Speed of the crossing by one of these models: a Newton step with the judged model's slope and, if that is
+        long, a secant step.
+        """
         near = speed - first[which] / (slope - order)
         if not 0 < near < math.inf or abs(near / speed - 1) < LIMIT:
             return near if near > 0 else math.inf
@@ -311,18 +316,18 @@ def crossing_errors(
     exact = root(1)
     same = exact if richer.same is richer.exact else root(0)
     model = richer.of_model(apart(same, exact))
-    away = ErrorEstimate(0.0, apart(speed, same), model, total=apart(speed, exact))
+    estimate = ErrorEstimate(0.0, apart(speed, same), model, total=apart(speed, exact))
     share = float(richer.by_theory(point_at(speed), mode[None]).shares[0])
     mesh = math.nan if richer.rough is None else apart(root(2), speed)
-    return away.adding(beam_theory=share * order / abs(slope - order), mesh=mesh)
+    return estimate.adding(beam_theory=share * order / abs(slope - order), mesh=mesh)
 
 
 def doubtful_crossings(crossings: Sequence[Crossing], theory: str) -> tuple[str, ...]:
-    """Warn of speeds of crossings that are wrong by more than one in a hundred."""
-    above = [each for each in crossings if each.errors.total > LIMIT]
+    """Warn of crossings whose speeds are wrong by more than one in a hundred."""
+    above = [crossing for crossing in crossings if crossing.errors.total > LIMIT]
     if not above:
         return ()
-    worst = max(above, key=lambda each: each.errors.total)
+    worst = max(above, key=lambda crossing: crossing.errors.total)
     where = f"mode {worst.track + 1} meets {worst.order} × speed"
     if len(above) > 1:
         where += f", and {len(above) - 1} more where modes meet multiples,"
@@ -337,7 +342,7 @@ _SAMPLES = 501
 
 
 def _largest(rate: Profile | None) -> float:
-    """Largest rate of a history, rad/s."""
+    """Largest absolute value of a rate's history, rad/s; InputError without one."""
     if rate is None:
         raise InputError("to", "is missing, and no rate is prescribed", "give the largest speed, such as 60 rpm")
     ends = np.append(np.asarray(rate.breaks), 0.0)

@@ -15,13 +15,13 @@ from gbeam.numerics.eigen import positive_definite, stability_margin
 from gbeam.results.parts import Base
 
 _ITERATIONS = 30  # of Newton's method
-_LOCATED, _SHORTEST = 1e-4, 1e-6  # strides, shares of the load: within which stability is lost, that are tried
-_NEAR = 1e-6  # of the beam's length: a stride that ends as near to where it started has not left the path
-_NOISE = 1e-8  # of the coordinates: smaller corrections may stand still by rounding
+_LOCATED, _SHORTEST = 1e-4, 1e-6  # strides, shares of the load: that locates a loss of stability; that is the least
+_NEAR = 1e-6  # of the beam's length: a stride that ends so near to its prediction has not left the path
+_NOISE = 1e-8  # of the coordinates: smaller corrections may not shrink, by rounding
 
 
 class Equilibrium(NamedTuple):
-    """Coordinates (n,) at which the beam rests, and whether it would stay there: see :func:`keeps`."""
+    """Coordinates (n,) at which the beam rests, and True if it would stay there: see :func:`keeps`."""
 
     q: Array
     stable: bool
@@ -78,7 +78,7 @@ def solve_equilibrium(structure: Structure, base: Base, time: float | None = Non
 
 @np.errstate(all="ignore")  # a stride may end at coordinates beyond all numbers, and then fails
 def equilibrium_about(structure: Structure, base: Base) -> tuple[Equilibrium, Coefficients]:
-    """Coordinates at which the beam rests, and the coefficients of small departures from them."""
+    """Relative equilibrium, and the coefficients about it; ComputationError if there is none."""
     values = structure.load_values
     if not structure.linear:
         return _along_a_path(structure, base, values)
@@ -103,7 +103,9 @@ def expanded(structure: Structure, q: Array) -> tuple[Coefficients, Array]:
 
 
 def _along_a_path(structure: Structure, base: Base, values: Array | None) -> tuple[Equilibrium, Coefficients]:
-    """Newton's method from the straight beam, or in shorter strides of load where one fails or leaves the path."""
+    """Equilibrium by Newton's method from the straight beam, in strides of load that are shortened where one fails, or
+    where stability is lost in a long one that ends far from its prediction.
+    """
     straight = np.zeros(structure.size)
     about = structure.coefficients
     slope = _solved(about.stiffness, about.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, values)[2])
@@ -129,12 +131,13 @@ def _along_a_path(structure: Structure, base: Base, values: Array | None) -> tup
 
 
 def _near(structure: Structure, q: Array, other: Array) -> bool:
+    """True if no station differs by more than a small share of the length between two sets of coordinates."""
     apart = structure.displacement(q) - structure.displacement(other)
     return bool(np.abs(apart).max() < _NEAR * structure.length)
 
 
 def keeps(c: Coefficients, base: Base, values: Array | None) -> bool:
-    """True if a beam keeps an equilibrium, by the coefficients about it: where loads follow it, by what may grow."""
+    """True if an equilibrium is stable, by the coefficients about it; eigenvalues decide if loads follow the beam."""
     if not c.size:
         return True  # nothing deforms
     mass, velocity, stiffness = map(np.asarray, (c.mass, *c.frozen(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, values)))
@@ -144,8 +147,8 @@ def keeps(c: Coefficients, base: Base, values: Array | None) -> bool:
 def _newton(
     structure: Structure, base: Base, values: Array | None, share: float, q: Array
 ) -> tuple[Array, Array, Coefficients, bool]:
-    """Solve at a share of loads and accelerations (rates by its root); returns q, tangent stiffness, coefficients and
-    whether it converged: corrections that do not shrink may lead far away, and fail.
+    """Solve at a share of loads and accelerations (of rates its root); return q, tangent stiffness, coefficients, and
+    True if it converged. Corrections that do not shrink count as a failure: they may lead far away.
     """
     frozen = share * base.a_WO_B, np.sqrt(share) * base.w_WB_B, share * base.alpha_WB_B
     loads = None if values is None else share * values
@@ -166,6 +169,7 @@ def _newton(
 
 
 def _solved(matrix: Array, right: Array) -> Array:
+    """Solution of linear equations, NaN if they are singular."""
     try:
         return np.linalg.solve(matrix, right)
     except np.linalg.LinAlgError:

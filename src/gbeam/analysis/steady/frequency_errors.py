@@ -1,8 +1,8 @@
 """Errors of frequencies: from too few shapes, of the model, and of the theory of slender beams.
 
-They are compared with those of the same model with more shapes, of the exact one, and of a thick beam beside a slender;
-of meshes and matrices, which are all that is known of what they are made of, with those of the same with more modes,
-and of meshes with those of coarser ones.
+Frequencies are compared with those of the same model with more shapes and of the exact model, and those of slender with
+those of thick beams. Those of meshes and matrices, which have no other model, are compared with the same with more
+modes, and of meshes with coarser ones.
 """
 
 from __future__ import annotations
@@ -35,30 +35,30 @@ from gbeam.mechanics.tree.system import System
 from gbeam.numerics.eigen import Steady, mac, matched
 from gbeam.results.errors import PARTS, ErrorEstimate, FrequencyErrors
 
-BENT = 0.01  # of its kinetic energy: a mode of twist with less bending is excited by nothing that bends the beam
-BY_RICHER = "errors, by richer models"  # what is being done
-SHOWN = 3  # frequencies that no model has, named at once
+BENT = 0.01  # of the kinetic energy: a mode of twist with less bending is hardly excited
+BY_RICHER = "errors, by richer models"  # words of the progress
+SHOWN = 3  # frequencies that the model lacks, named at most
 
 
 def doubtful(errors: FrequencyErrors) -> tuple[str, ...]:
-    """Warn of frequencies that are wrong by more than one in a hundred, and of those that are left out."""
-    said = []
+    """Warn of frequencies that are wrong by more than one in a hundred, and of modes that the model lacks."""
+    warnings = []
     above = np.flatnonzero(errors.total > LIMIT)
     if above.size:
         worst = int(above[errors.total[above].argmax()])
-        which = f"mode {above[0] + 1}" if len(above) == 1 else f"{len(above)} modes, from mode {above[0] + 1} on,"
+        modes = f"mode {above[0] + 1}" if len(above) == 1 else f"{len(above)} modes, from mode {above[0] + 1} on,"
         parts = ErrorEstimate(**{part: float(getattr(errors, part)[worst]) for part in PARTS})
         size = percent(float(errors.total[worst])) + " at most" * (len(above) > 1)
-        said.append(wrong_by(f"the frequency of {which}", size, parts, errors.theory))
+        warnings.append(wrong_by(f"the frequency of {modes}", size, parts, errors.theory))
     if errors.unseen:
-        named = ", ".join(f"{each:.4g}" for each in errors.unseen[:SHOWN])
+        named = ", ".join(f"{frequency:.4g}" for frequency in errors.unseen[:SHOWN])
         more = f" and {len(errors.unseen) - SHOWN} more" if len(errors.unseen) > SHOWN else ""
-        said.append(f"there are modes of bending and twist at {named} Hz{more} besides: {TORSION}")
-    return tuple(said)
+        warnings.append(f"there are modes of bending and twist at {named} Hz{more} besides: {TORSION}")
+    return tuple(warnings)
 
 
 class ByTheory(NamedTuple):
-    """Errors (k,) by the theory of slender beams, the causes of the largest, and frequencies unknown to it, Hz."""
+    """Errors (k,) by the theory of slender beams, causes of the largest, and frequencies, Hz, that it lacks."""
 
     shares: Floats
     words: str
@@ -66,14 +66,14 @@ class ByTheory(NamedTuple):
 
 
 class More(NamedTuple):
-    """A structure or a system with more shapes, and names there of coordinates that are called otherwise."""
+    """A structure or a system with more shapes, and the new names there of coordinates that are renamed."""
 
     model: Any
     renamed: Mapping[str, str]
 
 
 class Richer:
-    """Models with more shapes beside a steady state: of its kinds, exact, of thick beams; and with coarser meshes."""
+    """Richer models than a steady state's: exact or the same with more shapes, thick beams; and with coarser meshes."""
 
     def __init__(self, state: OperatingPoint | SteadySystem) -> None:
         of = state.of
@@ -105,11 +105,13 @@ class Richer:
         return FrequencyErrors(shapes, self.of_model(model), by_theory.shares, mesh, total, *by_theory[1:], note)
 
     def of_model(self, share: Any) -> Any:
-        """A model's share of an error, which is not known where no beam has a model."""
+        """Share of an error that the model has; NaN without beams, which alone have other models."""
         return share if self.theories else np.nan * share
 
     def references(self, state: Any, coordinates: Complex, *, gyroscopic: bool = True) -> tuple[Floats, Floats, Floats]:
-        """Circular frequencies (k,) with more shapes, by exact models and coarser meshes; NaN where none rests."""
+        """Circular frequencies (k,) of the modes most like these (k, n) in three models: the same with more shapes, the
+        exact one, and one with coarser meshes; NaN if a model is lacking or has no equilibrium.
+        """
 
         def reference(richer: More | None) -> Floats:
             if richer is None:
@@ -129,105 +131,108 @@ class Richer:
         return exact if self.same is self.exact else reference(self.same), exact, reference(self.rough)
 
     def by_theories(self, of: Structure | System, state: Any = None) -> tuple[list[Any], dict[str, Floats]]:
-        """Slender beams in a structure or a system, thick ones, and these with plate action as they are bent in a
-        state, or little; and its stiffness (n, n), by beam.
+        """The structure or system with slender beams, with thick ones, and with thick ones and plate action; and the
+        stiffness (n, n) of plate action by beam, bent as in a state, by default little.
         """
-        beams, plates = [], dict[str, Floats]()
-        for name, each in self.theories.items():
+        variants, plates = [], dict[str, Floats]()
+        for name, theory in self.theories.items():
             q = np.zeros(0) if state is None else state.q[deforming(state.names, name)]
-            plates[name] = each.plate(np.pad(q, (0, each.thick.size - len(q)))[None])
-            beams.append((each.slender, *each.variants(plates[name])))
+            plates[name] = theory.plate(np.pad(q, (0, theory.thick.size - len(q)))[None])
+            variants.append((theory.slender, *theory.variants(plates[name])))
         if isinstance(of, System):
-            return [with_beams(of, dict(zip(self.theories, k, strict=True))) for k in zip(*beams, strict=True)], plates
-        return [*beams[0]], plates
+            kinds = zip(*variants, strict=True)
+            return [with_beams(of, dict(zip(self.theories, beams, strict=True))) for beams in kinds], plates
+        return [*variants[0]], plates
 
     def by_theory(self, point: Any, coordinates: Complex, *, gyroscopic: bool = True) -> ByTheory:
-        """Errors of these modes' frequencies by the theory of slender beams."""
+        """Errors of the frequencies of modes (k, n) by the theory of slender beams; NaN if not known."""
         k = len(coordinates)
         if not self.theories:
             return ByTheory(np.full(k, np.nan), "", ())
         models, plates = self.by_theories(point.of, point)
         try:
-            others = [point.richer(each) for each in models]
+            states = [point.richer(model) for model in models]
             (slender, shape), (thick, deep), (plated, flat) = (
-                _oscillating(each, gyroscopic=gyroscopic) for each in others
+                _oscillating(state, gyroscopic=gyroscopic) for state in states
             )
         except (ComputationError, np.linalg.LinAlgError):
             return ByTheory(np.full(k, np.nan), "", ())
-        mass = others[1].linear.mass[point.first :, point.first :]
-        mode, shape = (
-            among(of.names, others[1].names, each) for of, each in ((point, coordinates), (others[0], shape))
-        )
+        of_slender, of_thick = states[:2]
+        mass = of_thick.linear.mass[point.first :, point.first :]
+        mode = among(point.names, of_thick.names, coordinates)
+        shape = among(of_slender.names, of_thick.names, shape)
         chosen = mac(mode, shape, mass).argmax(axis=1)
         looked = slice(None, chosen.max(initial=-1) + 1)
-        like, beside = (matched(mac(shape[looked], each, mass))[0] for each in (deep, flat))
-        pairs = (thick, like), (plated, beside)
+        like, like_plated = (matched(mac(shape[looked], other, mass))[0] for other in (deep, flat))
+        pairs = (thick, like), (plated, like_plated)
         shares = np.max([np.abs(slender[chosen] / rate[match[chosen]] - 1) for rate, match in pairs], axis=0)
-        known = [others[1].names.index(name) for name in others[0].names]
+        known = [of_thick.names.index(name) for name in of_slender.names]
         bending = deep[:, known]
-        moving = np.einsum("ki,ij,kj->k", bending.conj(), mass[np.ix_(known, known)], bending).real
-        alone = np.setdiff1d(np.arange(len(thick)), like)
-        unseen = [j for j in alone if moving[j] > BENT and thick[j] < slender[looked].max(initial=0.0)]
+        energy = np.einsum("ki,ij,kj->k", bending.conj(), mass[np.ix_(known, known)], bending).real
+        unmatched = np.setdiff1d(np.arange(len(thick)), like)
+        unseen = [j for j in unmatched if energy[j] > BENT and thick[j] < slender[looked].max(initial=0.0)]
         worst = np.zeros(0, dtype=int) if not k else np.array([np.nan_to_num(shares).argmax()])
-        words = self.in_words(others[0], others[1], mode[worst], slender[chosen[worst]], plates)
+        words = self.in_words(of_slender, of_thick, mode[worst], slender[chosen[worst]], plates)
         return ByTheory(shares, words, tuple(float(thick[j]) / (2 * np.pi) for j in unseen))
 
     def in_words(
         self, slender: Steady, thick: Steady, mode: Complex, rate: Floats, plates: Mapping[str, Floats]
     ) -> str:
-        """Causes in the energy of a mode (1, n) of thick beams, which leaves what slender ones do not have."""
+        """Causes of the beam theory's error in a mode (1, n) at a rate (1,) rad/s, in words, by its residual in the
+        equations of thick beams beyond that of slender ones.
+        """
         known = np.ix_(*[[thick.names.index(name) for name in slender.names]] * 2)
         left = np.zeros_like(mode)
-        for of, less, factor in zip(thick.linear, slender.linear, (-(rate**2), 1j * rate, np.ones(1)), strict=False):
-            beyond = np.array(of[thick.first :, thick.first :])
+        for more, less, factor in zip(thick.linear, slender.linear, (-(rate**2), 1j * rate, np.ones(1)), strict=False):
+            beyond = np.array(more[thick.first :, thick.first :])
             beyond[known] -= less[slender.first :, slender.first :]
             left += factor[:, None] * (mode @ beyond.T)
-        energies, every = dict[str, float](), dict[str, dict[str, float]]()
+        energies, by_beam = dict[str, float](), dict[str, dict[str, float]]()
         for name, theory in self.theories.items():
             columns = deforming(thick.names, name)
             p = mode[:, columns]
             energies[name] = float(np.einsum("ti,ij,tj->", p.conj(), theory.thick.coefficients.stiffness, p).real)
-            every[name] = causes(theory, p, left[:, columns], p @ plates[name])
+            by_beam[name] = causes(theory, p, left[:, columns], p @ plates[name])
         total = sum(energies.values()) or 1.0
         merged = dict.fromkeys(WORDS, 0.0)
-        for name, by in every.items():
-            for cause, share in by.items():
+        for name, shares in by_beam.items():
+            for cause, share in shares.items():
                 merged[cause] += share * energies[name] / total
         return described(self.beams[max(energies, key=energies.__getitem__)], merged)
 
 
 def among(names: Sequence[str], others: Sequence[str], modes: Complex) -> Complex:
-    """Modes (k, n) in coordinates with names, as modes in more coordinates."""
+    """Modes (k, n) in coordinates called `names`, in the coordinates `others`, which include these."""
     lifted = np.zeros((len(modes), len(others)), dtype=complex)
     lifted[:, [others.index(name) for name in names]] = modes
     return lifted
 
 
 def pole_errors(state: Any) -> tuple[Floats, FrequencyErrors]:
-    """Frequencies (k,) Hz of the poles that oscillate about a steady state, ascending, and their errors."""
+    """Frequencies (k,) Hz of the oscillating poles about a steady state, ascending, and their errors."""
     moving = state.moving
     errors = Richer(state).errors(state, moving.value, moving.modes[state.first :].T)
     return moving.frequency / (2 * np.pi), errors
 
 
 def judgeable(of: Structure | System) -> bool:
-    """True if frequencies of a structure, or of a system with some, have estimated errors."""
+    """True if errors can be estimated for a structure, or for some body of a system."""
     return bool(judged_bodies(of)) if isinstance(of, System) else of.judged
 
 
 def unknown_part(of: Structure | System) -> str:
-    """The errors of a structure or a system that are not judged, in words."""
+    """Sentence about the errors of a structure or a system that are not judged, or ""."""
     return left_unjudged(of) if isinstance(of, System) else unjudged(of)
 
 
 def unknown_errors(of: Structure | System, count: int) -> FrequencyErrors | None:
-    """No errors of so many frequencies, and why; None where there is nothing to judge."""
+    """NaN for the errors of `count` frequencies, with the reason; None if there is no reason."""
     note, unknown = unknown_part(of), np.full(count, np.nan)
     return FrequencyErrors(unknown, unknown, unknown, unknown, unknown, note=note) if note else None
 
 
 def _with_more(state: OperatingPoint | SteadySystem, *, exact: bool) -> More:
-    """More shapes than a steady state has, in exact models or in models of its own kinds."""
+    """The model of a steady state with more shapes, of its own kinds or exact."""
     if isinstance(state, SteadySystem):
         bases = state.solution.bases(judged_bodies(state.system))
         rich = richer(state.system, bases, exact=exact)
@@ -235,10 +240,10 @@ def _with_more(state: OperatingPoint | SteadySystem, *, exact: bool) -> More:
     structure, (_, along_y, along_z, *_) = state.structure, state.structure.counts
     kind, directions = "exact" if exact else structure.kind, (True, along_y > 0, along_z > 0)
     model, index = enrichment(structure, state.base).model(kind, directions=directions)
-    return More(model, {name: f"{BEAM}.q{at + 1}" for name, at in zip(state.names, index, strict=True)})
+    return More(model, {name: f"{BEAM}.q{k + 1}" for name, k in zip(state.names, index, strict=True)})
 
 
 def _oscillating(state: Steady, *, gyroscopic: bool) -> tuple[Floats, Complex]:
-    """Circular frequencies (k,) of the modes that oscillate, ascending, and the coordinates in them, (k, n)."""
+    """Circular frequencies (k,) of the oscillating modes, ascending, and their coordinates (k, n) of bodies."""
     moving = state.vibrations(gyroscopic=gyroscopic)
     return moving.frequency, moving.modes[state.first :].T

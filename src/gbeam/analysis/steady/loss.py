@@ -1,4 +1,4 @@
-"""Loss of a relative equilibrium as a load grows, and the error of where that is."""
+"""Loss of a relative equilibrium as a load or rate grows, and the error of the critical value."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from gbeam.progress import Progress, tell
 from gbeam.results.equilibrium import Critical
 from gbeam.results.errors import ErrorEstimate, along
 
-SCAN = 64  # points at which a loss is looked for before its root is closed in on
+SCAN = 64  # values at which the equilibrium is looked at before Brent's method
 
 
 class Path(Protocol):
@@ -36,6 +36,7 @@ class Path(Protocol):
 
 
 def _state(path: Path, of: Any, value: float) -> Steady | None:
+    """Steady state at a value, or None."""
     try:
         return path(of, value)
     except (ComputationError, np.linalg.LinAlgError):
@@ -43,7 +44,7 @@ def _state(path: Path, of: Any, value: float) -> Steady | None:
 
 
 def _in_turn(path: Path, of: Any, values: Sequence[float]) -> Iterator[float]:
-    """Values one after the other; a path of systems finds the states at as many as have been looked at at once."""
+    """Yield values in turn; of systems the states at the next 1, 2, 4, ... values are solved for at once before."""
     for k, value in enumerate(values):
         if isinstance(path, Turning | Loaded) and k and not k & (k - 1):
             path.ahead(of, values[k : 2 * k])
@@ -51,7 +52,7 @@ def _in_turn(path: Path, of: Any, values: Sequence[float]) -> Iterator[float]:
 
 
 def _of_system(path: Path, of: System, value: float) -> tuple[str, ...]:
-    """Warnings of a system, and of friction that holds it just below a value."""
+    """Warnings of a system, its open loops, and friction that holds it just below a critical value."""
     state: Any = _state(path, of, (1 - CLOSE) * value)
     return of.warnings + open_loops(of) + (() if state is None else state.point.sticking(of))
 
@@ -59,10 +60,11 @@ def _of_system(path: Path, of: System, value: float) -> tuple[str, ...]:
 def first_loss_along(
     path: Path, of: Structure | System, upper: float, quantity: str, unit: str, progress: Progress = None
 ) -> Critical:
-    """Raise a quantity until the relative equilibrium is lost: by a grid of 64 points, then by Brent's method."""
+    """Least value up to `upper` at which the relative equilibrium is lost, by a grid of 64 and Brent's method."""
 
     @cache
     def margin(value: float) -> float:
+        """Stability margin of the state at a value; negative where it is lost, too."""
         tell(progress, f"equilibrium, {quantity} {value:.4g} {unit}", value / upper)
         state = _state(path, of, value)
         return -1.0 if state is None else state.margin
@@ -93,7 +95,7 @@ def first_loss_along(
         grown = instabilities(beyond, beyond.moving)
         kind, direction = (grown[0].kind, grown[0].direction) if grown else ("divergence", "")
     if kind == "divergence":
-        parts = (symmetric(each) for each in (state.linear.stiffness, state.linear.mass))  # the rest stores no energy
+        parts = (symmetric(each) for each in (state.linear.stiffness, state.linear.mass))  # others store no energy
         direction = state.directions(symmetric_modes(*parts)[1][:, :1])[0]
     way = f" {along(direction)}" if direction else ""
     return answer(root, kind, direction, f"{of.kind}: {kind}{way} at {root:.6g} {unit}")
@@ -121,14 +123,14 @@ def with_frequencies(
     return replace(critical, followed=values, frequency=frequency)
 
 
-# Shares of the critical value at which richer models are looked at, from below.
+# Shares of the critical value at which richer models are tried, ascending.
 SHARES = 0.25, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.995, 1.005, 1.02, 1.05, 1.1, 1.2, 1.5, 2.0, 3.0
 HALVINGS = 16
-CLOSE = 1e-6  # of the critical value: how closely a root is found
+CLOSE = 1e-6  # of the critical value: tolerance of its root
 
 
 def judged(critical: Critical, path: Path, structure: Structure | System, progress: Progress = None) -> Critical:
-    """A critical value with its estimated errors, and warnings where they are above one in a hundred."""
+    """The critical value with errors estimated by richer models, and warnings if above one in a hundred."""
     critical = replace(critical, error_note=unknown_part(structure))
     if critical.value == 0 or not judgeable(structure):
         return critical
@@ -149,8 +151,8 @@ def judged(critical: Critical, path: Path, structure: Structure | System, progre
         doubts = doubtful_loss(critical.quantity, critical.model, errors)
         return replace(critical, errors=errors, warnings=critical.warnings + doubts)
     models, plates = richer.by_theories(structure)
-    slender, *thick = (_lost(each, path, at, progress, part=(k, count)) for k, each in enumerate(models, start=2))
-    beam_theory = max(apart(at if math.isinf(slender) else slender, each) for each in thick)
+    slender, *thick = (_lost(model, path, at, progress, part=(k, count)) for k, model in enumerate(models, start=2))
+    beam_theory = max(apart(at if math.isinf(slender) else slender, value) for value in thick)
     errors = errors.adding(beam_theory=0.0 if math.isinf(errors.model) else beam_theory)
     words = _in_words(richer, point, models, plates)
     model = "the system" if isinstance(structure, System) else critical.model
@@ -159,15 +161,15 @@ def judged(critical: Critical, path: Path, structure: Structure | System, progre
 
 
 def _errors(at: float, same: float, exact: float) -> ErrorEstimate:
-    """Errors of a critical value, by that of the same model with more shapes and by the exact one's."""
+    """Errors of a critical value by those of the same model and of the exact one, both with more shapes."""
     model, total = (math.inf, math.inf) if math.isinf(exact) else (abs(same / exact - 1), abs(at / exact - 1))
     return ErrorEstimate(0.0, abs(at / same - 1), model, total=total)
 
 
 def _in_words(richer: Richer, point: Any, models: Sequence[Any], plates: Mapping[str, Floats]) -> str:
-    """Error by the theory of slender beams in the shape with the least stiffness."""
+    """Causes of the beam theory's error, in words, by the shape with the least stiffness; "" without equilibrium."""
     try:
-        slender, thick = (point.richer(each) for each in models[:2])
+        slender, thick = (point.richer(model) for model in models[:2])
     except ComputationError:
         return ""
     stiffness, mass = symmetric(slender.linear.stiffness), symmetric(slender.linear.mass)
@@ -177,10 +179,10 @@ def _in_words(richer: Richer, point: Any, models: Sequence[Any], plates: Mapping
 
 
 def _unseen(critical: Critical, path: Path, structure: Structure | System, progress: Progress) -> tuple[str, ...]:
-    """Warn where a fuller model (twist, or more modes) loses what this one keeps, at halves of the search's end."""
+    """Warn if a richer model, with twist or more modes, loses the equilibrium before the search's end."""
     shares = tuple(2.0**-k for k in range(HALVINGS, -1, -1))
-    still: Any = path(structure, 0.0)
-    richer, lacked = Richer(still), "more modes"
+    unloaded: Any = path(structure, 0.0)
+    richer, lacked = Richer(unloaded), "more modes"
     rich = richer.exact.model
     if richer.theories:
         (_, rich, *_), lacked = richer.by_theories(structure)[0], "shear and twist"
@@ -200,8 +202,8 @@ def _lost(
     shares: Sequence[float] = SHARES,
     part: tuple[int, int] = (0, 1),
 ) -> float:
-    """Value at which a richer model loses its equilibrium; infinity where it keeps it to the last of the shares. `part`
-    is how many models were looked at before, and of how many.
+    """Value at which a richer model loses its equilibrium; infinity if it keeps it up to the last of the shares of
+    `near`. `part` is the number of models done, and of all, for the progress.
     """
 
     @cache
@@ -222,7 +224,7 @@ def _lost(
 
 
 def doubtful_loss(quantity: str, model: str, errors: ErrorEstimate, theory: str = "") -> tuple[str, ...]:
-    """Warn of a critical value with errors above one in a hundred, or that the exact model does not have."""
+    """Warn of a critical value with an error above one in a hundred, or that the richer model does not have."""
     if math.isinf(errors.total):
         return (
             f"the critical {quantity} is {model}'s own: {fuller(errors.model)} keeps its equilibrium to "

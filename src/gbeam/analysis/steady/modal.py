@@ -30,9 +30,9 @@ def modes_at(
     name: str = "",
     time: float = float("nan"),
 ) -> Modes:
-    """Modes about an operating point."""
+    """Modes about an operating point, each scaled to a largest component of one."""
     rigid = int(point.first and not np.abs(point.linear.stiffness[:, 0]).any())
-    deforming = slice(structure.resolved + point.first - rigid)  # with the hub's
+    deforming = slice(structure.resolved + point.first - rigid)  # with a sprung hub's own mode
     moving = point.vibrations(gyroscopic=gyroscopic).oscillating(deforming)
     coordinates, direction = moving.modes[point.first :], point.directions(moving.modes)
     shape = np.moveaxis(structure.station_slopes(point.q) @ coordinates, -1, 0)
@@ -146,8 +146,8 @@ def modes(
             return replace(of_system, errors=unknown_errors(structure, len(moving.value)))
         tell(progress, BY_RICHER, 0.5)
         judged = Richer(state).errors(state, moving.value, moving.modes.T, gyroscopic=gyroscopic)
-        said = doubtful(judged[~(of_system.frequency > of_system.reached)])  # of those above all is said
-        return replace(of_system, errors=judged, warnings=of_system.warnings + said)
+        doubts = doubtful(judged[~(of_system.frequency > of_system.reached)])  # modes above have their own warning
+        return replace(of_system, errors=judged, warnings=of_system.warnings + doubts)
     structure.require_coordinates()
     point = operating_point(structure, motion, time)
     warnings = input_warnings(structure, motion, name=name, span=(time, time), base=point.base)

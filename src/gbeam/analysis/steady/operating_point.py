@@ -29,8 +29,8 @@ REST = Base(*np.zeros((3, 3)))
 
 @dataclass(frozen=True, eq=False)
 class OperatingPoint(Steady):
-    """A state (y, ẏ, ÿ) at which a residual vanishes under inputs, and the motion of the base there, with a free hub if
-    it is on one; `known` are coefficients that are.
+    """A state (y, ẏ, ÿ) at which a residual vanishes under inputs, with the motion of the base, and the free hub if
+    there is one; `known` are the coefficients about it, if they have been computed.
     """
 
     structure: Structure
@@ -66,7 +66,7 @@ class OperatingPoint(Steady):
 
     @property
     def loads(self) -> Array | None:
-        """Components of the loads, (loads, 6)."""
+        """Components of the loads, (loads, 6); None without loads."""
         return self.inputs[1]
 
     @cached_property
@@ -76,8 +76,8 @@ class OperatingPoint(Steady):
         if self.structure.linear or not (self.yd[self.first :].any() or self.ydd[self.first :].any()):
             # A complete model's small departures from where it rests are a linear model about that place.
             if isinstance(residual, OnBase):
-                of = self.base.a_WO_B, self.base.w_WB_B, self.base.alpha_WB_B, self.loads
-                return Linear(self.about.mass, *self.about.at(*of)[:2], none)
+                drive = self.base.a_WO_B, self.base.w_WB_B, self.base.alpha_WB_B, self.loads
+                return Linear(self.about.mass, *self.about.at(*drive)[:2], none)
             if not self.structure.linear:
                 residual, q = OnHub(residual.equations.about(self.about), residual.mount), 0 * q
         y = np.concatenate([self.y[: self.first], q])
@@ -94,7 +94,7 @@ class OperatingPoint(Steady):
         structure = replace(structure, load_values=self.structure.load_values)
         if self.hub is None:
             return on_base(structure, self.base)
-        angle, rate, acceleration = (float(each[0]) for each in (self.y, self.yd, self.ydd))
+        angle, rate, acceleration = (float(values[0]) for values in (self.y, self.yd, self.ydd))
         return on_hub(structure, self.hub, rate, acceleration, angle=angle)
 
     def directions(self, modes: Complex | Floats) -> tuple[str, ...]:
@@ -105,20 +105,20 @@ class OperatingPoint(Steady):
         ways = ["xyz"[i] for i in moved.argmax(axis=0)]
         twist = structure.station_twist(self.q)
         if twist is not None:
-            twisted, moved = (np.abs(each @ coordinates) for each in (extent(structure)[:, None] * twist, stations))
-            more = twisted.max(axis=0) > moved.max(axis=(0, 1))
-            ways = ["twist" if each else way for way, each in zip(ways, more, strict=True)]
+            edges, moved = (np.abs(slope @ coordinates) for slope in (extent(structure)[:, None] * twist, stations))
+            twisted = edges.max(axis=0) > moved.max(axis=(0, 1))
+            ways = ["twist" if flag else way for way, flag in zip(ways, twisted, strict=True)]
         return tuple(ways)
 
 
 def extent(structure: Structure) -> Floats:
     """Distance of the outermost fibres from the axis at the stations, m."""
-    of = drawn(structure)
-    return outermost(of["width"], of["thickness"], is_round=of["round"])
+    outline = drawn(structure)
+    return outermost(outline["width"], outline["thickness"], is_round=outline["round"])
 
 
 def drawn(structure: Structure) -> dict[str, Any]:
-    """The beam as a picture of the shapes needs it."""
+    """Outline of a beam for pictures of its modes, by name: width, thickness, round, place, across; else empty."""
     if structure.source is None or structure.traced:
         return {}
     beam = structure.source.beam
@@ -133,8 +133,8 @@ def drawn(structure: Structure) -> dict[str, Any]:
 
 def _slopes(residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array, inputs: Any) -> tuple[Array, Array, Array]:
     """Derivatives K, C, M (n, n) of a residual at one state."""
-    one = each_leaf(lambda leaf: np.asarray(leaf)[None], (y, yd, ydd, inputs))
-    k, c, m = slopes(residual, *one)
+    of_one_time = each_leaf(lambda leaf: np.asarray(leaf)[None], (y, yd, ydd, inputs))
+    k, c, m = slopes(residual, *of_one_time)
     return k[0], c[0], m[0]
 
 
@@ -144,7 +144,7 @@ def steady_base(hub: Any, rate: float) -> Base:
 
 
 def held_base(motion: Motion | None, time: float) -> Base:
-    """Base motion at one time; that of a free hub held at rest, at angle zero; at rest where there is no motion."""
+    """Base motion at one time, s; at rest without a motion. A free hub is held at rest, at angle zero."""
     if motion is None:
         return REST
     if motion.free:
@@ -155,18 +155,20 @@ def held_base(motion: Motion | None, time: float) -> Base:
 def placed(
     structure: Structure, base: Base, q: Array | None, qd: Array | None
 ) -> tuple[Array, Array, Coefficients | None, bool]:
-    """Coordinates and rates, by default of the relative equilibrium with its coefficients, and whether they are."""
+    """Coordinates and rates (n,), by default those of the relative equilibrium; its coefficients, None if q is given;
+    and True if both are those of the equilibrium.
+    """
     coefficients = None
     if q is None:
-        (at, _), coefficients = equilibrium_about(structure, base)
+        (coordinates, _), coefficients = equilibrium_about(structure, base)
     else:
-        at = np.asarray(q, dtype=float)
-    moving = 0 * at if qd is None else np.asarray(qd, dtype=float)
-    return at, moving, coefficients, q is None and qd is None
+        coordinates = np.asarray(q, dtype=float)
+    rates = 0 * coordinates if qd is None else np.asarray(qd, dtype=float)
+    return coordinates, rates, coefficients, q is None and qd is None
 
 
 def beam_acceleration(residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array, inputs: Any) -> Array:
-    """q̈ that the beam's equations ask for, the hub's acceleration being given, (n,)."""
+    """Accelerations (n,) of the beam by its equations, with that of a free hub as in `ydd`."""
     i = residual.first
     still = np.where(np.arange(len(y)) < i, ydd, 0.0)
     _, _, mass = _slopes(residual, y, yd, still, inputs)
@@ -174,12 +176,12 @@ def beam_acceleration(residual: OnBase | OnHub, y: Array, yd: Array, ydd: Array,
 
 
 def on_base(structure: Structure, base: Base, q: Array | None = None, qd: Array | None = None) -> OperatingPoint:
-    """Operating point on a base with a frozen motion, in relative equilibrium or with q, qd (n,) given."""
-    at, moving, coefficients, rests = placed(structure, base, q, qd)
+    """Operating point on a base with a frozen motion, at coordinates and rates (n,), by default in equilibrium."""
+    coordinates, rates, coefficients, rests = placed(structure, base, q, qd)
     residual = structure.residual()
-    inputs, still = (base, structure.load_values), np.zeros_like(at)
-    qdd = still if rests else beam_acceleration(residual, at, moving, still, inputs)
-    return OperatingPoint(structure, residual, at, moving, qdd, inputs, base, coefficients)
+    inputs, still = (base, structure.load_values), np.zeros_like(coordinates)
+    qdd = still if rests else beam_acceleration(residual, coordinates, rates, still, inputs)
+    return OperatingPoint(structure, residual, coordinates, rates, qdd, inputs, base, coefficients)
 
 
 def on_hub(
@@ -191,11 +193,12 @@ def on_hub(
     angle: float = 0.0,
     qd: Array | None = None,
 ) -> OperatingPoint:
-    """Operating point on a free hub at a rate, rad/s, and acceleration, rad/s², with the torque that they need."""
+    """Operating point on a free hub at a rate, rad/s, and acceleration, rad/s², under the torque that they need."""
     base = hub.mount.base(*(np.asarray(float(x)) for x in (angle, rate, acceleration)))
-    at, moving, coefficients, rests = placed(structure, base, q, qd)
+    coordinates, rates, coefficients, rests = placed(structure, base, q, qd)
     residual = structure.residual(hub)
-    y, yd, ydd = (np.append(x, beam) for x, beam in ((angle, at), (rate, moving), (acceleration, 0 * at)))
+    pairs = (angle, coordinates), (rate, rates), (acceleration, 0 * coordinates)
+    y, yd, ydd = (np.append(of_hub, of_beam) for of_hub, of_beam in pairs)
     undriven: Any = 0.0, structure.load_values
     if not rests:
         ydd[1:] = beam_acceleration(residual, y, yd, ydd, undriven)
@@ -205,12 +208,12 @@ def on_hub(
 
 def turning_inertia(structure: Structure, hub: Any, q: Array | None = None) -> float:
     """Moment of inertia of a free hub and the beam, straight or at q (n,), about the hub's axis, kg m²."""
-    at = np.zeros(structure.size) if q is None else q
-    return float(on_hub(structure, hub, 0.0, q=at).linear.mass[0, 0])
+    shape = np.zeros(structure.size) if q is None else q
+    return float(on_hub(structure, hub, 0.0, q=shape).linear.mass[0, 0])
 
 
 def settled_hub(structure: Structure, hub: Any, time: float, q: Array | None, qd: Array | None) -> OperatingPoint:
-    """The point at which a free hub turns steadily at a time, s; see :func:`operating_point`."""
+    """Operating point of a free hub that turns steadily at a time, s; see :func:`operating_point`."""
     torque, spring = float(hub.torque(time)), float(hub.stiffness)
     momentum = _momentum_of_the_torque(structure, hub, time, q)
     rate = acceleration = angle = 0.0
@@ -235,7 +238,7 @@ def settled_hub(structure: Structure, hub: Any, time: float, q: Array | None, qd
 
 
 def _momentum_of_the_torque(structure: Structure, hub: Any, time: float, q: Array | None) -> float:
-    """Angular momentum that torque and damper have left since time zero, N m s."""
+    """Angular momentum, N m s, at a time by the torque since time zero, less what the damper has taken."""
     if time <= 0:
         return 0.0
     decay = float(hub.damping) / turning_inertia(structure, hub, q)
@@ -251,8 +254,8 @@ def _momentum_of_the_torque(structure: Structure, hub: Any, time: float, q: Arra
 def operating_point(
     structure: Structure, motion: Motion | None, time: float = 0.0, q: Array | None = None, qd: Array | None = None
 ) -> OperatingPoint:
-    """Freeze a motion at a time, with the beam in relative equilibrium or at q, qd (n,); a free hub keeps the angular
-    momentum that torque and damper left since time zero, or rests where its spring balances the torque.
+    """Operating point in a motion frozen at a time, with the beam at q, qd (n,), by default in equilibrium. A free hub
+    has the angular momentum of torque and damper since time zero, or rests where its spring balances the torque.
     """
     loaded, structure = structure.history is not None, structure.at_time(time)
     if motion is None or not motion.free:

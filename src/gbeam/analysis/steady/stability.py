@@ -38,7 +38,7 @@ from gbeam.structure.beam import Beam
 SEARCH_FACTOR = 10.0  # of the lowest natural frequency: how far a search goes by default
 INSTEAD = "ask `gbeam modes` for its frequencies at a time, or `gbeam static` for its shape"
 SLOW = 1e-6  # rad/s
-NOTHING = 1e-12  # of the beam's stiffness: loads that bring less are rounding about none
+NOTHING = 1e-12  # of the beam's stiffness: loads that add less are none
 
 
 def hub_of(motion: Motion, what: str, instead: str, name: str = "") -> Hub:
@@ -116,7 +116,7 @@ def critical_speed(
 
 
 def first_lost_speed(structure: Structure | System, path: Path, upper: float | None, progress: Progress) -> Critical:
-    """Lowest rate at which an equilibrium is lost, along a path of these that holds the rate."""
+    """Lowest rate, with its errors, at which the equilibrium is lost along a path that holds the rate."""
     if upper is not None:
         limit = positive("to", upper, "rad/s")
     elif isinstance(structure, Structure):
@@ -142,13 +142,15 @@ def turned(
     *,
     held: bool = False,
 ) -> tuple[Path, Profile | None]:
-    """Steady states of a structure on a hub, or of a system that turns, by the rate, and the rate's own history."""
+    """Path of steady states by the rate, of a structure on a hub or of a system that turns, and the history of the rate
+    in the motion, if any; InputError, with the words `what` and `instead`, if there is nothing to turn.
+    """
     if isinstance(structure, System):
         coordinate = turning_of(structure, motion, turning)
         joint, _, angle = coordinate.rpartition(".")
         history = structure.joints[joint].rates.get(angle) if joint else motion.rate  # type: ignore[union-attr]
         of_system = Turning(Drive(motion, time, coordinate), held)
-        # By a turn that is slow enough to lose nothing: where the system rests at no larger rate this is why.
+        # At a rate so slow that no equilibrium is lost: changing equations may be why there is none at larger rates.
         replace(of_system, held=False).refuse_changing(structure, SLOW)
         return of_system, history
     structure.require_coordinates()
@@ -219,20 +221,20 @@ def critical_speed_map(
     errors = MapErrors(*np.full((len(fields(MapErrors)), *speed.shape), np.nan))
     worst = ErrorEstimate(total=0.0)
     for i, mass in enumerate(masses):
-        for j, at in enumerate(positions):
+        for j, position in enumerate(positions):
             tell(progress, "critical hub rates", (i * len(positions) + j) / speed.size)
-            loaded = replace(beam, masses=(*beam.masses, PointMass(at, mass)))
+            loaded = replace(beam, masses=(*beam.masses, PointMass(position, mass)))
             structure = assemble(loaded, model)
             path, _ = turned(structure, hub, None, 0.0, "", "", "", held=True)
             loss = judged(first_loss_along(path, structure, limit, "hub rate", "rad/s"), path, structure)
             speed[i, j] = np.nan if loss.value is None else loss.value
-            for each in fields(errors):
-                getattr(errors, each.name)[i, j] = getattr(loss.errors, each.name)
+            for part in fields(errors):
+                getattr(errors, part.name)[i, j] = getattr(loss.errors, part.name)
             if loss.errors.total > worst.total:
                 worst = loss.errors
-    heavy, where = np.asarray(masses, dtype=float), np.asarray(positions, dtype=float)
     warnings = input_warnings(unloaded, motion, name=name) + doubtful_loss("hub rate, at worst,", model.kind, worst)
-    return CriticalMap(name, model.kind, heavy, where, speed, limit, errors, warnings=warnings)
+    axes = np.asarray(masses, dtype=float), np.asarray(positions, dtype=float)
+    return CriticalMap(name, model.kind, *axes, speed, limit, errors, warnings=warnings)
 
 
 @typed
@@ -330,9 +332,8 @@ def critical_load(
         share = 0.0 if values is None else _share(structure, values)
 
         def path(of: Structure, factor: float) -> OperatingPoint:
-            return on_base(
-                replace(of, load_values=None if values is None else factor * values), REST if base is None else base
-            )
+            of = replace(of, load_values=None if values is None else factor * values)
+            return on_base(of, REST if base is None else base)
 
     if share < NOTHING:
         where, what = ("forces", "a joint's") if isinstance(structure, System) else ("beam.loads", "a hub's")
@@ -344,12 +345,12 @@ def critical_load(
 
 
 def _share(structure: Structure, values: np.ndarray) -> float:
-    """Stiffness that the loads bring, over the beam's own."""
+    """Larger of two effects of the loads: stiffness over the beam's own, and deflection over its length."""
     c = structure.coefficients
     assert c.loads is not None
     scale = np.linalg.inv(np.linalg.cholesky(c.stiffness))
-    brought = np.einsum("li,linm->nm", values, c.loads.slope[:, :, 6:])
-    size = np.linalg.norm(scale @ brought @ scale.T, 2)
-    # Loads across the straight beam bring no stiffness to compare with: then what bends it by its own length.
+    added = np.einsum("li,linm->nm", values, c.loads.slope[:, :, 6:])
+    size = np.linalg.norm(scale @ added @ scale.T, 2)
+    # Loads across the straight beam add no stiffness, but bend it.
     bend = np.linalg.norm(np.linalg.solve(c.stiffness, np.einsum("li,lin->n", values, c.loads.constant[:, :, 6:])))
     return float(max(size, bend / structure.length))

@@ -38,15 +38,15 @@ LOST = "shapes and model are not judged: the exact model with more shapes comes 
 
 
 def static_errors(point: OperatingPoint) -> tuple[Errors, tuple[str, ...]]:
-    """Estimated errors of an equilibrium, as fractions of displacement, root load and stress, and warnings."""
+    """Estimated errors of an equilibrium, over the displacement, root loads and stress, and warnings."""
     structure = point.structure
     if not structure.judged:
         return Errors(note=unjudged(structure)), ()
     loaded = None if structure.load_values is None else np.asarray(structure.load_values)[None]
     inputs = each_leaf(lambda x: np.asarray(x)[None], point.base), loaded
     solution, more = Solution(structure, _resting(point.q), inputs), enrichment(structure, point.base)
-    which = solution.along(more)
-    exact = more.model("exact", directions=which)[0]
+    directions = solution.along(more)
+    exact = more.model("exact", directions=directions)[0]
 
     def rested(rich: Structure) -> Reading | None:
         """Reading of a structure with more shapes at its own equilibrium; None where there is none."""
@@ -60,9 +60,9 @@ def static_errors(point: OperatingPoint) -> tuple[Errors, tuple[str, ...]]:
     computed, truth = solution.read(), rested(exact)
     if truth is None:
         return Errors(note=LOST), (LOST,)
-    same = truth if structure.kind == exact.kind else rested(more.model(structure.kind, directions=which)[0])
-    unknown = {key: np.nan * each for key, each in truth.items()}
-    sizes = {key: max(largest(each), largest(truth[key])) for key, each in computed.items()}
+    same = truth if structure.kind == exact.kind else rested(more.model(structure.kind, directions=directions)[0])
+    unknown = {quantity: np.nan * values for quantity, values in truth.items()}
+    sizes = {quantity: max(largest(values), largest(truth[quantity])) for quantity, values in computed.items()}
     beyond = solution.theory(straight=sizes[PLACE] <= BENT * structure.length)
     same, steps = same or unknown, dict.fromkeys(computed, 0.0)
     mesh = None if structure.coarser is None else (rested(structure.coarser) or unknown, computed)
@@ -72,11 +72,11 @@ def static_errors(point: OperatingPoint) -> tuple[Errors, tuple[str, ...]]:
 
 def _sideways(point: OperatingPoint) -> tuple[str, ...]:
     """Warn of an equilibrium that a beam with torsion would not keep: a strip on edge buckles sideways."""
-    at = point.base, point.loads
+    drive = point.base, point.loads
     if (
         point.structure.source is None
-        or not keeps(point.about, *at)
-        or keeps(theory_of(point.structure).thick.coefficients, *at)
+        or not keeps(point.about, *drive)
+        or keeps(theory_of(point.structure).thick.coefficients, *drive)
     ):
         return ()
     return (f"a beam that twists would not stay there, but buckle sideways: {TORSION}",)
@@ -86,14 +86,14 @@ def _doubtful(errors: Errors) -> tuple[str, ...]:
     """Warn of an equilibrium that is wrong by more than one in a hundred."""
     if not (above := errors.above(LIMIT)):
         return ()
-    worst = max(above.values(), key=lambda each: each.total)
+    worst = max(above.values(), key=lambda error: error.total)
     cause, cure = cause_and_cure(worst, errors.theory)
-    sizes = ", ".join(f"the {name} by {percent(each.total)}" for name, each in above.items())
+    sizes = ", ".join(f"the {name} by {percent(error.total)}" for name, error in above.items())
     return (f"estimated to be wrong: {sizes}, mostly from {cause}; {cure}",)
 
 
 def _resting(q: Floats) -> Trajectory:
-    """A solution of one time at which coordinates (n,) rest."""
+    """Trajectory of one time, at rest at coordinates (n,)."""
     return Trajectory(np.zeros(1), q[None], *np.zeros((2, 1, len(q))))
 
 
@@ -191,7 +191,7 @@ def static(
 def deflection_at(
     structure: Structure, point: OperatingPoint, motion: Motion | None, time: float, name: str = ""
 ) -> Deflection:
-    """The deflection at an operating point."""
+    """Describe the deflection at an operating point, with loads, errors and warnings."""
     base, q = each_leaf(np.asarray, (point.base, point.q))
     over_time = each_leaf(lambda x: x[None], base)
     still = np.zeros((1, structure.size))
