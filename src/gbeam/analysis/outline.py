@@ -35,18 +35,18 @@ def assembly_of(system: System) -> Assembly:
 
 
 def _place_at_rest(system: System, on: str) -> Floats:
-    """Place of a point from the root of its body, which is not deformed, or of the ground's origin."""
+    """Place (3,) m of a point from the root of its undeformed body; zero of the ground's origin."""
     if on == GROUND:
         return np.zeros(3)
     name, point = system.point("on", on)
     link = system.tree.links[system.order.index(name)]
     none = np.zeros(link.body.size)
-    places = [each.r for each in link.body.relative(none, none, none)]
+    places = [relative.r for relative in link.body.relative(none, none, none)]
     return np.asarray(places[point]) if point < len(places) else np.zeros(3)
 
 
 def _box(body: object) -> tuple[Floats, Floats, Floats]:
-    """Extents, centre and rotation of an even box with the mass and inertia of a rigid body; NaN of another."""
+    """Extents, centre and rotation of a uniform box with the inertia of a rigid body; NaN for other bodies."""
     if not isinstance(body, RigidBody):
         return np.full(3, np.nan), np.full(3, np.nan), np.full((3, 3), np.nan)
     moments, axes = np.linalg.eigh(body.tensor)
@@ -60,7 +60,7 @@ TIMES = 1500
 
 
 def outline_of(structure: Structure, motion: Motion | None, time: Floats, q: Floats) -> Outline | None:
-    """Return the outline of a response at times (t,) by `q` (t, n); None of no beam, less without a `motion`."""
+    """Outline of a beam at times (t,) by `q` (t, n), with hub and attitude of a motion; None if it is no beam."""
     if structure.field is None or structure.sections is None or structure.source is None:
         return None
     beam = structure.source.beam
@@ -68,9 +68,9 @@ def outline_of(structure: Structure, motion: Motion | None, time: Floats, q: Flo
     x, index = np.unique(np.round(structure.sections.along / beam.length, 9), return_index=True)
     count = POINTS if beam.line is None else 2 * POINTS
     chosen = index[np.unique(np.linspace(0, len(x) - 1, count - 1).round().astype(int))]
-    some = np.unique(np.linspace(0, len(time) - 1, TIMES).round().astype(int))
+    sampled = np.unique(np.linspace(0, len(time) - 1, TIMES).round().astype(int))
     rest = structure.sections.along[chosen]
-    moved = np.asarray(outline[chosen].positions(q[some]) - outline[chosen].positions(np.zeros(structure.size)))
+    moved = np.asarray(outline[chosen].positions(q[sampled]) - outline[chosen].positions(np.zeros(structure.size)))
     # The field has no point at the root: the nodes next to it lie within a hundredth of the length.
     root = moved[:, 0] - (moved[:, 1] - moved[:, 0]) * (rest[0] / (rest[1] - rest[0]))
     if not beam.root.springs:
@@ -85,23 +85,24 @@ def outline_of(structure: Structure, motion: Motion | None, time: Floats, q: Flo
         thickness=thickness,
         round=section.round,
         bodies=np.array([(body.at, body.mass) for body in beam.masses], dtype=float).reshape(-1, 2),
-        time=time[some],
+        time=time[sampled],
         displacement=np.concatenate([root[:, None], moved], axis=1),
         place=place,
         across=None if axes is None else axes[:, :, 1],
         **_carrier(motion),
-        attitude=_attitude(motion, time, some),
+        attitude=_attitude(motion, time, sampled),
     )
 
 
-def _attitude(motion: Any, time: Floats, some: Any) -> Floats | None:
-    """Attitude of a flight whose rates are given: integrated over all times, at some of them."""
+def _attitude(motion: Any, time: Floats, sampled: Any) -> Floats | None:
+    """Attitude of a flight at sampled times, by its rates integrated over all of them; None without rates."""
     if not isinstance(motion, Flight) or motion.rates is None:
         return None
-    return attitude(time, np.asarray(motion.base(time).w_WB_B))[some]
+    return attitude(time, np.asarray(motion.base(time).w_WB_B))[sampled]
 
 
 def _carrier(motion: Any) -> dict[str, Any]:
+    """Radius and orientation of the hub that carries a beam; empty without a hub."""
     if motion is None or motion.kind != "hub":
         return {}
     return {"radius": float(motion.mount.radius), "R_HB": np.asarray(motion.mount.R_HB)}

@@ -1,4 +1,4 @@
-"""Commands of a hub as splines, what they must do, and what they leave in the modes of a linear model."""
+"""Commands as splines, the goals that they have to reach, and the vibration that they leave in a linear model."""
 
 from __future__ import annotations
 
@@ -12,12 +12,15 @@ from gbeam.errors import InputError
 from gbeam.motion.profiles.pulse import SplineProfile, through
 from gbeam.numerics.bspline import DEGREE, Spline
 
-_FINE = 200  # pieces of a spline that stands for another form
+_FINE = 200  # pieces of a spline that approximates another form
 _TIMES = 2001  # over a command: the splines are smooth, and vanish at the ends with four derivatives
 
 
 class Commands:
-    """Splines of so many pieces that drive a hub from rest, a free one by torque, else by angular acceleration."""
+    """Splines of so many pieces that drive a plant from rest: by effort if it is free, else by the derivative of its
+    rate. A drive (t,) is `drive` times the inner coefficients plus `fixed`; those that reach the goal are `particular`
+    plus any combination of the columns of `free`.
+    """
 
     def __init__(self, plant: Plant, goal: Goal, pieces: int) -> None:
         self.plant, self.goal = plant, goal
@@ -37,10 +40,10 @@ class Commands:
         self.free = np.asarray(directions[int((sizes > 0).sum()) :].T)
 
     def _aims(self, basis: Floats) -> tuple[Floats, Floats]:
-        """Rows of linear conditions on the coefficients, and their values."""
+        """Rows (c, n) of the linear conditions on the coefficients, and their values (c,)."""
         t, goal = self.time, self.goal
         if not self.plant.free:
-            if goal.to_rate:  # the ends say it
+            if goal.to_rate:  # by the coefficients at the ends
                 return np.zeros((1, self.drive.shape[1])), np.zeros(1)
             return np.asarray(np.trapezoid(basis[:, DEGREE:-DEGREE], t, axis=0))[None], np.array([goal.value])
         impulse = np.asarray(np.trapezoid(self.drive, t, axis=0))
@@ -50,19 +53,19 @@ class Commands:
         return np.stack([impulse, turned]), np.array([0.0, self.inertia * goal.value])
 
     def scaled(self, drive: Floats) -> Floats:
-        """A drive (t,) of the right form, as large as the goal takes."""
+        """A drive (t,) multiplied so that it reaches the goal."""
         t, goal = self.time, self.goal
-        done = np.trapezoid(drive, t) if goal.to_rate else np.trapezoid((goal.duration - t) * drive, t)
-        return np.asarray(drive * self.inertia * goal.value / done)
+        reached = np.trapezoid(drive, t) if goal.to_rate else np.trapezoid((goal.duration - t) * drive, t)
+        return np.asarray(drive * self.inertia * goal.value / reached)
 
     def profile(self, drive: Floats) -> SplineProfile:
-        """The command that a drive (t,) is."""
+        """The command, effort or rate, of a drive (t,)."""
         if not self.plant.free:
             drive = np.concatenate([[0.0], np.cumsum((drive[1:] + drive[:-1]) / 2 * np.diff(self.time))])
         return through(self.goal.duration, self.time, drive, _FINE)
 
     def of(self, inner: Floats) -> SplineProfile:
-        """The profile of some coefficients."""
+        """The command of inner coefficients."""
         coefficients = self.ends.copy()
         coefficients[DEGREE:-DEGREE] = inner
         return SplineProfile(self.goal.duration, coefficients)
@@ -70,48 +73,48 @@ class Commands:
 
 @dataclass(frozen=True)
 class Vibration:
-    """Modes of a hub at rest: eigenvalues (k,), and the tip's displacement over ∫ exp(−λt) u dt, (k,) m."""
+    """Modes of a plant at rest: eigenvalues (k,), and the tip's amplitudes (k,) over |∫ exp(−λt) u dt| by a drive u."""
 
     eigenvalue: Complex
     gain: Floats
 
     @staticmethod
     def of(plant: Plant) -> Vibration:
-        """Modes that a drive excites."""
+        """Modes that the drive of a plant excites; InputError if there are none."""
         small = plant.small
         values, right = np.linalg.eig(small.a)
         excited = np.linalg.solve(right, small.column)
         size = np.linalg.norm(small.tip @ right, axis=0) * np.abs(excited)
-        some = values.imag > 1e-6 * np.abs(values).max()  # not the motions that nothing holds
-        some &= size > 1e-9 * size[some].max(initial=0.0)
-        if not some.any():
+        chosen = values.imag > 1e-6 * np.abs(values).max()  # without motions that nothing holds
+        chosen &= size > 1e-9 * size[chosen].max(initial=0.0)
+        if not chosen.any():
             fix = "give the model shapes in the plane in which it moves, such as y = 1 or more"
             raise InputError("structure", "has no vibration that the drive excites", fix)
-        order = np.argsort(values[some].imag)
-        return Vibration(values[some][order], 2 * size[some][order])
+        order = np.argsort(values[chosen].imag)
+        return Vibration(values[chosen][order], 2 * size[chosen][order])
 
     def rows(self, time: Floats, drive: Floats, ratio: float = 1.0) -> Complex:
-        """Vibration left in each mode, m, (k, ...), by drives (t, ...), with frequencies `ratio` times as high."""
-        # With what decays until the end: alone the exponent of a fast mode has no number.
+        """Complex amplitudes (k, ...), m, that drives (t, ...) leave in each mode, its eigenvalue times `ratio`."""
+        # With the decay until the end in the exponent: that of a fast mode would overflow.
         left = np.exp(ratio * (self.eigenvalue.real[:, None] * time[-1] - np.outer(self.eigenvalue, time)))
         flat = drive.reshape(len(time), -1)
-        values = np.stack([np.trapezoid(each[:, None] * flat, time, axis=0) for each in left])
+        values = np.stack([np.trapezoid(weight[:, None] * flat, time, axis=0) for weight in left])
         return (self.gain[:, None] * values).reshape(len(left), *drive.shape[1:])
 
     def amplitude(self, time: Floats, drive: Floats, ratio: Floats) -> Floats:
-        """The amplitude that a drive (t,) leaves, all modes together, m, (r,)."""
-        return np.array([float(np.linalg.norm(self.rows(time, drive, float(each)))) for each in ratio])
+        """Amplitudes (r,), m, of all modes together that a drive (t,) leaves at each of the ratios (r,)."""
+        return np.array([float(np.linalg.norm(self.rows(time, drive, float(value)))) for value in ratio])
 
 
 def usual(commands: Commands, vibration: Vibration) -> dict[str, Floats]:
-    """The drives (t,) of a smooth step of that duration, and of a shorter one with a ZVD shaper of the first mode."""
+    """Drives (t,) by name: a smooth step and, if time allows, a shorter one with a ZVD shaper of the first mode."""
     drives = {"smooth-step": commands.scaled(_smooth(commands.time, commands.goal))}
     value = vibration.eigenvalue[0]
     half = np.pi / value.imag
     decay = float(np.exp(value.real * half))
-    left = commands.goal.duration - 2 * half
-    if left > half:
-        shorter = Goal(commands.goal.value, commands.goal.to_rate, left)
+    duration = commands.goal.duration - 2 * half
+    if duration > half:
+        shorter = Goal(commands.goal.value, commands.goal.to_rate, duration)
         parts = [
             weight * _smooth(commands.time - k * half, shorter) for k, weight in enumerate((1.0, 2 * decay, decay**2))
         ]
@@ -120,14 +123,14 @@ def usual(commands: Commands, vibration: Vibration) -> dict[str, Floats]:
 
 
 def _smooth(time: Floats, goal: Goal) -> Floats:
-    """A drive under which the rate, or the angle, is the smooth step of 2009 (43)."""
+    """Drive (t,), not scaled, under which rate or angle, as the goal is, is the smooth step of 2009 (43)."""
     phase = 2 * np.pi * time / goal.duration
     wave = 1 - np.cos(phase) if goal.to_rate else np.sin(phase)
     return np.where((time >= 0) & (time <= goal.duration), wave, 0.0)
 
 
 def check_goal(plant: Plant, aims: dict[str, float | None], duration: float) -> Goal:
-    """Return the goal; InputError unless there is one of those that what is driven can have."""
+    """Return the goal; InputError unless exactly one aim is given, and the driven coordinate can have it."""
     possible = ("distance", "rate") if plant.slides else ("angle", "rate")
     aims = {name: aim for name, aim in aims.items() if name in possible or aim is not None}
     wrong = next((name for name in aims if name not in possible), None)

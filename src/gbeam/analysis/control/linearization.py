@@ -92,10 +92,10 @@ BASE_RATES = tuple(Signal(f"base_rate_{i}", "rad/s") for i in "xyz")
 
 @record
 class Outputs:
-    """Outputs of (y, ẏ, ÿ, u): tip displacement and (absolute) acceleration, root moment, strains (of a beam from
-    gauges' section forces by `strains` (gauges, 6), of a solid from coordinates by `shares` (gauges, n)), those of the
-    tip at other `points`, stations by their numbers, and a free hub's angle and rate, in base axes; u are inputs `like`
-    those of the residual in one vector.
+    """Outputs as a function of y, ẏ, ÿ and the inputs u, in base axes: displacement and absolute acceleration of the
+    tip, root moment, strains, displacement and acceleration of other `points` (numbers of stations), and a free hub's
+    angle and rate. Strains are of beams by section forces times `strains` (gauges, 6) at the sections `at`, of solids
+    by coordinates times `shares` (gauges, n). u is one vector of inputs of the residual, shaped `like` these.
     """
 
     structure: Structure
@@ -112,21 +112,21 @@ class Outputs:
         i, inputs = self.residual.first, self.inputs(u)
         q, qd, qdd = y[:, i:], yd[:, i:], ydd[:, i:]
         base = self.residual.base(y, yd, ydd, inputs)
-        _, moment, *carried, a, _ = sections(self.structure, self.outboard, base, q, qd, qdd, inputs[1])
-        strain = (np.concatenate([each[:, self.at] for each in carried], axis=-1) * self.strains).sum(axis=-1)
+        _, moment, *section_loads, a, _ = sections(self.structure, self.outboard, base, q, qd, qdd, inputs[1])
+        strain = (np.concatenate([load[:, self.at] for load in section_loads], axis=-1) * self.strains).sum(axis=-1)
         moved = self.structure.displacement(q)
-        # Stations are counted from the first behind the root, which accelerations have as well.
+        # Accelerations are of the root and the stations, displacements of the stations alone.
         named = np.concatenate([moved[:, self.points], a[:, self.points + 1]], axis=-1).reshape(len(y), -1)
         strains = strain, q @ self.shares.T
         return np.concatenate([moved[:, -1], a[:, -1], -moment[:, 0], *strains, named, y[:, :i], yd[:, :i]], axis=-1)
 
     def inputs(self, u: Array) -> Any:
-        """Inputs of the residual in vectors (..., m): base or torque, then loads."""
+        """Inputs of the residual, base or torque and loads, from vectors u (..., m)."""
         parts = iter(np.split(u, np.cumsum([np.size(each) for each in leaves_of(self.like)]), axis=-1))
         return each_leaf(lambda leaf: next(parts).reshape(*u.shape[:-1], *np.shape(leaf)), self.like)
 
     def matrices(self, point: OperatingPoint, u: Array) -> tuple[Array, Array, Array]:
-        """Values (p,) at an operating point, their derivatives with respect to (y, ẏ, ÿ, u), and forces (n, m) of u."""
+        """Values (p,) at an operating point, their derivatives (p, 3 n + m) by (y, ẏ, ÿ, u), and forces (n, m) by u."""
         state = np.concatenate([point.y, point.yd, point.ydd, u])
         moved = np.concatenate([state[None] + 0j, state + 1j * STEP * np.eye(len(state))])
         y, yd, ydd, drive = np.split(moved, len(point.y) * np.arange(1, 4), axis=1)
@@ -135,7 +135,7 @@ class Outputs:
         return values[0].real, values[1:].imag.T / STEP, -left.imag.T / STEP
 
     def rates(self, x: Array, u: Array) -> tuple[Array, Array]:
-        """Rate of the state (y, ẏ, and on a base that is not a free hub its angular velocity), and the outputs."""
+        """Rates of a state x, and outputs; x is (y, ẏ) and, unless on a free hub, the base's angular velocity."""
         i = self.residual.first
         n = self.structure.size + i
         y, yd, rate = x[:n], x[n : 2 * n], x[2 * n :]
@@ -146,7 +146,7 @@ class Outputs:
 
 
 def coordinate_signals(structure: Structure, first: int) -> tuple[Signal, ...]:
-    """Names and units of (y, ẏ)."""
+    """Names and units of the coordinates and rates (y, ẏ); `first` is 1 with a free hub's angle."""
     units = ("1", "rad", "rad", "rad", "1", "1") if structure.kind in BY_STRAINS else ("m",) * 6
     names = [("hub_angle", "rad")] if first else []
     for group, unit, count in zip(FAMILIES, units, structure.counts, strict=True):
@@ -198,53 +198,53 @@ def points_of(structure: Structure) -> dict[str, int]:
 
 def outputs_of(structure: Structure, point: OperatingPoint, gauges: Sequence[Gauge]) -> Outputs:
     """Build the outputs at an operating point."""
-    every, shares = structure.sections, np.zeros((0, structure.size))
-    strains, which, rows = np.zeros((0, 6)), np.zeros(0, dtype=int), [0, -1]  # of the sections, root and tip
-    if every is None:
-        shares = np.array([_of_solid(structure, i, each) for i, each in enumerate(gauges)]).reshape(-1, structure.size)
-        gauges = ()
+    measured, shares = structure.sections, np.zeros((0, structure.size))
+    strains, at, rows = np.zeros((0, 6)), np.zeros(0, dtype=int), [0, -1]  # rows of the sections: root and tip
+    if measured is None:
+        by_gauge = [_of_solid(structure, i, gauge) for i, gauge in enumerate(gauges)]
+        shares, gauges = np.array(by_gauge).reshape(-1, structure.size), ()
         mass, count = structure.mass, len(structure.stations)
         outboard_mass = np.concatenate([mass[None], np.zeros((count, len(mass)))])
-        every = Sections(None, outboard_mass, np.zeros((count + 1, 0)), np.eye(3))
+        measured = Sections(None, outboard_mass, np.zeros((count + 1, 0)), np.eye(3))
     if gauges:
-        where, strains = _of_beam(structure, dict(enumerate(gauges)))
-        structure = at_stations(structure, where)
-        every = structure.sections
-        assert every is not None
-        which = _nearest(structure, where)
+        positions, strains = _of_beam(structure, dict(enumerate(gauges)))
+        structure = at_stations(structure, positions)
+        measured = structure.sections
+        assert measured is not None
+        at = _nearest(structure, positions)
     points = np.array(list(points_of(structure).values()), dtype=int)
     if gauges or points.size:
         rows = list(range(len(structure.stations) + 1))
-    outboard = replace(every, mass=every.mass[rows], loaded=every.loaded[rows])
-    return Outputs(structure, point.residual, outboard, which, strains, shares, points, point.inputs)
+    outboard = replace(measured, mass=measured.mass[rows], loaded=measured.loaded[rows])
+    return Outputs(structure, point.residual, outboard, at, strains, shares, points, point.inputs)
 
 
 def _gauged(system: System, gauges: Sequence[Gauge]) -> tuple[System, dict[str, Strained]]:
-    """A system whose beams have stations where their gauges are, and these by the names of their signals."""
+    """The system with stations at the gauges on its beams, and the gauges by the names of their signals."""
     strained, named = dict[str, Strained](), dict[str, dict[int, Gauge]]()
     bodies, flexible = dict(system.bodies), system.flexible
     for i, gauge in enumerate(gauges):
         choice(f"gauges[{i}].body", gauge.body, flexible)
         named.setdefault(gauge.body, {})[i] = gauge
-    for name, some in named.items():
+    for name, on_body in named.items():
         body = flexible[name]
         if body.sections is None:
-            strained |= {f"strain_{i + 1}": Strained(name, _of_solid(body, i, gauge)) for i, gauge in some.items()}
+            strained |= {f"strain_{i + 1}": Strained(name, _of_solid(body, i, gauge)) for i, gauge in on_body.items()}
             continue
-        where, shares = _of_beam(body, some)
-        bodies[name] = body = at_stations(body, np.union1d(body.stations, where))
-        at = zip(some, shares, _nearest(body, where), strict=True)
-        strained |= {f"strain_{i + 1}": Strained(name, share, int(section)) for i, share, section in at}
+        positions, shares = _of_beam(body, on_body)
+        bodies[name] = body = at_stations(body, np.union1d(body.stations, positions))
+        rows = zip(on_body, shares, _nearest(body, positions), strict=True)
+        strained |= {f"strain_{i + 1}": Strained(name, share, int(section)) for i, share, section in rows}
     return replace(system, bodies=bodies), {f"strain_{i + 1}": strained[f"strain_{i + 1}"] for i in range(len(gauges))}
 
 
-def _nearest(structure: Structure, where: Floats) -> Any:
-    """Numbers of the sections, root and stations, at positions (g,), m."""
-    return np.abs(np.append(0.0, structure.stations) - where[:, None]).argmin(axis=1)
+def _nearest(structure: Structure, positions: Floats) -> Any:
+    """Numbers (g,) of the sections, root and then stations, nearest to positions (g,), m."""
+    return np.abs(np.append(0.0, structure.stations) - positions[:, None]).argmin(axis=1)
 
 
 def _of_beam(structure: Structure, gauges: Mapping[int, Gauge]) -> tuple[Floats, Floats]:
-    """Positions (g,), m, of gauges on a beam by their numbers, and strains (g, 6) by unit forces and moments there."""
+    """Positions (g,), m, of numbered gauges on a beam, and their strains (g, 6) by unit forces and moments there."""
     assert structure.source is not None
     beam, unit = structure.source.beam, np.eye(6)[:, None]
     for i, gauge in gauges.items():
@@ -258,7 +258,7 @@ def _of_beam(structure: Structure, gauges: Mapping[int, Gauge]) -> tuple[Floats,
 
 
 def _of_solid(structure: Structure, i: int, gauge: Gauge) -> Floats:
-    """Strain of a gauge on a solid by unit coordinates, (n,)."""
+    """Strains (n,) at gauge number i on a solid by unit coordinates; InputError if it is on no mesh."""
     if structure.recovery is None:
         fix = "leave them out: particles, matrices and modes have no strain"
         raise InputError("gauges", "are given of no beam and no mesh", fix)
@@ -375,7 +375,7 @@ def linearize(
             raise InputError(f"gauges[{i}].body", f"is {gauge.body!r}, and there is one structure", "leave it out")
     linear, n = point.linear, len(point.y)
     measured = outputs_of(structure, point, gauges)
-    held = np.concatenate([np.ravel(each) for each in leaves_of(point.inputs)])
+    held = np.concatenate([np.ravel(leaf) for leaf in leaves_of(point.inputs)])
     value, d, forces = measured.matrices(point, held)
     a, drive, out, through = linear._replace(inputs=forces).state_space(
         *np.split(d, len(linear.mass) * np.arange(1, 4), axis=1)
@@ -420,15 +420,15 @@ def linearize(
 
 
 def _poles(state: Any, of: Structure | System) -> tuple[Floats, FrequencyErrors | None, tuple[str, ...]]:
-    """Frequencies (k,) Hz of the poles about a steady state, their errors, and doubts about it."""
+    """Frequencies (k,) Hz of the poles about a steady state, their errors, and warnings of errors and instability."""
     frequency, errors, doubts = np.zeros(0), unknown_errors(of, 0), tuple[str, ...]()
     if judgeable(of):
         frequency, errors = pole_errors(state)
         doubts = doubtful(errors) if errors.within(ACCURATE) == 0 else ()
     growing = (
-        f"the operating point is not stable: {each.kind} {along(each.direction)}, growing with "
-        f"{each.growth_rate:.4g} 1/s"
-        for each in instabilities(state, state.moving)
+        f"the operating point is not stable: {motion.kind} {along(motion.direction)}, growing with "
+        f"{motion.growth_rate:.4g} 1/s"
+        for motion in instabilities(state, state.moving)
     )
     return frequency, errors, (*doubts, *growing)
 

@@ -38,24 +38,24 @@ from gbeam.progress import Progress
 from gbeam.results.response import Response
 
 Pair = tuple[Profile, Profile]
-Share = Callable[[float], None]  # of a computation, that is done
-_SAG, _LEAST = 1e-6, 1e-6  # of the largest deflection, and m: a smaller change as it moves is none
-_ASIDE = 1e-4  # m or rad from where a joint rests: it hardly swings
-_PLACES = (0.0, 0.19, 0.37, 0.61, 0.83, 1.0)  # shares of the way, at which that is looked for
+Share = Callable[[float], None]  # told the share of a computation that is done
+_SAG, _LEAST = 1e-6, 1e-6  # of the largest deflection, and m: a smaller change of the sag on the way is none
+_ASIDE = 1e-4  # m or rad: a joint that begins so near to its place of rest hardly swings
+_PLACES = (0.0, 0.19, 0.37, 0.61, 0.83, 1.0)  # shares of the way at which the sag is looked at
 _BENT = "bends the beam otherwise as it moves, which no command undoes", "leave it out, or let it be along the axis"
-HELD = 1e-9  # of the forces that stiffness or damping has: a rigid motion without is free
+HELD = 1e-9  # of the largest damping: a rigid motion with less is not braked
 
 
 @dataclass(frozen=True)
 class Goal:
-    """The angle to turn, rad, or the rate to reach, rad/s, of what slides m and m/s, and in which time, s."""
+    """Angle to turn, rad, or rate to reach, rad/s (if it slides m and m/s), and the time for it, s."""
 
     value: float
     to_rate: bool
     duration: float
 
 
-# Kind of a command, and of what is limited, by whether an effort drives and whether what is driven slides.
+# Words for a command and for the quantity that is limited, by two flags: an effort drives; the coordinate slides.
 DRIVES = {
     (True, False): ("torque", "torque"),
     (True, True): ("force", "force"),
@@ -65,7 +65,9 @@ DRIVES = {
 
 
 class Ran(NamedTuple):
-    """Displacement (t, 3) m of the point under a command, what is left, the step, and how what is driven moved (t,)."""
+    """Displacement (t, 3) m of the point under a command, residual vibration, m, step, s, and the driven coordinate and
+    its rate (t,).
+    """
 
     time: Floats
     tip: Floats
@@ -77,7 +79,7 @@ class Ran(NamedTuple):
 
 
 class SmallMotions(NamedTuple):
-    """State matrix (n, n), column (n,) of the drive, and rows (3, n) of the tip, about rest."""
+    """Linear model about rest: state matrix (n, n), column (n,) of the drive, and rows (3, n) of the tip."""
 
     a: Floats
     column: Floats
@@ -85,7 +87,7 @@ class SmallMotions(NamedTuple):
 
 
 def driven(hub: Hub, profile: Profile) -> Hub:
-    """The hub under a command, mounted as it is."""
+    """The hub with a command as its torque, if it is free, else as its rate."""
     commanded: Hub = altered(hub, **{"torque" if hub.free else "rate": profile})
     return commanded
 
@@ -114,7 +116,7 @@ class OnHub:
         return turning_inertia(self.structure, self.hub)
 
     def refuse_moving(self, goal: Goal) -> None:
-        """Raise InputError unless it is at rest without a command, and gravity bends it alike at all angles."""
+        """Raise InputError unless the hub rests without a command, and gravity bends the beam alike at all angles."""
         if self.hub.mount.gravity is not None and np.any(np.asarray(self.hub.mount.gravity)[:2]):
             raise InputError("gravity", *_BENT)
         if not self.hub.free and float(np.abs(self.hub.base(np.zeros(1)).w_WB_B).max()) > 0:
@@ -137,36 +139,39 @@ class OnHub:
     def about(
         self, profile: Profile, settings: ResponseSettings, pairs: Sequence[Pair], width: float, share: Share
     ) -> tuple[Ran, Iterator[tuple[Ran, Ran]]]:
-        """A run of given steps, and those of pairs of commands that differ by a width, along its exact derivatives."""
+        """The run of a command by given steps, and an iterator of pairs of runs of commands that differ by a `width`,
+        made by exact derivatives.
+        """
         assert settings.step is not None
         hub = driven(self.hub, profile)
-        about = Differentiated(self.structure, hub, settings, Grid(settings.step, 1), "", loads=False)
-        posed = [about.pair(*((None, driven(self.hub, each)) for each in pair)) for pair in pairs]
-        both = about.responses(posed, np.full(len(posed), width))
+        nominal = Differentiated(self.structure, hub, settings, Grid(settings.step, 1), "", loads=False)
+        posed = [nominal.pair(*((None, driven(self.hub, command)) for command in pair)) for pair in pairs]
+        responses = nominal.responses(posed, np.full(len(posed), width))
 
         def varied() -> Iterator[tuple[Ran, Ran]]:
-            for k, (less, more) in enumerate(both, start=1):
+            for k, (less, more) in enumerate(responses, start=1):
                 share(k / len(pairs))
                 yield _ran(less), _ran(more)
 
-        return _ran(about.unvaried()), varied()
+        return _ran(nominal.unvaried()), varied()
 
 
-def _ran(of: Response) -> Ran:
-    left = float(np.linalg.norm(of.peaks.residual_amplitude))
-    driven = None if of.hub is None else (of.hub.angle - of.hub.angle[0], of.hub.rate)
-    return Ran(of.time, np.asarray(of.tip), of.outcome, of.message, left, of.step, driven)
+def _ran(response: Response) -> Ran:
+    """Parts of a response that shaping a command needs."""
+    left, hub = float(np.linalg.norm(response.peaks.residual_amplitude)), response.hub
+    moved = None if hub is None else (hub.angle - hub.angle[0], hub.rate)
+    return Ran(response.time, np.asarray(response.tip), response.outcome, response.message, left, response.step, moved)
 
 
 def movable(system: System) -> list[str]:
     """Names of the coordinates of joints that a command may drive: all but Euler parameters."""
-    every = (f"{name}.{each}" for name, joint in system.joints.items() for each in joint.coordinates)
-    return [each for each in every if not each.rpartition(".")[2].startswith("e")]
+    names = (f"{name}.{kind}" for name, joint in system.joints.items() for kind in joint.coordinates)
+    return [name for name in names if not name.rpartition(".")[2].startswith("e")]
 
 
 @dataclass(frozen=True)
 class OnJoint:
-    """A system on the ground, driven by the effort on a coordinate of a joint if it is free, else by its rate."""
+    """A system on the ground, driven by the rate of a joint's coordinate if it has one, else by the effort on it."""
 
     system: System
     coordinate: str
@@ -174,7 +179,7 @@ class OnJoint:
 
     @staticmethod
     def of(system: System, coordinate: str, point: str | None) -> OnJoint:
-        """The joint of a system, and the tip of the only flexible body where no point is named."""
+        """The drive of a system's coordinate, with the tip of the only flexible body as point if none is named."""
         choice("joint", coordinate, movable(system))
         tips = [f"{name}.tip" for name in system.flexible]
         if point is None and len(tips) != 1:
@@ -186,23 +191,23 @@ class OnJoint:
 
     @property
     def kind(self) -> str:
-        """Kind of the model of the beam; of a rigid body, system."""
+        """Kind of the model of the point's body; "system" if that is rigid."""
         body = self.system.bodies[self.point.partition(".")[0]]
         return body.kind if isinstance(body, Structure) else "system"
 
     @property
     def slides(self) -> bool:
-        """True if what is driven is a displacement."""
+        """True if the driven coordinate is a displacement."""
         return self.coordinate.rpartition(".")[2] in SLIDES
 
     @property
     def free(self) -> bool:
         """True if the drive is an effort."""
-        rates = {f"{name}.{each}" for name, joint in self.system.joints.items() for each in joint.rates}
+        rates = {f"{name}.{kind}" for name, joint in self.system.joints.items() for kind in joint.rates}
         return self.coordinate not in rates
 
     def refuse_moving(self, goal: Goal) -> None:
-        """Raise InputError unless it is at rest without a command, with the same sag all the way."""
+        """Raise InputError unless the system rests without a command, with the same sag all the way."""
         if np.abs(self.system.start[1]).max(initial=0.0) > 0:
             raise InputError("initial_rate", "is not zero: the system moves already", "leave it out")
         if self.system.controllers:
@@ -213,29 +218,29 @@ class OnJoint:
             raise InputError("point", f"is {self.point!r}, which goes on at the rate that is reached", fix)
         rest = self._held(0.0)
         start = dict(zip(rest.system.coordinates, rest.system.start[0], strict=True))
-        for name, at in zip(rest.names, rest.local.y, strict=True):
-            joint, _, of = name.rpartition(".")
-            if joint in self.system.joints and abs(at - start.get(name, at)) > _ASIDE:
-                problem = f"is {start[name]:.4g}, and it rests at {round(at, 12) + 0.0:.6g}"
-                raise InputError(f"joints.{joint}.initial.{of}", problem, "let it begin there")
+        for name, value in zip(rest.names, rest.local.y, strict=True):
+            joint, _, kind = name.rpartition(".")
+            if joint in self.system.joints and abs(value - start.get(name, value)) > _ASIDE:
+                problem = f"is {start[name]:.4g}, and it rests at {round(value, 12) + 0.0:.6g}"
+                raise InputError(f"joints.{joint}.initial.{kind}", problem, "let it begin there")
         if self.system.gravity is not None and np.any(np.asarray(self.system.gravity)):
-            far = goal.value * goal.duration / 2 if goal.to_rate else goal.value
-            sags = [self._held(share * far).local.y for share in _PLACES]
+            way = goal.value * goal.duration / 2 if goal.to_rate else goal.value
+            sags = [self._held(share * way).local.y for share in _PLACES]
             if np.ptp(sags, axis=0).max(initial=0.0) > _SAG * max(np.abs(sags).max(initial=0.0), _LEAST):
                 raise InputError("gravity", *_BENT)
 
     def _held(self, moved: float) -> SteadySystem:
-        """The system at rest where what is driven is held after it has moved so far."""
+        """The system at rest with the driven coordinate held at its start plus `moved`, rad or m."""
         name, _, coordinate = self.coordinate.rpartition(".")
         joint = self.system.joints[name]
         initial = {key: value + moved * (key == coordinate) for key, value in joint.first.items()}
-        efforts = {key: each for key, each in joint.efforts.items() if key != coordinate}
+        efforts = {key: effort for key, effort in joint.efforts.items() if key != coordinate}
         moves: dict[str, Any] = {"initial": initial, "rate": {**joint.rates, coordinate: 0.0}, "effort": efforts}
         held = replace(joint, **moves)
         return steady(replace(self.system, joints={**self.system.joints, name: held}), Drive())
 
     def _deflection(self, q: Floats) -> Floats | None:
-        """Displacement (t, 3) of the point from its body's root, by all coordinates (t, n); None where it has none."""
+        """Displacement (t, 3) m of the point relative to its body's root, by all coordinates (t, n); None if rigid."""
         moved = deflection(self.system, self.point, q)
         return None if moved is None else np.asarray(moved)
 
@@ -246,25 +251,25 @@ class OnJoint:
         local, inputs = state.local, state.local.inputs
         if self.free:
             return state, state.linear._replace(inputs=np.equal(state.names, self.coordinate)[:, None].astype(float))
-        moved = np.array(inputs.prescribed)
-        moved[2, self.system.tree.fixed.index(self.system.coordinates.index(self.coordinate))] += 1.0
-        faster = replace(inputs, prescribed=moved)
+        prescribed = np.array(inputs.prescribed)
+        prescribed[2, self.system.tree.fixed.index(self.system.coordinates.index(self.coordinate))] += 1.0
+        faster = replace(inputs, prescribed=prescribed)  # by a unit acceleration of the driven coordinate
         left = local.tree(local.y, local.yd, local.ydd, inputs) - local.tree(local.y, local.yd, local.ydd, faster)
         return state, state.linear._replace(inputs=left[:, None])
 
     @property
     def inertia(self) -> float:
-        """Inertia that the effort turns where nothing vibrates, kg m²: of the motions that no spring holds."""
+        """Inertia, kg m² or kg, that the effort moves without vibration; InputError if it is held or braked."""
         m, c, k, force = self._rest[1]
         square, modes = symmetric_modes(symmetric(k), symmetric(m))
         rigid = modes[:, square <= RIGID**2 * square[-1]]
-        moved = force[:, 0] @ rigid
-        if not np.abs(moved).max(initial=0.0) > 0:
+        shares = force[:, 0] @ rigid
+        if not np.abs(shares).max(initial=0.0) > 0:
             raise InputError("joint", f"is {self.coordinate!r}, which a spring or gravity holds", "give it a rate")
         if np.abs(rigid.T @ c @ rigid).max() > HELD * np.abs(c).max(initial=1e-300):
             fix = "leave out damping and friction of what is driven"
             raise InputError("joint", f"is {self.coordinate!r}, whose motion a damper brakes", fix)
-        return float(1 / (moved @ moved))
+        return float(1 / (shares @ shares))
 
     @property
     def small(self) -> SmallMotions:
@@ -282,7 +287,7 @@ class OnJoint:
         return SmallMotions(a, b[:, 0], c)
 
     def commanded(self, profile: Profile | None) -> System:
-        """The system under a command; at rest without."""
+        """The system with a command as the effort or rate of the coordinate; zero without one."""
         name, _, coordinate = self.coordinate.rpartition(".")
         joint = self.system.joints[name]
         others = joint.efforts if self.free else joint.rates
@@ -293,13 +298,13 @@ class OnJoint:
     def run(self, profile: Profile, settings: ResponseSettings, name: str = "", progress: Progress = None) -> Ran:
         """Run a command."""
         system = self.commanded(profile)
-        of = simulate(system, None, settings, name=name, progress=progress)
+        run = simulate(system, None, settings, name=name, progress=progress)
         k = system.coordinates.index(self.coordinate)
-        tip, left = self._tip(system, of.time, of.q, settings)
-        return Ran(of.time, tip, of.outcome, of.message, left, of.step, (of.q[:, k] - of.q[0, k], of.qd[:, k]))
+        tip, left = self._tip(system, run.time, run.q, settings)
+        return Ran(run.time, tip, run.outcome, run.message, left, run.step, (run.q[:, k] - run.q[0, k], run.qd[:, k]))
 
     def _tip(self, system: System, time: Floats, q: Floats, settings: ResponseSettings) -> tuple[Floats, float]:
-        """Displacement of the point in a system by all coordinates (t, n), or its place, and what is left of it."""
+        """Displacement (t, 3) m of the point, or its place if rigid, by all coordinates (t, n); its residual, m."""
         tip = self._deflection(q)
         if tip is None:
             y, k = q[:, system.tree.free], system.points.index(self.point)
@@ -309,7 +314,9 @@ class OnJoint:
     def about(
         self, profile: Profile, settings: ResponseSettings, pairs: Sequence[Pair], width: float, share: Share
     ) -> tuple[Ran, Iterator[tuple[Ran, Ran]]]:
-        """A run of given steps, and those of pairs of commands that differ by a width, along its exact derivatives."""
+        """The run of a command by given steps, and an iterator of pairs of runs of commands that differ by a `width`,
+        made by exact derivatives.
+        """
         assert settings.step is not None
         system, scheme = self.commanded(profile), scheme_of(settings)
         tree, k = system.tree, system.coordinates.index(self.coordinate)
@@ -321,32 +328,34 @@ class OnJoint:
         steps = replace(grid, kept=np.ones(len(grid), dtype=bool))
         run = through(posed.equations, scheme, *start, steps)
 
-        def command(of: Profile, time: Floats) -> Floats:
+        def command(profile: Profile, time: Floats) -> Floats:
             """The effort (t, 1), or angle, rate and acceleration (t, 3)."""
             if self.free:
-                return np.asarray(of(time))[:, None]
-            return np.stack([Hub(radius=0.0, rate=of).angle(time), *of.derivatives(time)], axis=-1)
+                return np.asarray(profile(time))[:, None]
+            return np.stack([Hub(radius=0.0, rate=profile).angle(time), *profile.derivatives(time)], axis=-1)
 
         def linear(time: Floats, q: Floats, qd: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+            """M, C, K (t, n, n) about states, and forces (t, n, p) by unit differences of each pair."""
             share(float(time[0] - settings.start) / settings.duration)
             inputs = system.inputs(time)
             qdd = accelerations(tree, q, qd, inputs)
             stiffness, damping, mass = slopes(tree, q, qd, qdd, inputs)
             if self.free:
-                driven = -np.broadcast_to(np.equal(tree.free, k).astype(float)[:, None], (len(time), len(tree.free), 1))
+                slope = -np.broadcast_to(np.equal(tree.free, k).astype(float)[:, None], (len(time), len(tree.free), 1))
             else:
-                driven = np.empty((len(time), len(tree.free), 3))
+                slope = np.empty((len(time), len(tree.free), 3))
                 for j in range(3):
-                    moved = np.array(inputs.prescribed, dtype=complex)
-                    moved[:, j, tree.fixed.index(k)] += 1j * STEP
-                    left = tree(q + 0j, qd + 0j, qdd + 0j, replace(inputs, prescribed=moved))
-                    driven[..., j] = left.imag / STEP
+                    prescribed = np.array(inputs.prescribed, dtype=complex)
+                    prescribed[:, j, tree.fixed.index(k)] += 1j * STEP
+                    left = tree(q + 0j, qd + 0j, qdd + 0j, replace(inputs, prescribed=prescribed))
+                    slope[..., j] = left.imag / STEP
             changed = np.stack([command(more, time) - command(less, time) for less, more in pairs], axis=-1) / width
-            return mass, damping, stiffness, -driven @ changed
+            return mass, damping, stiffness, -slope @ changed
 
         kept = np.append(0, 1 + np.flatnonzero(grid.kept))
 
         def moved(by: Floats | float) -> Ran:
+            """The run with `by` added to its free coordinates."""
             q = np.zeros((len(kept), tree.size))
             q[:, tree.free] = run.q[kept] + by
             tip, left = self._tip(system, run.time[kept], q, settings)

@@ -14,19 +14,22 @@ from gbeam.guards.arguments import typed
 from gbeam.results.state_space import Signal, StateSpace, Truncation
 
 Parts = tuple[StateSpace, StateSpace]
-RIGID = 1e-7  # of the largest eigenvalue: what is slower has none, as a free hub's angle
+RIGID = 1e-7  # of the largest eigenvalue: a smaller one is zero, as of a free hub's angle
 POINTS = 200  # frequencies at which gains are compared
 REACHED = 1e-14  # of the largest Hankel singular value: a smaller one is rounding
 DECAYS = 1e-9  # of the largest eigenvalue: what decays more slowly counts as undamped
 
 
 def _named(system: StateSpace, a: Floats, b: Floats, c: Floats, d: Floats, stem: str) -> StateSpace:
+    """The system with other matrices, and states named by a stem and a number."""
     states = tuple(Signal(f"{stem}_{k + 1}", "1") for k in range(len(a)))
     return replace(system, a=a, b=b, c=c, d=d, states=states, state=np.zeros(len(a)))
 
 
 def _split(system: StateSpace, chosen: Callable[[complex], bool]) -> Parts:
-    """Split a system, without D, into chosen eigenvalues and the rest by Schur and Sylvester: double poles too."""
+    """Split a system into the part with chosen eigenvalues, which keeps D, and the rest, by Schur and Sylvester: that
+    parts multiple poles, too.
+    """
     schur, basis, count = scipy.linalg.schur(system.a, output="real", sort=lambda re, im=0.0: chosen(complex(re, im)))
     first, second = schur[:count, :count], schur[count:, count:]
     coupling = scipy.linalg.solve_sylvester(first, -second, -schur[:count, count:])
@@ -127,17 +130,17 @@ def balanced_truncation(system: StateSpace, order: int) -> tuple[StateSpace, Flo
         return vector * np.sqrt(np.maximum(value, 0))
 
     left, hankel, right = np.linalg.svd(root(see).T @ root(reach))
-    some = int((hankel > REACHED * hankel.max(initial=0.0)).sum())
-    if order > some:
-        fix = f"give 1 to {some}" if some else "give it an input that moves them, such as a force or an effort"
-        raise InputError("order", f"is {order}, and inputs reach and outputs see {some} of the states that decay", fix)
+    count = int((hankel > REACHED * hankel.max(initial=0.0)).sum())
+    if order > count:
+        fix = f"give 1 to {count}" if count else "give it an input that moves them, such as a force or an effort"
+        raise InputError("order", f"is {order}, and inputs reach and outputs see {count} of the states that decay", fix)
     scale = 1 / np.sqrt(hankel[:order])
     into = scale[:, None] * (root(see) @ left[:, :order]).T
     out = root(reach) @ right[:order].T * scale
     a = scipy.linalg.block_diag(kept.a, into @ decaying.a @ out)
     b, c = np.concatenate([kept.b, into @ decaying.b]), np.concatenate([kept.c, decaying.c @ out], axis=1)
     small = _named(system, a, b, c, system.d, "balanced")
-    apart = replace(
+    difference = replace(
         system,
         a=scipy.linalg.block_diag(decaying.a, a[len(kept.a) :, len(kept.a) :]),
         b=np.concatenate([decaying.b, b[len(kept.a) :]]),
@@ -146,21 +149,24 @@ def balanced_truncation(system: StateSpace, order: int) -> tuple[StateSpace, Flo
     )
     size = np.abs(scipy.linalg.eigvals(system.a))
     band = size[size > RIGID * size.max()].min() / 2, 2 * size.max()
-    left_out = truncation("balanced", system, apart, k - order, hankel, band)
+    left_out = truncation("balanced", system, difference, k - order, hankel, band)
     return replace(small, frequency=np.zeros(0), errors=None, truncation=left_out), hankel
 
 
 def truncation(
-    method: str, system: StateSpace, apart: StateSpace, states: int, hankel: Floats, band: tuple[float, float]
+    method: str, system: StateSpace, difference: StateSpace, states: int, hankel: Floats, band: tuple[float, float]
 ) -> Truncation:
-    """Truncation by the system of the difference; the band in rad/s."""
+    """Record of a truncation that leaves out `states`, with the largest gains, over a band in rad/s, of the system and
+    of the `difference` that the truncation makes.
+    """
     start, end = band
-    poles = np.abs(scipy.linalg.eigvals(apart.a))  # where its gain has peaks
+    poles = np.abs(scipy.linalg.eigvals(difference.a))  # where its gain has peaks
     over = np.geomspace(start, end, POINTS, endpoint=False)  # short of the last pole kept, which may be undamped
-    error = _largest_gains(apart, np.concatenate([[0.0, end], over, poles[poles <= end]]))
+    error = _largest_gains(difference, np.concatenate([[0.0, end], over, poles[poles <= end]]))
     peaks = _largest_gains(system, over)
-    to, of = (np.array([each.unit for each in signals]) for signals in (system.outputs, system.inputs))
-    gain = np.array([[peaks[np.ix_(to == a, of == b)].max() for b in of] for a in to]).reshape(peaks.shape)
+    # A gain is compared with the largest of those between the same units.
+    to, by = (np.array([signal.unit for signal in signals]) for signals in (system.outputs, system.inputs))
+    gain = np.array([[peaks[np.ix_(to == a, by == b)].max() for b in by] for a in to]).reshape(peaks.shape)
     return Truncation(method, states, hankel, start / (2 * np.pi), end / (2 * np.pi), error, gain)
 
 

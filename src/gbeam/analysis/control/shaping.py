@@ -1,8 +1,8 @@
 """Command shaping: the drive of a hub or a joint that leaves the least vibration.
 
-A command is a quintic B-spline. What it leaves in the modes of the linear model is linear in its coefficients, so that
-the least is one least-squares problem, within a limit a quadratic program. What the given model leaves, which stiffens
-as it turns, is then made least by Gauss-Newton steps along the exact derivatives of its run.
+A command is a quintic B-spline. The vibration that it leaves in the modes of the linear model is linear in its
+coefficients, and is minimised by least squares or, within a limit, by a quadratic program. The vibration that it leaves
+in the given model, which stiffens as it turns, is then minimised by Gauss-Newton steps with exact derivatives.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ from gbeam.progress import Progress, tell
 from gbeam.results.searches import CommandRun, ShapedCommand
 
 RATIOS = np.linspace(0.7, 1.3, 61)
-# Weight of a smooth step's roughness beside what it leaves; less for a span of frequencies, which takes a larger drive.
+# Weight of a smooth step's roughness beside its vibration; less for a span of frequencies, which takes a larger drive.
 _SMOOTH, _SMOOTH_ROBUST = 1e-3, 1e-4
 _ROBUST = 9  # ratios over the span
 _PERIODS = 3  # of the lowest frequency, over which the residual is measured
 _ROUNDS, _MOVED = 4, 1e-3  # Gauss-Newton steps, and the difference of the drive over the largest for a derivative
 _MISSED = 0.01  # of the goal, as a run's vibration moves what is driven
-_BETTER = 0.9  # a step that leaves more than this share is the last
+_BETTER = 0.9  # of the vibration before: a step that leaves more is the last
 
 
 def _drive(arguments: Mapping[str, Any]) -> tuple[bool, bool]:
@@ -177,25 +177,27 @@ def shape_command(
 
 
 def _missed(ran: Ran, goal: Goal, name: str) -> tuple[str, ...]:
-    """Warning of a command of torque or force that does something else on the model of the runs."""
+    """Warning of a torque or force by which the run misses the goal; empty if it does not."""
     if ran.driven is None or ran.outcome != "done":
         return ()
-    done = float(ran.driven[goal.to_rate][ran.time >= goal.duration].mean())
-    if abs(done - goal.value) <= _MISSED * abs(goal.value):
+    history = ran.driven[1] if goal.to_rate else ran.driven[0]
+    reached = float(history[ran.time >= goal.duration].mean())
+    if abs(reached - goal.value) <= _MISSED * abs(goal.value):
         return ()
-    of = "reaches" if goal.to_rate else "moves by"
-    return (f"{name} {of} {done:.4g}, not {goal.value:.4g}: what is moved has another inertia on its way; give a rate",)
+    verb = "reaches" if goal.to_rate else "moves by"
+    words = f"{name} {verb} {reached:.4g}, not {goal.value:.4g}"
+    return (f"{words}: what is moved has another inertia on its way; give a rate",)
 
 
 class _Design:
-    """The least of what is left, and of roughness beside it, among commands that do what they must."""
+    """Least squares of the vibration left and of the roughness, among the commands that reach the goal."""
 
     def __init__(self, commands: Commands, vibration: Vibration, limit: float, robust: float, scale: float) -> None:
         self.commands, self.limit, self.scale = commands, limit, scale
         t = commands.time
         ratios = np.linspace(1 - robust, 1 + robust, _ROBUST) if robust else np.ones(1)
-        both = np.concatenate([commands.drive, commands.fixed[:, None]], axis=1)
-        rows = np.concatenate([vibration.rows(t, both, float(each)) for each in ratios]) / np.sqrt(len(ratios))
+        drives = np.concatenate([commands.drive, commands.fixed[:, None]], axis=1)
+        rows = np.concatenate([vibration.rows(t, drives, float(ratio)) for ratio in ratios]) / np.sqrt(len(ratios))
         rows = np.concatenate([rows.real, rows.imag]) / scale
         self.left, self.offset = rows[:, :-1], rows[:, -1]
         # Roughness: the drive's slope, over that of a smooth step.
@@ -206,17 +208,19 @@ class _Design:
         self.rough_offset = smooth * weight[:, 0] * np.diff(commands.fixed) / np.diff(t) / size
 
     def linear(self) -> Floats:
-        """By the modes of the linear model."""
+        """Coefficients that leave the least vibration in the modes of the linear model."""
         return self.solved(self.left, self.offset, self.commands.particular)
 
     def solved(self, rows: Floats, offset: Floats, about: Floats) -> Floats:
-        """Coefficients c at which rows c + offset is least, on the conditions and within the limit."""
+        """Coefficients c that minimise |rows c + offset|² and roughness, on the conditions, which `about` fulfils, and
+        within the limit; ComputationError if no command is.
+        """
         commands = self.commands
         a = np.concatenate([rows, self.rough]) @ commands.free
         b = np.concatenate([rows @ about + offset, self.rough @ about + self.rough_offset])
         coefficients = about + commands.free @ np.linalg.lstsq(a, -b, rcond=None)[0]
-        every = slice(None, None, 8)
-        drive, fixed = commands.drive[every], commands.fixed[every]
+        sampled = slice(None, None, 8)
+        drive, fixed = commands.drive[sampled], commands.fixed[sampled]
         if np.abs(drive @ coefficients + fixed).max() <= self.limit:
             return coefficients
         from scipy.sparse import csc_array
@@ -234,12 +238,13 @@ class _Design:
 
 
 def _settings(vibration: Vibration, duration: float) -> ResponseSettings:
+    """Settings of a run of a command, and of some periods of the slowest mode after it."""
     after = _PERIODS * 2 * np.pi / float(vibration.eigenvalue[0].imag)
     return ResponseSettings(duration + after, residual_from=duration, integrator="gauss", estimate=False, loads=False)
 
 
 def _plant(structure: Structure | System, hub: Hub | str, point: str | None) -> Plant:
-    """The hub with its beam, or the joint of a system, that the command drives."""
+    """The plant of a command, a hub with its beam or a joint of a system; InputError if they do not go together."""
     if isinstance(structure, System):
         if not isinstance(hub, str):
             raise InputError("hub", "is a hub, and carries a system", 'name what moves, such as "joint.angle"')
@@ -252,13 +257,13 @@ def _plant(structure: Structure | System, hub: Hub | str, point: str | None) -> 
 
 
 def _refined(plant: Plant, design: _Design, inner: Floats, progress: Progress) -> Floats:
-    """Gauss-Newton steps on what the plant's own run leaves of the point's vibration."""
+    """Coefficients improved by Gauss-Newton steps on the vibration that the plant's own run leaves."""
     commands = design.commands
     settings = _settings(Vibration.of(plant), commands.goal.duration)
-    done = plant.run(commands.of(inner), settings, progress=_within(progress, f"{plant.kind}: the linear design"))
-    if done.outcome != "done":
-        raise ComputationError(done.outcome, done.message)
-    settings = replace(settings, step=done.step)
+    first = plant.run(commands.of(inner), settings, progress=_within(progress, f"{plant.kind}: the linear design"))
+    if first.outcome != "done":
+        raise ComputationError(first.outcome, first.message)
+    settings = replace(settings, step=first.step)
     moves = commands.free / np.abs(commands.drive @ commands.free).max(axis=0)
     best, least = inner, np.inf
     for k in range(_ROUNDS):
@@ -266,8 +271,8 @@ def _refined(plant: Plant, design: _Design, inner: Floats, progress: Progress) -
         tell(progress, words, 0.0)
         width = _MOVED * np.abs(commands.drive @ inner + commands.fixed).max()
         pairs = [(commands.of(inner - width / 2 * move), commands.of(inner + width / 2 * move)) for move in moves.T]
-        now, both = plant.about(commands.of(inner), settings, pairs, width, partial(tell, progress, words))
-        residual = _left(now, commands.goal.duration) / design.scale
+        nominal, varied = plant.about(commands.of(inner), settings, pairs, width, partial(tell, progress, words))
+        residual = _left(nominal, commands.goal.duration) / design.scale
         size = float(np.linalg.norm(residual))
         if size < least:
             better, best, least = size < _BETTER * least, inner, size
@@ -277,21 +282,21 @@ def _refined(plant: Plant, design: _Design, inner: Floats, progress: Progress) -
             break
         slopes = [
             (_left(more, commands.goal.duration) - _left(less, commands.goal.duration)) / width / design.scale
-            for less, more in both
+            for less, more in varied
         ]
-        # In the coefficients: the derivative along every direction that is free.
+        # From derivatives along the free directions to those by coefficients.
         rows = np.stack(slopes, axis=1) @ np.linalg.pinv(moves)
         inner = design.solved(rows, residual - rows @ inner, inner)
     return best
 
 
 def _within(progress: Progress, words: str) -> Progress:
-    """Progress of a part, under its words."""
+    """Progress of a part, which is told with `words` before its own."""
     return lambda what, share: tell(progress, f"{words}, {what}", share)
 
 
 def _left(run: Ran, duration: float) -> Floats:
-    """The point's departures from its mean after the command, each sample by its share, (m,)."""
+    """Departures (m,) of the point from its mean after the command, scaled so that their norm is an amplitude, m."""
     tip = run.tip[run.time >= duration]
     return ((tip - tip.mean(axis=0)) * np.sqrt(2 / len(tip))).ravel()
 
