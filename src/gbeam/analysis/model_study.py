@@ -34,13 +34,13 @@ from gbeam.results.system import SystemResponse
 
 REFERENCE: ModelKind = "exact"
 CONVERGED = (3, 6)  # strain and rotation shapes at least of the reference five digits with them
-PATIENCE = 5.0  # s: a first run that took longer is not run again to time it without what it imports
-# Share of the peak by which its last shapes may move the tip: the error has been up to 12 times that.
+PATIENCE = 5.0  # s: a first run that took less is run again, to time it without imports
+# Share of the peak by which the last shapes may move the tip: the error has been up to 12 times that.
 SHAPES_FINE = 1e-5
 
 
 def counterpart(model: Model, kind: ModelKind) -> Model:
-    """The model of another kind with the same shapes; one of strains, as the reference is, with enough of them."""
+    """The model of another kind with as many shapes; of a kind by strains, as the reference, with a least number."""
     axial, y, z = model.counts[:3]
     if KINDS[kind].strains:
         axial, y, z = max(axial, CONVERGED[0]), *(max(n, CONVERGED[1]) if n else 0 for n in (y, z))
@@ -127,7 +127,7 @@ def compare_models(
 
 
 class _Tip(NamedTuple):
-    """Displacement (t, 3) m of the tip, or of the point that is compared, in a response, with its peaks (3,)."""
+    """Displacement `moved` (t, 3) m of the tip, or of the point compared, in a response, with its peaks (3,)."""
 
     of: Response | SystemResponse
     point: str
@@ -140,7 +140,7 @@ class _Tip(NamedTuple):
 
 
 def _refused(system: System, point: str | None) -> str | None:
-    """The point, if there is one and some beam may be of another model; InputError else."""
+    """The point, which may be None; InputError if it is not in the system, or no body is a beam."""
     if not any(body.source for body in system.flexible.values()):
         raise InputError("bodies", "have no beam, whose model could be another", "ask for run")
     if point is not None:
@@ -149,6 +149,7 @@ def _refused(system: System, point: str | None) -> str | None:
 
 
 def _structure(case: Case | SystemCase, kind: ModelKind) -> Structure | System | Failure:
+    """Structure or system of a case by a kind of model, or the reason why there is none."""
     try:
         if isinstance(case, Case):
             return replace(case, model=counterpart(case.model, kind)).assemble()
@@ -158,7 +159,7 @@ def _structure(case: Case | SystemCase, kind: ModelKind) -> Structure | System |
 
 
 def of_kind(system: System, kind: ModelKind) -> System:
-    """The system with all of its beams in a model, with their shapes."""
+    """The system with all of its beams in one kind of model, with as many shapes as they have."""
     bodies = {
         name: remade(body, counterpart(model_of(body), kind), body.stations[:-1])
         if isinstance(body, Structure) and body.source is not None
@@ -176,7 +177,7 @@ def _answer(
     point: str | None,
     progress: Callable[[str, float], None],
 ) -> _Tip | Failure:
-    """Displacement by one model, or why there is none."""
+    """Displacement by one model, or the reason why there is none."""
     if isinstance(structure, Failure):
         return structure
     model: Any = structure
@@ -213,10 +214,10 @@ def _answer(
 
 
 def _tip_of(system: System, response: SystemResponse, point: str | None) -> _Tip:
-    """Displacement of a point of a system, or of the tip that its beam moves farthest."""
+    """Displacement of a point of a system, by default of the tip of the beam that deflects most."""
     if point is None:
         tips = [f"{name}.tip" for name, body in system.flexible.items() if body.source]
-        point = max(tips, key=lambda each: float(np.abs(_moved(system, response, each)).max()))
+        point = max(tips, key=lambda tip: float(np.abs(_moved(system, response, tip)).max()))
     moved, left = _moved(system, response, point), response.residual_amplitude
     value, when = vector_peaks(response.time, moved)
     residual = np.full(3, np.nan) if left is None else left[response.points.index(point)]
@@ -224,13 +225,13 @@ def _tip_of(system: System, response: SystemResponse, point: str | None) -> _Tip
 
 
 def _moved(system: System, response: SystemResponse, point: str) -> Floats:
-    """Displacement (t, 3) of a point: of a flexible body relative to its root, of another from the start."""
+    """Displacement (t, 3) m of a point, of a flexible body relative to its root, else from its place at the start."""
     deflected = deflection(system, point, response.q)
     return response.at(point) - response.at(point)[0] if deflected is None else np.asarray(deflected)
 
 
 def shape_tail(structure: Structure, q: Floats) -> float:
-    """Share of the tip's largest displacement by the last shape of each family, over coordinates (t, n)."""
+    """Largest displacement of the tip by the last shapes of all families, over its largest, at coordinates (t, n)."""
     ends = np.cumsum(structure.counts) - 1
     last = [int(end) for end, count in zip(ends, structure.counts, strict=True) if count > 1]
     tip = structure.displacement(q)[:, -1]
@@ -243,7 +244,7 @@ def shape_tail(structure: Structure, q: Floats) -> float:
 
 
 def _timed(run: Callable[[], _Tip | Failure]) -> tuple[_Tip | Failure, float]:
-    """Run, and the time that it takes, s."""
+    """Answer of a run, and the time that it takes, s."""
     start = clock.perf_counter()
     answer = run()
     return answer, clock.perf_counter() - start
@@ -254,7 +255,7 @@ def _axis(moved: Floats) -> int:
 
 
 def _most_moved(answers: dict[tuple[str, str], tuple[_Tip | Failure, float]], name: str) -> int:
-    """Axis along which the models that have an answer move the tip most."""
+    """Number of the axis along which the models with an answer move the tip most in an environment."""
     peaks = [answer.peak for (_, where), (answer, _) in answers.items() if where == name and isinstance(answer, _Tip)]
     return _axis(np.sum(peaks, axis=0)) if peaks else 0
 
@@ -262,6 +263,7 @@ def _most_moved(answers: dict[tuple[str, str], tuple[_Tip | Failure, float]], na
 def _row(
     kind: str, name: str, answer: _Tip | Failure, seconds: float, reference: _Tip | Failure, axis: int
 ) -> ModelRow:
+    """Row of one model in one environment: its figures along an axis, and their errors against the reference."""
     nan = float("nan")
     if isinstance(answer, Failure):
         return ModelRow(kind, name, answer.outcome, answer.message, (), seconds=seconds)
@@ -274,7 +276,7 @@ def _row(
         top, left = float(reference.peak[axis]), float(reference.residual[axis])
         tip = reference.moved[:, axis]
         if not np.array_equal(reference.of.time, of.time):
-            # 40 samples to the lowest period: a cubic is wrong there by 1e-5 of a vibration, a straight line by 0.3 %.
+            # At 40 samples to the lowest period a cubic is wrong by 1e-5 of a vibration, a straight line by 0.3 %.
             tip = CubicSpline(reference.of.time, tip)(of.time)
         largest = float(np.abs(answer.moved[:, axis] - tip).max())
         after = of.time >= answer.residual_from
@@ -304,11 +306,12 @@ def _row(
 
 
 def _phase(time: Floats, ours: Floats, theirs: Floats) -> float:
-    """Phase by which one vibration is ahead of another at the other's dominant frequency, rad."""
+    """Phase, rad, by which `ours` is ahead of `theirs` (t,) at the dominant frequency of `theirs`; NaN without both."""
     if len(time) < 8 or np.ptp(theirs) == 0 or np.ptp(ours) == 0:
         return float("nan")
 
     def fit(values: Floats, omega: float) -> tuple[complex, float]:
+        """Complex amplitude at a frequency, rad/s, and the sum of squares that is left."""
         basis = np.stack([np.cos(omega * time), np.sin(omega * time), np.ones_like(time)], axis=1)
         fitted, *_ = np.linalg.lstsq(basis, values, rcond=None)
         return complex(fitted[0], -fitted[1]), float(np.sum((values - basis @ fitted) ** 2))

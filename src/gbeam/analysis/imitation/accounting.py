@@ -1,4 +1,4 @@
-"""A flight's load, part by part, as a machine makes it: its peaks, its stretches, and what comes on top."""
+"""A flight's load as a machine makes it: its peaks, the stretches not followed, and preloads beyond it."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from gbeam.results.machine import AxesResult
 
 _DIP = 0.9  # of the lower of two maxima: a load that falls further between them makes them two peaks
 _SLACK = 1e-9  # of idle: a load held at it is not above it
-_BOUND, _BEYOND = 0.99, 1.001  # shares of a limit between which it is what hinders the axis
-_NAMED = 2  # limits named
-_NEAR = 0.25  # s: so far from a stretch a limit may be used up because of it
+_BOUND, _BEYOND = 0.99, 1.001  # shares of a limit between which the limit holds an axis back
+_NAMED = 2  # limits named at most
+_NEAR = 0.25  # s around a stretch in which a limit may be used up because of it
 _CORNER, _BELOW = "corner", "below idle"
 _NAMES = (_CORNER, _BELOW, "gimbals", "left out")
 
@@ -30,8 +30,8 @@ Codes = Indices
 
 @dataclass(frozen=True)
 class History:
-    """Load (t, 3) m/s² of one environment on a rigid specimen: `load` is that of the control point, or of the root in
-    flight; `root` and its `growth` (t, 3, 3) give that of its other `ends` (p, 3) m: the tip, or corners.
+    """Loads (t, 3) m/s² of an environment on a rigid specimen: `load` at the control point (in flight, root); `root`
+    and its `growth` (t, 3, 3) 1/s² give the loads at the other `ends` (p, 3) m, the tip or corners.
     """
 
     load: Floats
@@ -45,12 +45,14 @@ class History:
         return np.asarray(np.linalg.norm(self.load, axis=1))
 
     def spread(self, i: int) -> tuple[float, float]:
-        """Size of the load at the end where it differs most over that at the control point, less one, at a sample."""
-        middle, root = (float(np.linalg.norm(each[i])) for each in (self.load, self.root))
-        if not middle > 0:
+        """Sizes of the load at the root, and at the end where it differs most, over that at the control point, less
+        one, at sample i; NaN without load.
+        """
+        control, root = (float(np.linalg.norm(load[i])) for load in (self.load, self.root))
+        if not control > 0:
             return np.nan, np.nan
-        ends = np.linalg.norm(self.root[i] + self.ends @ self.growth[i].T, axis=1) / middle - 1
-        return root / middle - 1, float(ends[np.abs(ends).argmax()])
+        ends = np.linalg.norm(self.root[i] + self.ends @ self.growth[i].T, axis=1) / control - 1
+        return root / control - 1, float(ends[np.abs(ends).argmax()])
 
 
 def account_of(
@@ -63,7 +65,7 @@ def account_of(
     tolerance: float,
     tolerance_of: ToleranceOf,
 ) -> Accounting:
-    """Account for a flight on a machine, of whose axes the samples `during` the flight are at these times."""
+    """Account for a flight on a machine at times (t,), the samples `during` the flight of its axes, if any."""
     positive("tolerance", tolerance, "of the flight's load")
     choice("tolerance_of", tolerance_of, TOLERANCE_OF)
     if axes is None:
@@ -77,7 +79,7 @@ def account_of(
         idle=axes.idle,
         target=axes.reference[during],
         episodes=axes.episodes,
-        shares={name: each[during] for name, each in axes.limit_shares.items()},
+        shares={name: share[during] for name, share in axes.limit_shares.items()},
     )
 
 
@@ -93,8 +95,8 @@ def account(
     episodes: tuple[tuple[float, float, str], ...] = (),
     shares: Mapping[str, Floats] | None = None,
 ) -> Accounting:
-    """Account for a flight's load over time (t,): what the machine does not give, why (its `episodes`, the limits'
-    `shares`), and by how much of the largest (`peak`) or of each `instant`'s load.
+    """Account for a flight's load over time (t,): its peaks, the stretches in which the machine's load differs by more
+    than the tolerance, with reasons by its `episodes` and its limits' `shares`, and loads beyond the flight's.
     """
     size, machine_size = flight.size, machine.size
     instant = tolerance_of == "instant"
@@ -107,7 +109,7 @@ def account(
     missed = _apart(machine.load, flight.load) > allowed
     held = np.zeros(len(time), bool) if target is None else _apart(target, flight.load) > allowed
     reasons = _reasons(time, low, held, episodes)
-    for run in true_runs(missed & ~low):  # what goes on without a break has one reason
+    for run in true_runs(missed & ~low):  # a stretch without a break has one reason
         kinds, counts = np.unique(reasons[run], return_counts=True)
         reasons[run] = kinds[counts.argmax()]
     stretches = tuple(
@@ -120,7 +122,7 @@ def account(
         for run in _runs(np.where(missed, reasons, -1))
     )
     duration = float(time[-1] - time[0])
-    lost = sum(each.end - each.start for each in stretches)
+    lost = sum(stretch.end - stretch.start for stretch in stretches)
     floor = max(above, least)
     most = np.maximum(size, idle)
     return Accounting(
@@ -139,16 +141,17 @@ def account(
     )
 
 
-def _apart(one: Floats, other: Floats) -> Floats:
-    return np.asarray(np.linalg.norm(one - other, axis=1))
+def _apart(load: Floats, other: Floats) -> Floats:
+    """Sizes (t,) of the difference of two loads (t, 3)."""
+    return np.asarray(np.linalg.norm(load - other, axis=1))
 
 
 def _reasons(time: Floats, low: Flags, held: Flags, episodes: tuple[tuple[float, float, str], ...]) -> Codes:
-    """Reason for which the load would not be followed at each time, as an index of `_NAMES`."""
+    """Reason, an index of `_NAMES`, for which a load at each time is not followed if it is not."""
     codes = np.full(len(time), _NAMES.index(_CORNER))
     for start, end, why in episodes:
         inside = (time >= start) & (time <= end)
-        if why == _BELOW:  # a load above idle is no load below it, whatever the target makes of it
+        if why == _BELOW:  # a load above idle that the target holds is left out, not below idle
             codes[inside & held] = _NAMES.index("left out")
         else:
             codes[inside] = _NAMES.index(why)
@@ -157,7 +160,7 @@ def _reasons(time: Floats, low: Flags, held: Flags, episodes: tuple[tuple[float,
 
 
 def _runs(codes: Codes) -> Iterator[slice]:
-    """Runs of equal codes, without those that are negative."""
+    """Yield the runs of equal codes that are not negative."""
     edges = np.concatenate([[0], np.flatnonzero(np.diff(codes)) + 1, [len(codes)]])
     for start, stop in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
         if codes[start] >= 0:
@@ -165,12 +168,13 @@ def _runs(codes: Codes) -> Iterator[slice]:
 
 
 def _widened(time: Floats, run: slice) -> slice:
+    """A run of samples with those shortly before and after it."""
     first, last = time[run.start] - _NEAR, time[run.stop - 1] + _NEAR
     return slice(int(np.searchsorted(time, first)), int(np.searchsorted(time, last, side="right")))
 
 
 def _named(reason: str, shares: Mapping[str, Floats], around: slice) -> str:
-    """The reason; in place of a corner the machine's limits that are used up around it, those that are so longest."""
+    """The reason in words; for a corner the limits that are used up around it, the longest first, if there are any."""
     if reason != _CORNER:
         return reason
     used = {
@@ -191,15 +195,15 @@ def _peak(
     reason: str,
     shares: Mapping[str, Floats],
 ) -> LoadPeak:
-    """Judge the flight's peak at sample `top`, with the samples of `basin`, on the machine."""
+    """Compare the flight's peak at sample `top`, whose samples are `basin`, with the machine's largest load near it."""
     size, machine_size = flight.size[basin], machine.size[basin]
     peak = top - basin.start
     (near,) = (run for run in true_runs(size >= _DIP * size[peak]) if run.start <= peak < run.stop)
     i = near.start + int(np.argmax(machine_size[near]))
     load, reproduced = float(size[peak]), float(machine_size[i])
-    # Sizes at their own times, directions at the same one.
-    turned = flight.load[basin.start + i] * (load / size[i])
-    error = float(np.linalg.norm(machine.load[basin.start + i] - turned)) / load
+    # Sizes at the times of either peak, directions at that of the machine's.
+    aim = flight.load[basin.start + i] * (load / size[i])
+    error = float(np.linalg.norm(machine.load[basin.start + i] - aim)) / load
     return LoadPeak(
         time=float(time[top]),
         load=load,
@@ -214,25 +218,28 @@ def _peak(
 
 
 def _preloads(edges: Floats, time: Floats, size: Floats, machine_size: Floats, most: Floats) -> Iterator[Preload]:
+    """Yield the stretches in which the machine's load exceeds `most` (t,)."""
     for run in true_runs(machine_size > most):
         i = run.start + int(np.argmax((machine_size - most)[run]))
         ends = float(edges[run.start]), float(edges[run.stop])
         yield Preload(*ends, float(time[i]), float(machine_size[i]), float(size[i]))
 
 
-_GRID, _MOST = 2e-3, 50_000  # s between times at which a load is looked at; most of them
-_ALIKE = 1e-9  # of the load: points that differ by less feel the same
+_GRID, _MOST = 2e-3, 50_000  # s between times at which a load is evaluated; the most times
+_ALIKE = 1e-9  # of the load: points whose loads differ by less have the same
 
-Largest = tuple[float, float, str]  # m/s², s, place; empty where every point feels the same
+Largest = tuple[float, float, str]  # m/s², s, place; "" if every point has the same load
 
 
 def times_between(first: float, last: float) -> Floats:
-    """Times at which a motion is looked at where no response gives them, s."""
+    """Evenly spaced times, s, at which a motion without a response is evaluated."""
     return np.linspace(first, last, min(int(np.ceil((last - first) / _GRID)), _MOST) + 1)
 
 
 def points_of(length: float, bodies: Floats, envelope: Floats | None = None) -> dict[str, Floats]:
-    """Ends of the beam, m from the root, and bodies (b, 3), or corners (c, 3), by name: the load is largest at one."""
+    """Points (3,), m, by name, at one of which the load is largest: corners (c, 3) of an envelope, or the ends of a
+    beam and its bodies (b, 3) off it.
+    """
     if envelope is not None and len(envelope):
         return {"({:.4g}, {:.4g}, {:.4g}) mm".format(*(1e3 * corner)): corner for corner in envelope}
     ends = {"the root": np.zeros(3), "the tip": np.array([length, 0.0, 0.0])}
@@ -241,7 +248,7 @@ def points_of(length: float, bodies: Floats, envelope: Floats | None = None) -> 
 
 
 def largest_load(time: Floats, base: Any, points: Mapping[str, Floats], origin: float = 0.0) -> Largest:
-    """Largest size of a base's load over time (t,) at points from the root, the base's point being at `origin`, m."""
+    """Largest size of a base's load over time (t,) at points from the root; the base's point is at x = `origin`, m."""
     away = np.array([-origin, 0.0, 0.0])
     loads = np.array([np.linalg.norm(moved(base, place + away).a_WO_B, axis=-1) for place in points.values()])
     place, i = np.unravel_index(int(np.argmax(loads)), loads.shape)
@@ -250,16 +257,14 @@ def largest_load(time: Floats, base: Any, points: Mapping[str, Floats], origin: 
 
 
 def largest_pair(flight: Largest, machine: Largest) -> PeakPair:
-    """Pair the largest loads of both."""
+    """Pair of the largest loads in flight and on the machine."""
     return PeakPair(flight[0], machine[0], flight[1], machine[1], flight[2], machine[2])
 
 
 def gradients(w_WB_B: Any, alpha_WB_B: Any) -> Any:
-    """Gradients of the acceleration along x, y and z, in columns, (..., 3, 3) 1/s²: a(r) = a(0) + product with r; along
-    x they are 2020 (4).
-    """
+    """Gradient G (..., 3, 3) 1/s² of the acceleration of a rigid body: a(r) = a(0) + G r; column one is 2020 (4)."""
     xp = namespace(w_WB_B, alpha_WB_B)
-    (wx, wy, wz), (alx, aly, alz) = (xp.moveaxis(each, -1, 0) for each in (w_WB_B, alpha_WB_B))
+    (wx, wy, wz), (alx, aly, alz) = (xp.moveaxis(vector, -1, 0) for vector in (w_WB_B, alpha_WB_B))
     along_x = xp.stack([-(wy**2 + wz**2), wx * wy + alz, wx * wz - aly], axis=-1)
     along_y = xp.stack([wx * wy - alz, -(wz**2 + wx**2), wy * wz + alx], axis=-1)
     along_z = xp.stack([wx * wz + aly, wy * wz - alx, -(wx**2 + wy**2)], axis=-1)

@@ -34,28 +34,28 @@ from gbeam.results.system import SystemResponse
 
 
 def peak_pairs(flight: Response, centrifuge: Response, during: slice, tips: tuple[int, int]) -> dict[str, PeakPair]:
-    """Largest sizes over the flight's times in each response, by name, of the tip at a station of each;
-    ``largest_load`` on the machine is over all of its run, and NaN stands where a response lacks one.
+    """Largest sizes over the flight's times in each response, by name; `tips` are the stations of the tip in each.
+    ``largest_load`` of the machine is over all of its run. NaN stands for a size that a response lacks.
     """
     last = centrifuge.time[during][-1]
-    one = _peaks(flight, flight.time <= last + 1e-12 * abs(last), tips[0])
-    two = _peaks(centrifuge, during, tips[1])
+    in_flight = _peaks(flight, flight.time <= last + 1e-12 * abs(last), tips[0])
+    on_machine = _peaks(centrifuge, during, tips[1])
     points = points_of(float(centrifuge.stations[-1]), centrifuge.bodies, centrifuge.envelope)
     loads = (largest_load(each.time, each.base, points) for each in (flight, centrifuge))
-    pairs = {name: PeakPair(one[name][0], two[name][0], one[name][1], two[name][1]) for name in one}
+    pairs = {name: PeakPair(a, on_machine[name][0], t, on_machine[name][1]) for name, (a, t) in in_flight.items()}
     return {"largest_load": largest_pair(*loads)} | pairs
 
 
 def _peaks(response: Response, part: slice | Flags, tip: int) -> dict[str, tuple[float, float]]:
-    """Largest sizes between steps and their times, where they lie in some of a response's time."""
-    time, of = response.time[part], response.peaks
-    known = {"tip": (of.max_size, of.time_of_max_size)}
-    if tip != len(response.stations) - 1 and of.displacement is not None:
-        known["tip"] = float(of.displacement.size.value[tip]), float(of.displacement.size.time[tip])
+    """Largest sizes of a response over a part of its times, between steps, and their times, by name."""
+    time, peaks = response.time[part], response.peaks
+    known = {"tip": (peaks.max_size, peaks.time_of_max_size)}
+    if tip != len(response.stations) - 1 and peaks.displacement is not None:
+        known["tip"] = float(peaks.displacement.size.value[tip]), float(peaks.displacement.size.time[tip])
     samples = {"tip": lambda: vector_peaks(time, response.displacement[part, tip])}
     if response.solid is not None:
-        over = response.solid.von_mises[part, None]
-        samples["stress"] = lambda: _between_steps(time, over)
+        von_mises = response.solid.von_mises[part, None]
+        samples["stress"] = lambda: _between_steps(time, von_mises)
     elif response.loads is not None:
         loads = response.loads
         stress = np.concatenate([loads.stress_tension[part], -loads.stress_compression[part]], axis=1)
@@ -67,47 +67,48 @@ def _peaks(response: Response, part: slice | Flags, tip: int) -> dict[str, tuple
             "root_force": lambda: vector_peaks(time, carried.section_force[part, 0]),
             "root_moment": lambda: vector_peaks(time, carried.section_moment[part, 0]),
         }
-    if of.loads is not None:
-        worst = int(np.argmax(of.loads.stress.value))
+    if peaks.loads is not None:
+        worst = int(np.argmax(peaks.loads.stress.value))
         extremes = {
-            "root_force": (of.loads.force.size, 0),
-            "root_moment": (of.loads.moment.size, 0),
-            "stress": (of.loads.stress, worst),
+            "root_force": (peaks.loads.force.size, 0),
+            "root_moment": (peaks.loads.moment.size, 0),
+            "stress": (peaks.loads.stress, worst),
         }
         known |= {name: (float(e.value[k]), float(e.time[k])) for name, (e, k) in extremes.items()}
 
     def peak(name: str) -> tuple[float, float]:
+        """The peak of all the response if it lies in the part, else the largest of the part's samples."""
         value, when = known.get(name, (np.nan, np.nan))
         if np.isfinite(value) and time[0] <= when <= time[-1]:
             return value, when
         if name not in samples:
             return np.nan, np.nan
-        # The response's own largest lies elsewhere, where the two cover different times.
         values, times = samples[name]()
         most = int(np.argmax(values))
         return float(values[most]), float(times[most])
 
     names = ("tip", "root_force", "root_moment", "stress")
-    return {name: peak(name) for name in names if name != "tip" or response.q.shape[1]}  # a rigid one has none
+    return {name: peak(name) for name in names if name != "tip" or response.q.shape[1]}  # a rigid tip does not move
 
 
 def _between_steps(time: Floats, values: Floats) -> tuple[Floats, Floats]:
-    """Largest of values (t, k) that have no derivatives, and their times, (k,)."""
+    """Largest of each history (t, k), known at samples alone, and its time, (k,) each."""
     return maxima(time, values, *seven_point(time, values, near_maxima(time, values)))
 
 
 def _stresses_at(
     at: str, flight: Response | SystemResponse, centrifuge: Response | SystemResponse, during: slice
 ) -> PeakPair:
-    """Largest stress at a named point over the flight's times in each response; NaN where one has none."""
+    """Largest stress at a named point over the flight's times in each response; NaN if either has none there."""
     last, largest = centrifuge.time[during][-1], []
     for response, part in ((flight, flight.time <= last + _ROUNDING * abs(last)), (centrifuge, during)):
         stress = stress_at_point(response, at)
         if stress is None or not np.isfinite(stress[part]).all():
             return PeakPair(place_flight=at, place_machine=at)
-        largest.append([float(each[0]) for each in _between_steps(response.time[part], stress[part, None])])
-    (one, then), (two, when) = largest
-    return PeakPair(one, two, then, when, at, at)
+        value, time = _between_steps(response.time[part], stress[part, None])
+        largest.append((float(value[0]), float(time[0])))
+    (in_flight, time_flight), (on_machine, time_machine) = largest
+    return PeakPair(in_flight, on_machine, time_flight, time_machine, at, at)
 
 
 CUTOFF = 0.5  # of the lowest natural frequency: trend below, elastic vibration above
@@ -233,8 +234,8 @@ def compare(
     felt = _felt(runs[0], flight, sensors), _felt(runs[1], centrifuge, sensors)
     if felt[0] is not None and felt[1] is not None and covered.any():
         shock = _shock(time, covered, in_flight(felt[0]), felt[1][during], weights, chosen, sensors, flight, centrifuge)
-    one, other = (each.name or each.environment for each in (flight, centrifuge))
-    names = one, other if other != one else f"the second {other}"
+    first_name, second_name = (run.name or run.environment for run in (flight, centrifuge))
+    names = first_name, second_name if second_name != first_name else f"the second {second_name}"
     growth = in_flight(gradients(flight.base.w_WB_B, flight.base.alpha_WB_B))
     spun = gradients(centrifuge.base.w_WB_B[during], centrifuge.base.alpha_WB_B[during])
     of_beam, root_load = not len(centrifuge.envelope), in_flight(flight.base.a_WO_B)
@@ -272,10 +273,10 @@ def compare(
 
 
 def _of_materials(flight: Response, centrifuge: Response) -> tuple[float, float] | None:
-    """Least margins on yield of solids in both runs; None where one is not known."""
-    worst = [None if each.solid is None else each.solid.nearest_yield for each in (flight, centrifuge)]
-    one, two = (None if each is None else each.margin for each in worst)
-    return None if one is None or two is None else (one, two)
+    """Least margins on yield of solids in flight and on the machine; None if either is not known."""
+    nearest = [None if run.solid is None else run.solid.nearest_yield for run in (flight, centrifuge)]
+    in_flight, on_machine = (None if point is None else point.margin for point in nearest)
+    return None if in_flight is None or on_machine is None else (in_flight, on_machine)
 
 
 def _largest(values: Floats, covered: Flags) -> Floats:
@@ -287,23 +288,26 @@ def _rms(values: Floats, covered: Flags) -> Floats:
 
 
 def _station(response: Response, point: str) -> int:
-    """Number of the station that is the tip: the last, or a named point."""
+    """Number of the station of a named point, by default of the tip, the last."""
     return index_of("point", point, response.points) if point else len(response.stations) - 1
 
 
 def _statistics(
     time: Floats, covered: Flags, reference: Floats, actual: Floats, centrifuge: Response, tips: tuple[int, int]
 ) -> Statistics | None:
-    """Sizes per station, and the tip's trend and vibration, the tip being a station of each."""
+    """Sizes at each station, and trend and vibration of the tip, whose stations in both runs are `tips`; None if the
+    samples are too few or too far apart to part trend from vibration.
+    """
     if not centrifuge.frequencies.size or len(time) < _FEWEST or not covered.any():
         return None
     step, cutoff = float(time[1] - time[0]), CUTOFF * float(centrifuge.frequencies[0]) / (2 * np.pi)
     if not cutoff < 0.4 / step:
         return None
-    late = covered & ~(time < centrifuge.residual_from)  # all of them where none is given
+    late = covered & ~(time < centrifuge.residual_from)  # all if that is NaN
     late = late if late.any() else covered
 
     def sizes(values: Floats, trend: Floats) -> Sizes:
+        """Largest, root mean square, and half range of the residual vibration."""
         left = (values - trend)[late]
         return Sizes(_largest(values, covered), _rms(values, covered), np.ptp(left, axis=0) / 2)
 
@@ -323,22 +327,23 @@ def _statistics(
 
 
 def _mismatch(covered: Flags, centrifuge: Response, gradient: Floats, tip: int) -> Mismatch | None:
+    """Mismatch along a beam by the gradient (t, 3) 1/s², and bounds of its effects; None without a control point."""
     if centrifuge.axes is None or not np.isfinite(centrifuge.axes.control_point) or not covered.any():
         return None
     if centrifuge.axes.place is not None:  # beside the beam
         return None
-    at, length = centrifuge.axes.control_point, float(centrifuge.stations[-1])
+    x_c, length = centrifuge.axes.control_point, float(centrifuge.stations[-1])
     largest, influence = _largest(gradient, covered), centrifuge.influence
     unknown = np.full(3, np.nan)
 
     def bound(linear: Floats, uniform: Floats) -> Floats:
-        return np.abs(linear - at * uniform) * largest
+        return np.abs(linear - x_c * uniform) * largest
 
     return Mismatch(
-        control_point=at,
+        control_point=x_c,
         gradient=gradient,
         max_gradient=largest,
-        max_acceleration=largest * max(at, length - at),
+        max_acceleration=largest * max(x_c, length - x_c),
         tip_bound=unknown
         if influence is None or tip != len(centrifuge.stations) - 1
         else bound(influence.tip_linear, influence.tip_uniform),
@@ -359,6 +364,8 @@ def _best_control_points(influence: Influence) -> tuple[float, float]:
 
 
 def _root(covered: Flags, history: RootHistory, stress_flight: Floats, stress_centrifuge: Floats) -> RootLoads:
+    """Largest root loads and stress in flight, on the machine, and of their difference."""
+
     def sizes(reference: Floats, actual: Floats) -> tuple[Floats, Floats, Floats]:
         return _largest(reference, covered), _largest(actual, covered), _largest(actual - reference, covered)
 
@@ -369,7 +376,7 @@ def _root(covered: Flags, history: RootHistory, stress_flight: Floats, stress_ce
 
 
 def _weights(control: Mapping[str, float] | None, *responses: Response) -> dict[str, float]:
-    """Shares of the control points, which all responses have."""
+    """Shares of the control points by name; InputError if a response lacks one, or a weight is not positive."""
     for name, weight in ({} if control is None else control).items():
         positive(f"control.{name}", weight, "(a weight)")
         for response in responses:
@@ -380,7 +387,7 @@ def _weights(control: Mapping[str, float] | None, *responses: Response) -> dict[
 
 
 def _felt(run: Response | SystemResponse, response: Response, sensors: Mapping[str, Sensor]) -> Floats | None:
-    """Accelerations (t, s, 3) of all points; as sensors read them where there are some."""
+    """Accelerations (t, s, 3) of all points, or readings at points with sensors; None if not known."""
     felt = response.accelerations
     if felt is None or not sensors:
         return felt
@@ -401,7 +408,9 @@ def _shock(
     sensors: Mapping[str, Sensor],
     *responses: Response,
 ) -> Shock | None:
-    """Spectra of accelerations (t, s, 3) at the tip, or the mean of those at control points."""
+    """Shock response spectra by accelerations (t, s, 3) at the tip, or their weighted mean at control points; None if
+    samples are few.
+    """
     if len(time) < _FEWEST:
         return None
     step = float(time[1] - time[0])
@@ -409,10 +418,10 @@ def _shock(
     frequency = np.geomspace(max(lowest, highest / 1000), highest, _SPECTRUM)
     mean = np.zeros((_SPECTRUM, 6))
     for name, share in (weights or {tip: 1.0}).items():
-        places = [_station(each, name) for each in responses]
-        both = np.concatenate([reference[:, places[0]], actual[:, places[1]]], axis=1)
-        mean += share * largest_riding_acceleration(both, 2 * np.pi * frequency, 0.5 / QUALITY, step, covered)
+        of_flight, of_machine = (_station(response, name) for response in responses)
+        pair = np.concatenate([reference[:, of_flight], actual[:, of_machine]], axis=1)
+        mean += share * largest_riding_acceleration(pair, 2 * np.pi * frequency, 0.5 / QUALITY, step, covered)
     read = dict.fromkeys(sensors, ", as its sensor reads")
-    said = ", ".join(f"{name} ({100 * share:.3g} %{read.get(name, '')})" for name, share in weights.items())
-    said = said or (tip or "the tip") + (" (as its sensor reads)" if (tip or "tip") in sensors else "")
-    return Shock(QUALITY, frequency, mean[:, :3], mean[:, 3:], control=said)
+    control = ", ".join(f"{name} ({100 * share:.3g} %{read.get(name, '')})" for name, share in weights.items())
+    control = control or (tip or "the tip") + (" (as its sensor reads)" if (tip or "tip") in sensors else "")
+    return Shock(QUALITY, frequency, mean[:, :3], mean[:, 3:], control=control)

@@ -29,30 +29,32 @@ class Cyclic(NamedTuple):
 def fatigue(
     flight: Response | SystemResponse, machine: Response | SystemResponse, at: str | None = None
 ) -> Fatigue | None:
-    """Rainflow cycles of the stress at a named point, or where :class:`Fatigue` says, in both runs; None where one has
-    no stress there, or not that of the same material.
+    """Rainflow cycles of the stress in both runs at a named point, or where the stress ranges most in flight; None if
+    either run has no stress there, or another material.
     """
     if at is None:
-        every = places_of(flight)
-        place = max(every, key=lambda name: np.ptp(every[name].stress), default="")
-        one, two = every.get(place), places_of(machine).get(place)
+        candidates = places_of(flight)
+        place = max(candidates, key=lambda name: np.ptp(candidates[name].stress), default="")
+        in_flight, on_machine = candidates.get(place), places_of(machine).get(place)
     else:
-        place, one, two = f"at {at}", cyclic_at(flight, at), cyclic_at(machine, at)
-    if one is None or two is None or not np.array_equal(one.exponent, two.exponent, equal_nan=True):
+        place, in_flight, on_machine = f"at {at}", cyclic_at(flight, at), cyclic_at(machine, at)
+    if in_flight is None or on_machine is None:
         return None
-    if not (np.isfinite(one.stress).all() and np.isfinite(two.stress).all()):
+    if not np.array_equal(in_flight.exponent, on_machine.exponent, equal_nan=True):
         return None
-    cycles = stress_cycles(flight.time, one.stress), stress_cycles(machine.time, two.stress)
-    return Fatigue(one.exponent, *cycles, place)
+    if not (np.isfinite(in_flight.stress).all() and np.isfinite(on_machine.stress).all()):
+        return None
+    cycles = stress_cycles(flight.time, in_flight.stress), stress_cycles(machine.time, on_machine.stress)
+    return Fatigue(in_flight.exponent, *cycles, place)
 
 
 def places_of(response: Response | SystemResponse) -> dict[str, Cyclic]:
     """Stresses at the roots of beams, and where each material of a mesh is stressed most, by the place in words."""
     if isinstance(response, SystemResponse):
-        roots = ((f"of the root of {body}", _of_section(each.loads, 0)) for body, each in response.beams.items())
-        meshes = (_worst(each, f"{body}'s ") for body, each in response.solids.items())
-        return {place: each for place, each in roots if each is not None} | {
-            place: each for some in meshes for place, each in some.items()
+        roots = ((f"of the root of {body}", _of_section(beam.loads, 0)) for body, beam in response.beams.items())
+        meshes = (_worst(solid, f"{body}'s ") for body, solid in response.solids.items())
+        return {place: cyclic for place, cyclic in roots if cyclic is not None} | {
+            place: cyclic for mesh in meshes for place, cyclic in mesh.items()
         }
     if response.solid is not None:
         return _worst(response.solid)
@@ -61,7 +63,7 @@ def places_of(response: Response | SystemResponse) -> dict[str, Cyclic]:
 
 
 def cyclic_at(response: Response | SystemResponse, at: str) -> Cyclic | None:
-    """Stress at a named point; None where there is none."""
+    """Normal stress and exponent at a named point; None if the point is of no beam or mesh."""
     solid, loads, k = stressed_at("damage_at", response, at)
     if solid is not None:
         return Cyclic(solid.point_normal[:, k], float(solid.point_exponent[k]))
@@ -69,7 +71,7 @@ def cyclic_at(response: Response | SystemResponse, at: str) -> Cyclic | None:
 
 
 def stress_at_point(response: Response | SystemResponse, at: str) -> Floats | None:
-    """Von Mises stress of a mesh, or normal stress of a beam, at a named point (t,); None where there is none."""
+    """Stress (t,) Pa at a named point, von Mises of a mesh, normal of a beam; None if the point is of neither."""
     solid, loads, k = stressed_at("stress_at", response, at)
     if solid is not None:
         return solid.point_von_mises[:, k]
@@ -79,7 +81,9 @@ def stress_at_point(response: Response | SystemResponse, at: str) -> Floats | No
 def stressed_at(
     where: str, response: Response | SystemResponse, at: str
 ) -> tuple[SolidStress | None, Loads | None, int]:
-    """Mesh or beam that has the stress at a named point, and the number of the point or section in it."""
+    """The mesh, or the loads of the beam, that a named point belongs to, else None, and its number there; InputError,
+    at the keyword `where`, if there is no such point.
+    """
     index_of(where, at, response.points)
     if isinstance(response, SystemResponse):
         body, _, point = at.partition(".")
@@ -93,11 +97,12 @@ def stressed_at(
 
 
 def _of_section(loads: Loads, section: int) -> Cyclic | None:
+    """Stress on the fibre of a section where it ranges most; None if not known."""
     return None if loads.fibre is None else Cyclic(loads.fibre[:, section], loads.fatigue_exponent)
 
 
 def _worst(solid: SolidStress, of: str = "") -> dict[str, Cyclic]:
-    """Stress where each material of a mesh is stressed most."""
+    """Stress where each material of a mesh is stressed most, by the place in words."""
     several = len(solid.materials) > 1
     return {
         f"where {of}{name if several else 'mesh' if of else 'it'} is stressed most": Cyclic(stress, float(exponent))
@@ -106,7 +111,7 @@ def _worst(solid: SolidStress, of: str = "") -> dict[str, Cyclic]:
 
 
 def stress_cycles(time: Floats, stress: Floats) -> StressCycles:
-    """Rainflow cycles of a stress over time (t,), s, Pa, with its extremes between samples."""
+    """Rainflow cycles of a stress (t,) Pa at times (t,) s, by its extremes between samples, largest ranges first."""
     import rainflow
 
     rows = [row[:3] for row in rainflow.extract_cycles(turning_points(time, stress).tolist())]

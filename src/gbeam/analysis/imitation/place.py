@@ -2,8 +2,8 @@
 
 About the control point C the centrifuge adds Δa(x, t) = g(t)(x − x_c) to the load of the flight (2020 (4)), and the
 axis motions, so g, do not depend on where C lies in the specimen. Each measure of the response to Δa is then the size
-of A(t) − x_c B(t): two histories computed once, and a convex function of x_c. Which mounting and width of smoothing
-give the best such point within the machine's limits is searched for, each with axis motions of its own.
+of A(t) − x_c B(t): two histories computed once, and a convex function of x_c. Mountings and widths of smoothing, each
+with axis motions of its own, are tried in turn for the best such point within the machine's limits.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ from gbeam.results.system import SystemResponse
 
 @record
 class _Carried:
-    """A base in translation with the load that a centrifuge makes at its control point: no mismatch anywhere."""
+    """A base that translates with the load of a centrifuge at its control point, so that no point has a mismatch."""
 
     kind: ClassVar[str] = "flight"
     free: ClassVar[bool] = False
@@ -72,8 +72,8 @@ def verify(
     answers: Answers,
     progress: Progress = None,
 ) -> tuple[Verification, ...]:
-    """Simulate flight and machines, prepared for the settings' span and named by their places, and compare."""
-    settings = replace(settings, estimate=False)  # a verification states none
+    """Compare simulations of the flight and of machines, by the names of their control points; both cover the span."""
+    settings = replace(settings, estimate=False)  # a verification states no errors
     mode, across = answers.mode, slice(1 if answers.specimen.straight else 0, 3)
 
     def simulated(motion: Any, what: str) -> Response:
@@ -89,40 +89,40 @@ def verify(
     point = answers.tip or None if isinstance(structure, System) else None
     tip = -1 if point is None else in_flight.points.index(point)
     # Machines at different control points share their axis motions, and the current one may be at the middle.
-    carried: dict[int, Response] = {}
-    responses: dict[tuple[int, bytes], Response] = {}
+    carried: dict[int, Response] = {}  # by axis motions
+    responses: dict[tuple[int, bytes], Response] = {}  # by axis motions and control point
     verifications = []
     for name, machine in machines.items():
         place = np.asarray(machine.place)
-        motion, at = id(machine.course), place.tobytes()
-        if (motion, at) not in responses:
-            responses[motion, at] = simulated(machine, name)
-        response = responses[motion, at]
+        motion, key = id(machine.course), place.tobytes()
+        if (motion, key) not in responses:
+            responses[motion, key] = simulated(machine, name)
+        response = responses[motion, key]
         comparison = compare(in_flight, response, point=point)
         compared = np.isin(response.time, comparison.time[comparison.covered])
         vibration, moved = np.nan, np.nan
         if mode is not None:
             if motion not in carried:
                 carried[motion] = simulated(_Carried(machine), f"{name}, carried")
-            # Whose automatic step may differ.
+            # Interpolated, since automatic steps may differ.
             carried_tip = interpolated(response.time, carried[motion].time, carried[motion].displacement[:, tip])
             swing = response.displacement[:, tip] - carried_tip
             step = float(response.time[1] - response.time[0])
             swing -= low_pass(swing, step, CUTOFF * float(mode.frequency) / (2 * np.pi))
             vibration, moved = (
-                float(np.linalg.norm(each[:, across], axis=1).max(initial=0.0))
-                for each in (swing[compared], comparison.difference[comparison.covered])
+                float(np.linalg.norm(history[:, across], axis=1).max(initial=0.0))
+                for history in (swing[compared], comparison.difference[comparison.covered])
             )
         force, moment = np.nan, np.nan
         if comparison.root is not None:
             root = comparison.root
-            force, moment = (float(each[across].max()) for each in (root.force_difference, root.moment_difference))
+            force, moment = (float(load[across].max()) for load in (root.force_difference, root.moment_difference))
         verifications.append(Verification(name, float(place[0]), moved, vibration, moment, force))
     return tuple(verifications)
 
 
-_WORTH = 0.02  # of the total error: what another mounting must save at least
-TILT, NEAR, TILTS = 0.35, 0.01, 40  # rad, by which a turn is varied at first and at last, and how often at most
+_WORTH = 0.02  # of the total error, which another mounting must save at least to be preferred
+TILT, NEAR, TILTS = 0.35, 0.01, 40  # first and last change of a turn in a search, rad; evaluations at most
 
 
 @typed
@@ -201,8 +201,8 @@ def place(
     if not trials.evaluated:
         raise trials.reasons[0].within(f"motion.{names[1]}")
     if choice.refined:
-        of = trials.ranked()[0]
-        refine(lambda width: trials(of.candidate.mounting, width, of.turn), tuple(choice.widths))
+        first = trials.ranked()[0]
+        refine(lambda width: trials(first.candidate.mounting, width, first.turn), tuple(choice.widths))
     if choice.between:
         trials.turn_on()
     ranked, before = trials.ranked(), trials.assess(current, at=np.array(current.place))
@@ -211,9 +211,9 @@ def place(
     allowed = not (best.candidate.exceeded and choice.limited)
     places = {"best": (best, np.array(best.candidate.place)), "current": (before, np.array(current.place))}
     places["middle"] = best, middle
-    machines = {name: each.centrifuge.altered(control_point=_written(at)) for name, (each, at) in places.items()}
+    machines = {name: trial.centrifuge.altered(control_point=_written(at)) for name, (trial, at) in places.items()}
     values, totals = (
-        {name: {m: h.size(at, total) for m, h in each.histories.items()} for name, (each, at) in places.items()}
+        {name: {m: h.size(at, total) for m, h in trial.histories.items()} for name, (trial, at) in places.items()}
         for total in (False, True)
     )
     return Placement(
@@ -242,25 +242,25 @@ def place(
 
 
 def usual(structure: Structure | System) -> dict[Measure, float]:
-    """Weights where none are given: of the tip, and of the load where nothing is displaced."""
+    """Weights by default: the tip's displacement or, if nothing can be displaced, the load."""
     free = structure.size if isinstance(structure, Structure) else len(structure.tree.free)
     return {"tip" if free else "load": 1.0}
 
 
 def usual_turns(structure: Structure | System) -> Ways:
-    """Ways round where none are named: those of a beam are its mountings."""
+    """Ways round by default: a beam's own, with its mountings, and right angles for other specimens."""
     beam = isinstance(structure, Structure) and structure.source is not None
     return "own" if beam else "right-angles"
 
 
 def _written(at: Floats) -> Any:
-    """A place as a centrifuge takes it: along x where it lies there."""
+    """A place (3,) m as a centrifuge takes it: one number if it lies on the positive x axis."""
     return at if np.any(at[1:]) or at[0] < 0 else float(at[0])
 
 
 @dataclass(frozen=True)
 class _Evaluated:
-    """A candidate with what it came from."""
+    """A candidate with the measures' histories, the centrifuge and the turn that it was evaluated by."""
 
     candidate: Candidate
     histories: dict[str, Histories]
@@ -269,7 +269,7 @@ class _Evaluated:
 
 
 class _Trials:
-    """The candidates evaluated so far; calling it evaluates one more."""
+    """The candidates evaluated so far; a call evaluates one more."""
 
     def __init__(
         self,
@@ -301,7 +301,9 @@ class _Trials:
         self.reasons: list[InputError] = []
 
     def __call__(self, mounting: str, width: float, turn: Turn | None = None) -> tuple[float, float]:
-        """Weighted measure at the best control point, and the largest share of a limit."""
+        """Total error at the best control point, and the largest share of a limit (0 if limits do not count); infinite
+        if the machine cannot be made.
+        """
         key, options = (mounting, width, turn), (mounting, width) if turn is None else (mounting, width, turn)
         if key not in self.evaluated:
             tell(self.progress, f"placement {len(self.evaluated) + len(self.refused) + 1}", 0.0)
@@ -316,17 +318,17 @@ class _Trials:
         return candidate.total_error, candidate.share if self.choice.limited else 0.0
 
     def turn_on(self) -> None:
-        """Turn the best one on, to where the error is least."""
+        """Search for the turn with the least error, from the best candidate's on."""
         import scipy.optimize
         from scipy.spatial.transform import Rotation
 
-        of = self.ranked()[0]
-        begun = Rotation.from_rotvec(of.centrifuge.turn)
+        best = self.ranked()[0]
+        begun = Rotation.from_rotvec(best.centrifuge.turn)
 
         def error(tilt: Floats) -> float:
-            # About the other two axes of the module: about axis 3 the specimen may be rolled as one likes.
+            # About two axes of the module: a roll about axis 3 changes nothing.
             direction = (Rotation.from_rotvec([0.0, *tilt]) * begun).as_matrix()[0]
-            value, share = self(of.candidate.mounting, of.candidate.smoothing, bringing(direction))
+            value, share = self(best.candidate.mounting, best.candidate.smoothing, bringing(direction))
             return value if share <= 1 else np.inf
 
         simplex = TILT * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
@@ -334,20 +336,20 @@ class _Trials:
         scipy.optimize.minimize(error, np.zeros(2), method="Nelder-Mead", options=options)
 
     def ranked(self) -> list[_Evaluated]:
-        """Best first; those that break limits last, by how much."""
+        """Candidates from the best to the worst; those that exceed limits last, by their excess."""
 
         def rank(trial: _Evaluated) -> tuple[float, float]:
             candidate = trial.candidate
             excess = candidate.share if self.choice.limited and candidate.exceeded else 0.0
-            # Mirror images differ by rounding, and by what a search leaves: then the scenario's own comes first.
-            written = self.choice.turns[0] if self.choice.turns else None
-            as_mounted = candidate.mounting == self.choice.mountings[0] and trial.turn == written
+            # Mirror images differ by rounding and by the search's tolerance: the scenario's own is preferred.
+            own_turn = self.choice.turns[0] if self.choice.turns else None
+            as_mounted = candidate.mounting == self.choice.mountings[0] and trial.turn == own_turn
             return excess, candidate.total_error * (1.0 if as_mounted else 1 + _WORTH)
 
         return sorted(self.evaluated.values(), key=rank)
 
     def assess(self, centrifuge: Centrifuge, *, at: Floats | None = None, turn: Turn | None = None) -> _Evaluated:
-        """Evaluate a centrifuge with its best control point, or with one that is given, (3,) m."""
+        """Evaluate a centrifuge with its best control point, or with one `at` a place (3,) m."""
         machine = centrifuge.over(*self.span)
         histories, accelerations = self.answers.histories(self.flight, machine)
         judged = {name: weight for name, weight in self.weights.items() if weight}
@@ -356,13 +358,14 @@ class _Trials:
             return sum(weight * histories[name].size(x, total) for name, weight in judged.items())
 
         def steepest(x: Floats) -> tuple[float, Floats]:
+            """Weighted measure without the load's error, and its slope (3,)."""
             parts = [histories[name].steepest(x, False) for name in judged]
             sizes, slopes = zip(*parts, strict=True)
             weights = np.array([*judged.values()])
             return float(weights @ sizes), weights @ np.array(slopes)
 
         if at is None:
-            low, high = (np.where(self.moved, each, self.start) for each in self.answers.specimen.extent)
+            low, high = (np.where(self.moved, corner, self.start) for corner in self.answers.specimen.extent)
             at = least(steepest, low, high, self.start)
         uses = machine.usage()
         times = times_between(*(float(end) for end in machine.extent))

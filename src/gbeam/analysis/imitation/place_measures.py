@@ -1,4 +1,4 @@
-"""The measures by which a place for the specimen is judged: histories of what the mismatch does, per measure."""
+"""The measures by which a place for the specimen is judged: histories of the effects of the mismatch, per measure."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from gbeam.numerics.samples import displacement
 
 Turn = tuple[float, float, float]
 Ways = Literal["own", "right-angles", "any"]
-SAME = 1e-9
+SAME = 1e-9  # of the cosine between directions: opposite or equal ones differ by less
 _FACTOR = 4.0  # of the centrifuge's own smoothing, either way
 
 
@@ -84,16 +84,16 @@ class Altered:
     centrifuge: Centrifuge
 
     def __call__(self, mounting: str, width: float, turn: Turn | None = None) -> Centrifuge:
-        """Return the centrifuge itself where all are its own: it need not be planned again."""
-        of = self.centrifuge
-        wanted = mounting, width, of.turn if turn is None else turn
-        if wanted == (of.mounting, width_of(of), of.turn):
-            return of
-        return of.altered(mounting=mounting, smoothing=width, turn=wanted[2])
+        """Return the altered centrifuge, or the same object if nothing differs, which is not planned again then."""
+        machine = self.centrifuge
+        turn = machine.turn if turn is None else turn
+        if (mounting, width, turn) == (machine.mounting, width_of(machine), machine.turn):
+            return machine
+        return machine.altered(mounting=mounting, smoothing=width, turn=turn)
 
 
 def width_of(centrifuge: Centrifuge) -> float:
-    """Width of the smoothing of its target, s; zero where there is none."""
+    """Width of the smoothing of a centrifuge's target, s; zero without smoothing."""
     return float(centrifuge.smoothing or 0.0)
 
 
@@ -152,23 +152,23 @@ def choice_of(
 
 
 def turns_of(turn: Turn, ways: Ways) -> tuple[Turn, ...]:
-    """Turns by name: the scenario's own first, then those that bring other directions of the specimen along axis 3,
-    each once of the two that are opposite, which are the two mountings.
+    """Turns to try, the scenario's own first, then those that bring other directions of the specimen along axis 3; of
+    opposite directions, which are the two mountings, one. Empty for the scenario's own alone.
     """
     if ways == "own":
         return ()
-    directions = [each for each in product((1, 0, -1), repeat=3) if each > (0, 0, 0)]
+    grid = [steps for steps in product((1, 0, -1), repeat=3) if steps > (0, 0, 0)]
     turns, along = [turn], [rotation_of(turn)[0]]
-    for each in sorted(directions, key=np.count_nonzero):
-        direction = np.array(each) / np.linalg.norm(each)
-        if (np.count_nonzero(each) == 1 or ways == "any") and max(np.abs(along @ direction)) < 1 - SAME:
+    for steps in sorted(grid, key=np.count_nonzero):
+        direction = np.array(steps) / np.linalg.norm(steps)
+        if (np.count_nonzero(steps) == 1 or ways == "any") and max(np.abs(along @ direction)) < 1 - SAME:
             along.append(direction)
             turns.append(bringing(direction))
     return tuple(turns)
 
 
 def bringing(direction: Floats) -> Turn:
-    """Shortest turn that brings a direction of the specimen along x, as axis 3 lies."""
+    """Shortest turn, a rotation vector in rad, that brings a direction (3,) of the specimen along x, as axis 3 lies."""
     axis = np.cross(direction, [1.0, 0.0, 0.0])
     size = float(np.linalg.norm(axis))
     x, y, z = (axis / size * math.atan2(size, direction[0])).tolist() if size else (0.0, 0.0, 0.0)
@@ -177,8 +177,8 @@ def bringing(direction: Floats) -> Turn:
 
 @dataclass(frozen=True)
 class Histories:
-    """A measure over the times compared: of the load's error at C, of the growth's, and of the growth along x, y and z,
-    (3, ...); (t, ..., k) each; flight's own peak.
+    """Histories (t, ..., k) of a measure over the times compared: its answers to the load's error at the control point,
+    to the error of the load's growth, and to unit shifts of the control point (3, t, ..., k); its peak in flight.
     """
 
     at_control_point: Floats
@@ -187,34 +187,34 @@ class Histories:
     scale: float
 
     def size(self, at: Floats, total: bool) -> float:
-        """Largest size with the control point at `at` (3,) m, over flight's peak; in `total` with the load's error."""
+        """Largest size over flight's peak, with the control point at a place (3,) m; `total` adds the load's error."""
         return self.steepest(at, total)[0]
 
     def steepest(self, at: Floats, total: bool) -> tuple[float, Floats]:
-        """Size as `size` gives, and its slope (3,) in the place of the control point, 1/m."""
+        """The value of `size`, and its slope (3,), 1/m, by the place of the control point."""
         values = self.growing - np.tensordot(at, self.uniform, 1) + (self.at_control_point if total else 0.0)
         sizes = np.linalg.norm(values, axis=-1)
         worst = np.unravel_index(int(np.argmax(sizes)), sizes.shape)
-        slope = -self.uniform[(slice(None), *self._there(worst))] @ values[worst] / max(float(sizes[worst]), 1e-300)
+        slope = -self.uniform[(slice(None), *self._shared(worst))] @ values[worst] / max(float(sizes[worst]), 1e-300)
         return float(sizes[worst]) / self.scale, slope / self.scale
 
-    def _there(self, worst: tuple[Any, ...]) -> tuple[Any, ...]:
-        """Index of what is uniform: where it does not depend on the place, it has one."""
+    def _shared(self, worst: tuple[Any, ...]) -> tuple[Any, ...]:
+        """Index into `uniform` for one into the values: axes along which it is broadcast have one entry."""
         return tuple(min(k, size - 1) for k, size in zip(worst, self.uniform.shape[1:-1], strict=True))
 
     @property
     def error(self) -> float:
-        """Measure of the load's error at C alone, which no control point changes."""
+        """Largest size over flight's peak by the load's error alone, which no control point changes."""
         return float(np.linalg.norm(self.at_control_point, axis=-1).max(initial=0.0)) / self.scale
 
 
-MOST = 2_000_000  # numbers in a history of the load at all ends of a specimen
+MOST = 2_000_000  # numbers of a history of the load at all ends of a specimen, at most
 
 
 class Answers:
-    """Quasi-static answers, and those of the mode by which the flight displaces the tip most, to loads of a flight and
-    of a centrifuge at times when the first centrifuge's target is not held: begin with the widest smoothing, which
-    holds longest.
+    """Answers of a specimen to the loads of a flight and of centrifuges: quasi-static ones, and vibration in the mode
+    by which the flight displaces the tip most. Times at which the first centrifuge's target is held are left out of
+    all: begin with the widest smoothing, which holds longest.
     """
 
     def __init__(self, structure: Structure | System, flight: Flight, settings: ResponseSettings) -> None:
@@ -223,7 +223,7 @@ class Answers:
         loads = flown.a_WO_B, gradients(flown.w_WB_B, flown.alpha_WB_B)
         displacement, modes, self.tip, self.mode = self.specimen.displacement, self.specimen.modes, "", None
         if modes is not None:
-            moved = [_largest(each.at(*loads)) for each in displacement.values()]
+            moved = [_largest(answer.at(*loads)) for answer in displacement.values()]
             point = int(np.argmax(moved))
             self.tip, self.mode = list(displacement)[point], modes.foremost(point, *loads)
             self.reach = float(np.linalg.norm(self.mode.shape[point]))
@@ -237,12 +237,12 @@ class Answers:
         self.load, self.growth = flown.a_WO_B, gradients(flown.w_WB_B, flown.alpha_WB_B)
 
     def refuse_unfelt(self, weights: Mapping[Measure, float]) -> None:
-        """Refuse a measure that has weight, and of which the flight makes none."""
-        of, loads = self.specimen, (self.load, self.growth)
-        known = {"root-shear": of.force, "root-moment": of.moment}
+        """Raise InputError if a measure with a weight is zero in flight."""
+        specimen, loads = self.specimen, (self.load, self.growth)
+        known = {"root-shear": specimen.force, "root-moment": specimen.moment}
         if self.tip:
-            known |= dict.fromkeys(("vibration", "tip"), of.displacement[self.tip])
-        felt = [*(name for name, each in known.items() if _largest(self._across(each).at(*loads)) > 0), "load"]
+            known |= dict.fromkeys(("vibration", "tip"), specimen.displacement[self.tip])
+        felt = [*(name for name, answer in known.items() if _largest(self._across(answer).at(*loads)) > 0), "load"]
         for name, weight in weights.items():
             if weight and name not in felt:
                 raise InputError(
@@ -250,25 +250,26 @@ class Answers:
                 )
 
     def _across(self, answer: Answer) -> Answer:
-        """The answer without what is along a straight beam, which is stiff there."""
+        """The answer without its component along x of a straight beam, which is stiff that way."""
         return answer.onto(np.diag([0.0, 1.0, 1.0])) if self.specimen.straight else answer
 
     def histories(
         self, flight: Flight, centrifuge: Centrifuge
     ) -> tuple[dict[str, Histories], tuple[float, float, float]]:
-        """Every measure that the flight's load has any of, and the largest accelerations of the axes, rad/s²."""
+        """Histories by measure, of those that are not zero in flight, and largest accelerations of the axes, rad/s²."""
         axes, at_c = centrifuge.axes(self.time), centrifuge.at_control_point(self.time)
-        # No machine answers for times that the first leaves out; times that another one does not follow are its error.
+        # Times that the first machine leaves out count for none; at others, not to follow is an error.
         self.left_out = centrifuge.not_followed(self.time) if self.left_out is None else self.left_out
         covered = ~self.left_out
         if not covered.any():
             raise InputError("tracks", "is never carried: the target is held all the time", "lower idle")
         error, growth = at_c.a_WO_B - self.load, gradients(at_c.w_WB_B, at_c.alpha_WB_B)
-        # About C the machine adds its growth times the place less C; at the root the flight's load is its own.
+        # The machine's load at r is that at C plus growth × (r − C), the flight's that at the root plus growth × r.
         growing, columns = growth - self.growth, np.moveaxis(growth, -1, 0)
         specimen = self.specimen
 
         def histories(answer: Answer, shaped: Callable[[Floats], Floats], scale: float) -> Histories:
+            """Histories by an answer, whose values (t, ...) are `shaped` into those of the measure."""
             parts = answer.at(error, 0 * growing), answer.at(0 * error, growing)
             uniform = np.stack([shaped(answer.at(column, 0 * growing)) for column in columns])
             at_c, grown = map(shaped, parts)
@@ -276,7 +277,8 @@ class Answers:
 
         def quasi_static(answer: Answer) -> Histories:
             answer = self._across(answer)
-            return histories(answer, lambda each: each[covered], _largest(answer.at(self.load, self.growth)[covered]))
+            in_flight = answer.at(self.load, self.growth)
+            return histories(answer, lambda values: values[covered], _largest(in_flight[covered]))
 
         measures = {"root-shear": quasi_static(specimen.force), "root-moment": quasi_static(specimen.moment)}
         if self.mode is not None:
@@ -285,10 +287,10 @@ class Answers:
         measures["load"] = self._loads(covered, error, growing, columns)
         turning = np.abs(axes.accelerations).max(axis=0)
         largest = float(turning[0]), float(turning[1]), float(turning[2])
-        return {name: each for name, each in measures.items() if each.scale > 0}, largest
+        return {name: measure for name, measure in measures.items() if measure.scale > 0}, largest
 
     def _vibration(self, covered: Flags) -> Callable[[Floats], Floats]:
-        """Displacement (t, 1) by the foremost mode beside its trend, of a force on it (t,)."""
+        """Function that returns the vibration (t, 1) m about the trend by a force (t,) on the foremost mode."""
         assert self.mode is not None
         frequency, damping = float(self.mode.frequency), float(self.mode.damping)
 
@@ -299,7 +301,7 @@ class Answers:
         return moved
 
     def _loads(self, covered: Flags, error: Floats, growing: Floats, columns: Floats) -> Histories:
-        """Load at every end of the specimen."""
+        """Histories of the load at all ends of the specimen, at so many times that they fit in memory."""
         ends = np.array([*self.specimen.ends.values()])
         some = np.flatnonzero(covered)[:: max(1, math.ceil(3 * len(ends) * len(error) / MOST))]
         in_flight = self.load[some, None] + ends @ self.growth[some].swapaxes(1, 2)
@@ -308,4 +310,5 @@ class Answers:
 
 
 def _largest(values: Floats) -> float:
+    """Largest length of vectors (..., k); zero of none."""
     return float(np.linalg.norm(values, axis=-1).max(initial=0.0))

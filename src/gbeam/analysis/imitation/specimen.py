@@ -1,4 +1,4 @@
-"""A specimen as a comparison and a placement see it: its base, one point and all loads, static and of its first mode.
+"""A specimen as comparisons and placements see it: loads on its base, displacements of its points, and its modes.
 
 The load at a place r from the root is a + G r: the root's acceleration, or specific force, and its growth along x, y
 and z, G = α× + ω ωᵀ − ω² 1 (2020 (4)). Everything static is linear in these twelve numbers, of a beam, a system, a
@@ -30,14 +30,16 @@ from gbeam.results.system import SystemResponse
 
 
 def specimen_of(response: SystemResponse) -> Response:
-    """The response of a system on a moving ground: its points, loads of the ground, and stress of beams and meshes."""
+    """Response of a system on a moving ground, as that of one specimen: its points, loads of the ground, and stress of
+    beams and meshes; InputError if the ground rests or loads are lacking.
+    """
     if response.base is None or response.assembly is None:
         fix = "simulate it on a flight, and on a centrifuge that tracks it, with loads"
         raise InputError("", "is a system on a ground at rest, or without loads", fix)
     from scipy.spatial.transform import Rotation  # 0.2 s to import, which no comparison of beams needs
 
-    chosen = [beam.loads for beam in response.beams.values()]
-    felt = [
+    beams = [beam.loads for beam in response.beams.values()]
+    felt = [  # accelerations in the axes of the points
         Rotation.from_quat(np.roll(response.attitude[:, k], -1, axis=-1)).apply(response.acceleration[:, k])
         for k in range(len(response.points))
     ]
@@ -45,20 +47,20 @@ def specimen_of(response: SystemResponse) -> Response:
     if response.solids:
         solid = _together(response)
     # The ground, then the largest stress at the roots; the sections of the beams follow.
-    tension = [np.max([each.stress_tension[:, 0] for each in chosen], axis=0)[:, None]] if chosen else []
-    compression = [np.min([each.stress_compression[:, 0] for each in chosen], axis=0)[:, None]] if chosen else []
-    tension += [each.stress_tension for each in chosen]
-    compression += [each.stress_compression for each in chosen]
+    tension = [np.max([beam.stress_tension[:, 0] for beam in beams], axis=0)[:, None]] if beams else []
+    compression = [np.min([beam.stress_compression[:, 0] for beam in beams], axis=0)[:, None]] if beams else []
+    tension += [beam.stress_tension for beam in beams]
+    compression += [beam.stress_compression for beam in beams]
     unknown = np.full((len(response.time), 1), math.nan)
-    strengths = {each.yield_strength for each in chosen}
+    strengths = {beam.yield_strength for beam in beams}
     loads = Loads(
-        stations=np.arange(float(1 + sum(each.stress_tension.shape[1] for each in chosen))),
+        stations=np.arange(float(1 + sum(beam.stress_tension.shape[1] for beam in beams))),
         force=response.ground_force[:, None],
         moment=response.ground_moment[:, None],
         section_force=response.ground_force[:, None],
         section_moment=response.ground_moment[:, None],
-        stress_tension=np.concatenate(tension, axis=1) if chosen else unknown,
-        stress_compression=np.concatenate(compression, axis=1) if chosen else unknown,
+        stress_tension=np.concatenate(tension, axis=1) if beams else unknown,
+        stress_compression=np.concatenate(compression, axis=1) if beams else unknown,
         acceleration=felt[-1][:, None],
         yield_strength=strengths.pop() if len(strengths) == 1 and solid is None else None,
     )
@@ -91,37 +93,37 @@ def specimen_of(response: SystemResponse) -> Response:
 
 
 def _together(response: SystemResponse) -> SolidStress:
-    """Stress of all meshes as that of one, the largest of beams too over time; a margin only without beams."""
-    every, beams = response.solids, [each.loads.stress.max(axis=1) for each in response.beams.values()]
-    worst = max(every.values(), key=lambda each: each.worst.von_mises)
-    near = [each.nearest_yield for each in every.values() if each.nearest_yield is not None and not beams]
+    """Stress of the worst mesh, with the history of the largest of all bodies; a margin on yield only without beams."""
+    solids, beams = response.solids.values(), [beam.loads.stress.max(axis=1) for beam in response.beams.values()]
+    worst = max(solids, key=lambda solid: solid.worst.von_mises)
+    near = [solid.nearest_yield for solid in solids if solid.nearest_yield is not None and not beams]
     return replace(
         worst,
-        von_mises=np.max([*(each.von_mises for each in every.values()), *beams], axis=0),
-        nearest_yield=min(near, key=lambda each: each.margin or math.inf, default=None),
+        von_mises=np.max([*(solid.von_mises for solid in solids), *beams], axis=0),
+        nearest_yield=min(near, key=lambda point: point.margin or math.inf, default=None),
     )
 
 
-ALIKE = 1e-3  # of what a mode moves: two that differ by less do alike
+ALIKE = 1e-3  # of the displacement by a mode: two modes that differ by less count as equal
 
 
 class Answer(NamedTuple):
-    """Values of unit accelerations (3, ...) of the root, and of unit growths (3, 3, ...), component by direction."""
+    """Values by unit accelerations (3, ...) of the root, and by unit growths G (3, 3, ...) of the load."""
 
     a: Floats
     growth: Floats
 
     @classmethod
     def of(cls, a: Floats, alpha: Floats, ww: Floats) -> Answer:
-        """Answer from values of unit accelerations, angular accelerations (3, ...) and pairs of rates (3, 3, ...)."""
+        """Answer from values by unit accelerations, angular ones (3, ...) and products of rates (3, 3, ...)."""
         unit = np.eye(9).reshape(3, 3, 3, 3)
-        even, odd = ((unit + sign * unit.swapaxes(2, 3)) / 2 for sign in (1, -1))
+        even, odd = ((unit + sign * unit.swapaxes(2, 3)) / 2 for sign in (1, -1))  # parts by rates and by α
         turning = np.stack([odd[..., 2, 1], odd[..., 0, 2], odd[..., 1, 0]], axis=-1)
         pairs = even - np.trace(even, axis1=2, axis2=3)[..., None, None] / 2 * np.eye(3)
         return cls(a, np.tensordot(turning, alpha, 1) + np.tensordot(pairs, ww, 2))
 
     def onto(self, values: Any) -> Answer:
-        """Return the answer by a map (..., k) of its values."""
+        """Return the answer with its values mapped by a matrix (..., k)."""
         return Answer(self.a @ values, self.growth @ values)
 
     def at(self, a: Floats, growth: Floats) -> Floats:
@@ -141,12 +143,12 @@ class Modes:
     shape: Floats
 
     def one(self, k: int) -> Modes:
-        """Return one of them."""
+        """Return mode k alone."""
         force = Answer(self.force.a[..., k], self.force.growth[..., k])
         return Modes(self.frequency[k], self.damping[k], force, self.shape[..., k])
 
     def foremost(self, point: int, a: Floats, growth: Floats) -> Modes:
-        """Return the slowest mode that displaces a point most, at rest under loads over time (t, 3), (t, 3, 3)."""
+        """Return the slowest of the modes that displace a point most, statically, under loads (t, 3), (t, 3, 3)."""
         force = np.abs(self.force.at(a, growth)).max(axis=0)
         moved = np.linalg.norm(self.shape[point], axis=0) * force / self.frequency**2
         return self.one(int(np.argmax(moved >= (1 - ALIKE) * moved.max())))
@@ -154,8 +156,8 @@ class Modes:
 
 @dataclass(frozen=True)
 class Specimen:
-    """Answers of a specimen: force and moment (3) on its base, displacement (3) of each of its points by name, its
-    modes, None of a rigid one; and the places (p, 3) at which its load is largest, by name, m.
+    """Answers of a specimen: force and moment on its base, displacement of its points by name, and modes, None if it is
+    rigid; `ends` are the places (3,) m, by name, at one of which the load is largest.
     """
 
     force: Answer
@@ -168,7 +170,7 @@ class Specimen:
 
     @classmethod
     def of(cls, structure: Structure | System, times: Floats) -> Specimen:
-        """Answers of a structure, or of a system at rest at all of some times (t,), s, whose coordinates are held."""
+        """Answers of a structure, or of a system that rests at all times (t,), s; InputError if it moves."""
         return of_system(structure, times) if isinstance(structure, System) else of_structure(structure)
 
     @property
@@ -185,7 +187,7 @@ def of_structure(structure: Structure) -> Specimen:
     if structure.recovery is not None:
         envelope = structure.recovery.envelope
     ends = points_of(structure.length, np.empty((0, 3)) if beam is None else beam.body_centres, envelope)
-    if beam is None and structure.recovery is None:  # matrices and particles, of which the points are known
+    if beam is None and structure.recovery is None:  # of matrices and particles only the points are known
         names = structure.points or tuple(f"point {k + 1}" for k in range(len(structure.stations)))
         ends = {"the root": np.zeros(3), **dict(zip(names, np.asarray(structure.station_places.r0), strict=True))}
     (mass, *first), second = c.rigid[:4], np.empty((3, 3))
@@ -206,14 +208,14 @@ def of_structure(structure: Structure) -> Specimen:
 
 
 def _modes(mass: Floats, damping: Floats, stiffness: Floats, forces: Answer, moved: Floats) -> Modes:
-    """Modes of points that move by coordinates (p, 3, n)."""
+    """Modes by M, C and K (n, n), forces on coordinates, and displacements (p, 3, n) of points by coordinates."""
     frequency, modes = rest_modes(mass, stiffness)
     ratio = np.einsum("nk,nm,mk->k", modes, damping, modes) / (2 * frequency)
     return Modes(frequency, ratio, forces.onto(modes), moved @ modes)
 
 
 def of_system(system: System, times: Floats) -> Specimen:
-    """Answers of a system where it rests with no load of its base."""
+    """Answers of a system about its equilibrium on a ground at rest."""
     _refuse_moved(system, times)
     state = steady(system, Drive(time=float(times[0])))
     local, stiffness = state.local, state.linear.stiffness
@@ -228,7 +230,7 @@ def of_system(system: System, times: Floats) -> Specimen:
         moved = state.slopes_of_points
         by_load = np.linalg.solve(stiffness, moved.reshape(-1, free).T).reshape(free, -1, 3)
         displacement = {name: forces.onto(by_load[:, k]) for k, name in enumerate(system.points)}
-        mass, damping, stiffness = (symmetric(each) for each in state.linear[:3])
+        mass, damping, stiffness = (symmetric(matrix) for matrix in state.linear[:3])
         modes = _modes(mass, damping, stiffness, forces, moved)
     ends = dict(zip(system.points, system.undeformed, strict=True))
     for name, root in zip(
@@ -241,7 +243,7 @@ def of_system(system: System, times: Floats) -> Specimen:
 
 
 def _refuse_moved(system: System, times: Floats) -> None:
-    """Refuse a system that drives move, which has no one place at rest."""
+    """Raise InputError if controllers or prescribed rates move a system: it has no place of rest."""
     if system.controllers:
         fix = "give the joints springs in their place, and compare runs with them by `gbeam sweep`"
         raise InputError("controllers", "hold joints, and a place is judged by what rests", fix)
@@ -253,7 +255,9 @@ def _refuse_moved(system: System, times: Floats) -> None:
 
 
 def _answers(local: Point) -> tuple[Answer, Answer, Answer]:
-    """Forces on the coordinates of a point at rest, and force and moment on the ground."""
+    """Answers of a state of rest: forces on its coordinates, and force and moment on the ground. Thirteen motions of
+    the ground are evaluated: none, three of a, three of α, and six pairs of ω.
+    """
     eye = np.eye(3)
     pairs = [eye[i] + (eye[j] if i != j else 0.0) for i, j in PAIRS]
     none, count = np.zeros((3, 3)), 13
@@ -262,15 +266,14 @@ def _answers(local: Point) -> tuple[Answer, Answer, Answer]:
     w = np.concatenate([np.zeros((1, 3)), none, none, pairs])
     inputs = each_leaf(lambda leaf: np.broadcast_to(leaf, (count, *np.shape(leaf))), local.inputs)
     inputs = replace(inputs, ground=replace(inputs.ground, a=a, alpha=alpha, w=w))
-    y, yd, ydd = (np.broadcast_to(each, (count, len(each))) for each in (local.y, local.yd, local.ydd))
+    y, yd, ydd = (np.broadcast_to(state, (count, len(state))) for state in (local.y, local.yd, local.ydd))
     rows, ground = local.tree.rows(y, yd, ydd, inputs)
 
     def answer(values: Floats) -> Answer:
         left = values[0] - np.broadcast_to(values, (count, values.shape[-1]))
         ww = np.zeros((3, 3, left.shape[-1]))
         for k, (i, j) in enumerate(PAIRS):
-            both = left[7 + k] if i == j else (left[7 + k] - left[7 + i] - left[7 + j]) / 2
-            ww[i, j] = ww[j, i] = both
+            ww[i, j] = ww[j, i] = left[7 + k] if i == j else (left[7 + k] - left[7 + i] - left[7 + j]) / 2
         return Answer.of(left[1:4], left[4:7], ww)
 
     return answer(rows[:, local.tree.free]), answer(ground.force), answer(ground.moment)
