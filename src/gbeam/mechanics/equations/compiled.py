@@ -22,8 +22,8 @@ def resting(residual: Any, base: Base, loads: Array | None) -> Array:
     still = jnp.zeros(residual.equations.size)
 
     def force(q: Array, share: Any) -> Array:
-        slower: Any = jnp.sqrt(share)
-        part = Base(share * base.a_WO_B, slower * base.w_WB_B, share * base.alpha_WB_B)
+        spin_share: Any = jnp.sqrt(share)  # centrifugal forces grow with the square of the spin
+        part = Base(share * base.a_WO_B, spin_share * base.w_WB_B, share * base.alpha_WB_B)
         return residual(q, still, still, (part, None if loads is None else share * loads))
 
     return root(force, still)
@@ -31,7 +31,9 @@ def resting(residual: Any, base: Base, loads: Array | None) -> Array:
 
 @partial(jax.jit, static_argnames="axes")
 def displaced(structure: Any, axes: tuple[int, ...], wanted: Array) -> Array:
-    """Coordinates (n,) of least strain energy at which the tip is displaced along axes by `wanted`; NaN likewise."""
+    """Coordinates (n,) of least strain energy at which the tip is displaced along `axes` by `wanted`, m; NaN where
+    Newton's method does not converge.
+    """
     n, equations = structure.size, structure.equations
 
     def energy(z: Array, share: Any) -> Array:
@@ -42,9 +44,11 @@ def displaced(structure: Any, axes: tuple[int, ...], wanted: Array) -> Array:
 
 
 def root(function: Any, start: Array) -> Array:
-    """Root of a function of x and a share of its drive, as the share grows to one; derivatives are implicit."""
+    """Root x of ``function(x, share)`` at a share of 1, approached as the share grows; NaN where Newton's method does
+    not converge. Derivatives are implicit.
+    """
 
-    def newton(of: Any, start: Array) -> tuple[Array, Array]:
+    def newton(_: Any, start: Array) -> tuple[Array, Array]:
         def correct(k: Any, state: tuple[Array, Array]) -> tuple[Array, Array]:
             x, _ = state
             value, slope = with_slope(partial(function, share=(k // ITERATIONS + 1) / STRIDES))(x)

@@ -36,7 +36,9 @@ class Ground:
 
 @record
 class Weight:
-    """Gravity (3,) at θ = 0 on hub and beam: the first moment of mass about the axis, S0 + S1 q + ½ q S2 q, base."""
+    """Gravity (3,), hub's axes at θ = 0, m/s², and the beam's first moment of mass about the hub's axis, in axes of
+    the base, S0 + S1 q + ½ q S2 q, kg m; R_HB (3, 3) turns from the base to the hub.
+    """
 
     gravity: Array
     R_HB: Array
@@ -58,10 +60,10 @@ class Weight:
 
 @record
 class FreeHub:
-    """Equations of a free hub and a beam whose places are a polynomial, 2009 (24)–(34): (J_h + J) θ̈ + 2 θ̇ (F2 − K2
-    q)·q̇ + b·q̈ + q̇·B q̇ = torque, with J = J0 + 2 F2·q − q K2 q and b = b0 + B q, and M q̈ + (C + θ̇ G) q̇ + (K + θ̇²
-    K2) q − θ̇² F2 + θ̈ b = 0; without `hub_force`, 2009 (32), the hub's row is that of SFOAM as printed, which
-    conserves nothing.
+    """Equations of a free hub and a beam whose places are a polynomial, 2009 (24)–(34), with J = J0 + 2 F2·q − q K2 q
+    and b = b0 + B q: (J_h + J) θ̈ + 2 θ̇ (F2 − K2 q)·q̇ + b·q̈ + q̇·B q̇ = torque of the hub, and
+    M q̈ + (C + θ̇ G) q̇ + (K + θ̇² K2) q − θ̇² F2 + θ̈ b = 0 of the beam. Without `hub_force` the hub's row is that of
+    SFOAM as printed, 2009 (32), which conserves nothing.
     """
 
     mass: Array
@@ -102,7 +104,7 @@ class FreeHub:
 
 
 def _rows(vector: Array, *matrices: Array) -> Any:
-    """Products of some (n, n) matrices with vectors (..., n), (..., n) each."""
+    """Products (..., n) of each of the (n, n) matrices with vectors (..., n)."""
     products, n = vector @ namespace(*matrices).concatenate(matrices).T, len(matrices[0])
     return tuple(products[..., k * n : (k + 1) * n] for k in range(len(matrices)))
 
@@ -112,7 +114,7 @@ def _dot(left: Array, right: Array) -> Array:
 
 
 def free_hub(c: Coefficients, mount: Any, ground: Ground, *, hub_force: bool = True) -> FreeHub:
-    """Contract the coefficients of a linear model with a hub's axis and the root's place."""
+    """Contract a linear model's coefficients with a hub's axis and the root's place (`mount`) to its free hub's."""
     xp = namespace(c.mass, mount.radius, mount.R_HB)
     radius, R_HB = mount.radius, xp.asarray(mount.R_HB)
     root, along, e = radius * R_HB[0], radius * R_HB[1], R_HB[2]  # r_O, e × r_O, e
@@ -186,7 +188,9 @@ class Complete:
     def demanded(
         self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array, loads: Array | None
     ) -> tuple[Array, Array, Array]:
-        """Forces on the coordinates (..., n), and force N and moment N m at the root (..., 3), that motion demands."""
+        """Forces on the coordinates (..., n), and force N and moment N m at the root (..., 3), that a motion demands,
+        less those of the loads.
+        """
         along, force, moment = self.inertia.forces(q, qd, qdd, a, w, alpha)
         along = along + (q @ self.stiffness + qd @ self.damping)
         if self.work is None or loads is None:
@@ -206,17 +210,17 @@ class CompleteHub:
     def residual(self, y: Array, yd: Array, ydd: Array, torque: Array, load_values: Array | None = None) -> Array:
         """Residual (..., n + 1) of hub and beam under a torque on the hub, N m, and load components (..., loads, 6)."""
         (angle, q), (rate, qd), (change, qdd) = ((each[..., 0], each[..., 1:]) for each in (y, yd, ydd))
-        _, onward, axis = self.mount.R_HB  # the hub's axes in those of the base
+        _, tangential, axis = self.mount.R_HB  # the hub's axes in those of the base
         base = self.mount.base(angle, rate, change)
         motion = base.a_WO_B, base.w_WB_B, base.alpha_WB_B
         beam, force, moment = self.system.demanded(q, qd, qdd, *motion, load_values)
         # About the root, and of the resultant there, e × r_O being along y of the hub.
-        about = moment @ axis + self.mount.radius * (force @ onward)
+        about = moment @ axis + self.mount.radius * (force @ tangential)
         turning = self.ground.torque(angle, rate, change) + about - torque
         return concatenated([turning[..., None], beam])
 
     def about(self, c: Coefficients) -> FreeHub:
-        """Put a linear model on the hub's rim."""
+        """Equations of the same hub with a linear model on its rim."""
         return free_hub(c, self.mount, self.ground)
 
 

@@ -36,8 +36,9 @@ UNITS: Vector = (x, y, z)  # of the three unit vectors, in columns
 
 
 class Demanded(NamedTuple):
-    """Forces on t and moments on the sections at the nodes that motion demands, their resultant and moment about the
-    root, and of these the moments of the sections' own inertia and the forces on points beside the axis.
+    """What a motion demands: forces on the tangents t and moments on the sections at the nodes, their resultant `total`
+    and moment `about` the root, and, as parts of these, the moments `turn` of the sections' own inertia at the nodes
+    and the forces `push` on points beside the axis.
     """
 
     force: Vector
@@ -87,7 +88,7 @@ class Bodies:
     def forces(
         self, q: Array, qd: Array, qdd: Array, a: Vector, w: Vector, alpha: Vector
     ) -> tuple[Array, Vector, Vector]:
-        """Forces, resultant and moment, as of particles."""
+        """Forces on the coordinates, resultant and moment about the root, as :meth:`Particles.forces` returns them."""
         tangents = self.field.moving(q, qd, qdd, base=(w, alpha))
         demanded = self._demanded(tangents, a)
         return self.field.pulled(tangents, demanded.force, demanded.moment), demanded.total, demanded.about
@@ -119,69 +120,69 @@ class Bodies:
     def slopes(
         self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array, axes: list[int], *, still: bool
     ) -> tuple[Array, Array]:
-        """Forces, resultant and moment (..., n + 6), and their derivatives by all arguments, (..., 3 n + 9, n + 6), of
-        ω and α only about some axes, and not by q and q̇ where these are `still`.
+        """Forces on the coordinates, resultant and moment (..., n + 6), and their derivatives with respect to q, q̇, q̈,
+        a, ω and α, (..., 3 n + 9, n + 6). Rows of ω and α about axes of the root that are not in `axes` are zero, and
+        so are those of q and q̇ where these are `still`.
         """
-        shape, n = np.broadcast_shapes(*(each.shape[:-1] for each in (q, qd, qdd, a, w, alpha))), self.field.size
+        shape = np.broadcast_shapes(*(each.shape[:-1] for each in (q, qd, qdd, a, w, alpha)))
+        n, outboard = self.field.size, self.field.node_cumulative.T  # sums of all that is outboard of a node
         # The last axis are nodes or points, the one before it the columns by q, q̇, q̈, ω and α.
         base, w, alpha = (_components(each[..., None, :]) for each in (a, w, alpha))
         q, qd, qdd = (each[..., None, :] for each in (q, qd, qdd))
         tangents = self.field.moving(q, qd, qdd, base=(w, alpha))
-        at, back = self._demanded(tangents, base), self.field.node_cumulative.T
+        at = self._demanded(tangents, base)
         fixed = Tangents(tangents.rotation, tangents.t, tangents.arm) if still else tangents
         columns, side = self.field.columns(fixed), _Side.of(shape, n, axes, still)
         # The root's turn moves t, and turns sections, as a coordinate does.
         moved = side.rows(columns.place[0], cross(UNITS, tangents.t))
         change = side.changes(columns, tangents.t, tangents.td, w)
-        by, resultant = _work(mapped(change, self.pairs), moved), _weighted(change, self.first)
+        work, resultant = _work(mapped(change, self.pairs), moved), _weighted(change, self.first)
         by_a, mass, swung = _weighted(moved, self.first), self.mass, cross(columns.place[0], at.force)
-        lever, about = mapped(swung, back), _summed(swung)
+        lever, about = mapped(swung, outboard), _summed(swung)
         if self.turning is not None:
             turn = self._turning_changes(tangents, columns, at.turn, side)
-            by = by + _work(turn, side.rows(columns.angle[0], UNITS))
+            work = work + _work(turn, side.rows(columns.angle[0], UNITS))
         if len(self.beside):
             (r, rd, _), points = self.field.carried(tangents), self.field.columns_of_points(fixed, columns)
             moved = side.rows(points.place[0], cross(UNITS, r))
             change = scaled(self.beside, side.changes(points, r, rd, w))
-            by, resultant = by + _work(change, moved), add(resultant, _summed(change))
+            work, resultant = work + _work(change, moved), add(resultant, _summed(change))
             by_a, mass = add(by_a, _weighted(moved, self.beside)), mass + self.beside.sum()
             arm = cross(cross(points.angle[0], tangents.arm), at.push)
             lever = add(lever, mapped(arm, self.field.cumulative.T))
             about = add(about, _summed(arm))
         if not still:
-            held = add(at.moment, mapped(cross(tangents.t, at.force), back))
+            carried = add(at.moment, mapped(cross(tangents.t, at.force), outboard))  # by the sections
             # Moments on the nodes do other work where these have turned.
-            force, moment = cross(at.force, columns.angle[0]), add(cross(held, columns.angle[0]), lever)
-            by[..., :n, :n] += self.field.inward(tangents, force, moment)
-            by[..., :n, n:] += joined(np, about, (*shape, n))
+            force, moment = cross(at.force, columns.angle[0]), add(cross(carried, columns.angle[0]), lever)
+            work[..., :n, :n] += self.field.inward(tangents, force, moment)
+            work[..., :n, n:] += joined(np, about, (*shape, n))
         out, turns = np.zeros((*shape, 3 * n + 9, n + 6)), 3 * n + 3 + np.array(axes, dtype=int)
         motion, rows = np.r_[2 * n * still : 3 * n, turns, turns + 3], np.r_[:n, n + 3 : n + 6]
-        out[..., motion[:, None], rows] = by
+        out[..., motion[:, None], rows] = work
         out[..., motion, n : n + 3] = joined(np, resultant, (*shape, len(motion)))
         out[..., 3 * n : 3 * n + 3, rows] = np.moveaxis(joined(np, by_a, (*shape, n + 3)), -1, -2)
         out[..., 3 * n : 3 * n + 3, n : n + 3] = mass * np.eye(3)
         along = self.field.pulled(tangents, at.force, at.moment)
-        value = [along, *(joined(np, each, (*shape, 1)) for each in (at.total, at.about))]
+        value = [along, *(joined(np, vector, (*shape, 1)) for vector in (at.total, at.about))]
         return concatenated(value)[..., 0, :], out
 
     def _turning_changes(self, tangents: Tangents, columns: Columns, turn: Vector, side: _Side) -> Vector:
-        """Derivatives of the moments of the sections at the nodes, side by side."""
-        (angle, rate, change), inward, spin = columns.angle, tangents.rotation, tangents.w
-        relative = add(spin, scaled(-1.0, tangents.base[0]))
-        # In axes that turn with the sections.
-        spins = side.joined(rate, angle, NONE, side.units, NONE)
-        changes = side.joined(
-            add(change, cross(rate, spin)),
-            add(scaled(2.0, rate), cross(angle, spin)),
+        """Derivatives of :meth:`_turning`, whose value is `turn`, in the columns of `side`."""
+        (angle, rate, change), rotation, w = columns.angle, tangents.rotation, tangents.w
+        relative = add(w, scaled(-1.0, tangents.base[0]))
+        # Derivatives of ω and α as seen in axes that turn with the sections.
+        by_w = side.joined(rate, angle, NONE, side.units, NONE)
+        by_alpha = side.joined(
+            add(change, cross(rate, w)),
+            add(scaled(2.0, rate), cross(angle, w)),
             angle,
             cross(side.units, relative),
             side.units,
         )
-        spin, spins, changes = (turned_back(inward, each) for each in (spin, spins, changes))
-        torque = add(
-            self._about_axes(changes), cross(spins, self._about_axes(spin)), cross(spin, self._about_axes(spins))
-        )
-        return add(turned(inward, torque), side.joined(cross(angle, turn), NONE, NONE, NONE, NONE))
+        w, by_w, by_alpha = (turned_back(rotation, each) for each in (w, by_w, by_alpha))
+        torque = add(self._about_axes(by_alpha), cross(by_w, self._about_axes(w)), cross(w, self._about_axes(by_w)))
+        return add(turned(rotation, torque), side.joined(cross(angle, turn), NONE, NONE, NONE, NONE))
 
     def _turning(self, tangents: Tangents) -> Vector:
         """Moments J α + ω × J ω of the sections at the nodes."""
@@ -191,6 +192,7 @@ class Bodies:
         return turned(inward, add(torque, cross(rate, momentum)))
 
     def _about_axes(self, vector: Vector) -> Vector:
+        """J v of vectors in the sections' axes."""
         x, y, z, *products = self.turning  # type: ignore[misc]
         if not products:
             return times(x, vector[0]), times(y, vector[1]), times(z, vector[2])
@@ -199,7 +201,9 @@ class Bodies:
         return turned(rows, vector)
 
     def _aside(self, tangents: Tangents, base: Vector) -> tuple[Vector, Vector]:
-        """Forces of the sections' mass beside the axis, and its moments about it, that the nodes' motion asks for."""
+        """Forces that the sections' first moments of mass demand beside those of their mass on the axis, and their
+        moments about the axis, at the nodes.
+        """
         assert self.aside is not None
         x, y, z = self.aside
         arm = turned(tangents.rotation, (x, y, z))
@@ -209,7 +213,7 @@ class Bodies:
 
 @record
 class Inertia:
-    """Particles (p,) kg of a field, quadrature points and bodies; `same` have the same inertia in fewer sums."""
+    """Particles (p,) kg of a field, of quadrature points and bodies; `same` has the same inertia in fewer sums."""
 
     field: StrainField | SeriesField | Places
     mass: Array
@@ -231,20 +235,22 @@ class Inertia:
         return along, joined(xp, total, shape), joined(xp, moment, shape)
 
     def _stepped(self, motion: tuple[Array, ...]) -> Array | None:
-        """Forces, resultant and moment where the motion is one, moved by complex steps along the first axis."""
+        """Forces, resultant and moment (..., n + 6) of one real motion with complex steps along the first axis, by the
+        derivatives at the real motion; None where :meth:`Bodies.slopes` does not apply.
+        """
         axes = max(each.ndim for each in motion)
-        at = [_common(each, axes) for each in motion]
-        if axes < 2 or not isinstance(self.same, Bodies) or self.same.aside is not None or any(x is None for x in at):
+        real = [_common(each, axes) for each in motion]
+        if axes < 2 or not isinstance(self.same, Bodies) or self.same.aside is not None or any(x is None for x in real):
             return None
-        q, qd, qdd, a, w, alpha = at
+        q, qd, qdd, a, w, alpha = real
         turns = [k for k in range(3) if any(np.imag(each[..., k]).any() for each in motion[4:])]
         still = not any(map(np.iscomplexobj, motion[:2]))
         out, slope = self.same.slopes(q, qd, qdd, a, w, alpha, turns, still=still)
-        moved = np.moveaxis(concatenated([each.imag for each in motion]), 0, -2)
-        return out + 1j * np.moveaxis(moved @ slope, -2, 0)
+        steps = np.moveaxis(concatenated([each.imag for each in motion]), 0, -2)
+        return out + 1j * np.moveaxis(steps @ slope, -2, 0)
 
     def about(self, q: Array) -> tuple[Places, Geometric | None]:
-        """Places about coordinates (n,), and their geometric stiffness unless they have second derivatives."""
+        """Places about coordinates (n,), and geometric stiffness where they are of first order only (strain fields)."""
         if not isinstance(self.field, StrainField):
             return self.field.about(q), None
         places, bent = self.field.about(q, self.mass)
@@ -257,8 +263,8 @@ def _relative(r: Vector, rd: Vector, rdd: Vector, w: Vector, alpha: Vector) -> V
 
 
 class _Side(NamedTuple):
-    """Columns of derivatives side by side, of instants of a shape, by n coordinates and about some of the root's axes,
-    whose unit vectors are `units`.
+    """Layout of columns of derivatives side by side, with respect to q, q̇, q̈ (n each), ω and α (`axes` of the root's
+    axes each, whose unit vectors are `units`), at instants of a shape; where it is `still`, without q and q̇.
     """
 
     shape: tuple[int, ...]
@@ -269,7 +275,7 @@ class _Side(NamedTuple):
 
     @classmethod
     def of(cls, shape: tuple[int, ...], n: int, axes: list[int], still: bool) -> _Side:
-        """Columns about axes of the root."""
+        """The layout with ω and α about some of the axes 0, 1 and 2 of the root."""
         x, y, z = (row[axes, None] if k in axes else 0 for k, row in enumerate(np.eye(3)))
         return cls(shape, n, len(axes), (x, y, z), still)
 
@@ -283,21 +289,22 @@ class _Side(NamedTuple):
         return self._joined((by_coordinate, by_turn), (self.n, 3))
 
     def _joined(self, parts: tuple[Vector, ...], counts: tuple[int, ...]) -> Vector:
+        """Vectors with components (..., Σ counts, points) of `parts` with so many columns each."""
         ends, columns = np.cumsum(counts), list[Any]()
-        for each in zip(*parts, strict=True):
-            if all(map(absent, each)):
+        for component in zip(*parts, strict=True):
+            if all(map(absent, component)):
                 columns.append(0)
                 continue
-            points = max(part.shape[-1] for part in each if not absent(part))
+            points = max(part.shape[-1] for part in component if not absent(part))
             columns.append(np.empty((*self.shape, ends[-1], points)))
-            for part, end, count in zip(each, ends, counts, strict=True):
+            for part, end, count in zip(component, ends, counts, strict=True):
                 columns[-1][..., end - count : end, :] = part
         x, y, z = columns
         return x, y, z
 
     def changes(self, columns: Columns, r: Vector, rd: Vector, w: Vector) -> Vector:
-        """Derivatives of the acceleration of places r with rates ṙ, on a base with an angular velocity, (..., 3 n + 6,
-        points): ∂r̈/∂q̇ is twice the rate of ∂r/∂q.
+        """Derivatives (..., columns, points), as :meth:`joined`, of the acceleration of places r with rates ṙ on a base
+        with the angular velocity ω: ∂r̈/∂q̇ is twice the rate of ∂r/∂q.
         """
         slope, rate, change = columns.place
         by_w = add(scaled(2.0, cross(self.units, rd)), cross(cross(w, self.units), r))
@@ -307,8 +314,8 @@ class _Side(NamedTuple):
 def _work(forces: Vector, slopes: Vector) -> Array:
     """Work (..., c, n) of forces (..., c, points) along slopes (..., n, points), or (..., n, 1) alike at all points."""
     pairs = [(f, s) for f, s in zip(forces, slopes, strict=True) if not (absent(f) or absent(s))]
-    along = (np.broadcast_to(s, (*s.shape[:-1], f.shape[-1])) for f, s in pairs)
-    return reduce(plus, (f @ np.swapaxes(s, -1, -2) for (f, _), s in zip(pairs, along, strict=True)))
+    spread = (np.broadcast_to(s, (*s.shape[:-1], f.shape[-1])) for f, s in pairs)
+    return reduce(plus, (f @ np.swapaxes(s, -1, -2) for (f, _), s in zip(pairs, spread, strict=True)))
 
 
 def _components(vectors: Array) -> Vector:
@@ -321,7 +328,7 @@ def _components(vectors: Array) -> Vector:
 
 
 def _common(part: Array, axes: int) -> Array:
-    """Real parts without their first axis, if they have as many as `axes`; None where they differ along it."""
+    """Real part without its first axis, where it has one (`axes` axes in all); None where it differs along this one."""
     real = part.real
     if part.ndim < axes:
         return real
@@ -330,6 +337,7 @@ def _common(part: Array, axes: int) -> Array:
 
 
 def _summed(vectors: Vector) -> Vector:
+    """Sums over points, by components."""
     x, y, z = (0 if absent(part) else part @ np.ones(part.shape[-1]) for part in vectors)
     return x, y, z
 
@@ -343,8 +351,8 @@ def _weighted(vectors: Vector, weight: Array) -> Vector:
 def inertia_of(
     field: StrainField | SeriesField | Places, mass: Array, line: int = 0, nodes: int = 0, *, symmetric: bool = False
 ) -> Inertia:
-    """Inertia of a field's particles; the first, `line`, are the sections at the nodes, once or several times over,
-    with principal axes y and z and their centres on the axis where they are `symmetric`.
+    """Inertia of a field's particles (p,) kg. The first `line` of them are the sections at the `nodes`, one particle or
+    several a node; where they are `symmetric`, their axes y and z are principal and their centres on the beam's axis.
     """
     if not isinstance(field, StrainField):
         return Inertia(field, mass, Particles(field, mass))
@@ -353,20 +361,22 @@ def inertia_of(
     if offset is not None:
         beside[line:] = True if is_jax(offset) else np.any(offset[line:], axis=1)
     on_axis, off_axis = np.flatnonzero(~beside), np.flatnonzero(beside)
-    c, held = field.cumulative[on_axis], mass[on_axis]
+    c, axis_mass = field.cumulative[on_axis], mass[on_axis]
     turning, aside = None, None
     if offset is not None and line and not (symmetric and line == nodes):
         before = field.strains.shape[1] - nodes
         turning, aside = _moments(mass[:line], offset[:line], nodes, before, symmetric=symmetric)
     points = field[off_axis] if len(off_axis) else field.points(off_axis)
-    pairs, first = c.T @ (held[:, None] * c), c.T @ held
-    return Inertia(field, mass, Bodies(points, mass[off_axis], held.sum(), pairs, first, turning, aside))
+    pairs, first = c.T @ (axis_mass[:, None] * c), c.T @ axis_mass
+    return Inertia(field, mass, Bodies(points, mass[off_axis], axis_mass.sum(), pairs, first, turning, aside))
 
 
 def _moments(
     mass: Array, offset: Array, nodes: int, before: int, *, symmetric: bool
 ) -> tuple[Array | None, Array | None]:
-    """Moments of inertia about the axis and first moments of sections, behind `before` nodes of the root, or None."""
+    """Moments of inertia (3 or 6, G), kg m², and first moments (3, G), kg m, of the sections, as :class:`Bodies` takes
+    them, zero at the `before` nodes of the root; each is None where it is rounding.
+    """
     xp = namespace(mass, offset)
 
     def at_nodes(values: Array) -> Array:
@@ -383,6 +393,6 @@ def _moments(
     size = principal.max(initial=0.0)
     if size == 0:
         return None, None
-    coupled, beside = (np.abs(each).max() > NOTHING * most for each, most in ((products, size), (aside, mass.max())))
+    coupled, beside = np.abs(products).max() > NOTHING * size, np.abs(aside).max() > NOTHING * mass.max()
     turning = np.concatenate([principal, products]) if coupled else principal
     return turning, aside if beside else None

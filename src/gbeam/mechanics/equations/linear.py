@@ -31,8 +31,8 @@ NOTHING = 1e-13  # of the sizes of what is summed: less is rounding
 
 @record
 class Geometric:
-    """Geometric stiffness at the static stress of unit inertial loads: Σ m H weighted by an acceleration (3, n, n), an
-    angular acceleration (3, n, n) and pairs of angular velocities (3, 3, n, n).
+    """Geometric stiffness at the static stress of unit inertial loads, by an acceleration `a` (3, n, n), an angular
+    acceleration `al` (3, n, n) and pairs of angular velocities `ww` (3, 3, n, n).
     """
 
     a: Array
@@ -42,7 +42,9 @@ class Geometric:
 
 @record
 class LoadTerms:
-    """Generalised forces of unit loads, (loads, 6, 6 + n) + slope (loads, 6, 6 + n, n) q: the resultant first."""
+    """Generalised forces of each load's six unit components at q: constant (loads, 6, 6 + n) + slope (loads, 6, 6 + n,
+    n) q. The first six are the resultant force and moment at the root, the others the forces on the coordinates.
+    """
 
     constant: Array
     slope: Array
@@ -97,7 +99,9 @@ class Coefficients:
     def frozen(
         self, a_WO_B: Array, w_WB_B: Array, alpha_WB_B: Array, load_values: Array | None = None
     ) -> tuple[Array, Array]:
-        """C + G and K by which an instant is stable or not: without the skew part of α's, which feeds no energy."""
+        """C + G and K, (..., n, n), that decide whether the motion of an instant is stable: as :meth:`at`, without the
+        skew part of α's stiffness, which feeds no energy.
+        """
         xp = namespace(self.k_al, alpha_WB_B)
         velocity, stiffness, _ = self.at(a_WO_B, w_WB_B, alpha_WB_B, load_values)
         skew = (self.k_al - xp.swapaxes(self.k_al, 1, 2)) / 2
@@ -105,7 +109,7 @@ class Coefficients:
 
     @property
     def terms(self) -> LinearTerms:
-        """Terms that :meth:`at` sums over :meth:`features`."""
+        """Velocity (k, n, n), stiffness (k, n, n) and force (k, n) per unit of each of the k :meth:`features`."""
         xp, n = namespace(self.mass), self.size
         k_ww, f_ww = (xp.reshape(each, (9, *each.shape[2:])) for each in (self.k_ww, self.f_ww))
         stiffness = [self.stiffness[None], xp.zeros((3, n, n)), k_ww, self.k_al, self.k_a]
@@ -137,8 +141,8 @@ class Coefficients:
     ) -> Array:
         """Residual on a base whose motion is given, (..., n); zero where the equations hold."""
         velocity, stiffness, force = self.at(a_WO_B, w_WB_B, alpha_WB_B, load_values)
-        inside = velocity @ qd[..., None] + stiffness @ q[..., None]
-        return qdd @ self.mass + inside[..., 0] - force
+        internal = velocity @ qd[..., None] + stiffness @ q[..., None]
+        return qdd @ self.mass + internal[..., 0] - force
 
     def strain_energy(self, q: Array) -> Array:
         """½ qᵀKq, J."""
@@ -147,8 +151,8 @@ class Coefficients:
     def turned(self, basis: Array) -> Coefficients:
         """Coefficients in coordinates p with q = basis p, of a structure without loads."""
         squares = ("mass", "damping", "stiffness", "gyroscopic", "k_ww", "k_al", "k_a")
-        both = {name: basis.T @ getattr(self, name) @ basis for name in squares}
-        return replace(self, **both, **{name: getattr(self, name) @ basis for name in ("f_ww", "f_al", "f_a")})
+        matrices = {name: basis.T @ getattr(self, name) @ basis for name in squares}
+        return replace(self, **matrices, **{name: getattr(self, name) @ basis for name in ("f_ww", "f_al", "f_a")})
 
     def damped(self, damping: Array) -> Coefficients:
         """Replace the damping matrix."""
@@ -200,22 +204,23 @@ def coefficients(
 
 
 def inertial_forces(sums: Array, moments: Array) -> dict[str, Array]:
-    """Forces on the coordinates by the root's motion, of Σ m ∂r_a (3, n) and Σ m r_b ∂r_a (3, 3, n), a first."""
+    """Coefficients f_ww, f_al and f_a of the forces that the root's motion exerts on the coordinates, by the sums
+    Σ m ∂r_a/∂q (3, n) and the moments Σ m r_b ∂r_a/∂q (3, 3, n), a first.
+    """
     xp = namespace(sums, moments)
     return {"f_ww": -_twice(xp, moments), "f_al": -_once(xp, moments), "f_a": -sums}
 
 
 def _weighted(xp: Any, mass: Array, weighted: Array, places: Places) -> Geometric:
-    """Σ m H weighted with unit inertial loads."""
+    """Geometric stiffness by the second derivatives H of places; `weighted` (k, 3) are m r0, kg m."""
     points, axes, n, _ = places.second.shape
     flat = xp.reshape(places.second, (points, -1))
-    shaped = (-1, axes, n, n)
     even, growing = _summed(xp, mass[:, None], flat), _summed(xp, weighted, flat)
-    return geometric_of(xp.reshape(even, shaped[1:]), xp.reshape(growing, shaped))
+    return geometric_of(xp.reshape(even, (axes, n, n)), xp.reshape(growing, (-1, axes, n, n)))
 
 
 def _summed(xp: Any, left: Array, right: Array) -> Array:
-    """Sums leftᵀ right over the particles, zero where what is left of a sum is the rounding of terms that cancel."""
+    """Sums leftᵀ right over the particles; under NumPy zero where terms cancel and only their rounding is left."""
     sums = left.T @ right
     if xp is not np:
         return sums
@@ -224,21 +229,23 @@ def _summed(xp: Any, left: Array, right: Array) -> Array:
 
 
 def geometric_of(even: Array, growing: Array) -> Geometric:
-    """Geometric stiffness by Σ m H, (3, n, n), and by Σ m r0_b H, (3, 3, n, n), b first."""
+    """Geometric stiffness by the sums Σ m H, (3, n, n), and Σ m r0_b H, (3, 3, n, n), b first."""
     xp = namespace(even, growing)
     of_place = xp.swapaxes(growing, 0, 1)
     return Geometric(even, _once(xp, of_place), _twice(xp, of_place))
 
 
 def _twice(xp: Any, x: Array) -> Array:
-    """a·(ω × (ω × b)) = (a·ω)(b·ω) − a·b ω², symmetric in the two rates, of products x[a, b, ...]."""
+    """Coefficients (3, 3, ...) of ω ωᵀ in a·(ω × (ω × b)) = (a·ω)(b·ω) − a·b ω², symmetric in the two rates, where
+    x[a, b, ...] holds the products of components of a and b.
+    """
     trace = xp.einsum("aa...->...", x)
     ones = xp.reshape(xp.eye(3), (3, 3) + (1,) * (x.ndim - 2))
     return 0.5 * (x + xp.swapaxes(x, 0, 1)) - ones * trace
 
 
 def _once(xp: Any, x: Array) -> Array:
-    """a·(α × b) of products x[a, b, ...]: along the axes of α."""
+    """Coefficients (3, ...) of α in a·(α × b), where x[a, b, ...] holds the products of components of a and b."""
     return xp.tensordot(xp.asarray(EPSILON), x, axes=((0, 2), (0, 1)))
 
 
@@ -250,7 +257,7 @@ def rest_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:
 
 
 def damping_matrix(ratio: Any, mass: Array, stiffness: Array) -> Array:
-    """Modal damping matrix M Φ diag(2ζω) Φᵀ M, (n, n), of one ratio or one per mode, ascending in frequency."""
+    """Modal damping matrix M Φ diag(2ζω) Φᵀ M, (n, n), of one ratio ζ or one per mode, ascending in frequency."""
     n, ratio = mass.shape[0], as_array(ratio)
     if ratio.ndim and len(ratio) != n:
         raise InputError(

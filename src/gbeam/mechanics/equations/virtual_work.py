@@ -20,7 +20,9 @@ from gbeam.mechanics.fields.vectors import cross, joined, split
 
 @record
 class LoadWork:
-    """Loads on a field, δW = Σ F·δr + M·δθ: at points (p,) the load's index, weight (1 or m), and if it follows."""
+    """Loads on a field, δW = Σ F·δr + M·δθ: of each of its points (p,) the index of the load that acts there, the
+    weight (1, or m of a load per metre), and a flag, true if the load turns with the section.
+    """
 
     field: StrainField | SeriesField | Polynomials
     load: Array
@@ -37,12 +39,14 @@ class LoadWork:
 
     @staticmethod
     def resultant(r: Array, force: Array, moment: Array) -> tuple[Array, Array]:
-        """Force and moment at the root of forces and moments (..., p, 3) at places, (..., 3)."""
+        """Force and moment at the root, (..., 3), of forces and moments (..., p, 3) at places r."""
         turn = joined(namespace(r, force), cross(split(r), split(force)), force.shape[:-1])
         return force.sum(axis=-2), (turn + moment).sum(axis=-2)
 
     def forces(self, rotation: Array, values: Array) -> tuple[Array, Array]:
-        """Forces and moments at the loaded points, base axes, given their sections' rotations, (..., p, 3) each."""
+        """Forces and moments (..., p, 3) at the loaded points, base axes, by rotations of their sections (..., p, 3, 3)
+        and load components (..., loads, 6).
+        """
         xp = namespace(rotation, values, self.weight)
         local = xp.asarray(self.weight)[:, None] * values[..., self.load, :]
         axes = self._axes(rotation)
@@ -52,17 +56,19 @@ class LoadWork:
         )
 
     def _axes(self, rotation: Array) -> Array:
-        """The loads' axes in columns, base axes, given their sections' rotations, (..., p, 3, 3)."""
+        """Axes of the loads in columns (..., p, 3, 3): those of the section where they follow it, else the base's."""
         xp = namespace(rotation, self.weight)
         return xp.where(xp.asarray(self.follower)[:, None, None], rotation, xp.eye(3))
 
     def about(self, count: int, q: Array) -> LoadTerms:
-        """The generalised forces of `count` loads' unit components, to first order about coordinates (n,)."""
+        """Generalised forces of the unit components of all `count` loads, to first order about coordinates (n,)."""
         places, rotation, turns = self.field.curved(q)
         return self.terms(count, places, rotation, turns.first, turns.second)
 
     def terms(self, count: int, places: Places, rotation: Array, turn: Array, bend: Array) -> LoadTerms:
-        """Load terms about coordinates, by places and section rotations (p, 3, 3) with two derivatives."""
+        """Load terms by the points' places, and the rotations (p, 3, 3) of their sections with first and second
+        derivatives `turn` (p, 3, 3, n) and `bend` (p, 3, 3, n, n).
+        """
         xp = namespace(places.first, rotation, self.weight)
         r, slope, second = places.r0, places.first, places.second
         epsilon = xp.asarray(EPSILON)
@@ -72,17 +78,18 @@ class LoadWork:
         def rows(columns: Array) -> Array:
             return xp.swapaxes(columns, 1, 2)
 
-        def across(left: Array, right: Array, form: str) -> Array:
+        def vector_products(left: Array, right: Array, form: str) -> Array:
             return xp.einsum(f"abd,{form}", epsilon, left, right)
 
         def angle(outer: Array, inner: Array, form: str) -> Array:
-            """θ of [θ]× = outer innerᵀ."""
+            """Vector θ of the skew matrix [θ]× = outer innerᵀ."""
             return -0.5 * xp.einsum("abe,pab...->pe...", epsilon, xp.einsum(form, outer, inner))
 
-        force = [rows(axes), across(r, axes, "pb,pdc->pca"), xp.einsum("pai,pac->pci", slope, axes)]
+        # Resultant, moment about the root, and forces on the coordinates: of unit forces, then of unit moments.
+        force = [rows(axes), vector_products(r, axes, "pb,pdc->pca"), xp.einsum("pai,pac->pci", slope, axes)]
         force_slope = [
             rows(turned),
-            across(slope, axes, "pbj,pdc->pcaj") + across(r, turned, "pb,pdcj->pcaj"),
+            vector_products(slope, axes, "pbj,pdc->pcaj") + vector_products(r, turned, "pb,pdcj->pcaj"),
             xp.einsum("paij,pac->pcij", second, axes) + xp.einsum("pai,pacj->pcij", slope, turned),
         ]
         # A moment works along θ_i of [θ_i]× = ∂R/∂q_i Rᵀ.
