@@ -26,7 +26,7 @@ THIN = 1e-9  # of the largest moment of inertia: less is none
 
 
 class Acting(NamedTuple):
-    """A wrench on a point of a body, in axes of the point, which moves so in the root's."""
+    """A wrench on the point with an index, in axes of the point, and the point's motion `by` in the root's axes."""
 
     point: int
     by: Relative
@@ -46,7 +46,7 @@ class Body(Protocol):
         ...
 
     def demanded(self, q: Array, qd: Array, qdd: Array, root: Frame, loads: Array | None) -> tuple[Array, Wrench]:
-        """Forces (..., n) on the coordinates and wrench at the root that a motion of the root demands."""
+        """Forces (..., n) on the coordinates and wrench at the root that a motion demands under load components."""
         ...
 
     def along(self, q: Array, wrenches: list[Acting]) -> Array:
@@ -127,8 +127,9 @@ class StrainedPoints:
 
     def along(self, q: Array, wrenches: list[Acting]) -> Array:
         xp = namespace(q, *(acting.wrench.force for acting in wrenches))
-        pairs = zip(*((turned(by.R, each.force), turned(by.R, each.moment)) for _, by, each in wrenches), strict=True)
-        forces, moments = (split(xp.stack(xp.broadcast_arrays(*each), axis=-2)) for each in pairs)
+        at_root = [(turned(by.R, wrench.force), turned(by.R, wrench.moment)) for _, by, wrench in wrenches]
+        stacks = (xp.stack(xp.broadcast_arrays(*vectors), axis=-2) for vectors in zip(*at_root, strict=True))
+        forces, moments = map(split, stacks)
         return self.field[np.array([acting.point for acting in wrenches])].along(q, forces, moments)
 
 
@@ -146,24 +147,22 @@ class PolynomialPoints:
         r, rd, rdd = _polynomial(self.first, self.second, q, qd, qdd)
         R, w, alpha = rotation_by_vector(*_polynomial(self.turn, self.bend, q, qd, qdd), plane=False)
         r = self.r0 + r
-        return [_one(k, (r, rd, rdd), R, w, alpha) for k in range(len(self.r0))]
+        return [_point(k, (r, rd, rdd), R, w, alpha) for k in range(len(self.r0))]
 
     def along(self, q: Array, wrenches: list[Acting]) -> Array:
         xp = namespace(q, *(acting.wrench.force for acting in wrenches))
-        at = np.array([acting.point for acting in wrenches])
-        force, moment = (
-            xp.stack(xp.broadcast_arrays(*each), axis=-2)
-            for each in zip(*((turned(by.R, each.force), each.moment) for _, by, each in wrenches), strict=True)
-        )
-        slope = self.first[at] + xp.einsum("paij,...j->...pai", self.second[at], q)
-        turning = self.turn[at] + xp.einsum("paij,...j->...pai", self.bend[at], q)
-        phi = xp.einsum("...pai,...i->...pa", (self.turn[at] + turning) / 2, q)
+        points = np.array([acting.point for acting in wrenches])
+        vectors = [(turned(by.R, wrench.force), wrench.moment) for _, by, wrench in wrenches]  # root's, point's axes
+        force, moment = (xp.stack(xp.broadcast_arrays(*each), axis=-2) for each in zip(*vectors, strict=True))
+        slope = self.first[points] + xp.einsum("paij,...j->...pai", self.second[points], q)
+        turning = self.turn[points] + xp.einsum("paij,...j->...pai", self.bend[points], q)
+        phi = xp.einsum("...pai,...i->...pa", (self.turn[points] + turning) / 2, q)
         on_vector = tangent_back(phi, moment)
         return (slope * force[..., None] + turning * on_vector[..., None]).sum(axis=(-3, -2))
 
 
-def _one(k: int, path: tuple[Array, Array, Array], R: Array, w: Array, alpha: Array) -> Relative:
-    """Motion of one of several points (..., p)."""
+def _point(k: int, path: tuple[Array, Array, Array], R: Array, w: Array, alpha: Array) -> Relative:
+    """Motion of the point k, by the motions of all (..., p)."""
     r, rd, rdd = (each[..., k, :] for each in path)
     return Relative(r, rd, rdd, R[..., k, :, :], w[..., k, :], alpha[..., k, :])
 
@@ -216,11 +215,11 @@ class LinearBody:
     h0_i + B_ji q_j of its coordinates about the root, are the constant coefficients of its equations on a moving root;
     Lagrange's equations of these energies keep momentum and energy.
 
-    Shapes of a solid take nearly all inertia of a motion with the root. What moves against a free root so moves as fast
-    as the root does, and to second order the two together may have less than no kinetic energy once the body is bent.
-    With `carried` = C0ᵀR0⁻¹C0, C q̇ the momentum and R the inertia of the body about its root, the kinetic energy is
-    that of the rigid motion with all momentum, and of vibration about it: with ½ q̇ᵀ(CᵀR⁻¹C − C0ᵀR0⁻¹C0) q̇ more, of
-    third order in q and q̇, it is positive wherever R is.
+    Modes of a solid may carry nearly all of its inertia. Where its root is free to move against such a mode, the
+    kinetic energy, cut off at second order, may be negative once the body is bent. `carried` = C0ᵀR0⁻¹C0 prevents that,
+    with C q̇ the momentum of deforming and R the inertia of the body about its root: the kinetic energy has
+    ½ q̇ᵀ(CᵀR⁻¹C − C0ᵀR0⁻¹C0) q̇ more, which is of third order in q and q̇. It is then that of the rigid motion with all
+    momentum and of vibration about it, and positive wherever R is.
     """
 
     coefficients: Coefficients
@@ -258,7 +257,7 @@ class LinearBody:
         return along, Wrench(force, moment)
 
     def _moments(self, q: Array, qd: Array) -> tuple[Array, ...]:
-        """S, ∂S/∂q, Ṡ, J, ∂J/∂q, h and the h_i."""
+        """S, ∂S/∂q, Ṡ, J, ∂J/∂q, the momentum h = Σ h_i q̇_i, and the h_i."""
         c = self.coefficients
         Si = -c.f_a + _times(c.k_a, q)
         S = c.rigid[1:4] + turned((Si - c.f_a) / 2, q)
@@ -302,24 +301,26 @@ def carried(of: Coefficients) -> Array | None:
 
 
 def _about_centre(mass: Array, S: Array, J: Array) -> Array:
-    """Moments of inertia (..., 3, 3) about the centre of mass."""
+    """Moments of inertia (..., 3, 3) about the centre of mass, by the first moment S and J about the root."""
     square = (S * S).sum(axis=-1)[..., None, None] * np.eye(3)
     return J - (square - S[..., :, None] * S[..., None, :]) / mass
 
 
 def _mean_motion(mass: Array, S: Array, J: Array, push: Array, spin: Array) -> tuple[Array, Array]:
-    """Velocity and angular velocity (..., 3) at the root of a rigid body that has a momentum."""
+    """Velocity and angular velocity (..., 3) at its root of the rigid body (mass, S and J about the root) that has the
+    momentum `push` and the angular momentum `spin` about the root.
+    """
     centre, inertia = S / mass, _about_centre(mass, S, J)
-    x, y, z = (inertia[..., k, :] for k in range(3))
-    about, across = spin - cross(centre, push), cross(y, z)
-    w = about[..., :1] * across + about[..., 1:2] * cross(z, x) + about[..., 2:] * cross(x, y)
-    w = w / (x * across).sum(axis=-1, keepdims=True)
+    x, y, z = (inertia[..., k, :] for k in range(3))  # rows; the inverse is by their vector products
+    at_centre, yz = spin - cross(centre, push), cross(y, z)
+    w = at_centre[..., :1] * yz + at_centre[..., 1:2] * cross(z, x) + at_centre[..., 2:] * cross(x, y)
+    w = w / (x * yz).sum(axis=-1, keepdims=True)
     return push / mass - cross(w, centre), w
 
 
 def _times(tensor: Array, q: Array) -> Array:
     """T_{...ij} q_j of a constant tensor, (..., its first axes, i)."""
-    flat = q @ tensor.reshape(math.prod(tensor.shape[:-1]), tensor.shape[-1]).T  # of a rigid body none
+    flat = q @ tensor.reshape(math.prod(tensor.shape[:-1]), tensor.shape[-1]).T  # -1 would fail without coordinates
     return flat.reshape(*q.shape[:-1], *tensor.shape[:-1])
 
 
@@ -333,11 +334,11 @@ def _polynomial(first: Array, second: Array, q: Array, qd: Array, qdd: Array) ->
     return value, rate, change
 
 
-def polynomial_points(of: Polynomials) -> PolynomialPoints:
+def polynomial_points(sections: Polynomials) -> PolynomialPoints:
     """Points on sections whose places and rotations are polynomials."""
-    places, turns = of.places, of.turns
+    places, turns = sections.places, sections.turns
     vectors = (
-        -0.5 * namespace(each).einsum("abc,pbc...->pa...", EPSILON, each) for each in (turns.first, turns.second)
+        -0.5 * namespace(part).einsum("abc,pbc...->pa...", EPSILON, part) for part in (turns.first, turns.second)
     )
     second = namespace(places.first).zeros((*places.first.shape, places.first.shape[-1]))
     return PolynomialPoints(places.r0, places.first, second if places.second is None else places.second, *vectors)

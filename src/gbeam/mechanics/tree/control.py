@@ -92,9 +92,9 @@ class Feedback(Value):
             if not getattr(self, name):
                 raise InputError(name, "is empty", "name one quantity or more")
             names = tuple(getattr(self, name))
-            twice = [each for k, each in enumerate(names) if each in names[:k]]
-            if name == "drive" and twice:
-                raise InputError(name, f"has {twice[0]!r} twice", "name every drive once")
+            repeated = [signal for k, signal in enumerate(names) if signal in names[:k]]
+            if name == "drive" and repeated:
+                raise InputError(name, f"has {repeated[0]!r} twice", "name every drive once")
             object.__setattr__(self, name, names)
         for name in ("sample", "delay"):
             refuse_traced(name, getattr(self, name), "steps end by its number")
@@ -124,7 +124,7 @@ class Feedback(Value):
                 raise InputError("law", f"takes {taken}", "write law(t, y), or law(t, y, state)") from error
 
     def _sampled(self) -> tuple[Floats, Floats, Floats, Floats]:
-        """Matrices of the linear law, in steps of `sample`."""
+        """Return A, B, C and D of the linear law in steps of `sample`; InputError unless it fits the signals."""
         law: Any = self.law
         step = getattr(law, "dt", 0)
         if hasattr(law, "num"):
@@ -144,9 +144,9 @@ class Feedback(Value):
             parts = [getattr(law, name) for name in names]
         if len(parts) != 4:
             raise InputError("law", f"has {len(parts)} parts", "give (A, B, C, D)")
-        each = [array("law", one) for one in parts]
-        xp = namespace(*filter(is_traced, each))
-        a, b, c, d = (xp.atleast_2d(xp.asarray(one)) for one in each)
+        matrices = [array("law", part) for part in parts]
+        xp = namespace(*filter(is_traced, matrices))
+        a, b, c, d = (xp.atleast_2d(xp.asarray(matrix)) for matrix in matrices)
         n, m, p = len(a) if a.size else 0, len(self.measure), len(self.drive)
         shapes = {"A": (a, (n, n)), "B": (b, (n, m)), "C": (c, (p, n)), "D": (d, (p, m))}
         for name, (matrix, shape) in shapes.items():
@@ -158,9 +158,9 @@ class Feedback(Value):
             raise InputError("law", f"has the step {step}", f"give one of {self.sample:g} s, or in continuous time")
         if not step and n:
             half = self.sample / 2 * a  # Tustin's rule
-            less = np.eye(n) - half
-            a, b = xp.linalg.solve(less, np.eye(n) + half), xp.linalg.solve(less, self.sample * b)
-            c, d = xp.linalg.solve(less.T, c.T).T, d + c @ b / 2
+            implicit = np.eye(n) - half
+            a, b = xp.linalg.solve(implicit, np.eye(n) + half), xp.linalg.solve(implicit, self.sample * b)
+            c, d = xp.linalg.solve(implicit.T, c.T).T, d + c @ b / 2
         return a, b, c, d
 
     @property
@@ -222,7 +222,7 @@ class Feedback(Value):
         return self._finite(t, command.astype(float)), state
 
     def _finite(self, t: float, efforts: Floats) -> Floats:
-        """Efforts, unless the law has left all bounds."""
+        """Return the efforts; ComputationError unless all are finite."""
         if not all(map(math.isfinite, efforts.tolist())):
             problem = f"the law of the controller of {', '.join(self.drive)} gives {efforts} at {t:.6g} s"
             fix = "limit it, or look" if self.limit is None else "look"
@@ -241,26 +241,26 @@ class Feedback(Value):
 
 
 def within(xp: Any, limit: Any, efforts: Any) -> Any:
-    """Efforts (..., m) within a limit; at it they still have the derivative of what is asked for."""
+    """Efforts (..., m) cut at a limit; one of exactly that size keeps its derivative under JAX."""
     return xp.where(abs(efforts) <= limit, efforts, xp.copysign(limit, efforts))
 
 
 def signal_names(controllers: Mapping[str, Feedback], kind: Literal["drive", "measure"]) -> tuple[str, ...]:
     """Names of all that controllers drive or measure, as ``controller: signal``."""
-    return tuple(f"{name}: {each}" for name, one in controllers.items() for each in getattr(one, kind))
+    return tuple(f"{name}: {each}" for name, controller in controllers.items() for each in getattr(controller, kind))
 
 
 Law = tuple[Floats, Floats, Floats, Floats]
 
 
 def gains(matrix: Sequence[Sequence[float]]) -> Law:
-    """Efforts K e, K (m, k)."""
+    """Law without states: efforts K e, K (m, k)."""
     k = np.asarray(matrix, dtype=float)
     return np.zeros((0, 0)), np.zeros((0, k.shape[1])), np.zeros((k.shape[0], 0)), k
 
 
 def pid(kp: float, ki: float, kd: float, smoothing: float) -> Law:
-    """kp + ki/s + kd s/(1 + s T): a state for what is integrated, and one for what is differentiated."""
+    """Law kp + ki/s + kd s/(1 + s T), T the `smoothing`, s: one state for the integral, one for the derivative."""
     parts = [gains([[kp]])]
     if ki:
         parts.append((np.zeros((1, 1)), np.ones((1, 1)), np.full((1, 1), ki), np.zeros((1, 1))))
@@ -273,7 +273,7 @@ def pid(kp: float, ki: float, kd: float, smoothing: float) -> Law:
 
 
 def lead_lag(gain: float, zero: float, pole: float) -> Law:
-    """Gain (1 + s/z)/(1 + s/p), zero and pole in rad/s: a lead where the zero is lower, a lag where the pole is."""
+    """Law gain (1 + s/z)/(1 + s/p), zero and pole in rad/s: a lead where the zero is lower, a lag where the pole is."""
     through = gain * pole / zero
     return (
         np.full((1, 1), -pole),
@@ -284,26 +284,26 @@ def lead_lag(gain: float, zero: float, pole: float) -> Law:
 
 
 def notch(frequency: float, depth: float, damping: float) -> Law:
-    """(s² + 2 d ζ ω s + ω²)/(s² + 2 ζ ω s + ω²), ω in rad/s: a gain of the depth d at ω, one far from it."""
-    w, fall = frequency, 2 * damping * frequency
-    a = np.array([[0.0, 1.0], [-(w**2), -fall]])
-    return a, np.array([[0.0], [1.0]]), np.array([[0.0, (depth - 1) * fall]]), np.ones((1, 1))
+    """Law (s² + 2 d ζ ω s + ω²)/(s² + 2 ζ ω s + ω²), ω in rad/s: its gain is the depth d at ω and one far from it."""
+    w, width = frequency, 2 * damping * frequency  # rad/s
+    a = np.array([[0.0, 1.0], [-(w**2), -width]])
+    return a, np.array([[0.0], [1.0]]), np.array([[0.0, (depth - 1) * width]]), np.ones((1, 1))
 
 
 def in_series(laws: Sequence[Law]) -> Law:
-    """Laws one after the other, the first the first to act."""
+    """Law of laws in series, the first of which takes the measurements."""
     return reduce(_after, laws)
 
 
 def _beside(one: Law, other: Law) -> Law:
-    """The sum of two laws."""
+    """Law whose efforts are the sum of those of two laws."""
     (a, b, c, d), (e, f, g, h) = one, other
     zero = np.zeros((len(a), len(e)))
     return np.block([[a, zero], [zero.T, e]]), np.concatenate([b, f]), np.concatenate([c, g], axis=1), d + h
 
 
-def _after(one: Law, other: Law) -> Law:
-    """A law of what another gives."""
-    (a, b, c, d), (e, f, g, h) = one, other
+def _after(inner: Law, outer: Law) -> Law:
+    """Law of two in series: `outer` takes the efforts of `inner`."""
+    (a, b, c, d), (e, f, g, h) = inner, outer
     zero = np.zeros((len(a), len(e)))
     return np.block([[a, zero], [f @ c, e]]), np.concatenate([b, f @ d]), np.concatenate([h @ c, g], axis=1), h @ d

@@ -18,8 +18,8 @@ _ROOT = 15**0.5
 
 
 class Course:
-    """Euler parameters over time, from some at time zero, of the angular velocity that three profiles give, turned
-    axes, rad/s.
+    """Euler parameters over time, called as ``course(t)``: `start` at time zero, turning on at the angular velocity,
+    rad/s, whose components in the turned axes are three profiles. They are kept at knots and continued from these.
     """
 
     def __init__(self, rates: Sequence[Profile], start: Array) -> None:
@@ -29,6 +29,7 @@ class Course:
         step = STRIDE if traced else max(STRIDE, np.ptp(marks) / PIECES)
         times = np.unique(np.concatenate([*(rate.knots(step) for rate in rates), marks]))
         turns = self._turned(times[:-1], times[1:])
+        # Pieces are halved until their halves agree with them.
         for _ in range(0 if traced else HALVINGS):
             middle = (times[1:] + times[:-1]) / 2
             halves = parameters_after(self._turned(times[:-1], middle), self._turned(middle, times[1:]))
@@ -38,6 +39,7 @@ class Course:
             times = np.sort(np.append(times, middle[coarse]))
             turns = self._turned(times[:-1], times[1:])
         xp, zero = namespace(turns, start), int(np.searchsorted(times, 0.0))
+        # Turns since the first knot, of every knot.
         since = xp.concatenate([np.array([[1.0, 0.0, 0.0, 0.0]]), turns])
         reach = 1
         while reach < len(since):  # products of 2, 4, 8, ... pieces at once
@@ -62,10 +64,10 @@ class Course:
         """Turn (..., 4) from one time to another, by Magnus's series to sixth order."""
         h = end - start
         times = start[..., None] + h[..., None] / 2 * (1 + np.array([-1, 0, 1]) * _ROOT / 5)
-        each = [rate(times) for rate in self.rates]
-        w = namespace(*each).stack(each, axis=-1)
+        components = [rate(times) for rate in self.rates]
+        w = namespace(*components).stack(components, axis=-1)
         first, middle, last = (h[..., None] * w[..., k, :] for k in range(3))
         a, b, c = middle, _ROOT / 3 * (last - first), 10 / 3 * (last - 2 * middle + first)
-        once = cross(b, a)  # the bracket, of rates in turned axes
-        twice = cross(a, 2 * c + once) / 60
-        return parameters_of_vector(a + c / 12 + cross(b + twice, once - 20 * a - c) / 240)
+        bracket = cross(b, a)  # of rates in turned axes
+        nested = cross(a, 2 * c + bracket) / 60
+        return parameters_of_vector(a + c / 12 + cross(b + nested, bracket - 20 * a - c) / 240)

@@ -20,9 +20,9 @@ SLIP = 1e-3  # rad/s or m/s: rate at which friction has 0.76 of its size
 
 @record
 class Holder:
-    """Springs and stops on the values (h,) by which the steps of a joint are held, and dampers and friction on their
-    rates; the springs rest at the values `ease`; the stops stand at `low` and `high` and give way by their own
-    stiffness; `coupling` (h, h) is the stiffness between values, or None.
+    """Springs and stops that act on the values (h,) of a joint (:meth:`Step.held`), and dampers and friction that act
+    on their rates. The springs have no force at the values `ease`; the stops begin at `low` and `high` and have the
+    stiffness `stop`; `coupling` (h, h) is the stiffness between values, or None.
     """
 
     stiffness: Array
@@ -36,16 +36,16 @@ class Holder:
 
     @property
     def bends(self) -> bool:
-        """True if a force bends within less than a step, as friction does near rest and a stop where it is met."""
+        """True if a force changes its slope abruptly, as friction does near rest and a stop where it is met."""
         return bool((self.friction > 0).any() or (self.stop > 0).any())
 
     @property
     def holds(self) -> bool:
-        """True if there is any force."""
+        """True if there is any force, apart from the coupling's."""
         return any((each != 0).any() for each in (self.stiffness, self.damping, self.friction, self.stop))
 
     def forces(self, values: Array, rates: Array) -> tuple[Array, Array]:
-        """Forces (..., h) that hold the values, and those that hold the rates."""
+        """Forces (..., h) of springs and stops on the values, and of dampers and friction on the rates."""
         xp = namespace(values, rates, self.stiffness)
         pull = self.stiffness * (values - self.ease) + self.stop * self._beyond(values)
         if self.coupling is not None:
@@ -59,14 +59,15 @@ class Holder:
         return (pull * moved + self.stop * self._beyond(values) ** 2).sum(axis=-1) / 2
 
     def _beyond(self, q: Array) -> Array:
+        """Signed distance (..., h) of values beyond their stops, zero between these."""
         xp = namespace(q, self.low)
         return xp.maximum(q - self.high, 0.0) - xp.maximum(self.low - q, 0.0)
 
 
 @record
 class Link:
-    """A body with the joint that holds it: a chain of steps from point `on` of body `parent`, −1 for the ground, and
-    what holds its coordinates unless it is `loose`. The root of a body is the point after its others.
+    """A body with the joint that holds it: a chain of steps from point `on` (index) of body `parent`, −1 for the
+    ground, and its springs, which act unless it is `loose`. A body's root is the point after its others.
     """
 
     steps: tuple[Step, ...]
@@ -86,20 +87,21 @@ class Link:
         return self.holder.stored(self.held(q, qd)[0])
 
     def held(self, q: list[Array], qd: list[Array]) -> tuple[Array, Array]:
-        """Values (..., h) by which the joint is held, and rates, by coordinates of its steps."""
+        """Values (..., h) on which the joint's springs act, and their rates, by coordinates and rates of its steps."""
         values, rates = zip(*self._held(q, qd), strict=True)
         return concatenated(values), concatenated(rates)
 
     def holding(self, q: list[Array], qd: list[Array]) -> list[Array]:
-        """Forces (..., k) that hold the coordinates of each step."""
+        """Forces (..., k) of springs, dampers, friction and stops on the coordinates of each step."""
         held = self._held(q, qd)
         pull, drag = self.holder.forces(*(concatenated(list(each)) for each in zip(*held, strict=True)))
         sizes = [values.shape[-1] for values, _ in held]
-        parts = [slice(end - size, end) for end, size in zip(accumulate(sizes), sizes, strict=True)]
-        each = zip(self.steps, q, parts, strict=True)
-        return [step.pushed(at, pull[..., part], drag[..., part]) for step, at, part in each]
+        spans = [slice(end - size, end) for end, size in zip(accumulate(sizes), sizes, strict=True)]
+        of_steps = zip(self.steps, q, spans, strict=True)
+        return [step.pushed(coordinates, pull[..., span], drag[..., span]) for step, coordinates, span in of_steps]
 
     def _held(self, q: list[Array], qd: list[Array]) -> list[tuple[Array, Array]]:
+        """Values and rates, as :meth:`held`, of each step."""
         return [step.held(*state) for step, *state in zip(self.steps, q, qd, strict=True)]
 
 
@@ -138,10 +140,10 @@ class State:
 
     @cached_property
     def ground(self) -> Frame:
-        """Motion of the ground at all states."""
-        xp, of = namespace(*self.q[0], self._ground.a), self._ground
-        R = None if of.R is None else xp.broadcast_to(of.R, (*self.shape, 3, 3))
-        vectors = of.p, of.v, of.w, of.a, of.alpha
+        """Motion of the ground, broadcast to the shape of the states."""
+        xp, frame = namespace(*self.q[0], self._ground.a), self._ground
+        R = None if frame.R is None else xp.broadcast_to(frame.R, (*self.shape, 3, 3))
+        vectors = frame.p, frame.v, frame.w, frame.a, frame.alpha
         return Frame(R, *(None if each is None else xp.broadcast_to(each, (*self.shape, 3)) for each in vectors))
 
     def moved(self, body: int) -> tuple[list[Any], Frame]:
@@ -201,34 +203,34 @@ class Tree:
 
     @property
     def sliding(self) -> Array:
-        """Flags of the unknown coordinates by which no equation changes unless a force depends on them: slides, one
-        after the other from the ground, that meet no stop.
+        """Flags, for the unknown coordinates, of slides that follow only slides from the ground and meet no stop: no
+        equation changes with them unless a force depends on them.
         """
-        flags, straight = list[bool](), {-1: True}
+        flags, only_slid = list[bool](), {-1: True}  # by body: only slides, and no deformation, from the ground to it
         for body, link in enumerate(self.links):
-            even, first = straight[link.parent], 0
+            slid, first = only_slid[link.parent], 0
             for step in link.steps:
                 stops = link.holder.stop[first : first + step.size]
-                flags += (stops == 0).tolist() if even and isinstance(step, Slide) else [False] * step.size
-                even, first = even and isinstance(step, Slide | Placed), first + step.size
+                flags += (stops == 0).tolist() if slid and isinstance(step, Slide) else [False] * step.size
+                slid, first = slid and isinstance(step, Slide | Placed), first + step.size
             flags += [False] * link.body.size
-            straight[body] = even and not link.body.size
+            only_slid[body] = slid and not link.body.size
         return np.array(flags, dtype=bool)[self.free]
 
     @property
     def turning(self) -> list[Array]:
-        """Flags of the unknown coordinates of each ball that follows such slides, or the ground, and meets no stop, and
-        of each hinge that does and that nothing holds.
+        """Flags, for the unknown coordinates, of each ball that follows only slides from the ground and meets no stop,
+        and of each hinge that follows only such slides and that nothing holds.
         """
-        flags, straight, first = list[Array](), {-1: True}, 0
+        flags, only_slid, first = list[Array](), {-1: True}, 0
         for body, link in enumerate(self.links):
-            even = straight[link.parent]
+            slid = only_slid[link.parent]
             for step in link.steps:
-                hinge = isinstance(step, Rotation) and step.size == 1 and not link.holder.holds
-                if even and (hinge or (isinstance(step, Ball | Turning) and not link.holder.stop.any())):
+                free_hinge = isinstance(step, Rotation) and step.size == 1 and not link.holder.holds
+                if slid and (free_hinge or (isinstance(step, Ball | Turning) and not link.holder.stop.any())):
                     flags.append((first <= self.free) & (self.free < first + step.size))
-                even, first = even and isinstance(step, Slide | Placed), first + step.size
-            straight[body], first = even and not link.body.size, first + link.body.size
+                slid, first = slid and isinstance(step, Slide | Placed), first + step.size
+            only_slid[body], first = slid and not link.body.size, first + link.body.size
         return [each for each in flags if each.any()]
 
     def parted(self, y: Array) -> list[list[Array]]:
@@ -264,7 +266,7 @@ class Tree:
         return self.demanded(self.motion(y, yd, ydd, inputs), inputs)[:2]
 
     def demanded(self, state: State, inputs: Inputs) -> tuple[Array, Wrench, list[list[Acting]]]:
-        """Forces (..., n) and the wrench on the ground that a motion demands, and of each body those on its points."""
+        """Forces (..., n) and the wrench on the ground that a motion demands, and those on the points of each body."""
         xp = namespace(*state.q[0], *state.qd[0], *state.qdd[0], inputs.ground.a)
         on_points: list[list[Acting]] = [[] for _ in self.links]
         on_roots: list[list[Wrench]] = [[] for _ in self.links]
@@ -292,15 +294,15 @@ class Tree:
                 along = along + link.body.along(body[0], on_points[k])
             wrench = sum((each.wrench.brought(each.by) for each in on_points[k]), start=wrench)
             wrench = sum(on_roots[k], start=wrench)
-            of_joint: list[Array] = []
+            on_steps: list[Array] = []
             for step, by, coordinates in reversed(list(zip(link.steps, steps, joint, strict=True))):
-                of_joint.insert(0, step.rows(*coordinates, wrench))
+                on_steps.insert(0, step.rows(*coordinates, wrench))
                 wrench = wrench.brought(by)
-            if of_joint:
+            if on_steps:
                 if not link.loose:
                     held = link.holding([each[0] for each in joint], [each[1] for each in joint])
-                    of_joint = [demand + force for demand, force in zip(of_joint, held, strict=True)]
-                along = concatenated([*of_joint, along])
+                    on_steps = [demand + force for demand, force in zip(on_steps, held, strict=True)]
+                along = concatenated([*on_steps, along])
             rows.insert(0, along)
             if link.parent < 0:
                 ground = ground + wrench
@@ -326,10 +328,10 @@ class Tree:
         return force, moment, namespace(kinetic, elastic).stack([kinetic, elastic, weight], axis=-1)
 
     def local(self, y: Array, yd: Array, ydd: Array) -> tuple[Tree, Array, Array, Array]:
-        """The tree with as many coordinates as degrees of freedom, and all of these with their rates, at others (n,):
-        Euler parameters give way to a rotation vector, which is zero there.
+        """Return the same tree by as many coordinates as degrees of freedom, and all of these with their two rates, at
+        coordinates (n,): Euler parameters give way to a rotation vector, which is zero there.
         """
-        numbers: dict[int, int] = {}
+        numbers: dict[int, int] = {}  # among the fewer coordinates, by those among all
         links, states, first = [], [], 0
         for link, *parts in zip(self.links, *(self.parted(each) for each in (y, yd, ydd)), strict=True):
             steps, kept = [], []

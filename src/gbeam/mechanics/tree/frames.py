@@ -57,7 +57,7 @@ class Relative:
 class Frame:
     """Motion of a frame: R_WF (..., 3, 3), its origin in the world (..., 3) m, world axes; velocity, angular velocity,
     acceleration (specific force where gravity acts) and angular acceleration (..., 3), its own axes. R, p and v are
-    None where only forces are asked for.
+    None where only forces are computed.
     """
 
     R: Array
@@ -96,7 +96,7 @@ class Wrench:
         return Wrench(self.force + other.force, self.moment + other.moment)
 
     def brought(self, by: Relative) -> Wrench:
-        """The wrench on the frame in which its own moves."""
+        """The same wrench about the origin, and in the axes, of the frame in which its own moves `by`."""
         force, moment = self.force, self.moment
         if by.R is not None:
             force, moment = turned(by.R, force), turned(by.R, moment)

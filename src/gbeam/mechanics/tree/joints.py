@@ -61,7 +61,7 @@ COUPLINGS = ("rotational stiffness", "force", "stiffness")  # of two coordinates
 
 
 def kind_of_value(key: str, coordinate: str) -> str:
-    """Kind of quantity of what a key says of a coordinate."""
+    """Kind of quantity, such as "torque", that a joint's key takes for a coordinate."""
     return OF_COORDINATES[key][coordinate not in SLIDES]
 
 
@@ -80,8 +80,9 @@ def _kinds_of_coupling(arguments: Mapping[str, Any]) -> Kinds:
 
 
 class Kind(NamedTuple):
-    """A kind of joint: what it lets move, the steps and the names of their coordinates by its axes (k, 3), how many
-    axes it takes, the names of rates where they are not those of the coordinates, and the directions that may give way.
+    """A kind of joint: its motion in words, the function that makes its steps of its axes (k, 3), the names of their
+    coordinates, the number k of axes, the names of its rates where they differ from those, and the directions along
+    which it gives way where these have a spring.
     """
 
     words: str
@@ -93,7 +94,7 @@ class Kind(NamedTuple):
 
     @property
     def value_names(self) -> tuple[str, ...]:
-        """Names of values: of its coordinates, but of Euler parameters the components of the rotation vector."""
+        """Names of the values on which springs act: its coordinates, the rotation vector for Euler parameters."""
         names = tuple(name for name in self.names if name not in _BALL)
         return (*self.sprung, *names, *(_TURN if self.turns else ()))
 
@@ -103,7 +104,7 @@ class Kind(NamedTuple):
         return _BALL[0] in self.names
 
     def names_in(self, key: str) -> tuple[str, ...]:
-        """Names by which a key is given."""
+        """Names that a key of the joint takes: of rates, or of values."""
         return self.rates if self.rates and key in OF_RATES else self.value_names
 
 
@@ -203,13 +204,13 @@ class Joint(Value):
 
     def __post_init__(self) -> None:
         choice("kind", self.kind, KINDS)
-        wanted = KINDS[self.kind].axes
+        axis_count = KINDS[self.kind].axes
         axes = np.asarray(array("axes", () if self.axes is None else self.axes), dtype=float)
         axes = axes if axes.size else np.zeros((0, 3))
-        if axes.shape != (wanted, 3):
+        if axes.shape != (axis_count, 3):
             problem = "is missing" if not axes.size else f"has the shape {axes.shape}"
-            fix = f"give {wanted} of 3 components each: a {self.kind} joint has as many" if wanted else "leave it out"
-            raise InputError("axes", problem, fix)
+            fix = f"give {axis_count} of 3 components each: a {self.kind} joint has as many"
+            raise InputError("axes", problem, fix if axis_count else "leave it out")
         length = np.linalg.norm(axes, axis=1)
         if not (np.isfinite(length).all() and (length > 0).all()):
             raise InputError("axes", f"is {self.axes!r}", "give directions of finite length above zero")
@@ -238,11 +239,11 @@ class Joint(Value):
 
     @property
     def values(self) -> tuple[str, ...]:
-        """Names of what its springs hold: its coordinates, of a ball the rotation vector."""
+        """Names of the values on which its springs act: its coordinates, the rotation vector of a ball."""
         return self.coordinates if self.kind == "fixed" else KINDS[self.kind].value_names
 
     def numbers(self, rate: str) -> tuple[int, ...]:
-        """Return the numbers, among its coordinates, of what moves at a rate: of a spin those of all Euler parameters.
+        """Return the indices, among the joint's coordinates, of those that a rate moves: a spin, all Euler parameters.
 
         Parameters
         ----------
@@ -254,7 +255,7 @@ class Joint(Value):
         return (self.coordinates.index(rate),)
 
     def row(self, rate: str) -> int:
-        """Return the number of the equation on which the effort acts that moves it at a rate.
+        """Return the index, among the joint's equations, of the one on which an effort along a rate acts.
 
         Parameters
         ----------
@@ -276,16 +277,18 @@ class Joint(Value):
         steps = KINDS[self.kind].steps(axes / np.linalg.norm(axes, axis=1, keepdims=True))
         if self.kind == "fixed" and self.coordinates:
             moved, turned = ([k for k in range(3) if DIRECTIONS[first + k] in self.coordinates] for first in (0, 3))
-            steps = (Slide(_EYE[:, moved]),) * bool(moved) + (Rotation(_EYE[:, turned], _EYE),) * bool(turned)
+            steps = (Slide(_EYE[:, moved]),) if moved else ()
+            steps += (Rotation(_EYE[:, turned], _EYE),) if turned else ()
         # The coordinates are in axes of the point, and the body is turned after them; a ball turns the body's axes.
-        before, after = Placed(placed.r, None), Placed(np.zeros(3), placed.R)
         moves, turns = (is_jax(each) or bool(each.any()) for each in map(as_array, (self.at, self.turn)))
-        last = len(steps) - KINDS[self.kind].turns
-        return (before,) * moves + steps[:last] + (after,) * turns + steps[last:]
+        before = (Placed(placed.r, None),) if moves else ()
+        after = (Placed(np.zeros(3), placed.R),) if turns else ()
+        ball = len(steps) - KINDS[self.kind].turns  # its index, or behind the last
+        return before + steps[:ball] + after + steps[ball:]
 
     @property
     def loose(self) -> bool:
-        """True if nothing holds its coordinates."""
+        """True if it has no spring, damper, friction or stop."""
         return all(getattr(self, name) is None for name in (*_EASY, "stops"))
 
     @property
@@ -297,7 +300,7 @@ class Joint(Value):
 
     @property
     def holder(self) -> Holder:
-        """Springs, dampers, friction and stops of what they hold."""
+        """Springs, dampers, friction and stops; InputError if a value is impossible or does nothing without another."""
         values = {name: self._numbers(name, getattr(self, name)) for name in _EASY}
         for name in ("stiffness", "damping", "friction", "stop_stiffness"):
             for coordinate, value in zip(self._names(name), values[name], strict=True):
@@ -314,16 +317,16 @@ class Joint(Value):
             if not (is_jax(values["stop_stiffness"]) or values["stop_stiffness"][k] > 0):
                 raise InputError("stop_stiffness", "is missing", f"a stop of {coordinate} needs one")
         for name, needed in (("ease", "stiffness"), ("stop_stiffness", "stops")):
-            to = self._named(needed, getattr(self, needed))
+            present = self._named(needed, getattr(self, needed))
             for coordinate in self._named(name, getattr(self, name)):
-                if coordinate not in to:
+                if coordinate not in present:
                     fix = f"give {needed} of {coordinate} too, or leave it out"
                     raise InputError(f"{name}.{coordinate}", f"does nothing without {needed}", fix)
         coupling = self._coupling(values["stiffness"])
         return Holder(low=low, high=high, stop=values.pop("stop_stiffness"), coupling=coupling, **values)
 
     def _coupling(self, stiffness: Floats) -> Floats | None:
-        """Stiffness (h, h) between what springs hold; None without any."""
+        """Stiffness (h, h) between values, None without any; InputError unless with the springs' it gives no energy."""
         if self.coupling is None or self.coupling == {}:
             return None
         names = self.values
@@ -337,7 +340,7 @@ class Joint(Value):
                 raise InputError(f"coupling.{pair}", "is no pair of coordinates", fix)
             i, j = (names.index(each) for each in ends)
             rows[i][j] = rows[j][i] = finite(f"coupling.{pair}", value)
-        coupling = as_array([each for row in rows for each in row]).reshape(len(names), len(names))
+        coupling = as_array([entry for row in rows for entry in row]).reshape(len(names), len(names))
         if is_jax(stiffness) or is_jax(coupling):
             return coupling
         whole = np.diag(np.asarray(stiffness, dtype=float)) + coupling
@@ -396,19 +399,21 @@ class Joint(Value):
         return efforts
 
     def _profiles(self, where: str, values: Any) -> dict[str, Profile]:
+        """Profiles of a key's values by name."""
         named = self._named(where, values)
         return {name: as_profile(f"{where}.{name}", each) for name, each in named.items()}
 
     def _names(self, key: str) -> tuple[str, ...]:
+        """Names of the rates or values that a key takes."""
         return self.rate_names if key in OF_RATES else self.values
 
     def _numbers(self, where: str, named: Any) -> Array:
-        """Values by name: zero where they are not given."""
+        """Numbers (h,) of a key in the order of its names, zero where `named` has none."""
         values = {name: finite(f"{where}.{name}", each) for name, each in self._named(where, named).items()}
         return as_array([values.get(name, 0.0) for name in self._names(where)])
 
     def _named(self, where: str, named: Any) -> dict[str, Any]:
-        """Values by the names that a key has; of a single one the value alone will do."""
+        """Values of a key by name; where it has one name, a bare value will do. InputError if a name is not its."""
         names = self._names(where)
         if named is None:
             return {}

@@ -54,23 +54,23 @@ def kind_of_drive(name: str) -> str:
 
 
 def deforming(names: Sequence[str], body: str) -> list[int]:
-    """Numbers of those among coordinates that deform a body, by their names."""
-    return [k for k, each in enumerate(names) if each.startswith(f"{body}.q")]
+    """Indices of the coordinates, among these names, that deform a body."""
+    return [k for k, name in enumerate(names) if name.startswith(f"{body}.q")]
 
 
 def local_names(coordinates: Iterable[str]) -> list[str]:
-    """Names of as many coordinates as degrees of freedom: of Euler parameters but the first those of rotations."""
+    """Names of the coordinates of :meth:`Tree.local`: rx, ry and rz in the place of Euler parameters e0 to e3."""
     turns = {"e1": "rx", "e2": "ry", "e3": "rz"}
-    every = [each.rpartition(".") for each in coordinates]
-    return [f"{head}.{turns.get(tail, tail)}" for head, _, tail in every if tail != "e0"]
+    parts = [name.rpartition(".") for name in coordinates]
+    return [f"{owner}.{turns.get(name, name)}" for owner, _, name in parts if name != "e0"]
 
 
 def drives_of(system: System) -> dict[str, Driven]:
     """Efforts on the coordinates of joints, ``joint.angle``, and components of forces, ``thrust.force_x``, by name."""
     drives = {}
     rates = [f"{owner}.{rate}" for owner, joint in system.joints.items() for rate in joint.rate_names]
-    for each in sorted(rates, key=system.row):
-        drives[each] = Driven("effort", system.row(each), KINDS[kind_of_drive(each)].unit)
+    for name in sorted(rates, key=system.row):
+        drives[name] = Driven("effort", system.row(name), KINDS[kind_of_drive(name)].unit)
     for k, owner in enumerate(system.forces):
         for i, (each, kind) in enumerate(CARRIED.items()):
             unit = KINDS[kind].unit
@@ -97,22 +97,22 @@ def signals_of(system: System) -> dict[str, str]:
 
 
 def units_of(system: System) -> tuple[str, ...]:
-    """SI units of the coordinates; empty of Euler parameters and of a flexible body's own."""
+    """SI units of the coordinates; "" for Euler parameters and for those that deform a body."""
     signals = signals_of(system)
-    return tuple(signals.get(each, "") for each in system.coordinates)
+    return tuple(signals.get(name, "") for name in system.coordinates)
 
 
 def rate_signal(rate: str) -> str:
-    """Name of the signal of a rate: of a spin that of its component."""
+    """Name of a rate's signal: of a spin wx, wy or wz the same, of others with ``_rate`` behind."""
     return rate if rate in SPIN else f"{rate}_rate"
 
 
 def carried_of(system: System) -> dict[str, str]:
-    """Names of what sections of beams carry, as gauges there know it, with their units: ``strip.root.moment_y``."""
+    """Names, with units, of the section forces and moments at the beams' points: ``strip.root.moment_y``."""
     beams = [name for name in system.order if getattr(system.bodies[name], "sections", None) is not None]
     points = [f"{name}.{point}" for name in beams for point in system.points_of(name)]
-    names = [f"{each}.{kind}_{axis}" for each in points for kind in CARRIED for axis in "xyz"]
-    return {each: KINDS[kind_of_signal(each)].unit for each in names}
+    names = [f"{point}.{kind}_{axis}" for point in points for kind in CARRIED for axis in "xyz"]
+    return {name: KINDS[kind_of_signal(name)].unit for name in names}
 
 
 def measurable(system: System) -> dict[str, str]:
@@ -121,28 +121,28 @@ def measurable(system: System) -> dict[str, str]:
 
 
 def measurements(system: System, tree: Any, y: Array, yd: Array, ydd: Array, inputs: Any, wanted: Sequence[str]) -> Any:
-    """Values (..., k) of what is measured, at unknown coordinates of the tree or of one local to it."""
+    """Values (..., k) of the `wanted` signals at unknown coordinates (..., n) of the system's tree or its local one."""
     xp, state, columns = namespace(y, inputs.ground.a), tree.motion(y, yd, ydd, inputs), []
     read = {
-        "place": lambda at: at.p,
-        "velocity": lambda at: turned(at.R, at.v),
-        "attitude": lambda at: vector_of(parameters_of_all(xp.broadcast_to(at.R, (*state.shape, 3, 3)))),
-        "acceleration": lambda at: at.a,
-        "spin": lambda at: at.w,
+        "place": lambda frame: frame.p,
+        "velocity": lambda frame: turned(frame.R, frame.v),
+        "attitude": lambda frame: vector_of(parameters_of_all(xp.broadcast_to(frame.R, (*state.shape, 3, 3)))),
+        "acceleration": lambda frame: frame.a,
+        "spin": lambda frame: frame.w,
     }
     vectors = dict[tuple[str, str], Any]()  # of which several components may be wanted
-    for each in wanted:
-        owner, _, kind = each.rpartition(".")
+    for signal in wanted:
+        owner, _, kind = signal.rpartition(".")
         if owner in system.joints:
             joint = system.joints[owner]
             body = system.order.index(joint.body)
             names = [*joint.values, *map(rate_signal, joint.rate_names)]
-            moved = tree.links[body].held(state.q[body][:-1], state.qd[body][:-1])
-            columns.append(xp.broadcast_to(concatenated(list(moved))[..., names.index(kind)], state.shape))
+            values_and_rates = tree.links[body].held(state.q[body][:-1], state.qd[body][:-1])
+            columns.append(xp.broadcast_to(concatenated(list(values_and_rates))[..., names.index(kind)], state.shape))
         else:
             name, _, axis = kind.partition("_")
             if (owner, name) not in vectors:
-                of, point = system.point("outputs", owner)
-                vectors[owner, name] = read[name](state.points_of(system.order.index(of))[point])
+                of_point, point = system.point("outputs", owner)
+                vectors[owner, name] = read[name](state.points_of(system.order.index(of_point))[point])
             columns.append(xp.broadcast_to(vectors[owner, name][..., "xyz".index(axis)], state.shape))
     return xp.stack(columns, axis=-1) if columns else xp.zeros((*y.shape[:-1], 0))

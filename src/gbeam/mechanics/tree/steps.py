@@ -34,7 +34,7 @@ class Step(Protocol):
         ...
 
     def held(self, q: Array, qd: Array) -> tuple[Array, Array]:
-        """Values (..., h) by which springs and stops hold it, and rates by which dampers and friction do."""
+        """Values (..., h) on which a joint's springs and stops act, and rates on which its dampers and friction do."""
         ...
 
     def pushed(self, q: Array, by_values: Array, by_rates: Array) -> Array:
@@ -42,12 +42,12 @@ class Step(Protocol):
         ...
 
     def local(self, q: Array, qd: Array, qdd: Array) -> tuple[Step, Array, Array, Array]:
-        """Return the motion with as many coordinates as degrees of freedom, and these with their rates, at others."""
+        """Return the same motion by as many coordinates as degrees of freedom, and these with their two rates."""
         ...
 
 
 class Minimal:
-    """A motion that has as many coordinates as degrees of freedom, which are held as they are."""
+    """A motion with as many coordinates as degrees of freedom: springs and dampers act on these themselves."""
 
     def held(self, q: Array, qd: Array) -> tuple[Array, Array]:
         return q, qd
@@ -103,8 +103,9 @@ class Rotation(Minimal):
 class Ball:
     """Any rotation by Euler parameters (e0, e1, e2, e3), of which the size does not matter.
 
-    Their first equation keeps the size at one, e·ë + ė·ė + 2 e·ė + (e·e − 1)/2 = 0; the others are those of moments
-    about the turned axes. It is held by the rotation vector, of half a turn at most, and by the angular velocity.
+    The first of their four equations keeps the size at one, e·ë + ė·ė + 2 e·ė + (e·e − 1)/2 = 0; the others are those
+    of moments about the turned axes. Springs and stops act on the rotation vector, of half a turn at most, dampers and
+    friction on the angular velocity.
     """
 
     @property
@@ -121,8 +122,8 @@ class Ball:
         return Relative(0 * n[..., 1:], None, None, rotation_by_parameters(n), rate, change)
 
     def rows(self, q: Array, qd: Array, qdd: Array, wrench: Wrench) -> Array:
-        kept = (q * qdd + qd * qd + 2 * q * qd + q * q / 2).sum(axis=-1, keepdims=True) - 0.5
-        return concatenated([kept, wrench.moment])
+        unit_size = (q * qdd + qd * qd + 2 * q * qd + q * q / 2).sum(axis=-1, keepdims=True) - 0.5
+        return concatenated([unit_size, wrench.moment])
 
     def held(self, q: Array, qd: Array) -> tuple[Array, Array]:
         size = namespace(q).sqrt((q * q).sum(axis=-1, keepdims=True))
@@ -139,10 +140,10 @@ class Ball:
 
 @record
 class Turning:
-    """Rotation by a vector φ (..., 3) from axes that turn on at `spin` and `faster` (3,), rad/s and rad/s², after unit
-    Euler parameters (4,), held as the ball is by the whole rotation. Its rates are φ̇ + spin, those of the body where φ
-    is zero: departures from a steady spin are departures in the body's axes. Its rows are moments about the turned
-    axes, as the ball's are, so that what drives it turns on with the body.
+    """Rotation by a vector φ (..., 3) after a ball's unit Euler parameters `before` (4,), from axes that turn on at the
+    angular velocity `spin` (3,) rad/s and acceleration `faster` (3,) rad/s². Its rates are φ̇ + spin, those of the body
+    where φ is zero: departures from a steady spin are departures in the body's axes. Its rows are moments about the
+    turned axes, so that a drive turns on with the body, and its springs act on the whole rotation, as the ball's do.
     """
 
     before: Array
@@ -172,6 +173,7 @@ class Turning:
         return self, q, qd, qdd
 
     def _whole(self, q: Array) -> Array:
+        """Rotation vectors (..., 3) of the Euler parameters `before` and the vectors q after them."""
         return vector_of(parameters_after(self.before, parameters_of_vector(q)))
 
 
@@ -220,7 +222,7 @@ def parameter_rates(e: Array, w: Array) -> Array:
 
 
 def turned_on(state: Array, time: Any) -> Array:
-    """Euler parameters and two derivatives (3, 4) after going on at their angular velocity for a time."""
+    """Euler parameters and their two derivatives (3, 4), a time (s) later, of what turns on at its angular velocity."""
     w = 2 * parameters_after(state[0] * np.array([1.0, -1.0, -1.0, -1.0]), state[1])[1:]
     return parameters_after(state, parameters_of_vector(w * time))
 
@@ -273,24 +275,24 @@ def continuous(e: Array) -> Array:
 
 
 def functions_of_angle(s: Array, *, plane: bool = False) -> tuple[Array, ...]:
-    """sin θ/θ, (1 − cos θ)/θ² and, unless in a `plane`, (θ − sin θ)/θ³ of s = θ² and the derivatives of the last two
-    with respect to s.
+    """Functions a = sin θ/θ and b = (1 − cos θ)/θ² of s = θ², and unless in a `plane` c = (θ − sin θ)/θ³ and the
+    derivatives of b and c with respect to s.
     """
     xp = namespace(s)
     small = s < SMALL
     safe = xp.where(small, 1.0, s)
     angle = xp.sqrt(safe)
     a, b = xp.sin(angle) / angle, (1 - xp.cos(angle)) / safe
-    near = 1 - s / 6 * (1 - s / 20 * (1 - s / 42 * (1 - s / 72 * (1 - s / 110))))
+    a_near = 1 - s / 6 * (1 - s / 20 * (1 - s / 42 * (1 - s / 72 * (1 - s / 110))))
     b_near = 0.5 - s / 24 * (1 - s / 30 * (1 - s / 56 * (1 - s / 90 * (1 - s / 132))))
     if plane:
-        return xp.where(small, near, a), xp.where(small, b_near, b)
+        return xp.where(small, a_near, a), xp.where(small, b_near, b)
     c = (1 - a) / safe
     c_near = (1 - s / 20 * (1 - s / 42 * (1 - s / 72 * (1 - s / 110 * (1 - s / 156))))) / 6
-    b_slope = -1 / 24 * (1 - s / 15 * (1 - 3 * s / 112 * (1 - 2 * s / 135 * (1 - 5 * s / 528))))
-    c_slope = -1 / 120 * (1 - s / 21 * (1 - s / 48 * (1 - 2 * s / 165 * (1 - 5 * s / 624))))
-    of_b, of_c = (a - 2 * b) / (2 * safe), (b - 3 * c) / (2 * safe)
-    pairs = (near, a), (b_near, b), (c_near, c), (b_slope, of_b), (c_slope, of_c)
+    db_near = -1 / 24 * (1 - s / 15 * (1 - 3 * s / 112 * (1 - 2 * s / 135 * (1 - 5 * s / 528))))
+    dc_near = -1 / 120 * (1 - s / 21 * (1 - s / 48 * (1 - 2 * s / 165 * (1 - 5 * s / 624))))
+    db, dc = (a - 2 * b) / (2 * safe), (b - 3 * c) / (2 * safe)
+    pairs = (a_near, a), (b_near, b), (c_near, c), (db_near, db), (dc_near, dc)
     return tuple(xp.where(small, series, closed) for series, closed in pairs)
 
 
@@ -300,7 +302,7 @@ def rotation_by_vector(phi: Array, rate: Array, change: Array, *, plane: bool) -
     """
     xp = namespace(phi)
     s = (phi * phi).sum(axis=-1)
-    a, b, *more = (each[..., None] for each in functions_of_angle(s, plane=plane))
+    a, b, *spatial = (each[..., None] for each in functions_of_angle(s, plane=plane))
     x, y, z = (phi[..., i] for i in range(3))
     zero = xp.zeros_like(x)
     skew = xp.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1).reshape(*phi.shape, 3)
@@ -308,11 +310,11 @@ def rotation_by_vector(phi: Array, rate: Array, change: Array, *, plane: bool) -
     R = xp.eye(3) + a[..., None] * skew + b[..., None] * square
     if plane:
         return R, rate, change
-    c, of_b, of_c = more
-    once, onto = cross(phi, rate), cross(phi, cross(phi, rate))
-    growth = 2 * (phi * rate).sum(axis=-1, keepdims=True)
-    w = rate - b * once + c * onto
-    turning = -growth * of_b * once + growth * of_c * onto + c * cross(rate, once)
+    c, db, dc = spatial
+    across, twice_across = cross(phi, rate), cross(phi, cross(phi, rate))
+    growth = 2 * (phi * rate).sum(axis=-1, keepdims=True)  # of s
+    w = rate - b * across + c * twice_across
+    turning = -growth * db * across + growth * dc * twice_across + c * cross(rate, across)
     alpha = change - b * cross(phi, change) + c * cross(phi, cross(phi, change)) + turning
     return R, w, alpha
 
@@ -320,8 +322,8 @@ def rotation_by_vector(phi: Array, rate: Array, change: Array, *, plane: bool) -
 def tangent_back(phi: Array, moment: Array) -> Array:
     """Tᵀ M: the moments on a rotation vector's components that do the work of a moment (..., 3), turned axes."""
     _, b, c, *_ = (each[..., None] for each in functions_of_angle((phi * phi).sum(axis=-1)))
-    once = cross(phi, moment)
-    return moment + b * once + c * cross(phi, once)
+    across = cross(phi, moment)
+    return moment + b * across + c * cross(phi, across)
 
 
 def on_body(phi: Array, forces: Array) -> Array:
@@ -331,8 +333,8 @@ def on_body(phi: Array, forces: Array) -> Array:
     safe = xp.where(small, 1.0, s)
     a, b = functions_of_angle(safe, plane=True)
     near = (1 + s / 60 * (1 + s / 42 * (1 + s / 40 * (1 + 5 * s / 198)))) / 12
-    once = cross(phi, forces)
-    return forces - once / 2 + xp.where(small, near, (1 - a / (2 * b)) / safe) * cross(phi, once)
+    across = cross(phi, forces)
+    return forces - across / 2 + xp.where(small, near, (1 - a / (2 * b)) / safe) * cross(phi, across)
 
 
 def about(v: Any) -> Array:

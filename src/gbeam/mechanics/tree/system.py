@@ -132,7 +132,7 @@ class RigidBody(Value):
         places = [as_array(each.at) for each in self.points.values()]
         turns = [about(each.turn) for each in self.points.values()]
         xp = namespace(*places, *turns)
-        places, turns = (xp.reshape(xp.asarray(each), (-1, *to)) for each, to in ((places, (3,)), (turns, (3, 3))))
+        places, turns = xp.reshape(xp.asarray(places), (-1, 3)), xp.reshape(xp.asarray(turns), (-1, 3, 3))
         return Rigid(self.mass, as_array(self.centre), self.tensor, places, turns)
 
 
@@ -273,6 +273,7 @@ class System(Value):
         return tuple(order)
 
     def _holding(self, body: str) -> str:
+        """Name of the joint that holds a body."""
         return next(name for name, joint in self.joints.items() if joint.body == body)
 
     def _parent(self, joint: str) -> str:
@@ -291,10 +292,10 @@ class System(Value):
         body : str
             Its name.
         """
-        each = self.bodies[body]
-        if isinstance(each, RigidBody):
-            return (*each.points, ROOT)
-        return (*stations_of(each), ROOT)
+        terms = self.bodies[body]
+        if isinstance(terms, RigidBody):
+            return (*terms.points, ROOT)
+        return (*stations_of(terms), ROOT)
 
     def point(self, where: str, name: str) -> tuple[str, int]:
         """Return the body and the index of a point.
@@ -316,7 +317,8 @@ class System(Value):
         names = self.points_of(body) if known else ()
         if point not in names:
             problem = f"{body} has no such point" if known else f"there is no body {body!r}"
-            points = [f"{each}.{end}" for each in ([body] if known else self.bodies) for end in self.points_of(each)]
+            bodies = [body] if known else list(self.bodies)
+            points = [f"{owner}.{each}" for owner in bodies for each in self.points_of(owner)]
             raise InputError(where, f"is {name!r}, and {problem}", advise(name, points))
         return body, names.index(point)
 
@@ -331,7 +333,7 @@ class System(Value):
 
     @property
     def kind(self) -> str:
-        """Word in the place of a model's kind."""
+        """Word "system" in the place of a model's kind."""
         return "system"
 
     @property
@@ -361,59 +363,63 @@ class System(Value):
         return tuple(names)
 
     def _assembled(self) -> Tree:
-        """The equations."""
-        links, loose, at = [], set[str](), {body: k for k, body in enumerate(self.order)}
+        """Links, forces and indices of prescribed coordinates of the equations."""
+        index = {body: k for k, body in enumerate(self.order)}
+        links, free = [], set[str]()  # bodies whose root moves by unknown coordinates
         for body in self.order:
             name = self._holding(body)
             joint = self.joints[name]
             parent, on = -1, 0
             if joint.on != GROUND:
                 holding, on = self.point(f"joints.{name}.on", joint.on)
-                parent = at[holding]
+                parent = index[holding]
                 refuse_turnless(f"joints.{name}.on", self.bodies[holding], on)
-                if holding in loose or isinstance(self.bodies[holding], Structure):
-                    loose.add(body)
+                if holding in free or isinstance(self.bodies[holding], Structure):
+                    free.add(body)
             if len(joint.rates) < len(joint.rate_names):
-                loose.add(body)
-            of = body_of(f"bodies.{body}", self.bodies[body], free=body in loose)
-            links.append(Link(joint.steps, joint.holder, of, parent, on, joint.loose))
+                free.add(body)
+            terms = body_of(f"bodies.{body}", self.bodies[body], free=body in free)
+            links.append(Link(joint.steps, joint.holder, terms, parent, on, joint.loose))
         forces = []
         for name, force in self.forces.items():
             body, on = self.point(f"forces.{name}.on", force.on)
-            forces.append(Force(at[body], on, force.follower))
+            forces.append(Force(index[body], on, force.follower))
         fixed = [self._first(name) + k for name, numbers, _ in self._prescribed for k in numbers]
         return Tree(tuple(links), tuple(forces), tuple(fixed))
 
     def _first(self, joint: str) -> int:
-        """Number of the first coordinate of a joint, or where it would be."""
+        """Index of a joint's first coordinate among all, or where it would be if the joint has none."""
         before = self.order[: self.order.index(self.joints[joint].body)]
-        sizes = (len(self.joints[self._holding(each)].coordinates) + self._size(each) for each in before)
+        sizes = (len(self.joints[self._holding(body)].coordinates) + self._size(body) for body in before)
         return sum(sizes)
 
     def _size(self, body: str) -> int:
+        """Number of coordinates that deform a body."""
         flexible = self.bodies[body]
         return 0 if isinstance(flexible, RigidBody) else flexible.size
 
     def row(self, name: str) -> int:
-        """Return the number of the equation on which an effort acts.
+        """Return the index of the equation on which an effort on a joint acts.
 
         Parameters
         ----------
         name : str
-            Of the rate at which it moves a joint: ``joint.angle``, or ``joint.wx``.
+            Of the rate along which it acts: ``joint.angle``, or ``joint.wx``.
         """
         joint, _, rate = name.rpartition(".")
         return self._first(joint) + self.joints[joint].row(rate)
 
     @property
     def _prescribed(self) -> list[tuple[str, tuple[int, ...], tuple[str, ...]]]:
-        """Joints by name with the numbers of coordinates that are prescribed together, and the names of their rates."""
+        """Groups of coordinates that are prescribed together, one, or a ball's four: name of the joint, indices among
+        its coordinates, and names of the rates.
+        """
         groups = []
         for name, joint in self.joints.items():
-            together = dict[tuple[int, ...], list[str]]()
+            rates_of = dict[tuple[int, ...], list[str]]()
             for rate in joint.rates:
-                together.setdefault(joint.numbers(rate), []).append(rate)
-            groups += [(name, numbers, tuple(rates)) for numbers, rates in together.items()]
+                rates_of.setdefault(joint.numbers(rate), []).append(rate)
+            groups += [(name, numbers, tuple(rates)) for numbers, rates in rates_of.items()]
         return groups
 
     @property
@@ -481,16 +487,16 @@ class System(Value):
             prescribed.append(namespace(*parts).stack(parts, axis=-2))
         columns = {}
         for name, joint in self.joints.items():
-            for each, profile in joint.efforts.items():
-                columns[self.row(f"{name}.{each}")] = profile(t)
+            for rate_name, profile in joint.efforts.items():
+                columns[self.row(f"{name}.{rate_name}")] = profile(t)
         if columns:
             none = xp.zeros(shape)
-            every = [columns.get(k, none) for k in range(self.tree.size)]
-            efforts = namespace(*columns.values()).stack(every, axis=-1)
+            of_equations = [columns.get(k, none) for k in range(self.tree.size)]
+            efforts = namespace(*columns.values()).stack(of_equations, axis=-1)
         wrenches = [concatenated([profile(t) for profile in force.history]) for force in self.forces.values()]
         loads = tuple(
-            None if isinstance(each, RigidBody) or each.history is None else each.history(t)
-            for each in (self.bodies[body] for body in self.order)
+            None if isinstance(body, RigidBody) or body.history is None else body.history(t)
+            for body in (self.bodies[name] for name in self.order)
         )
         return Inputs(
             ground,
@@ -502,7 +508,7 @@ class System(Value):
 
 
 def stations_of(structure: Structure) -> dict[str, int]:
-    """Indices of a structure's stations that have a name."""
+    """Indices, by name, of a structure's named stations."""
     if structure.source is None:
         names = structure.points or ("tip",)
         return {name: len(structure.stations) - len(names) + k for k, name in enumerate(names)}
@@ -511,7 +517,7 @@ def stations_of(structure: Structure) -> dict[str, int]:
 
 
 def refuse_turnless(where: str, body: RigidBody | Structure, on: int) -> None:
-    """Refuse to hang a body on a point whose turning is not known."""
+    """Raise InputError, with the place `where`, if the rotation of a body's point `on` (index) is not known."""
     if not isinstance(body, Structure) or body.field is not None or on >= len(stations_of(body)):
         return
     if body.turns is None or not np.isfinite(body.turns[list(stations_of(body).values())[on]]).all():
@@ -520,7 +526,7 @@ def refuse_turnless(where: str, body: RigidBody | Structure, on: int) -> None:
 
 
 def body_of(where: str, body: RigidBody | Structure, *, free: bool = False) -> Body:
-    """The terms of a body in the equations, with those of a solid whose root is free to move."""
+    """Terms of a body in the equations, `free` if its root moves by unknowns; InputError unless it can be in a tree."""
     if isinstance(body, RigidBody):
         return body.body
     if not body.hub_force:
@@ -533,7 +539,7 @@ def body_of(where: str, body: RigidBody | Structure, *, free: bool = False) -> B
 
 
 def terms_of(body: Structure, *, free: bool = False) -> Body:
-    """The terms of a structure in the equations on any root."""
+    """Terms of a structure in the equations on any root; a `free` one adds :func:`carried` to those of a solid."""
     equations, stations = body.equations, np.array(list(stations_of(body).values()))
     points: Points
     if isinstance(body.field, Expanded):
