@@ -18,11 +18,12 @@ from gbeam.structure.beam import Beam
 
 
 def _family(rule: Quadrature, nodal: Floats, length: float, *, axial: bool) -> Family:
-    """Functions of nodal curvatures (g, shapes), strains if `axial`: clamped at the root, ∫f² dx = L."""
-    once = rule.cumulative(rule.node)
-    slope = nodal if axial else once @ nodal
+    """Shapes with nodal curvatures (g, shapes), slopes if `axial`: clamped at the root, scaled to ∫f² dx = L."""
+    integral = rule.cumulative(rule.node)
+    slope = nodal if axial else integral @ nodal
     # As the closed forms do, each shape leaves the root upwards: by its curvature there, whatever the nodes are.
-    scale = np.sign(rule.interpolation(np.zeros(1))[0] @ nodal) / np.sqrt(rule.weight @ (once @ slope) ** 2 / length)
+    upwards = np.sign(rule.interpolation(np.zeros(1))[0] @ nodal)
+    scale = upwards / np.sqrt(rule.weight @ (integral @ slope) ** 2 / length)
     nodal, slope = nodal * scale, slope * scale
 
     def shapes(x: Floats) -> Shapes:
@@ -36,9 +37,10 @@ def _family(rule: Quadrature, nodal: Floats, length: float, *, axial: bool) -> F
 
 
 class Space(NamedTuple):
-    """All motions in one direction, or about x, that nodal strains of some families and the free root make; K (n,) is
-    diagonal, `line` (g,) kg and `turning` (g,) kg m² are the inertia of the sections, and `loads` (n, k) are known of
-    motions in all directions; with `upper` (n, n) K is upperᵀ upper.
+    """Motions in one direction, or about x, by coordinates (n,): nodal strains of some `families`, then springs of the
+    root. `mass` is (n, n), `stiffness` (n,) the diagonal of K, unless `upper` (n, n) makes it upperᵀ upper;
+    `sensitivity` gives displacements and angles (points, n) at positions, and `line` (g,) kg and `turning` (g,) kg m²
+    are the sections' inertia. `loads` (n, k) are None unless it has motions in all directions.
     """
 
     rule: Quadrature
@@ -53,7 +55,7 @@ class Space(NamedTuple):
     upper: Floats | None = None
 
     def scaled(self, strains: Floats, *, back: bool = False) -> Floats:
-        """Columns (n, k) of which the strain energy is half the square, or `back` from there."""
+        """Strains (n, k) scaled so that their energy is half their square, or scaled `back` from that."""
         if self.upper is None:
             root = np.sqrt(self.stiffness)[:, None]
             return strains / root if back else root * strains
@@ -65,12 +67,12 @@ class Space(NamedTuple):
         return self.families[0] in (1, 2)
 
     def block(self, family: int) -> slice:
-        """Place of a family's nodal strains among all."""
+        """Slice of a family's nodal strains among the coordinates."""
         start, nodes = self.families.index(family), len(self.rule.node)
         return slice(start * nodes, (start + 1) * nodes)
 
     def family(self, family: int, modes: Floats) -> Family:
-        """The shapes of one family that columns (n, k) are."""
+        """Shapes of one family with the nodal strains of columns (n, k)."""
         return _family(self.rule, modes[self.block(family)], self.length, axial=family not in (1, 2))
 
 
@@ -84,7 +86,7 @@ def spaces_of(beam: Beam, rule: Quadrature, counts: Counts) -> tuple[Space, ...]
 
 
 def space(beam: Beam, rule: Quadrature, along: int, counts: Counts) -> Space:
-    """The space of displacements along x, y or z (0, 1, 2), or about x (3); panels end at corners and bodies."""
+    """Space of displacements along x, y or z (0, 1, 2), or about x (3); panels of `rule` end at corners and bodies."""
     first, *others = GROUPS[along]
     families = (first, *(family for family in others if counts[family]))
     section, stiffnesses = beam.section.at(rule.node), beam.stiffnesses(rule.node)
@@ -124,12 +126,12 @@ def space(beam: Beam, rule: Quadrature, along: int, counts: Counts) -> Space:
 def adapted_shapes(beam: Beam, rule: Quadrature, counts: Counts) -> Families:
     """Modes at rest of the beam by direction, from M κ = μ K κ with μ = 1/ω²: K is diagonal, M nearly singular."""
     families: list[Family] = [lambda x: Shapes(*np.zeros((3, len(x), 0)))] * 6
-    for of in spaces_of(beam, rule, counts):
-        scale = 1 / np.sqrt(of.stiffness)
-        modes = scale[:, None] * np.linalg.eigh(scale[:, None] * of.mass * scale)[1][:, ::-1]
-        for family in of.families:
+    for motions in spaces_of(beam, rule, counts):
+        scale = 1 / np.sqrt(motions.stiffness)
+        modes = scale[:, None] * np.linalg.eigh(scale[:, None] * motions.mass * scale)[1][:, ::-1]
+        for family in motions.families:
             if counts[family]:
-                families[family] = of.family(family, modes[:, : counts[family]])
+                families[family] = motions.family(family, modes[:, : counts[family]])
     axial, along_y, along_z, *others = families
     twist, shear_y, shear_z = others
     return axial, along_y, along_z, twist, shear_y, shear_z

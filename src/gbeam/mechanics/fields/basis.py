@@ -156,6 +156,7 @@ class Quadrature(NamedTuple):
         return self._matrix(x, integrate=False)
 
     def _matrix(self, x: Floats, *, integrate: bool) -> Floats:
+        """Matrix (points, g) of :meth:`cumulative` or :meth:`interpolation`."""
         per_panel = len(self.node) // (len(self.edges) - 1)
         onto = _operator(per_panel, integrate=integrate)
         panel = np.clip(np.searchsorted(self.edges, x, side="left") - 1, 0, len(self.edges) - 2)
@@ -175,7 +176,9 @@ def _gauss(nodes: int) -> tuple[Floats, Floats]:
 
 @cache
 def _operator(nodes: int, *, integrate: bool) -> Floats:
-    """From values at Gauss-Legendre nodes on [−1, 1] to Legendre coefficients, of the integral from −1 if so wished."""
+    """Matrix from values at Gauss-Legendre nodes on [−1, 1] to Legendre coefficients of their polynomial, or of its
+    integral from −1.
+    """
     xi, _ = _gauss(nodes)
     to_coefficients = np.linalg.inv(legendre.legvander(xi, nodes - 1))
     if not integrate:

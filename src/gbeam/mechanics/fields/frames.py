@@ -37,9 +37,9 @@ _ROOT = 10  # nodes along the turn of a root about several axes: R(sφ), s from 
 
 @record
 class Frames:
-    """Steps from section to section, of `size` (i,) m, with three curvatures in each from those at the nodes, `onto`
-    (3 i, G); which frames are those of the nodes (G,) and of the points (p,), and the `angles` of both from curvatures
-    that turn about one axis, (G, G) and (p, G).
+    """Steps (i,) from section to section along the beam, `size` m long: `onto` (3 i, G) interpolates curvatures at the
+    nodes to three places in each. `nodes` (G,) and `points` (p,) are the numbers of steps before them; `node_angles`
+    (G, G) and `angles` (p, G) integrate curvatures to angles there where all turn about one axis.
     """
 
     size: Array
@@ -50,18 +50,21 @@ class Frames:
     angles: Array
 
     def at(self, curvatures: Vector, *, points: bool) -> tuple[Rotation, Rotation]:
-        """Rotations (..., G) at the nodes and, where wanted, (..., p) at the points, by curvatures (..., G)."""
-        about = [axis for axis in range(3) if not absent(curvatures[axis])]
-        if not about:
+        """Rotations (..., G) at the nodes by curvatures (..., G), and those (..., p) at the points where these are
+        wanted, else those of the nodes again.
+        """
+        axes = [axis for axis in range(3) if not absent(curvatures[axis])]
+        if not axes:
             return UNTURNED, UNTURNED
-        if len(about) == 1:
-            onto = (self.node_angles, self.angles) if points else (self.node_angles,)
-            at = [plane_rotation(about[0], *reversed(sine_cosine(curvatures[about[0]] @ each.T))) for each in onto]
+        if len(axes) == 1:
+            sums = (self.node_angles, self.angles) if points else (self.node_angles,)
+            angles = (curvatures[axes[0]] @ matrix.T for matrix in sums)
+            rotations = [plane_rotation(axes[0], *reversed(sine_cosine(angle))) for angle in angles]
         else:
-            parts = tuple(curvatures[axis] for axis in about)
+            parts = tuple(curvatures[axis] for axis in axes)
             turns = _differentiable() if any(map(is_jax, parts)) else _turns
-            at = [_matrix(each) for each in turns(tuple(about), points, self, parts)]
-        return at[0], at[-1]
+            rotations = [_matrix(turn) for turn in turns(tuple(axes), points, self, parts)]
+        return rotations[0], rotations[-1]
 
     def between(self, curvatures: Vector) -> Array:
         """Unit quaternions (4, ..., 1 + i) of the sections between the steps, the root's first (Magnus' expansion)."""
@@ -88,24 +91,26 @@ class Frames:
             after = _product(turns[..., :-reach], turns[..., reach:])
             turns = xp.concatenate([turns[..., :reach], after], axis=-1)
             reach *= 2
-        start = xp.stack([xp.zeros((*cosine.shape[:-1], 1)) + one for one in (1, 0, 0, 0)])
+        start = xp.stack([xp.zeros((*cosine.shape[:-1], 1)) + component for component in (1, 0, 0, 0)])
         return xp.concatenate([start, turns], axis=-1)
 
 
 def _turns(about: tuple[int, ...], points: bool, frames: Frames, parts: tuple[Array, ...]) -> tuple[Turn, ...]:
-    """Unit quaternions of the nodes' sections, and the points' if wanted, by the curvatures about some axes."""
+    """Unit quaternions of the nodes' sections, and the points' if wanted, by the curvatures `parts` about some axes."""
     between = frames.between(_spread(about, parts))
-    return tuple(tuple(between[..., each]) for each in ((frames.nodes, frames.points) if points else (frames.nodes,)))
+    wanted = (frames.nodes, frames.points) if points else (frames.nodes,)
+    return tuple(tuple(between[..., index]) for index in wanted)
 
 
 def _spread(about: tuple[int, ...], parts: tuple[Array, ...]) -> Vector:
+    """Vector of components about some axes, absent about the others."""
     x, y, z = (parts[about.index(axis)] if axis in about else 0 for axis in range(3))
     return x, y, z
 
 
 @cache
 def _differentiable() -> Any:
-    """The quaternions for JAX, which then differentiates no steps: they turn by the integral of R δκ."""
+    """Return :func:`_turns` for JAX with its own derivatives, by the integral of R δκ: no step is differentiated."""
     import jax
 
     turns = jax.custom_jvp(_turns, nondiff_argnums=(0, 1))
@@ -113,13 +118,13 @@ def _differentiable() -> Any:
     @turns.defjvp
     def _(about: tuple[int, ...], points: bool, primals: Any, tangents: Any) -> Any:
         frames, parts = primals
-        at = turns(about, points, frames, parts)
-        turning = turned(_matrix(at[0]), _spread(about, tangents[1]))
+        values = turns(about, points, frames, parts)
+        turning = turned(_matrix(values[0]), _spread(about, tangents[1]))
         changes = []
-        for (w, x, y, z), onto in zip(at, (frames.node_angles, frames.angles), strict=False):
-            half = scaled(0.5, mapped(turning, onto))
+        for (w, x, y, z), sums in zip(values, (frames.node_angles, frames.angles), strict=False):
+            half = scaled(0.5, mapped(turning, sums))
             changes.append((-dot(half, (x, y, z)), *add(scaled(w, half), cross(half, (x, y, z)))))
-        return at, tuple(changes)
+        return values, tuple(changes)
 
     return turns
 
@@ -136,8 +141,8 @@ def _product(p: Array, q: Array) -> Array:
         if is_jax(total):
             total = total + part * (np.reshape(signs, (4, *[1] * part.ndim)) * q[np.array(order)])
             continue
-        for row, of, sign in zip(total, order, signs, strict=True):  # in place, which takes NumPy a third of the time
-            (np.add if sign > 0 else np.subtract)(row, part * q[of], out=row)
+        for row, k, sign in zip(total, order, signs, strict=True):  # in place, which takes NumPy a third of the time
+            (np.add if sign > 0 else np.subtract)(row, part * q[k], out=row)
     return total
 
 
@@ -152,13 +157,13 @@ def _matrix(turn: Turn) -> Rotation:
 
 
 def root_rule(move: Array, turn: Array) -> tuple[Array, Array, Array]:
-    """Nodes of a root that moves and turns by columns (3, n): weights (r,) of all that is outboard, weights (r, r) from
-    node to node, and which of them turn.
-
-    The turn is that of a piece of unit length without extent, bent evenly.
+    """Nodes (r,) that stand for a root that moves and turns by columns (3, n), one that moves, then some that turn:
+    weights (r,) by which they move all that is outboard, weights (r, r) by which they move one another, and flags of
+    those that turn. The turn is that of a piece of unit length without extent, bent evenly.
     """
-    about = int(np.any(turn, axis=1).sum())
-    moves, turns = int(np.any(move)), 0 if not about else (1 if about == 1 else _ROOT)
+    turning_axes = int(np.any(turn, axis=1).sum())
+    moves = int(np.any(move))
+    turns = _ROOT if turning_axes > 1 else turning_axes
     xi, w = np.polynomial.legendre.leggauss(max(turns, 1))
     values = np.linalg.inv(np.polynomial.legendre.legvander(xi, len(xi) - 1))
     inner = np.polynomial.legendre.legvander(xi, len(xi)) @ np.polynomial.legendre.legint(values, lbnd=-1) / 2
@@ -169,7 +174,7 @@ def root_rule(move: Array, turn: Array) -> tuple[Array, Array, Array]:
 
 
 def beyond(corners: Numbers, x: Array) -> Array:
-    """Flags (p, c) of points (p,) m that lie beyond corners; one at a corner does not, but at the root."""
+    """Flags (p, c), 1.0 where a point (p,) m lies beyond a corner (c,) m; at a corner it does only at the root."""
     at = np.array(corners, dtype=float)
     return np.asarray((x[:, None] > at * (1 + NEAR)) | (at == 0), dtype=float)
 
@@ -183,8 +188,8 @@ def frames_along(
     node_cumulative: Array,
     corners: Numbers = (),
 ) -> Frames:
-    """Frames at the quadrature nodes and at points (p,) m of a beam behind the nodes of its root, some of them
-    `turning` (r,), with their weights between each other, `root` (r, r), and behind those of its corners.
+    """Frames at the quadrature nodes and at points x (p,) m of a beam whose nodes follow those of its root, with flags
+    `turning` (r,) and weights `root` (r, r) of :func:`root_rule`, and those of its corners, m.
     """
     before = len(turning) + len(corners)
     stops = np.unique(np.concatenate([rule.edges, rule.node, x]))
@@ -194,19 +199,19 @@ def frames_along(
     nodes, points = np.searchsorted(stops, rule.node), np.searchsorted(stops, x)
     if len(corners):
         after = [int(np.abs(stops - place).argmin()) for place in corners]
-        even = np.eye(before, before + len(rule.node))[len(turning) :]
-        onto = np.insert(onto.reshape(3, len(size), -1), after, even, axis=1)
+        corner_rows = np.eye(before, before + len(rule.node))[len(turning) :]
+        onto = np.insert(onto.reshape(3, len(size), -1), after, corner_rows, axis=1)
         size = np.insert(size, after, 1.0)
         onto = onto.reshape(3 * len(size), -1)
         nodes, points = (at + beyond(corners, stops[at]).sum(axis=1).astype(int) for at in (nodes, points))
     if turning.any():
         places = root[turning][:, turning].sum(axis=1)
         steps = np.diff(np.concatenate([[0.0], places, [1.0]]))
-        even = np.zeros(before + len(rule.node))
-        even[np.flatnonzero(turning)[0]] = 1.0
-        shape = (3, len(steps), len(even))
-        onto = np.concatenate([np.broadcast_to(even, shape), onto.reshape(3, len(size), -1)], axis=1)
-        onto, size = onto.reshape(-1, len(even)), np.concatenate([steps, size])
+        root_row = np.zeros(before + len(rule.node))
+        root_row[np.flatnonzero(turning)[0]] = 1.0  # it bends evenly: any of its nodes will do
+        shape = (3, len(steps), len(root_row))
+        onto = np.concatenate([np.broadcast_to(root_row, shape), onto.reshape(3, len(size), -1)], axis=1)
+        onto, size = onto.reshape(-1, len(root_row)), np.concatenate([steps, size])
         nodes, points = nodes + len(steps), points + len(steps)
     of_root = np.zeros(before, dtype=int)  # corners have no shapes, to which their frames would matter
     of_root[: len(turning)] = np.where(turning, np.cumsum(turning), 0)

@@ -18,7 +18,8 @@ from gbeam.mechanics.fields.vectors import rotation_matrix
 @record
 class ProjectedField(Expanded):
     """The field (x + s − ½∫(v'² + w'²), v, w) of TLAM (without the integral), FOAM, SFOAM and CFOAM, 2009 (2), (3),
-    (11), 2020 (7), (12): shapes and slopes (3, points, n), nodal slopes and curvatures (2, g, n).
+    (11), 2020 (7), (12): shapes and slopes of s, v and w (3, points, n), nodal slopes and curvatures of v and w (2, g,
+    n).
     """
 
     x: Array
@@ -76,12 +77,12 @@ def projected_field(
     n = sum(counts)
     starts = (0, counts[0], counts[0] + counts[1])
 
-    def at(points: np.ndarray) -> list[list[np.ndarray]]:
+    def in_all_coordinates(points: np.ndarray) -> list[list[np.ndarray]]:
         shapes = [family(points) for family in families[:3]]
         return [[block(f, i, n) for f in shape] for shape, i in zip(shapes, starts, strict=True)]
 
-    s, v, w = at(x)
-    _, node_v, node_w = at(rule.node)
+    s, v, w = in_all_coordinates(x)
+    _, node_v, node_w = in_all_coordinates(rule.node)
     return ProjectedField(
         x=x,
         shapes=np.stack([s[0], v[0], w[0]]),
@@ -126,6 +127,7 @@ class RootedField(Expanded):
     linear: bool = static()
 
     def _split(self, q: Array) -> tuple[Array, Array]:
+        """Coordinates of the beam's shapes, and of the root's springs."""
         springs = self.move.shape[1]
         return q[..., :-springs], q[..., -springs:]
 

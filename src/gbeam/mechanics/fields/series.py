@@ -55,7 +55,7 @@ class SeriesField:
 
     @classmethod
     def of(cls, exact: StrainField, order: int) -> SeriesField:
-        """The field of an order of points on the axis."""
+        """Field of points on the axis whose places end at an order."""
         bent = np.any(exact.rest[3:])
         return cls(exact, _matrices(exact.tangents(np.zeros(exact.size)).rotation) if bent else None, None, order)
 
@@ -92,7 +92,8 @@ class SeriesField:
     def _at_rest(self) -> tuple[Rotation, Vector, Vector]:
         """Axes of the nodes' sections, t at the nodes and arms at the points, at rest."""
         axes: Any = UNTURNED if self.axes is None else tuple(split(self.axes[:, k]) for k in range(3))
-        return axes, turned(axes, (self.exact.rest[0], 0, 0)), NONE if self.arm is None else split(self.arm)
+        arm = NONE if self.arm is None else split(self.arm)
+        return axes, turned(axes, (self.exact.rest[0], 0, 0)), arm
 
     def _strains(self, q: Array) -> Strains:
         """d and k at the nodes, of coordinates (..., n) or of their rates."""
@@ -100,7 +101,7 @@ class SeriesField:
         return turned(axes, sums[:3]), turned(axes, sums[3:])
 
     def _rows(self, k: Rates) -> list[tuple[Rates, ...]]:
-        """Rows of S at the nodes with their rates, of every order from 0."""
+        """Rows of S at the nodes with their rates, approximated to each of the orders 0, 1, … to the field's."""
         orders: list[Any] = [tuple((row, NONE, NONE) for row in UNTURNED)]
         for _ in range(self.order):
             orders.append(self._next(orders[-1], k, self.exact.node_cumulative))
@@ -108,26 +109,28 @@ class SeriesField:
 
     @staticmethod
     def _next(rows: Any, k: Rates, onto: Array) -> tuple[Rates, ...]:
-        """Rows of 1 + ∫ S [k]×."""
+        """Rows of 1 + ∫ S [k]× with their rates, by those of S; `onto` (p, G) integrates from the root to p points."""
         turned = (mapped_rates(cross_rates(row, k), onto) for row in rows)
-        return tuple((add(unit, value), rate, more) for unit, (value, rate, more) in zip(UNTURNED, turned, strict=True))
+        return tuple((add(unit, row), rate, change) for unit, (row, rate, change) in zip(UNTURNED, turned, strict=True))
 
     def components(self, q: Array, qd: Array, qdd: Array) -> Rates:
         """Places, velocities and accelerations of the points relative to the base axes, by components (..., p)."""
         return self._moved(self._strains(q), self._strains(qd), self._strains(qdd))
 
     def _moved(self, at: Strains, rate: Strains = STILL, change: Strains = STILL) -> Rates:
-        """Places of the points, of strains d and turns k at the nodes, with the first and second rates of both."""
+        """Places of the points and their first and second rates, by strains (d, k) at the nodes and their rates."""
         (d, k), (dd, kd), (ddd, kdd) = at, rate, change
         _, t, arm = self._at_rest()
         *_, lower, rows = self._rows((k, kd, kdd))
-        along = [tuple(dot(each, t) for each in row) for row in rows]
-        moved = [_dot_rates(row, (d, dd, ddd)) for row in lower]
-        each: Any = zip(*(map(plus, *pair) for pair in zip(along, moved, strict=True)), strict=True)
-        r, rd, rdd = mapped_rates(each, self.exact.cumulative)
+        # Components of S t₀ + S₋ d, each with its rates, then vectors: the tangent, its rate and its change.
+        turned = [tuple(dot(row, t) for row in rates) for rates in rows]
+        strained = [_dot_rates(row, (d, dd, ddd)) for row in lower]
+        tangents: Any = zip(*(map(plus, *pair) for pair in zip(turned, strained, strict=True)), strict=True)
+        r, rd, rdd = mapped_rates(tangents, self.exact.cumulative)
         if self.arm is None:
             return r, rd, rdd
-        swung = [[dot(of, arm) for of in row] for row in self._next(lower, (k, kd, kdd), self.exact.cumulative)]
+        at_points = self._next(lower, (k, kd, kdd), self.exact.cumulative)
+        swung = [[dot(row, arm) for row in rates] for rates in at_points]
         return added_rates((r, rd, rdd), tuple(zip(*swung, strict=True)))
 
     def paths(self, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array, Array]:
@@ -140,6 +143,7 @@ class SeriesField:
         return self.paths(q, qd, qdd), self.rotation(q, at)
 
     def _joined(self, vectors: Vector, q: Array) -> Array:
+        """Array (..., p, 3) of vectors at the points at coordinates q."""
         shape = (*q.shape[:-1], len(self.exact.cumulative))
         return joined(namespace(self.exact.strains, self.arm, q), vectors, shape)
 
@@ -148,7 +152,7 @@ class SeriesField:
         return self._joined(self._moved(self._strains(q))[0], q)
 
     def rotation(self, q: Array, at: Any = slice(None)) -> Array:
-        """Rotation matrices R_BS of the sections at all points, or `at` some, (..., p, 3, 3)."""
+        """Rotation matrices R_BS (..., p, 3, 3) of the sections `at` some points, of all unless given."""
         return self.exact.rotation(q, at)
 
     def turning(self, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array, Array]:
@@ -166,13 +170,13 @@ class SeriesField:
         on_strain = add(*(scaled(each, row) for each, row in zip(force, lower[-1], strict=True)))
         # On the rows of an order, and what the points' own arms and d add to those of the highest but one.
         pulls, strained = ([scaled(each, by) for each in force] for by in (t, d))
-        beside, on_turn = [mapped(scaled(each, arm), self.exact.cumulative.T) for each in push], NONE
-        onto = self.exact.node_cumulative.T
+        on_arms = [mapped(scaled(each, arm), self.exact.cumulative.T) for each in push]
+        on_turn, outboard = NONE, self.exact.node_cumulative.T
         for rows in reversed(lower):
-            inward = [add(mapped(pull, onto), by) for pull, by in zip(pulls, beside, strict=True)]
+            inward = [add(mapped(pull, outboard), moment) for pull, moment in zip(pulls, on_arms, strict=True)]
             on_turn = add(on_turn, *(cross(*pair) for pair in zip(inward, rows, strict=True)))
-            pulls = [add(cross(k, each), by) for each, by in zip(inward, strained, strict=True)]
-            beside = strained = [NONE] * 3
+            pulls = [add(cross(k, pull), moment) for pull, moment in zip(inward, strained, strict=True)]
+            on_arms = strained = [NONE] * 3
         out = self.exact.inward(Tangents(axes, NONE), on_strain, on_turn)
         return out if all(map(absent, turn)) else out + self.exact.along(q, NONE, turn)
 
@@ -180,9 +184,9 @@ class SeriesField:
 
     def slopes(self, q: Array) -> Array:
         """∂r/∂q of the points at coordinates (..., n), (..., p, 3, n)."""
-        each = q[..., None, :] + 0 * q[..., None]
-        moved = self._moved(self._strains(each), self._strains(np.eye(self.size)))[1]
-        return namespace(q).moveaxis(self._joined(moved, each), -3, -1)
+        repeated = q[..., None, :] + 0 * q[..., None]  # once for each rate of one
+        moved = self._moved(self._strains(repeated), self._strains(np.eye(self.size)))[1]
+        return namespace(q).moveaxis(self._joined(moved, repeated), -3, -1)
 
     def jacobians(self, q: Array) -> tuple[Array, Array]:
         """∂r/∂q of the points, and the angles by which their sections turn with q, (..., p, 3, n) each."""
@@ -209,12 +213,12 @@ class SeriesField:
 
 
 def _matrices(rotation: Rotation) -> Array:
-    """Rotation matrices (G, 3, 3) of rotations."""
+    """Rotation matrices (G, 3, 3) of rotations by components (G,)."""
     size = next(part.shape for row in rotation for part in row if not isinstance(part, int))
     return np.stack([joined(np, row, size) for row in rotation], axis=-2)
 
 
 def _dot_rates(left: Rates, right: Rates) -> Vector:
-    """Scalar product with its rates."""
+    """Scalar product with its first and second rates."""
     (a, a1, a2), (b, b1, b2) = left, right
     return dot(a, b), plus(dot(a1, b), dot(a, b1)), plus(plus(dot(a2, b), times(2.0, dot(a1, b1))), dot(a, b2))

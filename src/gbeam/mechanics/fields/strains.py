@@ -43,9 +43,9 @@ from gbeam.structure.line import Line
 
 
 class Tangents(NamedTuple):
-    """Rotations of the nodes' sections and t there, the points' arms from the axis, the rates of t, those of turning Rκ̇
-    and its derivative, the sections' angular velocities and accelerations, the rotations of the points' sections where
-    they were wanted, and the angular velocity and acceleration of the base, which all rates contain.
+    """Motion of the sections at the nodes: rotations, tangents t with rates `td` and `tdd`, Rκ̇ (`turn`) and its rate,
+    angular velocities and accelerations. Of the points: arms from the axis, base axes, and `at_points` rotations of
+    their sections where these were wanted. All rates contain ω and α of the `base`.
     """
 
     rotation: Rotation
@@ -62,8 +62,8 @@ class Tangents(NamedTuple):
 
 
 class Columns(NamedTuple):
-    """By coordinate, (..., n, points), and with its first and second derivatives with respect to time: how t or points
-    move, by which angle sections turn, and Rκ at the nodes.
+    """Derivatives by the coordinates, (..., n, points), each with its first and second derivatives with respect to
+    time: of t or of points' places, of the angles by which sections turn, and Rκ of the shapes at the nodes.
     """
 
     place: tuple[Vector, Vector, Vector]
@@ -127,11 +127,11 @@ class StrainField:
         """Stretch and shears, twist and curvatures at the nodes at coordinates (..., n), each (..., G)."""
         parts = []
         for part, rest, shaped, present in zip(self.sums(q), self.rest, self.shaped, self.present, strict=True):
-            parts.append(0 if not present else part + rest if shaped else rest + 0 * q[..., :1])
+            parts.append(0 if not present else (part + rest if shaped else rest + 0 * q[..., :1]))
         return tuple(parts)
 
     def sums(self, q: Array) -> tuple[Any, ...]:
-        """Sums of shapes at the nodes; of each strain, 0 where it has none."""
+        """Strains without those at rest at the nodes, six of (..., G), by coordinates (..., n); 0 of a rigid strain."""
         chosen = [k for k in range(6) if self.shaped[k]]
         xp, nodes = namespace(self.strains, self.offset, q), self.strains.shape[1]
         flat = xp.reshape(self.strains[np.array(chosen, dtype=int)], (-1, self.size))
@@ -148,7 +148,7 @@ class StrainField:
     def moving(
         self, q: Array, qd: Array, qdd: Array, base: tuple[Vector, Vector] = (NONE, NONE), *, points: bool = False
     ) -> Tangents:
-        """Rotations, t and its rates at the nodes, arms, and rotations at `points`, on a base that turns."""
+        """Motion at coordinates and rates (..., n) on a base with ω and α, with rotations at `points` if wanted."""
         still = self.tangents(q, points=points)
         rotation, t = still.rotation, still.t
         rate, change = (tuple(self.sums(x)) for x in (qd, qdd))
@@ -165,15 +165,15 @@ class StrainField:
         return self.carried(self.moving(q, qd, qdd))
 
     def carried(self, tangents: Tangents) -> tuple[Vector, Vector, Vector]:
-        """Places, velocities and accelerations of the points by those of the tangents."""
+        """Places, velocities and accelerations of the points, by components (..., p), as the tangents carry them."""
         r, rd, rdd = (mapped(each, self.cumulative) for each in (tangents.t, tangents.td, tangents.tdd))
         if self.offset is None:
             return r, rd, rdd
-        arm, swung, more = self._arms(tangents)
-        return add(r, arm), add(rd, swung), add(rdd, more)
+        arm, arm_rate, arm_change = self._arms(tangents)
+        return add(r, arm), add(rd, arm_rate), add(rdd, arm_change)
 
     def _arms(self, tangents: Tangents) -> tuple[Vector, Vector, Vector]:
-        """Arms of points off the axis with their rates."""
+        """Arms of points off the axis with their first and second rates."""
         turns = zip(tangents.base, (tangents.turn, tangents.turnd), strict=True)
         w, alpha = (add(base, mapped(turn, self.cumulative)) for base, turn in turns)
         return _carried(tangents.arm, w, alpha)
@@ -183,17 +183,18 @@ class StrainField:
         return self._paths(self.moving(q, qd, qdd), q)
 
     def _paths(self, tangents: Tangents, q: Array) -> tuple[Array, Array, Array]:
+        """Paths of the points as arrays, (..., p, 3) each, from the tangents at coordinates q."""
         xp, shape = namespace(self.strains, self.offset, q), (*q.shape[:-1], len(self.cumulative))
         r, rd, rdd = (joined(xp, each, shape) for each in self.carried(tangents))
         return r, rd, rdd
 
     def poses(self, q: Array, qd: Array, qdd: Array, at: slice) -> tuple[tuple[Array, Array, Array], Array]:
-        """Paths of all points, and rotations of the sections `at` some of them, sent out once."""
+        """Paths (..., p, 3) of all points, and rotations (..., k, 3, 3) of the sections `at` k of them, in one pass."""
         tangents = self.moving(q, qd, qdd, points=True)
-        some = tuple(
+        chosen = tuple(
             tuple(part if isinstance(part, int) else part[..., at] for part in row) for row in tangents.at_points
         )
-        return self._paths(tangents, q), self._matrices(some, q, len(self.cumulative[at]))
+        return self._paths(tangents, q), self._matrices(chosen, q, len(self.cumulative[at]))
 
     def positions(self, q: Array) -> Array:
         """Places of the points at coordinates (..., n), base axes, (..., p, 3) m."""
@@ -202,7 +203,7 @@ class StrainField:
         return joined(namespace(self.strains, self.offset, q), r, (*q.shape[:-1], len(self.cumulative)))
 
     def rotation(self, q: Array, at: Any = slice(None)) -> Array:
-        """Rotation matrices R_BS of the sections at all points, or `at` some, (..., p, 3, 3)."""
+        """Rotation matrices R_BS (..., p, 3, 3) of the sections `at` some points, of all unless given."""
         field = self[at]
         _, at_points = field.frames.at(field.strain(q)[3:], points=True)
         return self._matrices(at_points, q, len(field.cumulative))
@@ -226,7 +227,7 @@ class StrainField:
         return self.inward(tangents, force, add(moment, lever))
 
     def inward(self, tangents: Tangents, force: Vector, moment: Vector) -> Array:
-        """Generalised forces (..., n) of section forces and moments at the nodes."""
+        """Generalised forces (..., n) of the forces and moments that the sections at the nodes carry, base axes."""
         inward = (*turned_back(tangents.rotation, force), *turned_back(tangents.rotation, moment))
         parts = [part @ self.strains[k] for k, part in enumerate(inward) if self.shaped[k] and not absent(part)]
         return sum(parts[1:], start=parts[0])
@@ -237,14 +238,14 @@ class StrainField:
         return self.pulled(tangents, *self.at_nodes(tangents, push, turn))
 
     def at_nodes(self, tangents: Tangents, push: Vector, turn: Vector = NONE) -> tuple[Vector, Vector]:
-        """Forces on t and moments on the sections at the nodes of forces and moments on the points."""
+        """Forces on t and moments on the sections at the nodes that do the work of forces and moments on the points."""
         turn = add(turn, cross(tangents.arm, push))
         return mapped(push, self.cumulative.T), mapped(turn, self.cumulative.T)
 
     # --- how it changes
 
     def _slopes(self, q: Array) -> tuple[Tangents, Vector, Vector, Vector]:
-        """Tangents, and by coordinate Rε, Rκ and the angle of turning at the nodes (..., G, n)."""
+        """Tangents, and by coordinate (..., G, n) Rε and Rκ of the shapes and the angle by which each node turns."""
         tangents = self.tangents(q)
         rotation: Any = tuple(
             tuple(part if isinstance(part, int) else part[..., None] for part in row) for row in tangents.rotation
@@ -255,11 +256,12 @@ class StrainField:
 
     @staticmethod
     def _summed(matrix: Array, vector: Vector) -> Vector:
+        """Products of a matrix (p, G) and components (..., G, n), (..., p, n)."""
         x, y, z = (0 if absent(part) else matrix @ part for part in vector)
         return x, y, z
 
     def columns(self, tangents: Tangents) -> Columns:
-        """Slopes of t and of nodes' turns by coordinates, of tangents with a unit axis before the nodes."""
+        """Columns of t and of the nodes' sections, by tangents whose components are (..., 1, G)."""
         shapes: Any = tuple(part.T if shaped else 0 for part, shaped in zip(self.strains, self.shaped, strict=True))
         fixed = (turned(tangents.rotation, part) for part in (shapes[:3], shapes[3:]))
         strain, turn = (_carried(each, tangents.w, tangents.alpha) for each in fixed)
@@ -268,7 +270,7 @@ class StrainField:
         return Columns(added_rates(swung, strain), angle, turn)
 
     def columns_of_points(self, tangents: Tangents, columns: Columns) -> Columns:
-        """Motions and turns of the points, likewise."""
+        """Columns of the points and their sections, by those of the nodes."""
         place, angle = (mapped_rates(each, self.cumulative) for each in (columns.place, columns.turn))
         if self.offset is None:
             return Columns(place, angle, columns.turn)
@@ -293,8 +295,8 @@ class StrainField:
         return slopes, angles
 
     def weighted(self, q: Array, weight: Array, arm: Array | None = None) -> Array:
-        """Sums Σ w ∂²r/∂q² of the points with weights (k, p), or Σ w ∂²r/∂q² of the axis and Σ ∂²R/∂q² a with arms Ra
-        (k, 3, p), base axes; (k, 3, n, n).
+        """Second derivatives summed over the points, (k, 3, n, n): Σ w ∂²r/∂q² with weights w (k, p); where weighted
+        arms Ra (k, 3, p), base axes, are given, Σ w ∂²r/∂q² of the axis and Σ ∂²R/∂q² a.
         """
         tangents, strain, turn, angle = self._slopes(q)
         xp, n = namespace(self.strains, self.offset, q), self.size
@@ -309,9 +311,9 @@ class StrainField:
         along = xp.stack([plus(part, along[:, axis]) for axis, part in enumerate(moved)], axis=1)
         out = [xp.zeros((len(weight), n, n)) for _ in range(3)]
 
-        def add_to(onto: int, by: Array, left: Array, right: Array) -> None:
+        def add_to(axis: int, weights: Array, left: Array, right: Array) -> None:
             if not (absent(left) or absent(right)):
-                out[onto] = out[onto] + (left.T[None] * by[:, None]) @ right
+                out[axis] = out[axis] + (left.T[None] * weights[:, None]) @ right
 
         for a, b, c in np.argwhere(EPSILON):  # R' ε = θ × ε
             add_to(a, EPSILON[a, b, c] * at_nodes, angle[b], strain[c])
@@ -332,15 +334,15 @@ class StrainField:
         """Places about coordinates (n,) to second order, the sections' rotations (p, 3, 3) and their derivatives."""
         xp, count = namespace(self.strains, self.offset, q), len(self.cumulative)
         slopes, angle = self.jacobians(q)
-        rotation, even = self.rotation(q), xp.eye(count)
-        second = self.weighted(q, even)
+        rotation, unit = self.rotation(q), xp.eye(count)  # of weights: each point by itself
+        second = self.weighted(q, unit)
         turn = xp.einsum("abc,pbi,pcd->padi", EPSILON, angle, rotation)
-        columns = [self.weighted(q, 0 * even, xp.einsum("pa,pk->kap", rotation[:, :, d], even)) for d in range(3)]
+        columns = [self.weighted(q, 0 * unit, xp.einsum("pa,pk->kap", rotation[:, :, d], unit)) for d in range(3)]
         return Places(self.positions(q), slopes, second), rotation, Turns(turn, xp.stack(columns, axis=2))
 
 
 def _carried(vector: Vector, w: Vector, alpha: Vector) -> tuple[Vector, Vector, Vector]:
-    """Vectors that turn with an angular velocity and acceleration, with their rates."""
+    """Vectors that turn at ω and α, with their first and second rates."""
     rate = cross(w, vector)
     return vector, rate, add(cross(alpha, vector), cross(w, rate))
 
@@ -399,18 +401,18 @@ def strain_field(
     turn: Array | None = None,
     line: Line | None = None,
 ) -> StrainField:
-    """Field of a beam at points (p,) m, by the values (6, g, n) of its shapes at the quadrature nodes, straight at rest
-    without a `line`; its root moves and turns by columns (3, n).
+    """Field of a beam at points x (p,) m by the `strains` (6, g, n) of its shapes at the quadrature nodes. Without a
+    `line` it is straight at rest; its root moves by `move` q and turns by `turn` q, (3, n) each, m and rad.
     """
     n = strains.shape[-1]
     shift, spin = (np.zeros((3, n)) if each is None else each for each in (move, turn))
     weights, root, turning = root_rule(shift, spin)
     corners = () if line is None else line.corners
     before, nodes = len(weights) + len(corners), len(rule.node)
-    of_root = np.where(
+    root_strains = np.where(
         turning[:, None], np.concatenate([0 * shift, spin])[:, None], np.concatenate([shift, 0 * spin])[:, None]
     )
-    whole = np.concatenate([of_root, np.zeros((6, len(corners), n)), strains], axis=1)
+    all_strains = np.concatenate([root_strains, np.zeros((6, len(corners), n)), strains], axis=1)
     rest = np.zeros((6, before + nodes))
     rest[0, before:] = 1.0
     if line is not None:
@@ -421,12 +423,12 @@ def strain_field(
         np.concatenate([np.tile(weights, (len(at), 1)), beyond(corners, at), rule.cumulative(at)], axis=1)
         for at in (x, rule.node)
     )
-    of_nodes = np.pad(root, ((0, len(corners)), (0, len(corners) + nodes)))
-    node_cumulative = np.concatenate([of_nodes, node_cumulative])
+    root_rows = np.pad(root, ((0, len(corners)), (0, len(corners) + nodes)))
+    node_cumulative = np.concatenate([root_rows, node_cumulative])
     frames = frames_along(rule, x, turning, root, cumulative, node_cumulative, corners)
-    shaped = tuple(bool(np.any(each)) for each in whole)
-    present = tuple(has or bool(np.any(each)) for has, each in zip(shaped, rest, strict=True))
-    return StrainField(cumulative, node_cumulative, whole, rest, frames, None, shaped, present)
+    shaped = tuple(bool(np.any(each)) for each in all_strains)
+    present = tuple(has_shapes or bool(np.any(each)) for has_shapes, each in zip(shaped, rest, strict=True))
+    return StrainField(cumulative, node_cumulative, all_strains, rest, frames, None, shaped, present)
 
 
 # Strain of each family, in the order of the families: bending towards +z turns about −y.

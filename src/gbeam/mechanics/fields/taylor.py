@@ -30,7 +30,7 @@ class Places:
         return Places(self.r0, self.first @ basis, second)
 
     def at_rest(self) -> Places:
-        """The polynomials themselves, which are those about the beam at rest."""
+        """Return the polynomials themselves: they are about the beam at rest already."""
         return self
 
     def about(self, q: Any) -> Places:
@@ -100,8 +100,8 @@ def _outer(left: Any, right: Any) -> Any:
 
 @record
 class Turns:
-    """Rotation matrices R = R0 + R1 q + ½ q R2 q of sections, base axes: R1 (p, 3, 3, n), R2 (p, 3, 3, n, n), and where
-    it is not 1 R0 (p, 3, 3).
+    """Rotation matrices R = R0 + R1 q + ½ q R2 q of sections, base axes: `first` R1 (p, 3, 3, n), `second` R2 (p, 3, 3,
+    n, n), and `rest` R0 (p, 3, 3), None where it is 1.
     """
 
     first: Any
@@ -134,7 +134,7 @@ class Turns:
 
 @record
 class Polynomials:
-    """Places and rotations of points on sections where both are the polynomials."""
+    """Places and rotations of points on sections that both follow polynomials of second degree."""
 
     places: Places
     turns: Turns

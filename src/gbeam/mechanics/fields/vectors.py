@@ -57,7 +57,7 @@ def add(*vectors: Vector) -> Vector:
 
 
 def scaled(factor: Scalar, vector: Vector) -> Vector:
-    """Product of a number, or of one at each point, and a vector."""
+    """Product of a factor, one number or one at each point, and a vector."""
     x, y, z = vector
     return times(factor, x), times(factor, y), times(factor, z)
 
@@ -96,7 +96,7 @@ def turned_back(rotation: Rotation, vector: Vector) -> Vector:
 
 
 def plane_rotation(axis: int, cosine: Scalar, sine: Scalar) -> Rotation:
-    """Rotations about one axis."""
+    """Rotations about one of the axes 0, 1 and 2."""
     if axis == 0:
         return (1, 0, 0), (0, cosine, -sine), (0, sine, cosine)
     if axis == 1:
@@ -105,7 +105,7 @@ def plane_rotation(axis: int, cosine: Scalar, sine: Scalar) -> Rotation:
 
 
 def mapped(vector: Vector, matrix: Any) -> Vector:
-    """Product of a matrix (m, k) and the components (..., k), (..., m)."""
+    """Vector of components (..., m): products of a matrix (m, k) and the components (..., k)."""
     x, y, z = (0 if absent(part) else part @ matrix.T for part in vector)
     return x, y, z
 
@@ -116,7 +116,7 @@ def split(vectors: Any) -> Vector:
 
 
 def joined(xp: Any, parts: tuple[Scalar, ...], shape: tuple[int, ...]) -> Any:
-    """Array (*shape, k) of k components, of a shape that they broadcast further."""
+    """Array (*shape, k) of k components; where one has more axes or is longer, `shape` is broadcast to it."""
     sizes = {shape, *(part.shape for part in parts if not isinstance(part, int | float))}
     shape = np.broadcast_shapes(*sizes) if len(sizes) > 1 else shape
     if xp is not np:
@@ -149,25 +149,27 @@ def sine_cosine(angle: Array) -> tuple[Array, Array]:
 
 @cache
 def _compiled() -> Any:
-    """Rotations' polynomials for XLA, behind a product with the unit matrix, so that they are computed once."""
+    """Sine and cosine for XLA, with their derivatives. The product with the unit matrix keeps XLA from computing the
+    polynomials again wherever they are used.
+    """
     import jax
 
     import gbeam.arrays.jax_setup  # noqa: F401
 
     @jax.custom_jvp
-    def of(angle: Array) -> tuple[Array, Array]:
+    def compiled(angle: Array) -> tuple[Array, Array]:
         sine, cosine = _polynomials(angle)
         if not angle.ndim:
             return sine, cosine
         both = np.eye(2) @ jax.numpy.stack([sine, cosine], axis=-2)
         return both[..., 0, :], both[..., 1, :]
 
-    @of.defjvp
+    @compiled.defjvp
     def _(primals: Any, tangents: Any) -> Any:
-        sine, cosine = of(primals[0])
+        sine, cosine = compiled(primals[0])
         return (sine, cosine), (cosine * tangents[0], -sine * tangents[0])
 
-    return of
+    return compiled
 
 
 # pi/2 in two parts, the first of 33 bits: its products with whole numbers up to a million are exact (Cody and Waite).
