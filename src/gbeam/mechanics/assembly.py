@@ -110,7 +110,9 @@ def assembled(
     families: Families | None,
     shapes: Shapes,
 ) -> Structure:
-    """Put a beam into a model with given shapes, quadrature and stations of output (s,) m, the tip last."""
+    """Put a beam into a kind of model, with a quadrature `rule` and stations of output `at` (s,) m, the tip last. The
+    functions of its shapes are `families`, or unless given those of :func:`forms_of`.
+    """
     row = KINDS[kind]
     bodies = [m.at for m in beam.masses]
     loaded = [load.at for load in beam.loads if load.at is not None]
@@ -180,7 +182,7 @@ def assembled(
 
 
 def forms_of(beam: Beam, row: Kind, counts: Counts) -> Families:
-    """The shapes that are not adapted: of strains, or of a bare straight beam's displacements."""
+    """Functions of shapes that are not adapted: polynomials of strains, or closed forms of the bare uniform beam."""
     if beam.line is not None:
         return polynomials(beam.length, counts, [at for at in beam.line.corners if at > 0])
     return (polynomials if row.strains else closed_forms)(beam.length, counts)
@@ -211,7 +213,7 @@ def remade(structure: Structure, model: Model, stations: ArrayLike) -> Structure
 
 
 def _nodes(kind: Kind, shapes: int) -> int:
-    """Nodes per panel, for integrals to rounding."""
+    """Quadrature nodes per panel by which integrals with so many shapes are exact to rounding."""
     if kind.strains:  # sines of smooth angles are smooth
         return 10 + 2 * shapes
     # Fourth powers of the highest shape (2009's tensors: 32 for five), and products of two integrated to a body midway.
@@ -250,8 +252,8 @@ TRIANGLE = np.sqrt(2) * np.array([(np.cos(angle), np.sin(angle)) for angle in 2 
 
 
 def particles_of(beam: Beam, rule: Quadrature, *, rotary: bool) -> tuple[Array, Array, Array]:
-    """Point, mass kg and offset m from the axis of every particle of the beam and its bodies; the sections, which come
-    first, are one each, three where they have `rotary` inertia, or more of a mass matrix.
+    """Particles (p,) of the beam and its bodies: index of the field's point (node or body), mass, kg, and offset from
+    the axis (p, 3), m. Sections come first: one particle a node, three with `rotary` inertia, or more by a mass matrix.
     """
     nodes, section = len(rule.node), beam.section.at(rule.node)
     line = beam.density * section.area * rule.weight
@@ -274,8 +276,8 @@ def particles_of(beam: Beam, rule: Quadrature, *, rotary: bool) -> tuple[Array, 
 
 
 def stiffness_of(beam: Beam, rule: Quadrature, strains: Array) -> Array:
-    """Second derivatives (n, n) of the energy ½ ∫ Σ rigidity · strain² dx + ½ Σ k s² of strains (6, g, n), the root's
-    springs last (2009 (10); 2020 (8), corrected; with shear and twist Timoshenko's).
+    """Stiffness (n, n) of shapes with strains (6, g, n), the root's springs last: second derivatives of the energy
+    ½ ∫ Σ rigidity · strain² dx + ½ Σ k s² (2009 (10); 2020 (8), corrected; with shear and twist Timoshenko's).
     """
     springs = [*beam.root.springs.values()]
     if beam.material is None:
@@ -292,11 +294,13 @@ def stiffness_of(beam: Beam, rule: Quadrature, strains: Array) -> Array:
         ]
     xp = namespace(*springs, *parts)
     n = strains.shape[2]
-    held = xp.concatenate([np.zeros(n - len(springs)), xp.asarray(springs, dtype=float)])
-    return sum(parts, start=xp.diag(held))
+    by_springs = xp.concatenate([np.zeros(n - len(springs)), xp.asarray(springs, dtype=float)])
+    return sum(parts, start=xp.diag(by_springs))
 
 
 def _history(beam: Beam) -> LoadHistory | None:
+    """Components of the beam's loads over time; None without loads."""
+
     def profile(value: Any) -> Any:
         return value if callable(value) else constant(np.zeros(3) if value is None else value)
 
@@ -306,8 +310,10 @@ def _history(beam: Beam) -> LoadHistory | None:
 
 
 def load_work(beam: Beam, field: Field, rule: Quadrature, first: int) -> tuple[LoadWork, Array]:
-    """Find the work of the loads, at points counted from `first` or on all quadrature nodes, and these points."""
-    station, which, weight = [], [], []
+    """Work of the beam's loads, and the field's points where they act, an entry for each: all quadrature nodes, or the
+    point of a load at one place. The points of such loads are those from the index `first` on.
+    """
+    station, load_index, weight = [], [], []
     for k, load in enumerate(beam.loads):
         if load.at is None:
             station.append(np.arange(len(rule.node)))
@@ -316,8 +322,8 @@ def load_work(beam: Beam, field: Field, rule: Quadrature, first: int) -> tuple[L
             station.append(np.array([first]))
             weight.append(np.ones(1))
             first += 1
-        which.append(np.full(len(station[-1]), k))
-    at, of_load = np.concatenate(station), np.concatenate(which)
+        load_index.append(np.full(len(station[-1]), k))
+    at, of_load = np.concatenate(station), np.concatenate(load_index)
     follower = np.array([load.follower for load in beam.loads])[of_load]
     return LoadWork(field.sections(at), of_load, np.concatenate(weight), follower), at
 
@@ -330,14 +336,15 @@ def sections_of(
     loaded: Array,
     first: int,
 ) -> Sections:
-    """Sections at the root, on the base's side of its springs, and at the stations, with what is outboard of each;
-    `until` (points, g) integrates from the root to the field's points.
+    """Sections at the root, on the base's side of its springs, and at stations `at` m, with what is outboard of each.
+    `until` (points, g) integrates from the root to the field's points, of which the stations begin at index `first`;
+    `particles` are masses, kg, and their points, `loaded` the points of the loads.
     """
     nodes = until.shape[1]
     weight, x = until[-1], until.sum(axis=1)  # the tip is the last point: the whole integral
     share = 1 - np.concatenate([np.zeros((1, nodes)), until[first:]]) / weight
     stations = np.concatenate([[0.0], x[first:]])
-    # Of each of the field's points: of a node the share of its panel, of another point all or nothing.
+    # Share of each of the field's points that is outboard: of a node that of its panel, of another all or nothing.
     whole = x[None, nodes:] >= stations[:, None] - 1e-9 * beam.length
     beyond = np.concatenate([share, whole], axis=1)
     return Sections(

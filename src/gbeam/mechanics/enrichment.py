@@ -41,50 +41,52 @@ def axial_force(beam: Beam, rule: Quadrature, along: Array, spin: Array) -> Arra
 def enriched_shapes(
     beam: Beam, spaces: Sequence[Space], families: Families, force: Array | None = None
 ) -> tuple[Families, Counts]:
-    """The given shapes and those that they lack, also under an axial force (g,) N, and how many are new by family."""
-    least = APART**2 * max(_period(beam, of, along) for along, of in enumerate(spaces))
+    """Families of shapes with those added that they lack, also under an axial force (g,) N, and the numbers added."""
+    least = APART**2 * max(_period(beam, space, along) for along, space in enumerate(spaces))
     both, counts = list(families), [0] * 6
-    for along, of in enumerate(spaces):
-        for family, added in _lacking(beam, of, families, along, force, least).items():
-            both[family], counts[family] = _joined(families[family], added), added(of.rule.node).value.shape[1]
+    for along, space in enumerate(spaces):
+        for family, added in _lacking(beam, space, families, along, force, least).items():
+            both[family], counts[family] = _joined(families[family], added), added(space.rule.node).value.shape[1]
     (s, v, w, t, a, b), (axial, y, z, twist, shear_y, shear_z) = both, counts
     return (s, v, w, t, a, b), (axial, y, z, twist, shear_y, shear_z)
 
 
 def _lacking(
-    beam: Beam, of: Space, families: Families, along: int, force: Array | None, least: float
+    beam: Beam, space: Space, families: Families, along: int, force: Array | None, least: float
 ) -> dict[int, Family]:
-    """New shapes of each family of a space that lacks some."""
-    nodes, size = len(of.rule.node), len(of.stiffness)
-    sprung = nodes * len(of.families)
+    """Shapes, by family, that a space's families lack: parts of static answers and of Krylov's sequence from them.
+    `least` is the square of a period, over 4π², below which a vibration would take the digits of the others.
+    """
+    nodes, size = len(space.rule.node), len(space.stiffness)
+    sprung = nodes * len(space.families)
     # The root's motion has coordinates of its own.
     columns = [np.eye(size)[:, sprung:]]
-    for family in of.families:
-        shapes = families[family](of.rule.node)
+    for family in space.families:
+        shapes = families[family](space.rule.node)
         strain = shapes.curvature if family in (1, 2) else shapes.slope
         columns.append(np.zeros((size, strain.shape[1])))
-        columns[-1][of.block(family)] = strain
-    known = np.linalg.qr(of.scaled(np.concatenate(columns, axis=1)))[0]
+        columns[-1][space.block(family)] = strain
+    known = np.linalg.qr(space.scaled(np.concatenate(columns, axis=1)))[0]
 
     def shortest(vectors: Array) -> float:
         """Square of the shortest period, over 4π², of vectors that are orthonormal in energy."""
         if not vectors.size:
             return np.inf
-        strains = of.scaled(vectors, back=True)
-        return float(np.linalg.eigvalsh(strains.T @ of.mass @ strains)[0])
+        strains = space.scaled(vectors, back=True)
+        return float(np.linalg.eigvalsh(strains.T @ space.mass @ strains)[0])
 
     least = min(least, shortest(known) / 10)
-    loads = _loads(beam, of, along)
-    added: dict[int, list[Array]] = {family: [] for family in of.families}
-    for flexibility in _flexibilities(of, force):
+    loads = _loads(beam, space, along)
+    added: dict[int, list[Array]] = {family: [] for family in space.families}
+    for flexibility in _flexibilities(space, force):
         vectors = flexibility @ loads
         for _ in range(LEVELS[along]):
-            for vector, whole in zip(vectors.T, of.scaled(vectors).T, strict=True):
-                length = np.linalg.norm(whole)
-                for family in of.families:
+            for vector, scaled in zip(vectors.T, space.scaled(vectors).T, strict=True):
+                length = np.linalg.norm(scaled)
+                for family in space.families:
                     part = np.zeros((size, 1))
-                    part[of.block(family), 0] = vector[of.block(family)]
-                    rest = of.scaled(part)[:, 0]
+                    part[space.block(family), 0] = vector[space.block(family)]
+                    rest = space.scaled(part)[:, 0]
                     rest = rest - known @ (known.T @ rest)
                     rest = rest - known @ (known.T @ rest)
                     if not np.linalg.norm(rest) > NEW * length:
@@ -96,52 +98,54 @@ def _lacking(
                     if shortest(wider) > least:
                         known = wider
                         added[family].append(rest)
-            vectors = flexibility @ (of.mass @ vectors)
+            vectors = flexibility @ (space.mass @ vectors)
     return {
-        family: of.family(family, of.scaled(np.stack(each, axis=1), back=True))
-        for family, each in added.items()
-        if each
+        family: space.family(family, space.scaled(np.stack(new, axis=1), back=True))
+        for family, new in added.items()
+        if new
     }
 
 
 def _joined(family: Family, more: Family) -> Family:
+    """Family of the shapes of two."""
+
     def both(x: Array) -> Shapes:
         return Shapes(*(np.concatenate(pair, axis=1) for pair in zip(family(x), more(x), strict=True)))
 
     return both
 
 
-def _period(beam: Beam, of: Space, along: int) -> float:
+def _period(beam: Beam, space: Space, along: int) -> float:
     """Square of the longest period, over 4π², by the answer to an even acceleration."""
-    force = _loads(beam, of, along)[:, 0]
-    answer = _alone(of) @ force
-    return float(answer @ of.mass @ answer / (answer @ force))
+    force = _loads(beam, space, along)[:, 0]
+    answer = _flexibility(space) @ force
+    return float(answer @ space.mass @ answer / (answer @ force))
 
 
-def _flexibilities(of: Space, force: Array | None) -> list[Array]:
-    """The inverse of the stiffness, and of that with what an axial force adds where that matters."""
-    alone = _alone(of)
-    if force is None or not bends(of, force):
-        return [alone]
-    _, slope = of.sensitivity(of.rule.node)
-    stiffness = np.diag(of.stiffness) + slope.T @ ((of.rule.weight * force)[:, None] * slope)
-    if np.linalg.eigvalsh(stiffness / np.sqrt(np.outer(of.stiffness, of.stiffness)))[0] <= 0:
-        return [alone]
-    return [alone, np.asarray(np.linalg.inv(stiffness))]
+def _flexibilities(space: Space, force: Array | None) -> list[Array]:
+    """Inverse of the stiffness, and where an axial force (g,) N matters and does not buckle, that with the force's."""
+    unloaded = _flexibility(space)
+    if force is None or not bends(space, force):
+        return [unloaded]
+    _, slope = space.sensitivity(space.rule.node)
+    stiffness = np.diag(space.stiffness) + slope.T @ ((space.rule.weight * force)[:, None] * slope)
+    if np.linalg.eigvalsh(stiffness / np.sqrt(np.outer(space.stiffness, space.stiffness)))[0] <= 0:
+        return [unloaded]
+    return [unloaded, np.asarray(np.linalg.inv(stiffness))]
 
 
-def _alone(of: Space) -> Array:
-    """The inverse of the stiffness."""
-    if of.upper is None:
-        return np.diag(1 / of.stiffness)
-    inverse = np.linalg.inv(of.upper)
+def _flexibility(space: Space) -> Array:
+    """Inverse (n, n) of the stiffness."""
+    if space.upper is None:
+        return np.diag(1 / space.stiffness)
+    inverse = np.linalg.inv(space.upper)
     return np.asarray(inverse @ inverse.T)
 
 
-def bends(of: Space, force: Array) -> bool:
-    """True if an axial force (g,) is large enough beside the stiffness to change the shapes."""
-    size = np.abs(force).max() * of.length**2 / np.min(of.stiffness[: len(force)] / of.rule.weight)
-    return of.bends and bool(size >= TENSION)
+def bends(space: Space, force: Array) -> bool:
+    """True if the space has curvatures and an axial force (g,) N is large enough to change them."""
+    size = np.abs(force).max() * space.length**2 / np.min(space.stiffness[: len(force)] / space.rule.weight)
+    return space.bends and bool(size >= TENSION)
 
 
 def coupled_space(beam: Beam, rule: Quadrature, counts: Counts) -> Space:
@@ -152,22 +156,25 @@ def coupled_space(beam: Beam, rule: Quadrature, counts: Counts) -> Space:
     strains = np.zeros((6, nodes, strained + len(springs)))
     for k, family in enumerate(families):
         strains[STRAINS[family], :, k * nodes : (k + 1) * nodes] = np.eye(nodes) * (-1 if family == 2 else 1)
-    move, turn = (np.concatenate([np.zeros((3, strained)), each], axis=1) for each in beam.root.directions())
+    still = np.zeros((3, strained))
+    move, turn = (np.concatenate([still, by_springs], axis=1) for by_springs in beam.root.directions())
     loaded = [load.at for load in beam.loads if load.at is not None]
     x = np.concatenate([rule.node, [body.at for body in beam.masses], loaded])
     field = strain_field(rule, x, strains, move, turn, beam.line)
     at, mass, offset = particles_of(beam, rule, rotary=beam.rotary_inertia)
     particles, rest = field.points(at, offset), np.zeros(field.size)
     place, moved = particles.positions(rest), particles.slopes(rest)
-    even = np.eye(3)
-    pulls = [np.broadcast_to(way, place.shape) for way in even] + [np.cross(way, place) for way in even]
+    axes = np.eye(3)
+    pulls = [np.broadcast_to(axis, place.shape) for axis in axes] + [np.cross(axis, place) for axis in axes]
     loads = [np.einsum("p,pai,pa->i", mass, moved, pull) for pull in pulls]
     slopes, angles = field.jacobians(rest)
     first = len(rule.node) + len(beam.masses)
     for load in beam.loads:
-        whole = load.at is None
-        points, weight = (slice(0, nodes), rule.weight) if whole else (slice(first, first + 1), np.ones(1))
-        first += not whole
+        if load.at is None:
+            points, weight = slice(0, nodes), rule.weight
+        else:
+            points, weight = slice(first, first + 1), np.ones(1)
+            first += 1
         loads += [
             weight @ part[points, axis]
             for part, component in ((slopes, load.force), (angles, load.moment))
@@ -191,22 +198,25 @@ def coupled_space(beam: Beam, rule: Quadrature, counts: Counts) -> Space:
     )
 
 
-def _loads(beam: Beam, of: Space, along: int) -> Array:
-    """Generalised forces (n, k) of what loads the beam: accelerations, even and growing along it, and its loads."""
-    if of.loads is not None:
-        return of.loads
-    x = of.rule.node
-    value, slope = of.sensitivity(x)
-    uniform, growing = of.line @ value + of.turning @ slope, (of.line * x) @ value + (of.turning * x) @ slope
+def _loads(beam: Beam, space: Space, along: int) -> Array:
+    """Generalised forces (n, k) on a space's strains: of accelerations, even and growing along the beam, of bodies that
+    turn, and of the beam's loads.
+    """
+    if space.loads is not None:
+        return space.loads
+    x = space.rule.node
+    value, slope = space.sensitivity(x)
+    uniform = space.line @ value + space.turning @ slope
+    growing = (space.line * x) @ value + (space.turning * x) @ slope
     columns = []
     for body in beam.masses:
-        moved, turned = of.sensitivity(np.array([body.at]))
+        moved, turned = space.sensitivity(np.array([body.at]))
         uniform, growing = uniform + body.mass * moved[0], growing + body.mass * body.at * moved[0]
         if along and (any(body.offset) or any(body.inertia)):
             columns.append(turned[0])
     for load in beam.loads:
-        moved, turned = (value, slope) if load.at is None else of.sensitivity(np.array([load.at]))
-        weight = of.rule.weight if load.at is None else np.ones(1)
+        moved, turned = (value, slope) if load.at is None else space.sensitivity(np.array([load.at]))
+        weight = space.rule.weight if load.at is None else np.ones(1)
         columns += [
             weight @ part for part, component in ((moved, load.force), (turned, load.moment)) if component is not None
         ]
@@ -217,29 +227,32 @@ NODES, PER_PANEL = 14, 8  # of the quadrature: over the beam with one shape, and
 
 
 class Twin(NamedTuple):
-    """A structure beside that in more coordinates, which is all that is known of what it lacks."""
+    """The :class:`Enrichment` of a structure that comes with its `richer` one, of a mesh or matrices."""
 
     structure: Structure
 
     def model(
         self, kind: str, *, directions: tuple[bool, bool, bool] = (True, True, True)
     ) -> tuple[Structure, NDArray[np.int_]]:
-        """The structure in more coordinates, and which of these are its own."""
+        """The richer structure, and the indices of the structure's own coordinates in it."""
         assert self.structure.richer is not None
         return self.structure.richer, np.arange(self.structure.size)
 
 
 def enrichment(structure: Structure, base: Base | None = None) -> Enrichment | Twin:
-    """Find a structure's own shapes and those that it lacks under what the base at some times pulls along the beam."""
+    """Return a structure's own shapes with those that it lacks, also under the largest axial force that the motion of
+    the `base` (t, 3) makes, where that changes the shapes.
+    """
     if structure.richer is not None:
         return Twin(structure)
-    alone = _without_force(structure)
-    force = None if base is None else alone.bent_by(base)
-    return alone if force is None else Enrichment(structure, force)
+    unloaded = _without_force(structure)
+    force = None if base is None else unloaded.bent_by(base)
+    return unloaded if force is None else Enrichment(structure, force)
 
 
 @lru_cache(maxsize=4)  # keyed by values: runs of equal structures look for what they lack once
 def _without_force(structure: Structure) -> Enrichment:
+    """Enrichment of a structure without axial force."""
     return Enrichment(structure)
 
 
@@ -264,24 +277,26 @@ class Enrichment:
         """Axial force (g,) N that a motion of the base brings, where it is large enough to change the shapes."""
         along, spin = np.asarray(base.a_WO_B)[..., 0], (np.asarray(base.w_WB_B)[..., 1:] ** 2).sum(axis=-1)
         force = axial_force(self.beam, self.rule, np.atleast_1d(along), np.atleast_1d(spin))
-        return force if any(bends(each, force) for each in self.spaces) else None
+        return force if any(bends(space, force) for space in self.spaces) else None
 
     def model(
         self, kind: str, *, directions: tuple[bool, bool, bool] = (True, True, True)
     ) -> tuple[Structure, NDArray[np.int_]]:
-        """Make a model with new shapes along some of x, y, z, and say which coordinates are the structure's own."""
+        """Return a model with new shapes along some of x, y, z, and the indices of the structure's own coordinates."""
         key = kind, directions
         if key not in self._made:
             self._made[key] = self._model(kind, directions)
         return self._made[key]
 
     def _model(self, kind: str, directions: tuple[bool, bool, bool]) -> tuple[Structure, NDArray[np.int_]]:
+        """Return the model and indices of :meth:`model`, newly made."""
         model_counts = self.structure.counts
         wanted = [False] * 6
         for group, along in zip(GROUPS, (*directions, True), strict=True):
             for family in group:
                 wanted[family] = along
-        axial, *others = (n + more * new for n, more, new in zip(model_counts, self.new, wanted, strict=True))
+        with_new = zip(model_counts, self.new, wanted, strict=True)
+        axial, *others = (count + new if wished else count for count, new, wished in with_new)
         counts: Any = (axial if KINDS[kind].axial else 0, *others)
         families: Any = tuple(_first(family, count) for family, count in zip(self.families, counts, strict=True))
         ratio = self.beam.damping_ratio
@@ -303,14 +318,16 @@ class Enrichment:
 
 
 def own_families(structure: Structure, beam: Beam, rule: Quadrature) -> Families:
-    """The functions that the structure's shapes are."""
+    """Functions of the structure's own shapes."""
     if structure.source is not None and structure.source.shapes == "adapted":
         return adapted_shapes(beam, rule, structure.counts)
     return forms_of(beam, KINDS[structure.kind], structure.counts)
 
 
 def _first(family: Family, count: int) -> Family:
-    def some(x: Array) -> Shapes:
+    """Family of the first `count` shapes of another."""
+
+    def first(x: Array) -> Shapes:
         return Shapes(*(part[:, :count] for part in family(x)))
 
-    return some
+    return first

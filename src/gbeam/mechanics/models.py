@@ -13,7 +13,9 @@ from gbeam.mechanics.fields.basis import FAMILIES, Counts
 
 @dataclass(frozen=True)
 class Kind:
-    """A model: order of the places, or None; whether coordinates are strains, truncation, Q_θ on a hub, axial ones."""
+    """A kind of model: order of the places' polynomial, None without end; flags of coordinates that are strains, of
+    equations truncated to first order, of Q_θ on a free hub, and of axial coordinates.
+    """
 
     order: int | None = 2
     strains: bool = False

@@ -34,9 +34,9 @@ def implausible_beam(beam: Beam, bends: tuple[bool, bool]) -> tuple[str, ...]:
     """Warn, in the scenario's names, of what is implausible in a beam that `bends` along y and z; not under JAX."""
     if _traced(beam) or beam.material is None:
         return ()
-    alone = (*_material(beam), *_dimensions(beam))
+    values = (*_material(beam), *_dimensions(beam))
     # A wrong unit makes ratios wrong as well: they are looked at where each value is plausible.
-    return (*alone, *_bodies(beam)) if alone else (*_matching(beam), *_proportions(beam, bends), *_bodies(beam))
+    return (*(values or (*_matching(beam), *_proportions(beam, bends))), *_bodies(beam))
 
 
 def refuse_disparate(beam: Beam) -> None:
@@ -87,6 +87,7 @@ def _shares(beam: Beam) -> Iterator[tuple[str, float, str, str, float]]:
 
 
 def _traced(beam: Beam) -> bool:
+    """True if JAX has values of the beam, its bodies, material or section."""
     bodies = [(body.mass, body.inertia, body.offset) for body in beam.masses]
     material = [] if beam.material is None else [*vars(beam.material).values()]
     values = beam.length, material, [*beam.section.dimensions.values()], beam.damping_ratio
@@ -106,19 +107,21 @@ def implausible_material(where: str, material: Material | Orthotropic) -> Iterat
 
 
 def _material(beam: Beam) -> Iterator[str]:
+    """Values of the material, or the damping, that no solid has."""
     yield from implausible_material("beam.material", beam.metal)
     if beam.damping_ratio is not None:
         yield from implausible("beam.damping_ratio", "damping", float(np.max(beam.damping_ratio)))
 
 
 def _dimensions(beam: Beam) -> Iterator[str]:
+    """Implausible lengths of the beam and its section."""
     yield from implausible("beam.length", "length", beam.length)
     for name, values in beam.section.dimensions.items():
         largest, kind = max(values), KINDS.get(name, "section")
-        odd = implausible(f"beam.section.{name}", kind, largest)
-        odd = odd or implausible(f"beam.section.{name}", kind, min(values))
-        yield from odd
-        if not odd and kind == "section" and largest > beam.length:
+        doubts = implausible(f"beam.section.{name}", kind, largest)
+        doubts = doubts or implausible(f"beam.section.{name}", kind, min(values))
+        yield from doubts
+        if not doubts and kind == "section" and largest > beam.length:
             yield (
                 f"beam.section.{name} is {largest:g} m, more than the beam's length, {beam.length:g} m; "
                 + (f"did you mean {largest:g} mm?" if 3e-3 * largest < beam.length else "are their units right?")
@@ -148,8 +151,8 @@ def _matching(beam: Beam) -> Iterator[str]:
 
 
 def _proportions(beam: Beam, bends: tuple[bool, bool]) -> Iterator[str]:
-    at = np.asarray(beam.section.stations or (0.0,))
-    section = beam.section.at(at)
+    """Radii of gyration that do not go with the section's area, or with the length where the beam `bends`."""
+    section = beam.section.at(np.asarray(beam.section.stations or (0.0,)))
     for axis, bent, inertia, name in (("y", bends[0], section.inertia_z, "z"), ("z", bends[1], section.inertia_y, "y")):
         gyration = np.sqrt(inertia / section.area)
         shape = gyration / np.sqrt(section.area)
@@ -168,6 +171,7 @@ def _proportions(beam: Beam, bends: tuple[bool, bool]) -> Iterator[str]:
 
 
 def _bodies(beam: Beam) -> Iterator[str]:
+    """Bodies that are too heavy, too far off the axis or too wide beside the beam."""
     mass = _mass(beam)
     for i, body in enumerate(beam.masses):
         where = f"beam.masses[{i}]"
@@ -185,8 +189,8 @@ def _bodies(beam: Beam) -> Iterator[str]:
 
 
 def _mass(beam: Beam) -> float:
-    at = np.linspace(0, beam.length, 41)
-    area: Any = beam.section.at(at).area
+    """Mass of the beam without its bodies, kg, about."""
+    area: Any = beam.section.at(np.linspace(0, beam.length, 41)).area
     return float(beam.density * np.mean(area) * beam.length)
 
 
@@ -205,8 +209,8 @@ def input_warnings(
     base: Any = None,
     rest: Any = None,
 ) -> tuple[str, ...]:
-    """Warn of what is implausible in an analysis's input, the `base` at some times too; not where JAX traces it. The
-    circular frequencies at `rest` (n,) need not be found again where they are known.
+    """Warn of what is implausible in a structure and its motion over a `span` of time, s; not under JAX. The `base` at
+    some times and the circular frequencies at `rest` (n,), rad/s, are computed unless given.
     """
     if structure.traced or holds_jax(motion):
         return ()
@@ -227,6 +231,7 @@ def input_warnings(
 
 
 def _frequency(structure: Structure, lowest: float) -> Iterator[str]:
+    """Lowest frequency, Hz, that no beam has, unless other warnings say why."""
     if not structure.warnings and not SLOWEST <= lowest <= FASTEST:
         yield (
             f"the beam's lowest natural frequency at rest is {lowest:.3g} Hz, outside the plausible {SLOWEST:g} to "
@@ -235,16 +240,17 @@ def _frequency(structure: Structure, lowest: float) -> Iterator[str]:
 
 
 def unstiffened(structure: Structure, base: Any, where: str) -> Iterator[str]:
-    """Stiffness in a motion that a structure by matrices lacks, over that which it has.
+    """Warn, with its size, of the stiffness by loads of a motion that a structure by matrices lacks.
 
-    A load a over its mass bends a cantilever by about a/ω², and bends it by its own angle more or less: the square of
-    its lowest frequency changes by about a/(ω² L), and by about Ω²/ω² in a rotation.
+    An acceleration a bends a cantilever by about a/ω², and the square of its lowest frequency changes, by the stress,
+    by about a/(ω² L) of itself, in a rotation by about Ω²/ω².
     """
     if not structure.unstiffened or base is None or is_traced(base.a_WO_B):
         return
     length, square = float(structure.length), float(structure.rest[0][0]) ** 2
-    size = [np.linalg.norm(np.reshape(each, (-1, 3)), axis=-1) for each in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)]
-    share = float((size[0] / length + size[1] ** 2 + size[2]).max()) / square
+    vectors = base.a_WO_B, base.w_WB_B, base.alpha_WB_B
+    a, w, alpha = (np.linalg.norm(np.reshape(each, (-1, 3)), axis=-1) for each in vectors)
+    share = float((a / length + w**2 + alpha).max()) / square
     if share > NEGLIGIBLE:
         yield (
             f"{where} loads the body so that the stiffness that is left out changes the square of its lowest "
@@ -302,12 +308,13 @@ def _on_edge(structure: Structure, motion: Any, base: Any, where: str) -> Iterat
 
 def _largest_loads(history: Any, span: tuple[float, float]) -> Any:
     """Largest sizes of the components of each load over a span of time, (loads, 6)."""
-    inside = np.clip(history.corners((span[1] - span[0]) / 200), *span)
-    when = np.union1d(np.linspace(*span, 201), inside)
-    return np.abs(history(when)).max(axis=0)
+    corners = np.clip(history.corners((span[1] - span[0]) / 200), *span)
+    samples = np.union1d(np.linspace(*span, 201), corners)
+    return np.abs(history(samples)).max(axis=0)
 
 
 def _remark(what: str, size: str, axis: int) -> str:
+    """Warning that `what` acts along an axis for which the model has no shapes."""
     way = "xyz"[axis]
     return (
         f"{what} along {way} with up to {size}, where the model has no shapes: the beam stays straight there; "

@@ -30,9 +30,9 @@ FAINT = 1e-14  # of the largest: a product of shapes that is rounding
 
 @dataclass(frozen=True, eq=False)
 class Reduced:
-    """Shapes (u, n) of unit modal mass, their stiffness (n, n), and static displacements (u, m) under the loads; the
-    first `size` are a model's coordinates, `modes` and others, ascending in frequency, the rest what some more modes
-    have beside them.
+    """Shapes (u, n) of unit modal mass, their stiffness (n, n), and static displacements (u, m) under the loads. The
+    first `size` shapes, ascending in frequency, are a model's coordinates: they span `modes` modes and the static
+    displacements. The others are what a few more modes have beside these, by which their error is judged.
     """
 
     shapes: Floats
@@ -42,34 +42,36 @@ class Reduced:
     size: int
 
     def structure(self, build: Callable[[int, Any], Structure], damping_ratio: Any) -> Structure:
-        """The structure built in the model's coordinates, with that in all of them, damped as the last one given."""
+        """Build a structure in the first `size` coordinates whose `richer` is one in all. A list of damping ratios that
+        ends at the modes, or at these coordinates, goes on with its last value.
+        """
 
-        def damped(n: int) -> Any:
-            known = np.ndim(damping_ratio) and len(damping_ratio)
-            return (
-                [*damping_ratio, *[damping_ratio[-1]] * (n - known)]
-                if known in (self.modes, self.size)
-                else damping_ratio
-            )
+        def ratios(n: int) -> Any:
+            listed = np.ndim(damping_ratio) and len(damping_ratio)
+            if listed in (self.modes, self.size):
+                return [*damping_ratio, *[damping_ratio[-1]] * (n - listed)]
+            return damping_ratio
 
         few, every = self.size, len(self.stiffness)
-        return replace(build(few, damped(few)), richer=build(every, damped(every)))
+        return replace(build(few, ratios(few)), richer=build(every, ratios(every)))
 
 
 def linear_fields(points: Floats) -> Floats:
-    """1, x, y and z at points (k, 3), (k, 4)."""
+    """Columns 1, x, y and z (k, 4) of points (k, 3)."""
     return np.concatenate([np.ones((len(points), 1)), points], axis=1)
 
 
 def inertial_loads(weights: Floats) -> Floats:
-    """Loads (3 k, 12) of body forces of −1, −x, −y and −z along x, then along y, then along z, by the products (k, 4)
-    of the mass matrix with 1, x, y and z.
+    """Loads (3 k, 12) on nodes by body forces −1, −x, −y and −z along x, then along y, then along z; `weights` (k, 4)
+    are the products of the mass matrix with 1, x, y and z.
     """
     return -np.einsum("kf,ac->kcaf", weights, np.eye(3)).reshape(3 * len(weights), 12)
 
 
 def reduce(stiffness: Any, mass: Any, loads: Floats, modes: int) -> Reduced:
-    """Reduce matrices (u, u) of the unknowns that are free, under `loads` (u, m)."""
+    """Reduce matrices (u, u) of the free unknowns to their lowest modes and static displacements under `loads` (u, m);
+    InputError unless there are so many modes, and stiffness and mass are positive.
+    """
     count, more = len(loads), min(MORE, len(loads) - modes)
     if not 1 <= modes <= count:
         raise InputError("modes", f"is {modes}, of {count} unknowns", f"give 1 to {count}")
@@ -80,33 +82,35 @@ def reduce(stiffness: Any, mass: Any, loads: Floats, modes: int) -> Reduced:
         else:
             start = np.random.default_rng(0).standard_normal((count, WIDTH))
             inverse, vector = lowest_modes(solve, mass, start, modes, more)
-    have = _moving(inverse)
+    moving = _moving(inverse)
     if not inverse[:modes].min() > -ZERO * inverse.max():
         raise InputError("stiffness", "is not positive definite", HOLD)
-    if have < modes:
-        raise InputError("modes", f"is {modes}, and only {have} motions move mass", f"give at most {have}")
-    vector, beyond = vector[:, :modes], vector[:, modes : min(have, modes + more)]
+    if moving < modes:
+        raise InputError("modes", f"is {modes}, and only {moving} motions move mass", f"give at most {moving}")
+    vector, beyond = vector[:, :modes], vector[:, modes : min(moving, modes + more)]
     basis = np.concatenate([vector, _complement(stiffness, mass, vector, static)], axis=1)
-    inverse, within = _dense(basis.T @ (stiffness @ basis), basis.T @ (mass @ basis))
+    inverse, in_basis = _dense(basis.T @ (stiffness @ basis), basis.T @ (mass @ basis))
     if inverse.min() < -NEGATIVE * inverse.max():
         raise InputError("mass", "is not positive definite", "is it the right matrix?")
     if _moving(inverse) < len(inverse):
         problem = "leaves a static answer without mass, or with next to none beside the heaviest"
         fix = "give the nodes of interfaces mass in every direction, and inertia where they turn, or carry less"
         raise InputError("mass", problem, fix)
-    shapes = basis @ within
+    shapes = basis @ in_basis
     size = shapes.shape[1]
     beyond = _complement(stiffness, mass, shapes, beyond)
     if beyond.size:
         beyond = beyond @ _dense(beyond.T @ (stiffness @ beyond), beyond.T @ (mass @ beyond))[1]
         shapes = np.concatenate([shapes, beyond], axis=1)
-    joint = shapes.T @ (stiffness @ shapes)
-    joint[:size, :size] = np.diag(1 / inverse)
-    return Reduced(shapes, joint, static, modes, size)
+    reduced = shapes.T @ (stiffness @ shapes)
+    reduced[:size, :size] = np.diag(1 / inverse)
+    return Reduced(shapes, reduced, static, modes, size)
 
 
 def _dense(stiffness: Floats, mass: Floats) -> tuple[Floats, Floats]:
-    """Inverse eigenvalues, the largest first, zero without mass, and vectors of unit modal mass, or stiffness."""
+    """Inverse eigenvalues 1/ω², s², descending, and modes of unit modal mass; those that move no mass have eigenvalues
+    of about zero and unit modal stiffness.
+    """
     from scipy.linalg import eigh
 
     try:
@@ -117,12 +121,12 @@ def _dense(stiffness: Floats, mass: Floats) -> tuple[Floats, Floats]:
 
 
 def _moving(inverse: Floats) -> int:
-    """Number of motions that move mass."""
+    """Number of motions that move mass, by inverse eigenvalues in descending order."""
     return int((inverse > ZERO * inverse[0]).sum())
 
 
 def _complement(stiffness: Any, mass: Any, modes: Floats, static: Floats) -> Floats:
-    """Span of what the static answers (n, m) have beside the modes, of unit energy, (n, l)."""
+    """Vectors (u, l), orthonormal in energy, that span what static answers (u, m) have beside the modes (u, k)."""
     energy = np.einsum("ij,ij->j", static, stiffness @ static)
     moved = static[:, energy > 0] / np.sqrt(energy[energy > 0])
     for _ in range(2):  # twice is enough
@@ -141,8 +145,8 @@ def particles_of(points: Floats, shapes: Floats, mass: Any) -> tuple[Floats, Flo
 
 
 def standing_in(body: Floats, sums: Floats, moments: Floats) -> tuple[Floats, Floats, Floats]:
-    """Particles like those of :func:`particles_of`, of a body (10,): mass, first and second moments, and of Σ m ∂r_a
-    (3, n) and Σ m r_b ∂r_a (3, 3, n); their derivatives are linear in the places.
+    """Particles, as :func:`particles_of` returns them, with the mass, first and second moments of a `body` (10,), and
+    with the `sums` Σ m ∂r_a/∂q (3, n) and `moments` Σ m r_b ∂r_a/∂q (3, 3, n); their shapes are linear in the places.
     """
     total, (x, y, z), (xx, yy, zz, xy, yz, zx) = body[0], body[1:4], body[4:]
     places = np.array([[total, x, y, z], [x, xx, xy, zx], [y, xy, yy, yz], [z, zx, yz, zz]])
@@ -152,7 +156,7 @@ def standing_in(body: Floats, sums: Floats, moments: Floats) -> tuple[Floats, Fl
 
 
 def _particles(products: Floats, n: int) -> tuple[Floats, Floats, Floats]:
-    """Particles by the products of 1, x, y, z and of shapes along x, y and z."""
+    """Masses, places and derivatives of particles by the products (4 + 3 n, 4 + 3 n), kg, of 1, x, y, z and shapes."""
     total = products[0, 0]
     size = np.sqrt(np.diagonal(products) / total)
     scale = np.where(size > 0, size, 1.0)
@@ -160,9 +164,9 @@ def _particles(products: Floats, n: int) -> tuple[Floats, Floats, Floats]:
     kept = value > FAINT * value[-1]
     root = vector[:, kept] * np.sqrt(value[kept])
     # A reflection after which all particles have the same share of the mass.
-    first, even = root[0], np.full(kept.sum(), 1 / np.sqrt(kept.sum()))
-    across = first / np.linalg.norm(first) - even
-    if across.any():
-        root = root - 2 * np.outer(root @ across, across) / (across @ across)
+    shares, equal = root[0] / np.linalg.norm(root[0]), np.full(kept.sum(), 1 / np.sqrt(kept.sum()))
+    normal = shares - equal
+    if normal.any():
+        root = root - 2 * np.outer(root @ normal, normal) / (normal @ normal)
     values = (scale[:, None] * root * np.sqrt(kept.sum())).T
     return np.full(len(values), total / len(values)), values[:, 1:4], values[:, 4:].reshape(-1, 3, n)

@@ -34,19 +34,21 @@ _BLOCK = 256  # times handled together: what stays in a cache
 
 
 class Hung(NamedTuple):
-    """Loads of what hangs on stations (p,) of a beam: forces and moments about the root (t, p, 3) that it demands."""
+    """Forces and moments about the root (t, p, 3) that other bodies demand of the stations (p,) on which they hang."""
 
     station: Array
     force: Array
     moment: Array
 
     def during(self, part: slice) -> Hung:
-        """Forces and moments at some of the times."""
+        """Those at some of the times."""
         return self._replace(force=self.force[part], moment=self.moment[part])
 
 
 class Carried(NamedTuple):
-    """Forces and moments (t, s, 3) of sections, in base and own axes; accelerations or specific forces; places."""
+    """Forces and moments (t, s, 3) that sections carry, in axes of the base and in their own; absolute accelerations
+    (specific forces where gravity acts) and places of the sections, base axes.
+    """
 
     force: Array
     moment: Array
@@ -67,7 +69,9 @@ def section_forces(
     motion: Motion | None = None,
     hung: Hung | None = None,
 ) -> Loads:
-    """Loads at root and stations for base (t, 3) and beam (t, n), with bodies `hung` on it; of matrices at the ends."""
+    """Loads at root and stations by motions of the base (t, 3) and of the beam (t, n), with bodies `hung` on it; of a
+    structure without sections at its root and tip only.
+    """
     if structure.sections is None:
         return about_the_hub(_of_ends(structure, base, q, qd, qdd, time, hung), motion, base.alpha_WB_B)
     xp = namespace(q, base.a_WO_B)
@@ -76,11 +80,11 @@ def section_forces(
     for i in range(0, len(q), _BLOCK):
         part = slice(i, i + _BLOCK)
         values = None if applied is None else applied[part]
-        on = None if hung is None else hung.during(part)
-        at, p, pd, pdd = each_leaf(itemgetter(part), (base, q, qd, qdd))
-        pieces.append(sections(structure, structure.sections, at, p, pd, pdd, values, on))
+        on_stations = None if hung is None else hung.during(part)
+        base_then, p, pd, pdd = each_leaf(itemgetter(part), (base, q, qd, qdd))
+        pieces.append(sections(structure, structure.sections, base_then, p, pd, pdd, values, on_stations))
     force, moment, section_force, section_moment, a, _ = (
-        xp.concatenate(part) if len(pieces) > 1 else part[0] for part in zip(*pieces, strict=True)
+        xp.concatenate(blocks) if len(pieces) > 1 else blocks[0] for blocks in zip(*pieces, strict=True)
     )
     section_data = structure.sections
     tension, compression = extreme_stresses(section_data.values, section_force, section_moment)
@@ -104,8 +108,8 @@ def section_forces(
 def root_loads(
     structure: Structure, terms: Body, base: Base, q: Array, qd: Array, qdd: Array, time: Array
 ) -> tuple[Array, Array]:
-    """Force and moment at the root alone, (t, 3), by a structure's `terms`: constant coefficients know them to second
-    order.
+    """Force and moment that the root carries, (t, 3), base axes, by a structure's `terms` in the equations; those of a
+    linear model are exact to second order in its coordinates.
     """
     applied = None if structure.history is None else structure.history(time)
     root = Frame(None, None, None, base.w_WB_B, base.a_WO_B, base.alpha_WB_B)
@@ -116,11 +120,12 @@ def root_loads(
 def _of_ends(
     structure: Structure, base: Base, q: Array, qd: Array, qdd: Array, time: Array, hung: Hung | None
 ) -> Loads:
-    """Loads without stress at the root of constant coefficients, and at the tip, which carries nothing outboard."""
+    """Loads, without stress, at the root of a structure without sections and at its tip, which carries nothing."""
     xp = namespace(q, base.a_WO_B)
     demanded = [-each for each in root_loads(structure, terms_of(structure), base, q, qd, qdd, time)]
     if hung is not None:
-        demanded = [each + more.sum(axis=1) for each, more in zip(demanded, (hung.force, hung.moment), strict=True)]
+        hanging = hung.force.sum(axis=1), hung.moment.sum(axis=1)
+        demanded = [each + more for each, more in zip(demanded, hanging, strict=True)]
     force, moment = (xp.stack([-each, 0 * each], axis=1) for each in demanded)
     tip = absolute_accelerations(xp, base, *structure.output[-1:].paths(q, qd, qdd))
     unknown = xp.full(force.shape[:2], np.nan)
@@ -136,10 +141,11 @@ def _of_ends(
     )
 
 
-def _equivalent(of: Sections, force: Array, moment: Array) -> Array:
-    """Von Mises stress of sections (t, s), which at a place between the points may be that of normal stress alone."""
-    tension, compression = extreme_stresses(of.values, force, moment)
-    return np.maximum(von_mises(of.stresses, force, moment), np.maximum(tension, -compression)) + 0.0  # no minus zero
+def _equivalent(section_data: Sections, force: Array, moment: Array) -> Array:
+    """Largest von Mises stress of sections (t, s), Pa: at their points, or of the normal stress alone between these."""
+    tension, compression = extreme_stresses(section_data.values, force, moment)
+    at_points = von_mises(section_data.stresses, force, moment)
+    return np.maximum(at_points, np.maximum(tension, -compression)) + 0.0  # no minus zero
 
 
 def sections(
@@ -152,7 +158,9 @@ def sections(
     values: Array | None,
     hung: Hung | None = None,
 ) -> Carried:
-    """Loads of the sections `outboard` over times."""
+    """Loads (t, s, 3) that the root and the s − 1 stations carry, by what is `outboard` of each, at load components
+    (t, loads, 6) and with bodies `hung` on them.
+    """
     count = outboard.mass.shape[0] - 1
     particles, stations, turned = _sent_out(structure, count, q, qd, qdd)
     xp = namespace(q, particles[0], base.a_WO_B)
@@ -168,8 +176,8 @@ def sections(
         share = xp.asarray(outboard.loaded)
         force, about_root = force + share @ pull, about_root + share @ (_cross(xp, loaded.positions(q), pull) + turn)
     if hung is not None:
-        at = np.append(0.0, structure.stations)
-        beyond = (structure.stations[hung.station] >= at[:, None] - 1e-9 * structure.length).astype(float)
+        sections_at = np.append(0.0, structure.stations)
+        beyond = (structure.stations[hung.station] >= sections_at[:, None] - 1e-9 * structure.length).astype(float)
         force, about_root = force - beyond @ hung.force, about_root - beyond @ hung.moment
     moment = about_root - _cross(xp, stations[0], force)
     straight = xp.broadcast_to(xp.asarray(outboard.root_axes), (len(q), 1, 3, 3))
@@ -182,12 +190,12 @@ def sections(
 
 
 def _sent_out(structure: Structure, count: int, q: Array, qd: Array, qdd: Array) -> tuple[Any, Any, Array]:
-    """Paths (t, p, 3) of the particles and of the last stations, and rotations of these (t, count, 3, 3)."""
+    """Paths (t, p, 3) of the particles and of the last `count` stations, and rotations of these (t, count, 3, 3)."""
     particles, last = structure.particles, slice(-count, None)
     stations: Any = structure.output[last]
     if not isinstance(particles, Places):
-        every, turned = particles.joined(stations).poses(q, qd, qdd, last)
-        return tuple(each[:, :-count] for each in every), tuple(each[:, last] for each in every), turned
+        paths, turned = particles.joined(stations).poses(q, qd, qdd, last)
+        return tuple(each[:, :-count] for each in paths), tuple(each[:, last] for each in paths), turned
     xp = namespace(q, structure.mass)
     turned = xp.broadcast_to(xp.eye(3), (len(q), count, 3, 3))
     if structure.field is not None:
@@ -201,13 +209,13 @@ def accelerations(structure: Structure, base: Base, q: Array, qd: Array, qdd: Ar
 
 
 def absolute_accelerations(xp: Any, base: Base, r: Array, rd: Array, rdd: Array) -> Array:
-    """Absolute accelerations of points, (t, p, 3)."""
+    """Absolute accelerations (t, p, 3) of points by their motion (t, p, 3) relative to the base, base axes."""
     w, alpha, along = base.w_WB_B, base.alpha_WB_B, base.a_WO_B[:, None, :]
     if xp is np and not (w.any() or alpha.any()):
         return along + rdd
     spin = skew(xp, w)
-    both = xp.swapaxes(xp.concatenate([skew(xp, alpha) + spin @ spin, 2 * spin], axis=-1), -1, -2)
-    return along + xp.concatenate([r, rd], axis=-1) @ both + rdd
+    by_place_and_rate = xp.concatenate([skew(xp, alpha) + spin @ spin, 2 * spin], axis=-1)
+    return along + xp.concatenate([r, rd], axis=-1) @ xp.swapaxes(by_place_and_rate, -1, -2) + rdd
 
 
 def _cross(xp: Any, left: Array, right: Array) -> Array:
@@ -216,7 +224,9 @@ def _cross(xp: Any, left: Array, right: Array) -> Array:
 
 
 def about_the_hub(loads: Loads, motion: Motion | None, alpha_WB_B: Array) -> Loads:
-    """Add the torque about a hub's axis, and its drive's where its inertia is given, to loads under α (t, 3)."""
+    """Add to loads the torque of the beam about a hub's axis and, where its inertia is given, that of the hub's drive;
+    with other motions return the loads. `alpha_WB_B` (t, 3) rad/s² is the base's.
+    """
     if motion is None or motion.kind != "hub":
         return loads
     hub: Any = motion

@@ -36,9 +36,9 @@ if TYPE_CHECKING:
 
 @record
 class Sections:
-    """Sections at root and stations: values (s,), outboard masses (s, particles) kg, shares of loads (s, loaded),
-    axes of the root's section in columns (3, 3), stresses by unit loads (points, 3, 6, s), strength Pa; and `along` the
-    beam, m, where the field's points lie.
+    """Sections at root and stations (s,): their `values`, the mass (s, particles) kg and the shares of loads (s,
+    loaded) outboard of each, axes of the root's section in columns (3, 3), stresses by unit loads (points, 3, 6, s),
+    strength, Pa; and the positions `along` the beam, m, of the field's points.
     """
 
     values: Any
@@ -52,7 +52,7 @@ class Sections:
 
 
 class Recovery(Protocol):
-    """Results of a specimen beside its coordinates, such as the stress of a solid."""
+    """Results that a specimen's responses have beside its coordinates, such as the stress of a solid."""
 
     @property
     def envelope(self) -> Array:
@@ -64,7 +64,7 @@ class Recovery(Protocol):
         ...
 
     def in_modes(self, modes: Array) -> Any:
-        """Surface for pictures in modes (k, n)."""
+        """Surface for pictures of modes (k, n) in its coordinates."""
         ...
 
     def felt(self, q: Array) -> Array:
@@ -251,15 +251,15 @@ class Structure:
                 raise InputError(name, f"has the shape {np.shape(value)}", f"give {shape}, as mass and first have")
             if not (is_jax(value) or np.isfinite(value).all()):
                 raise InputError(name, "has values that are not finite", "give finite ones")
-        for i, each in enumerate(() if is_jax(mass) else mass):
-            positive(f"mass[{i}]", each, "kg", zero=True)
+        for i, particle_mass in enumerate(() if is_jax(mass) else mass):
+            positive(f"mass[{i}]", particle_mass, "kg", zero=True)
         places = Places(r0, first, np.zeros((*first.shape, n)) if second is None else second)
         c = coefficients(mass, places, stiffness, geometric=geometric)
         if not (is_jax(c.mass) or positive_definite(c.mass)):
             fix = "give the particles mass, or leave out the coordinates that move none"
             raise InputError("mass", "leaves a motion of the coordinates without mass", fix)
-        about = {"damping_ratio": damping_ratio, "points": points, "kind": kind, "warnings": warnings}
-        return linear_structure(c, mass, places, places[chosen], length=length, turns=turns, **about)
+        words = {"damping_ratio": damping_ratio, "points": points, "kind": kind, "warnings": warnings}
+        return linear_structure(c, mass, places, places[chosen], length=length, turns=turns, **words)
 
     @property
     def size(self) -> int:
@@ -328,8 +328,8 @@ class Structure:
         assert self.inertia is not None
         places, geometric = self.inertia.about(q)
         loads = None if self.work is None or self.load_values is None else self.work.about(len(self.load_values), q)
-        about = coefficients(self.mass, places, c.stiffness, damping=c.damping, geometric=geometric, loads=loads)
-        return about, c.stiffness @ q
+        linear = coefficients(self.mass, places, c.stiffness, damping=c.damping, geometric=geometric, loads=loads)
+        return linear, c.stiffness @ q
 
     @property
     def rest(self) -> tuple[Array, Array]:
@@ -338,7 +338,7 @@ class Structure:
 
     @property
     def judged(self) -> bool:
-        """True if the errors of shapes that it lacks can be known."""
+        """True if the errors of the shapes that it leaves out can be estimated."""
         return (self.source is not None or self.richer is not None) and not self.traced
 
     @property
@@ -426,7 +426,7 @@ def linear_structure(
     unstiffened: bool = False,
     modes: int | None = None,
 ) -> Structure:
-    """Structure whose equations are those of coefficients, with its particles (k,) and its stations."""
+    """Linear structure with the coefficients `terms`, the places of its particles (k,) kg and of its stations."""
     ratio = 0.0 if holds_jax(damping_ratio) else float(np.max(damping_ratio))
     return Structure(
         kind=kind,

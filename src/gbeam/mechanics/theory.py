@@ -41,9 +41,9 @@ def stiffening(beam: Beam, x: Floats, bent: Floats) -> tuple[Floats, Floats]:
 
 
 def near_clamp_or_bent(ratio: float, x: Floats, across: Floats, through: Floats, curvature: Floats) -> Floats:
-    """Flatness of sections, from 0 (free to bend across) to 1 (as in a plate), at positions (p,): c = c' = 0
-    at the clamp in b⁴/720 c'''' − (1 − ν) b²/6 c'' + c = −ν w'', to which the stretch adds (1 − ν²) (b² w''/h)²/60 c
-    (Searle, 1907).
+    """Flatness of sections (p,), from 0 (free to bend across) to 1 (as in a plate), at x m from the clamp, `across` m
+    wide and `through` m thick, by their `curvature`, 1/m: c = c' = 0 at the clamp in b⁴/720 c'''' − (1 − ν) b²/6 c'' +
+    c = −ν w'', to which the stretch adds (1 − ν²) (b² w''/h)²/60 c (Searle, 1907).
     """
     mean = (1 - ratio) / 6
     root = np.sqrt(mean**2 - 4 / 720)
@@ -64,8 +64,9 @@ SLENDER, SHEAR, TWIST = (0, 4, 5), (1, 2), (3,)  # strains: stretch, shear along
 
 
 class Theory(NamedTuple):
-    """A beam by slender and by thick theory, with the structure's coordinates first: `columns` of shear and
-    twist, `curvature` (2, g, n), `rigidity` (2, g) N m³, `bodies` (b, 3, n).
+    """A beam by slender and by thick theory, with the structure's coordinates first. Of the thick one (n coordinates):
+    `columns` of shear and of twist, `curvature` (2, g, n) at the nodes and displacements of `bodies` (b, 3, n) per
+    coordinate; `rigidity` (2, g) N m³ is EI_y and EI_z times the nodes' weights.
     """
 
     slender: Structure
@@ -98,11 +99,11 @@ class Theory(NamedTuple):
 
 @lru_cache(maxsize=4)  # keyed by values, as enrichment is
 def theory_of(structure: Structure, hung: tuple[int, ...] = ()) -> Theory:
-    """A structure's beam, which it must have, by two theories, with other bodies hung on some of its stations."""
-    more = enrichment(structure)
-    assert isinstance(more, Enrichment)
-    families = own_families(structure, more.beam, more.rule)
-    return _Parts(structure, more.beam, more.rule, hung).theory(families)
+    """A structure's beam, which it must have, by both theories; other bodies hang on the stations `hung` (indices)."""
+    rich = enrichment(structure)
+    assert isinstance(rich, Enrichment)
+    families = own_families(structure, rich.beam, rich.rule)
+    return _Parts(structure, rich.beam, rich.rule, hung).theory(families)
 
 
 class _Parts:
@@ -133,13 +134,13 @@ class _Parts:
         self.move, self.turn = beam.root.directions()
 
     def field(self, strains: Floats) -> StrainField:
-        """The field of shapes with some strains (m, n)."""
+        """Strain field of shapes with the strains (m, n)."""
         nodal, root = np.split(strains, [6 * len(self.rule.node)])
         shaped = nodal.reshape(6, -1, strains.shape[1])
         return strain_field(self.rule, self.points, shaped, self.move @ root, self.turn @ root, self.beam.line)
 
     def pulled(self, force: Floats, moment: Floats) -> Floats:
-        """Generalised forces (m, k) on the strains of forces and moments (3, points, k) at the points."""
+        """Generalised forces (m, k) on the strains of k cases of forces and moments (3, points, k) at the points."""
         slope, axes = self.cumulative.T @ force, self.axes[: len(self.rule.node)]
         # The axis turns with its sections.
         lever = np.cross(axes[:, :, 0].T[..., None], slope, axis=0)
@@ -150,55 +151,57 @@ class _Parts:
         return np.concatenate([*inward, springs])
 
     def answers(self, coordinates: Floats) -> Floats:
-        """Static answers (m, k) of the thick beam: to its own shapes' inertia, accelerations, loads and hung bodies."""
+        """Strains (m, k) of the thick beam under static loads: the inertia of shapes with strains (m, n), unit
+        accelerations, its loads, forces where bodies hang, and on each further level the inertia of the last answers.
+        """
         at, mass, offset = particles_of(self.beam, self.rule, rotary=True)
         arm = np.einsum("pab,pb->ap", self.axes[at], offset)[..., None]
         onto = at == np.arange(len(self.points))[:, None]  # (points, particles)
 
         def inertia(move: Floats, turn: Floats) -> Floats:
-            each = mass[:, None] * (move[:, at] + np.cross(turn[:, at], arm, axis=0))
-            return self.pulled(onto @ each, onto @ np.cross(arm, each, axis=0))
+            force = mass[:, None] * (move[:, at] + np.cross(turn[:, at], arm, axis=0))
+            return self.pulled(onto @ force, onto @ np.cross(arm, force, axis=0))
 
-        def of(strains: Floats) -> Floats:
+        def inertia_of(strains: Floats) -> Floats:
             moved, turned = self.field(strains).jacobians(np.zeros(strains.shape[1]))
             return inertia(np.moveaxis(moved, 0, 1), np.moveaxis(turned, 0, 1))
 
         still = np.zeros((3, len(self.points), 3))
-        even = still + np.eye(3)[:, None]
+        unit = still + np.eye(3)[:, None]  # unit vectors along x, y and z at every point
         place = self.place.T[..., None]
-        loads = [of(coordinates), inertia(even, still), inertia(np.cross(even, place, axis=0), even)]
-        acting = [np.arange(len(self.points)) == k for k in self.hung]
+        loads = [inertia_of(coordinates), inertia(unit, still), inertia(np.cross(unit, place, axis=0), unit)]
+        acting = [np.arange(len(self.points)) == k for k in self.hung]  # weights of the points, of each load
         if self.beam.loads:
             work, points = self.work(self.field(coordinates))
             for load in range(len(self.beam.loads)):
                 acting.append(np.bincount(points, work.weight * (work.load == load), len(self.points)))
-        for each in acting:
-            act = each[:, None] * even
-            loads += [self.pulled(act, still), self.pulled(still, act)]
+        for weights in acting:
+            vectors = weights[:, None] * unit
+            loads += [self.pulled(vectors, still), self.pulled(still, vectors)]
         answers = [self.answer(np.concatenate(loads, axis=1))]
         for _ in range(LEVELS - 1):
-            answers.append(self.answer(of(answers[-1])))
+            answers.append(self.answer(inertia_of(answers[-1])))
         return np.concatenate(answers, axis=1)
 
     def answer(self, forces: Floats) -> Floats:
         """Strains (m, k) under generalised forces (m, k)."""
         with np.errstate(divide="ignore"):
-            alone = np.where(self.known, 1 / self.stiffness, 0.0)[:, None] * forces
+            uncoupled = np.where(self.known, 1 / self.stiffness, 0.0)[:, None] * forces
         if self.coupling is None:
-            return np.asarray(alone)
-        return self._at_nodes(np.asarray(np.linalg.inv(self.coupling)), forces, alone)
+            return np.asarray(uncoupled)
+        return self._at_nodes(np.asarray(np.linalg.inv(self.coupling)), forces, uncoupled)
 
     def scaled(self, strains: Floats, *, back: bool = False) -> Floats:
-        """Strains (m, k) of which the strain energy is half the square, or `back` from there."""
+        """Strains (m, k) scaled so that their energy is half their square, or scaled `back` from that."""
         root = np.sqrt(np.where(self.known, self.stiffness, 1.0))[:, None]
-        alone = strains / root if back else strains * root
+        uncoupled = strains / root if back else strains * root
         if self.coupling is None:
-            return np.asarray(alone)
+            return np.asarray(uncoupled)
         upper = np.swapaxes(np.linalg.cholesky(self.coupling), 1, 2)
-        return self._at_nodes(np.linalg.inv(upper) if back else upper, strains, alone)
+        return self._at_nodes(np.linalg.inv(upper) if back else upper, strains, uncoupled)
 
     def _at_nodes(self, matrices: Floats, strains: Floats, springs: Floats) -> Floats:
-        """Products of matrices (g, 6, 6) and nodal strains (m, k), and the last rows, of the root's springs."""
+        """Products (m, k) of matrices (g, 6, 6) and nodal strains, with the root springs' rows of `springs` (m, k)."""
         nodes, count = len(self.rule.node), strains.shape[1]
         nodal = np.einsum("gab,bgk->agk", matrices, strains[: 6 * nodes].reshape(6, nodes, count))
         return np.concatenate([nodal.reshape(6 * nodes, count), springs[6 * nodes :]])
@@ -208,7 +211,7 @@ class _Parts:
         return load_work(self.beam, field, self.rule, self.first)
 
     def theory(self, families: Families) -> Theory:
-        """Both theories, with own shapes."""
+        """Both theories, with the structure's own shapes `families` and the strains of :meth:`answers` beside these."""
         strains = self.shaped(families)
         answers = self.answers(strains)
         blocks = [np.concatenate([strains, self.others(answers, self.modelled, strains)], axis=1)]
@@ -232,7 +235,7 @@ class _Parts:
         )
 
     def shaped(self, families: Families) -> Floats:
-        """Strains (m, n) of the structure's own coordinates."""
+        """Strains (m, n) of the coordinates: of shapes of some families, then of the root's springs."""
         nodal = shaped_strains(self.rule, families)
         strains = nodal.reshape(-1, nodal.shape[2])
         springs = self.move.shape[1]
@@ -242,22 +245,24 @@ class _Parts:
         return out
 
     def others(self, answers: Floats, families: tuple[int, ...], coordinates: Floats | None = None) -> Floats:
-        """The part of some answers in families of strains, without that of own shapes, orthonormal in energy."""
+        """Strains (m, l), orthonormal in energy, that span what answers have in some families (0 to 5, strains) beside
+        the `coordinates` (m, n) where these are given.
+        """
         chosen = (np.isin(self.families, families) & self.known)[:, None]
-        known = (
+        basis = (
             np.zeros((len(chosen), 0)) if coordinates is None else np.linalg.qr(self.scaled(chosen * coordinates))[0]
         )
-        whole = np.linalg.norm(self.scaled(self.known[:, None] * answers), axis=0)
-        first = known.shape[1]
-        for vector, length in zip(self.scaled(chosen * answers).T, whole, strict=True):
-            rest = vector - known @ (known.T @ vector)
-            rest = rest - known @ (known.T @ rest)
+        lengths = np.linalg.norm(self.scaled(self.known[:, None] * answers), axis=0)
+        first = basis.shape[1]
+        for vector, length in zip(self.scaled(chosen * answers).T, lengths, strict=True):
+            rest = vector - basis @ (basis.T @ vector)
+            rest = rest - basis @ (basis.T @ rest)
             if np.linalg.norm(rest) > NEW * length:
-                known = np.concatenate([known, (rest / np.linalg.norm(rest))[:, None]], axis=1)
-        return np.where(chosen, self.scaled(known[:, first:], back=True), 0.0)
+                basis = np.concatenate([basis, (rest / np.linalg.norm(rest))[:, None]], axis=1)
+        return np.where(chosen, self.scaled(basis[:, first:], back=True), 0.0)
 
     def energy(self, strains: Floats) -> Floats:
-        """Stiffness (n, n) of strains (m, n); those that none of these has follow without a force of their own."""
+        """Stiffness (n, n) of shapes with strains (m, n); strains that no shape has take values without force."""
         if self.coupling is None:
             return np.asarray(strains.T @ (np.where(self.known, self.stiffness, 0.0)[:, None] * strains))
         nodal, root = np.split(strains, [6 * len(self.rule.node)])
@@ -268,7 +273,7 @@ class _Parts:
         return np.asarray(np.einsum("agi,agj->ij", nodal[kept], forces) + springs)
 
     def model(self, strains: Floats, *, rotary: bool) -> Structure:
-        """The linear structure with shapes of some strains (m, n)."""
+        """The linear structure whose shapes have the strains (m, n), with rotary inertia where that is `rotary`."""
         structure, beam, rest = self.structure, self.beam, np.zeros(strains.shape[1])
         field, (at, mass, offset) = self.field(strains), particles_of(beam, self.rule, rotary=rotary)
         inertia = inertia_of(field.points(at, offset), mass)
@@ -302,9 +307,9 @@ class _Parts:
 
 
 def _load_terms(work: LoadWork, field: StrainField, at: Floats, count: int) -> LoadTerms:
-    """The generalised forces of the loads to first order: of some points at a time."""
+    """Generalised forces of `count` loads on the points `at` to first order, summed over CHUNK points at a time."""
     parts = []
-    for some in np.array_split(np.arange(len(at)), -(-len(at) // CHUNK)):
-        acting = LoadWork(field[at[some]], work.load[some], work.weight[some], work.follower[some])
+    for chunk in np.array_split(np.arange(len(at)), -(-len(at) // CHUNK)):
+        acting = LoadWork(field[at[chunk]], work.load[chunk], work.weight[chunk], work.follower[chunk])
         parts.append(acting.about(count, np.zeros(field.size)))
     return LoadTerms(sum(part.constant for part in parts), sum(part.slope for part in parts))

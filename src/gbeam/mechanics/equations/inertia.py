@@ -36,7 +36,7 @@ UNITS: Vector = (x, y, z)  # of the three unit vectors, in columns
 
 
 class Demanded(NamedTuple):
-    """What a motion demands: forces on the tangents t and moments on the sections at the nodes, their resultant `total`
+    """Forces that a motion demands on the tangents t, and moments on the sections at the nodes, their resultant `total`
     and moment `about` the root, and, as parts of these, the moments `turn` of the sections' own inertia at the nodes
     and the forces `push` on points beside the axis.
     """
