@@ -29,6 +29,7 @@ def _values_of(names: Sequence[str]) -> Callable[[Any], tuple[Any, ...]]:
 
 
 def _register(cls: type) -> None:
+    """Make a record's class a pytree: its leaves are children, its static fields belong to the structure."""
     leaves, fixed = leaves_and_statics(cls)
     leaves_of, fixed_of = _values_of(leaves), _values_of(fixed)
 
@@ -63,5 +64,5 @@ def with_slope(function: Callable[[Any], Any]) -> Callable[[Any], tuple[Any, Any
 
 
 def linear_root(function: Callable[[Any], Any], right: Any) -> Any:
-    """x of g(x) = y of a linear function g: what :func:`jax.lax.custom_root` differentiates a solution by."""
+    """Solve g(x) = right for a linear function g, as :func:`jax.lax.custom_root` needs it for derivatives."""
     return jax.numpy.linalg.solve(jax.jacfwd(function)(right), right)

@@ -51,7 +51,7 @@ def has_unit(value: Any) -> bool:
 
 
 def as_array(value: Any) -> Any:
-    """A float64 array of the library of a value, or of what it lists; TypeError of what is no bare number."""
+    """A value, or list of values, as a float64 array of NumPy or JAX; TypeError of text and quantities with a unit."""
     listed = value if isinstance(value, (tuple, list)) else (value,)
     for each in listed:
         if isinstance(each, str) or has_unit(each):
@@ -78,10 +78,10 @@ def holds_tracer(*records: Any) -> bool:
 
 
 def looks_at_traced(error: BaseException) -> bool:
-    """True if an error says that a number was looked at which JAX traces."""
+    """True if JAX raised an error because code needed the numbers of a value that it traces."""
     jax = sys.modules.get("jax")
     if jax is None:
         return False
-    of = jax.errors
-    numbers = of.ConcretizationTypeError, of.TracerArrayConversionError, of.TracerIntegerConversionError
-    return isinstance(error, (*numbers, of.NonConcreteBooleanIndexError))
+    kinds = jax.errors
+    numbers = kinds.ConcretizationTypeError, kinds.TracerArrayConversionError, kinds.TracerIntegerConversionError
+    return isinstance(error, (*numbers, kinds.NonConcreteBooleanIndexError))

@@ -116,20 +116,21 @@ def altered(value: Any, **changes: Any) -> Any:
 
 
 def shown(value: Any) -> str:
-    """An object on one line, by the arguments that are not as they are by default."""
-    told = arguments_of(value)
-    if told is None:
+    """An object on one line: the name of its class, and the arguments that differ from their defaults."""
+    arguments = arguments_of(value)
+    if arguments is None:
         return f"{type(value).__name__}(…)"
-    usual = {name: each.default for name, each in inspect.signature(type(value)).parameters.items()}
-    for each in dataclasses.fields(value):
-        if each.default_factory is not dataclasses.MISSING:
-            usual[each.name] = each.default_factory()
-    parts = [f"{name}={_short(each)}" for name, each in told.items() if not _same(each, usual.get(name, usual))]
-    return f"{type(value).__name__}({', '.join(parts)})"
+    defaults = {name: each.default for name, each in inspect.signature(type(value)).parameters.items()}
+    for field in dataclasses.fields(value):
+        if field.default_factory is not dataclasses.MISSING:
+            defaults[field.name] = field.default_factory()
+    none = object()  # equals nothing
+    chosen = {name: each for name, each in arguments.items() if not _same(each, defaults.get(name, none))}
+    return f"{type(value).__name__}({', '.join(f'{name}={_short(each)}' for name, each in chosen.items())})"
 
 
 def _short(value: Any) -> str:
-    """A value in some words: many numbers by their count, an object that takes more by its name."""
+    """A value as short text: many numbers by their count, what is longer than a line's share by its class."""
     if is_traced(value):
         return "traced"
     if hasattr(value, "dtype"):
@@ -170,13 +171,13 @@ def leaves_of(tree: Any) -> list[Any]:
 
 
 def together(trees: Sequence[Any]) -> Any:
-    """Stack the arrays of records, tuples, lists and None that are alike, along a first axis."""
+    """Stack the arrays of equally built records, tuples, lists and None along a new first axis."""
     stacked = iter([np.stack(each) for each in zip(*map(leaves_of, trees), strict=True)])
     return each_leaf(lambda _: next(stacked), trees[0])
 
 
 def register_all(register: Callable[[type], None]) -> None:
-    """Give every record, those so far and those to come, to `register`; called once, when JAX is imported."""
+    """Call `register` with every class of records, present and future; called once, when JAX is imported."""
     global _register
     _register = register
     for cls in _records:

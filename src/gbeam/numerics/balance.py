@@ -18,8 +18,8 @@ def loose(stiffness: Floats, velocity: Floats) -> Flags:
 
 
 def turning_on(k: Floats, mass: Floats, faster: Floats, which: Flags, turn: Flags) -> bool:
-    """True if a rotation, by its one or three flags, changes nothing but accelerations `faster` (n,) of coordinates
-    `which`, and its own as they turn on with it; where these are in balance, by K and M (n, n).
+    """True if a rotation, whose one or three coordinates `turn` flags, changes nothing, by K and M (n, n), that the
+    accelerations `faster` (n,) of the coordinates `which` do not balance, but their directions as they turn with it.
     """
     (held,) = carried(mass, which, k)
     size = np.abs(k) + np.abs(k - held) + np.abs(mass)
@@ -34,26 +34,26 @@ def following(alpha: Floats) -> Floats:
 
 
 def carried(mass: Floats, which: Flags, *forces: Floats) -> tuple[Floats, ...]:
-    """Forces (n, ...) with the inertia of some coordinates, accelerated so that theirs vanish."""
+    """Forces (n, ...) plus the inertia of the coordinates `which`, so accelerated that the forces on these vanish."""
     inertia = mass[:, which] @ np.linalg.pinv(mass[which][:, which])
     return tuple(each - inertia @ each[which] for each in forces)
 
 
 def pulled(residual: Floats, mass: Floats, which: Flags) -> Floats:
-    """Accelerations (n, ...) of some coordinates alone, for which nothing of a residual (n, ...) is left on them."""
+    """Accelerations (n, ...) of the coordinates `which` alone that leave nothing of a residual (n, ...) on them."""
     faster = np.zeros_like(residual)
     faster[which] = -np.linalg.pinv(mass[which][:, which]) @ residual[which]
     return faster
 
 
 def rooted(mass: Floats) -> Floats:
-    """Roots (n,) of the inertia that each coordinate moves, by M (n, n); one of those that move none."""
+    """Square roots (n,) of the largest entry in each row of M (n, n); 1 where a coordinate moves no inertia."""
     root = np.sqrt(np.abs(mass).max(axis=1, initial=0.0))
     return np.asarray(np.where(root > 0, root, 1.0))
 
 
 def scales(stiffness: Floats, mass: Floats) -> Floats:
-    """Sizes (n,) of displacements in which stiffness is judged: of unit kinetic energy, and the smaller the stiffer."""
+    """Units (n,) of displacement in which stiffness is judged: of unit kinetic energy, smaller where it is stiff."""
     unit = 1.0 / rooted(mass)
     square = np.abs(np.diag(stiffness)) * unit**2  # rad²/s² of each alone
     # What is stiffer than the geometric mean of the stiffest and 1/s² counts as that, so that it hides nothing soft.
@@ -62,21 +62,21 @@ def scales(stiffness: Floats, mass: Floats) -> Floats:
 
 
 def answered(stiffness: Floats, mass: Floats, forces: Floats) -> Floats:
-    """Least displacements (n,) by K and M, scaled, that forces (n,) cause where something holds them."""
+    """Least displacements (n,), in the units of :func:`scales`, under forces (n,), along what the stiffness holds."""
     size = scales(stiffness, mass)
     answer: Any = np.linalg.lstsq(size[:, None] * stiffness * size, size * forces, rcond=HELD)[0]
     return np.asarray(size * answer)
 
 
 def unheld(stiffness: Floats, mass: Floats) -> Floats:
-    """Orthogonal directions (n, k) of the forces that no stiffness balances, by K and M, scaled."""
+    """Orthogonal directions (n, k) of forces that no stiffness balances, judged in the units of :func:`scales`."""
     size = scales(stiffness, mass)
-    ways, sizes, _ = np.linalg.svd(size[:, None] * stiffness * size)
-    return np.linalg.qr(size[:, None] * ways[:, sizes <= HELD * sizes.max(initial=0.0)])[0]
+    directions, sizes, _ = np.linalg.svd(size[:, None] * stiffness * size)
+    return np.linalg.qr(size[:, None] * directions[:, sizes <= HELD * sizes.max(initial=0.0)])[0]
 
 
 def balanced(residual: Floats, stiffness: Floats, mass: Floats, which: Flags) -> tuple[Floats, Floats]:
-    """Displacements and accelerations (n,) that answer a residual (n,): accelerations of some coordinates."""
+    """Displacements (n,), and accelerations (n,) of the coordinates `which`, that balance a residual (n,)."""
     left, k = carried(mass, which, residual, stiffness)
     k[:, which] = 0.0  # of slides already; a rotation that changes nothing else keeps its angle
     change = answered(k, mass, -left)

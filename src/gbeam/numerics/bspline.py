@@ -72,7 +72,7 @@ class Spline:
         return self.step * (before[piece] + (weights[..., None, :] @ self._near(piece))[..., 0, :])
 
     def _within(self, t: Any) -> tuple[Any, Any, list[Any]]:
-        """Namespace of times, the pieces where they lie, and the powers of how far along these, from the zeroth."""
+        """Namespace, the pieces (...) where times lie, and powers 0 to 5 of the place in the piece, from 0 to 1."""
         u = (as_array(t) - self.start) / self.step
         xp = namespace(u, self.coefficients)
         piece = xp.clip(xp.floor(u).astype(int), 0, len(self.coefficients) - PIECE)
@@ -105,7 +105,7 @@ class Grid:
         return self._on_pieces(self.rows(order))
 
     def hull(self, order: int) -> Any:
-        """Six weights a piece, sparse (6 · pieces, size), of numbers between which the derivative lies on it.
+        """Weights of six numbers a piece between which the derivative lies there, sparse (6 · pieces, size).
 
         They are its Bernstein coefficients of the fifth degree, whatever the order: a sum of derivatives lies between
         the sums of them.
@@ -113,7 +113,7 @@ class Grid:
         return self._on_pieces(_BERNSTEIN @ self._powers(order))
 
     def _powers(self, order: int) -> Floats:
-        """Row k: coefficient of xᵏ of the derivative, over one piece, in each of the six that act there."""
+        """Row k: coefficient of xᵏ in the derivative over one piece of each of the six basis functions there."""
         powers = np.zeros((PIECE, PIECE))
         for k in range(PIECE - order):
             powers[k] = factorial(k + order) / factorial(k) * _BASIS[k + order] / self.step**order

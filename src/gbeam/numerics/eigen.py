@@ -21,7 +21,7 @@ def symmetric_modes(stiffness: Array, mass: Array) -> tuple[Array, Array]:
 
 
 def positive_definite(matrices: Array) -> bool:
-    """True if the symmetric parts of all matrices (..., n, n) are, by factors: a tenth of what eigenvalues cost."""
+    """True if the symmetric parts of all matrices (..., n, n) are positive definite, by Cholesky's factors."""
     try:
         np.linalg.cholesky(matrices + np.swapaxes(matrices, -1, -2))
     except np.linalg.LinAlgError:
@@ -44,7 +44,7 @@ UNSYMMETRIC = 1e-9  # of K: above it the loads follow the beam
 
 
 def growth_limit(value: Complex, largest: float) -> Floats:
-    """Real part above which each of some eigenvalues counts as one that grows, 1/s; `largest` is that of all."""
+    """Real parts, 1/s, above which eigenvalues (k,) count as growing; `largest` is the largest size of all."""
     return np.maximum(np.where(value.imag != 0, FLUTTER * np.abs(value), 0.0), ZERO * largest)
 
 
@@ -57,35 +57,36 @@ def eigenvalues(
     value, mode = _moving(*(held.T @ each @ held for each in (mass, damping, stiffness)))
     mode = held @ mode
     if free.shape[1]:
-        # What is free follows: λ² a + Nᵀ K N a = −Nᵀ (λ C + K) y, by thrust that turns with the body in Nᵀ K N.
+        # Free motions N a follow: λ² a + Nᵀ K N a = −Nᵀ (λ C + K) y, with thrust that turns with the body in Nᵀ K N.
         pull = free.T @ (value * (damping @ mode) + stiffness @ mode)
         inertia = value[:, None, None] ** 2 * np.eye(free.shape[1]) + free.T @ stiffness @ free
-        inertia[value == 0] = np.eye(free.shape[1])  # of a motion that stays, which no force answers
+        inertia[value == 0] = np.eye(free.shape[1])  # any, of a motion that stays: no force belongs to it
         mode = mode - free @ np.linalg.solve(inertia, pull.T[..., None])[..., 0].T
     weight = np.sqrt(np.einsum("ik,ij,jk->k", mode.conj(), mass, mode).real)
     return value, mode / weight
 
 
 def _apart(mass: Floats, damping: Floats, stiffness: Floats) -> tuple[Floats, Floats]:
-    """Motions of a free body (n, d), on which and on whose rates no force depends but those on motions among them, and
-    others, orthogonal to them in M, whose rows are a problem of their own; all in columns. They are found one after the
-    other: a body that turns with its thrust is accelerated by it, and by nothing else.
+    """Bases, in columns, of the free motions (n, d) and of all others, orthogonal to them in M. Forces on the others
+    depend neither on free motions nor on their rates, so that the others are a problem of their own. Free motions are
+    found one after the other: a body that turns with its thrust is accelerated by it, and by nothing else.
     """
     held: Any = np.linalg.inv(np.linalg.cholesky(symmetric(mass))).T
     free = held[:, :0]
     while held.shape[1]:
         k, c = (held.T @ each @ held for each in (stiffness, damping))
         size = np.abs(k).max()
-        _, sizes, ways = np.linalg.svd(np.concatenate([k / (size or 1.0), c / np.sqrt(size or 1.0)]))
+        _, sizes, directions = np.linalg.svd(np.concatenate([k / (size or 1.0), c / np.sqrt(size or 1.0)]))
         loose = sizes <= NONE
         if not loose.any():
             break
-        free, held = np.concatenate([free, held @ ways[loose].T], axis=1), held @ ways[~loose].T
+        free = np.concatenate([free, held @ directions[loose].T], axis=1)
+        held = held @ directions[~loose].T
     return free, held if free.shape[1] else np.eye(len(mass))
 
 
 def _moving(mass: Floats, damping: Floats, stiffness: Floats) -> tuple[Complex, Complex]:
-    """Eigenvalues and modes of motions of which none is free."""
+    """Eigenvalues and modes of :func:`eigenvalues` where no motion is free."""
     # In modes of the symmetric part, each scaled by its own frequency, all blocks are of the size of the frequencies:
     # the raw companion matrix loses half the digits of the low ones.
     square, basis = symmetric_modes(symmetric(stiffness), symmetric(mass))
@@ -110,16 +111,18 @@ class Linear(NamedTuple):
     inputs: Array
 
     def state_space(self, by_y: Floats, by_yd: Floats, by_ydd: Floats, by_u: Floats) -> tuple[Floats, ...]:
-        """A, B, C and D of states (δy, δẏ) and of outputs with such derivatives."""
+        """A, B, C and D with the states (δy, δẏ), of outputs with derivatives (m, n) by y, ẏ and ÿ, and by u."""
         k, c, b = (np.linalg.solve(self.mass, x) for x in (self.stiffness, self.velocity, self.inputs))
-        one, zero = np.eye(len(k)), np.zeros_like(k)
-        a, drive = np.block([[zero, one], [-k, -c]]), np.concatenate([np.zeros_like(b), b])
-        return a, drive, np.concatenate([by_y - by_ydd @ k, by_yd - by_ydd @ c], axis=1), by_ydd @ b + by_u
+        state = np.block([[np.zeros_like(k), np.eye(len(k))], [-k, -c]])
+        drive = np.concatenate([np.zeros_like(b), b])
+        output = np.concatenate([by_y - by_ydd @ k, by_yd - by_ydd @ c], axis=1)
+        return state, drive, output, by_ydd @ b + by_u
 
 
 class Vibrations(NamedTuple):
-    """Eigenvalues (k,) 1/s of what oscillates, one of each pair and the slowest first, with modes (n, k); of what grows
-    without oscillating, likewise; of what decays so; and the size of the largest.
+    """Eigenvalues `value` (k,) 1/s of oscillating motions, one of each pair, the slowest first, with modes (n, k);
+    eigenvalues `diverging` and modes `divergence` of motions that grow without oscillating; eigenvalues of those that
+    decay so; and the size of the largest of all.
     """
 
     value: Complex
@@ -130,7 +133,7 @@ class Vibrations(NamedTuple):
     largest: float
 
     def oscillating(self, which: Any) -> Vibrations:
-        """These with some of the oscillating modes."""
+        """The same with only the oscillating modes `which`, indices or flags."""
         return self._replace(value=self.value[which], modes=self.modes[:, which])
 
     @property
@@ -146,12 +149,12 @@ class Vibrations(NamedTuple):
     @property
     def growing(self) -> Complex:
         """Eigenvalues 1/s of all that grows, the fastest first."""
-        every = np.concatenate([self.diverging, self.value[self.flutter]])
-        return np.asarray(every[np.argsort(-every.real, kind="stable")])
+        growing = np.concatenate([self.diverging, self.value[self.flutter]])
+        return np.asarray(growing[np.argsort(-growing.real, kind="stable")])
 
 
 def vibrations(linear: Linear, *, gyroscopic: bool = True, zero: float = ZERO) -> Vibrations:
-    """Small motions about an equilibrium, without those whose eigenvalues are less than a share of the largest."""
+    """Small motions about an equilibrium, without eigenvalues less than a share `zero` of the largest."""
     value, mode = eigenvalues(*linear[:3], gyroscopic=gyroscopic)
     size = float(np.abs(value).max(initial=0.0))
     moving, real = np.abs(value) > zero * size, np.abs(value.imag) <= ZERO * size
@@ -187,8 +190,8 @@ def unsymmetric(stiffness: Floats) -> bool:
 
 
 def stability_margin(mass: Floats, velocity: Floats, stiffness: Floats, zero: float = 0.0) -> float:
-    """Positive while nothing grows, rad²/s²: by K's lowest eigenvalue, or, where K is unsymmetric, by all of them; a
-    share `zero` of the largest is rounding about none.
+    """Number that is positive while nothing grows: the lowest eigenvalue of K in M, rad²/s², with the share `zero` of
+    the largest added, which is rounding; where K is unsymmetric, by the real parts of all eigenvalues, 1/s.
     """
     if not unsymmetric(stiffness):
         square = symmetric_modes(symmetric(stiffness), symmetric(mass))[0]

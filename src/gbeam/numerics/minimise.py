@@ -22,7 +22,9 @@ def coarse(low: float, high: float) -> tuple[float, ...]:
 
 
 def refine(evaluate: Evaluate, points: Sequence[float]) -> None:
-    """Look for a better number around the best of the coarse ones; what was evaluated is the caller's to keep."""
+    """Evaluate more numbers around the best of the coarse `points`, to where limits end. `evaluate` gives the cost, and
+    the share of limits that is used, at most 1 where allowed; it keeps what the caller wants to know.
+    """
     values = [evaluate(x) for x in points]
     allowed = [i for i, (_, share) in enumerate(values) if share <= 1]
     if not allowed:
@@ -39,6 +41,7 @@ def refine(evaluate: Evaluate, points: Sequence[float]) -> None:
         return inside
 
     def neighbour(i: int) -> float:
+        """Bound of the search: point i, or the last allowed number on the way to it."""
         if not 0 <= i < len(points):
             return points[best]
         return points[i] if values[i][1] <= 1 else edge(points[best], points[i])
@@ -73,13 +76,15 @@ def least(evaluate: Callable[[Floats], tuple[float, Floats]], low: Floats, high:
     near = np.block([[np.eye(n), np.zeros((n, 1)), -np.eye(n)], [-np.eye(n), np.zeros((n, 1)), -np.eye(n)]])
     rows, sides = [*near], [*begun, *-begun]
     bounds, costs = [*[(0.0, 1.0)] * n, (0.0, np.inf), *[(0.0, 1.0)] * n], np.zeros(2 * n + 1)
-    costs[n], x, unit, best = 1.0, start, 0.0, (np.inf, start)
+    costs[n] = 1.0
+    x, best = start, (np.inf, start)
+    unit = 0.0  # the value at the start
     for _ in range(_CUTS):
         value, slope = evaluate(x)
         unit = unit or max(value, _NOTHING)
         if costs[n] == 0 and value <= best[0] + _WORTH * unit:
             return x
-        best = min(best, (value, x), key=lambda each: each[0])
+        best = min(best, (value, x), key=lambda pair: pair[0])
         rows.append(np.concatenate([slope * width / unit, [-1.0], np.zeros(n)]))
         sides.append(float(slope @ (x - low) - value) / unit)
         solved = scipy.optimize.linprog(costs, np.array(rows), sides, bounds=bounds)
@@ -99,7 +104,7 @@ _SCALE = 1e4  # of the cost: the solver adds up to 1e-10 to H, which must be sma
 
 
 def solve_quadratic(hessian: Any, slope: Floats, rows: Any, lower: Floats, upper: Floats) -> Floats | None:
-    """Find the x that minimises ½ xᵀHx + gᵀx within lower <= A x <= upper; H (n, n), A (m, n)."""
+    """Find the x that minimises ½ xᵀHx + gᵀx within lower <= A x <= upper, H (n, n), A (m, n); None if not solved."""
     import piqp
 
     solver = piqp.SparseSolver()
@@ -114,7 +119,7 @@ def solve_quadratic(hessian: Any, slope: Floats, rows: Any, lower: Floats, upper
 
 
 def _sorted(matrix: Any) -> Any:
-    """By columns, each in order: PIQP takes no others."""
+    """A sparse matrix by columns with ascending rows: PIQP takes no others."""
     columns = matrix.tocsc()
     columns.sort_indices()
     return columns

@@ -30,7 +30,7 @@ def joined(runs: list[slice], time: Floats, gap: float) -> list[slice]:
 
 
 def thinned(x: Floats, y: Floats, columns: int) -> tuple[Floats, Floats]:
-    """The samples that show: of each of so many columns the first, last, lowest and highest; few stay as they are."""
+    """Samples that show in a picture of so many columns: the first, last, lowest and highest of each; all of few."""
     if len(x) <= 4 * columns:
         return x, y
     width = -(-len(x) // columns)
@@ -68,7 +68,9 @@ def attitude(time: Floats, w_WB_B: Floats) -> Floats:
 
 
 def separate_peaks(values: Floats, floor: float, dip: float) -> list[tuple[int, slice]]:
-    """Local maxima (int, slice) of values (n,) above a floor, those that no dip separates being one."""
+    """Peaks of values (n,) above a floor: index of the top, and the slice around it. Two maxima are one peak unless the
+    values between them are below `dip` times the lower one.
+    """
     peaks: list[tuple[int, slice]] = []
     for run in true_runs(values > floor):
         part = values[run]
@@ -115,14 +117,15 @@ def low_pass(values: Floats, step: float, cutoff: float) -> Floats:
 
 def displacement(load: Floats, frequency: ArrayLike, damping: float, step: float) -> Floats:
     """η (f, t, ...) of η̈ + 2ζω η̇ + ω² η = load (t, ...), from rest under the first load; (f,) rad/s, or one."""
-    every = [_response(load, omega, damping, step, 1.0, 0.0, 1 / omega**2) for omega in np.ravel(frequency)]
-    return np.reshape(every, (*np.shape(frequency), *np.shape(load)))
+    histories = [_response(load, omega, damping, step, 1.0, 0.0, 1 / omega**2) for omega in np.ravel(frequency)]
+    return np.reshape(histories, (*np.shape(frequency), *np.shape(load)))
 
 
 def riding_acceleration(base: Floats, frequency: ArrayLike, damping: float, step: float) -> Floats:
-    """Absolute acceleration of oscillators riding on a base with the given acceleration, starting at rest on it."""
-    every = [_response(base, omega, damping, step, omega**2, 2 * damping * omega, 1.0) for omega in np.ravel(frequency)]
-    return np.reshape(every, (*np.shape(frequency), *np.shape(base)))
+    """Absolute accelerations (f, t, ...) of oscillators (f,) rad/s, from rest on a base with acceleration (t, ...)."""
+    omegas = np.ravel(frequency)
+    histories = [_response(base, omega, damping, step, omega**2, 2 * damping * omega, 1.0) for omega in omegas]
+    return np.reshape(histories, (*np.shape(frequency), *np.shape(base)))
 
 
 def largest_riding_acceleration(base: Floats, frequency: Floats, damping: float, step: float, covered: Flags) -> Floats:
@@ -134,7 +137,7 @@ def largest_riding_acceleration(base: Floats, frequency: Floats, damping: float,
 def _response(
     load: Floats, omega: float, damping: float, step: float, by_place: float, by_rate: float, steady: float
 ) -> Floats:
-    """Output by_place η + by_rate η̇ of one oscillator; `steady` is that of a unit load."""
+    """Output by_place η + by_rate η̇ (t, ...) of one oscillator, rad/s, whose output at rest is `steady` · load."""
     from scipy.signal import lfilter
 
     damping = damping if damping != 1 else 1 - 1e-9  # one pole for two
@@ -143,8 +146,8 @@ def _response(
     damped = omega * math.sqrt(1 - damping**2)
     pole = complex(-damping * omega, damped)
     z = pole * step
-    even = np.expm1(z) / z
-    rising = (even - 1) / z
+    phi1 = np.expm1(z) / z
+    phi2 = (phi1 - 1) / z
     # The change is filtered: it starts at rest, without a history.
-    w = lfilter([step * rising, step * (even - rising)], [1.0, -np.exp(z)], load - load[0], axis=0)
+    w = lfilter([step * phi2, step * (phi1 - phi2)], [1.0, -np.exp(z)], load - load[0], axis=0)
     return np.asarray(((by_place + by_rate * pole) * w).imag / damped + steady * load[0])

@@ -30,7 +30,7 @@ class Series:
 
     @classmethod
     def of(cls, derivatives: Sequence[Any], order: int) -> Series:
-        """From the value and the derivatives; those left out are zero."""
+        """Series of an order by the value and derivatives f, f', f'', …; those that are left out are zero."""
         coefficients = [value / factorial(k) if k > 1 else value for k, value in enumerate(derivatives[: order + 1])]
         if len(coefficients) <= order:
             coefficients += [namespace(*derivatives).zeros_like(derivatives[0])] * (order + 1 - len(coefficients))
@@ -38,7 +38,7 @@ class Series:
 
     @classmethod
     def in_pieces(cls, function: Callable[[Any], Series], t: Any, count: int) -> Series:
-        """A function's series at times `t`, (n,) s, of so many pieces of them one after the other: it needs memory."""
+        """A function's series at times `t` (n,), s, computed in `count` pieces one after the other to save memory."""
         pieces = [function(piece).coefficients for piece in np.array_split(t, count)]
         return cls(tuple(np.concatenate(each) for each in zip(*pieces, strict=True)))
 
@@ -65,7 +65,7 @@ class Series:
         return Series(self.coefficients[: order + 1])
 
     def each(self, function: Callable[[Any], Any]) -> Series:
-        """A linear function that knows no time, of every coefficient."""
+        """Series of a linear function, the same at all times, of this one."""
         return Series(tuple(function(c) for c in self.coefficients))
 
     def __getitem__(self, index: Any) -> Series:
@@ -105,8 +105,10 @@ class Series:
 
     def __pow__(self, exponent: int) -> Series:
         """A whole power, one or more."""
-        half = self if exponent == 1 else self ** (exponent // 2)
-        return half if exponent == 1 else half * half if exponent % 2 == 0 else half * half * self
+        if exponent == 1:
+            return self
+        half = self ** (exponent // 2)
+        return half * half if exponent % 2 == 0 else half * half * self
 
 
 def _total(terms: Iterable[Any]) -> Any:
@@ -175,11 +177,11 @@ def square(vector: Series) -> Series:
 
 
 def compose(derivatives: Sequence[Any], inner: Series) -> Series:
-    """A function of a series, given its value and its derivatives up to the order, with respect to `inner`, there."""
-    away = Series((0.0 * inner.value, *inner.coefficients[1:]))
+    """Series of a function f(inner), by f and its derivatives by `inner` at the value of this, up to its order."""
+    change = Series((0.0 * inner.value, *inner.coefficients[1:]))
     result = Series.of([derivatives[inner.order] / factorial(inner.order)], inner.order)
     for k in range(inner.order - 1, -1, -1):
-        result = result * away + derivatives[k] / factorial(k)
+        result = result * change + derivatives[k] / factorial(k)
     return result
 
 

@@ -60,7 +60,7 @@ def refuse_cost(where: str, unknowns: float, of: str = "makes") -> None:
 
 @contextmanager
 def factorised(matrix: Any, where: str = "stiffness") -> Iterator[Callable[[Floats], Floats]]:
-    """Yield a function that solves for right-hand sides (n,) or (n, m); an InputError where the matrix is singular."""
+    """Yield a function that solves for right-hand sides (n,) or (n, m); InputError if the matrix is singular."""
     if solver() == "Pardiso":
         from pypardiso import PyPardisoSolver
         from pypardiso.pardiso_wrapper import PyPardisoError
@@ -134,10 +134,10 @@ def lowest_modes(
 def _orthonormal(
     vectors: Floats, weighed: Floats, basis: list[Floats], mass: Any, across: Floats | None = None
 ) -> tuple[Floats, Floats]:
-    """Span of what vectors (n, b) have beside a basis, orthonormal in the mass, (n, l), and its products with the mass;
-    `weighed` and `across` are the products of the vectors with the mass and with the basis.
+    """Vectors (n, l), orthonormal in the mass, that span what `vectors` (n, b) have beside a basis (n, m), and their
+    products with the mass; `weighed` (n, b) is M V of the `vectors` V, and `across` (m, b) that of the basis with it.
     """
-    whole = np.sqrt(np.maximum(np.einsum("ij,ij->j", vectors, weighed), 0.0))
+    lengths = np.sqrt(np.maximum(np.einsum("ij,ij->j", vectors, weighed), 0.0))
     for _ in range(3):  # twice is enough, and once more for what was small
         if basis:
             across = _products(basis, weighed) if across is None else across
@@ -145,27 +145,28 @@ def _orthonormal(
             weighed, across = mass @ vectors, None
         products = vectors.T @ weighed
         size = np.sqrt(np.maximum(np.diagonal(products), 0.0))
-        some = (size > NONE * whole) & (whole > 0)
-        size, products, left = size[some], products[np.ix_(some, some)], size[some] / whole[some]
+        beside = (size > NONE * lengths) & (lengths > 0)
+        size, products, share = size[beside], products[np.ix_(beside, beside)], size[beside] / lengths[beside]
         value, vector = np.linalg.eigh(products / np.outer(size, size))
         kept = value > SAME * value.max(initial=0.0)
         change = vector[:, kept] / np.sqrt(value[kept]) / size[:, None]
-        vectors, weighed = vectors[:, some] @ change, weighed[:, some] @ change
-        whole = np.ones(vectors.shape[1])
-        if value[kept].min(initial=1.0) * left.min(initial=1.0) ** 2 > OUTSIDE:
+        vectors, weighed = vectors[:, beside] @ change, weighed[:, beside] @ change
+        lengths = np.ones(vectors.shape[1])
+        if value[kept].min(initial=1.0) * share.min(initial=1.0) ** 2 > OUTSIDE:
             break
     return vectors, weighed
 
 
 def _products(basis: list[Floats], weighed: Floats) -> Floats:
-    return np.concatenate([each.T @ weighed for each in basis])
+    """Products (m, b) of all vectors of a basis, in blocks, with `weighed` (n, b)."""
+    return np.concatenate([block.T @ weighed for block in basis])
 
 
 def _combined(basis: list[Floats], factors: Floats) -> Floats:
-    """Sum of the basis with such factors, of which no copy is made: it is large."""
+    """Combinations (n, k) of a basis by factors (m, k), block by block: joined, the basis would be copied."""
     total = np.zeros((len(basis[0]), factors.shape[1]))
     first = 0
-    for each in basis:
-        total += each @ factors[first : first + each.shape[1]]
-        first += each.shape[1]
+    for block in basis:
+        total += block @ factors[first : first + block.shape[1]]
+        first += block.shape[1]
     return total
