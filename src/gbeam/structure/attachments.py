@@ -29,7 +29,7 @@ _TAKEN = (TIP, "root_force", "root_moment", "hub", "strain", "size")
 
 
 def checked_name(name: str) -> None:
-    """Refuse a name that is no word, or that of a quantity."""
+    """Raise InputError unless a name is one word, and not that of a quantity."""
     if not _NAME.fullmatch(name) or name in _TAKEN:
         fix = f"give letters, digits and underscores, and none of {', '.join(_TAKEN)}"
         raise InputError("name", f"is {name!r}", fix)
@@ -259,6 +259,6 @@ class Root(Value):
         """Matrices (3, springs) from the springs' stretches to the root's displacement and rotation vector."""
         move, turn = np.zeros((2, 3, len(self.springs)))
         for column, name in enumerate(self.springs):
-            what, axis = name.split("_")
-            (move if what == "translation" else turn)["xyz".index(axis), column] = 1.0
+            motion, axis = name.split("_")
+            (move if motion == "translation" else turn)["xyz".index(axis), column] = 1.0
         return move, turn

@@ -120,6 +120,7 @@ class Beam(Value):
         damping_ratios("damping_ratio", ratios)
 
     def _refuse_names_twice(self) -> None:
+        """Raise InputError if two points, or masses with a name, have the same one."""
         named = [(f"points[{i}].name", point.name) for i, point in enumerate(self.points)]
         named += [(f"masses[{i}].name", mass.name) for i, mass in enumerate(self.masses) if mass.name]
         for k, (place, name) in enumerate(named):
@@ -148,7 +149,7 @@ class Beam(Value):
 
     @property
     def envelope(self) -> Floats:
-        """Places (c, 3) m at rest along the line and of the bodies' centres; none of a straight beam."""
+        """Places (c, 3) m at rest along the line and of the bodies' centres; (0, 3) of a straight beam."""
         if self.line is None:
             return np.empty((0, 3))
         edges = {0.0, *self.line.breaks, self.length}
@@ -182,7 +183,8 @@ class Beam(Value):
 
     def stiffnesses(self, x: ArrayLike) -> tuple[Any, ...]:
         """EA, kGA along y and along z N, GJ, EI_y and EI_z N m² at positions `x`, m: against stretch and shears, twist
-        and curvatures about y and z; GJ is NaN where the torsion constant is not known; the diagonal of matrices.
+        and curvatures about y and z. GJ is NaN where the torsion constant is not known. Of a section by matrices these
+        are the diagonal of its stiffness.
         """
         if self.material is None:
             stiffness = self.section.matrices(x)[0]
@@ -220,7 +222,7 @@ def fibre_strain(beam: Beam, at: Any, force: Any, moment: Any, y: Any, z: Any) -
 
 
 def names_at(beam: Beam, stations: ArrayLike) -> tuple[str, ...]:
-    """Names of points at positions (s,), m; of one without a name its position, such as 100 mm."""
+    """Names of the points at positions (s,), m; a position without a point is named by itself, such as 100 mm."""
     slack, names = 1e-9 * beam.length, []
     for x in np.asarray(stations, dtype=float):
         near = (name for name, at in beam.named_points.items() if abs(at - x) <= slack)

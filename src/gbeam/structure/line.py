@@ -128,8 +128,8 @@ class Line(Value):
             turns = np.stack([np.broadcast_to(np.asarray(each, float), size.shape) for each in (twist, turn_y, turn_z)])
         except ValueError:
             raise InputError("twist", "and turns are not one for each piece", f"give {len(size)}, or one") from None
-        for i, each in enumerate(size):
-            positive(f"lengths[{i}]", float(each), "m", zero=True)
+        for i, length in enumerate(size):
+            positive(f"lengths[{i}]", float(length), "m", zero=True)
         if not size.sum() > 0:
             raise InputError("lengths", "are all zero", "give one piece a length")
         if not np.isfinite(turns).all():
@@ -184,17 +184,17 @@ class Line(Value):
         if angles.shape not in ((), (len(at),)) or not np.isfinite(angles).all():
             raise InputError("twist", f"is an array {angles.shape}", f"give one finite angle, or {len(at)}, rad")
         angles = np.broadcast_to(angles, len(at))
-        ways = np.diff(at, axis=0) / size[:, None]
-        back = np.flatnonzero(np.linalg.norm(ways[1:] + ways[:-1], axis=1) < _BACK)
-        if back.size:
-            raise InputError(f"points[{back[0] + 2}]", "turns the line back onto itself", "give a point beside it")
+        directions = np.diff(at, axis=0) / size[:, None]
+        reversals = np.flatnonzero(np.linalg.norm(directions[1:] + directions[:-1], axis=1) < _BACK)
+        if reversals.size:
+            raise InputError(f"points[{reversals[0] + 2}]", "turns the line back onto itself", "give a point beside it")
         if smooth and len(at) > 2:
             return _curve(at, size, angles)
         from scipy.spatial.transform import Rotation
 
         axes, lengths, turns = Rotation.identity(), [], []
-        for i, (way, length) in enumerate(zip(ways, size, strict=True)):
-            corner = _shortest(f"points[{i + 1}]", ways[i - 1] if i else np.array([1.0, 0.0, 0.0]), way)
+        for i, (direction, length) in enumerate(zip(directions, size, strict=True)):
+            corner = _shortest(f"points[{i + 1}]", directions[i - 1] if i else np.array([1.0, 0.0, 0.0]), direction)
             turned = corner * axes * (Rotation.from_rotvec([angles[0], 0, 0]) if i == 0 else Rotation.identity())
             lengths += [0.0, length]
             turns += [(axes.inv() * turned).as_rotvec(), np.array([angles[i + 1] - angles[i], 0.0, 0.0])]
@@ -237,11 +237,11 @@ class Line(Value):
             inside = (at <= high) & ((at > low) | (low == 0.0))
             if high == self.length:
                 inside |= at > high
-            where, back = np.unique(np.clip(at[inside], low, high), return_inverse=True)
-            to = np.unique([low, *where, high])
-            solved = solve_ivp(change, (low, high), state, t_eval=to, **_EXACT).y.T
-            chosen = solved[np.searchsorted(to, where)][back]
-            place[inside], axes[inside] = chosen[:, :3], chosen[:, 3:].reshape(-1, 3, 3)
+            wanted, index = np.unique(np.clip(at[inside], low, high), return_inverse=True)
+            stops = np.unique([low, *wanted, high])
+            solved = solve_ivp(change, (low, high), state, t_eval=stops, **_EXACT).y.T
+            states = solved[np.searchsorted(stops, wanted)][index]
+            place[inside], axes[inside] = states[:, :3], states[:, 3:].reshape(-1, 3, 3)
             state = solved[-1]
         return place, axes
 
@@ -273,13 +273,13 @@ class Splines(Value):
         from scipy.interpolate import BSpline
 
         for k in np.unique(piece):
-            of = BSpline(self.knots[k], self.coefficients[k], _DEGREE)
-            out[piece == k] = of(x[piece == k])
+            spline = BSpline(self.knots[k], self.coefficients[k], _DEGREE)
+            out[piece == k] = spline(x[piece == k])
         return out
 
 
 def _shortest(where: str, before: Floats, after: Floats) -> Rotation:
-    """The smallest rotation from one direction to another."""
+    """Smallest rotation from one direction to another; InputError, with the place `where`, if they are opposite."""
     from scipy.spatial.transform import Rotation
 
     axis, cosine = np.cross(before, after), float(before @ after)
@@ -292,7 +292,7 @@ def _shortest(where: str, before: Floats, after: Floats) -> Rotation:
 
 
 def _curve(points: Floats, chords: Floats, twist: Floats) -> Line:
-    """A cubic spline through points: its curvatures as functions of the length of arc."""
+    """Line along the cubic spline through points (k, 3) m, `chords` (k − 1,) m apart, with a `twist` (k,) rad there."""
     from scipy.integrate import solve_ivp
     from scipy.interpolate import CubicSpline, make_interp_spline
     from scipy.spatial.transform import Rotation
@@ -319,9 +319,8 @@ def _curve(points: Floats, chords: Floats, twist: Floats) -> Line:
         state, s = states[-1], states[:, 0]
         rate = (end - start) / (s[-1] - s[0])
         angle = start + rate * (s - s[0])
-        y, z = np.array([axes.reshape(3, 3).T @ tangent(each)[2] for axes, each in zip(states[:, 1:], u, strict=True)])[
-            :, 1:
-        ].T
+        bends = [axes.reshape(3, 3).T @ tangent(at)[2] for axes, at in zip(states[:, 1:], u, strict=True)]
+        _, y, z = np.array(bends).T
         c, n = np.cos(angle), np.sin(angle)
         spline: Any = make_interp_spline(s, np.stack([rate + 0 * s, c * y + n * z, c * z - n * y], axis=1), _DEGREE)
         edges.append(float(s[-1]))

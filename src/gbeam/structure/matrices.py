@@ -32,7 +32,9 @@ UPPER = np.triu_indices(3)
 
 
 def listed(name: str, value: Any) -> tuple[Matrix, ...]:
-    """Matrices, one per station, of an array (6, 6) or (stations, 6, 6)."""
+    """Matrices, one per station, of an array (6, 6) or (stations, 6, 6), as tuples unless JAX traces them; InputError
+    unless they have this shape and are finite.
+    """
     matrices = array(name, value)
     traced = is_traced(matrices)
     matrices = matrices[None] if np.ndim(matrices) == 2 else matrices
@@ -44,7 +46,7 @@ def listed(name: str, value: Any) -> tuple[Matrix, ...]:
 
 
 def refuse_impossible(dimensions: dict[str, tuple[Any, ...]]) -> None:
-    """Raise InputError where a matrix is not symmetric, no energy belongs to it, or no mass."""
+    """Raise InputError if a matrix is not symmetric, the stiffness not positive definite, or the mass of no body."""
     for name, matrices in dimensions.items():
         for i, matrix in enumerate(() if is_traced(*matrices) else np.asarray(matrices)):
             place = f"{name}[{i}]" if len(matrices) > 1 else name
@@ -59,7 +61,7 @@ def refuse_impossible(dimensions: dict[str, tuple[Any, ...]]) -> None:
 
 
 def _least(matrix: Floats) -> float:
-    """Least eigenvalue, over the diagonal's sizes; minus one where one of these is not positive."""
+    """Least eigenvalue of a matrix scaled to a diagonal of ones; −1 where its diagonal is not positive."""
     size = np.diag(matrix)
     if not (size > 0).all():
         return -1.0
@@ -67,6 +69,7 @@ def _least(matrix: Floats) -> float:
 
 
 def _refuse_no_body(place: str, matrix: Floats) -> None:
+    """Raise InputError unless a mass matrix (6, 6) is that of a rigid slice."""
     if not matrix[0, 0] > 0:
         raise InputError(place, f"has the mass {matrix[0, 0]:g} kg/m", "give a positive one in the first three rows")
     mass, (x, y, z), _ = body_of(matrix)
@@ -93,7 +96,7 @@ def body_of(matrix: Any) -> tuple[Any, Any, Any]:
 
 
 def radii(matrix: Any) -> Any:
-    """Matrices (..., 3, 3) L with L Lᵀ the second moments over the mass; None where these are no body's."""
+    """Matrices L (..., 3, 3), m, with L Lᵀ = second moments/mass of mass matrices; None if a moment is negative."""
     mass, _, second = body_of(np.asarray(matrix))
     value, vector = np.linalg.eigh(second / mass[..., None, None])
     if (value < -CLOSE * np.abs(value).max(axis=-1, keepdims=True) - 1e-300).any():
@@ -116,8 +119,8 @@ def particles(matrix: Any, *, rotary: bool) -> tuple[Any, Any]:
     about = second[:, *UPPER] / (mass * square)[:, None]
     moments = xp.concatenate([xp.ones((len(mass), 1)), xp.zeros((len(mass), 3)), about], axis=1)
     products = LATTICE[:, UPPER[0]] * LATTICE[:, UPPER[1]]
-    of_places = np.linalg.inv(np.column_stack([np.ones(len(LATTICE)), LATTICE, products]).T)
-    return of_places @ moments.T, centre + LATTICE[:, None] * xp.sqrt(square)[:, None]
+    to_shares = np.linalg.inv(np.column_stack([np.ones(len(LATTICE)), LATTICE, products]).T)
+    return to_shares @ moments.T, centre + LATTICE[:, None] * xp.sqrt(square)[:, None]
 
 
 def between(stations: tuple[float, ...], matrices: tuple[Matrix, ...], x: Any) -> Floats:
@@ -133,12 +136,12 @@ def between(stations: tuple[float, ...], matrices: tuple[Matrix, ...], x: Any) -
 
 
 def condensed(stiffness: Floats, kept: list[int]) -> Floats:
-    """Stiffness (..., k, k) of some strains, the others of which follow without a force of their own."""
+    """Stiffness (..., k, k) of the k strains `kept` of six where the others carry no force and take any value."""
     if len(kept) == 6:
         return stiffness
     xp = namespace(stiffness)
-    some = xp.linalg.inv(stiffness)[..., kept, :][..., kept]
-    return xp.asarray(xp.linalg.inv(some))
+    flexibility = xp.linalg.inv(stiffness)[..., kept, :][..., kept]
+    return xp.asarray(xp.linalg.inv(flexibility))
 
 
 def values(stiffness: Floats, mass: Floats) -> tuple[Floats, ...]:
@@ -149,18 +152,20 @@ def values(stiffness: Floats, mass: Floats) -> tuple[Floats, ...]:
 
 
 def no_torsion(stiffness: Floats, **_: Floats) -> Floats:
-    """The torsion constant, which matrices have in their stiffness: not known."""
+    """NaN in the place of the torsion constant, which matrices have in their stiffness."""
     return np.full(stiffness.shape[:-2], np.nan)
 
 
 def no_shear(_: float, stiffness: Floats, **__: Floats) -> tuple[Floats, Floats]:
-    """The shear coefficients, likewise."""
+    """NaN in the place of the shear coefficients, which matrices have in their stiffness."""
     unknown = np.full(stiffness.shape[:-2], np.nan)
     return unknown, unknown
 
 
 class Program(NamedTuple):
-    """A program that writes a section's matrices: their titles, its rows in our order, and what to ask it for."""
+    """A program that writes a section's matrices: the titles above them, the indices in its file of our six strains,
+    and what to ask it for where a matrix is missing.
+    """
 
     stiffness: str
     mass: str
@@ -189,30 +194,31 @@ def read_matrices(path: str | os.PathLike[str], length_unit: str, mass_unit: str
     """Stiffness and mass matrices (6, 6) of a file, in SI, whose unit of time is the second."""
     refuse_large_file("path", path, TEXT_BYTES, "give the output of one section")
     lines = Path(path).read_text(encoding="utf-8", errors="replace").splitlines()
-    written = [name for name, each in PROGRAMS.items() if _rows(lines, each.stiffness) or _rows(lines, each.mass)]
-    if not written:
+    writers = [name for name, each in PROGRAMS.items() if _rows(lines, each.stiffness) or _rows(lines, each.mass)]
+    if not writers:
         known = "the .K of VABS, or the .out of BECAS"
         raise InputError("path", f"{path} has no matrices of a section", f"give {known}; or the matrices themselves")
-    program = PROGRAMS[written[0]]
-    both = []
-    for what, title in (("stiffness", program.stiffness), ("mass", program.mass)):
+    program = PROGRAMS[writers[0]]
+    matrices = []
+    for kind, title in (("stiffness", program.stiffness), ("mass", program.mass)):
         rows = _rows(lines, title)
         if len(rows) != 6:
-            raise InputError("path", f"{path} of {written[0]} has no {what} matrix of six rows", program.fix)
-        both.append(np.array(rows)[np.ix_(program.rows, program.rows)])
+            raise InputError("path", f"{path} of {writers[0]} has no {kind} matrix of six rows", program.fix)
+        matrices.append(np.array(rows)[np.ix_(program.rows, program.rows)])
     length, mass = _size("length_unit", length_unit, "length"), _size("mass_unit", mass_unit, "mass")
-    turned = np.repeat([1.0, length], 3)
-    scale = np.outer(turned, turned)
-    return both[0] * scale * mass * length, both[1] * scale * mass / length
+    arms = np.repeat([1.0, length], 3)  # rows of moments have a length more
+    stiffness, inertia = (np.outer(arms, arms) * matrix for matrix in matrices)
+    return stiffness * mass * length, inertia * mass / length
 
 
 def _rows(lines: list[str], title: str) -> list[list[float]]:
-    """Rows of six numbers below the first line that has a title."""
+    """Six rows of six numbers, or fewer, below the first line that begins with a title."""
     at = next((k for k, line in enumerate(lines) if line.strip().startswith(title)), None)
     return [] if at is None else list(_matrix(lines[at + 1 : at + 12]))
 
 
 def _matrix(lines: list[str]) -> Iterator[list[float]]:
+    """Yield the first rows of six numbers that follow one another, six at most."""
     count = 0
     for line in lines:
         try:
@@ -227,6 +233,7 @@ def _matrix(lines: list[str]) -> Iterator[list[float]]:
 
 
 def _size(where: str, unit: str, kind: str) -> float:
+    """Size of a unit of a kind of quantity in SI; InputError if there is no such unit."""
     try:
         return quantity(f"1 {unit}", kind)
     except UnitError as error:
@@ -237,8 +244,8 @@ ELEMENTS = 400  # in the area of a section, about, where no size is given
 
 
 def _analysed(outline: Any, holes: Any, element_size: float | None, ratio: float) -> Any:
-    """Analysis by sectionproperties of the polygon of an outline (k, 2) m with holes, by a Young's modulus of one and a
-    Poisson's ratio, in lengths of a size m, which follows.
+    """Return sectionproperties' analysis of an outline (k, 2) m with holes, by a Young's modulus of one and a Poisson's
+    ratio, and the size, m, that is its unit of length; InputError if the outline encloses no area.
     """
     try:
         from sectionproperties.analysis import Section
@@ -273,11 +280,11 @@ def matrices_of(
     modulus, shear = material.youngs_modulus, material.rigidity
     area = section.get_area() * size**2
     about_y, about_z, product = (each * size**4 for each in section.get_eic())  # ∫z², ∫y² and ∫yz about the centroid
-    along_y, along_z, both = (getattr(section.section_props, name) for name in ("a_sx", "a_sy", "a_sxy"))
+    along_y, along_z, coupled = (getattr(section.section_props, name) for name in ("a_sx", "a_sy", "a_sxy"))
     # Shear flexibilities add as the energy of two shear forces does (Pilkey, Analysis and Design of Elastic Beams).
-    flexible = np.array([[1 / along_y, 1 / both], [1 / both, 1 / along_z]]) / (shear * size**2)
+    flexibility = np.array([[1 / along_y, 1 / coupled], [1 / coupled, 1 / along_z]]) / (shear * size**2)
     sheared = np.zeros((6, 6))
-    sheared[1:3, 1:3] = np.linalg.inv(flexible)
+    sheared[1:3, 1:3] = np.linalg.inv(flexibility)
     sheared[3, 3] = shear * section.get_ej() * size**4
     stretched, mass = np.zeros((6, 6)), np.zeros((6, 6))
     stretched[0, 0] = modulus * area
@@ -294,13 +301,14 @@ def matrices_of(
 
 
 def _moved(y: float, z: float) -> Floats:
-    """Strains (6, 6) at a place of the section by those at the origin."""
+    """Matrix (6, 6) of the strains at the place (y, z), m, by those at the section's origin."""
     moved = np.eye(6)
     moved[:3, 3:] = [[0, z, -y], [-z, 0, 0], [y, 0, 0]]
     return moved
 
 
 def _corners(where: str, corners: Any) -> Floats:
+    """Corners (k, 2) m; InputError unless there are three or more finite ones."""
     at = array(where, corners)
     if at.ndim != 2 or at.shape[1] != 2 or len(at) < 3 or not np.isfinite(at).all():
         raise InputError(where, f"is an array {at.shape}", "give three corners [y, z] or more, m")

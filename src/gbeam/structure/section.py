@@ -327,8 +327,8 @@ class Section(Value):
         """
         if not paths:
             raise InputError("paths", "are missing", "give a file of VABS or BECAS, or one per station")
-        both = [read_matrices(path, length_unit, mass_unit) for path in paths]
-        stiffness, mass = (np.stack(each) for each in zip(*both, strict=True))
+        pairs = [read_matrices(path, length_unit, mass_unit) for path in paths]
+        stiffness, mass = (np.stack(each) for each in zip(*pairs, strict=True))
         return cls.of(MATRICES, stations, stiffness=stiffness, mass=mass)
 
     @classmethod
@@ -389,11 +389,12 @@ class Section(Value):
 
     def stresses(self, x: ArrayLike) -> Floats | None:
         """Stresses (points, 3, 6, s) Pa, normal and shear along two directions, by unit loads at positions `x` (s,), m;
-        None where the shape has no formulas.
+        None where the shape has no formulas, or JAX has the dimensions.
         """
-        of = SHAPES[self.shape].stresses
-        local = self._local(x)
-        return None if of is None or any(map(is_jax, local.values())) else np.asarray(of(**local))
+        formula, local = SHAPES[self.shape].stresses, self._local(x)
+        if formula is None or any(map(is_jax, local.values())):
+            return None
+        return np.asarray(formula(**local))
 
     def matrices(self, x: ArrayLike) -> tuple[Floats, Floats]:
         """Stiffness and mass matrices (..., 6, 6) at positions `x`, m, of a section that has them."""
@@ -403,19 +404,21 @@ class Section(Value):
         return local["stiffness"], local["mass"]
 
     def _local(self, x: ArrayLike) -> dict[str, Any]:
-        """The dimensions at positions."""
-        where = array("x", x)
+        """Dimensions at positions `x`, m, by name, linear between stations."""
+        at = array("x", x)
         if self.shape == MATRICES:
-            return {name: between(self.stations, each, where) for name, each in self.dimensions.items()}
+            return {name: between(self.stations, each, at) for name, each in self.dimensions.items()}
         xp = namespace(*(each for values in self.dimensions.values() for each in values))
         if self.stations:
-            return {k: xp.interp(where, np.asarray(self.stations), xp.asarray(v)) for k, v in self.dimensions.items()}
-        return {k: v[0] + xp.zeros(where.shape) for k, v in self.dimensions.items()}
+            return {k: xp.interp(at, np.asarray(self.stations), xp.asarray(v)) for k, v in self.dimensions.items()}
+        return {k: v[0] + xp.zeros(at.shape) for k, v in self.dimensions.items()}
 
 
 @record
 class SectionValues:
-    """Section properties at positions: m², m⁴ and extreme fibres m, corners (±y, ±z), or where `round` a circle."""
+    """Section properties at positions: area, m², second moments, m⁴, and distances of the extreme fibres, m, which are
+    the corners (±y, ±z) or, where it is `round`, a circle.
+    """
 
     area: Floats
     inertia_y: Floats

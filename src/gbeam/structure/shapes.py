@@ -43,8 +43,8 @@ def rectangle_stresses(width: Floats, thickness: Floats) -> Floats:
 
 
 def saint_venant(long: Floats, thin: Floats, along: Floats, across: Floats) -> tuple[Floats, Floats]:
-    """Shear stress of a rectangle by a unit torque, along its long side and along its short one, at places −1 to 1 of
-    both (Timoshenko and Goodier, Theory of Elasticity, 109).
+    """Shear stresses of a rectangle, `long` by `thin` m, by a unit torque, in the directions of its long and short side
+    at places `along` and `across`, −1 to 1 of these (Timoshenko and Goodier, Theory of Elasticity, 109).
     """
     n = TERMS[:, None, None] if np.ndim(along) > 1 else TERMS[:, None]
     half, reach = thin / 2, n * np.pi / 2
@@ -56,7 +56,7 @@ def saint_venant(long: Floats, thin: Floats, along: Floats, across: Floats) -> t
     sign = (-1.0) ** ((n - 1) / 2)
     scale = 8 / np.pi**2 * 2 * half
     on_long = scale * (np.pi**2 / 8 * across - (sign / n**2 * decay * np.sin(reach * across)).sum(axis=0))
-    on_long = np.where(np.abs(along) < 1, on_long, 0.0)  # where the series is that of the first term
+    on_long = np.where(np.abs(along) < 1, on_long, 0.0)  # zero on the short sides: the series cancels the first term
     on_short = scale * (sign / n**2 * sinh * np.cos(reach * across)).sum(axis=0)
     constant = long * thin**3 / 3 * (1 - 192 / np.pi**5 / slender * (np.tanh(reach * slender) / n**5).sum(axis=0))
     return on_long / constant, on_short / constant
@@ -81,10 +81,10 @@ def von_mises(stresses: Floats | None, force: Any, moment: Any) -> Floats:
     out = np.full(carried.shape[:2], np.nan)
     if stresses is None:
         return out
-    some = max(1, BLOCK // (3 * len(stresses) * max(carried.shape[1], 1)))
-    for i in range(0, len(carried), some):
-        normal, *shear = np.einsum("pcks,tsk->ctsp", stresses, carried[i : i + some], optimize=True)
-        out[i : i + some] = np.sqrt(normal**2 + 3 * (shear[0] ** 2 + shear[1] ** 2)).max(axis=-1)
+    count = max(1, BLOCK // (3 * len(stresses) * max(carried.shape[1], 1)))  # times at once
+    for i in range(0, len(carried), count):
+        normal, *shear = np.einsum("pcks,tsk->ctsp", stresses, carried[i : i + count], optimize=True)
+        out[i : i + count] = np.sqrt(normal**2 + 3 * (shear[0] ** 2 + shear[1] ** 2)).max(axis=-1)
     return out
 
 
@@ -120,7 +120,7 @@ def general(
     extreme_fibre_z: Array | None = None,
     **_: Array,
 ) -> tuple[Array, ...]:
-    """Area and second moments as given; the extreme fibres, if unknown, are NaN (no stress is known)."""
+    """Area, I_y, I_z, extreme fibres as they are given; fibres that are not are NaN, and there is no stress."""
     unknown = namespace(area).full_like(area, np.nan)
     return (
         area,
@@ -173,8 +173,9 @@ def general_shear(
 
 
 class Shape(NamedTuple):
-    """A shape: area m², I_y, I_z m⁴ and extreme fibres m (`values`), torsion constant m⁴, shear coefficients, and where
-    there are formulas stresses by unit loads (points, 3, 6, s), of its dimensions.
+    """A shape of sections: functions of its dimensions for area m², I_y, I_z m⁴ and extreme fibres m (`values`), for
+    torsion constant m⁴, shear coefficients, and stresses by unit loads (points, 3, 6, s), None without formulas; and
+    the names of the dimensions that it requires, and may have.
     """
 
     values: Rule
