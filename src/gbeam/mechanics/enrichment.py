@@ -156,8 +156,7 @@ def coupled_space(beam: Beam, rule: Quadrature, counts: Counts) -> Space:
     strains = np.zeros((6, nodes, strained + len(springs)))
     for k, family in enumerate(families):
         strains[STRAINS[family], :, k * nodes : (k + 1) * nodes] = np.eye(nodes) * (-1 if family == 2 else 1)
-    still = np.zeros((3, strained))
-    move, turn = (np.concatenate([still, by_springs], axis=1) for by_springs in beam.root.directions())
+    move, turn = (np.pad(by_springs, ((0, 0), (strained, 0))) for by_springs in beam.root.directions())
     loaded = [load.at for load in beam.loads if load.at is not None]
     x = np.concatenate([rule.node, [body.at for body in beam.masses], loaded])
     field = strain_field(rule, x, strains, move, turn, beam.line)
@@ -199,9 +198,7 @@ def coupled_space(beam: Beam, rule: Quadrature, counts: Counts) -> Space:
 
 
 def _loads(beam: Beam, space: Space, along: int) -> Array:
-    """Generalised forces (n, k) on a space's strains: of accelerations, even and growing along the beam, of bodies that
-    turn, and of the beam's loads.
-    """
+    """Generalised forces (n, k) of accelerations, even and growing along the beam, of turning bodies, and of loads."""
     if space.loads is not None:
         return space.loads
     x = space.rule.node

@@ -22,9 +22,7 @@ def coarse(low: float, high: float) -> tuple[float, ...]:
 
 
 def refine(evaluate: Evaluate, points: Sequence[float]) -> None:
-    """Evaluate more numbers around the best of the coarse `points`, to where limits end. `evaluate` gives the cost, and
-    the share of limits that is used, at most 1 where allowed; it keeps what the caller wants to know.
-    """
+    """Evaluate numbers around the best of the `points` whose share of limits, the second value, is at most one."""
     values = [evaluate(x) for x in points]
     allowed = [i for i, (_, share) in enumerate(values) if share <= 1]
     if not allowed:

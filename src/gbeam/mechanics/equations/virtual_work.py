@@ -66,9 +66,7 @@ class LoadWork:
         return self.terms(count, places, rotation, turns.first, turns.second)
 
     def terms(self, count: int, places: Places, rotation: Array, turn: Array, bend: Array) -> LoadTerms:
-        """Load terms by the points' places, and the rotations (p, 3, 3) of their sections with first and second
-        derivatives `turn` (p, 3, 3, n) and `bend` (p, 3, 3, n, n).
-        """
+        """Load terms by places, section rotations (p, 3, 3), and the first and second derivatives `turn` and `bend`."""
         xp = namespace(places.first, rotation, self.weight)
         r, slope, second = places.r0, places.first, places.second
         epsilon = xp.asarray(EPSILON)

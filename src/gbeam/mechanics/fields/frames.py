@@ -50,9 +50,7 @@ class Frames:
     angles: Array
 
     def at(self, curvatures: Vector, *, points: bool) -> tuple[Rotation, Rotation]:
-        """Rotations (..., G) at the nodes by curvatures (..., G), and those (..., p) at the points where these are
-        wanted, else those of the nodes again.
-        """
+        """Rotations by curvatures (..., G) at the nodes, (..., G), and at the points, (..., p), or the nodes' again."""
         axes = [axis for axis in range(3) if not absent(curvatures[axis])]
         if not axes:
             return UNTURNED, UNTURNED
