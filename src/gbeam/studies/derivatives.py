@@ -1,8 +1,8 @@
 """Derivatives of whatever is read from an answer, with respect to physical values of the scenario.
 
-Of responses over time they come from the derivative of the run (`gbeam.analysis.response.differentiated`).
-Where a jump moves with the value, whose steps that stand still miss, and of the other verbs' answers, which are
-smooth, they come from central differences of fourth order, with how far these differ from those of second order.
+Those of a beam's responses over time come from the derivative of the run (`gbeam.analysis.response.differentiated`).
+Where a jump moves with the value, which the run's fixed steps would miss, and for all other answers, they are central
+differences of fourth order; their error is the difference from those of second order.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ from gbeam.results.study import Study
 from gbeam.studies.evaluate import Inquiry
 from gbeam.studies.parameters import PhysicalValue, changes_to
 
-# Of a case and its answer, a Study of run or another verb's facts: what is differentiated, (m,).
+# Reads the quantities to differentiate, (m,), from a case and its answer: a Study, or another verb's facts.
 Read = Callable[[Case, Any], Floats]
-_NEAR = 1e-5  # of the value: on either side, about a run whose own derivative is exact
+_NEAR = 1e-5  # step over the value, where the derivative of the run is exact
 _RUNS, _FACTS = 1e-4, 1e-3  # the same, of differences of whole runs and of other answers
 _AT_ZERO = 1e-6  # in SI units, in place of a share of what is zero
 EXACT, DIFFERENCE = "exact", "difference"
@@ -45,13 +45,13 @@ class Slopes:
     slopes: Floats  # (m, p)
     errors: Floats  # (m, p), NaN of exact ones
     methods: tuple[str, ...]
-    bends: Floats  # (m, p), difference of the changes on either side over the step: of its order where all is smooth
+    bends: Floats  # (m, p), difference between the one-sided slopes: of the order of the step where all is smooth
 
 
 class Neighbourhood:
-    """A case that is answered, and those with a little less and a little more of each value.
+    """A case with its answer, and the cases with a little less and a little more of each value.
 
-    With `grids` motions are run by given steps, without estimates of errors; `parts` (``loads``, ``axes``) that are
+    With `grids`, by motion, runs take those steps and estimate no errors; `parts` (``loads``, ``axes``) that are
     false are not computed; `adapt` changes every case before it is answered.
     """
 
@@ -67,7 +67,7 @@ class Neighbourhood:
         progress: Progress = None,
     ) -> None:
         self.inquiry, self.parameters, self.parts = inquiry, parameters, parts
-        self._about: dict[str, Differentiated] = {}
+        self._by_motion: dict[str, Differentiated] = {}
         self.edges = set[int]()  # parameters on one side of whose value the scenario refuses a step
         self.progress, self.adapt = progress, adapt or (lambda case: case)
         self.values = [each.value for each in parameters] if values is None else [float(value) for value in values]
@@ -87,13 +87,15 @@ class Neighbourhood:
             self.answer = inquiry.facts(self.case)
 
     def slopes(self, read: Read, motions: Sequence[str] = (), *, rough: bool = False) -> Slopes:
-        """Derivatives of the answer, in the motions named; rough ones, of half of the answers, have no errors."""
+        """Derivatives of what `read` reads of the `motions`, all if empty. `rough` ones take half as many answers, on
+        one side of an edge of the scenario; those of other verbs then have no errors and bends.
+        """
         if self.runs:
             return self._of_runs(read, motions or list(self.case.motions), rough)
         values = read(self.case, self.answer)
         rows = []
-        for k, each in enumerate(self.parameters):
-            tell(self.progress, each.path, k / len(self.parameters))
+        for k, parameter in enumerate(self.parameters):
+            tell(self.progress, parameter.path, k / len(self.parameters))
             step = self._step(k, _FACTS)
             if rough:
                 less, more = (read(case, self.inquiry.facts(case)) for case in self._beside(k, step, rough))
@@ -101,18 +103,18 @@ class Neighbourhood:
                 rows.append(((more - less) / (2 * step), unknown, unknown))
                 continue
 
-            def at(steps: float, k: int = k, step: float = step) -> Floats:
-                case = self._case(k, steps * step)
+            def shifted(count: float, k: int = k, step: float = step) -> Floats:
+                case = self._case(k, count * step)
                 return read(case, self.inquiry.facts(case))
 
-            rows.append(_differences(at, values, step))
+            rows.append(_differences(shifted, values, step))
         return _gathered(values, rows, [DIFFERENCE] * len(rows))
 
     def done(self, name: str) -> Response:
         """The response in one environment; ComputationError if it is not done."""
-        failed = self.answer.failures.get(name) or self.answer.responses[name]
-        if failed.outcome != "done":
-            raise ComputationError(failed.outcome, f"motion.{name}: {failed.message}")
+        end = self.answer.failures.get(name) or self.answer.responses[name]
+        if end.outcome != "done":
+            raise ComputationError(end.outcome, f"motion.{name}: {end.message}")
         response: Response = self.answer.responses[name]
         return response
 
@@ -122,18 +124,19 @@ class Neighbourhood:
 
     def _differentiated(self, structure: Structure, name: str, grid: Grid) -> Differentiated:
         motion, settings = self.case.motions[name], self.case.over_time
-        self._about[name] = Differentiated(structure, motion, settings, grid, name, **self.parts)
-        return self._about[name]
+        self._by_motion[name] = Differentiated(structure, motion, settings, grid, name, **self.parts)
+        return self._by_motion[name]
 
     def _of_runs(self, read: Read, motions: Sequence[str], rough: bool) -> Slopes:
+        """Slopes of runs: all parameters along which the jumps stay are right-hand sides of one solution."""
         done, structure = {name: self.done(name) for name in motions}, self.case.assemble()
         for name in motions:
-            if name not in self._about:
+            if name not in self._by_motion:
                 self._differentiated(structure, name, self.grid(name))
-        about = {name: self._about[name] for name in motions}
+        runs = {name: self._by_motion[name] for name in motions}
         values = read(self.case, self.answer)
         steps = np.array([self._step(k, _NEAR) for k in range(len(self.parameters))])
-        # Of each motion the pairs of the parameters that it feels; a parameter by which something jumps is left.
+        # By motion and parameter, of those that it feels: the problems with a little less and a little more of it.
         pairs: dict[str, dict[int, Any]] = {name: {} for name in motions}
         jumping, cases = set(), []
         for k, step in enumerate(steps):
@@ -142,26 +145,26 @@ class Neighbourhood:
             for name in motions:
                 if not self._felt(k, name):
                     continue
-                pair = about[name].pair(self._variant(less, k, name), self._variant(more, k, name))
-                if about[name].jumps_move(pair):
+                pair = runs[name].pair(self._variant(less, k, name), self._variant(more, k, name))
+                if runs[name].jumps_move(pair):
                     jumping.add(k)
                 pairs[name][k] = pair
-        smooth = {name: [k for k in each if k not in jumping] for name, each in pairs.items()}
+        smooth = {name: [k for k in of_motion if k not in jumping] for name, of_motion in pairs.items()}
         responses = {
-            name: about[name].responses([pairs[name][k] for k in chosen], 2 * steps[chosen])
+            name: runs[name].responses([pairs[name][k] for k in chosen], 2 * steps[chosen])
             for name, chosen in smooth.items()
         }
         rows = []
-        for k, each in enumerate(self.parameters):
-            tell(self.progress, each.path, k / len(self.parameters))
+        for k, parameter in enumerate(self.parameters):
+            tell(self.progress, parameter.path, k / len(self.parameters))
             if k in jumping:
                 step = self._step(k, _RUNS)
 
-                def at(steps: float, k: int = k, step: float = step) -> Floats:
-                    case = self._case(k, steps * step)
+                def shifted(count: float, k: int = k, step: float = step) -> Floats:
+                    case = self._case(k, count * step)
                     return read(case, _runs(case, {name: done[name].step for name in motions}))
 
-                rows.append(_differences(at, values, step))
+                rows.append(_differences(shifted, values, step))
                 continue
             sides: tuple[dict[str, Response], dict[str, Response]] = (dict(done), dict(done))
             for name in motions:
@@ -172,7 +175,9 @@ class Neighbourhood:
         return _gathered(values, rows, [DIFFERENCE if k in jumping else EXACT for k in range(len(rows))])
 
     def _beside(self, k: int, step: float, rough: bool) -> tuple[Case, Case]:
-        """Cases with less and with more of a value by a step; rough ones on the side that the scenario allows."""
+        """Cases with parameter `k` less and more by `step`. Where the scenario refuses one, `rough` takes the case
+        itself and one two steps to the other side, and notes that `k` is at an edge.
+        """
         ends = []
         for sign in (-1, 1):
             try:
@@ -181,24 +186,25 @@ class Neighbourhood:
                 if not rough:
                     raise
                 self.edges.add(k)
-                at, beyond = self._case(k, 0.0), self._case(k, -sign * 2 * step)
-                return (at, beyond) if sign < 0 else (beyond, at)
+                same, beyond = self._case(k, 0.0), self._case(k, -sign * 2 * step)
+                return (same, beyond) if sign < 0 else (beyond, same)
         return ends[0], ends[1]
 
     def _case(self, k: int, step: float) -> Case:
-        each = self.parameters[k]
+        """The case with parameter `k` more by `step`, a beam in the model of this case; InputError if refused."""
+        parameter = self.parameters[k]
         try:
             case = self._built(k, step)
         except GbeamError as error:
             value, word = self.values[k], "less" if step < 0 else "more"
-            problem = f"{each.path} = {value:.6g} {each.unit}".rstrip() + f" may not be a little {word}"
+            problem = f"{parameter.path} = {value:.6g} {parameter.unit}".rstrip() + f" may not be a little {word}"
             raise InputError(
                 "--with", f"{problem} ({str(error).splitlines()[0]})", "leave it out, or move it off its bound"
             ) from None
         return replace(case, model=self.case.model) if isinstance(case, Case) else case
 
     def _built(self, k: int | None, step: float) -> Any:
-        """A case; reductions of meshes are kept of the scenario's own alone."""
+        """The case with parameter `k` more by `step`; reduced meshes are kept on disk of the unchanged case only."""
         changes = self._changes(k, step)
         with unkept() if changes else nullcontext():
             return self.adapt(self.inquiry.case(changes))
@@ -212,8 +218,8 @@ class Neighbourhood:
 
     def _felt(self, k: int, name: str) -> bool:
         """True if a parameter has anything to do with a motion."""
-        of = self.parameters[k].of_motion
-        return not of or of == name or self.case.tracks.get(name) == of
+        motion = self.parameters[k].of_motion
+        return not motion or motion == name or self.case.tracks.get(name) == motion
 
     def _variant(self, case: Case, k: int, name: str) -> Variant:
         if self.parameters[k].path.startswith("beam."):
@@ -221,7 +227,7 @@ class Neighbourhood:
         return None, case.motions[name]
 
     def _enrich(self) -> None:
-        """The model with as many shapes as the study found it needs."""
+        """Give the case's model as many shapes as the runs of the study took."""
         sizes = {response.q.shape[1] for response in self.answer.responses.values()}
         while self.case.model.automatic and self.case.assemble().size < max(sizes):
             richer = self.case.model.richer()
@@ -231,7 +237,10 @@ class Neighbourhood:
 
 
 class Quantities:
-    """Quantities of an answer at any parameters, and derivatives, by steps and shapes of one `start` or of each."""
+    """Quantities read from answers at any values of the parameters, and their derivatives.
+
+    Runs of a beam take the time steps and shapes of `start`; without it each answer has its own.
+    """
 
     def __init__(
         self,
@@ -253,27 +262,28 @@ class Quantities:
         self.evaluations = 0
 
     def __call__(self, values: Floats) -> Floats:
-        """Read at some values, (m,); the last ones are kept."""
+        """Quantities (m,) at values (p,) of the parameters; the last ones are kept."""
         return self._at(values)[1]
 
     def slopes(self, values: Floats) -> Floats:
         """Derivatives with respect to the values, (m, p); the last ones are kept."""
-        about = self._at(values)[2]
-        if self._sloped is None or self._sloped[0] is not about:
-            self._sloped = about, about.slopes(self._read, self._motions, rough=True).slopes
+        nearby = self._at(values)[2]
+        if self._sloped is None or self._sloped[0] is not nearby:
+            self._sloped = nearby, nearby.slopes(self._read, self._motions, rough=True).slopes
         return self._sloped[1]
 
     def edges(self, values: Floats) -> tuple[int, ...]:
         """Parameters whose values lie at the edge of what the scenario allows."""
-        about = self._at(values)[2]
-        self.slopes(values)
-        return tuple(about.edges)
+        nearby = self._at(values)[2]
+        self.slopes(values)  # tries both sides
+        return tuple(nearby.edges)
 
     def _at(self, values: Floats) -> tuple[Floats, Floats, Neighbourhood]:
+        """The values, the quantities at them and the neighbourhood, computed unless they are the last."""
         if self._last is None or not np.array_equal(self._last[0], values):
             self.evaluations += 1
             try:
-                about = Neighbourhood(
+                nearby = Neighbourhood(
                     self._inquiry, self._parameters, values.tolist(), grids=self._grids, parts=self._parts,
                     adapt=self._shaped, progress=self._progress,
                 )  # fmt: skip
@@ -282,11 +292,11 @@ class Quantities:
                 problem = f"allow {', '.join(tried)}, which the scenario refuses: {error.where} {error.problem}"
                 raise InputError("--bounds", problem, "give narrower ones") from None
             for name in self._motions if self._grids is not None else ():
-                about.done(name)
-            read = self._read(about.case, about.answer)
-            if not np.isfinite(read).all():
+                nearby.done(name)
+            quantities = self._read(nearby.case, nearby.answer)
+            if not np.isfinite(quantities).all():
                 raise ComputationError("not converged", "a figure of the search has no value")
-            self._last = values.copy(), read, about
+            self._last = values.copy(), quantities, nearby
         return self._last
 
     def _shaped(self, case: Any) -> Any:
@@ -295,7 +305,7 @@ class Quantities:
 
 
 def _possible(structure: Structure, response: Response) -> Response:
-    """The response; one that means nothing has diverged."""
+    """The response; marked diverged if a displacement is not finite or, unless exact, above the beam's length."""
     moved = np.abs(response.displacement).max()
     if np.isfinite(moved) and (structure.kind == "exact" or moved <= structure.length):
         return response
@@ -303,7 +313,7 @@ def _possible(structure: Structure, response: Response) -> Response:
 
 
 def _runs(case: Case, steps: Mapping[str, float]) -> Study:
-    """The responses in some environments by steps that are given, without an estimate of their errors."""
+    """Study of the motions in `steps`, run by these time steps, s, without estimates of errors."""
     structure, responses = case.assemble(), {}
     for name, step in steps.items():
         settings = replace(case.over_time, step=step, estimate=False)
@@ -316,11 +326,13 @@ def _slope(less: Floats, middle: Floats, more: Floats, step: float) -> tuple[Flo
     return (more - less) / (2 * step), np.abs(more - 2 * middle + less) / step
 
 
-def _differences(at: Callable[[float], Floats], middle: Floats, step: float) -> tuple[Floats, Floats, Floats]:
-    """Central differences of fourth order, the bend, and how far those of second order are away."""
-    inner = at(1.0), at(-1.0)
+def _differences(shifted: Callable[[float], Floats], middle: Floats, step: float) -> tuple[Floats, Floats, Floats]:
+    """Central difference of fourth order, difference of the one-sided slopes, and difference from second order, (m,)
+    each; `shifted` gives the quantities a number of steps away.
+    """
+    inner = shifted(1.0), shifted(-1.0)
     slope, bend = _slope(inner[1], middle, inner[0], step)
-    outer = at(2.0), at(-2.0)
+    outer = shifted(2.0), shifted(-2.0)
     fourth = (8 * (inner[0] - inner[1]) - (outer[0] - outer[1])) / (12 * step)
     return fourth, bend, np.abs(fourth - slope)
 

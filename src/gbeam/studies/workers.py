@@ -33,14 +33,14 @@ import gbeam
 from gbeam.errors import ComputationError, InputError
 from gbeam.studies.evaluate import Function, Inquiry, Row, Task, rows
 
-KEPT = 0.5  # s: what is lost at most when a process ends, and how often the store is synchronised
-_THREADS = "OPENBLAS_NUM_THREADS"  # of each worker one: those of several wait for one another
+KEPT = 0.5  # s: computation that is lost at most when a process ends; the store is synchronised as often
+_THREADS = "OPENBLAS_NUM_THREADS"  # one in each worker: threads of several would wait for one another
 _FUNCTIONS, _WORKERS = "measure", "--workers"
 _ELSEWHERE = "define it at the top level of a module that you import, or leave the workers out"
 
 
 def serially(inquiry: Inquiry, batches: Iterable[Sequence[Task]]) -> Iterator[list[Row]]:
-    """Compute the batches in this process, whose cases go together."""
+    """Compute all batches as one sequence of cases in this process, and yield the rows every half second."""
     done, began = list[Row](), time.perf_counter()
     for row in rows(inquiry, chain.from_iterable(batches)):
         done.append(row)
@@ -53,7 +53,7 @@ def serially(inquiry: Inquiry, batches: Iterable[Sequence[Task]]) -> Iterator[li
 
 @dataclass
 class _Worker:
-    """A process and what it is doing."""
+    """A process, its pipe, and the batch that it computes."""
 
     process: Any
     pipe: Any
@@ -63,7 +63,7 @@ class _Worker:
 
     def send(self, inquiry: Inquiry, batch: Sequence[Task]) -> None:
         """Give it a batch."""
-        with suppress(OSError):  # it has died, as its pipe will say
+        with suppress(OSError):  # the process has died: reading its pipe will say so
             if self.inquiry is not inquiry:
                 self.pipe.send(inquiry)
             self.pipe.send(batch)
@@ -77,7 +77,7 @@ class _Worker:
 
 
 class Workers:
-    """Processes of this machine, each with a batch of its own: one that dies takes no other's along."""
+    """Processes of this machine, each with its own pipe and batch: if one dies, only its batch is lost."""
 
     def __init__(self, count: int, functions: Sequence[Function]) -> None:
         try:
@@ -85,7 +85,7 @@ class Workers:
         except (pickle.PicklingError, AttributeError, TypeError) as error:
             problem = f"has a function that cannot be sent to another process ({error})"
             raise InputError(_FUNCTIONS, problem, _ELSEWHERE) from None
-        # Not forked from this process: JAX has threads. On Linux from one without, which has imported what they need.
+        # Not forked from this process, whose JAX has threads; on Linux from a server that has imported this module.
         method = "forkserver" if sys.platform == "linux" else "spawn"
         if method == "forkserver":
             multiprocessing.set_forkserver_preload([__name__])
@@ -101,7 +101,9 @@ class Workers:
             raise
 
     def rows(self, inquiry: Inquiry, batches: Iterable[Sequence[Task]]) -> Iterator[list[Row]]:
-        """Compute the batches; one whose process dies is divided until one case is left, which fails once more."""
+        """Compute the batches. One whose process dies is halved until the case is known; if that ends another process
+        when it is tried again, its row says that it failed.
+        """
         left, again, suspects = iter(batches), deque[Sequence[Task]](), set[int]()
         while True:
             for worker in self._workers:
@@ -145,11 +147,11 @@ class Workers:
 
     def _started(self) -> _Worker:
         """A new process, which imports while this one goes on."""
-        pipe, far = self._context.Pipe()
-        process = self._context.Process(target=_work, args=(far, self._functions), daemon=True)
+        pipe, worker_end = self._context.Pipe()
+        process = self._context.Process(target=_work, args=(worker_end, self._functions), daemon=True)
         with _main_hidden(b"__main__" not in self._functions):
             process.start()
-        far.close()
+        worker_end.close()
         return _Worker(process, pipe)
 
     def _check(self, worker: _Worker) -> None:
@@ -171,9 +173,9 @@ class Workers:
 
 @contextmanager
 def processes(count: int, functions: Sequence[Function]) -> Iterator[Workers]:
-    """Processes that start, and import, while this one goes on."""
+    """Start processes, which import while this one goes on; close them at the end."""
     threads = os.environ.get(_THREADS)
-    os.environ.setdefault(_THREADS, "1")  # inherited
+    os.environ.setdefault(_THREADS, "1")  # inherited by the processes
     try:
         workers = Workers(count, functions)
         try:
@@ -187,7 +189,7 @@ def processes(count: int, functions: Sequence[Function]) -> Iterator[Workers]:
 
 @contextmanager
 def _main_hidden(hidden: bool) -> Iterator[None]:
-    """Let processes that start not run the main program again, which only its own functions need."""
+    """Keep processes that start from importing the main program again, which only functions defined in it need."""
     main = sys.modules["__main__"]
     if hidden or not os.path.exists(getattr(main, "__file__", None) or ""):  # of a notebook, or typed in
         sys.modules["__main__"] = ModuleType("__main__")
@@ -198,7 +200,7 @@ def _main_hidden(hidden: bool) -> Iterator[None]:
 
 
 def _work(pipe: Connection, functions: bytes) -> None:
-    """Say whether the functions can be loaded, take an inquiry, and answer batches until the other end is closed."""
+    """Send why the functions cannot be loaded, or ""; then answer batches of the last inquiry until the pipe closes."""
     _begin()
     with suppress(EOFError, OSError):
         try:
@@ -207,7 +209,7 @@ def _work(pipe: Connection, functions: bytes) -> None:
             pipe.send(str(error) or type(error).__name__)
             return
         pipe.send("")
-        import gbeam.scenario.build_motion  # noqa: F401  # what is imported where a case needs it
+        import gbeam.scenario.build_motion  # noqa: F401  # now, not with the first case
 
         inquiry: Any = None
         while True:
@@ -223,8 +225,8 @@ def _work(pipe: Connection, functions: bytes) -> None:
 
 
 def _begin() -> None:
-    """Make this process a worker: it ends with the one that it computes for, even if that is killed."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # that one decides
+    """Make this process a worker, which ends when its parent ends, even if that is killed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # left to the parent
     driver = multiprocessing.parent_process()
     assert driver is not None
 
@@ -236,13 +238,13 @@ def _begin() -> None:
 
 
 def died(inquiry: Inquiry, task: Task) -> Row:
-    """Row of a case whose process ends whenever it is computed."""
+    """Row of a case whose computation ends every process that tries it."""
     return Row(task[0], (math.nan,) * inquiry.width, "failed", "the process that computed it died")
 
 
 CONNECTION = 10.0  # s that a scheduler may take to answer, and its first worker to appear
 PATIENCE = 60.0  # s without any worker, after which a sweep gives up: those that a nanny restarts take a few
-_AHEAD = 3  # batches per worker that wait, so that none idles
+_AHEAD = 3  # batches sent per worker, so that none idles
 _TICK = 1.0  # s between looks at the scheduler while nothing is done
 _LOST = (OSError, TimeoutError, concurrent.futures.CancelledError, asyncio.CancelledError)
 _OPTION = "--scheduler"
@@ -269,7 +271,7 @@ def on_scheduler(inquiry: Inquiry, batches: Iterable[Sequence[Task]], address: s
 
 @contextmanager
 def _connected(address: str) -> Iterator[Any]:
-    """A client of the scheduler, once there is a worker."""
+    """Client of the scheduler, once that has a worker; InputError if none answers."""
     try:
         from distributed import Client
     except ImportError:
@@ -290,16 +292,16 @@ def _connected(address: str) -> Iterator[Any]:
 
 @contextmanager
 def _silent() -> Iterator[None]:
-    """Let Dask's loggers be silent: what they print tracebacks of becomes a message here."""
+    """Silence Dask's loggers: errors whose tracebacks they would print become one message here."""
     loggers = [logging.getLogger(name) for name in logging.root.manager.loggerDict if name.startswith("distributed")]
-    levels = [each.level for each in loggers]
-    for each in loggers:
-        each.setLevel(logging.CRITICAL)
+    levels = [logger.level for logger in loggers]
+    for logger in loggers:
+        logger.setLevel(logging.CRITICAL)
     try:
         yield
     finally:
-        for each, level in zip(loggers, levels, strict=True):
-            each.setLevel(level)
+        for logger, level in zip(loggers, levels, strict=True):
+            logger.setLevel(level)
 
 
 def _with_worker(client: Any, address: str) -> Iterator[Any]:
@@ -320,12 +322,12 @@ class _Dispatch:
     address: str
     inquiry: Inquiry
     left: Iterator[Sequence[Task]]
-    again: deque[Task] = field(default_factory=deque)  # of batches that ended their workers
+    again: deque[Task] = field(default_factory=deque)  # cases of batches that ended their workers
     under_way: dict[Any, Sequence[Task]] = field(default_factory=dict)
-    alone: set[Any] = field(default_factory=set)  # those under way that are done again, one case each
+    alone: set[Any] = field(default_factory=set)  # futures of one case each, computed again
     done: queue.SimpleQueue[Any] = field(default_factory=queue.SimpleQueue)
     threads: int = 1
-    looked: float = -PATIENCE  # when there was a worker last
+    looked: float = -PATIENCE  # monotonic time at which there was a worker last, s
 
     def rows(self) -> Iterator[list[Row]]:
         """Send batches, a few ahead for every worker, until all have come back."""
@@ -344,6 +346,7 @@ class _Dispatch:
             self._interrupted(f"the scheduler at {self.address} is lost ({_first(error) or type(error).__name__})")
 
     def _send(self) -> None:
+        """Submit batches until enough are under way; cases of killed workers first, each alone."""
         while len(self.under_way) < _AHEAD * self.threads:
             alone = bool(self.again)
             batch = [self.again.popleft()] if alone else next(self.left, None)
@@ -356,7 +359,7 @@ class _Dispatch:
             future.add_done_callback(self.done.put)
 
     def _received(self, future: Any, batch: Sequence[Task]) -> list[Row]:
-        """Rows of a batch; none where its cases have to be computed again."""
+        """Rows of a batch; an empty list if its cases are to be computed again, one by one."""
         from distributed import KilledWorker
 
         try:
@@ -375,7 +378,7 @@ class _Dispatch:
             raise InputError(_OPTION, f"has a worker that lacks what it needs ({_first(error)})", fix) from None
 
     def _look(self) -> None:
-        """See how many workers there are, at most once a second."""
+        """Count the workers' threads, at most once a second; ComputationError if there was none for a minute."""
         now = time.monotonic()
         if now - self.looked < _TICK:
             return
@@ -392,5 +395,5 @@ class _Dispatch:
 
 
 def _first(error: BaseException) -> str:
-    """First line of what an exception says."""
+    """First line of an exception's message."""
     return (str(error).strip().splitlines() or [""])[0]
