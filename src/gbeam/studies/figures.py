@@ -1,4 +1,4 @@
-"""Figures of a case, named by the end of their path in a verb's JSON, with their units; and histories over time."""
+"""Figures of a case, named by the end of their path in a verb's JSON, with units; and histories over time."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
     from gbeam.results.study import Study, SystemStudy
 
 Facts = Mapping[str, Any]
-KIND = ""  # key of the kind of answers in facts; no figure's path begins so
+KIND = ""  # key in facts of the class of the answer; no figure's path begins so
 
 
 def answer_facts(answer: Any, title: str = "") -> Facts:
-    """The facts of an answer with what has a name by its name: comparisons, and the limits of machines."""
+    """Facts of an answer as of its JSON, but comparisons by the centrifuge's name and limits by axis and quantity."""
     from gbeam.results.facts import json_of
     from gbeam.results.study import by_motion
 
@@ -41,7 +41,7 @@ def answer_facts(answer: Any, title: str = "") -> Facts:
         if "limits" in motion:
             motion["limits"] = _by_axis(motion["limits"])
     if "comparisons" in facts:
-        # By name, not by number; and what may be accepted stands under the verdict whether or not a limit is given.
+        # The figures that may be limited stand under the verdict whether or not a limit is given.
         facts["comparisons"] = {
             each.centrifuge: {**compared, "verdict": each.figures | _accepted(compared.pop("accepted"))}
             for each, compared in zip(answer.comparisons, facts["comparisons"], strict=True)
@@ -54,7 +54,7 @@ def answer_facts(answer: Any, title: str = "") -> Facts:
 
 @cache  # by kind, whose declarations do not change; nobody writes into it
 def tree_of_figures(kind: type) -> dict[str, Any]:
-    """The figures of answers of a kind, each at its place in the facts."""
+    """Declared entries of answers of a class, as a tree like that of `answer_facts`; ANY is any name."""
     from gbeam.results.criteria import RULES
     from gbeam.results.facts import ANY, Entry
     from gbeam.results.study import tree_of_answers
@@ -71,14 +71,14 @@ def tree_of_figures(kind: type) -> dict[str, Any]:
 
 
 def choices(verb: str) -> dict[str, Entry]:
-    """Every figure of a question's answers by its path: ``*`` is a name, ``[i]`` a place in a list."""
+    """Entry of every figure of a verb's answers by its path: ``*`` is any name, ``[i]`` any place in a list."""
     from gbeam.results.facts import paths_of
 
     return {path: each for kind in question_of(verb).records for path, each in paths_of(tree_of_figures(kind))}
 
 
 def _message(answer: Any) -> str:
-    """Reasons for no answer in some motions, or the limits that it does not keep."""
+    """Reasons, by motion, for which there is no answer or it is refused; empty if there are none."""
     if isinstance(answer, tuple):
         reasons = {each.name: each.message or each.refusal for each in answer if hasattr(each, "refusal")}
     elif hasattr(answer, "unfinished"):
@@ -107,11 +107,11 @@ _MANY = 12  # figures that a message lists
 
 def find(facts: Facts, name: str) -> Keys:
     """Return the keys of the figure whose path in the facts of a case ends in `name`, such as ``tip.z.max_abs``."""
-    every = {path_text(keys): keys for keys, _ in _figures(facts)}
+    keys_of = {path_text(keys): keys for keys, _ in _figures(facts)}
     wanted = f".{name}"
-    fits = [path for path in every if f".{path}".endswith(wanted)]
+    fits = [path for path in keys_of if f".{path}".endswith(wanted)]
     if not fits:
-        ends = {path[at:] for path in every for at in [0, *(dot.end() for dot in re.finditer(r"\.", path))]}
+        ends = {path[at:] for path in keys_of for at in [0, *(dot.end() for dot in re.finditer(r"\.", path))]}
         near = closest(name, sorted(ends, key=lambda end: (abs(end.count(".") - name.count(".")), end)))
         fix = f"did you mean {near!r}?" if near else "list names every figure, with its unit"
         if name.endswith("verdict.accepted"):
@@ -120,17 +120,18 @@ def find(facts: Facts, name: str) -> Keys:
     if len(fits) > 1 and name not in fits:
         shown = ", ".join(fits[:_MANY]) + (", …" if len(fits) > _MANY else "")
         raise InputError(OPTION, f"{name!r} could be any of {len(fits)} figures", f"name one of {shown}")
-    return every[name if name in fits else fits[0]]
+    return keys_of[name if name in fits else fits[0]]
 
 
 def offered(verb: str, names: Iterable[str], option: str = OPTION) -> None:
     """Refuse a name that no figure of a question can have, before anything is computed."""
-    every = [_segments(path) for path in choices(verb)]
+    paths = [_segments(path) for path in choices(verb)]
     for name in names:
         ends = _segments(name)
-        if '"' not in name and not any(_fits(ends, path) for path in every):
-            lasts = (path[-len(ends) :] for path in every)
-            pairs_of = (zip(each, ends[-len(each) :], strict=True) for each in lasts)
+        if '"' not in name and not any(_fits(ends, path) for path in paths):
+            lasts = (path[-len(ends) :] for path in paths)
+            # Ends of paths as long as the name, with the name's own words where any name may stand.
+            pairs_of = (zip(last, ends[-len(last) :], strict=True) for last in lasts)
             near = closest(name, [".".join(end if key == "*" else key for key, end in pairs) for pairs in pairs_of])
             fix = f"did you mean {near!r}?" if near else "list names every figure, with its unit"
             raise InputError(option, f"{name!r} is no figure of {verb}", fix)
@@ -141,26 +142,26 @@ def _segments(path: str) -> list[str]:
 
 
 def _fits(ends: Sequence[str], path: Sequence[str]) -> bool:
-    """Return whether a path, in which ``*`` is any name, which may have dots of its own, can end in these keys."""
+    """True if a path can end in these keys; its ``*`` are any names, which may contain dots."""
     name, last = ".".join(ends), len(path) - 1
     words = [re.escape(key) if key != "*" else ".+" if k < last else "[^.]+" for k, key in enumerate(path)]
     return any(re.fullmatch(r"\.".join(words[first:]), name) for first in range(len(words)))
 
 
 def usual(template: Template, verb: str, *, judged: bool = False) -> tuple[str, ...]:
-    """Figures that are meant where none is named; with those of verdicts, which have no derivative, if `judged`."""
+    """Figures of a verb that are taken where none is named; those of comparisons only if `judged`."""
     question = question_of(verb)
     limited = [name for name, accepts in template.imitations.items() if accepts]
-    every = question.usual_of_systems if template.of_system else question.usual
-    figures = [each.replace("{motion}", name) for name in template.motions for each in every if "{motion}" in each]
-    figures += [each for each in every if "{motion}" not in each]
+    patterns = question.usual_of_systems if template.of_system else question.usual
+    figures = [each.replace("{motion}", name) for name in template.motions for each in patterns if "{motion}" in each]
+    figures += [each for each in patterns if "{motion}" not in each]
     for key, names in (("{beam}", template.beams), ("{machine}", template.imitations), ("{limited}", limited)):
         figures = [each.replace(key, name) for each in figures for name in (names if key in each else ("",))]
     return tuple(each for each in figures if judged or not each.startswith("comparisons."))
 
 
 def value_at(facts: Facts, keys: Keys) -> float:
-    """The figure there; NaN where this case has none."""
+    """Figure at `keys`, 1 or 0 for a truth; NaN where this case has none."""
     try:
         node = node_at(facts, keys)
     except (KeyError, IndexError, TypeError):
@@ -169,7 +170,7 @@ def value_at(facts: Facts, keys: Keys) -> float:
 
 
 def node_at(facts: Facts, keys: Keys) -> Any:
-    """The figure there as it stands, a truth among them."""
+    """Entry at `keys` as it is, of any type; KeyError, IndexError or TypeError if there is none."""
     node: Any = facts
     return reduce(getitem, keys, node)
 
@@ -182,17 +183,17 @@ def declared(facts: Facts, keys: Keys) -> str | None:
 
 
 def unit_at(facts: Facts, keys: Keys) -> str:
-    """SI unit of the figure there; empty where it has none."""
+    """SI unit of the figure at `keys`; empty where it has none."""
     return declared(facts, keys) or ""
 
 
 def own_keys(keys: Keys) -> Keys:
-    """Keys of a figure without the name of a motion, which the scenario chose."""
+    """Keys of a figure without the name of its motion, which could be any word."""
     return keys[:1] + keys[2:] if keys[0] in ("motions", "comparisons") else keys
 
 
 def _figures(node: Any, keys: Keys = ()) -> Iterator[tuple[Keys, float]]:
-    """Every number in the facts, with its keys."""
+    """Keys and value of every number, truth and missing value (None) in the facts."""
     if isinstance(node, Mapping):
         for key, value in node.items():
             yield from _figures(value, (*keys, str(key)))
@@ -219,7 +220,7 @@ class History:
 
     name: str
     motion: str
-    quantity: str  # the root's force or moment, or a point's name, such as tip, for its displacement
+    quantity: str  # root_force or root_moment, or a point's name, such as tip, for its displacement
     axis: int  # 0, 1, 2, of base axes
 
     @property
@@ -237,7 +238,7 @@ class History:
 
 @dataclass(frozen=True)
 class SystemHistory:
-    """Reading of a sensor of a system over time, in the motion of that name; the load at the root of a beam too."""
+    """One signal of a system over time in the motion of that name, such as a sensor's or a beam's root load."""
 
     name: str
     motion: str
@@ -250,29 +251,29 @@ class SystemHistory:
         return _at(None if response is None else (response.time, response.signal(self.quantity)), times)
 
 
-def _at(known: tuple[Floats, Floats] | None, times: Floats) -> Floats:
-    """Values (k,) at their times (k,), at others (t,); NaN beyond these."""
-    if known is None:
+def _at(history: tuple[Floats, Floats] | None, times: Floats) -> Floats:
+    """Values at `times` (t,) of a history, times (k,) and values (k,); NaN beyond it, or where it is None."""
+    if history is None:
         return np.full(len(times), math.nan)
     from scipy.interpolate import CubicSpline
 
     # Twenty steps to the shortest period: straight lines between them would be off by 1 % of a vibration.
-    time, values = known
+    time, values = history
     slack = 1e-9 * float(time[-1] - time[0])
     inside = (times >= time[0] - slack) & (times <= time[-1] + slack)
     return np.where(inside, CubicSpline(time, values)(times), math.nan)
 
 
 def read_system_history(text: str, case: SystemCase, where: str = HISTORY, chosen: str | None = None) -> SystemHistory:
-    """Read ``strip.tip.place_z``, with the motion's name and a dot before it where there are several."""
+    """Read a history such as ``strip.tip.place_z``, after the motion's name and a dot where there are several."""
     from gbeam.analysis.system.histories import beams_of
     from gbeam.mechanics.tree.signals import signals_of
 
     units, names = signals_of(case.system), list(case.environments)
     for load, unit in _LOADS.items():
         units |= {f"{body}.{load}.{axis}": unit for body in beams_of(case.system) for axis in "xyz"}
-    motion, _, rest = text.partition(".")
-    motion, signal = (motion, rest) if rest in units and motion in names else (chosen or "", text)
+    first, _, rest = text.partition(".")
+    motion, signal = (first, rest) if rest in units and first in names else (chosen or "", text)
     if signal not in units:
         raise InputError(where, f"{text!r} is no history", advise(text, units))
     if not motion and len(names) > 1:
@@ -287,7 +288,7 @@ def component(response: Response, quantity: str, axis: int) -> Floats:
 
 
 def read_history(text: str, motions: Collection[str], points: Collection[str] = (TIP,)) -> History:
-    """Read ``flight.tip.z``, or that of another point; the motion may be left out where there is one."""
+    """Read a history such as ``flight.tip.z``; the motion may be left out where there is only one."""
     *before, quantity, axis = ["", "", *text.split(".")]
     motion = ".".join(part for part in before if part)
     if axis not in ("x", "y", "z") or quantity not in (*points, *_LOADS):

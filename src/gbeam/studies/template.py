@@ -1,6 +1,6 @@
-"""Templates of studies: a scenario, or a case made in Python, of which cases with other values are made.
+"""Templates of studies: a scenario, or a case made in Python, from which cases with other values are made.
 
-A change is the text ``PATH=VALUE`` for both. Of a case the path leads through the arguments that its objects are made
+A change is the text ``PATH=VALUE`` for both. The path of a case leads through the arguments that its objects were made
 with, which have the names of a scenario's keys: ``beam.section.width``, ``motion.hub.radius``.
 """
 
@@ -39,8 +39,8 @@ from gbeam.structure.beam import Beam
 if TYPE_CHECKING:
     from gbeam.scenario.load import AnyScenario
 
-_KINDS: Kinds = {"system": {"gravity": "acceleration"}}  # of what is no argument of an object of a case
-_LONGEST = 100  # numbers of a list that are values of a study; more are a record
+_KINDS: Kinds = {"system": {"gravity": "acceleration"}}  # of values that are no argument of an object of a case
+_LONGEST = 100  # numbers of a list that a study may vary; a longer one is a record
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ class ScenarioTemplate:
 
     @property
     def identity(self) -> dict[str, Any]:
-        """Words by which a store of cases knows the template."""
+        """Digest and changes, for JSON, by which a store of cases knows the template again."""
         source = self.scenario.source
         assert source is not None
         digest = hashlib.sha256(source.text.encode()).hexdigest()
@@ -106,11 +106,11 @@ class ScenarioTemplate:
         return ScenarioTemplate(change(self.scenario.source, changes)) if changes else self
 
     def built(self) -> AnyCase:
-        """Its objects."""
+        """The case, with its objects."""
         return build(self.scenario)
 
     def quantities(self) -> dict[str, tuple[float, str]]:
-        """Value in SI and kind of every quantity, by path."""
+        """Value in SI and kind (a key of KINDS) of every quantity, by path."""
         return quantities(self.scenario)
 
     def unit(self, path: str) -> str:
@@ -119,14 +119,14 @@ class ScenarioTemplate:
         kind = ""
         for step in parse_path(path) or ():
             if isinstance(step, str) and hasattr(type(node), "model_fields"):
-                kind = kind_of(node, step)  # a number of a list has that of the list
-            entry = isinstance(node, (Mapping, tuple, list))
-            node = node[step] if entry else getattr(node, str(step), None)
+                kind = kind_of(node, step)  # a number in a list has the kind of the list
+            container = isinstance(node, (Mapping, tuple, list))
+            node = node[step] if container else getattr(node, str(step), None)
         return KINDS[kind].unit if kind else ""
 
 
 class _BeamBody:
-    """A beam in its model, as a body of a system: varied by the arguments of the beam, and `model`."""
+    """A beam in its model, as a body of a system, whose values are the arguments of the beam, and `model`."""
 
     owner = "Beam"
 
@@ -135,7 +135,7 @@ class _BeamBody:
         self.arguments = (arguments_of(beam) or {}) | {"model": model_of(structure)}
 
     def altered(self, **changes: Any) -> Structure:
-        """The structure of other arguments; its stations stay those within the beam."""
+        """The structure with some arguments changed, at those of its stations that lie within the beam."""
         arguments = self.arguments | changes
         model, beam = arguments.pop("model"), Beam(**arguments)
         return assemble(beam, model, [at for at in self.structure.stations[:-1] if at < beam.length])
@@ -188,27 +188,28 @@ class CaseTemplate:
 
     @property
     def _tree(self) -> dict[str, Any]:
+        """Objects of the case by the tables of a scenario, in which paths are looked up."""
         case = self.case
-        of_all = {"motion": case.motions, "response": case.response}
+        common = {"motion": case.motions, "response": case.response}
         if isinstance(case, Case):
-            return {"beam": case.beam, "model": case.model} | of_all
+            return {"beam": case.beam, "model": case.model} | common
         if isinstance(case, SpecimenCase):  # which does not hold what its structure was reduced from
-            return of_all
+            return common
         system = case.system
         bodies: dict[str, Any] = {}
         for name, body in system.bodies.items():
             if isinstance(body, RigidBody):
                 bodies[name] = body
-            elif body.source is not None:  # of particles no value is known
+            elif body.source is not None:  # None: made of particles, without values to vary
                 bodies[name] = _BeamBody(body, body.source.beam)
         gravity = {} if system.gravity is None else {"gravity": system.gravity}
         parts = {name: getattr(system, name) for name in ("joints", "forces", "controllers")}
-        return {"bodies": bodies} | parts | {"system": gravity} | of_all
+        return {"bodies": bodies} | parts | {"system": gravity} | common
 
     def changed(self, changes: Sequence[str]) -> CaseTemplate:
         if not changes:
             return self
-        wanted: dict[Any, Any] = {}  # all of one object at once: a mass at the tip moves with the length
+        wanted: dict[Any, Any] = {}  # a tree: all of one object at once, as a mass at the tip moves with the length
         for text in changes:
             name, equals, value = text.partition("=")
             steps = parse_path(name.strip())
@@ -216,7 +217,7 @@ class CaseTemplate:
                 raise InputError(text, "is not PATH=VALUE", 'write it such as "beam.length=250 mm"')
             node = wanted
             for step in steps[:-1]:
-                if not isinstance(node.get(step), dict):  # the last of several changes of one place counts
+                if not isinstance(node.get(step), dict):  # of several changes of one place the last counts
                     node[step] = {}
                 node = node[step]
             node[steps[-1]] = value.strip()
@@ -227,10 +228,10 @@ class CaseTemplate:
                 motions[machine] = motions[machine].altered(flight=motions[flight])
         if isinstance(self.case, SystemCase):
             system = self.case.system
-            changed = {name: getattr(each, "structure", each) for name, each in parts.pop("bodies").items()}
+            bodies = {name: getattr(body, "structure", body) for name, body in parts.pop("bodies").items()}
             gravity = parts.pop("system").get("gravity")
             others = {name: parts.pop(name) for name in ("joints", "forces", "controllers")}
-            parts["system"] = System({**system.bodies, **changed}, gravity=gravity, **others)
+            parts["system"] = System({**system.bodies, **bodies}, gravity=gravity, **others)
         return CaseTemplate(replace(self.case, **parts, motions=motions))
 
     def built(self) -> AnyCase:
@@ -238,7 +239,7 @@ class CaseTemplate:
 
     def quantities(self) -> dict[str, tuple[float, str]]:
         every = {path_text(path): (value, kind) for path, value, kind in _numbers(self._tree, _KINDS, ())}
-        # A machine that tracks a flight of the case has it from there.
+        # The flight that a machine tracks is a motion of the case already.
         copies = tuple(f"motion.{machine}.flight." for machine in self.case.tracks)
         return {path: each for path, each in every.items() if not path.startswith(copies)}
 
@@ -256,14 +257,14 @@ Template = ScenarioTemplate | CaseTemplate
 def template_of(
     scenario: str | os.PathLike[str] | AnyCase, overrides: Sequence[str] = (), *, distributions: bool = False
 ) -> Template:
-    """Return the template that a scenario's file or a case is, with changes."""
+    """Return the template of a scenario's file, or of a case, after the changes `overrides`."""
     if isinstance(scenario, AnyCase) and scenario.scenario is None:
         return CaseTemplate(scenario).changed(tuple(overrides))
     return ScenarioTemplate(scenario_of(scenario, overrides, distributions=distributions))
 
 
 def _below(node: Any, kinds: Kinds) -> dict[Any, tuple[Any, Kinds]]:
-    """Children of a node by name or number, of their own kind of quantity or of that which they are arguments of."""
+    """Children of a node by name or number, each with its kinds of quantity: its own, or else those of the node."""
     if isinstance(node, (tuple, list)) or np.ndim(node):
         return {k: (each, only(kinds)) for k, each in enumerate(node)}
     if isinstance(node, Mapping):
@@ -273,31 +274,31 @@ def _below(node: Any, kinds: Kinds) -> dict[Any, tuple[Any, Kinds]]:
 
 
 def _with(node: Any, kinds: Kinds, wanted: Any, path: Path) -> Any:
-    """The node with other values, SI or text with a unit, at some places below it."""
+    """The node with the values of `wanted`, a tree of texts, SI or with a unit, in place of its own."""
     if isinstance(wanted, str):
         return _read(node, only(kinds), wanted, path)
-    known = _below(node, kinds)
+    children = _below(node, kinds)
     for step in wanted:
-        if step not in known:
-            below = [
-                str(name) for name, (each, _) in known.items() if isinstance(each, str) or any(_numbers(each, "", ()))
+        if step not in children:
+            varied = [
+                str(name) for name, (at, _) in children.items() if isinstance(at, str) or any(_numbers(at, "", ()))
             ]
-            fix = advise(str(step), below) if below else "vary one of its numbers"
+            fix = advise(str(step), varied) if varied else "vary one of its numbers"
             raise InputError(path_text((*path, step)), "is no value that the case gives", fix)
-    changed = {step: _with(*known[step], each, (*path, step)) for step, each in wanted.items()}
-    every = {step: each for step, (each, _) in known.items()} | changed
+    changed = {step: _with(*children[step], each, (*path, step)) for step, each in wanted.items()}
+    values = {step: child for step, (child, _) in children.items()} | changed
     if isinstance(node, Mapping):
-        return every
+        return values
     if isinstance(node, (tuple, list)):
-        return type(node)(every.values())
+        return type(node)(values.values())
     if np.ndim(node):
-        return np.array([*every.values()])
+        return np.array([*values.values()])
     with placing_within(path_text(path)):
         return altered(node, **changed)
 
 
 def _read(current: Any, kind: str, text: str, path: Path) -> Any:
-    """A value of what stands at a place: a word, a truth, a number in SI or with a unit."""
+    """Value written as text, of the type of the current one: a truth, a word, or a number in SI or with a unit."""
     if isinstance(current, bool):
         if text not in ("true", "false"):
             raise InputError(path_text(path), f"is {text!r}", "write true or false")
@@ -309,11 +310,11 @@ def _read(current: Any, kind: str, text: str, path: Path) -> Any:
 
 
 def _numbers(node: Any, kinds: Kinds, path: Path) -> Iterator[tuple[Path, float, str]]:
-    """Every number below a node, with its path and kind; counts are none."""
+    """Path, value and kind of every real number below a node; counts (int) and long arrays are left out."""
     if isinstance(node, (bool, str, int)) or np.size(node) > _LONGEST:
         return
     if isinstance(node, float) or (hasattr(node, "dtype") and np.ndim(node) == 0):
         yield path, float(node), only(kinds) or "ratio"
         return
-    for step, (value, of) in _below(node, kinds).items():
-        yield from _numbers(value, of, (*path, step))
+    for step, (child, its_kinds) in _below(node, kinds).items():
+        yield from _numbers(child, its_kinds, (*path, step))
