@@ -25,7 +25,7 @@ from gbeam.studies.template import template_of
 
 OPTION = "--free"
 _HARDLY = 0.99  # correlation of two values
-_TIED = 0.7  # correlation of residuals with the next ones, which noise does not have
+_TIED = 0.7  # correlation of residuals with the next ones, above which they are not noise
 _VISIBLE = 1e-5  # of the largest datum: residuals that are less are rounding
 
 
@@ -108,7 +108,7 @@ def fit(
     case = template.built()
     measurement = read_measurement(data, case, motion)
     verb, read = ("modes", "modes") if measurement.modal else ("run", "motions")
-    inquiry = Inquiry(template, verb, motion, at, options or {}, keys=((read,),))  # of errors nothing is read
+    inquiry = Inquiry(template, verb, motion, at, options or {}, keys=((read,),))  # without estimates of errors
     if len(measurement.values) <= len(parameters):
         problem = f"names {len(parameters)} values for {len(measurement.values)} data"
         raise InputError(OPTION, problem, "measure more, or free fewer")
@@ -137,6 +137,7 @@ def _described(
     limits: Floats,
     solution: Solution,
 ) -> Fit:
+    """Result of a solution: standard errors, 95 % intervals, correlations of the values inside their bounds."""
     from scipy.special import stdtrit
 
     fitted, measured = model(solution.values), measurement.values
@@ -145,7 +146,8 @@ def _described(
     at_bound = on_bound(solution.values, limits) | at_edge
     inside = np.flatnonzero(~at_bound)
     variance = float(np.sum(((fitted - measured) * solution.weights) ** 2)) / (count - size)
-    spread, condition = np.full((size, size), np.nan), np.nan  # covariance over variance, which may be zero
+    spread = np.full((size, size), np.nan)  # covariance over variance, which may be zero
+    condition = np.nan
     if inside.size:
         jacobian = solution.jacobian[:, inside]
         condition = tell_apart(jacobian * solution.values[inside], [parameters[int(k)] for k in inside])
@@ -180,15 +182,16 @@ def _described(
 
 
 def _columns(measurement: Measurement, fitted: Floats, before: Floats, size: int) -> tuple[FittedColumn, ...]:
-    ends = np.cumsum([len(each.values) for each in measurement.columns])[:-1]
-    share = 1 - size / len(fitted)
+    """Each measured column with the model's values, its noise and the correlation of neighbouring residuals."""
+    ends = np.cumsum([len(column.values) for column in measurement.columns])[:-1]
+    share = 1 - size / len(fitted)  # of the degrees of freedom that the parameters leave
     columns = []
-    for each, now, then in zip(measurement.columns, np.split(fitted, ends), np.split(before, ends), strict=True):
-        r = each.values - now
+    for column, now, then in zip(measurement.columns, np.split(fitted, ends), np.split(before, ends), strict=True):
+        r = column.values - now
         power = float(np.sum(r**2))
-        tied = float(np.sum(r[1:] * r[:-1])) / power if power > 0 and not measurement.modal else np.nan
+        correlation = float(np.sum(r[1:] * r[:-1])) / power if power > 0 and not measurement.modal else np.nan
         noise = float(np.sqrt(power / (len(r) * share)))
-        columns.append(FittedColumn(each.name, each.unit, each.values, now, then, noise, tied))
+        columns.append(FittedColumn(column.name, column.unit, column.values, now, then, noise, correlation))
     return tuple(columns)
 
 
@@ -199,6 +202,7 @@ def _doubts(
     correlation: Floats,
     columns: Sequence[FittedColumn],
 ) -> Iterator[str]:
+    """Warn of values on bounds, pairs that are hardly told apart, and residuals that are not noise."""
     names = [each.path for each in parameters]
     for k, name in enumerate(names):
         if at_edge[k]:
@@ -218,27 +222,27 @@ def _doubts(
 
 ALIKE = "not identifiable"  # an outcome
 _ALIKE = 1e-6  # least singular value of the normalised derivatives, of the largest
-_IDLE = 1e-2  # of the noise: less than that the data change where a value is doubled
-_ROUNDS, _SETTLED = 4, 0.05  # searches, the columns' noise found anew, until its change is less
+_IDLE = 1e-2  # of the noise: a value whose doubling changes the data by less is not seen
+_ROUNDS, _SETTLED = 4, 0.05  # searches at most, with the noise of columns estimated anew, until it changes by less
 _PRECISE = 1e-8  # of the search
-_IMPOSSIBLE = 1e3  # times the first residual: of values that the scenario does not allow
+_IMPOSSIBLE = 1e3  # times the first residual: residual at values that the scenario refuses
 
 
 @dataclass(frozen=True)
 class Solution:
-    """The values of least squares, and what they were found from."""
+    """Values of least squares, with the last weights and weighted derivatives, and the log-likelihood."""
 
-    before: Floats
-    values: Floats
-    weights: Floats
-    jacobian: Floats
+    before: Floats  # (m,), the model at the start
+    values: Floats  # (p,)
+    weights: Floats  # (m,)
+    jacobian: Floats  # (m, p)
     likelihood: float
 
 
 def _search(
     model: Quantities, measurement: Measurement, parameters: Sequence[PhysicalValue], start: Floats, limits: Floats
 ) -> Solution:
-    """Least squares, the weight of every column found anew from its residuals."""
+    """Solve least squares from `start` (p,), again while the columns' weights, from the residuals, still change."""
     from scipy.optimize import least_squares
 
     measured = measurement.values
@@ -251,7 +255,7 @@ def _search(
     def residual(x: Floats, weights: Floats) -> Floats:
         try:
             return np.asarray((model(x * scale) - measured) * weights)
-        except GbeamError:  # the scenario does not allow it, or diverges: the step is taken back
+        except GbeamError:  # the scenario refuses the values, or diverges: the search takes the step back
             return np.full(len(measured), _IMPOSSIBLE * first / np.sqrt(len(measured)))
 
     def jacobian(x: Floats, weights: Floats) -> Floats:
@@ -270,13 +274,15 @@ def _search(
         if change.max() <= (1 + _SETTLED) * change.min():
             break
     misfit = (model(x * scale) - measured) * weights
-    # Of noise that is found from the residuals the last part is the same for all; of too few data the first is.
+    # Where noise is estimated from the residuals the misfit is the same in all searches; else the weights are.
     likelihood = float(np.log(weights).sum() - (misfit @ misfit) / 2)
     return Solution(before, x * scale, weights, model.slopes(x * scale) * weights[:, None], likelihood)
 
 
 def tell_apart(jacobian: Floats, parameters: Sequence[PhysicalValue]) -> float:
-    """Condition of weighted derivatives (m, p), each parameter's of unit length."""
+    """Condition number of weighted derivatives (m, p), columns scaled to unit length; ComputationError if a parameter
+    changes no data, or two change them alike.
+    """
     lengths = np.linalg.norm(jacobian, axis=0)
     names = [each.path for each in parameters]
     least = max(_ALIKE * lengths.max(), _IDLE)

@@ -1,4 +1,4 @@
-"""Design: the values of a scenario at which a figure is least, within limits, along exact derivatives."""
+"""Design: the values of a scenario at which a figure is least within limits, by a search with exact derivatives."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def optimise(
     inquiry = Inquiry(template, verb, motion, at, options or {})
     first = Neighbourhood(inquiry, parameters, progress=progress)
     goal = _goal(facts_of(first.answer), first.case, minimise, subject_to)
-    # On the way no more is computed than is read; the last answer is whole.
+    # The search computes only what its figures are read from; the last answer is whole.
     motions, parts = needed(goal.keys, first.case.tracks)
     model = Quantities(
         replace(inquiry, keys=goal.keys), parameters, goal.read, first, motions, parts, progress=progress
@@ -125,7 +125,8 @@ def optimise(
         Requirement(name, unit_at(facts_of(last.answer), keys), low, high, float(before[k]), float(after[k]))
         for k, (name, keys, low, high) in enumerate(goal.required, 1)
     )
-    broken, paths = [each.name for each in requirements if not each.kept], tuple(each.path for each in parameters)
+    broken = [each.name for each in requirements if not each.kept]
+    paths = tuple(each.path for each in parameters)
     return Optimum(
         title=template.title,
         minimise=minimise,
@@ -152,12 +153,14 @@ def optimise(
 
 
 def _error(answer: Any) -> float:
+    """Largest estimated error of a study's responses; NaN for other answers."""
     if not isinstance(answer, Study):
         return math.nan
     return max((each.error_estimate for each in answer.responses.values()), default=math.nan)
 
 
 def _goal(facts: Facts, case: Case, minimise: str, subject_to: Sequence[str]) -> Goal:
+    """Goal by the texts of its figures, which must have values in these facts; InputError unless they do."""
     objective = figure(facts, minimise, OPTION)
     required: list[tuple[str, Keys, float, float]] = []
     for text in subject_to:
@@ -178,6 +181,7 @@ def _goal(facts: Facts, case: Case, minimise: str, subject_to: Sequence[str]) ->
 
 
 def _machine_limits(facts: Facts) -> Any:
+    """Name, keys and bounds of every finite limit of a machine, as requirements of a Goal."""
     for name, motion in facts.get("motions", {}).items():
         for axis, uses in motion.get("limits", {}).items():
             for quantity, use in uses.items():
@@ -192,7 +196,7 @@ def _bound(text: str, unit: str, name: str) -> float:
 
 
 _PRECISE, _EVALUATIONS = 1e-7, 40  # of one search
-_FEASIBLE = 1e-4  # of a bound: less is no excess
+_FEASIBLE = 1e-4  # of a bound, by which a requirement may be missed
 
 
 @dataclass(frozen=True)
@@ -200,8 +204,8 @@ class Goal:
     """Objective and requirements."""
 
     objective: Keys
-    required: tuple[tuple[str, Keys, float, float], ...]
-    unit: str
+    required: tuple[tuple[str, Keys, float, float], ...]  # name, keys, lower and upper bound, one of them infinite
+    unit: str  # of the objective
 
     @property
     def keys(self) -> tuple[Keys, ...]:
@@ -209,34 +213,34 @@ class Goal:
         return (self.objective, *(keys for _, keys, _, _ in self.required))
 
     def read(self, _: Any, answer: Any) -> Floats:
-        """All figures of an answer."""
+        """Figures (1 + r,) of an answer, the objective first."""
         return values_at(facts_of(answer), self.keys)
 
 
 class _Enough(Exception):
-    """A search that has evaluated the scenario so often that it will not end."""
+    """Raised to end a search after too many evaluations."""
 
 
 @dataclass
 class Search:
-    """The search, which keeps what it has tried."""
+    """Search from any start, which keeps the tried values that were better than all before them."""
 
     model: Quantities
     goal: Goal
     limits: Floats
-    tried: list[tuple[Floats, float]] = field(default_factory=list)
-    ranks: list[tuple[float, float]] = field(default_factory=list)  # of those tried, each better than before
+    tried: list[tuple[Floats, float]] = field(default_factory=list)  # values and objective
+    ranks: list[tuple[float, float]] = field(default_factory=list)  # of those: excess over the bounds, cost
     warnings: tuple[str, ...] = ()
     flat: bool = True  # while no value tried has changed the objective
 
     def __call__(self, start: Floats) -> Floats:
-        """End of a search from some values."""
+        """Return the best values (p,) that a search from `start` (p,) has tried."""
         from scipy.optimize import minimize
 
         low, width = self.limits[:, 0], self.limits[:, 1] - self.limits[:, 0]
         sizes = self._sizes(self.model(start))
         begun = self.model.evaluations
-        power = 1 if self.goal.unit else 2  # of what has no unit, the size: its square is smooth at zero
+        power = 1 if self.goal.unit else 2  # without a unit its size, by the square, which is smooth at zero
         best: tuple[float, float, Floats] | None = None
         slopes = self.model.slopes
 
@@ -247,7 +251,8 @@ class Search:
             values = low + x * width
             figures = self.model(values)
             excess = float(max(0.0, *(-self._slack(figures) / sizes[1:]))) if self.goal.required else 0.0
-            rank = (0.0 if excess <= _FEASIBLE else excess, abs(float(figures[0])) if power == 2 else float(figures[0]))
+            cost = abs(float(figures[0])) if power == 2 else float(figures[0])
+            rank = (0.0 if excess <= _FEASIBLE else excess, cost)
             if best is None or rank < best[:2]:
                 best = (*rank, values)
                 if not self.ranks or rank < self.ranks[-1]:
@@ -286,12 +291,12 @@ class Search:
         return np.array([1.0 if math.isinf(high) else -1.0 for _, _, _, high in self.goal.required])
 
     def _slack(self, figures: Floats) -> Floats:
-        """By how much every requirement is kept; negative where it is not."""
-        ends = np.array([low if math.isinf(high) else high for _, _, low, high in self.goal.required])
-        return np.asarray(self._signs * (figures[1:] - ends))
+        """Distance (r,) of each required figure from its bound; negative where that is exceeded."""
+        bounds = np.array([low if math.isinf(high) else high for _, _, low, high in self.goal.required])
+        return np.asarray(self._signs * (figures[1:] - bounds))
 
     def _sizes(self, figures: Floats) -> Floats:
-        """Sizes of the figures: the objective's own, the bounds of the others."""
-        ends = [abs(low if math.isinf(high) else high) for _, _, low, high in self.goal.required]
-        others = [end or abs(value) or 1.0 for end, value in zip(ends, figures[1:], strict=True)]
+        """Scales of the figures (1 + r,), none zero: the objective's size, the bounds of the others."""
+        bounds = [abs(low if math.isinf(high) else high) for _, _, low, high in self.goal.required]
+        others = [bound or abs(value) or 1.0 for bound, value in zip(bounds, figures[1:], strict=True)]
         return np.array([abs(figures[0]) or 1.0, *others])

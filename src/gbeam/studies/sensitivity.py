@@ -27,8 +27,8 @@ from gbeam.studies.parameters import PhysicalValue, changes_to, physical_values
 from gbeam.studies.template import template_of
 
 OPTION = "--of"
-_SHARE = 0.05  # by which the slopes on either side may differ
-_SMOOTH = 1e-3  # of the figure over the value: what is less is rounding, or the bend of a high power
+_SHARE = 0.05  # of the slope, by which the one-sided slopes may differ
+_SMOOTH = 1e-3  # of the figure over the value: a smaller difference is rounding, or the bend of a high power
 # Figures that are no function of the physics: counts, steps, estimates, flags.
 _NOT_PHYSICAL = re.compile(r"(^|\.)(steps|step|errors|error_estimate|accepted|passed|yielded|margin_estimate)(\.|\[|$)")
 
@@ -102,12 +102,12 @@ def sensitivity(
     chosen, refused = _possible(inquiry, physical_values(template, parameters), strict=bool(parameters))
     if not chosen:
         raise InputError("--with", "has no value that may be a little more and a little less", "name some")
-    about = Neighbourhood(inquiry, chosen, progress=progress)
-    facts = facts_of(about.answer)
+    nearby = Neighbourhood(inquiry, chosen, progress=progress)
+    facts = facts_of(nearby.answer)
     keys = tuple(figure(facts, name) for name in of)
-    motions, about.parts = needed(keys, about.case.tracks)
-    about.inquiry = replace(inquiry, keys=keys)  # of other answers no more is computed than is read
-    slopes = about.slopes(lambda _, answer: values_at(facts_of(answer), keys), motions)
+    motions, nearby.parts = needed(keys, nearby.case.tracks)
+    nearby.inquiry = replace(inquiry, keys=keys)  # further answers hold only what these figures are read from
+    slopes = nearby.slopes(lambda _, answer: values_at(facts_of(answer), keys), motions)
     units = tuple(unit_at(facts, each) for each in keys)
     kinks = _kinks(slopes, [each.value for each in chosen], units)
     kinked = [
@@ -128,7 +128,7 @@ def sensitivity(
         errors=slopes.errors,
         methods=slopes.methods,
         kinks=kinks,
-        run_error=_run_error(about.answer, motions),
+        run_error=_run_error(nearby.answer, motions),
         not_varied=tuple(refused),
         warnings=tuple(kinked),
         provenance=template.provenance,
@@ -146,15 +146,15 @@ def _run_error(answer: Any, motions: Sequence[str]) -> float:
 
 
 def _kinks(slopes: Slopes, values: Sequence[float], units: Sequence[str]) -> Flags:
-    """Flags of slopes that differ on either side by a share of them, and by more than rounding and bends make."""
-    # A figure without a unit is a ratio, or one less one, which may be small.
+    """True (m, p) where the one-sided slopes differ by more than a share of the slope, rounding and curvature."""
+    # A figure without a unit is a ratio, or a ratio less one, which may be small beside its rounding.
     sizes = np.maximum(np.abs(slopes.values), [0.0 if unit else 1.0 for unit in units])
     size = sizes[:, None] / np.maximum(np.abs(values), 1e-6)
     return np.asarray(slopes.bends > _SHARE * np.abs(slopes.slopes) + _SMOOTH * size)
 
 
 def figure(facts: Facts, name: str, option: str = OPTION) -> Keys:
-    """Keys of a figure that has a derivative."""
+    """Keys of a figure; InputError unless it has a finite value and can have a derivative."""
     with naming(option):
         keys = find(facts, name)
     if isinstance(node_at(facts, keys), (bool, int)) or _NOT_PHYSICAL.search(path_text(own_keys(keys))):
@@ -165,14 +165,14 @@ def figure(facts: Facts, name: str, option: str = OPTION) -> Keys:
 
 
 def needed(keys: Sequence[Keys], tracks: Mapping[str, str]) -> tuple[list[str], dict[str, bool]]:
-    """Motions whose responses figures of ``run`` come from, and which parts of these."""
-    motions: dict[str, None] = {}
+    """Motions whose responses figures of ``run`` are read from, and whether loads and axes of these are."""
+    motions: dict[str, None] = {}  # an ordered set
     axes = False
-    for first, *rest in keys:
-        if first == "comparisons":
+    for table, *rest in keys:
+        if table == "comparisons":
             motions |= dict.fromkeys((tracks[str(rest[0])], str(rest[0])))
             axes = True
-        elif first == "motions":
+        elif table == "motions":
             motions[str(rest[0])] = None
             axes |= rest[1] not in ("tip", "stations", "loads", "hub")
     return list(motions), {"loads": any(map(of_loads, keys)), "axes": axes}
@@ -189,18 +189,22 @@ def values_at(facts: Facts, keys: Sequence[Keys]) -> Floats:
 def _possible(
     inquiry: Inquiry, values: Sequence[PhysicalValue], *, strict: bool
 ) -> tuple[list[PhysicalValue], list[str]]:
-    """Values that may be a little more and a little less; those that may not, with the reason, unless named."""
+    """Values that the scenario allows to be a little less and more, and path and reason of each that it does not.
+
+    `strict` raises InputError for the first of these.
+    """
     kept, refused = [], []
-    for each in values:
+    for parameter in values:
+        value = parameter.value
         try:
             for share in (-1e-3, 1e-3):
-                inquiry.case(changes_to([each], [each.value * (1 + share) if each.value else share * 1e-3]))
+                inquiry.case(changes_to([parameter], [value * (1 + share) if value else share * 1e-3]))
         except GbeamError as error:
-            reason = re.sub(rf"^--set [^:]*: |{re.escape(each.path)}:? ", "", str(error).splitlines()[0])
+            reason = re.sub(rf"^--set [^:]*: |{re.escape(parameter.path)}:? ", "", str(error).splitlines()[0])
             if strict:
-                problem = f"names {each.path}, which may not be a little less and a little more ({reason})"
+                problem = f"names {parameter.path}, which may not be a little less and a little more ({reason})"
                 raise InputError("--with", problem, "leave it out: it has no derivative there") from None
-            refused.append(f"{each.path}: {reason}")
+            refused.append(f"{parameter.path}: {reason}")
             continue
-        kept.append(each)
+        kept.append(parameter)
     return kept, refused

@@ -1,4 +1,4 @@
-"""Command shaping of a scenario: what its slew does, by the rate or effort that leaves the least vibration."""
+"""Command shaping of a scenario: the rate or effort that does its slew and leaves the least vibration."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ from gbeam.results.searches import ShapedCommand
 from gbeam.scenario.build import scenario_of
 from gbeam.studies.template import template_of
 
-_REST = 1e-9  # of the largest rate: a hub that turns slower at its end is to turn by an angle
+_REST = 1e-9  # of the largest rate: below it at the end the goal is an angle, above it a rate
 _POINTS = 401  # of a table: straight lines between them are off by 1e-4 of a smooth step
-_AFTER = 1.25  # times the command: how long a scenario of it lasts at least
+_AFTER = 1.25  # least duration of a scenario with the command, over the command's
 
 
 def _drive(arguments: Mapping[str, Any]) -> tuple[bool, bool]:
@@ -158,7 +158,7 @@ def driven_of(case: AnyCase, motion: str | None, joint: str | None) -> tuple[Cas
 
 
 def hub_of(case: Case, name: str | None) -> tuple[str, Hub]:
-    """The hub of a case, by its name where there are several; InputError if there is none."""
+    """Name and hub of a case, chosen by `name` where there are several; InputError if there is none."""
     hubs = {each: motion for each, motion in case.motions.items() if isinstance(motion, Hub)}
     if not hubs:
         raise InputError("motion", "has no hub", "add a motion of kind hub")
@@ -169,11 +169,11 @@ def hub_of(case: Case, name: str | None) -> tuple[str, Hub]:
 
 
 def driven_joint(case: SystemCase, name: str | None) -> tuple[str, Hub]:
-    """The coordinate of a system that a command moves, named or the only one driven, and a hub of its rate, or free."""
+    """Coordinate of a system that a command moves, `name` or the only one driven, and a hub with its rate, or free."""
     commands = {
-        f"{owner}.{each}": joint.rates.get(each)
+        f"{owner}.{coordinate}": joint.rates.get(coordinate)
         for owner, joint in case.system.joints.items()
-        for each in (*joint.rates, *joint.efforts)
+        for coordinate in (*joint.rates, *joint.efforts)
     }
     if name is None:
         if len(commands) != 1:
@@ -196,7 +196,10 @@ def slides(coordinate: str) -> bool:
 
 
 def _grounded(case: SystemCase, name: str | None) -> System:
-    """The system on the ground; one that a motion carries is under the gravity that its constant load is."""
+    """The system on the ground, under gravity that equals the constant load of the motion that carries it.
+
+    InputError unless that motion has a constant acceleration and does not turn.
+    """
     if not case.motions:
         return case.system
     chosen = motion_of(case.motions, name)
@@ -220,7 +223,7 @@ def _end(hub: Hub, name: str) -> float:
 
 
 def _goal(hub: Hub, name: str) -> tuple[float | None, float | None]:
-    """Angle to turn by or rate to reach: what the scenario's own rate does."""
+    """Angle to turn by, or rate to reach, of the scenario's own rate; the other one is None."""
     if hub.free or hub.rate is None:
         fix = "give --angle or --rate"
         raise InputError("--angle", f"is missing, and the torque of {name} says of no angle or rate", fix)
@@ -234,7 +237,7 @@ def _goal(hub: Hub, name: str) -> tuple[float | None, float | None]:
 def scenario_with(
     command: ShapedCommand, scenario: str | os.PathLike[str] | Case | SystemCase, overrides: Sequence[str] = ()
 ) -> str:
-    """Return a scenario, as JSON, in which a table of the shaped command drives hub or joint; it lasts beyond it."""
+    """Return a scenario, as JSON, in which a table of the shaped command drives its hub or joint and rests."""
     base = scenario_of(scenario, overrides)
     assert base.source is not None  # it was read from a file
     data: dict[str, Any] = json.loads(json.dumps(base.source.data))
