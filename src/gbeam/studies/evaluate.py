@@ -1,7 +1,7 @@
-"""Cases from a scenario's text to their figures, one by one or integrated together: what a worker computes.
+"""Computation of cases by a worker, from the scenario's text to the figures, one by one or integrated together.
 
 A case's digits do not depend on the cases beside it (:func:`gbeam.simulate_batch`); whether it is integrated with
-others depends on the sweep and on the case alone.
+others depends only on the sweep and on the case.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ from gbeam.studies.figures import Facts, History, Keys, SystemHistory, answer_fa
 from gbeam.studies.template import Template
 
 Function = Callable[[Any], float]
-NO_FACTS: Facts = {"outcome": "done"}  # where functions measure the case, no verb answers
-# Figures of a motion, and of a comparison, which are the same to the last digit where no loads are computed.
+NO_FACTS: Facts = {"outcome": "done"}  # where functions measure the case, and no verb answers
+# Figures of a motion, and of a comparison, that have the same digits if no loads are computed.
 _WITHOUT_LOADS = ("tip", "stations", "hub", "step", "steps", "damping_ratio", "axes", "limits", "tracking_error")
 _VERDICT_WITHOUT_LOADS = (("verdict", "tip"), ("verdict", "followed"))
 
 
 @dataclass(frozen=True)
 class Row:
-    """Row of one case: its figures, how it ended, and why it is not done or which limits it does not keep."""
+    """Figures of one case, its outcome, and the reason if that is not done, or the limits that it does not keep."""
 
     case: int
     values: tuple[float, ...]
@@ -46,24 +46,24 @@ class Row:
 
     @property
     def failed(self) -> bool:
-        """True if it has come to nothing, or was cut off."""
+        """True if the case has no answer, or was cut off."""
         return self.outcome not in ("done", *ANSWERED)
 
 
 @dataclass(frozen=True)
 class Inquiry:
-    """The computation of every case: a question at time `at`, s, and the figures that are taken from its answer."""
+    """Question asked of every case, at time `at`, s, and the figures that are taken from its answer."""
 
     template: Template
     verb: str
     motion: str | None
     at: float | None = None
     options: Mapping[str, Any] = field(default_factory=dict)  # of the verb, as its function takes them
-    keys: tuple[Keys, ...] = ()  # of the answer's facts
-    functions: tuple[Function, ...] = ()  # of the case
+    keys: tuple[Keys, ...] = ()  # of the figures in the answer's facts
+    functions: tuple[Function, ...] = ()  # figures by functions of the case
     histories: tuple[History | SystemHistory, ...] = ()
     times: Floats = field(default_factory=lambda: np.empty(0))  # of the histories, (t,) s
-    together: bool = False  # whether cases that can be integrated together are
+    together: bool = False  # integrate cases together
 
     def __post_init__(self) -> None:
         question_of(self.verb).chosen(self.options)  # before anything is computed
@@ -75,7 +75,7 @@ class Inquiry:
 
     @cached_property
     def needs(self) -> Needs:
-        """Parts of answers that the figures are taken from; before their keys are known, all."""
+        """Parts of answers that the figures are taken from; all parts while their keys are not known."""
         if not self.keys and not self.histories:
             return Needs()
         errors = any("error" in str(key) for keys in self.keys for key in own_keys(keys))
@@ -87,14 +87,14 @@ class Inquiry:
         return self.template.changed(overrides).built()
 
     def facts(self, case: AnyCase) -> Facts:
-        """Answer of the verb, as JSON."""
+        """Facts of the verb's answer to a case."""
         question = question_of(self.verb)
         question.refuse(case)
         answer = question.answer(case, self.motion, self.at, self.needs, **question.chosen(self.options))
         return answer_facts(answer, case.title)
 
     def row(self, number: int, overrides: Sequence[str]) -> Row:
-        """Compute one case. What goes wrong in it is part of the row: the other cases go on."""
+        """Compute one case; any exception becomes part of the row, so that the other cases go on."""
         try:
             case = self.case(overrides)
             facts = self.facts(case) if self.keys or self.histories else NO_FACTS
@@ -103,11 +103,11 @@ class Inquiry:
         return self.measured(number, case, facts)
 
     def measured(self, number: int, case: AnyCase, facts: Facts) -> Row:
-        """The row of a case that is built, from what the verb answers to it."""
+        """Row of a built case with the facts of the verb's answer to it."""
         try:
             values = [value_at(facts, keys) for keys in self.keys]
-            more, problem = _measured(self.functions, case)
-            values += more
+            by_functions, problem = _measured(self.functions, case)
+            values += by_functions
             for history in self.histories:
                 values += history.at(facts["study"], self.times).tolist()
         except Exception as error:
@@ -117,7 +117,7 @@ class Inquiry:
 
 
 def _measured(functions: Sequence[Function], case: AnyCase) -> tuple[list[float], str]:
-    """Values of measures, NaN of those that fail, and why these do; where all do, the case has failed."""
+    """Values of functions of a case, NaN of those that fail, and the reasons; raises the last one if all fail."""
     values, problems, last = [], [], Exception()
     for k, function in enumerate(functions):
         try:
@@ -132,7 +132,7 @@ def _measured(functions: Sequence[Function], case: AnyCase) -> tuple[list[float]
 
 
 def of_loads(keys: Keys) -> bool:
-    """True if a figure may be one of loads."""
+    """True unless a figure is known to have the same digits where no loads are computed."""
     match keys[0]:
         case "motions":
             return len(keys) < 3 or keys[2] not in _WITHOUT_LOADS
@@ -142,13 +142,13 @@ def of_loads(keys: Keys) -> bool:
 
 
 def ended(facts: Facts) -> tuple[str, str]:
-    """Outcome of a case, or what limits make of it, and its message."""
+    """Outcome of a case, or the state that its limits put it in, such as not accepted, and its message."""
     state = str(facts.get("state", facts["outcome"]))
     return state if state in ANSWERED else str(facts["outcome"]), str(facts.get("message") or "")
 
 
 def without_figures(number: int, width: int, error: Exception) -> Row:
-    """Row of a case that came to nothing, with the reason."""
+    """Row of a case that raised `error`: no figures, an outcome by the error's type, and its message."""
     nothing = (math.nan,) * width
     if isinstance(error, ComputationError):
         return Row(number, nothing, error.outcome, _line(error))
@@ -158,19 +158,19 @@ def without_figures(number: int, width: int, error: Exception) -> Row:
 
 
 def _line(error: Exception) -> str:
-    """First line of a message; a scenario's shows the source on the others."""
+    """First line of an error's message; further lines show the scenario's source."""
     text = str(error).strip()
     return text.splitlines()[0] if text else type(error).__name__
 
 
 Task = tuple[int, tuple[str, ...]]  # number of the case, and its changes
 Posed = tuple[int, Case, Structure]
-MANY = 4 * TOGETHER  # cases that are posed at once: with fewer, many batches of runs that go together are not full
-_ALONE = ("response", "model")  # tables: cases in which they differ have few steps or sizes in common
+MANY = 4 * TOGETHER  # cases that are built at once, so that most batches of equal runs are full
+_ALONE = ("response", "model")  # tables: cases that differ in these share few steps or sizes
 
 
 def width(inquiry: Inquiry) -> int:
-    """Number of cases that are best computed at once."""
+    """Number of cases to compute in one call."""
     return TOGETHER if inquiry.together else 1
 
 
@@ -180,9 +180,9 @@ def may_share(verb: str, paths: Sequence[str]) -> bool:
 
 
 def settled(inquiry: Inquiry, case: AnyCase, cases: int) -> Inquiry:
-    """The inquiry, its figures known, with whether a case, and so every one of so many, is integrated with others.
+    """Inquiry whose `together` stays true only if a case like this one gains by being integrated with the others.
 
-    An automatic step takes several runs, whose programs a few cases do not repay; so do automatic numbers of shapes.
+    Automatic steps take several runs, which pay for many cases only; automatic numbers of shapes exclude it.
     """
     settings = reduced(case, inquiry.needs).response
     if settings is None or not inquiry.together:
@@ -193,35 +193,35 @@ def settled(inquiry: Inquiry, case: AnyCase, cases: int) -> Inquiry:
 
 
 def rows(inquiry: Inquiry, tasks: Iterable[Task]) -> Iterator[Row]:
-    """Compute cases; those that are integrated together are taken some at a time, and come in any order."""
+    """Compute cases; if they are integrated together, their rows come in any order."""
     if inquiry.together:
         return _together(inquiry, iter(tasks))
     return (inquiry.row(*task) for task in tasks)
 
 
 def _together(inquiry: Inquiry, tasks: Iterator[Task]) -> Iterator[Row]:
-    """Rows of cases, of which those with equal settings are integrated together."""
-    while some := list(islice(tasks, MANY)):
+    """Rows of cases, computed many at a time; neighbours with equal settings are integrated together."""
+    while many := list(islice(tasks, MANY)):
         posed: list[Posed] = []
         structures: dict[tuple[str, ...], Structure] = {}
-        for number, overrides in some:
+        for number, overrides in many:
             try:
                 case = inquiry.case(overrides).one_beam("bodies", "a batch")
-                of_beam = tuple(each for each in overrides if not each.startswith("motion."))
-                structure = structures[of_beam] = structures.get(of_beam) or case.assemble()
+                key = tuple(each for each in overrides if not each.startswith("motion."))  # motions share a structure
+                structure = structures[key] = structures.get(key) or case.assemble()
                 posed.append((number, case, structure))
             except Exception as error:
                 yield without_figures(number, inquiry.width, error)
-        # A motion that varies may end a record elsewhere.
+        # Settings differ where a motion's record ends at another time.
         for _, group in groupby(posed, key=lambda each: each[1].response):
             yield from _answered(inquiry, list(group), one_structure=set(structures) == {()})
 
 
 def _answered(inquiry: Inquiry, posed: Sequence[Posed], *, one_structure: bool) -> Iterator[Row]:
-    """Rows of cases of the same settings, each once there is an answer in all of its environments."""
+    """Rows of cases with the same settings, each as soon as all of its motions are answered."""
     settings = reduced(posed[0][1], inquiry.needs).response
     pairs = [(k, name) for k, (_, case, _) in enumerate(posed) for name in case.motions]
-    answers: dict[int, dict[str, Response | Exception]] = {}
+    answers: dict[int, dict[str, Response | Exception]] = {}  # of cases by index in `posed`, then by motion
     for (k, name), answer in _responses(posed, pairs, settings, one_structure=one_structure):
         number, case, _ = posed[k]
         known = answers.setdefault(k, {})
@@ -234,7 +234,7 @@ def _answered(inquiry: Inquiry, posed: Sequence[Posed], *, one_structure: bool) 
 def _responses(
     posed: Sequence[Posed], pairs: Sequence[tuple[int, str]], settings: Any, *, one_structure: bool
 ) -> Iterator[tuple[tuple[int, str], Response | Exception]]:
-    """Responses of cases in environments, or why there is none, in any order."""
+    """Response, or exception, of each pair of a case's index in `posed` and a motion, in any order."""
     left = dict.fromkeys(pairs)
     try:
         for k, response in simulate_batch(
@@ -243,16 +243,17 @@ def _responses(
             case, name = pairs[k]
             del left[case, name]
             yield (case, name), replace(response, name=name, provenance=posed[case][1].provenance)
-    except Exception as error:
+    except Exception as error:  # of one pair, which ends the batch: halves are tried until it is alone
         if len(left) == 1:
             yield next(iter(left)), error
             return
-        rest, half = list(left), len(left) // 2  # one that fails ends its batch
+        rest, half = list(left), len(left) // 2
         for part in (rest[:half], rest[half:]):
             yield from _responses(posed, part, settings, one_structure=one_structure)
 
 
 def _row(inquiry: Inquiry, number: int, case: Case, answers: Mapping[str, Response | Exception]) -> Row:
+    """Row of a case by its answers; a ComputationError is of one motion, any other exception ends the case."""
     responses: dict[str, Response] = {}
     failures: dict[str, Failure] = {}
     try:

@@ -1,4 +1,4 @@
-"""Measured histories or modes, and the same quantities of a case."""
+"""Measured histories or modes, and the same quantities computed of a case."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ _KINDS = {
 }
 _STRAIN = re.compile(r"strain\.(-?[xyz])@(.+)")
 _MODAL = {"frequency": "frequency", "damping_ratio": "ratio"}
-_USUAL = {"history": 1e-2, "frequency": 1e-3, "damping_ratio": 0.1}  # noise, of the largest or of the value
-_LEAST = 1e-6  # of that: the noise of data that were computed
+_USUAL = {"history": 1e-2, "frequency": 1e-3, "damping_ratio": 0.1}  # assumed noise, of the largest or of the value
+_LEAST = 1e-6  # of that: least noise, as of data that were computed
 _SIGNALS = "length", "angle", "speed", "angular rate", "acceleration", "force", "torque"  # kinds, of a system
 _KIND_OF = {KINDS[kind].unit: kind for kind in _SIGNALS}
 _MICROSTRAIN = {"µm/m": 1e-6, "um/m": 1e-6, "microstrain": 1e-6}
@@ -62,7 +62,7 @@ class Measured:
 
 @dataclass(frozen=True)
 class Measurement:
-    """Columns measured at times, s, or of modes by their numbers from 1: `at` (t,)."""
+    """Columns measured at times `at` (t,), s; if `modal`, of the modes with these numbers, from 1."""
 
     file: str
     at: Floats
@@ -81,39 +81,41 @@ class Measurement:
 
     @property
     def parts(self) -> dict[str, bool]:
-        """Parts of a response that the columns are of."""
+        """Parts of a response, loads and axes, that the columns need."""
         return {"loads": any(each.quantity.startswith(("root_", "strain")) for each in self.columns), "axes": False}
 
     def weights(self, residuals: Floats | None, freed: int) -> Floats:
-        """One over the noise of the data (m,) by residuals (m,), or usual: even in time, a share of frequencies."""
+        """Reciprocals (m,) of the noise, estimated from residuals (m,) of a fit of `freed` values, or assumed for None.
+        It is the same at all times of a column, and in proportion to the values of modes.
+        """
         weights, first = [], 0
-        for each in self.columns:
-            part = slice(first, first := first + len(each.values))
-            size = np.abs(each.values) if self.modal else np.full(len(each.values), np.abs(each.values).max())
+        for column in self.columns:
+            rows = slice(first, first := first + len(column.values))
+            size = np.abs(column.values)
+            size = size if self.modal else np.full(len(size), size.max())
             size = np.where(size > 0, size, 1.0)
-            usual = _USUAL[each.quantity] if self.modal else _USUAL["history"]
-            # Too few data say nothing of their column's noise.
-            if residuals is not None and len(size) > 2 * freed + 2:
-                shares = residuals[part] / size
+            noise = _USUAL[column.quantity] if self.modal else _USUAL["history"]
+            if residuals is not None and len(size) > 2 * freed + 2:  # fewer data say nothing of the noise
+                shares = residuals[rows] / size
                 left = 1 - freed / len(self.values)
-                usual = max(float(np.sqrt(np.mean(shares**2) / left)), _LEAST * usual)
-            weights.append(1 / (usual * size))
+                noise = max(float(np.sqrt(np.mean(shares**2) / left)), _LEAST * noise)
+            weights.append(1 / (noise * size))
         return np.concatenate(weights)
 
     def instrumented(self, case: Any) -> Any:
-        """The case with the gauges among its stations."""
+        """The case; of a beam with the positions of strain gauges among its stations."""
         if isinstance(case, (SystemCase, SpecimenCase)):
             return case
         gauges = {float(each.at) for each in self.columns if each.face and float(each.at) > 0}
         return replace(case, stations=tuple(sorted({*case.stations, *gauges}))) if gauges else case
 
     def read(self, case: AnyCase, answer: Any) -> Floats:
-        """Measured quantities of a case, (m,)."""
+        """Values (m,) of the measured quantities in an answer to a case, in the order of `values`."""
         if self.modal:
             return np.array([_modal(answer, each.quantity, int(k)) for each in self.columns for k in self.at])
         if isinstance(case, SystemCase):
-            every = [SystemHistory(each.name, each.motion, each.quantity, each.unit) for each in self.columns]
-            return np.concatenate([each.at(answer["study"], self.at) for each in every])
+            histories = [SystemHistory(each.name, each.motion, each.quantity, each.unit) for each in self.columns]
+            return np.concatenate([history.at(answer["study"], self.at) for history in histories])
         study = answer if isinstance(answer, Study) else answer["study"]
         return np.concatenate([self._history(case, study, each) for each in self.columns])
 
@@ -139,6 +141,7 @@ def read_measurement(path: str | os.PathLike[str], case: AnyCase, motion: str | 
 
 
 def _read(path: str, case: AnyCase, motion: str | None) -> Measurement:
+    """The measurement in a file; InputError unless it has a clock, time or mode, and further columns."""
     table = read_text(path)
     names = {(column.aliases or (column.name,))[0]: column.unit for column in table.columns}
     clock = next((name for name in names if name.lower() in (*_TIME, _MODE)), None)
@@ -156,6 +159,7 @@ def _read(path: str, case: AnyCase, motion: str | None) -> Measurement:
 
 
 def _check_clock(at: Floats, path: str, modal: bool, case: AnyCase) -> None:
+    """Raise InputError unless times increase within the response, or modes are numbered once each."""
     if modal:
         if (at < 1).any() or (at % 1 != 0).any() or len(set(at)) < len(at):
             raise InputError(OPTION, f"{path} has modes that are no numbers 1, 2, …", "number each mode once")
@@ -172,6 +176,7 @@ def _check_clock(at: Floats, path: str, modal: bool, case: AnyCase) -> None:
 
 
 def _column(table: Table, name: str, unit: str, modal: bool, case: AnyCase, motion: str | None) -> Measured:
+    """A column of the file in SI, with its quantity and the motion that its name or `motion` says."""
     values = table.numbers("file", name)
     if modal:
         if name not in _MODAL:
@@ -182,25 +187,25 @@ def _column(table: Table, name: str, unit: str, modal: bool, case: AnyCase, moti
         factor = _factor(unit, _KIND_OF[signal.unit], name)
         return Measured(name, signal.motion, signal.quantity, values * factor, signal.unit)
     first, _, rest = name.partition(".")
-    of, quantity = (first, rest) if first in case.motions else (motion or _only_motion(case, name), name)
-    if of not in case.motions:
-        raise InputError("--motion", f"is {of!r}", f"the scenario has {', '.join(case.motions)}")
+    run, quantity = (first, rest) if first in case.motions else (motion or _only_motion(case, name), name)
+    if run not in case.motions:
+        raise InputError("--motion", f"is {run!r}", f"the scenario has {', '.join(case.motions)}")
     strain = _STRAIN.fullmatch(quantity)
     if strain is not None and (isinstance(case, SpecimenCase) or not strain[1].endswith("x")):
         factor = _MICROSTRAIN.get(unit) or _factor(unit, "ratio", name)
         if isinstance(case, SpecimenCase):
-            return Measured(name, of, "strain", values * factor, "", _gauged(strain[2], strain[1], case), strain[1])
-        return Measured(name, of, "strain", values * factor, "", _position(strain[2], strain[1], case), strain[1])
+            return Measured(name, run, "strain", values * factor, "", _gauged(strain[2], strain[1], case), strain[1])
+        return Measured(name, run, "strain", values * factor, "", _position(strain[2], strain[1], case), strain[1])
     point, _, axis = quantity.partition(".")
     points = case.structure.points if isinstance(case, SpecimenCase) else case.beam.named_points
     if axis in tuple("xyz") and point in points:
-        return Measured(name, of, quantity, values * _factor(unit, "length", name), _si("length"))
+        return Measured(name, run, quantity, values * _factor(unit, "length", name), _si("length"))
     if quantity not in _KINDS:
         raise InputError(OPTION, f"has the column {name!r}", advise(quantity, [*_KINDS, "strain.z@10 mm"]))
-    if quantity.startswith("hub.") and case.motions[of].kind != "hub":
-        raise InputError(OPTION, f"has the column {name!r}, and {of} is no hub", "leave it out")
+    if quantity.startswith("hub.") and case.motions[run].kind != "hub":
+        raise InputError(OPTION, f"has the column {name!r}, and {run} is no hub", "leave it out")
     kind = _KINDS[quantity]
-    return Measured(name, of, quantity, values * _factor(unit, kind, name), _si(kind))
+    return Measured(name, run, quantity, values * _factor(unit, kind, name), _si(kind))
 
 
 def _si(kind: str) -> str:
@@ -208,7 +213,7 @@ def _si(kind: str) -> str:
 
 
 def _factor(unit: str, kind: str, name: str) -> float:
-    """SI value of one unit."""
+    """Factor from a column's unit to SI; InputError, with the column's name, unless it is of that kind."""
     return read_quantity(OPTION, f"1 {unit}" if unit else "1", kind, f"has the column {name!r} in {unit!r}: ")
 
 
@@ -241,7 +246,7 @@ def _position(text: str, face: str, case: Case) -> float:
 
 def _only_motion(case: Case | SpecimenCase, name: str) -> str:
     if len(case.motions) > 1:
-        choice = " or ".join(f"{each}.{name}" for each in case.motions)
+        choice = " or ".join(f"{motion}.{name}" for motion in case.motions)
         raise InputError(OPTION, f"has the column {name!r}, and the scenario several motions", f"name it {choice}")
     return next(iter(case.motions))
 
@@ -254,6 +259,7 @@ def _modal(facts: Mapping[str, Any], quantity: str, mode: int) -> float:
 
 
 def _values(case: Case | SpecimenCase, response: Response, column: Measured) -> Floats:
+    """History, at the response's own times, of the quantity that a column measures."""
     kind, _, axis = column.quantity.partition(".")
     if kind == "hub":
         assert response.hub is not None
