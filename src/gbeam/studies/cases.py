@@ -25,7 +25,7 @@ DEFAULT_SAMPLES = 64
 
 @dataclass(frozen=True)
 class Cases:
-    """Cases in the order of the result's arrays: every combination of a grid, with every one of so many samples."""
+    """Cases in the order of the result's arrays: every combination of the grid's values with every sample."""
 
     grid: tuple[Variation, ...]
     drawn: tuple[Variation, ...]
@@ -34,27 +34,27 @@ class Cases:
 
     @property
     def variations(self) -> tuple[Variation, ...]:
-        """All that varies."""
+        """Variations of the grid, then those that are drawn."""
         return self.grid + self.drawn
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Shape of the result's arrays."""
+        """Shape of the result's arrays, the samples last."""
         return tuple(len(each.texts) for each in self.grid) + ((self.samples,) if self.drawn else ())
 
     @property
     def independent(self) -> int:
-        """Number of samples, of the first, that are draws from all distributions: the others repeat parts of them."""
+        """Number of samples, from the first, that are independent draws; saltelli's others combine these."""
         return 2 * self.samples // (len(self.drawn) + 2) if self.sampler == "saltelli" else self.samples
 
     def __len__(self) -> int:
         return math.prod(self.shape)
 
     def overrides(self, case: int) -> tuple[str, ...]:
-        """Changes of the scenario that make a case."""
-        at = [int(i) for i in np.unravel_index(case, self.shape)]
-        chosen = [(each, each.texts[i]) for each, i in zip(self.grid, at, strict=False)]  # the sample is the last
-        chosen += [(each, each.texts[at[-1]]) for each in self.drawn]
+        """Changes of the scenario that make the case of this number."""
+        index = [int(i) for i in np.unravel_index(case, self.shape)]  # the sample's, if any, is the last
+        chosen = [(each, each.texts[i]) for each, i in zip(self.grid, index, strict=False)]
+        chosen += [(each, each.texts[index[-1]]) for each in self.drawn]
         return tuple(f"{each.path}={text}" for each, text in chosen)
 
 
@@ -65,7 +65,7 @@ def read_cases(
     seed: int = 0,
     distributions: Mapping[str, Distribution] | None = None,
 ) -> Cases:
-    """Read what varies, ``PATH=VALUES`` each, and draw samples of it and of distributions in the scenario, by path."""
+    """Read variations ``PATH=VALUES``, and draw samples of theirs and the scenario's distributions (by path)."""
     variations = [read_variation(text) for text in over]
     paths = [each.path for each in variations]
     declared = distributions or {}
@@ -118,7 +118,7 @@ def _points(count: int, dimensions: int, sampler: str, seed: int) -> np.ndarray:
     from scipy.stats import qmc  # half a second
 
     if sampler == "sobol":
-        # Of a power of two, which alone is balanced, the first: more samples later begin with the same.
+        # The first of a power of two, as only such a number is balanced; a larger number begins with the same ones.
         points = qmc.Sobol(dimensions, rng=seed).random_base2(math.ceil(math.log2(count)))[:count]
     elif sampler == "latin":
         points = qmc.LatinHypercube(dimensions, rng=seed).random(count)
@@ -135,7 +135,7 @@ MAX_VALUES = 10_000_000  # of one parameter: 80 MB
 
 @dataclass(frozen=True)
 class Variation:
-    """One ``PATH=VALUES``: `texts` in place of the scenario's, and `values` (n,) in `unit`, if not yet to be drawn."""
+    """One ``PATH=VALUES``: texts for the scenario, and `values` (n,) in `unit`, None before they are drawn."""
 
     path: str
     texts: tuple[str, ...] = ()
@@ -144,7 +144,7 @@ class Variation:
     distribution: Distribution | None = None
 
     def drawn(self, probability: NDArray[Any]) -> Variation:
-        """Variation with the values at probabilities (n,), (0, 1)."""
+        """Variation with the distribution's quantiles at probabilities (n,) between 0 and 1."""
         assert self.distribution is not None
         with np.errstate(over="ignore"):
             values = np.asarray(self.distribution.quantile(probability), dtype=float)
@@ -155,7 +155,7 @@ class Variation:
         return replace(self, texts=texts, values=values)
 
     def parameter(self, unit: str) -> Parameter:
-        """The result's record of it; `unit` is the scenario's where none was written."""
+        """Record of the variation in the result; `unit` is the scenario's, used where the values have none."""
         assert self.values is not None
         drawn = str(self.distribution) if self.distribution else ""
         numeric = np.issubdtype(self.values.dtype, np.number)
@@ -188,11 +188,12 @@ def read_variation(text: str) -> Variation:
 
 
 def drawn_from(path: str, distribution: Distribution) -> Variation:
-    """Values drawn from a distribution for a path."""
+    """Variation whose values are to be drawn from a distribution."""
     return Variation(path, unit=distribution.unit, distribution=distribution)
 
 
 def _range(path: str, text: str, *, logarithmic: bool) -> Variation:
+    """Variation of a range FROM:TO:COUNT, both ends included."""
     parts = text.split(":")
     if len(parts) != 3:
         raise InputError(OPTION, f"{path} has the range {text!r}", "write FROM:TO:COUNT, such as 1 m:12 m:12")
@@ -215,12 +216,13 @@ def _range(path: str, text: str, *, logarithmic: bool) -> Variation:
     if logarithmic and not low * high > 0:
         raise InputError(OPTION, f"{path} goes from {low:g} to {high:g} in equal ratios", "give two values above zero")
     values = np.geomspace(low, high, count) if logarithmic else np.linspace(low, high, count)
-    # 0.1 + 0.2 is no value that anyone wants to read back.
+    # Twelve digits, so that 0.1 + 0.2 is written as 0.3.
     values = np.array([float(f"{value:.12g}") for value in values])
     return Variation(path, tuple(written(float(value), unit) for value in values), values, unit)
 
 
 def _list(path: str, text: str) -> Variation:
+    """Variation of a list of quantities, which share a unit, or of words."""
     parts = [part.strip().strip('"') for part in text.split(",")]
     if not all(parts):
         raise InputError(OPTION, f"{path} has an empty value in {text.strip()!r}", "leave no comma without a value")

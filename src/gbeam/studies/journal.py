@@ -1,8 +1,8 @@
-"""The store of a sweep that is under way: one line per case, which survives whatever ends the process.
+"""Store of a sweep under way, a file with one line per case, which survives any end of the process.
 
-The first line says which sweep it is. Every line ends with its checksum, begun from that of the first one, and is
-synchronised before the next batch begins. Lines are only ever appended; where some are damaged the whole ones are
-written beside and renamed, and the cases of the others are computed again.
+The first line identifies the sweep. Every line ends with its checksum, seeded with that of the first one, and is
+synchronised before the next batch begins. Lines are only appended; if some are damaged, the undamaged ones are
+written to a new file, which replaces the old one, and the other cases are computed again.
 """
 
 from __future__ import annotations
@@ -28,30 +28,30 @@ from gbeam.studies.evaluate import Inquiry, Row
 NAME = "cases.jsonl"
 LOCK = ".lock"
 _LINE = re.compile(rb'(\{.*), "crc32": (\d{1,10})\}\n')
-Line = dict[str, Any] | None
+Line = dict[str, Any] | None  # None: damaged
 _LISTED = 5  # damaged lines that are named
 _ANOTHER = "name another folder"
 
 
 class Journal:
-    """The store, in a folder, of a sweep's cases as they are done; a mapping tells it from other sweeps."""
+    """Store of the finished cases of a sweep in a folder; the mapping `sweep` identifies the sweep."""
 
     def __init__(self, folder: Path, sweep: Mapping[str, Any]) -> None:
         self.folder, self._file = folder, folder / NAME
         self._sweep: dict[str, Any] = json.loads(json.dumps(sweep))
-        self.figures: Sequence[Any] = ()  # keys and unit of each, as the cases done have them
+        self.figures: Sequence[Any] = ()  # keys, unit and kind of each figure of a case
         self.warnings: tuple[str, ...] = ()
         self._out: FileIO | None = None
-        self._seed = 0  # of the rows' checksums
+        self._seed = 0  # of the rows' checksums: the first line's
 
     @property
     def finished(self) -> bool:
-        """True if all the cases of the one in the folder, whichever sweep it is, are done; or there is none."""
+        """True if the folder holds no sweep, or all cases of the sweep that it holds, this one or another, are done."""
         first, rows = self._known()
         return not first or len({row["case"] for row in rows if row}) >= first["cases"]
 
     def read(self) -> list[Row]:
-        """Return the cases done; none where there is no store."""
+        """Return the cases done, none without a store; InputError if the store is another sweep's."""
         first, rows = self._known()
         if not first:
             return []
@@ -75,7 +75,7 @@ class Journal:
 
     @contextmanager
     def writing(self, *, resume: bool) -> Iterator[None]:
-        """Hold the store for writing; what another process holds is refused."""
+        """Open the store for `add`; InputError if another process has it open, or it would be overwritten."""
         with ExitStack() as held:
             try:
                 self.folder.mkdir(parents=True, exist_ok=True)
@@ -88,7 +88,7 @@ class Journal:
             yield
 
     def add(self, rows: Iterable[Row]) -> None:
-        """Write some cases."""
+        """Append rows and synchronise; ComputationError if the disk refuses, or the file was removed."""
         assert self._out is not None
         text = b""
         for row in rows:
@@ -104,16 +104,16 @@ class Journal:
             raise ComputationError("interrupted", message)
 
     def _still_there(self, handle: int) -> bool:
-        """True if the file of the store's name is the open one: not removed, and no other."""
+        """True if the path of the store still is the open file, neither removed nor replaced."""
         try:
             return os.path.samestat(os.stat(self._file), os.fstat(handle))
         except OSError:
             return False
 
     def _begin(self, resume: bool) -> None:
-        """Leave a store of whole lines, one that is nobody else's."""
+        """Write the first line of a new store, or remove the damaged lines of one that is resumed."""
         if resume:
-            self.read()  # others may have written since
+            self.read()  # again: another process may have written since
         else:
             refuse_unfinished(self)
         known = _parsed(self._file.read_bytes()) if resume and self._file.exists() else []
@@ -127,7 +127,7 @@ class Journal:
             out.flush()
             os.fsync(out.fileno())
         os.replace(beside, self._file)
-        if os.name == "posix":  # the name too
+        if os.name == "posix":  # synchronise the file's name too
             folder = os.open(self.folder, os.O_RDONLY)
             try:
                 os.fsync(folder)
@@ -135,7 +135,7 @@ class Journal:
                 os.close(folder)
 
     def _known(self) -> tuple[Line, list[Line]]:
-        """Header and rows, None of a damaged one, but for those cut off at the end."""
+        """First line and rows of the file, without damaged rows at its end, which were cut off; None without a file."""
         try:
             lines = _parsed(self._file.read_bytes()) if self._file.exists() else []
         except OSError as error:
@@ -150,7 +150,7 @@ class Journal:
 
     @contextmanager
     def _written(self) -> Iterator[None]:
-        """Turn what the disk refuses into a named outcome."""
+        """Turn an OSError inside into a ComputationError that says how to go on."""
         try:
             yield
         except OSError as error:
@@ -159,13 +159,13 @@ class Journal:
 
 
 def _line(values: Mapping[str, Any], seed: int = 0) -> bytes:
-    """A line of the store: JSON with a checksum of the rest as the last value."""
+    """A line of the store: JSON of the values, with the checksum of its text as the last value."""
     text = json.dumps(values).encode()[:-1]
     return text + b', "crc32": %d}\n' % zlib.crc32(text, seed)
 
 
 def _parsed(data: bytes) -> list[tuple[bytes, Line]]:
-    """The lines with what they say, None where they are damaged; without a whole first line all are."""
+    """Lines with their values, None if damaged; only the first line if that is damaged."""
     lines = data.splitlines(keepends=True)
     parsed = [(line, _read(line, 0)) for line in lines[:1]]
     if parsed and (first := parsed[0][1]):
@@ -187,7 +187,7 @@ def _row(line: Mapping[str, Any]) -> Row:
 
 
 def identity(inquiry: Inquiry, cases: Cases, measures: Sequence[str], histories: Sequence[Any]) -> dict[str, Any]:
-    """Identity of a sweep: version, scenario, what varies, and what is measured."""
+    """Identity of a sweep, for JSON: version, scenario, question, values that vary, and measures."""
     digest = hashlib.sha256()
     for each in cases.variations:
         for text in each.texts:
@@ -207,7 +207,7 @@ def identity(inquiry: Inquiry, cases: Cases, measures: Sequence[str], histories:
 def opened(
     store: str | os.PathLike[str] | None, resume: bool, sweep: Mapping[str, Any]
 ) -> tuple[Journal | None, list[Row]]:
-    """The store of a sweep, and the cases done in it."""
+    """Journal of a sweep, None without a store, and the rows done in it; InputError if cases would be lost."""
     if store is None:
         if resume:
             raise InputError("--resume", "stands without a store", "name the folder with --out")

@@ -1,4 +1,4 @@
-"""Physical values of a scenario: which there are, within which bounds and from where searches change them."""
+"""Physical values of a scenario, their bounds, and the points from which searches change them."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from gbeam.scenario.load import load
 from gbeam.scenario.text.revise import with_quantities
 from gbeam.studies.template import ScenarioTemplate, Template
 
-# Values of the computation, not of what is computed.
+# Values that no derivative is taken by, and the reason.
 _FIXED = {
     r"response\.(?!initial\.)": "is a setting of the computation, which stays as it is while one differentiates",
     r"motion\.[\w-]+\.accept\.": "is a limit of acceptance, which changes no response",
     r"motion\.[\w-]+\.commands\.": "is the controller's sample time, which changes no response",
 }
-# Not among the default choice: lists of points, and limits, of which a motion may use none.
+# Left out where no value is named: lists of points, and limits, which a motion may not use.
 _UNUSUAL = re.compile(r"\.(times|values|stations)\[|\.limits\.|\.record\.|fatigue_exponent")
 _LENGTH = re.compile(r"(beam|bodies\..+?)\.(?:line\.pieces\[\d+\]\.)?length")
 _AT_TIP = re.compile(r"(\.at|stations\[\d+\]|\.control_point|\.length)$")
@@ -37,8 +37,9 @@ _NEAR_TIP = 1e-9  # of the length: written with as many digits
 
 @dataclass(frozen=True)
 class PhysicalValue:
-    """A number in a scenario, SI, by its path, or one that all `places` of a pattern such as ``springs.*.stiffness.z``
-    have; `followers` are places by path at the tip, which move with a length.
+    """A number of a scenario, SI, at a path, or at all `places` of a pattern such as ``springs.*.stiffness.z``.
+
+    `followers` are values by path that change by as much: positions at the tip of the beam whose length it is.
     """
 
     path: str
@@ -54,20 +55,21 @@ class PhysicalValue:
 
     @property
     def of_motion(self) -> str:
-        """Name of the motion that it belongs to; empty for the beam's, and for that of several motions."""
+        """Name of the only motion that it belongs to; empty if it belongs to none, or to several."""
         motions = {place.split(".")[1] if place.startswith("motion.") else "" for place in self.places}
         return motions.pop() if len(motions) == 1 else ""
 
 
 def physical_values(scenario: Template, names: Sequence[str] = ()) -> list[PhysicalValue]:
-    """Return the values of those names; without names every one that is not zero."""
-    every = scenario.quantities()
-    possible = [path for path in every if _why_fixed(path) is None]
+    """Return the values of these paths or patterns; by default every usual one that is not zero."""
+    quantities = scenario.quantities()
+    possible = [path for path in quantities if _why_fixed(path) is None]
     if not names:
-        return [_made(path, (path,), every) for path in possible if every[path][0] and not _UNUSUAL.search(path)]
+        usual = (path for path in possible if quantities[path][0] and not _UNUSUAL.search(path))
+        return [_made(path, (path,), quantities) for path in usual]
     chosen: list[PhysicalValue] = []
     for name in names:
-        places = _matching(name, possible) or ((name,) if name in every else ())
+        places = _matching(name, possible) or ((name,) if name in quantities else ())
         if twice := [path for path in places if any(path in each.places for each in chosen)]:
             raise InputError("--with", f"names {twice[0]} twice", "name each value once")
         if not places:
@@ -78,17 +80,16 @@ def physical_values(scenario: Template, names: Sequence[str] = ()) -> list[Physi
             raise InputError("--with", f"{name!r} is no physical value that the scenario gives", fix)
         if (why := _why_fixed(name)) is not None:
             raise InputError("--with", f"{name} {why}", "leave it out, or compare runs by gbeam sweep")
-        if other := [path for path in places if every[path] != every[places[0]]]:
-            ends = (
-                f"{path} = {every[path][0]:g} {KINDS[every[path][1]].unit}".strip() for path in (places[0], other[0])
-            )
-            raise InputError("--with", f"{name!r} names values that differ, {' and '.join(ends)}", "make them alike")
-        chosen.append(_made(name, places, every))
+        if other := [path for path in places if quantities[path] != quantities[places[0]]]:
+            pair = ((path, *quantities[path]) for path in (places[0], other[0]))
+            texts = (f"{path} = {value:g} {KINDS[kind].unit}".strip() for path, value, kind in pair)
+            raise InputError("--with", f"{name!r} names values that differ, {' and '.join(texts)}", "make them alike")
+        chosen.append(_made(name, places, quantities))
     return chosen
 
 
 def _matching(name: str, paths: Sequence[str]) -> tuple[str, ...]:
-    """Paths of a name in which each ``*`` stands for part of one step, but not of the first."""
+    """Paths that match a pattern, whose ``*`` stand for part of one step, but not of the first; () without ``*``."""
     first, *others = name.split("*")
     if not others or "." not in first:
         return ()
@@ -96,34 +97,34 @@ def _matching(name: str, paths: Sequence[str]) -> tuple[str, ...]:
     return tuple(filter(pattern.fullmatch, paths))
 
 
-def _made(name: str, places: tuple[str, ...], every: dict[str, tuple[float, str]]) -> PhysicalValue:
-    value, kind = every[places[0]]
-    followers = {each: at for path in places for each, at in _at_tip(path, every)}
+def _made(name: str, places: tuple[str, ...], quantities: dict[str, tuple[float, str]]) -> PhysicalValue:
+    value, kind = quantities[places[0]]
+    followers = {at_tip: position for path in places for at_tip, position in _at_tip(path, quantities)}
     return PhysicalValue(name, value, kind, followers, places)
 
 
-def _at_tip(path: str, every: dict[str, tuple[float, str]]) -> Iterator[tuple[str, float]]:
-    """Places at the tip of the beam of which a length, or that of a piece of its line, is at a path."""
+def _at_tip(path: str, quantities: dict[str, tuple[float, str]]) -> Iterator[tuple[str, float]]:
+    """Path and value of positions at the tip of the beam whose length, or length of a piece, is at `path`."""
     if (match := _LENGTH.fullmatch(path)) is None:
         return
     beam = match[1]
     pieces = re.compile(rf"{re.escape(beam)}\.line\.pieces\[\d+\]\.length")
-    length = sum(value for each, (value, _) in every.items() if pieces.fullmatch(each)) or every[path][0]
-    for each, (value, _) in every.items():
-        along = each.startswith(f"{beam}.") or (beam == "beam" and each.startswith("motion."))
-        if along and each != path and _AT_TIP.search(each) and math.isclose(value, length, rel_tol=_NEAR_TIP):
-            yield each, value
+    length = sum(value for other, (value, _) in quantities.items() if pieces.fullmatch(other)) or quantities[path][0]
+    for other, (value, _) in quantities.items():
+        along = other.startswith(f"{beam}.") or (beam == "beam" and other.startswith("motion."))
+        if along and other != path and _AT_TIP.search(other) and math.isclose(value, length, rel_tol=_NEAR_TIP):
+            yield other, value
 
 
 def changed(parameters: Sequence[PhysicalValue], values: Sequence[float]) -> dict[str, float]:
-    """Values of the scenario that differ, by their paths, where parameters have these values."""
-    others: dict[str, float] = {}
-    for each, value in zip(parameters, values, strict=True):
-        if value != each.value:
-            others |= dict.fromkeys(each.places, float(value))
-            for path, at in each.followers.items():
-                others[path] = others.get(path, at) + float(value) - each.value
-    return others
+    """Values to change in the scenario, by path, so that the parameters have `values`; followers move along."""
+    changes: dict[str, float] = {}
+    for parameter, value in zip(parameters, values, strict=True):
+        if value != parameter.value:
+            changes |= dict.fromkeys(parameter.places, float(value))
+            for path, position in parameter.followers.items():
+                changes[path] = changes.get(path, position) + float(value) - parameter.value
+    return changes
 
 
 def changes_to(parameters: Sequence[PhysicalValue], values: Sequence[float]) -> tuple[str, ...]:
@@ -140,13 +141,13 @@ _NEAR, _FAR = 0.1, 10.0  # times the scenario's value: bounds where none are giv
 
 
 def named(template: Template, names: Sequence[str], option: str) -> list[PhysicalValue]:
-    """Values by their paths; InputError, of an option of the command line, if one is none."""
+    """Physical values of these names; InputErrors name the option of the command line."""
     with naming(option):
         return physical_values(template, names)
 
 
 def bounds_of(each: PhysicalValue, bounds: Bounds, option: str) -> tuple[float, float]:
-    """Return the bounds given for a value, or a tenth to ten times it; they hold it, as a search begins there."""
+    """Return the bounds of a value, by default a tenth to ten times it; InputError unless they contain it."""
     if each.path in bounds:
         low, high = (
             read_quantity("--bounds", end, each.kind, f"of {each.path}: ") if isinstance(end, str) else float(end)
@@ -176,33 +177,33 @@ def with_values(
         fix = f"write it beside {os.fspath(scenario)}"
         raise InputError(os.fspath(folder), "is not the folder that the scenario's records are named from", fix)
     template = ScenarioTemplate(base)
-    others, every = changed(physical_values(template, paths), values), template.quantities()
-    return with_quantities(base.source, {path: (value, every[path][1]) for path, value in others.items()})
+    changes, quantities = changed(physical_values(template, paths), values), template.quantities()
+    return with_quantities(base.source, {path: (value, quantities[path][1]) for path, value in changes.items()})
 
 
 MAX_STARTS = 1000
 Answer = TypeVar("Answer")
 _ON = 1e-6  # of the bounds' width
-_SAME = 1e-2  # of the bounds' width: values that are nearer are the same
-_WIDE = 10.0  # times: bounds further apart are searched in equal ratios
+_SAME = 1e-2  # of the bounds' width: values that are nearer to each other count as the same
+_WIDE = 10.0  # ratio of bounds above which starting points are spread in equal ratios
 
 
 def searched(
     parameters: Sequence[PhysicalValue], limits: Floats, count: int, search: Callable[[Floats], Answer]
 ) -> list[Answer]:
-    """Answers of searches from the scenario's values and from others; one that fails is left out, but not the first."""
+    """Answers of searches from the scenario's values and from further points; of these, failed ones are left out."""
     answers: list[Answer] = []
     for start in _starting_points(np.array([each.value for each in parameters]), limits, count):
         try:
             answers.append(search(start))
-        except GbeamError:  # the scenario does not allow the values, or its run is not done
+        except GbeamError:  # the scenario refuses the values, or its run is not done
             if not answers:
                 raise
     return answers
 
 
 def on_bound(values: Floats, limits: Floats) -> Flags:
-    """True if values lie on one of their bounds (p, 2)."""
+    """True (p,) where values (p,) lie on one of their bounds (p, 2)."""
     low, high = limits.T
     return np.asarray(np.minimum(values - low, high - values) < _ON * (high - low))
 

@@ -1,6 +1,6 @@
-"""The first cases of a sweep: which figures the measures mean, their units, and how long a case takes.
+"""First cases of a sweep, which tell the keys and units of the measured figures, and how long a case takes.
 
-They are computed once, as any other: their rows are part of the sweep.
+They are computed only once: their rows are part of the sweep.
 """
 
 from __future__ import annotations
@@ -21,23 +21,23 @@ from gbeam.studies.evaluate import rows as computed
 from gbeam.studies.figures import find, node_at, read_history, read_system_history, unit_at
 from gbeam.studies.template import Template
 
-_FEW = 8  # cases that stand together in the computation that is timed
-TRIED = 20  # cases, all over the sweep, of which one must be possible
-_IMPORTS = 2.0  # s: a first case that takes less may be imports and compilation above all; another one is timed
+_FEW = 8  # cases, at most, whose joint computation is timed
+TRIED = 20  # cases, spread over the sweep, of which one must be possible
+_IMPORTS = 2.0  # s: a first case that takes less may be mostly imports and compilation; another one is timed
 
-# Keys, unit and whether it is true or false, of each figure, as a store keeps them.
+# Keys, unit and true for a truth value, of each figure, as a store keeps them.
 Figures = Sequence[tuple[Sequence[str | int], str, bool]]
 
 
 @dataclass(frozen=True)
 class OverTime:
-    """Histories by their names, each at `count` times over the response of the first case."""
+    """Names of histories, and the number of times, over the response of the first case, at which they are taken."""
 
     names: tuple[str, ...] = ()
     count: int = 0
 
     def of(self, inquiry: Inquiry, case: AnyCase) -> Inquiry:
-        """The inquiry with these histories."""
+        """Return the inquiry with these histories, at times over the response of `case`."""
         if not self.names:
             return inquiry
         settings = case.over_time
@@ -56,7 +56,7 @@ NO_HISTORIES = OverTime()
 
 @dataclass(frozen=True)
 class Start:
-    """The first cases' rows, their figures' units and kinds, a possible example, and seconds that a case takes."""
+    """Inquiry with known figures, their units and kinds, an example of a case, the first rows, and seconds per case."""
 
     inquiry: Inquiry
     units: tuple[str, ...]
@@ -75,7 +75,7 @@ class Start:
 def start(
     inquiry: Inquiry, cases: Cases, missing: Sequence[int], names: Sequence[str], histories: OverTime = NO_HISTORIES
 ) -> Start:
-    """Compute first cases until one is possible; the first's error where none of 20 all over the sweep is."""
+    """Compute cases, 20 at most, until one is possible; otherwise raise the error of the first."""
     reason: GbeamError | None = None
     rows: list[Row] = []
     figures = len(names) + len(histories.names) * histories.count
@@ -84,8 +84,8 @@ def start(
         try:
             example = inquiry.template.changed(cases.overrides(number))
             case = example.built()
-            needed = histories.names or not inquiry.functions
-            facts = inquiry.facts(case) if needed else NO_FACTS
+            answered = histories.names or not inquiry.functions
+            facts = inquiry.facts(case) if answered else NO_FACTS
         except GbeamError as error:
             reason = reason or error
             rows.append(without_figures(number, figures, error))
@@ -107,11 +107,11 @@ def start(
         task = (number, cases.overrides(number))
         rows += computed(inquiry, [task]) if inquiry.together else (inquiry.measured(number, case, facts),)
         seconds = time.perf_counter() - begin
-        after = missing[index + 1 : index + 1 + min(_FEW, width(inquiry))] or missing[:1]
-        after = [each for each in after if all(each != row.case for row in rows)]
-        if after and (seconds < _IMPORTS or inquiry.together):
-            more, seconds = _timed(inquiry, cases, after)
-            rows += more
+        following = missing[index + 1 : index + 1 + min(_FEW, width(inquiry))] or missing[:1]
+        following = [each for each in following if all(each != row.case for row in rows)]
+        if following and (seconds < _IMPORTS or inquiry.together):
+            timed, seconds = _timed(inquiry, cases, following)
+            rows += timed
         return Start(inquiry, units, truths, example, tuple(rows), seconds)
     assert reason is not None
     raise reason
@@ -125,7 +125,7 @@ def go_on(
     figures: Figures,
     histories: OverTime = NO_HISTORIES,
 ) -> Start:
-    """Start of a sweep some of whose cases are done, by which its figures are known; nothing may be missing."""
+    """Start of a resumed sweep, whose `figures` are known from the cases `done`; `missing` may be empty."""
     inquiry = replace(inquiry, keys=tuple(tuple(keys) for keys, *_ in figures if keys))
     possible = [row for row in done if row.outcome != "refused"] or done
     example = inquiry.template.changed(cases.overrides(possible[0].case))
@@ -135,10 +135,10 @@ def go_on(
     rows: list[Row] = []
     seconds = 0.0
     few = min(_FEW, width(inquiry))
-    for first in (0, few):  # what is imported and compiled once comes with the first
+    for first in (0, few):  # twice: the first time includes imports and compilation
         if chosen := missing[first : first + few]:
-            more, seconds = _timed(inquiry, cases, chosen)
-            rows += more
+            timed, seconds = _timed(inquiry, cases, chosen)
+            rows += timed
         if seconds >= _IMPORTS:
             break
     units, truths = tuple(unit for _, unit, _ in figures), tuple(truth for *_, truth in figures)
@@ -146,7 +146,7 @@ def go_on(
 
 
 def _timed(inquiry: Inquiry, cases: Cases, numbers: Sequence[int]) -> tuple[list[Row], float]:
-    """Rows of some cases, and the time that one of them takes, s."""
+    """Rows of cases, and the mean time that one of them took, s."""
     begin = time.perf_counter()
     rows = list(computed(inquiry, [(number, cases.overrides(number)) for number in numbers]))
     return rows, (time.perf_counter() - begin) / len(numbers)

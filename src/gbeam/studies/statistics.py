@@ -24,12 +24,12 @@ from gbeam.results.cases import (
 from gbeam.results.result import Floats
 
 RESAMPLES = 200  # of the bootstrap of Sobol indices
-TOGETHER = 10  # of them, which bounds their memory
+TOGETHER = 10  # of them at once, to bound their memory
 LEAST = 8  # base samples from which indices are estimated
 
 
 def statistics(values: Floats, *, truth: bool = False) -> Statistics:
-    """Estimate the distribution of independent draws (..., n); NaN, of cases that came to nothing, are left out.
+    """Estimate the distribution of independent draws (..., n); NaN, of cases without a figure, are left out.
 
     The mean's bounds are Student's; the standard deviation's come from the fourth moment; a quantile's are order
     statistics, of a binomial number, and NaN where there are too few draws; a probability's, of a `truth` that is 0 or
@@ -39,14 +39,14 @@ def statistics(values: Floats, *, truth: bool = False) -> Statistics:
     estimates = np.full((*values.shape[:-1], len(names), len(BOUNDS)), math.nan)
     count = np.isfinite(values).sum(axis=-1)
     for size in np.unique(count[count > 0]):
-        chosen = count == size  # all of them at once
+        chosen = count == size  # all figures with as many draws at once
         draws = np.sort(values[chosen], axis=-1)[..., :size]  # NaN is last
         estimates[chosen] = _probability(draws) if truth else _moments_and_quantiles(draws)
     return Statistics(names, estimates, count)
 
 
 def _probability(draws: Floats) -> Floats:
-    """Share of ones among draws (m, n), with bounds (m, 1, 3)."""
+    """Share of ones among draws (m, n), with its lower and upper bound, (m, 1, 3)."""
     from scipy.stats import beta
 
     n = draws.shape[-1]
@@ -58,7 +58,7 @@ def _probability(draws: Floats) -> Floats:
 
 
 def _moments_and_quantiles(draws: Floats) -> Floats:
-    """Estimates (m, 2 + q, 3) of sorted draws (m, n)."""
+    """Mean, standard deviation and q quantiles of sorted draws (m, n), with both bounds, (m, 2 + q, 3)."""
     from scipy.stats import binom, norm, t
 
     n, tail = draws.shape[-1], (1 - CONFIDENCE) / 2
@@ -67,22 +67,22 @@ def _moments_and_quantiles(draws: Floats) -> Floats:
     rows.append(np.full_like(rows[0], math.nan))
     if n > 1:
         spread = draws.std(axis=-1, ddof=1)
-        off = t.ppf(1 - tail, n - 1) * spread / math.sqrt(n)
-        rows[0] = np.stack([mean, mean - off, mean + off], axis=-1)
+        half = t.ppf(1 - tail, n - 1) * spread / math.sqrt(n)  # width of the confidence interval
+        rows[0] = np.stack([mean, mean - half, mean + half], axis=-1)
         rows[1][:, 0] = spread
     if n > 3:
         fourth = ((draws - mean[:, None]) ** 4).mean(axis=-1)
         # Variance of the sample variance: (μ₄ − σ⁴ (n − 3)/(n − 1))/n, and that of its root from the derivative.
         variance = np.maximum(fourth - spread**4 * (n - 3) / (n - 1), 0.0) / n
         with np.errstate(invalid="ignore", divide="ignore"):
-            off = np.where(spread > 0, norm.ppf(1 - tail) * np.sqrt(variance) / (2 * spread), 0.0)
-        rows[1] = np.stack([spread, np.maximum(spread - off, 0.0), spread + off], axis=-1)
+            half = np.where(spread > 0, norm.ppf(1 - tail) * np.sqrt(variance) / (2 * spread), 0.0)
+        rows[1] = np.stack([spread, np.maximum(spread - half, 0.0), spread + half], axis=-1)
     for share in QUANTILES.values():
         # The draws below the quantile are a binomial number: P(X_(low) <= quantile <= X_(high)) >= the confidence.
         low, high = int(binom.ppf(tail, n, share)), int(binom.ppf(1 - tail, n, share)) + 1  # ranks, from 1
-        nothing = np.full_like(mean, math.nan)
-        below = draws[:, low - 1] if low >= 1 else nothing
-        above = draws[:, high - 1] if high <= n else nothing
+        unknown = np.full_like(mean, math.nan)
+        below = draws[:, low - 1] if low >= 1 else unknown
+        above = draws[:, high - 1] if high <= n else unknown
         rows.append(np.stack([np.quantile(draws, share, axis=-1), below, above], axis=-1))
     return np.stack(rows, axis=1)
 
@@ -90,9 +90,9 @@ def _moments_and_quantiles(draws: Floats) -> Floats:
 def indices(values: Floats, parameters: Sequence[str], seed: int) -> Indices:
     """Sobol indices of values (..., (d + 2) n) in the order of the sampler saltelli: A, B, and A with each column of B.
 
-    The estimators of Saltelli (2010) and, for the total, of Jansen (1999); bounds of normal shape, by a bootstrap's
-    standard error. Template samples one of whose cases came to nothing are left out; below 8 of them, or where nothing
-    varies, NaN. They need not be a power of 2, as those of ``scipy.stats.sobol_indices`` must.
+    The estimators are Saltelli's (2010) and, for the total, Jansen's (1999); bounds are normal, with a bootstrap's
+    standard error. Base samples with a NaN in one of their d + 2 cases are left out; with fewer than 8 others, or equal
+    values, the indices are NaN. ``scipy.stats.sobol_indices`` would need a power of 2.
     """
     from scipy.stats import bootstrap, norm
 
@@ -100,9 +100,9 @@ def indices(values: Floats, parameters: Sequence[str], seed: int) -> Indices:
     blocks = np.moveaxis(values.reshape(*values.shape[:-1], d + 2, -1), -2, -1)  # (..., n, d + 2)
     bounds = np.full((*values.shape[:-1], d, 2, len(BOUNDS)), math.nan)
     count = np.zeros(values.shape[:-1], dtype=int)
-    for at in np.ndindex(values.shape[:-1]):
-        whole = blocks[at][np.isfinite(blocks[at]).all(axis=-1)]
-        count[at] = len(whole)
+    for index in np.ndindex(values.shape[:-1]):
+        whole = blocks[index][np.isfinite(blocks[index]).all(axis=-1)]
+        count[index] = len(whole)
         if len(whole) < LEAST or np.ptp(whole) <= 1e-12 * np.abs(whole).max():
             continue
         samples = tuple((whole - whole.mean()).T)  # a mean far from zero would spread the estimates
@@ -111,8 +111,8 @@ def indices(values: Floats, parameters: Sequence[str], seed: int) -> Indices:
             samples, _first_and_total, paired=True, vectorized=True, n_resamples=RESAMPLES, batch=TOGETHER,
             method="percentile", random_state=np.random.default_rng(seed),
         ).standard_error  # fmt: skip
-        off = norm.ppf((1 + CONFIDENCE) / 2) * spread
-        bounds[at] = np.stack([share, share - off, share + off], axis=-1)
+        half = norm.ppf((1 + CONFIDENCE) / 2) * spread
+        bounds[index] = np.stack([share, share - half, share + half], axis=-1)
     return Indices(tuple(parameters), bounds, count)
 
 

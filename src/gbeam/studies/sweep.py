@@ -1,4 +1,4 @@
-"""Many cases of one scenario, from what varies to the arrays of what was measured."""
+"""Sweeps: figures of many cases of one scenario, as arrays over the values that vary."""
 
 from __future__ import annotations
 
@@ -187,7 +187,7 @@ def sweep(
 
 
 def _over_time(histories: tuple[str, ...], times: int, verb: str) -> OverTime:
-    """The histories that are measured."""
+    """Histories to measure; InputError unless the verb has them."""
     if not histories:
         return NO_HISTORIES
     if verb != "run":
@@ -198,13 +198,14 @@ def _over_time(histories: tuple[str, ...], times: int, verb: str) -> OverTime:
 
 
 def _texts(over: Mapping[str, Any] | Sequence[str]) -> list[str]:
-    """Variations, as texts."""
+    """Variations as texts ``PATH=VALUES``."""
     if not isinstance(over, Mapping):
         return list(over)
     return [f"{path}={values if isinstance(values, str) else _listed(path, values)}" for path, values in over.items()]
 
 
 def _listed(path: str, values: Iterable[Any]) -> str:
+    """Values as text, with commas between them."""
     try:
         return ", ".join(value if isinstance(value, str) else repr(np.asarray(value).item()) for value in values)
     except (TypeError, ValueError):
@@ -222,7 +223,7 @@ def _confirm(count: int, seconds: float, confirmed: bool) -> None:
 
 
 def duration(seconds: float) -> str:
-    """Write a duration in the unit that suits."""
+    """Return a duration as text in s, min, h, days or years, with two digits."""
     for size, unit in ((365.25 * 86400, "years"), (86400, "days"), (3600, "h"), (60, "min")):
         if seconds >= 2 * size:
             return f"{seconds / size:.2g} {unit}" if seconds < 100 * size else f"{seconds / size:.0f} {unit}"
@@ -241,21 +242,21 @@ def _collected(
     progress: Progress,
     journal: Journal | None = None,
 ) -> list[Row]:
-    """The rows of batches, each kept and reported before the next is awaited."""
+    """Rows of all batches; each batch is written to the journal and reported before the next is awaited."""
     rows: list[Row] = []
     failed = sum(row.failed for row in before)
     tell(progress, len(before), failed, count)
-    for some in batches:
+    for batch in batches:
         if journal is not None:
-            journal.add(some)
-        rows += some
-        failed += sum(row.failed for row in some)
+            journal.add(batch)
+        rows += batch
+        failed += sum(row.failed for row in batch)
         tell(progress, len(before) + len(rows), failed, count)
     return rows
 
 
 def assembled(title: str, cases: Cases, names: Sequence[str], begun: Start, rows: Iterable[Row], seed: int) -> Sweep:
-    """Return the result of rows in any order; the cases without one are pending."""
+    """Return the result of rows in any order; cases without a row are pending."""
     inquiry = begun.inquiry
     values = np.full((inquiry.width, len(cases)), math.nan)
     outcome = np.full(len(cases), "pending", dtype=object)
@@ -282,16 +283,18 @@ def assembled(title: str, cases: Cases, names: Sequence[str], begun: Start, rows
 
 
 def with_statistics(sweep: Sweep, cases: Cases, truths: Mapping[str, bool], seed: int) -> Sweep:
-    """Sweep with the statistics of its samples, which are the last dimension of the measures."""
-    first = slice(cases.independent)
-    # A figure of a case that was cut off, such as the peak until it diverged, is none of the answer.
+    """Return the sweep with statistics over its samples, the last dimension of the measures."""
+    independent = slice(cases.independent)
+    # Figures of cases that were cut off are left out, such as the peak before a run diverged.
     done = sweep.computed
     measures = {name: np.where(done, values, math.nan) for name, values in sweep.measures.items()}
     histories = {name: np.where(done[..., None], values, math.nan) for name, values in sweep.histories.items()}
-    known = {name: statistics(values[..., first], truth=truths[name]) for name, values in measures.items()}
-    known |= {name: statistics(np.swapaxes(values[..., first, :], -1, -2)) for name, values in histories.items()}
-    shares = {}
+    estimates = {name: statistics(values[..., independent], truth=truths[name]) for name, values in measures.items()}
+    estimates |= {
+        name: statistics(np.swapaxes(values[..., independent, :], -1, -2)) for name, values in histories.items()
+    }
+    sobol = {}
     if cases.sampler == "saltelli":
         paths = [each.path for each in cases.drawn]
-        shares = {name: indices(values, paths, seed) for name, values in measures.items()}
-    return replace(sweep, statistics=known, indices=shares)
+        sobol = {name: indices(values, paths, seed) for name, values in measures.items()}
+    return replace(sweep, statistics=estimates, indices=sobol)
