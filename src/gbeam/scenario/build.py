@@ -1,4 +1,4 @@
-"""From a validated scenario to the objects of the core, which are imported only when it is called."""
+"""Objects of the core from a validated scenario; their modules are imported only when one is built."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def read_scenario(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -
 
 
 def build(scenario: AnyScenario, *, ahead: bool = False) -> AnyCase:
-    """Make the objects of a scenario."""
+    """Make the objects of a scenario; `ahead` plans its centrifuges' motions now rather than when they are used."""
     from gbeam.analysis.case import Case, SpecimenCase, SystemCase
     from gbeam.scenario.build_motion import centrifuges, flights_and_hubs
 
@@ -103,7 +103,7 @@ def build(scenario: AnyScenario, *, ahead: bool = False) -> AnyCase:
 def scenario_of(
     case: str | os.PathLike[str] | AnyCase, overrides: Iterable[str] = (), *, distributions: bool = False
 ) -> AnyScenario:
-    """The scenario of a file, or that which a case was read from, validated with changes."""
+    """Validated scenario of a file, or of the file that a case was read from, with changes; else InputError."""
     if isinstance(case, (str, os.PathLike)):
         return load(case, overrides, distributions=distributions)
     if case.scenario is None or case.scenario.source is None:
@@ -130,7 +130,7 @@ def build_machines(scenario: schema.Environments) -> dict[str, Centrifuge]:
 
 
 def build_extent(scenario: schema.Environments) -> dict[str, Any]:
-    """Place of the specimen of a scenario, as an argument of :func:`gbeam.plan`; none where it has none."""
+    """Keyword of :func:`gbeam.plan` with the extent of the specimen of a scenario; empty if it has no specimen."""
     from gbeam.analysis.case import extent_of
 
     if type(scenario) is schema.Environments:
@@ -150,7 +150,7 @@ def build_extent(scenario: schema.Environments) -> dict[str, Any]:
 
 
 def _points(structure: Mapping[str, Any]) -> tuple[str, ...]:
-    """Names of the points of a beam or a specimen; none where they are not known."""
+    """Names of the points of a beam or a specimen; empty if it is a system, or was refused."""
     beam, specimen = structure.get("beam"), structure.get("structure")
     if beam is not None:
         return tuple(beam.named_points)
@@ -158,26 +158,26 @@ def _points(structure: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def _acceptance(parts: Collector, scenario: schema.Environments, points: tuple[str, ...] = ()) -> dict[str, Acceptance]:
-    """Limits of acceptance and their settings, by the centrifuge's name."""
-    machines = {name: each for name, each in scenario.motion.items() if isinstance(each, schema.Centrifuge)}
-    every: dict[str, Any] = {name: each.limits_of_acceptance for name, each in machines.items()}
-    limited = {name: limits for name, limits in every.items() if limits}
+    """Limits of acceptance and their settings, by the name of the centrifuge; `parts` collects what is wrong."""
+    machines = {name: table for name, table in scenario.motion.items() if isinstance(table, schema.Centrifuge)}
+    by_machine = ((name, table.limits_of_acceptance) for name, table in machines.items())
+    limited: dict[str, Any] = {name: limits for name, limits in by_machine if limits}
     for name, limits in limited.items():
         for key, limit in limits.items():
             if key in RULES:
                 parts.attempt(f"motion.{name}.accept", RULES[key].checked, limit)
-        named = {f"control.{each}": each for each in limits.get("control", ())}
+        named = {f"control.{point}": point for point in limits.get("control", ())}
         named |= {key: limits[key] for key in ("point", *AT_POINTS) if key in limits}
         parts.errors += [
-            InputError(f"motion.{name}.accept.{key}", f"is no point: {each!r}", advise(each, points))
-            for key, each in named.items()
-            if points and each not in points
+            InputError(f"motion.{name}.accept.{key}", f"is no point: {point!r}", advise(point, points))
+            for key, point in named.items()
+            if points and point not in points
         ]
     return limited
 
 
 def _sensors(parts: Collector, tables: Mapping[str, schema.Sensor], points: tuple[str, ...]) -> dict[str, Any]:
-    """Accelerometers by the names of points, which of a system are looked at later."""
+    """Accelerometers by the names of their points, which are checked here unless the points are not known."""
     if not tables:
         return {}
     from gbeam.results.response import Sensor
@@ -188,17 +188,18 @@ def _sensors(parts: Collector, tables: Mapping[str, schema.Sensor], points: tupl
 
 
 def _response(parts: Collector, table: schema.Response, motions: Mapping[str, Motion]) -> ResponseSettings | None:
-    """Settings and, where no duration is written, the time that the records cover; None where there is neither."""
+    """Settings, over the time that all records cover if no duration is written; None, without one, or refused."""
     from gbeam.analysis.response.problem import Initial
     from gbeam.analysis.response.settings import ResponseSettings
     from gbeam.integrate.schemes import SCHEMES
     from gbeam.motion import Flight
 
     if table.parameters:
-        # Made for its refusals only: the analysis makes its own.
+        # Only to refuse wrong parameters: the analysis makes its own scheme.
         parts.attempt("response", SCHEMES[table.scheme], **table.parameters)
-    records = {name: each for name, each in motions.items() if isinstance(each, Flight) and each.record is not None}
-    covered = [extent for each in records.values() if (extent := each.acceleration.extent) is not None]
+    flights = {name: motion for name, motion in motions.items() if isinstance(motion, Flight)}
+    records = {name: flight for name, flight in flights.items() if flight.record is not None}
+    covered = [extent for flight in records.values() if (extent := flight.acceleration.extent) is not None]
     start = max((first for first, _ in covered), default=0.0)
     duration = table.duration
     if duration is None:
@@ -237,7 +238,7 @@ def _response(parts: Collector, table: schema.Response, motions: Mapping[str, Mo
 def _not_all_of(
     name: str, record: RecordSummary, start: float, end: float, *, has_duration: bool
 ) -> Iterator[InputError]:
-    """Refuse a run, s, that goes beyond a record, or leaves out what is not left out on the record itself."""
+    """Refuse a run from `start` to `end`, s, beyond a record, or over a part that its table does not ask for."""
     first, last = record.span
     interval = (1 + 1e-6) / record.rate  # 1600 samples at 100 Hz are 16 s of flight
     flown = f"{last - first:.6g} s" if first == 0 else f"{last - first:.6g} s, from {first:.6g} to {last:.6g} s"

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def beam_of(parts: Collector, where: str, table: schema.Beam) -> Beam | None:
-    """The beam of a table at a place of the scenario."""
+    """The beam of a table at a path of the scenario; None if a part of it is refused, with the reasons in `parts`."""
     from gbeam.structure.attachments import Point, PointMass, Root
     from gbeam.structure.beam import Beam
     from gbeam.structure.material import Material
@@ -31,14 +31,14 @@ def beam_of(parts: Collector, where: str, table: schema.Beam) -> Beam | None:
     values = None if table.material is None else table.material.model_dump(exclude_none=True)
     material = None if values is None else parts.attempt(f"{where}.material", Material, **values)
     drawn = isinstance(table.section, schema.Drawn)
-    known = material is not None or not drawn
-    section = parts.attempt(f"{where}.section", _section, table.section, material) if known else None
+    can_build = material is not None or not drawn  # the matrices of a drawn section need its material
+    section = parts.attempt(f"{where}.section", _section, table.section, material) if can_build else None
     masses = []
     for i, body in enumerate(table.masses):
         moments = (body.inertia.x, body.inertia.y, body.inertia.z) if body.inertia else (0.0, 0.0, 0.0)
         offset = body.offset or (0.0, 0.0, 0.0)
-        named = body.name or ""
-        masses.append(parts.attempt(f"{where}.masses[{i}]", PointMass, body.at, body.mass, moments, offset, named))
+        name = body.name or ""
+        masses.append(parts.attempt(f"{where}.masses[{i}]", PointMass, body.at, body.mass, moments, offset, name))
     root = parts.attempt(f"{where}.root", Root, **table.root.model_dump())
     loads = [_load(parts, f"{where}.loads[{i}]", entry) for i, entry in enumerate(table.loads)]
     points = [parts.attempt(f"{where}.points[{i}]", Point, each.name, each.at) for i, each in enumerate(table.points)]
@@ -64,6 +64,7 @@ def beam_of(parts: Collector, where: str, table: schema.Beam) -> Beam | None:
 
 
 def _section(table: Any, material: Material | None) -> Section:
+    """A section by its outline and material, by files of matrices, or by shape and dimensions."""
     from gbeam.structure.section import Section
 
     values = table.model_dump(exclude={"shape", "stations"}, exclude_none=True)
@@ -78,6 +79,7 @@ def _section(table: Any, material: Material | None) -> Section:
 
 
 def _line(parts: Collector, where: str, table: schema.Line) -> Line | None:
+    """A line from a file of points, points, a twist at stations, or pieces; None if it is refused."""
     from gbeam.structure.line import Line
 
     twist = table.twist or 0.0
@@ -93,13 +95,13 @@ def _line(parts: Collector, where: str, table: schema.Line) -> Line | None:
     return parts.attempt(where, Line.of_pieces, lengths, **named)
 
 
-_COLUMNS = {"x": "length", "y": "length", "z": "length", "twist": "angle"}  # of a line's file, and what they are
+_COLUMNS = {"x": "length", "y": "length", "z": "length", "twist": "angle"}  # of a line's file, with their kinds
 _POINT = re.compile(r"points\[(\d+)\]")
 _NAMED = "name the columns x [mm], y [mm], z [mm], twist [deg], in units of their own, and leave others out"
 
 
 def _through(file: str, unit: str | None, twist: Any, smooth: bool) -> Line:
-    """The line through the rows of a file of text."""
+    """The line through the points in the rows of a text file; InputErrors name the file and its row."""
     import numpy as np
 
     from gbeam.motion.records.text import read_text
@@ -120,12 +122,12 @@ def _through(file: str, unit: str | None, twist: Any, smooth: bool) -> Line:
         return Line.of_points(points, columns.get("twist", 0.0 if twist is None else twist), smooth=smooth)
     except InputError as error:
         point = f"{error.where} " if error.where.startswith("points[") else ""
-        said = re.sub(_POINT, lambda k: rows.place(int(k[1])), point + error.problem.removeprefix(f"{file} "))
-        raise InputError("", f"is {Path(file).name}: {said}", error.fix) from None
+        problem = re.sub(_POINT, lambda k: rows.place(int(k[1])), point + error.problem.removeprefix(f"{file} "))
+        raise InputError("", f"is {Path(file).name}: {problem}", error.fix) from None
 
 
 def _columns(rows: Table, unit: str | None) -> dict[str, Any]:
-    """Columns of a line's file by their names, in SI."""
+    """Columns of a line's file by name, in SI; `unit` is of lengths without one. InputError for an unknown column."""
     from gbeam.motion.records.columns import unit_in_name, words_of
 
     columns: dict[str, Any] = {}
@@ -170,7 +172,7 @@ def _load(parts: Collector, where: str, table: schema.Load) -> Load | None:
 
 
 def model_of(parts: Collector, where: str, table: schema.Model) -> Model | None:
-    """The model of a table at a place of the scenario."""
+    """The model of a table; without numbers of modes, one that chooses them automatically. None if it is refused."""
     from gbeam.mechanics.models import Model
 
     if table.modes is None:

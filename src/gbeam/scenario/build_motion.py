@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def flights_and_hubs(parts: Collector, scenario: schema.Environments) -> dict[str, motion.Motion]:
-    """Build the motions that need no other, by name."""
+    """Build the flights and hubs of a scenario by name, without refused ones, whose errors `parts` keeps."""
     built: dict[str, motion.Motion | None] = {}
     for name, table in scenario.motion.items():
         where = f"motion.{name}"
@@ -32,7 +32,7 @@ def flights_and_hubs(parts: Collector, scenario: schema.Environments) -> dict[st
             else:
                 load = components(parts, f"{where}.acceleration", table.acceleration)
                 built[name] = None if load is None else motion.Flight(acceleration=_rounded(load, table.smoothing))
-    return {name: one for name, one in built.items() if one is not None}
+    return {name: base for name, base in built.items() if base is not None}
 
 
 def centrifuges(
@@ -43,7 +43,7 @@ def centrifuges(
     *,
     ahead: bool,
 ) -> dict[str, motion.Motion]:
-    """Build the motions that track a flight, by name."""
+    """Build the centrifuges, which track one of the flights in `others`, over a span, s, by name."""
     built: dict[str, motion.Motion] = {}
     for name, table in scenario.motion.items():
         if not isinstance(table, schema.Centrifuge):
@@ -64,21 +64,21 @@ def centrifuge_of(
         machine = motion.machines[table.machine]
         arm, idle = machine.arm if arm is None else arm, machine.idle if idle is None else idle
         example = machine.limits
-    others = values_of(table, "kind", "tracks", "machine", "arm", "idle", "limits", "commands", "accept")
+    options = values_of(table, "kind", "tracks", "machine", "arm", "idle", "limits", "commands", "accept")
     limits = _limits(table.limits, example)
-    return motion.Centrifuge(flight, arm=arm, idle=idle, limits=limits, **others).over(*span, ahead=ahead)
+    return motion.Centrifuge(flight, arm=arm, idle=idle, limits=limits, **options).over(*span, ahead=ahead)
 
 
 def _limits(table: schema.Limits, example: motion.MachineLimits) -> motion.MachineLimits:
-    """The limits that are given, and the example machine's where none is."""
-    named = {name: (getattr(table, name), getattr(example, name)) for name in ("axis1", "axis2", "axis3")}
-    axes = {name: replace(otherwise, **values_of(axis)) for name, (axis, otherwise) in named.items()}
+    """Limits of the table; those that it leaves out are the example machine's."""
+    pairs = {name: (getattr(table, name), getattr(example, name)) for name in ("axis1", "axis2", "axis3")}
+    axes = {name: replace(default, **values_of(axis)) for name, (axis, default) in pairs.items()}
     return replace(example, **values_of(table, *axes), **axes)
 
 
-def values_of(table: BaseModel, *apart: str) -> dict[str, Any]:
-    """Values of a table by their keys, but some apart and what is left out."""
-    return {key: value for key, value in table if value is not None and key not in apart}
+def values_of(table: BaseModel, *excluded: str) -> dict[str, Any]:
+    """Values of a table by their keys, without those that are None and the excluded keys."""
+    return {key: value for key, value in table if value is not None and key not in excluded}
 
 
 def _hub(parts: Collector, where: str, table: schema.Hub) -> motion.Motion | None:
@@ -91,13 +91,13 @@ def _hub(parts: Collector, where: str, table: schema.Hub) -> motion.Motion | Non
 
 def components(parts: Collector, where: str, table: Any) -> Profile | None:
     """Build the vector profile of a table with x, y and z, each a profile, a constant quantity or left out."""
-    components = {axis: getattr(table, axis) for axis in "xyz" if getattr(table, axis) is not None}
-    built = {axis: profile_of(parts, f"{where}.{axis}", profile) for axis, profile in components.items()}
+    tables = {axis: getattr(table, axis) for axis in "xyz" if getattr(table, axis) is not None}
+    built = {axis: profile_of(parts, f"{where}.{axis}", profile) for axis, profile in tables.items()}
     return None if None in built.values() else motion.vector(**built)
 
 
 def profile_of(parts: Collector, where: str, table: Any) -> Profile | None:
-    """Build one profile from any of the schema's, of any quantity."""
+    """Build a profile from a table of the schema, or a constant from a number; None if it is refused."""
     profile: Profile | None
     if isinstance(table, float):
         return parts.attempt(where, motion.constant, table)
@@ -116,12 +116,13 @@ def profile_of(parts: Collector, where: str, table: Any) -> Profile | None:
             profile = parts.attempt(where, motion.tabulated, table.times, table.values)
         case _:
             terms = [profile_of(parts, f"{where}.terms[{i}]", term) for i, term in enumerate(table.terms)]
-            sound = tuple(term for term in terms if term is not None)
-            profile = motion.Sum(sound) if len(sound) == len(terms) else None
+            built = tuple(term for term in terms if term is not None)
+            profile = motion.Sum(built) if len(built) == len(terms) else None
     return None if profile is None else _rounded(profile, table.smoothing)
 
 
 def _record(table: Record) -> FlightRecord:
+    """Read the record of a flight from its file."""
     rates = None
     if table.p is not None and table.q is not None and table.r is not None and table.rate_unit is not None:
         rates = Rates(table.p, table.q, table.r, table.rate_unit)

@@ -21,19 +21,19 @@ from gbeam.scenario.schema.profile import Smoothed
 
 
 def system_of(parts: Collector, scenario: schema.SystemScenario) -> System | None:
-    """The system of a scenario; None, with what is wrong collected, where it cannot be made."""
+    """The system of a scenario; None if it cannot be made, with the reasons in `parts`."""
     before = len(parts.errors)
-    bodies = {name: OF_TABLE[type(each)].build(parts, f"bodies.{name}", each) for name, each in scenario.bodies.items()}
-    joints = {name: _joint(parts, f"joints.{name}", each) for name, each in scenario.joints.items()}
-    forces = {name: _force(parts, f"forces.{name}", each) for name, each in scenario.forces.items()}
-    controllers = {name: _controller(parts, f"controllers.{name}", each) for name, each in scenario.controllers.items()}
+    bodies = {name: OF_TABLE[type(body)].build(parts, f"bodies.{name}", body) for name, body in scenario.bodies.items()}
+    joints = {name: _joint(parts, f"joints.{name}", table) for name, table in scenario.joints.items()}
+    forces = {name: _force(parts, f"forces.{name}", table) for name, table in scenario.forces.items()}
+    controllers = {name: _controller(parts, f"controllers.{name}", law) for name, law in scenario.controllers.items()}
     if len(parts.errors) > before:
         return None
     return parts.attempt("", System, bodies, joints, forces, scenario.system.gravity, controllers)
 
 
 def specimen_of(parts: Collector, scenario: schema.SpecimenScenario) -> Structure | None:
-    """The specimen of a scenario; None, with what is wrong collected, where it cannot be made."""
+    """The specimen of a scenario; None if it cannot be made, with the reasons in `parts`."""
     name, table = scenario.specimen
     kind = OF_TABLE[type(table)]
     structure: Structure | None = (kind.alone or kind.build)(parts, f"bodies.{name}", table)
@@ -46,7 +46,7 @@ def _joint(parts: Collector, where: str, table: Any) -> Joint | None:
 
 
 def _value(parts: Collector, where: str, value: Any) -> Any:
-    """A value of a joint as it takes it: by coordinate, a profile, or as it is."""
+    """A value of a joint's table as Joint takes it: a dict by coordinate, a profile, or the value itself."""
     if isinstance(value, schema.Coordinates):
         keys = zip(fields_of(type(value)), value, strict=True)
         return {key: _value(parts, f"{where}.{key}", each) for key, (_, each) in keys if each is not None}
@@ -70,7 +70,7 @@ def _controller(parts: Collector, where: str, table: schema.Controller) -> Feedb
 
 
 def _law(table: schema.Controller) -> Any:
-    """The laws of a controller in series; one in discrete time, with its step, alone."""
+    """Law of a controller: its laws in series, or the only one, in discrete time; InputError unless they fit."""
     single = schema.PID, schema.LeadLag, schema.Notch
     for k, law in enumerate(table.law):
         if isinstance(law, single) and (len(table.measure) > 1 or len(table.drive) > 1):
@@ -91,7 +91,7 @@ def _law(table: schema.Controller) -> Any:
 
 
 def _matrices(k: int, law: schema.Matrices) -> Any:
-    """Matrices of a table or of its file; with a step where they are of discrete time."""
+    """Matrices A, B, C, D of a table or of its file; a file in discrete time as a state-space with its step."""
     if law.file is None:
         return tuple(np.array(getattr(law, name), dtype=float, ndmin=2) for name in "abcd")
     with placing_within(f"law[{k}]"):

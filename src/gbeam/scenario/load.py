@@ -1,4 +1,4 @@
-"""From a file, or text, to a validated scenario, with its origin and errors at their places in it."""
+"""Validated scenarios from a file or a text, with their origin; errors have their places in the text."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 def provenance(scenario: Environments, command: str = "") -> Provenance:
     """Provenance of the results of a scenario."""
-    from gbeam.results.provenance import Provenance  # and with it NumPy, which checking a text needs not
+    from gbeam.results.provenance import Provenance  # imports NumPy, which checking a text does not need
 
     source = scenario.source
     if source is None:
@@ -43,13 +43,13 @@ def provenance(scenario: Environments, command: str = "") -> Provenance:
     records = tuple(_record(name, file) for name, file in _files(scenario))
     changes = tuple(change.text for change in source.overrides)
     data = source.data
-    if source.distributions:  # which have their centres there
+    if source.distributions:  # in whose place `data` has their centres
         data, _ = override(_parsed(source.name, source.text), source.name, changes)
     return Provenance(source.text, changes, fingerprint(data), records, command)
 
 
 def _files(scenario: Environments) -> Iterator[tuple[str, str]]:
-    """Files that a scenario reads: records by their motion's name, others by their keys' paths."""
+    """Yield name and path of files that a scenario reads; records are named by their motion, others by their key."""
     for name, motion in scenario.motion.items():
         if isinstance(motion, Flight) and motion.record is not None:
             yield name, motion.record.file
@@ -57,12 +57,12 @@ def _files(scenario: Environments) -> Iterator[tuple[str, str]]:
         yield from files(getattr(scenario, key, None), (key,))
 
 
-# A sweep's cases are of one text; `override` copies it.
+# All cases of a sweep parse one text; `override` copies the data.
 _parsed = lru_cache(maxsize=4)(parse)
 
 
 def fingerprint(data: dict[str, Any]) -> str:
-    """SHA-256 of what a scenario says, however it is written and in whatever order."""
+    """SHA-256 of the data of a scenario, the same for any layout and order of its text."""
     text = json.dumps(data, sort_keys=True, ensure_ascii=True, default=str)
     return hashlib.sha256(text.encode()).hexdigest()
 
@@ -79,13 +79,13 @@ Built = TypeVar("Built")
 
 
 class Collector:
-    """Collects the InputErrors of what it attempts, in `errors`."""
+    """Collects in `errors` the InputErrors of the constructors that it attempts."""
 
     def __init__(self) -> None:
         self.errors: list[InputError] = []
 
     def attempt(self, where: str, make: Callable[..., Built], *args: Any, **options: Any) -> Built | None:
-        """Return ``make(*args, **options)``; None, with its error kept as one of `where`, if it refuses."""
+        """Return ``make(*args, **options)``, or None if it raises an InputError, which is kept as one of `where`."""
         try:
             return make(*args, **options)
         except InputError as error:
@@ -94,12 +94,12 @@ class Collector:
 
 
 def placed(scenario: Environments, errors: Iterable[InputError]) -> ScenarioError:
-    """Return the ScenarioError of what the objects of the core refused."""
-    each = (
+    """Return one ScenarioError of all errors, each at its place in the scenario's text."""
+    diagnostics = (
         error.diagnostics if isinstance(error, ScenarioError) else [_diagnostic(scenario.source, error)]
         for error in errors
     )
-    return ScenarioError(chain.from_iterable(each))
+    return ScenarioError(chain.from_iterable(diagnostics))
 
 
 def _diagnostic(source: Source | None, error: InputError) -> Diagnostic:
@@ -133,13 +133,13 @@ def loads(
 
 
 def change(source: Source, overrides: Iterable[str]) -> AnyScenario:
-    """Validate a scenario that is parsed already, with more changes: what differs between the cases of a sweep."""
+    """Validate a scenario that is parsed already, with further changes, such as those of a case of a sweep."""
     data, done = override(source.data, source.name, overrides)
     return _validated(kind_of_scenario(data), replace(source, data=data, overrides=source.overrides + done))
 
 
 def load_environments(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> Environments:
-    """Read a scenario file that may lack the beam, for questions about the machine alone."""
+    """Read a scenario file that may lack a specimen, for questions about the machine only."""
     file = Path(path)
     return _environments(_source(read_text(file), os.fspath(path), overrides, file.parent))
 
@@ -152,9 +152,9 @@ def _environments(source: Source) -> Environments:
 def defaults_of(
     version: str, text: str, name: str, overrides: Iterable[str], folder: str | os.PathLike[str]
 ) -> dict[str, str]:
-    """Defaults that a version of gbeam had for keys that a scenario leaves out, where today's are others."""
+    """Defaults by path that a version had for keys that a scenario leaves out, and that differ from today's."""
     release = tuple(int(number) for number in re.findall(r"\d+", version))
-    if len(release) < 2:  # nothing that gbeam wrote
+    if len(release) < 2:  # no version that gbeam ever had
         return {}
     source = _source(text, name, overrides, folder, distributions=True)
     return dict(former_defaults(_environments(source), release))
@@ -168,6 +168,7 @@ def _source(
     *,
     distributions: bool = False,
 ) -> Source:
+    """Parsed text with its overrides; distributions have their centres, or are errors unless `distributions`."""
     data, done = override(parse(name, text), name, overrides)
     source = Source(name, text, Path(folder), data, done)
     distributed = list(find_distributions(data))
@@ -177,13 +178,14 @@ def _source(
     problems: list[Diagnostic] = []
     for path, family, parameters in distributed:
         try:
-            drawn[path_text(path)] = each = from_table(family, parameters)
+            drawn[path_text(path)] = distribution = from_table(family, parameters)
         except InputError as error:
             problems.append(source.diagnostic(path, error.problem, error.fix))
             continue
         if not distributions:
-            one = f"`gbeam sweep` draws from it; for one value: --set {path_text(path)}={each.centre!r}"
-            problems.append(source.diagnostic(path, f"is a distribution, {each}, and this needs one value", one))
+            fix = f"`gbeam sweep` draws from it; for one value: --set {path_text(path)}={distribution.centre!r}"
+            problem = f"is a distribution, {distribution}, and this needs one value"
+            problems.append(source.diagnostic(path, problem, fix))
     if problems:
         raise ScenarioError(problems[:PROBLEMS])
     centred = deepcopy(data)
@@ -196,16 +198,16 @@ def _source(
 
 
 def _validated(kind: type[T], source: Source) -> T:
+    """Scenario of that kind; a ScenarioError lists what is wrong, each at its place in the text."""
     try:
         return kind.model_validate(source.data, context={"folder": source.folder, "source": source})
     except ValidationError as error:
         from gbeam.scenario.explain import explain  # needed only where something is wrong
 
         details = error.errors(include_url=False, include_input=False)
-        # Of a list with a wrong entry only those before it are counted.
-        places = [each["loc"] for each in details]
-        inside = {each[:k] for each in places for k in range(len(each))}
-        details = [each for each in details if each["type"] != "too_short" or each["loc"] not in inside]
+        # pydantic counts only the entries before a wrong one: such a list is not too short.
+        above = {detail["loc"][:k] for detail in details for k in range(len(detail["loc"]))}
+        details = [detail for detail in details if detail["type"] != "too_short" or detail["loc"] not in above]
         problems = [explain(source, detail) for detail in details[:PROBLEMS]]
         if len(details) > PROBLEMS:
             more = f"has {len(details)} errors, of which {PROBLEMS} are listed"

@@ -30,14 +30,15 @@ from gbeam.scenario.text.source import parse
 if TYPE_CHECKING:
     from gbeam.io.netcdf import Stored
 
-# Estimates of errors and sentences, which are a version's: names in files and in JSON.
+# Names, in files and in JSON, of estimates of errors and of sentences, which differ between versions.
 _STATED = re.compile(
     r"(^|[@./])(error_\w+|errors?|total_error|run_error|accurate_to|warnings|verdict|summary|message|note|theory|reason"
     r"|not_varied)($|[.])"
 )
-# Times of peaks, of which equal ones may change places by rounding. The peaks themselves are compared.
+# Names of times of peaks: rounding may decide between equal peaks. The peaks themselves are compared.
 _WHEN = re.compile(r"_time($|_)|(^|[./])time_|time_of_|limits\.\d+\.time$")
-ROUNDING = 1e-12  # of the largest value of a unit, and of one where there is none: less is rounding
+ROUNDING = 1e-12  # of the largest value with the same unit, and of 1 without a unit: a smaller difference is rounding
+# A unit of a rate, as netCDF files and JSON write it: the unit of the quantity, and the power of time.
 _RATE = re.compile(r"(.+?)(?: s-(\d)|/s(?:\^(\d))?)")
 
 # Attributes of the computation, not of its result.
@@ -92,7 +93,7 @@ def rerun(path: str | os.PathLike[str], *, progress: Progress = None) -> Reprodu
 
 
 def facts_of(stored: Stored) -> dict[str, Any]:
-    """The facts that a netCDF file holds; none where it has none, or they are damaged."""
+    """Facts in a netCDF file; an empty dict if it has none, or they are damaged."""
     try:
         facts = parse_json(str(stored.variables[FACTS]))
     except (KeyError, ValueError):
@@ -109,10 +110,10 @@ def is_run(stored: Stored) -> bool:
 
 
 def origin_of(path: str | os.PathLike[str], stored: Stored) -> Provenance:
-    """Provenance of a file, which must be that of its scenario."""
+    """Provenance of a file; InputError if it is damaged, lacks a scenario, or has another than the one that was run."""
     try:
         origin = stored.provenance
-    except Exception:  # zlib's, where bytes are damaged, or what lacks an attribute
+    except Exception:  # zlib's error for damaged bytes, or of a missing attribute
         fix = "give the file as gbeam wrote it"
         raise InputError(str(path), "does not say where it comes from: it is damaged", fix) from None
     checked(str(path), origin)
@@ -147,7 +148,9 @@ def units_in(stored: Stored) -> Callable[[str], str]:
 
 
 def as_read(file: str, origin: Provenance, folder: Path) -> tuple[list[str], dict[str, str]]:
-    """Put the records into a folder; changes that read a scenario as its version did, and the defaults among them."""
+    """Write the records into a folder. Return changes PATH=VALUE by which the scenario reads them and has the defaults
+    of its version of gbeam, and these defaults by path.
+    """
     assert origin.environment is not None
     changes = [*_records(origin, folder)]
     text, overrides = origin.scenario, [*origin.overrides, *changes]
@@ -163,21 +166,21 @@ def reproduction(
     defaults: Mapping[str, str],
     unit_of: Callable[[str], str],
 ) -> Reproduction:
-    """Compare what a file holds with what has been computed again; the unit of each is known by its name."""
+    """Compare variables of a file, by name, with those computed again; `unit_of` gives the unit of a name."""
     assert origin.environment is not None
     changed = origin.environment.changes(present())
     other = "gbeam" in changed
-    # A later version may hold more. Of another one's file, what both hold is compared.
+    # Of another version's file only what both hold is compared: either may hold more.
     names = [name for name in then if not other or name in now]
     scales = _scales(then, names, unit_of) if changed else {}
-    each = (_difference(name, then.get(name), now.get(name), unit_of(name), scales) for name in names)
-    differences = sorted(filter(None, each), key=lambda each: -each.size)
-    aside = [e for e in differences if changed and (_WHEN.search(e.name) or (other and _STATED.search(e.name)))]
+    compared = (_difference(name, then.get(name), now.get(name), unit_of(name), scales) for name in names)
+    differences = sorted(filter(None, compared), key=lambda each: -each.size)
+    restated = [d for d in differences if changed and (_WHEN.search(d.name) or (other and _STATED.search(d.name)))]
     return Reproduction(
         file=file,
         compared=len(names),
-        differences=tuple(each for each in differences if each not in aside),
-        restated=tuple(aside),
+        differences=tuple(each for each in differences if each not in restated),
+        restated=tuple(restated),
         changed=changed,
         defaults=defaults,
     )
@@ -195,7 +198,7 @@ def checked(file: str, origin: Provenance) -> None:
 
 
 def _records(origin: Provenance, folder: Path) -> Iterator[str]:
-    """Put the records into a folder, or find them where they were; the changes that make the scenario read them."""
+    """Yield changes PATH=FILE for records that are written into `folder`, or found where they were if not kept."""
     for number, record in enumerate(origin.records):
         if record.content is None:
             file = Path(record.file).resolve()
@@ -204,7 +207,7 @@ def _records(origin: Provenance, folder: Path) -> Iterator[str]:
             refuse_large_file(record.file, file, BINARY_BYTES, "put the record back")
             content = file.read_bytes()
         else:
-            # Not by a name that the file gives: it could lead elsewhere.
+            # Not named as the result says: such a name could lead out of the folder.
             content, file = record.content, folder / f"{number}{Path(record.file).suffix}"
             file.write_bytes(content)
         if hashlib.sha256(content).hexdigest() != record.sha256:
@@ -214,17 +217,17 @@ def _records(origin: Provenance, folder: Path) -> Iterator[str]:
 
 
 def computed(of: Stored) -> dict[str, Any]:
-    """Variables and attributes by their names, but those that say of the computation and not of its result."""
-    apart = ("scenario", FACTS)  # the facts are the other variables once more
-    values = {name: each for name, each in of.variables.items() if name not in apart and not name.startswith(RECORD)}
+    """Variables by name and attributes by ``PLACE@NAME``, without those about the computation and the facts."""
+    left_out = ("scenario", FACTS)  # the facts repeat the other variables
+    values = {name: each for name, each in of.variables.items() if name not in left_out and not name.startswith(RECORD)}
     for place, attrs in of.attrs.items():
-        if place not in of.variables:  # whose attributes are words about them
+        if place not in of.variables:  # attributes of variables only describe them
             values |= {f"{place}@{name}": each for name, each in attrs.items() if place or name not in _ABOUT}
     return values
 
 
 def _scales(values: Mapping[str, Any], names: Iterable[str], unit_of: Callable[[str], str]) -> dict[str, float]:
-    """Largest value of every unit; of a rate at least that of what it is a rate of, over the longest time."""
+    """Largest size of values by unit; that of a rate at least the quantity's over the longest time."""
     scales = {"": 1.0, "1": 1.0, "rad": 1.0}
     for name in names:
         value = np.asarray(values[name])
@@ -232,14 +235,14 @@ def _scales(values: Mapping[str, Any], names: Iterable[str], unit_of: Callable[[
             size = float(np.max(np.abs(value), initial=0.0, where=np.isfinite(value)))
             scales[unit_of(name)] = max(scales.get(unit_of(name), 0.0), size)
     time = scales.get("s") or 1.0
-    rates = {unit: rate for unit in scales if (rate := _RATE.fullmatch(unit))}
-    rate_of = {unit: scales.get(rate[1], 0.0) / time ** int(rate[2] or rate[3] or 1) for unit, rate in rates.items()}
-    return {unit: max(size, rate_of.get(unit, 0.0), SMALLEST / ROUNDING) for unit, size in scales.items()}
+    rates = {unit: match for unit in scales if (match := _RATE.fullmatch(unit))}
+    least = {unit: scales.get(match[1], 0.0) / time ** int(match[2] or match[3] or 1) for unit, match in rates.items()}
+    return {unit: max(size, least.get(unit, 0.0), SMALLEST / ROUNDING) for unit, size in scales.items()}
 
 
 @np.errstate(all="ignore")  # a damaged file may hold any number
 def _difference(name: str, then: Any, now: Any, unit: str, scales: Mapping[str, float]) -> Difference | None:
-    """Difference of a variable or an attribute, if there is one and it is more than rounding at its unit's scale."""
+    """Difference of a value then and now; None if it is within rounding at the scale of its unit."""
     if then is None or now is None:
         return Difference(name, math.inf, "is not there any more" if now is None else "was not there")
     old, new = np.asarray(then), np.asarray(now)

@@ -28,7 +28,7 @@ class Span:
 
 @dataclass(frozen=True)
 class Place:
-    """Place of an entry: its key (else its value, as of an element of a list) and its value (of a header its name)."""
+    """Places of an entry's key and value; elements of lists have the value's twice, tables with a header its name."""
 
     key: Span
     value: Span
@@ -52,7 +52,7 @@ def parse_path(text: str) -> Path | None:
 
 
 def walk(node: Any, closed: Callable[[Any], bool], path: Path = ()) -> Iterator[tuple[Path, Any]]:
-    """Yield path and value of all but tables and lists, and of those that are closed."""
+    """Yield path and value of all below a node but tables and lists; of those, only the `closed`, not looked into."""
     if closed(node) or not isinstance(node, (dict, list)):
         yield path, node
         return
@@ -75,9 +75,10 @@ class Family:
     """A named family of distributions."""
 
     arguments: tuple[str, ...]  # meanings of its numbers, for messages
-    fault: Callable[..., str]  # of the numbers: what they should be, if they are not sound
-    centre: Callable[..., float]  # of the numbers: the value where nothing is drawn
-    law: Callable[..., tuple[Any, ...]]  # of the numbers: name and arguments of SciPy's distribution
+    # Functions of the numbers:
+    fault: Callable[..., str]  # words for the numbers that are needed instead; empty if they are sound
+    centre: Callable[..., float]  # value where nothing is drawn
+    law: Callable[..., tuple[Any, ...]]  # name and arguments of SciPy's distribution
 
 
 FAMILIES = {
@@ -110,7 +111,7 @@ FAMILIES = {
 
 @dataclass(frozen=True)
 class Distribution:
-    """A distribution of one value: `family`, its `arguments` in `unit`, and these as they were written, `words`."""
+    """A distribution of one value; `arguments` are in `unit`, and `words` are these as they were written."""
 
     family: str
     arguments: tuple[float, ...]
@@ -122,12 +123,12 @@ class Distribution:
 
     @property
     def centre(self) -> str | float:
-        """Mean, median, midpoint or most likely value, as it stands in a scenario."""
+        """Mean, median, midpoint or most likely value, as a scenario writes it."""
         value = FAMILIES[self.family].centre(*self.arguments)
         return written(value, self.unit) if self.unit else value
 
     def quantile(self, probability: Any) -> Any:
-        """Values that are not exceeded with probabilities (n,)."""
+        """Quantiles (n,) at probabilities (n,)."""
         from scipy import stats  # half a second
 
         name, *arguments = FAMILIES[self.family].law(*self.arguments)
@@ -136,15 +137,15 @@ class Distribution:
 
 def read_distribution(family: str, parts: Sequence[str]) -> Distribution:
     """Read a distribution from its name and its numbers."""
-    known = FAMILIES.get(family)
-    if known is None:
+    law = FAMILIES.get(family)
+    if law is None:
         near = closest(family, FAMILIES)
         fix = f"did you mean {near!r}?" if near else f"choose {', '.join(FAMILIES)}"
         raise InputError("", f"has the unknown distribution {family!r}", fix)
     words = ", ".join(part.strip() for part in parts)
-    if len(parts) != len(known.arguments):
+    if len(parts) != len(law.arguments):
         raise InputError(
-            "", f"has {len(parts)} values in {family}({words})", f"give {len(known.arguments)}: {_named(known)}"
+            "", f"has {len(parts)} values in {family}({words})", f"give {len(law.arguments)}: {_named(law)}"
         )
     if family == "lognormal":
         (median,), unit = quantities(parts[:1])
@@ -154,13 +155,13 @@ def read_distribution(family: str, parts: Sequence[str]) -> Distribution:
         arguments = [median, spread]
     else:
         arguments, unit = quantities(parts)
-    if fault := known.fault(*arguments):
+    if fault := law.fault(*arguments):
         raise InputError("", f"has {family}({words})", f"give {fault}")
     return Distribution(family, tuple(arguments), unit, words)
 
 
 def find_distributions(data: Mapping[str, Any]) -> Iterator[tuple[Path, str, Any]]:
-    """Every table of a scenario that stands for a distribution: its path, its name and what is given with it."""
+    """Yield path, family and numbers of every table, outside the scenario's sweep, that stands for a distribution."""
     for key, table in data.items():
         for path, node in walk(table, _is_distribution, (key,)):
             if key != "sweep" and _is_distribution(node):
@@ -174,7 +175,7 @@ def _is_distribution(node: Any) -> bool:
 
 
 def from_table(name: str, numbers: Any) -> Distribution:
-    """Read what stands in a scenario."""
+    """Read a distribution from a table ``{ name = numbers }``, of any types."""
     known = FAMILIES.get(name)
     plain = isinstance(numbers, list) and all(
         isinstance(each, (str, int, float)) and not isinstance(each, bool) for each in numbers
@@ -185,7 +186,7 @@ def from_table(name: str, numbers: Any) -> Distribution:
 
 
 def quantities(parts: Sequence[str]) -> tuple[list[float], str]:
-    """Numbers and their one unit; where some have none they have the others'."""
+    """Numbers of texts, and the one unit that those with a unit share; InputError if there are several."""
     values, units = [], []
     for part in parts:
         match = NUMBER.fullmatch(part)
@@ -200,7 +201,7 @@ def quantities(parts: Sequence[str]) -> tuple[list[float], str]:
 
 
 def written(value: float, unit: str) -> str:
-    """Write a value as it replaces the scenario's: with its unit, and without a fraction that is none."""
+    """Write a value for a scenario, with its unit; whole numbers without a decimal point."""
     number = str(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
     return f"{number} {unit}" if unit else number
 
