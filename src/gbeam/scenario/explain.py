@@ -1,4 +1,4 @@
-"""pydantic's errors in a reader's words, with the place and the advice."""
+"""Errors of pydantic in words for users, with their place in the text and advice."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from pydantic.fields import FieldInfo
     from pydantic_core import ErrorDetails
 
-# A list, not a pattern: the message may quote what a user wrote, braces and all.
+# Names, not any words in braces: a message may quote a user's text with braces in it.
 _PLACEHOLDER = re.compile(r"\{(value|beam\.length|response\.duration)\}")
 _NOT_A = {
     "int_type": ("a whole number", "write it such as 3"),
@@ -39,7 +39,7 @@ def explain(source: Source, error: ErrorDetails) -> Diagnostic:
 
 
 def _words(source: Source, error: ErrorDetails, path: Path) -> tuple[str, str, Mark, Path]:
-    """Message, hint, what the caret marks, and the path that it is about."""
+    """Message, hint, mark (whether the caret stands under the key or the value), and path of the error."""
     what, context = error["type"], error.get("ctx", {})
     field = _field(source, path)
     value = source.raw(path)
@@ -47,7 +47,7 @@ def _words(source: Source, error: ErrorDetails, path: Path) -> tuple[str, str, M
         return context["message"], context["hint"], context["mark"], path
     if what == "missing" and isinstance(path[-1], int):  # a tuple of fixed length
         parts = inside(field.annotation if field else None)
-        count = next((len(get_args(each)) for each in parts if get_origin(each) is tuple), 3)
+        count = next((len(get_args(part)) for part in parts if get_origin(part) is tuple), 3)
         return (
             f"has {path[-1]} entries",
             "give three: x, y and z" if count == 3 else f"give {count}",
@@ -80,16 +80,16 @@ def _words(source: Source, error: ErrorDetails, path: Path) -> tuple[str, str, M
         return "{value} is more than is computed", f"give {context['le']} or less", "value", path
     if what in _NOT_A:
         return f"{spoken(value)} is not {_NOT_A[what][0]}", _NOT_A[what][1], "value", path
-    # Otherwise something else stands where a table belongs.
+    # All other errors are of a value where a table belongs.
     about = field.description if field else ""
     return f"{spoken(value)} is not a table", f"give a table: {about}", "value", path
 
 
 def _path(loc: tuple[int | str, ...], source: Source) -> Path:
-    """Drop from pydantic's place what is not in the file: the tags of the unions it went through."""
+    """Path in the file of a place of pydantic's, which also contains tags of unions."""
     path: Path = ()
     node: Any = source.data
-    untagged = True
+    untagged = True  # no tag of a union has come since the last step of the path
     for step in loc:
         if step == "[key]":
             continue
@@ -106,9 +106,10 @@ def _path(loc: tuple[int | str, ...], source: Source) -> Path:
 
 
 def _tag(field: FieldInfo | None, node: dict[str, Any]) -> object:
-    """Return the tag that pydantic puts into its places below the table `node`, if it is one of a union."""
-    told = next((each.discriminator for each in parts_of(field) if isinstance(each, Discriminator)), "profile")
-    return told(node) if callable(told) else node.get(told)
+    """Return the tag by which pydantic tells a table `node` of a union, which stands in places below it; else None."""
+    marks = (part.discriminator for part in parts_of(field) if isinstance(part, Discriminator))
+    key = next(marks, "profile")
+    return key(node) if callable(key) else node.get(key)
 
 
 def _field(source: Source, path: Path) -> FieldInfo | None:
@@ -124,7 +125,7 @@ def _field(source: Source, path: Path) -> FieldInfo | None:
 
 
 def _is_named(source: Source, path: Path) -> bool:
-    """Return whether a path is that of one of several tables by their names, such as a motion."""
+    """True if the last step of a path is a name that the user gave, such as a motion's."""
     if len(path) < 2 or isinstance(path[-1], int):
         return False
     field = _field(source, path[:-1])
@@ -163,7 +164,7 @@ def _tagged(annotation: Any) -> Iterator[tuple[str, type[Table]]]:
         if get_origin(part) is Annotated:
             table, *marks = get_args(part)
             if isinstance(table, type) and issubclass(table, Table):
-                yield from ((each.tag, table) for each in marks if isinstance(each, Tag))
+                yield from ((mark.tag, table) for mark in marks if isinstance(mark, Tag))
 
 
 def _literals(annotation: Any) -> Iterator[Any]:
@@ -173,7 +174,7 @@ def _literals(annotation: Any) -> Iterator[Any]:
 
 
 def _choices(field: FieldInfo | None) -> tuple[str, list[str]]:
-    """Name of the key that picks among the tables of a union, and what it may be."""
+    """Name of the key that picks among the tables of a union, and its possible values."""
     tables = list(_tables(field.annotation if field else None))
     tag = next(tag for tag in TAGS if tag in tables[0].model_fields)
     return tag, [name for table in tables for name in _literals(table.model_fields[tag].annotation)]
@@ -190,7 +191,7 @@ def _add(key: str, field: FieldInfo | None) -> str:
 
 
 def _filled(source: Source, path: Path, text: str) -> str:
-    """Put what is written in the file in the place of ``{value}`` and of ``{beam.length}``."""
+    """Replace ``{value}``, ``{beam.length}`` and the like by what is written in the file."""
 
     def shown(match: re.Match[str]) -> str:
         place = path if match[1] == "value" else tuple(match[1].split("."))

@@ -43,7 +43,7 @@ expected its values are accelerations and its rates are jerks; likewise for the 
 | quantity | its rate of change |
 |---|---|
 """
-_OF = "-of-"  # between the name of a profile and its quantity, in the schema
+_OF = "-of-"  # in the schema, between the names of a profile and of its quantity
 
 
 def reference() -> str:
@@ -52,13 +52,13 @@ def reference() -> str:
 
 
 class _Page:
-    """Walks the schema from the top and collects the places at which each table may stand."""
+    """Text of the page from the schema, whose tables it visits from the top to collect their places in a scenario."""
 
     def __init__(self, schema: dict[str, Any]) -> None:
         self.tables: dict[str, dict[str, Any]] = schema["$defs"]
         self.top = schema
-        self.places: dict[str, list[str]] = {}
-        self.profiles: dict[str, None] = {}
+        self.places: dict[str, list[str]] = {}  # headers such as [motion.NAME], by the table's name
+        self.profiles: dict[str, None] = {}  # an ordered set of names
         self._visit(schema, "")
 
     def text(self) -> str:
@@ -69,12 +69,13 @@ class _Page:
         return _INTRODUCTION + "\n".join([quantities, top, *tables, self._profiles()])
 
     def _visit(self, table: dict[str, Any], path: str) -> None:
+        """Collect the places of all tables below a table at `path`."""
         for key, schema in table["properties"].items():
             inner = f"{path}.{key}" if path else key
             if "additionalProperties" in schema:  # tables by any name
                 schema, inner = schema["additionalProperties"], f"{inner}.NAME"
             for name, listed in _named(schema):
-                if self.tables[name].get("x-coordinates"):  # said in one line where they stand
+                if self.tables[name].get("x-coordinates"):  # written in the row of its key, without a table of its own
                     self._visit(self.tables[name], inner)
                     continue
                 if _OF in name:
@@ -87,27 +88,28 @@ class _Page:
                     self._visit(self.tables[name], inner)
 
     def _heading(self, name: str) -> str:
-        first, *others = self.places[name]
+        place, *others = self.places[name]
         key, word = tag_of(self.tables[name])
-        return ", ".join([first, *([f'{key} = "{word}"'] if key else []), *others])
+        return ", ".join([place, *([f'{key} = "{word}"'] if key else []), *others])
 
     def _table(self, name: str) -> str:
         table = self.tables[name]
         return f"### {self._heading(name)}\n\n{table['description']}\n\n{self._keys(table)}"
 
-    def _keys(self, table: dict[str, Any], of: str = "") -> str:
-        every = [table, *table.get("anyOf", ())]
-        required = {key for each in every for key in each.get("required", ())}
+    def _keys(self, table: dict[str, Any], quantity: str = "") -> str:
+        """Markdown table of the keys of a table; in that of a profile `quantity` is called the quantity."""
+        alternatives = [table, *table.get("anyOf", ())]
+        required = {key for each in alternatives for key in each.get("required", ())}
         rows = ["| key | value | default | meaning |", "|---|---|---|---|"]
         for key, schema in table["properties"].items():
-            value = self._value(schema.get("additionalProperties", schema), of)
+            value = self._value(schema.get("additionalProperties", schema), quantity)
             default = "required" if key in required else _default(schema.get("default"))
             words = schema["description"].replace("|", "\\|")
             rows.append(" | ".join([f"| `{key}`", value, default, f"{words} |"]))
         return "\n".join(rows) + "\n"
 
     def _value(self, schema: dict[str, Any], of: str) -> str:
-        """Values that may stand there, in words."""
+        """Possible values of a schema, in words; `of` is the quantity of the profile whose key it is, or empty."""
         if "x-quantity" in schema:
             return self._quantity(schema, of)
         if "$ref" in schema:
@@ -134,13 +136,14 @@ class _Page:
         return plain[schema["type"]] + least
 
     def _by_coordinate(self, name: str, of: str) -> str:
-        """Keys of a table of a joint's coordinates, those with the same values together."""
+        """Keys of a table by a joint's coordinates and their possible values; keys with the same ones together."""
         alike: dict[str, list[str]] = {}
         for key, schema in self.tables[name]["properties"].items():
             alike.setdefault(self._value(schema, of), []).append(f"`{key}`")
         return "; ".join(f"{', '.join(keys)}: {value}" for value, keys in alike.items())
 
     def _quantity(self, schema: dict[str, Any], of: str) -> str:
+        """Name of a quantity with its unit, sign and the words accepted instead of it."""
         name, (number, _, *others) = schema["x-quantity"], schema["anyOf"]
         sign = ", positive" if "exclusiveMinimum" in number else ", 0 or more" if "minimum" in number else ""
         words = "".join(
@@ -154,7 +157,7 @@ class _Page:
         return f"{name}{unit}{sign}{words}"
 
     def _profiles(self) -> str:
-        """Every profile once: they are the same for all quantities."""
+        """Section on profiles, with the tables of one quantity: those of others differ only in its name."""
         quantities = list(dict.fromkeys(name.partition(_OF)[2] for name in self.profiles))
         spoken = [name.replace("-", " ") for name in quantities]
         parts = [_PROFILES + "".join(f"| {name} | {self._rate_of(name)} |\n" for name in spoken)]
@@ -165,20 +168,20 @@ class _Page:
         return "\n".join(parts).replace(f"[profile](#profiles) of {spoken[0]}", "[profile](#profiles)")
 
     def _rate_of(self, quantity: str) -> str:
-        """Name of a quantity's rate of change, which the flanks of a trapezoid have."""
+        """Name of a quantity's rate of change, by the schema of a trapezoid's ``jerk``."""
         trapezoid = self.tables[f"Trapezoid{_OF}{quantity.replace(' ', '-')}"]
         return str(trapezoid["properties"]["jerk"]["x-quantity"])
 
 
 def tag_of(table: dict[str, Any]) -> tuple[str, str]:
-    """Key and word by which a table is told from others at its place; empty where it is the only one."""
+    """Key and word that tell a table from others at the same place, such as kind and hub, or two empty texts."""
     properties = table["properties"]
     words = ((key, properties.get(key, {}).get("const")) for key in TAGS)
     return next(((key, word) for key, word in words if word), ("", ""))
 
 
 def _named(schema: dict[str, Any], listed: bool = False) -> Iterator[tuple[str, bool]]:
-    """The tables that may stand at a key, and whether in a list."""
+    """Names of the tables that a schema allows, each with True if in a list."""
     if "$ref" in schema:
         yield _target(schema), listed
     for each in schema.get("anyOf", schema.get("oneOf", [])):

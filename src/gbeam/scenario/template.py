@@ -1,4 +1,4 @@
-"""For those who write scenarios: a commented one to start from, and the JSON schema for editors."""
+"""Commented scenarios to start from, and the JSON schema of scenarios for editors."""
 
 from __future__ import annotations
 
@@ -187,7 +187,7 @@ def template(kind: str) -> str:
 
 
 def _allow_distributions(node: Any) -> None:
-    """Let a distribution stand in place of every quantity."""
+    """Add a distribution, in place, to the alternatives of every quantity in a schema."""
     if isinstance(node, dict):
         for value in node.values():
             _allow_distributions(value)
@@ -199,7 +199,7 @@ def _allow_distributions(node: Any) -> None:
 
 
 def _distribution_schema() -> dict[str, Any]:
-    """A table with one key, the family."""
+    """Schema of a table with one key, the family, whose value is the list of its numbers."""
     numbers = {"type": "array", "items": {"type": ["number", "string"]}}
     families = {
         name: numbers
@@ -220,12 +220,12 @@ def json_schema(*, distributions: bool = True) -> str:
 
     kinds: tuple[type[Environments], ...] = (Scenario, SystemScenario, SpecimenScenario)
     _, schema = models_json_schema([(each, "validation") for each in kinds], title="Scenario")
-    every = [schema["$defs"].pop(each.__name__) for each in kinds]
+    tables = [schema["$defs"].pop(kind.__name__) for kind in kinds]
     schema |= {"type": "object", "additionalProperties": False, "description": "A scenario, in SI or with units."}
-    schema["anyOf"] = [{"required": each["required"]} for each in every]
+    schema["anyOf"] = [{"required": table["required"]} for table in tables]
     properties: dict[str, Any] = {}
-    for each in every:
-        properties |= {key: of for key, of in each["properties"].items() if key not in properties}
+    for table in tables:
+        properties |= {key: value for key, value in table["properties"].items() if key not in properties}
     schema["properties"] = properties
     if distributions:
         _allow_distributions(schema)

@@ -1,4 +1,4 @@
-"""A kind of body, its table and the objects of the core that it makes; parts that several of their tables share."""
+"""A kind of body: its table and its builders; and parts that several of these tables share."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 class BodyKind(NamedTuple):
     """A kind of body.
 
-    It has the table, with the name of the kind in ``kind``; a builder of the body of a system, by the collector of
-    errors, the place and the table; one of the specimen alone on a base, where that is another object; the key
-    beside which ``kind`` may be left out; and the errors of a table that is one body among others.
+    `table` names the kind in its ``kind``, which may be left out beside the key `known_by`. `build` makes the body of a
+    system from the collector of errors, the path and the table; `alone` the specimen alone on a base, where that is
+    another object. `among` gives the errors of a table that is one body of a system.
     """
 
     table: type[Table]
@@ -95,7 +95,7 @@ class Reduced(Table):
 
 
 def points_of(table: Any) -> dict[str, Any]:
-    """Points of a body by name: groups and places as they are, and places with axes."""
+    """Points of a body by name: tables as places with axes, groups and places unchanged."""
     from gbeam.mechanics.tree.system import Place
 
     return {
@@ -105,5 +105,5 @@ def points_of(table: Any) -> dict[str, Any]:
 
 
 def inertia_of(moments: Any) -> Any:
-    """Principal moments, or three rows, as rows."""
+    """Inertia tensor (3, 3) from principal moments or three rows."""
     return np.diag(moments) if np.ndim(moments) == 1 else np.asarray(moments, dtype=float)

@@ -43,7 +43,7 @@ class MatricesBody(Reduced):
 
 
 def _body(parts: Collector, where: str, table: MatricesBody) -> Structure | None:
-    """The structure of the matrices of another program."""
+    """Structure from the matrices of another program; None if they are refused."""
     from gbeam.io.models.registry import read_matrix
     from gbeam.solids.imported import ImportedModel
 
@@ -51,15 +51,15 @@ def _body(parts: Collector, where: str, table: MatricesBody) -> Structure | None
         if table.nodes is None:
             return None
         with naming("nodes"):
-            read = read_matrix(table.nodes)
-        return read.toarray() if hasattr(read, "toarray") else read
+            matrix = read_matrix(table.nodes)
+        return matrix.toarray() if hasattr(matrix, "toarray") else matrix
 
     def model() -> Structure:
         files = (table.matrices,) if isinstance(table.matrices, str) else table.matrices
         inertia = None if table.inertia is None else inertia_of(table.inertia)
-        named = {"mass": table.mass_matrix, "stiffness": table.stiffness_matrix}
-        places_of = {key: f"{key}_matrix" if file else "matrices" for key, file in named.items()}
-        with naming(places_of | {"paths": "matrices", "path": "matrices"}):
+        names = {"mass": table.mass_matrix, "stiffness": table.stiffness_matrix}
+        keys = {argument: f"{argument}_matrix" if name else "matrices" for argument, name in names.items()}
+        with naming(keys | {"paths": "matrices", "path": "matrices"}):
             imported = ImportedModel.read(
                 *files,
                 mass=table.mass_matrix,

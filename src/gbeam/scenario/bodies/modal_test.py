@@ -71,15 +71,15 @@ class ModalTestBody(Table):
 
 
 def _body(parts: Collector, where: str, table: ModalTestBody) -> Structure | None:
-    """The structure of measured modes."""
+    """Structure from measured modes; None if they are refused."""
     from gbeam.solids.modal_test import ModalTest
 
     def test() -> ModalTest:
         if table.modal_test is None:
             measured: dict[str, Any] = {key: getattr(table, key) for key in MEASURED}
             return ModalTest(**measured | {"shapes": _same_nodes(table.shapes, len(measured["nodes"]))})
-        read = ModalTest.read(table.modal_test, modal_mass=table.modal_mass)
-        return read if table.damping_ratio is None else replace(read, damping_ratio=table.damping_ratio)
+        in_file = ModalTest.read(table.modal_test, modal_mass=table.modal_mass)
+        return in_file if table.damping_ratio is None else replace(in_file, damping_ratio=table.damping_ratio)
 
     def model() -> Structure:
         with naming({"path": "modal_test"}):

@@ -57,7 +57,7 @@ class RigidBody(Table):
 
 
 def _body(parts: Collector, where: str, table: RigidBody) -> Rigid | None:
-    """The body of a system."""
+    """Rigid body of a system; None if it is refused."""
     from gbeam.mechanics.tree.system import RigidBody as Rigid
 
     def body() -> Rigid:
@@ -67,15 +67,15 @@ def _body(parts: Collector, where: str, table: RigidBody) -> Rigid | None:
 
 
 def _specimen(parts: Collector, where: str, table: RigidBody) -> Structure | None:
-    """A rigid specimen."""
+    """Structure of a rigid specimen, its points among its corners; None if it is refused."""
     from gbeam.solids.rigid import RigidSpecimen
 
     def specimen() -> RigidSpecimen:
         points: dict[str, Any] = {name: getattr(each, "at", each) for name, each in table.points.items()}
         corners = [*table.corners, *points.values()]
         if table.size is not None:
-            ways = np.array(list(product((-0.5, 0.5), repeat=3)))
-            corners = [*(_middle(table) + ways * np.asarray(table.size)), *corners]
+            signs = np.array(list(product((-0.5, 0.5), repeat=3)))
+            corners = [*(_middle(table) + signs * np.asarray(table.size)), *corners]
         if not corners:
             raise InputError("size", "is missing", "give the box that it fills, or its corners")
         bolts = table.bolts or None
@@ -93,7 +93,7 @@ def _middle(table: RigidBody) -> Any:
 
 
 def _moments(table: RigidBody) -> Any:
-    """Inertia as given, or of an even box."""
+    """Inertia as written, or of a box of uniform density where only its size is; InputError if the two do not fit."""
     if table.size is None:
         if table.middle is not None:
             raise InputError("middle", "is given without a size", "give the edges of the box: size = [x, y, z]")
@@ -111,7 +111,7 @@ def _moments(table: RigidBody) -> Any:
 
 
 def _among(table: RigidBody) -> Iterator[tuple[Loc, PydanticCustomError]]:
-    """Keys that a body among others does not take."""
+    """Errors of keys that only a specimen alone on its base takes."""
     hint = "leave it out, or give points; a rigid body alone, without joints, is a specimen"
     for key in ("corners", "bolts", "bolt_axis", "spread_limit"):
         if getattr(table, key):

@@ -187,7 +187,7 @@ class SolidBody(Reduced):
 
 
 def _body(parts: Collector, where: str, table: SolidBody) -> Structure | None:
-    """The structure of a mesh."""
+    """Structure of a mesh, reduced to modes and kept on disk; None if it is refused."""
     from gbeam.io.kept import content_of, kept
     from gbeam.solids.foreign import is_mesh
     from gbeam.solids.mesh import SolidMesh
@@ -197,17 +197,17 @@ def _body(parts: Collector, where: str, table: SolidBody) -> Structure | None:
         if table.material is None
         else _material(parts, f"{where}.material", table.material)
     )
-    held = parts.attempt(
+    placed_parts = parts.attempt(
         where,
         lambda: {
             "points": points_of(table),
             "carried": {name: _carried(name, each) for name, each in table.carried.items()},
         },
     )
-    if held is None or laws is None or (isinstance(laws, dict) and None in laws.values()):
+    if placed_parts is None or laws is None or (isinstance(laws, dict) and None in laws.values()):
         return None
 
-    about: dict[str, Any] = {
+    mesh_options: dict[str, Any] = {
         "materials": laws,
         "clamp": table.clamp,
         "unit": table.unit,
@@ -220,54 +220,54 @@ def _body(parts: Collector, where: str, table: SolidBody) -> Structure | None:
         "turn": table.turn,
         "scale": table.scale,
         "mass_unit": table.mass_unit,
-        **held,
+        **placed_parts,
     }
     options: dict[str, Any] = {"modes": table.modes, "damping_ratio": table.damping_ratio}
 
     def read(file: str, size: float | None) -> SolidMesh:
         try:
-            return SolidMesh.read(file, element_size=size, **about)
-        except InputError as error:  # the scenario's own names of what Python calls otherwise
-            one = error.where.replace("point_masses", "masses")
-            renamed = one.replace("materials", "material", 1) if table.material is not None else one
-            renamed = renamed.replace("thickness", "thicknesses", 1) if table.thicknesses else renamed
-            raise error.at(renamed) from None
+            return SolidMesh.read(file, element_size=size, **mesh_options)
+        except InputError as error:  # arguments become the scenario's keys
+            where = error.where.replace("point_masses", "masses")
+            where = where.replace("materials", "material", 1) if table.material is not None else where
+            where = where.replace("thickness", "thicknesses", 1) if table.thicknesses else where
+            raise error.at(where) from None
 
     def source(file: str, size: float | None) -> Any:
-        """The file's content and how it is read, or the mesh where it may lie in several files."""
+        """Key for the store of reductions: a file's content and options, or the mesh if it may lie in several files."""
         content = content_of(file) if is_mesh(file) else None
-        return read(file, size) if content is None else (content, Path(file).name, size, about)
+        return read(file, size) if content is None else (content, Path(file).name, size, mesh_options)
 
     def reduced(file: str, size: float | None, coarser: Callable[[], SolidModel] | None, *sources: Any) -> SolidModel:
         def make() -> SolidModel:
             mesh = sources[0] if isinstance(sources[0], SolidMesh) else read(file, size)
-            rough = None if coarser is None else coarser()
+            coarse = None if coarser is None else coarser()
             with naming({"stiffness": "springs" if table.springs else "clamp"}):
-                return mesh.reduced(**options, coarser=rough)
+                return mesh.reduced(**options, coarser=coarse)
 
         return kept(f"reducing {file}", (options, *sources), make)
 
     def model() -> Structure:
-        size, of = table.element_size, source(table.mesh, table.element_size)
+        size, fine = table.element_size, source(table.mesh, table.element_size)
         if table.coarser is None and table.coarser_size is None:
-            return reduced(table.mesh, size, None, of).structure
+            return reduced(table.mesh, size, None, fine).structure
         file, key = (table.mesh, "coarser_size") if table.coarser is None else (table.coarser, "coarser")
         with naming({"coarser": key}):
             with _of_coarser():
-                rough = source(file, table.coarser_size)
+                coarse = source(file, table.coarser_size)
 
             def coarser() -> SolidModel:
                 with _of_coarser():
-                    return reduced(file, table.coarser_size, None, rough)
+                    return reduced(file, table.coarser_size, None, coarse)
 
-            return reduced(table.mesh, size, coarser, of, rough).structure
+            return reduced(table.mesh, size, coarser, fine, coarse).structure
 
     return parts.attempt(where, model)
 
 
 @contextmanager
 def _of_coarser() -> Iterator[None]:
-    """Name the coarser mesh in errors of its own."""
+    """Place InputErrors raised inside at the key of the coarser mesh."""
     try:
         yield
     except InputError as error:

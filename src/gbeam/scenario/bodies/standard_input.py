@@ -29,7 +29,7 @@ class StandardInputBody(Table):
 
 
 def _body(parts: Collector, where: str, table: StandardInputBody) -> Structure | None:
-    """The structure of standard input data."""
+    """Structure from standard input data; None if they are refused."""
     from gbeam.solids.standard_input import read_sid
 
     def model() -> Structure:

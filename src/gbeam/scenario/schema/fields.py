@@ -1,4 +1,4 @@
-"""Fields of the schema: quantities with their units, and what they have in common."""
+"""Types of fields of the schema, such as quantities with units, and functions that read declarations and values."""
 
 from __future__ import annotations
 
@@ -38,14 +38,14 @@ Sign = Literal["any", "positive", "zero or more"]
 Loc = tuple[int | str, ...]
 TAGS = ("kind", "shape", "profile")  # keys that say which of several tables one is
 
-# Kinds of which the objects say what is possible, and which unit was meant: gbeam.guards.checks.
+# Kinds whose sizes are checked by the objects, which also suggest the unit that was meant: gbeam.guards.checks.
 _OF_OBJECTS = ("length", "area", "second moment of area", "density", "pressure", "time")
 
 
 class Table(BaseModel):
     """A table of the scenario: frozen, and no key beside the declared ones."""
 
-    # Validators are built when the whole scenario's is, not once more for each of the fifty tables.
+    # Validators are built with that of the whole scenario, not once more for each of the fifty tables.
     model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
 
@@ -65,12 +65,12 @@ def by_name(words: str) -> Any:
 
 
 def wrong(message: str, hint: str = "", *, mark: Literal["value", "key"] = "value") -> PydanticCustomError:
-    """Make the error of one value."""
+    """Return the error of one value, whose caret stands under the value or its key."""
     return PydanticCustomError("scenario", "{message}", {"message": message, "hint": hint, "mark": mark})
 
 
 def existing_file(file: str, info: ValidationInfo) -> str:
-    """Resolve `file` against the scenario's folder, which load passes as context."""
+    """Path of an existing file, relative to the scenario's folder, which the context of validation holds."""
     path = pathlib.Path((info.context or {}).get("folder", ".")) / file
     if existing(path) and not path.is_dir():
         return str(path)
@@ -80,13 +80,13 @@ def existing_file(file: str, info: ValidationInfo) -> str:
     except (OSError, ValueError):
         neighbours = []
     near = closest(path.name, neighbours)
-    looked = f"it is looked for in {folder}"
-    raise wrong(
-        "there is no file {value}", f"did you mean {str(pathlib.Path(file).with_name(near))!r}?" if near else looked
-    )
+    hint = f"it is looked for in {folder}"
+    if near:
+        hint = f"did you mean {str(pathlib.Path(file).with_name(near))!r}?"
+    raise wrong("there is no file {value}", hint)
 
 
-# Of a schema "file-path" says which keys name files.
+# In the JSON schema the format "file-path" marks keys that name files.
 File = Annotated[str, AfterValidator(existing_file), WithJsonSchema({"type": "string", "format": "file-path"})]
 
 
@@ -99,7 +99,7 @@ def refuse(problems: Iterable[tuple[Loc, PydanticCustomError]]) -> None:
 
 
 class Vector(Table):
-    """Components x, y and z, of which some are given."""
+    """Components x, y and z, at least one of them given."""
 
     @model_validator(mode="after")
     def _any(self) -> Vector:
@@ -110,7 +110,7 @@ class Vector(Table):
 
 @dataclass(frozen=True)
 class Formerly:
-    """Annotation of a key whose default moved: the default of versions up to one, as a scenario says it."""
+    """Annotation of a key whose default changed: the former one, as a scenario writes it, and its last version."""
 
     default: str
     until: tuple[int, int]
@@ -123,10 +123,10 @@ class Quantity:
     kind: str  # a key of KINDS
     sign: Sign = "any"
     words: tuple[str, ...] = ()  # accepted instead of a quantity, and kept as they are
-    clock: bool = False  # whether a time of day is, too
+    clock: bool = False  # true if a time of day is accepted too
 
     def read(self, value: object) -> float | str:
-        """Return the value in SI, or raise pydantic's error with the advice in it."""
+        """Return the value in SI, or an accepted word as it is; raise pydantic's error, with advice, otherwise."""
         if isinstance(value, str) and (value in self.words or (self.clock and _is_clock(value))):
             return value
         otherwise = "".join(f', or "{word}"' for word in self.words)
@@ -170,12 +170,12 @@ def _is_clock(text: str) -> bool:
 
 
 def fields_of(table: type[BaseModel]) -> dict[str, FieldInfo]:
-    """Fields of a table by their keys in the file: Python keeps ``from`` for itself."""
+    """Fields of a table by their keys in the file, which may be words of Python such as ``from``."""
     return {field.alias or name: field for name, field in table.model_fields.items()}
 
 
 def kind_of(table: BaseModel, key: str) -> str:
-    """Kind of quantity that a key of a table holds, a key of ``KINDS``; empty where it holds none."""
+    """Kind of quantity, a key of ``KINDS``, of the value at a key of a table; empty if it is no quantity."""
     return _kind_in(parts_of(fields_of(type(table)).get(key)))
 
 
@@ -184,7 +184,7 @@ def _kind_in(parts: Iterable[Any]) -> str:
 
 
 def parts_of(field: FieldInfo | None) -> tuple[Any, ...]:
-    """Metadata of a field and the parts of its annotation at any depth; none where there is no field."""
+    """Metadata of a field and the parts of its annotation at any depth; empty for None."""
     return () if field is None else (*field.metadata, *inside(field.annotation))
 
 
@@ -246,7 +246,7 @@ def quantities(table: BaseModel) -> dict[str, tuple[float, str]]:
 
 
 def former_defaults(tables: Any, version: tuple[int, ...], path: Path = ()) -> Iterator[tuple[str, str]]:
-    """Keys that a scenario leaves out and that had another default in a version, by their paths, and that default."""
+    """Yield path and former default of keys that tables leave out and that had another default in a version."""
     if isinstance(tables, BaseModel):
         for (key, field), name in zip(fields_of(type(tables)).items(), type(tables).model_fields, strict=True):
             for part in field.metadata if name not in tables.model_fields_set else ():
@@ -259,14 +259,14 @@ def former_defaults(tables: Any, version: tuple[int, ...], path: Path = ()) -> I
 
 
 def files(tables: Any, path: Path) -> Iterator[tuple[str, str]]:
-    """Files that a table, or several at a path, name, by the paths of their keys."""
+    """Yield path of the key, and name, of every file named in a table, or in several, at `path`."""
     for place, value, parts in _leaves(tables, path):
         if isinstance(value, str) and any(getattr(part, "func", None) is existing_file for part in parts):
             yield path_text(place), value
 
 
 def _leaves(node: Any, path: Path = (), parts: tuple[Any, ...] = ()) -> Iterator[tuple[Path, Any, tuple[Any, ...]]]:
-    """Path of every value, the value, and the parts of the annotation of the key that has it."""
+    """Yield path and value of all values below a node, with the parts of the annotation of the value's key."""
     if isinstance(node, BaseModel):
         for (key, field), name in zip(fields_of(type(node)).items(), type(node).model_fields, strict=True):
             yield from _leaves(getattr(node, name), (*path, key), parts_of(field))

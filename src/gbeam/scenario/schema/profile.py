@@ -39,7 +39,7 @@ S = TypeVar("S")  # its rate of change
 
 
 def _described(schema: dict[str, Any], model: type[Any]) -> None:
-    """Describe a profile of one quantity by the words of the profile of any, which pydantic leaves out."""
+    """Give a profile of one quantity, in the JSON schema, the description of its generic class."""
     origin = model.__pydantic_generic_metadata__["origin"]
     schema.setdefault("description", (origin or model).__doc__)
 
@@ -131,7 +131,7 @@ def _constant_or_profile(value: Any) -> Any:
 
 
 def _profiles(quantity: Any, rate: Any, *, bare: bool = False) -> Any:
-    """Type of a profile of a quantity, or of a `bare` one too; its tables are known by name, by which they pickle."""
+    """Type of a profile of a quantity, or also of a `bare` quantity; its tables become names of this module, to pickle."""
     kinds = {name: kind[quantity, rate] for name, kind in _KINDS.items()}
     globals().update({kind.__name__: kind for kind in kinds.values()})
     if not bare:

@@ -127,7 +127,7 @@ class Initial(Table):
 
     @property
     def settings(self) -> dict[str, Any]:
-        """Settings that are given, as the object takes them."""
+        """Settings that are written, as keywords of the object."""
         return self.model_dump(exclude_none=True)
 
 
@@ -173,12 +173,12 @@ class Response(Table):
 
     @property
     def scheme(self) -> Integrator:
-        """The integrator whose parameters these are."""
+        """Integrator that takes the parameters."""
         return self.integrator or "newmark"
 
     @property
     def parameters(self) -> dict[Parameter, float]:
-        """The integrator's parameters that are given."""
+        """Parameters of the integrator that are written."""
         named = {name: getattr(self, name) for name in PARAMETERS[self.scheme]}
         return {name: value for name, value in named.items() if value is not None}
 
@@ -229,7 +229,7 @@ class Sweep(Table):
 
 
 def motion_name(name: str) -> str:
-    """A name of letters, digits, underscores and hyphens."""
+    """Return a name of letters, digits, underscores and hyphens; an error of validation for any other."""
     if not name.replace("-", "_").isidentifier() or not name.isascii():
         raise wrong(
             f"{shortened(repr(name))} is not a word",
@@ -287,12 +287,12 @@ class Environments(Titled):
 
     @model_validator(mode="after")
     def _agree(self, info: ValidationInfo) -> Self:
-        # Of every kind of scenario in one validator, so that everything that is wrong is said at once.
+        # One validator for every kind of scenario, so that all errors are reported at once.
         refuse([*self._about_motions(), *self.about_structure()])
         return self
 
     def about_structure(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
-        """Errors of parts that do not agree with the structure, or with one another."""
+        """Errors of tables that do not agree with the structure, or with one another."""
         yield from ()
 
     def _about_motions(self) -> Iterator[tuple[Loc, PydanticCustomError]]:

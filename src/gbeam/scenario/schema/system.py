@@ -69,7 +69,7 @@ def _pair(kind: str) -> Any:
     return tuple.__class_getitem__((_number(kind), _number(kind)))
 
 
-# Of every key about coordinates: the type of a quantity of its kind, and its words.
+# By key about coordinates: a function from the kind of quantity to the type of its value, and its words.
 _ABOUT: dict[str, tuple[Callable[[str], Any], str]] = {
     "initial": (_number, "coordinate at the start"),
     "initial_rate": (_number, "rate at the start"),
@@ -91,7 +91,7 @@ class Coordinates(Table):
 
 
 def _table(base: type[Table], name: str, about: str, fields: Mapping[str, Any]) -> Any:
-    """A table made of fields, known in this module by its name: by that it is pickled."""
+    """Create a table with these fields, and make it a name of this module, by which it is pickled."""
     table = create_model(name, __base__=base, __module__=__name__, __doc__=about, **dict(fields))
     globals()[name] = table
     return table
@@ -102,7 +102,7 @@ def _optional(of: Any, description: str) -> tuple[Any, Any]:
 
 
 def _joint(name: str, kind: Kind) -> Any:
-    """The table of a kind of joint: of one coordinate it has values, of several tables by their names."""
+    """Table of a kind of joint; values are written plainly for one coordinate, in tables by name for several."""
     hung = 'what it hangs on: "ground", or a point of a body, such as "bus.left"; "bus.root" is its root'
     turn = "rotation vector of the body's root axes in those of the point, where all coordinates are zero: [x, y, z]"
     fields: dict[str, Any] = {
@@ -119,7 +119,7 @@ def _joint(name: str, kind: Kind) -> Any:
     fields["turn"] = (Turn3, Field(default=(0.0, 0.0, 0.0), description=turn))
     for key, (type_of, words) in _ABOUT.items():
         names = kind.names_in(key)
-        within = {each: _optional(type_of(kind_of_value(key, each)), words) for each in names}
+        within = {coordinate: _optional(type_of(kind_of_value(key, coordinate)), words) for coordinate in names}
         if len(names) == 1:
             fields[key] = within[names[0]]
         elif names:

@@ -1,4 +1,4 @@
-"""Diagnostics of a scenario with their places: records that print like a compiler's messages."""
+"""Diagnostics of a scenario, with their places, which print like a compiler's messages."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _WIDTH = 180  # characters of the line of the file
 
 @dataclass(frozen=True)
 class Diagnostic:
-    """One thing that is wrong."""
+    """One error in a scenario."""
 
     file: str  # the scenario's, as it was named
     path: str  # ``beam.masses[0].at``; empty for the file as a whole
@@ -49,11 +49,11 @@ class Diagnostic:
 
     @staticmethod
     def _excerpt(line: str, column: int) -> tuple[str, int]:
-        """Part of a line that is shown, and where the column is in that: a scenario may be one line of a megabyte."""
+        """Part of a line to show, which may be a megabyte, and the index of the column in that part."""
         if len(line) <= _WIDTH:
             return line, column
-        first = min(max(column - _WIDTH // 3, 0), len(line) - _WIDTH)
-        return line[first : first + _WIDTH], column - first
+        start = min(max(column - _WIDTH // 3, 0), len(line) - _WIDTH)
+        return line[start : start + _WIDTH], column - start
 
 
 class ScenarioError(InputError):

@@ -1,4 +1,4 @@
-"""Changes KEY=VALUE of a scenario, and the bounds of its text."""
+"""Changes KEY=VALUE of a scenario, and limits of its text."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from gbeam.printable import printable
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.values import Path, Span, parse_path, path_text
 
-# Strings and comments are passed over; a key with more parts than tables may be nested is one token. Possessive
-# quantifiers: no text takes longer than its length.
+# Strings and comments are tokens, so that brackets in them do not count; so is a key with too many parts. Possessive
+# quantifiers keep the time in proportion to the length of any text.
 _TOKEN = re.compile(
     r'"""(?:[^\\]|\\.)*?"""(?!")|\'\'\'.*?\'\'\'(?!\')|'
     rf"(?P<path>(?:(?:[\w-]++|\"[^\"\n]*+\"|'[^'\n]*+')[ \t]*+\.[ \t]*+){{{NESTING},}})|"
@@ -30,7 +30,7 @@ _HALF = re.compile("[\ud800-\udfff]")
 
 
 def excess(text: str) -> tuple[Span, str, str] | None:
-    """Say where a text is more than is parsed, what it has, and the fix; None where it keeps to the limits."""
+    """Place, problem and fix where a text exceeds the limits of size, nesting or numbers; None if it keeps them."""
     if len(text) > SCENARIO_BYTES:
         most = in_bytes(SCENARIO_BYTES)
         return Span(1, 1, 2), f"has {in_bytes(len(text))}, and {most} are read at most", "give long tables as a record"
@@ -49,7 +49,7 @@ def excess(text: str) -> tuple[Span, str, str] | None:
 
 
 def no_text(text: str) -> tuple[Span, str, str] | None:
-    """Say where a text has half of a character, which no file holds; None where it has none."""
+    """Place, problem and fix of the first lone surrogate, which no file can hold, in a text; None without one."""
     half = _HALF.search(text)
     if half is None:
         return None
@@ -57,16 +57,16 @@ def no_text(text: str) -> tuple[Span, str, str] | None:
 
 
 def crowded(data: dict[str, Any]) -> tuple[Path, str] | None:
-    """Return the path of what has more keys, or more tables, than anything has, and what it has; None if nothing is."""
-    left: list[tuple[Path, Any]] = [((), data)]
-    for path, node in left:
+    """Return the path of a table or list with too many keys, tables or lists, and the problem; None without one."""
+    nodes: list[tuple[Path, Any]] = [((), data)]
+    for path, node in nodes:  # which grows
         steps = [*node.items()] if isinstance(node, dict) else [*enumerate(node)]
         inside = [((*path, key), each) for key, each in steps if isinstance(each, (dict, list))]
         counts = {"keys": len(steps) if isinstance(node, dict) else 0, "tables or lists": len(inside)}
-        for what, count in counts.items():
+        for noun, count in counts.items():
             if count > KEYS:
-                return path, f"has {count} {what}, and nothing has more than {KEYS}"
-        left += inside
+                return path, f"has {count} {noun}, and nothing has more than {KEYS}"
+        nodes += inside
     return None
 
 
@@ -86,11 +86,11 @@ class Override:
 
 
 class _Refused(ValueError):
-    """An override that cannot be applied: message and hint."""
+    """Raised with message and hint for an override that cannot be applied."""
 
 
 def override(data: dict[str, Any], name: str, texts: Iterable[str]) -> tuple[dict[str, Any], tuple[Override, ...]]:
-    """Return `data` with the overrides in it, and the overrides as read."""
+    """Return a copy of `data` after the overrides `texts`, and these as read; ScenarioError lists refused ones."""
     changed = deepcopy(data)
     done: list[Override] = []
     refused: list[Diagnostic] = []
@@ -119,9 +119,9 @@ def _read(text: str) -> Override:
 
 def value_of(text: str) -> Any:
     """A TOML number, boolean, list or inline table where the text reads as one; else the text itself."""
-    beyond = excess(text)
-    if beyond is not None:
-        _, problem, fix = beyond
+    exceeded = excess(text)
+    if exceeded is not None:
+        _, problem, fix = exceeded
         raise _Refused(problem, fix)
     try:
         parsed = tomllib.loads(f"value = {text}")
@@ -133,6 +133,7 @@ def value_of(text: str) -> Any:
 
 
 def _write(data: dict[str, Any], change: Override) -> None:
+    """Set a value in `data`, with missing tables around it; a list's missing entry is refused."""
     node: Any = data
     for i, step in enumerate(change.path):
         above = path_text(change.path[:i])

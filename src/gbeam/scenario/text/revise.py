@@ -19,7 +19,7 @@ from gbeam.scenario.values import Path, parse_path, path_text, written_at
 
 
 def edited(source: Source, table: Path, changes: Mapping[str, str | float | list[str]]) -> str:
-    """Return the text with some entries of one table set to other text."""
+    """Return the text with other values of some keys of one table; InputError if that cannot be done."""
     text = source.text
     lines = ", ".join(f"{path_text((*table, key))}={value}" for key, value in changes.items())
     refusal = InputError(source.name, "is written in a way that cannot be changed here", f"write it yourself: {lines}")
@@ -34,14 +34,13 @@ def edited(source: Source, table: Path, changes: Mapping[str, str | float | list
 
 
 def with_quantities(source: Source, changes: Mapping[str, tuple[float, str]]) -> str:
-    """Return the text with some quantities set to other values, each in the unit that it was written in."""
+    """Return the text with other values (SI, and kind) of quantities by path, each in the unit it was written in."""
     text, before = source.text, parse(source.name, source.text)
     for path_words, (value, kind) in changes.items():
         *table, key = parse_path(path_words) or ("",)
         if not isinstance(key, str):
             raise InputError(source.name, f"has {path_words} in a list", f"write it yourself: {value:.8g}")
-        plain = replace(source, text=text, data=before, overrides=())
-        old = plain.raw((*table, key))
+        old = replace(source, text=text, data=before, overrides=()).raw((*table, key))
         unit, size = unit_of(old, kind) if isinstance(old, str) else ("", 1.0)
         number = f"{value / size:.8g}"
         written: str | float = f"{number} {unit}" if unit else float(number)
@@ -59,7 +58,7 @@ def with_entry(text: str, path: Path, value: Any) -> str:
         _put(expected, path, value)
     except (LookupError, TypeError, AttributeError):
         raise _beyond(path) from None
-    # Under a header first; where dotted keys have written the table, it takes no header.
+    # A new table is tried under a header first; where dotted keys open its parent, it can only stand on one line.
     changes = (partial(_put, path=path, value=value, style=style) for style in (_block, _line))
     return _checked(text, [expected], path, *changes)
 
@@ -71,35 +70,35 @@ def without_entry(text: str, path: Path) -> str:
         _delete(expected, path)
     except (LookupError, TypeError):
         raise InputError(path_text(path), "is not written in the scenario", "choose what is written") from None
-    sound = [deepcopy(expected)]
-    # A table that only the headers of others open is gone with the last of them.
+    accepted = [deepcopy(expected)]
+    # A table without a header of its own disappears with the last table inside it.
     for end in range(len(path) - 1, 0, -1):
         if written_at(expected, path[:end]) != {}:
             break
         _delete(expected, path[:end])
-        sound.append(deepcopy(expected))
-    return _checked(text, sound, path, partial(_delete, path=path))
+        accepted.append(deepcopy(expected))
+    return _checked(text, accepted, path, partial(_delete, path=path))
 
 
 def toml(value: Any) -> str:
-    """A value as TOML writes it on one line."""
+    """Return a value as TOML on one line."""
     if isinstance(value, dict):
         return f"{{ {', '.join(f'{_key(key)} = {toml(each)}' for key, each in value.items())} }}" if value else "{}"
     if isinstance(value, list):
         return f"[{', '.join(map(toml, value))}]"
-    return json.dumps(value, ensure_ascii=False)  # a string of TOML too
+    return json.dumps(value, ensure_ascii=False)  # TOML reads strings of JSON
 
 
-def _checked(text: str, sound: Sequence[Any], path: Path, *changes: Callable[[Any], None]) -> str:
-    """Return the text after the first of some changes of its document after which it reads as one of `sound`."""
+def _checked(text: str, accepted: Sequence[Any], path: Path, *changes: Callable[[Any], None]) -> str:
+    """Return the text after the first of `changes` that makes it read as one of `accepted`, or raise InputError."""
     if is_json(text):
-        return json.dumps(sound[0], indent=2, ensure_ascii=False) + "\n"
+        return json.dumps(accepted[0], indent=2, ensure_ascii=False) + "\n"
     from tomlkit.exceptions import TOMLKitError
 
     for change in changes:
         with suppress(ScenarioError, TOMLKitError, LookupError, TypeError, ValueError, AttributeError):
             changed = _changed(text, change)
-            if parse("", changed) in sound:
+            if parse("", changed) in accepted:
                 return changed
     raise _beyond(path)
 
@@ -109,28 +108,29 @@ def _beyond(path: Path) -> InputError:
 
 
 def _changed(text: str, change: Callable[[Any], None]) -> str:
-    """Return the text after a change of its document, with the comments that lead to a table kept before it."""
+    """Return the text after a change of its document; comments before a table's header stay before it."""
     import tomlkit
     from tomlkit.items import Comment, Table, Whitespace
 
     document = tomlkit.parse(text.replace("\r\n", "\n") + "\n" * (not text.endswith("\n")))
-    leads: list[tuple[Any, str]] = []  # every table with the comments and empty lines before it, and the end
-    gap: list[tuple[list[Any], int]] = []
+    leads: list[tuple[Any, str]] = []  # every table, and None for the end, with the comments and empty lines before it
+    gap: list[tuple[list[Any], int]] = []  # places of the comments and empty lines since the last entry
     for body, i, item in [*_items(document), ([], 0, None)]:
         if isinstance(item, (Comment, Whitespace)):
             gap.append((body, i))
             continue
         if item is None or isinstance(item, Table):
-            # tomlkit has them in the table above, whose new entries would stand below them.
+            # tomlkit keeps them in the table above, and would put its new entries after them.
             leads.append((item, "".join(body[i][1].as_string() for body, i in gap)))
             for body, i in gap:
                 body[i] = (None, Whitespace(""))
         gap = []
     change(document)
-    left, lead = {id(item) for *_, item in _items(document)}, ""
+    remaining = {id(item) for *_, item in _items(document)}
+    lead = ""  # comments before removed tables go to the next one
     for table, above in leads[:-1]:
-        lead += above if id(table) in left or "#" in above else ""
-        if id(table) in left:
+        lead += above if id(table) in remaining or "#" in above else ""
+        if id(table) in remaining:
             table.trivia.indent, lead = lead + table.trivia.indent, ""
     changed = tomlkit.dumps(document) + lead + leads[-1][1]
     changed = changed if text.endswith("\n") else changed.removesuffix("\n")
@@ -138,7 +138,7 @@ def _changed(text: str, change: Callable[[Any], None]) -> str:
 
 
 def _items(container: Any) -> Iterator[tuple[list[Any], int, Any]]:
-    """Yield every entry, comment and table with a header, in the order of the text, with the place that it has."""
+    """Yield list, index and item of every entry, comment and table with a header, in the order of the text."""
     from tomlkit.items import AoT, Table
 
     for i, (_, item) in enumerate(container.body):
@@ -152,18 +152,18 @@ def _items(container: Any) -> Iterator[tuple[list[Any], int, Any]]:
 
 
 def _put(data: Any, path: Path, value: Any, style: Callable[[Any, Any], Any] = lambda _, value: value) -> None:
-    """Write a value at a path of data, or of a document in some style, with the tables and lists around it."""
-    around: Any = None
+    """Write a value at a path of data, or of a document as `style(parent, value)`, with missing tables around it."""
+    parent: Any = None  # of `data`
     for i, step in enumerate(path[:-1]):
         if step == len(data) if isinstance(step, int) else step not in data:
             for inner in reversed(path[i + 1 :]):
                 value = {inner: value} if isinstance(inner, str) else [value]
             path = path[: i + 1]
             break
-        around, data = data, data[step]
+        parent, data = data, data[step]
     if _braced(data) and path[-1] not in data:
-        # Written anew: the blanks between the entries that are there do not say where those beside a new one go.
-        around[path[-2]] = style(around, {**data.unwrap(), path[-1]: value})
+        # The whole table is written anew: tomlkit would put a new entry without regard to the blanks around others.
+        parent[path[-2]] = style(parent, {**data.unwrap(), path[-1]: value})
     elif path[-1] == len(data):
         data.append(style(data, value))
     else:
@@ -171,7 +171,7 @@ def _put(data: Any, path: Path, value: Any, style: Callable[[Any, Any], Any] = l
 
 
 def _braced(data: Any) -> bool:
-    """True if a table of a document stands in braces."""
+    """True for an inline table of a document, which stands in braces; False for plain data."""
     if type(data) in (dict, list):
         return False
     from tomlkit.items import InlineTable
@@ -187,7 +187,7 @@ def _line(parent: Any, value: Any) -> Any:
 
 
 def _block(parent: Any, value: Any) -> Any:
-    """Return a value as an item: a table under a header where its parent has no entries but such tables."""
+    """Return a value as an item: a table under a header if its parent has only such tables, else on one line."""
     import tomlkit
     from tomlkit.items import AoT, Table
 

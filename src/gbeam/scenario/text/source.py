@@ -1,4 +1,4 @@
-"""The text of a scenario: parsed, overridden, and able to say where a path stands in it."""
+"""Text of a scenario, parsed and overridden, with the places of its entries."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _VALUE = re.compile(
 
 
 def is_json(text: str) -> bool:
-    """Tell whether a scenario is JSON, not TOML."""
+    """True if a scenario is JSON, false if it is TOML."""
     return text.lstrip().startswith("{")  # no TOML document begins with a brace
 
 
@@ -47,7 +47,7 @@ def locate(text: str) -> dict[Path, Place]:
 
 
 class _Reader:
-    """Passes through a text and notes where its entries stand."""
+    """Reader of a text that has been parsed, from `at` on, which collects the places of its entries by path."""
 
     def __init__(self, text: str) -> None:
         self.text, self.at = text, 0
@@ -89,7 +89,7 @@ class _Reader:
         self.places[path] = Place(key, value)  # in JSON the last of equal keys holds
 
     def keys(self) -> list[tuple[str, Span]]:
-        """Read a key: its names, of which a dotted one has several."""
+        """Read a key, and return its name, or its names if it is dotted, with their places."""
         names: list[tuple[str, Span]] = []
         while not names or self.skip("."):
             self.next()
@@ -98,7 +98,7 @@ class _Reader:
         return names
 
     def value(self, path: Path) -> Span:
-        """Read a value with what is inside it."""
+        """Read a value, with the entries inside it, and return its place."""
         self.next()
         start, index = self.at, 0
         if self.skip("{"):
@@ -116,25 +116,25 @@ class _Reader:
         return self.span(start)
 
     def next(self) -> str:
-        """Return the next character behind spaces and comments, empty at the end."""
+        """Pass spaces and comments, and return the next character, or "" at the end."""
         self.take(_SPACE)
         return self.text[self.at : self.at + 1]
 
     def skip(self, character: str) -> bool:
-        """Pass a character if it comes next, and tell whether it did."""
+        """Pass a character if it comes next; return true if it did."""
         comes = self.next() == character
         self.at += comes
         return comes
 
     def take(self, pattern: re.Pattern[str]) -> str:
-        """Pass what a pattern matches, and return it."""
+        """Pass the text that a pattern matches, and return it."""
         match = pattern.match(self.text, self.at)
         assert match is not None  # since the text has been parsed
         self.at = match.end()
         return match[0]
 
     def span(self, start: int) -> Span:
-        """Return the place of the text from `start` to here, cut at the end of its first line."""
+        """Return the place of the text from `start` to the current position, cut at the end of its first line."""
         row = bisect_right(self.starts, start) - 1
         first, following = self.starts[row], self.starts[row + 1]
         end = self.at - first if self.at < following else len(self.lines[row].rstrip())
@@ -150,7 +150,7 @@ class Source:
 
     name: str  # of the file, as it was named
     text: str
-    folder: File  # that relative file names in it start from
+    folder: File  # to which file names in it are relative
     data: dict[str, Any]  # the parsed text, with the overrides in it, and centres of distributions
     overrides: tuple[Override, ...] = ()
     distributions: Mapping[str, Distribution] = field(default_factory=dict)  # by the paths of their values
@@ -165,7 +165,7 @@ class Source:
         return written_at(self.data, path)
 
     def diagnostic(self, path: Path, message: str, hint: str = "", mark: Mark = "value") -> Diagnostic:
-        """Put a message at the place of `path`: in the file, or in the override that wrote it."""
+        """Diagnostic at the place of `path`: in the file, or in the override that wrote it."""
         override = self._override_of(path)
         if override is not None:
             return Diagnostic(self.name, path_text(path), message, hint, override=override.text)
@@ -177,6 +177,7 @@ class Source:
         return at_span(self.name, self.text, span, path_text(path), message, hint)
 
     def _override_of(self, path: Path) -> Override | None:
+        """Last override that set the entry at `path` or a table around it; else one inside an entry not in the text."""
         above = [change for change in self.overrides if path[: len(change.path)] == change.path]
         if above:
             return above[-1]
@@ -191,7 +192,7 @@ def at_span(name: str, text: str, span: Span, path: str, message: str, hint: str
 
 
 def read_text(path: File) -> str:
-    """Read a scenario file, or raise the ScenarioError that says why not."""
+    """Text of a scenario file; ScenarioError, with the reason, if it cannot be read."""
     try:
         refuse_large_file("", path, SCENARIO_BYTES, "give long tables as a record: [motion.NAME.record]")
         return path.read_bytes().decode("utf-8-sig")
@@ -214,14 +215,14 @@ def read_text(path: File) -> str:
 
 def parse(name: str, text: str) -> dict[str, Any]:
     """Parse TOML, or JSON if the text begins with a brace; a ScenarioError says where the syntax is wrong."""
-    beyond = no_text(text) or excess(text)
-    if beyond is not None:
-        span, problem, fix = beyond
+    refused = no_text(text) or excess(text)
+    if refused is not None:
+        span, problem, fix = refused
         raise ScenarioError([at_span(name, text, span, "", problem, fix)])
     try:
         data: dict[str, Any] = json.loads(text) if is_json(text) else tomllib.loads(text)
         half = no_text(json.dumps(data, ensure_ascii=False)) if is_json(text) else None
-        if half is not None:  # by its number, somewhere
+        if half is not None:  # written as an escape, at an unknown place
             raise ScenarioError([at_span(name, text, Span(1, 1, 2), "", *half[1:])])
         full = crowded(data)
         if full is not None:
