@@ -2,8 +2,8 @@
 
 A verb is a function with annotated parameters that reads a scenario, calls a public function of gbeam, prints what
 `gbeam.report` makes of the result, and returns its exit status. To add one, declare a question in `gbeam.questions`,
-or write it in `verbs` and name it in `program`. Errors are raised; `failures` prints them. Importing this imports
-nothing else: signals come first.
+or write a function in a module of this folder and name that in `program`. Errors are raised; `failures` prints them.
+Importing this package imports nothing else, so that signals can be set up first.
 """
 
 from __future__ import annotations
@@ -35,9 +35,10 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _status(arguments: list[str]) -> int:
+    """Run a verb, and return its exit status; 1 if its output could not be printed."""
     from gbeam.cli import process as streams
 
-    listening = streams.prepare()
+    has_stdout = streams.prepare()
     from gbeam.cli.failures import FAILED, complain
     from gbeam.cli.program import run
 
@@ -50,7 +51,7 @@ def _status(arguments: list[str]) -> int:
             complain(str(error))
         streams.abandon_stdout()
         return FAILED
-    if not listening and status == 0:
+    if not has_stdout and status == 0:
         complain("standard output is closed: the answer could not be printed")
         return FAILED
     return status

@@ -56,8 +56,8 @@ def plan(
         machines, extent = build_machines(environments), build_extent(environments)
     if not machines:
         raise InputError("motion", "has no centrifuge to plan", "add a motion of kind centrifuge")
-    every = None if sample is None else number("--sample", sample, "time")
-    if every is not None and every <= 0:
+    interval = None if sample is None else number("--sample", sample, "time")
+    if interval is not None and interval <= 0:
         raise InputError("--sample", f"is {sample}", 'give a positive time, such as "5 ms"')
 
     from gbeam.analysis.imitation import plan as analysis
@@ -82,7 +82,7 @@ def plan(
 
         for each in plans:
             asked = tables[each.name].commands
-            time = every or (asked.sample if asked else SAMPLE)
+            time = interval or (asked.sample if asked else SAMPLE)
             write_commands(each, analysis.axis_commands(machines[each.name], time), hidden)
 
     deliver(

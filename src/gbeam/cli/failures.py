@@ -14,12 +14,12 @@ from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.printable import json_printable, on_one_line, printable, shortened
 
 if sys.platform != "win32":
-    import resource  # at once: where memory is gone, nothing can be loaded any more
+    import resource  # now, as nothing can be imported once memory is used up
 
 FAILED = 1
 WRONG_INPUT = 2
 DEFECT = 3
-# Words of dlopen(3) and of Python.
+# Words of dlopen(3) and of Python for a lack of memory.
 _NO_ROOM = re.compile("failed to map segment|cannot allocate memory|can't start new thread", re.IGNORECASE)
 LONGEST = 1000  # characters of a message
 
@@ -47,7 +47,7 @@ def report_syntax(message: str, as_json: bool) -> int:
 
 
 def lacks_memory(error: BaseException | None) -> bool:
-    """True if memory did not suffice, for a library that is then not loaded, a thread, or the error's own words."""
+    """True if an error, or one that caused it, is a lack of memory, by its type or by words of a loader or thread."""
     while error is not None:
         if isinstance(error, MemoryError) or (
             isinstance(error, (ImportError, RuntimeError)) and _NO_ROOM.search(str(error))
@@ -60,7 +60,7 @@ def lacks_memory(error: BaseException | None) -> bool:
 
 
 def _limited() -> bool:
-    """True if this process has a limit of memory."""
+    """True if the memory of this process is limited, as by ulimit."""
     if sys.platform == "win32":
         return False
     return resource.getrlimit(resource.RLIMIT_AS)[0] != resource.RLIM_INFINITY
@@ -101,7 +101,7 @@ def report_defect(error: Exception, arguments: Sequence[str], as_json: bool) -> 
 
 
 def _kept(text: str) -> str | None:
-    """Write a traceback into a new file for temporary files, or else on stderr; the file's name."""
+    """Write a traceback into a new temporary file and return its name; else print it on stderr and return None."""
     from tempfile import NamedTemporaryFile
 
     try:
@@ -121,6 +121,7 @@ def complain(message: str) -> None:
 
 
 def _refuse(text: str, diagnostics: list[dict[str, Any]], as_json: bool) -> int:
+    """Print what is wrong with the input; return the exit status."""
     print(printable(text), file=sys.stderr)
     if as_json:
         _print({"error": diagnostics})

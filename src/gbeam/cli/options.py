@@ -1,4 +1,4 @@
-"""The arguments that verbs share, and from them to the objects of the core."""
+"""Arguments that verbs share, and the objects of the core that they name."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ _Function = TypeVar("_Function", bound=Callable[..., int])
 
 
 def option(name: str, words: str) -> Parameter:
-    """An option without an opposite, whose default is not worth a word in the help."""
+    """Declare an option without an opposite, whose default the help does not show."""
     return Parameter(name=name, negative="", show_default=False, help=words)
 
 
-# Of all verbs, or of many.
+# Arguments of all verbs, or of many.
 ScenarioFile = Annotated[Path, Parameter(help="Scenario file, TOML or JSON.")]
 Overrides = Annotated[
     tuple[str, ...],
@@ -60,7 +60,7 @@ Report = Annotated[
 @Parameter(name="*")
 @dataclass(frozen=True)
 class Output:
-    """Options of every verb that answers: the changes of its scenario, and how its answer is printed and written."""
+    """Options of all verbs with an answer: changes of the scenario, and how the answer is printed and written."""
 
     overrides: Overrides = ()
     out: Out = None
@@ -68,9 +68,9 @@ class Output:
     report: Report = False
 
     def folder(self, scenario: Path, *, always: bool = False) -> Path | None:
-        """The folder of --out, which can be written to; without it out/ and the scenario's name for a page, or always.
+        """Folder for files, or None: that of --out, or out/NAME for --report and, unless with --json, if `always`.
 
-        With --json nothing is written that was not asked for.
+        InputError if it cannot be written to.
         """
         default = self.report or (always and not self.json)
         folder = self.out if self.out is not None or not default else Path("out") / scenario.stem
@@ -92,7 +92,7 @@ IgnoreLimits = Annotated[
 
 SmoothVerb = Annotated[_Smooth, Parameter(help="Whose figures.")]
 
-# Of fit and optimize.
+# Arguments of fit and optimize.
 SearchBounds = Annotated[
     tuple[str, ...],
     option(
@@ -105,29 +105,29 @@ WriteTo = Annotated[
     Path | None, Parameter(name="--write", help="A scenario to write, with the values found and its comments.")
 ]
 
-# Of place.
+# Argument of place.
 Check = Annotated[
     bool, Parameter(name="--proof", negative="--no-proof", help="Check the answer by simulation with the model.")
 ]
 
 
 def with_options(*verbs: str) -> Callable[[_Function], _Function]:
-    """Give a function of the command line, as its argument `options`, a record of the options of some questions.
+    """Decorate a verb's function: its argument `options` becomes a record of the options of these questions.
 
-    Of several questions those that a user gives are of one of them, which refuses the others.
+    With several questions a user may give any of them; the question that is asked refuses options of others.
     """
     words: dict[str, dict[str, list[str]]] = {}
-    known: dict[str, Any] = {}
+    declared: dict[str, Any] = {}
     for verb in verbs:
         for name, each in QUESTIONS[verb].options.items():
-            known.setdefault(name, each)
+            declared.setdefault(name, each)
             words.setdefault(name, {}).setdefault(each.words, []).append(verb)
-    every: list[tuple[str, Any, Any]] = []
-    for name, each in known.items():
-        said = [text if len(verbs) == 1 else f"Of {' and '.join(of)}: {text}" for text, of in words[name].items()]
+    members: list[tuple[str, Any, Any]] = []
+    for name, each in declared.items():
+        texts = [text if len(verbs) == 1 else f"Of {' and '.join(of)}: {text}" for text, of in words[name].items()]
         kind = str | type(each.default) if each.kind else each.type  # a quantity is given as text
-        every.append((each.argument, Annotated[kind, Parameter(name=each.flag, help=" ".join(said))], each.default))
-    record = Parameter(name="*")(make_dataclass("Options", every, frozen=True, namespace={"__module__": __name__}))
+        members.append((each.argument, Annotated[kind, Parameter(name=each.flag, help=" ".join(texts))], each.default))
+    record = Parameter(name="*")(make_dataclass("Options", members, frozen=True, namespace={"__module__": __name__}))
 
     def declare(function: _Function) -> _Function:
         function.__annotations__["options"] = record
@@ -138,9 +138,9 @@ def with_options(*verbs: str) -> Callable[[_Function], _Function]:
 
 
 def asked(options: Any) -> Any:
-    """Options of a question that were given, by their names: those that are not as without them."""
-    every = {each.name: (getattr(options, each.name), each.default) for each in fields(options)}
-    return {name.rstrip("_"): value for name, (value, default) in every.items() if value != default}
+    """Options by name whose values in a record of options differ from the defaults."""
+    pairs = {each.name: (getattr(options, each.name), each.default) for each in fields(options)}
+    return {name.rstrip("_"): value for name, (value, default) in pairs.items() if value != default}
 
 
 @dataclass(frozen=True)
@@ -152,7 +152,7 @@ class Input:
 
     @contextmanager
     def placing(self, **options: str) -> Iterator[None]:
-        """Give InputErrors their place in the scenario file, or the option that sets the argument they name."""
+        """Place InputErrors raised inside in the scenario file, or at the option, in `options`, of their argument."""
         try:
             yield
         except InputError as error:
@@ -164,11 +164,11 @@ class Input:
 
     @property
     def beam(self) -> Case:
-        """The case of one beam: of a system none is read by its verb."""
+        """The case, which is of one beam; InputError if it is not."""
         return self.case.one_beam("bodies", "this")
 
     def motion(self, name: str | None, *, kind: str = "") -> tuple[str, Any]:
-        """Name and prepared motion of ``--motion``; without one the only one, or the only one of a kind."""
+        """Name and prepared motion chosen by ``--motion``, or for None the only one, of a kind if one is named."""
         chosen = motion_of(self.case.environments, name, kind)
         try:
             return chosen, prepared(self.case, chosen)
@@ -187,12 +187,12 @@ class Input:
             return question.answer(self.case, motion, time, needs, **chosen)
 
     def time(self, text: str | None) -> float:
-        """Time of ``--at``, s; the response's start where it is not given."""
+        """Time of ``--at``, s; for None the response's start."""
         return self.case.start if text is None else number("--at", text, "time")
 
 
 def signed(facts: dict[str, Any], provenance: Provenance | None) -> dict[str, Any]:
-    """The facts of a result, as JSON, with where they come from: found when it is printed, since that takes a while."""
+    """Facts of a result for JSON, with a function for those of its provenance, which take a while and may not be used."""
 
     def origin() -> dict[str, Any]:
         from gbeam.report.facts import origin_json
@@ -203,12 +203,12 @@ def signed(facts: dict[str, Any], provenance: Provenance | None) -> dict[str, An
     return facts if provenance is None else {**facts, "provenance": origin}
 
 
-_MOVING = ("run", "place")  # verbs that need all motions
-_ANY = ("check", "models")  # verbs of beams and systems, beside the questions of both
+_MOVING = ("run", "place")  # verbs that need the plans of all machines
+_ANY = ("check", "models")  # verbs that take beams and systems, besides questions
 
 
 def read(verb: str, file: Path, overrides: Sequence[str]) -> Input:
-    """Load and build the scenario of a verb."""
+    """Load and build the scenario of a verb; InputError if the verb does not take such a specimen."""
     from gbeam.scenario import build, load, provenance  # not needed, nor imported, for help
 
     with Watch(f"reading {file}" + (" and planning its machines" if verb in _MOVING else "")):
@@ -233,7 +233,7 @@ def number(option: str, text: str, kind: str) -> float:
 
 
 def numbers(option: str, text: str, kind: str) -> list[float]:
-    """Read the quantities of one option, separated by commas."""
+    """Read the quantities, none negative, of one option, separated by commas."""
     values = [number(option, part.strip(), kind) for part in text.split(",")]
     if min(values) < 0:
         raise InputError(option, f"has {min(values):g}", "give none that is negative")
@@ -241,12 +241,12 @@ def numbers(option: str, text: str, kind: str) -> list[float]:
 
 
 def names(texts: Sequence[str]) -> list[str]:
-    """Names given to an option that may be option, separated by commas in each."""
+    """Return the names in all values of an option, separated by commas in each."""
     return [name.strip() for text in texts for name in text.split(",") if name.strip()]
 
 
 def search_bounds(texts: Sequence[str]) -> dict[str, tuple[str, str]]:
-    """Bounds of the values of a search, each ``PATH=LOW:HIGH``, by path."""
+    """Read bounds of the values of a search, each ``PATH=LOW:HIGH``; return them by path."""
     values = {}
     for text in texts:
         path, equals, ends = text.partition("=")

@@ -1,4 +1,4 @@
-"""Output of verbs: text, JSON and files."""
+"""Output of verbs as text, JSON and files."""
 
 from __future__ import annotations
 
@@ -29,26 +29,26 @@ def deliver(
     folder: Path | None,
     output: Output,
     *,
-    verb: str = "",  # that signs the figures, where it has another name
-    origin: Provenance | None = None,  # where the answer does not say it
+    verb: str = "",  # that signs the figures, if its name is another
+    origin: Provenance | None = None,  # if the answer has none
     title: str = "",  # of the scenario
     suffix: Literal[".json", ".nc", ""] = ".json",  # of its file, if it has one
-    page: str = "",  # where the page has another name
-    figures: Mapping[str, Describe] | None = None,  # that the answer does not have itself
-    facts: Mapping[str, Any] | None = None,  # the same
+    page: str = "",  # name of the page, if it is another
+    figures: Mapping[str, Describe] | None = None,  # in place of the answer's
+    facts: Mapping[str, Any] | None = None,  # besides the answer's
     more: Callable[[Path], object] | None = None,  # writes further files
     also: Sequence[Path] = (),  # files that are there already
-    listed: bool = True,  # whether to say which files were written
-    copy: Path | None = None,  # of the scenario, with the values of the answer
-    **options: Any,  # of the report
+    listed: bool = True,  # say which files were written
+    copy: Path | None = None,  # scenario with the values of the answer, which is there already
+    **options: Any,  # of the text
 ) -> None:
-    """Print an answer, or several of one kind, as JSON or in words, and write its files into a folder, if any."""
+    """Print an answer, or a tuple of several, as JSON or in words; write its files into the folder, if not None."""
     origin = origin or answer.provenance
     assert origin is not None  # it is of a scenario
     origin = replace(origin, command=command())
     answers = answer if isinstance(answer, tuple) else (answer,)
 
-    def known(files: Sequence[Path] | None = None) -> dict[str, Any]:
+    def signed_facts(files: Sequence[Path] | None = None) -> dict[str, Any]:
         from gbeam.report.facts import facts as facts_of
 
         return signed(facts_of(*answers, title=title, files=files) | dict(facts or {}), origin)
@@ -60,11 +60,11 @@ def deliver(
         if suffix == ".nc":
             replace(answer, provenance=origin).save(hidden / f"{name}.nc")
         elif suffix:
-            write_json(hidden / f"{name}.json", known())
+            write_json(hidden / f"{name}.json", signed_facts())
         if output.report:
             from gbeam.report.page.result import report_of
 
-            html = report_of(answer, known(), described)
+            html = report_of(answer, signed_facts(), described)
             (hidden / f"{page or name}.html").write_text(html, encoding="utf-8")
         if described and figures_wanted():
             from gbeam.plots import write_figures
@@ -77,7 +77,7 @@ def deliver(
         from gbeam.report import lines_of
         from gbeam.report.words import plain
 
-        show_lines(lines_of(type(answers[0]), plain(known()), **options))
+        show_lines(lines_of(type(answers[0]), plain(signed_facts()), **options))
         if copy is not None:
             print(printable(f"\n{copy} has these values"))
     files: list[Path] = []
@@ -85,7 +85,7 @@ def deliver(
         with Watch("writing results") as watch:
             files = sorted([*publish(folder, partial(make, watch)), *also])
     if output.json:
-        show("", known(files if listed else None), output.json)
+        show("", signed_facts(files if listed else None), output.json)
     elif listed:
         list_files(folder, files)
 
@@ -104,7 +104,7 @@ _STYLES = {"good": "green", "bad": "bold red", "warning": "yellow", "faint": "di
 
 
 def show_lines(lines: Iterable[tuple[str, str]]) -> None:
-    """Print lines, each with its tone: a terminal has colours, and wraps them below where they begin."""
+    """Print lines, each with its tone; on a terminal in colours, wrapped with an indent."""
     from gbeam.report.words import terminal_width
 
     width = terminal_width()
@@ -127,19 +127,19 @@ def list_figures(verb: str, json: bool) -> int:
     from gbeam.report.words import terminal_width
     from gbeam.studies.figures import choices
 
-    every = choices(verb)
-    units = {path: "" if each.unit == "unit" else each.unit for path, each in every.items()}
+    figures = choices(verb)
+    units = {path: "" if figure.unit == "unit" else figure.unit for path, figure in figures.items()}
     named = {path: f"{path} [{unit}]" if unit else path for path, unit in units.items()}
-    wide, room = max(map(len, named.values())), terminal_width()
+    longest, width = max(map(len, named.values())), terminal_width()
     lines = []
-    for path, each in every.items():
-        if 0 < room < wide + 40:
-            lines += [named[path], *wrap(each.words, room - 2, initial_indent="  ", subsequent_indent="  ")]
+    for path, figure in figures.items():
+        if 0 < width < longest + 40:
+            lines += [named[path], *wrap(figure.words, width - 2, initial_indent="  ", subsequent_indent="  ")]
         else:
-            lines.append(f"{named[path]:<{wide}}  {each.words}")
+            lines.append(f"{named[path]:<{longest}}  {figure.words}")
     note = "* is a name, such as a motion's or an axis, [i] a place in a list, [0] the first. A path's end is enough."
-    facts = {path: {"unit": units[path], "words": each.words} for path, each in every.items()}
-    show("\n".join([*lines, *wrap(note, room or len(note))]), facts, json)
+    facts = {path: {"unit": units[path], "words": figure.words} for path, figure in figures.items()}
+    show("\n".join([*lines, *wrap(note, width or len(note))]), facts, json)
     return 0
 
 
@@ -159,14 +159,14 @@ def write_json(file: Path, facts: Mapping[str, Any]) -> None:
 
 
 def refuse_changes(write: Path | None, overrides: Sequence[str]) -> None:
-    """Raise InputError where values that were found are to be written beside changes of the scenario."""
+    """Raise InputError if --write stands beside --set: the scenario that is copied lacks the changes."""
     if write is not None and overrides:
         fix = "change the file itself first: it is what --write copies"
         raise InputError("--write", "is given beside --set", fix)
 
 
 def write_found(answer: Fit | Optimum, scenario: Path, file: Path | None) -> None:
-    """Write a scenario with the values that a search found, if a file is named."""
+    """Write a copy of the scenario, with the values that a search found, to `file` unless that is None."""
     if file is None:
         return
     from gbeam.studies.parameters import with_values

@@ -1,8 +1,8 @@
-"""The process of the command line: its signals, arguments, streams and progress, how it begins and ends.
+"""The process of the command line: its signals, arguments, streams and progress.
 
-Ctrl-C and a request to terminate end it at once, with one line and nothing half-written. No exception is raised:
-libraries swallow one that a callback raises, and print a traceback of one during an import. Nothing heavy is imported:
-signals are set up before everything else.
+Ctrl-C and a request to terminate end it at once, with one line and no half-written file. They raise no exception,
+which libraries would swallow in a callback, and print with a traceback during an import. Nothing heavy is imported
+here, as signals are set up before everything else.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ _pending: int | None = None
 
 
 def end_on_signals() -> None:
-    """End the process with 128 and the signal's number when one comes, unless the parent made it ignored."""
+    """End the process at a signal, with exit status 128 plus its number, unless the parent process ignores it."""
     for number in _WORDS:
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _end)
 
 
 def ignore_signals() -> None:
-    """Let signals come too late: as Python ends it would be killed by one, with another exit status."""
+    """Ignore signals from now on: one that comes while Python ends would change the exit status."""
     for number in _WORDS:
         if signal.getsignal(number) is _end:
             signal.signal(number, signal.SIG_IGN)
@@ -56,7 +56,7 @@ def cleaned_up(cleanup: Callable[[], object]) -> Iterator[None]:
 
 @contextmanager
 def deferred() -> Iterator[None]:
-    """Let a signal wait until the block is done: for what must be done as a whole, and takes milliseconds."""
+    """Let signals wait until the block is done, which must be short and not be interrupted."""
     global _deferring
     _deferring += 1
     try:
@@ -68,6 +68,7 @@ def deferred() -> Iterator[None]:
 
 
 def _end(number: int, frame: FrameType | None) -> None:
+    """Handler of signals."""
     global _pending
     if _deferring:
         _pending = number
@@ -76,8 +77,9 @@ def _end(number: int, frame: FrameType | None) -> None:
 
 
 def _exit(number: int) -> None:
+    """Kill child processes, call the cleanups, print one line, and end."""
     processes = sys.modules.get("multiprocessing")
-    for child in processes.active_children() if processes else ():  # which would wait for work for ever
+    for child in processes.active_children() if processes else ():  # they would wait for work forever
         child.kill()
     for cleanup in reversed(_cleanups):
         with suppress(Exception):
@@ -87,7 +89,7 @@ def _exit(number: int) -> None:
     os._exit(128 + number)
 
 
-FIGURES = "GBEAM_FIGURES"  # environment: "none" leaves out the files of figures, as where a report draws its own
+FIGURES = "GBEAM_FIGURES"  # environment variable: "none" writes no files of figures, as where a report draws them
 _own = False
 
 
@@ -98,7 +100,7 @@ def begin() -> None:
 
 
 def end_at_once(status: int) -> None:
-    """End a process of the command line's own as it is: libraries that lack memory may hang as they are taken down."""
+    """End the command line's own process without a shutdown, in which libraries that lack memory may hang."""
     if _own:
         sys.stdout.flush()
         sys.stderr.flush()
@@ -106,7 +108,7 @@ def end_at_once(status: int) -> None:
 
 
 def figures_wanted() -> bool:
-    """True if files of figures are written, which takes most of the time of a short run."""
+    """True if files of figures are written; that takes most of the time of a short run."""
     return os.environ.get(FIGURES) != "none"
 
 
@@ -119,19 +121,19 @@ def note(tokens: list[str]) -> None:
 
 
 def command() -> str:
-    """The command line, as a shell takes it; what is no text in it is written out."""
+    """Return the command line, quoted for a shell; characters that no file can hold are written as escapes."""
     return storable(shlex.join(["gbeam", *_TOKENS.get()]))
 
 
-_ALIKE = 40  # characters in which alike warnings agree
+_ALIKE = 40  # first characters: of warnings that agree in them one is printed
 _NARROWEST, _WIDEST = 20, 10_000  # columns of a terminal
 _CACHE = re.compile(r"Error (?:reading|writing) persistent compilation cache entry.*?: (.*)", re.DOTALL)
 
 
 def prepare() -> bool:
-    """Make both streams fit to print on, and return whether there is a standard output.
+    """Make standard output and error safe to print on; return true if there is a standard output.
 
-    Where one is closed (``gbeam ... >&-``) the next file opened would take its number, and be printed into.
+    If one is closed (``gbeam ... >&-``), the next file that is opened would get its number, and be printed into.
     """
     present = sys.stdout is not None
     if sys.stdin is None or sys.stdout is None or sys.stderr is None:
@@ -147,16 +149,16 @@ def prepare() -> bool:
 
 
 def _widen() -> None:
-    """Take a terminal to be no narrower, and no wider, than a text can be laid out in: others end never, or wrongly."""
+    """Set COLUMNS so that a terminal has a width in which text can be laid out: layout fails in any other."""
     columns = os.environ.get("COLUMNS", "")
-    known = columns.isascii() and columns.isdigit()
-    width = int(columns[:9]) if known else shutil.get_terminal_size().columns
+    numeric = columns.isascii() and columns.isdigit()
+    width = int(columns[:9]) if numeric else shutil.get_terminal_size().columns
     if not _NARROWEST <= width <= _WIDEST:
         os.environ["COLUMNS"] = str(min(max(width, _NARROWEST), _WIDEST))
 
 
 def shorten_warnings() -> None:
-    """Print what libraries warn of on one line, without the place in their source, and what is alike once."""
+    """Print each warning of a library on one line, without its place in the source, and similar ones only once."""
     shown: set[str] = set()
 
     def show(message: Warning | str, *_: object, **__: object) -> None:
@@ -169,7 +171,7 @@ def shorten_warnings() -> None:
 
 
 def abandon_stdout() -> None:
-    """Send what is left in the buffer nowhere, so that Python does not fail once more as it exits."""
+    """Discard what is left in the buffer, so that Python does not fail once more as it exits."""
     with open(os.devnull, "wb") as nowhere:
         os.dup2(nowhere.fileno(), sys.stdout.fileno())
 
@@ -179,7 +181,7 @@ def _nowhere() -> io.TextIOWrapper:
 
 
 class Watch(Bar):
-    """Progress of a command that takes long; a signal that ends the process takes the bar away."""
+    """Progress bar of a command, which is removed if a signal ends the process."""
 
     def __init__(self, first: str = "computing") -> None:
         super().__init__(first, patience=PATIENCE)

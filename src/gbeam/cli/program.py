@@ -1,4 +1,4 @@
-"""The parser of the command line, and what becomes of what a verb raises."""
+"""Parser of the command line, and the exit status of errors that a verb raises."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from inspect import BoundArguments
 
 # A beam's matrices are small: threads of OpenBLAS, started as NumPy and SciPy are imported, would only spin.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-# No plugin has a part in reading a scenario, and the search for plugins takes as long as the reading.
+# Reading a scenario needs no plugin, and the search for plugins takes as long as the reading.
 os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
 
 from cyclopts import App, ArgumentCollection, CycloptsError
@@ -20,8 +20,8 @@ from gbeam.errors import GbeamError
 from gbeam.guards.limits import WORDS
 from gbeam.questions import QUESTIONS
 
-# The file of each verb that has one, and its help where no question says it: not only in its own docstring, so that
-# `gbeam --help` imports none.
+# Module of each verb that is not made from a question, and its line in `gbeam --help`, which imports none of them; the
+# line is empty where a question has it.
 _FILES = {
     "run": ("responses", ""),
     "linearize": ("questions", "State-space model A, B, C, D about the equilibrium at one time of a motion."),
@@ -44,7 +44,7 @@ _INTERRUPTED = 130
 
 
 def run(tokens: list[str]) -> int:
-    """Run a verb, print what went wrong, if anything, and return the exit status."""
+    """Run a verb, print its error, if any, and return the exit status."""
     as_json = "--json" in tokens
     if len(tokens) > WORDS:
         return report_syntax(f"The command line has {len(tokens)} words, and {WORDS} are read at most.", as_json)
@@ -57,7 +57,7 @@ def run(tokens: list[str]) -> int:
         return report_syntax(str(error), as_json)
     except GbeamError as error:
         return report(error, as_json)
-    except KeyboardInterrupt:  # called from Python: the command line's own process ends in `process`
+    except KeyboardInterrupt:  # only if called from Python: the command line's own process has ended
         return _INTERRUPTED
     except OSError:
         raise
@@ -71,7 +71,7 @@ def run(tokens: list[str]) -> int:
 
 
 def parsed(tokens: list[str]) -> tuple[Callable[..., object], BoundArguments]:
-    """The verb that a command line calls, and its arguments; ValueError where it calls none."""
+    """Function that a command line calls, and its arguments; ValueError if it calls none."""
     try:
         verb, bound, _ = _app(tokens[0] if tokens else "").parse_args(tokens, exit_on_error=False, print_error=False)
     except CycloptsError as error:
@@ -80,35 +80,36 @@ def parsed(tokens: list[str]) -> tuple[Callable[..., object], BoundArguments]:
 
 
 def verbs() -> dict[str, str]:
-    """Every verb, with the words of what it answers."""
-    known = {name: each.about for name, each in QUESTIONS.items()}
-    return known | {verb: about or known[verb] for verb, (_, about) in _FILES.items()}
+    """Return every verb with its line in `gbeam --help`."""
+    questions = {name: question.about for name, question in QUESTIONS.items()}
+    return questions | {verb: about or questions[verb] for verb, (_, about) in _FILES.items()}
 
 
 def function(verb: str) -> Callable[..., object]:
-    """The function of a verb."""
+    """Return the function of a verb."""
     called = _app(verb)[verb].default_command
     assert called is not None
     return called
 
 
 def arguments(verb: str) -> ArgumentCollection:
-    """The arguments of a verb, with the words, choices and defaults of each."""
+    """Return the arguments of a verb, with the help, choices and default of each."""
     return _app(verb)[verb].assemble_argument_collection()
 
 
 def _app(chosen: str) -> App:
+    """Parser of all verbs, for a command line that calls the verb `chosen`."""
     app = App(
         name="gbeam",
         help="How a flexible beam responds while its base moves a lot: in flight, on a centrifuge, on a hub.",
         version=gbeam.__version__,
-        help_format="markdown" if chosen in verbs() else "plaintext",  # whose renderer is not worth its import
+        help_format="markdown" if chosen in verbs() else "plaintext",  # Markdown takes long to import
         suppress_keyboard_interrupt=False,
     )
     for verb, about in verbs().items():
         # The help of the chosen verb is its own docstring, which says more.
-        file, _ = _FILES.get(verb, ("questions", ""))
-        called = f"gbeam.cli.{file}:{verb.replace('-', '_')}"
-        app.command(called, name=verb, help=None if verb == chosen else about)
+        module, _ = _FILES.get(verb, ("questions", ""))
+        function_path = f"gbeam.cli.{module}:{verb.replace('-', '_')}"
+        app.command(function_path, name=verb, help=None if verb == chosen else about)
     app.register_install_completion_command(help="Let the shell complete verbs and options: bash, zsh or fish.")
     return app

@@ -1,4 +1,4 @@
-"""Files in the folder of ``--out``: all of them whole, or none, whatever ends the run or fills the disk."""
+"""Files in the folder of ``--out``, written all or none, even if the run is killed or the disk is full."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from gbeam.cli.process import cleaned_up, deferred
 from gbeam.errors import ComputationError, InputError
 
 _HIDDEN = ".gbeam-"
-_DEAD = 3600.0  # s: writing takes seconds; a hidden folder of another computer that is older was left behind
+_DEAD = 3600.0  # s: age at which a hidden folder, even of another computer, was left behind; writing takes seconds
 _PLOTS = (".png", ".svg")
 
 
@@ -27,19 +27,19 @@ def refuse_unwritable(folder: Path) -> None:
         parent = folder.absolute()
         while not parent.exists():
             parent = parent.parent
-        sound, problem = parent.is_dir(), f"{parent} is not a folder"
+        problem = "" if parent.is_dir() else f"{parent} is not a folder"
     except (OSError, ValueError) as error:  # ValueError: a null character in the name
-        sound, problem = False, getattr(error, "strerror", None) or str(error)
-    if not sound or not os.access(parent, os.W_OK | os.X_OK):
-        problem = f"you may not write to {parent}" if sound else problem
+        problem = getattr(error, "strerror", None) or str(error)
+    if problem or not os.access(parent, os.W_OK | os.X_OK):
+        problem = problem or f"you may not write to {parent}"
         raise InputError("--out", f"{folder}: {problem}", "name a folder that can be written to")
 
 
 def publish(folder: Path, make: Callable[[Path], object]) -> list[Path]:
-    """Let `make` write files into a hidden folder, then move them into `folder`, and return them by name.
+    """Let `make` write files into a hidden folder, move them into `folder`, and return their paths in order of names.
 
-    Plots that the same command made before and does not make now are removed. Files that cannot be written are a
-    ComputationError (``not written``), whose message says where they are instead, if anywhere.
+    Plots of the same command that it does not write again are removed. If the files cannot be written there, a
+    ComputationError (``not written``) says where they are instead, if anywhere.
     """
     try:
         return _published(folder, make)
@@ -76,7 +76,7 @@ def _published(folder: Path, make: Callable[[Path], object]) -> list[Path]:
 
 @contextmanager
 def _alone_in(folder: Path) -> Iterator[None]:
-    """Wait for another run that moves files into the same folder: the files of one run stay together."""
+    """Lock a folder, after waiting for other runs that move files into it, so that files of two runs do not mix."""
     if os.name != "posix":
         yield
         return
@@ -93,7 +93,7 @@ def _alone_in(folder: Path) -> Iterator[None]:
 
 @contextmanager
 def _hidden_in(parent: Path) -> Iterator[Path]:
-    """A new folder whose name says which process it belongs to; removed in the end, if it is still there."""
+    """Make a folder named by computer and process; remove it in the end, unless it was moved."""
     hidden = Path(tempfile.mkdtemp(prefix=f"{_HIDDEN}{_computer()}-{os.getpid()}-", dir=parent))
     remove = partial(shutil.rmtree, hidden, ignore_errors=True)
     with cleaned_up(remove):
@@ -104,14 +104,14 @@ def _hidden_in(parent: Path) -> Iterator[Path]:
 
 
 def _remove_dead(parent: Path) -> None:
-    """Remove the hidden folders of runs that were killed."""
-    ours = re.compile(rf"{re.escape(_HIDDEN + _computer())}-(\d+)-[^-]+")
-    for left in parent.glob(f"{_HIDDEN}*"):
-        match = ours.fullmatch(left.name)
+    """Remove hidden folders whose process is dead, or that are old."""
+    of_this_computer = re.compile(rf"{re.escape(_HIDDEN + _computer())}-(\d+)-[^-]+")
+    for hidden in parent.glob(f"{_HIDDEN}*"):
+        match = of_this_computer.fullmatch(hidden.name)
         with suppress(OSError):
             dead = not _runs(int(match[1])) if match and os.name == "posix" else False
-            if dead or time.time() - left.stat().st_mtime > _DEAD:
-                shutil.rmtree(left, ignore_errors=True)
+            if dead or time.time() - hidden.stat().st_mtime > _DEAD:
+                shutil.rmtree(hidden, ignore_errors=True)
 
 
 def _computer() -> str:
@@ -119,12 +119,13 @@ def _computer() -> str:
 
 
 def _runs(process: int) -> bool:
+    """True if a process of this number runs, of any user."""
     try:
         os.kill(process, 0)
     except ProcessLookupError:
         return False
     except (OSError, OverflowError):
-        pass  # somebody else's
+        pass  # it is another user's
     return True
 
 
@@ -143,14 +144,14 @@ def _moved_whole(hidden: Path, folder: Path) -> bool:
 
 
 def _synchronise(folder: Path) -> None:
-    """Wait until the files are on the disk: what is renamed before it is written may be empty after a power failure."""
+    """Wait until the files are on the disk: after a power failure, a file renamed before that may be empty."""
     for file in folder.iterdir():
         with file.open("rb+") as opened:
             os.fsync(opened.fileno())
 
 
 def _remove_plots_before(folder: Path, names: set[str]) -> None:
-    """Remove plots signed by the command that made the files `names`, under their own names, and not among them."""
+    """Remove plots in a folder with the signature of the new ones, `names`, but other names."""
     if not any(name.endswith(_PLOTS) for name in names):
         return
     from gbeam.plots import signature

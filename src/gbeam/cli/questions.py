@@ -1,6 +1,4 @@
-"""Verbs of questions: their options are those of the question; ``campbell``, ``critical-speed`` and ``linearize`` have
-more.
-"""
+"""Verbs of questions, with their options; ``campbell``, ``critical-speed`` and ``linearize`` have more."""
 
 from __future__ import annotations
 
@@ -39,7 +37,7 @@ _STATUS = "Exit status: 0 done, 1 there is no answer, 2 the input is wrong."
 
 
 def __getattr__(name: str) -> Callable[..., int]:
-    """The function of a verb by its name, made when it is called."""
+    """Make the function of a question's verb when it is imported by its name."""
     for each in QUESTIONS.values():
         if each.name.replace("-", "_") == name:
             return verb_of(each)
@@ -47,7 +45,7 @@ def __getattr__(name: str) -> Callable[..., int]:
 
 
 def verb_of(question: Question) -> Callable[..., int]:
-    """The function of a question's verb."""
+    """Return the function of the verb that asks a question."""
     name = question.name.replace("-", "_")
 
     @with_options(question.name)
@@ -102,7 +100,7 @@ def campbell(
     from gbeam.figures import steady
     from gbeam.guards.units import unit_of
 
-    # In words and in the diagram speeds are in the unit in which they are given.
+    # Words and diagram show speeds in the unit of --to or --from.
     unit, size = unit_of(asked(options).get("to") or asked(options).get("from", "0"), "angular rate")
     figures = {"campbell": partial(steady.campbell, diagram, loaded.case.title, (1 / size, unit))}
     deliver(
@@ -163,7 +161,7 @@ def critical_map(
     folder: Path | None,
     output: Output,
 ) -> int:
-    """Print and write the map; the arguments are those of :func:`~.critical_speed.critical_speed`."""
+    """Print and write a map of critical speeds; arguments as of :func:`critical_speed`, `upper` in rad/s."""
     name, chosen = loaded.motion(motion, kind="hub")
     case = loaded.beam
     kilograms = numbers("--masses", masses, "mass")
@@ -235,13 +233,13 @@ def linearize(
     if rate is not None:
         with loaded.placing():
             loaded.case.one_beam("bodies", "--rate")
-    for flag, beside, both in (
+    for flag, other, both in (
         ("--loop", "--balanced or --modes", loop != "open" and (modes is not None or balanced is not None)),
         ("--balanced", "--modes", modes is not None and balanced is not None),
         ("--rate", "--at", rate is not None and at is not None),
     ):
         if both:
-            raise InputError(flag, f"stands beside {beside}", "give one of them")
+            raise InputError(flag, f"stands beside {other}", "give one of them")
 
     from gbeam.analysis.control.linearization import linearize
 
@@ -276,24 +274,24 @@ def linearize(
 
 
 def _gauges_at(structure: Structure | System, text: str) -> list[Gauge]:
-    """Gauges of one --strain-at: on two faces of a beam, or along the three axes of a point."""
+    """Gauges of one --strain-at: on two faces of a beam at a position, or along the three axes of a solid's point."""
     from gbeam.analysis.control.linearization import surface_gauges
     from gbeam.guards.checks import choice, index_of
     from gbeam.mechanics.structure import Structure
     from gbeam.results.state_space import Gauge
 
-    body, at = "", text
+    body, name = "", text
     if not isinstance(structure, Structure):
-        body, _, at = text.partition(".")
+        body, _, name = text.partition(".")
         choice("--strain-at", body, structure.flexible)
         structure = structure.flexible[body]
     if structure.source is None:
-        index_of("--strain-at", at, structure.points)
-        return [Gauge(at, along=way, body=body) for way in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
+        index_of("--strain-at", name, structure.points)
+        return [Gauge(name, along=axis, body=body) for axis in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
     beam = structure.source.beam
     with naming("--strain-at"):
-        place = beam.named_points[at] if at in beam.named_points else number("--strain-at", at, "length")
-        return [replace(each, body=body) for each in surface_gauges(beam, [place])]
+        place = beam.named_points[name] if name in beam.named_points else number("--strain-at", name, "length")
+        return [replace(gauge, body=body) for gauge in surface_gauges(beam, [place])]
 
 
 def _names(text: str | None) -> tuple[str, ...] | None:

@@ -46,7 +46,7 @@ def run(
     folder = output.folder(scenario, always=True)
     loaded = read("run", scenario, output.overrides)
     if folder is not None:
-        # A second of imports, beside the computation, which leaves a core idle.
+        # A second of imports during the computation, which leaves a core idle.
         Thread(target=_import_leaves, daemon=True).start()
 
     from gbeam.analysis.environments import study
@@ -103,7 +103,7 @@ def models(
     return 0 if study.compared else FAILED
 
 
-_NAMES = {"result": "report", "sweep": "report"}  # others are called as their file
+_NAMES = {"result": "report", "sweep": "report"}  # of pages; all others have the name of their file
 
 
 def report(
@@ -155,11 +155,12 @@ def rerun(
     return 0
 
 
-# Of the computation, of the form, or the figures in words.
+# Keys that are not compared: about the computation or the form, or figures in words.
 _ABOUT = {"provenance", "files", "seconds", "written", "lines", "messages", "units", "form"}
 
 
 def _of_netcdf(file: Path) -> Reproduction:
+    """Compute the responses, or run the verb, of a netCDF file again, and compare every value."""
     from gbeam.io.netcdf import read_stored
     from gbeam.scenario.rerun import facts_of, is_run, origin_of, run_again
 
@@ -172,7 +173,7 @@ def _of_netcdf(file: Path) -> Reproduction:
 
 
 def _file_again(file: Path, before: Stored, origin: Provenance) -> Reproduction:
-    """Compare the variables of a file without facts, as version 0.2 wrote those of searches."""
+    """Run the verb of a file without facts again, as version 0.2 wrote searches, and compare the files' variables."""
     from gbeam.io.netcdf import read_stored
     from gbeam.scenario.rerun import as_read, computed, reproduction, units_in
 
@@ -197,24 +198,26 @@ def answer_again(file: Path) -> Reproduction:
 
 
 def _compared(file: Path, facts: dict[str, Any], origin: Provenance) -> Reproduction:
+    """Run the command of a file again, and compare its facts with those that the file holds."""
     from gbeam.results.facts import ANY
     from gbeam.scenario.rerun import as_read, reproduction
 
     with TemporaryDirectory(prefix="gbeam-") as folder:
         changes, defaults = as_read(str(file), origin, Path(folder))
         again = _answered(file, origin, Path(folder), tuple(changes))
-    known = again.get("units", {}).items()
-    units = {re.compile(re.escape(place).replace(re.escape(ANY), ".+")): unit for place, unit in known}
+    declared = again.get("units", {}).items()
+    units = {re.compile(re.escape(form).replace(re.escape(ANY), ".+")): unit for form, unit in declared}
     forms = {name: form for name, form, _ in _leaves(again)}
 
     def unit_of(name: str) -> str:
-        return next((unit for place, unit in units.items() if place.fullmatch(forms[name])), "")
+        return next((unit for pattern, unit in units.items() if pattern.fullmatch(forms[name])), "")
 
     then, now = ({name: value for name, _, value in _leaves(each)} for each in (facts, again))
     return reproduction(str(file), then, now, origin, defaults, unit_of)
 
 
 def _read(file: Path) -> tuple[dict[str, Any], Provenance]:
+    """Facts of a verb's JSON, and their provenance; InputError if it has none."""
     from pydantic import TypeAdapter, ValidationError
 
     from gbeam.guards.limits import read_json
@@ -234,6 +237,7 @@ def _read(file: Path) -> tuple[dict[str, Any], Provenance]:
 def _answered(
     file: Path, origin: Provenance, folder: Path, changes: tuple[str, ...], out: Path | None = None
 ) -> dict[str, Any]:
+    """Run the command of a provenance again, on its scenario with changes; return the JSON that it prints."""
     from gbeam.cli.program import parsed
 
     scenario = folder / "scenario.toml"
@@ -246,16 +250,16 @@ def _answered(
     arguments = bound.arguments
     if "scenario" not in arguments:
         raise InputError(str(file), "is of no verb that reads a scenario", "give the result of another")
-    known, asked = bound.signature.parameters, arguments.get("output", Output())
-    written = {"write": None, "write_back": False}  # nothing is
-    arguments |= {"scenario": scenario} | {name: value for name, value in written.items() if name in known}
-    if "resume" in known:  # a sweep has a store in any case; its cluster may be gone
+    parameters, asked = bound.signature.parameters, arguments.get("output", Output())
+    unwritten = {"write": None, "write_back": False}  # no scenario is written
+    arguments |= {"scenario": scenario} | {name: value for name, value in unwritten.items() if name in parameters}
+    if "resume" in parameters:  # a sweep always has a store; its cluster may be gone
         out = folder / "out"
         arguments |= {"resume": False, "scheduler": None}
     again = Output((*asked.overrides, *changes), out, json=True)
-    if "output" in known:
+    if "output" in parameters:
         arguments["output"] = again
-    else:  # check, which has no page
+    else:  # of check
         arguments |= {"overrides": (*arguments.get("overrides", ()), *changes), "out": None, "json": True}
     printed = io.StringIO()
     with redirect_stdout(printed):
@@ -264,7 +268,9 @@ def _answered(
 
 
 def _leaves(node: Any, name: str = "", form: str = "") -> Iterator[tuple[str, str, Any]]:
-    """Numbers, texts and lists of numbers: their names, their places as the units have them, and they themselves."""
+    """Yield name, form and value of every number, text and list of numbers; units are declared by the form, in which
+    rows of lists are ``[i]``.
+    """
     if isinstance(node, dict):
         for key, value in node.items():
             if key not in _ABOUT:
@@ -280,7 +286,7 @@ def _leaves(node: Any, name: str = "", form: str = "") -> Iterator[tuple[str, st
 
 
 def _row_names(rows: list[Any]) -> list[Any]:
-    """Names of the rows of a table, so that a new one moves none of the others; their numbers where they have none."""
+    """Names of the rows of a table, which further rows do not change; their indices if they have no unique names."""
     keys = ("motion", "model", "path", "name")
     names = [" ".join(str(row[key]) for key in keys if key in row) if isinstance(row, dict) else "" for row in rows]
     return names if all(names) and len(set(names)) == len(names) else list(range(len(rows)))
@@ -291,7 +297,7 @@ def _is_array(node: Any) -> bool:
 
 
 def _number(value: float) -> float:
-    """A float, infinite where a JSON's whole number is beyond all of them."""
+    """Return a number as a float; infinity for a whole number that is too large for one."""
     try:
         return float(value)
     except OverflowError:

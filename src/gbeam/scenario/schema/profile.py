@@ -131,7 +131,7 @@ def _constant_or_profile(value: Any) -> Any:
 
 
 def _profiles(quantity: Any, rate: Any, *, bare: bool = False) -> Any:
-    """Type of a profile of a quantity, or also of a `bare` quantity; its tables become names of this module, to pickle."""
+    """Type of a profile of a quantity, or also a bare quantity; its tables become names in this module, to pickle."""
     kinds = {name: kind[quantity, rate] for name, kind in _KINDS.items()}
     globals().update({kind.__name__: kind for kind in kinds.values()})
     if not bare:
