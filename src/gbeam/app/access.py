@@ -1,9 +1,9 @@
 """Who may talk to the server: this computer's browser, on the page that the server itself gave it.
 
-A browser sends a cookie to every port of a computer, also to another user's server on one. The cookie opens therefore
-the page alone, in which nothing is secret. All else asks for a key too, which comes in the part of an address that is
-never sent and which the browser keeps for this port alone: the page's script says it in a header. In the addresses of
-files, which the browser itself fetches, it says another one, which opens files only.
+A browser sends a cookie to every port of a computer, even to a server of another user. Therefore the cookie opens only
+the page, which holds no secret. All other requests also need a key, which comes in the fragment of an address, which is
+never sent, and which the browser stores for this port only: the page's script sends it in a header. In the addresses of
+files, which the browser itself fetches, it sends another key, which opens only files.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from urllib.parse import parse_qs
 from fastapi import HTTPException
 
 KEY = "x-gbeam-key"  # header
-ASSETS = {"app.css": "gbeam.app", "app.js": "gbeam.app", "gbeam.js": "gbeam.report.page"}  # and whose they are
+ASSETS = {"app.css": "gbeam.app", "app.js": "gbeam.app", "gbeam.js": "gbeam.report.page"}  # names and packages
 _PAGE = ("/", *(f"/{name}" for name in ASSETS))
 _FILES = "/api/runs/"
 # Nothing inline, nothing from elsewhere; reports are shown in a frame with a policy of their own.
@@ -31,16 +31,16 @@ POLICY = (
 REPORT_POLICY = "sandbox allow-scripts; frame-ancestors 'self'"
 _SAFE = ("GET", "HEAD")
 UNKNOWN = "open the address that `gbeam app` printed"
-LARGEST = 80 * 2**20  # bytes of a request: a record of 64 MiB, and what is around it
+LARGEST = 80 * 2**20  # bytes of a request: a record of 64 MiB, and more
 
 
 class Door:
-    """Refuses foreign hosts and origins, requests without the session's cookie or `token`, and what is too large."""
+    """Refuses foreign hosts and origins, requests without the session's cookie or `token`, and too large ones."""
 
     def __init__(self, app: Any, port: int, token: str) -> None:
         self._app = app
         self._hosts = {f"{name}:{port}" for name in ("127.0.0.1", "localhost")}
-        self._cookie = f"gbeam-session-{port}"  # a name of its own: it replaces no other server's
+        self._cookie = f"gbeam-session-{port}"  # with the port, so that it replaces no other server's
         self._token = token
         self._session, self._key, self._reader = (secrets.token_urlsafe(32) for _ in range(3))
 
@@ -50,7 +50,7 @@ class Door:
             await self._app(scope, receive, send)
             return
         if scope["type"] != "http":
-            return  # no other protocol is spoken
+            return  # no other protocol is supported
         headers = {name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]}
         refusal = self._refusal(scope, headers)
         if refusal is not None:
@@ -109,7 +109,7 @@ _HEADERS = [
 
 
 def _limited(receive: Any) -> Any:
-    """The body of a request, up to the largest size, whatever its head says."""
+    """Return a `receive` that refuses a body beyond the largest size, whatever length its headers state."""
     size = 0
 
     async def limited() -> Any:
@@ -117,7 +117,7 @@ def _limited(receive: Any) -> Any:
         message = await receive()
         size += len(message.get("body", b""))
         if size > LARGEST:
-            raise HTTPException(413, "too large")  # which every reader of a body hands on
+            raise HTTPException(413, "too large")  # readers of a body pass it on
         return message
 
     return limited
@@ -131,15 +131,15 @@ async def _answer(send: Any, status: int, text: str, headers: list[tuple[bytes, 
 
 PATIENCE = 10.0  # s without a request
 MOST = 64  # connections, and no more than a quarter of the descriptors; a browser opens six
-AT_ONCE = 8  # connections that are taken before the first of them can be closed
-_WAITING = 1024  # that wait to be taken, in the system's memory
+AT_ONCE = 8  # connections that are accepted before the first of them can be closed
+_WAITING = 1024  # connections that wait in the system to be accepted
 
 
 class Listening(socket.socket):
-    """A socket on this computer alone: asyncio takes as many connections at once as it lets wait, here fewer."""
+    """Socket with a long queue: asyncio would accept as many connections at once as it lets wait."""
 
     def listen(self, backlog: int = _WAITING, /) -> None:
-        """Let many wait, whatever asyncio says."""
+        """Listen with a queue of at least 1024 connections."""
         super().listen(max(backlog, _WAITING))
 
 
@@ -149,15 +149,15 @@ def listening(port: int) -> Listening:
 
 
 class Connections:
-    """Closes connections of an ASGI app that ask for nothing; where there are too many, the longest idle one."""
+    """Closes connections of an ASGI app that are idle for long, and the longest idle one if there are too many."""
 
     def __init__(self, app: Any) -> None:
         self._app, self._most = app, min(MOST, _descriptors() // 4)
-        self._open: dict[Any, asyncio.Transport] = {}  # by the other end
-        self._idle: dict[Any, asyncio.TimerHandle] = {}  # the longest idle first
+        self._open: dict[Any, asyncio.Transport] = {}  # by the address of the other end
+        self._idle: dict[Any, asyncio.TimerHandle] = {}  # likewise, the longest idle first
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
-        """Answer a request, whose connection is not idle meanwhile."""
+        """Answer a request; its connection is not idle until then."""
         other = tuple(scope.get("client") or ())
         self._busy(other)
         try:
@@ -168,13 +168,13 @@ class Connections:
 
     @cached_property
     def protocol(self) -> type[asyncio.Protocol]:
-        """HTTP as uvicorn speaks it, on connections that are counted."""
+        """Class of uvicorn's HTTP protocol that reports its connections."""
         from uvicorn.protocols.http.auto import AutoHTTPProtocol
 
         connections = self
 
         class Watched(AutoHTTPProtocol):  # type: ignore[misc, valid-type]  # one of two classes, chosen as it is imported
-            """A connection that is counted."""
+            """HTTP protocol of one connection."""
 
             def connection_made(self, transport: Any) -> None:
                 self.other = transport.get_extra_info("peername") or transport
@@ -188,7 +188,7 @@ class Connections:
         return Watched
 
     def opened(self, other: Any, transport: asyncio.Transport) -> None:
-        """Keep a new connection, in place of the longest idle one where there are too many."""
+        """Count a new connection; with too many, close the longest idle one, or the new one if none is idle."""
         if len(self._open) >= self._most:
             if not self._idle:
                 transport.abort()
@@ -217,7 +217,7 @@ class Connections:
 
 
 def _descriptors() -> int:
-    """Number of descriptors that the process may have."""
+    """Number of file descriptors that the process may open."""
     if sys.platform == "win32":
         return 4 * MOST
     import resource

@@ -1,4 +1,4 @@
-"""A scenario as text and as fields, with the command line's own messages, and a preview of its records."""
+"""A scenario as text and as a form, with the command line's messages, and a preview of its records."""
 
 from __future__ import annotations
 
@@ -30,16 +30,16 @@ from gbeam.scenario.values import parse_path, path_text, walk, written_at
 from gbeam.solids.foreign import is_mesh, skin
 
 NAME = "scenario.toml"
-# Of a record: what its columns are.
+# Keys of a record that say what its columns are.
 COLUMNS = ("file", "time", "time_unit", "x", "y", "z", "unit", "quantity", "p", "q", "r", "rate_unit")
-CHANGES = 3  # between two scenarios that are told
-_LONG = 40  # characters of a value in them
+CHANGES = 3  # between two scenarios, at most, that are listed
+_LONG = 40  # characters of a value in that list
 _DURATION: Place = ("response", "duration")
 _MISSING = re.compile(r"(\w+) is missing")  # a message about a table, whose field that is
 
 
 class Unfit(GbeamError):
-    """A scenario is wrong, by `problems` as :func:`problems` lists them."""
+    """Raised for a wrong scenario, with its `problems` as :func:`problems` lists them."""
 
     def __init__(self, problems: list[dict[str, Any]]) -> None:
         self.problems = problems
@@ -47,7 +47,7 @@ class Unfit(GbeamError):
 
 
 def described(text: str, folder: Path, *, distributions: bool = True) -> dict[str, Any]:
-    """Return the form of a document, its problems, and where there are none its meaning."""
+    """Return text, form, errors and, without errors, meaning of a document."""
     document: dict[str, Any] = {"text": text, "form": [], "errors": [], "meaning": ""}
     try:
         data = parse(NAME, text)
@@ -63,7 +63,7 @@ def described(text: str, folder: Path, *, distributions: bool = True) -> dict[st
 
 
 def edited(text: str, path: str, value: str) -> str:
-    """Return the text with another value at a path, or without it where that is empty; comments and all else stay."""
+    """Return the text with another value at a path, or without the entry if the value is empty; comments stay."""
     data, place = parse(NAME, text), _place(path)
     if not value.strip():
         return without_entry(text, place) if written_at(data, place) is not None else text
@@ -73,7 +73,7 @@ def edited(text: str, path: str, value: str) -> str:
 
 
 def added(text: str, path: str, choice: str) -> str:
-    """Return the text with a new table at a path, or with another kind (`choice`) of table than was there."""
+    """Return the text with a new table at a path, or with a table of another kind, `choice`, in place of one."""
     data, place = parse(NAME, text), _place(path)
     try:
         table = new_table(place, data, choice)
@@ -88,7 +88,9 @@ def removed(text: str, path: str) -> str:
 
 
 def with_record(text: str, motion: str, record: dict[str, str]) -> str:
-    """Return the text with a record in place of a flight's acceleration or record; a record is flown to its end."""
+    """Return the text with a record in place of a flight's acceleration or record, and without the response's duration,
+    so that the record is flown to its end. Other keys of a record of the same file stay.
+    """
     place: Place = ("motion", motion)
     data = parse(NAME, text)
     if written_at(data, place) is None:
@@ -104,10 +106,10 @@ def with_record(text: str, motion: str, record: dict[str, str]) -> str:
 
 
 def with_mesh(text: str, body: str, mesh: Mapping[str, Any]) -> str:
-    """Return the text with a mesh in its body of that name, of which all else stays, or as another body of its system;
-    else a new scenario of the mesh alone, with the motions and the response of the one before.
+    """Return the text with the keys `mesh` in the body of that name, if it is a solid, or as another body of a system;
+    else a new scenario of the mesh alone, with the motions and response of this one.
     """
-    from gbeam.scenario.schema.system import SystemScenario  # whose tables are made only where they are wanted
+    from gbeam.scenario.schema.system import SystemScenario  # takes time to import
 
     place, data = ("bodies", body), parse(NAME, text)
     before = written_at(data, place)
@@ -117,10 +119,10 @@ def with_mesh(text: str, body: str, mesh: Mapping[str, Any]) -> str:
         return text
     if issubclass(kind_of_scenario(data), SystemScenario):
         return with_entry(text, place, mesh)
-    flown = {key: data[key] for key in ("motion", "response") if key in data}
-    if isinstance(flown.get("response"), dict):
-        flown["response"].pop("stations", None)  # of the beam
-    return tomlkit.dumps({"title": body, "bodies": {body: mesh}} | flown)
+    kept = {key: data[key] for key in ("motion", "response") if key in data}
+    if isinstance(kept.get("response"), dict):
+        kept["response"].pop("stations", None)  # of a beam
+    return tomlkit.dumps({"title": body, "bodies": {body: mesh}} | kept)
 
 
 def _place(path: str) -> Place:
@@ -131,12 +133,12 @@ def _place(path: str) -> Place:
 
 
 def _leaves(scenario: dict[str, Any]) -> Iterator[tuple[Place, Any]]:
-    """Paths and values of what is no table and no list of tables."""
+    """Path and value of every entry but tables and lists with tables or lists in them."""
     return walk(scenario, lambda node: isinstance(node, list) and not any(isinstance(x, (dict, list)) for x in node))
 
 
 def changes(before: str, after: str) -> str:
-    """Changes of a scenario against one before it, in a line."""
+    """Return the changes from one scenario to another in a line; empty if one of them cannot be parsed."""
     try:
         then, now = ({path_text(path): value for path, value in _leaves(parse(NAME, text))} for text in (before, after))
     except GbeamError:
@@ -153,7 +155,7 @@ def _shown(value: Any) -> str:
 
 
 def records(data: Any, folder: Path) -> list[Path]:
-    """The files that a scenario names, all of which must be records of the folder."""
+    """Return the files that a scenario names; InputError unless all of them are in the folder."""
     files = []
     for path, value in _leaves(data):
         names = value if isinstance(value, list) else [value]
@@ -168,20 +170,20 @@ def records(data: Any, folder: Path) -> list[Path]:
 
 
 def problems(error: GbeamError) -> list[dict[str, Any]]:
-    """Problems of a document, each with its path, its field, its message, the fix, and its line where it has one."""
+    """Return the problems of a document for JSON: path, field, message, hint, and line or None of each."""
     if isinstance(error, Unfit):
         return error.problems
     if isinstance(error, ScenarioError):
-        return [_problem(each) for each in error.diagnostics]
+        return [_problem(diagnostic) for diagnostic in error.diagnostics]
     if isinstance(error, InputError):
         return [{"path": error.where, "field": error.where, "message": error.problem, "hint": error.fix, "line": None}]
     return [{"path": "", "field": "", "message": str(error), "hint": "", "line": None}]
 
 
-def _problem(each: Diagnostic) -> dict[str, Any]:
-    missing = _MISSING.fullmatch(each.message)
-    field = f"{each.path}.{missing[1]}".removeprefix(".") if missing else each.path
-    return {"path": each.path, "field": field, "message": each.message, "hint": each.hint, "line": each.line}
+def _problem(wrong: Diagnostic) -> dict[str, Any]:
+    missing = _MISSING.fullmatch(wrong.message)
+    field = f"{wrong.path}.{missing[1]}".removeprefix(".") if missing else wrong.path
+    return {"path": wrong.path, "field": field, "message": wrong.message, "hint": wrong.hint, "line": wrong.line}
 
 
 SAMPLES = 1500
@@ -189,12 +191,12 @@ MOST = 500  # columns
 
 
 def head(file: Path) -> dict[str, Any]:
-    """Name of a record, its columns, and what these are by their names; of a mesh its skin."""
+    """Return the name of a file, with the columns of a record and the keys that they suggest, or the skin of a mesh."""
     if is_mesh(file.name):
         return {"name": file.name, "columns": [], "suggested": {}, "skin": _skin(file, file.stat().st_mtime_ns)}
     columns = read_table(file).columns[:MOST]
-    known = suggested((each.name, each.unit) for each in columns)
-    return {"name": file.name, "columns": [each.name for each in columns], "suggested": known}
+    keys = suggested((column.name, column.unit) for column in columns)
+    return {"name": file.name, "columns": [column.name for column in columns], "suggested": keys}
 
 
 @lru_cache(maxsize=4)
@@ -213,7 +215,7 @@ def _skin(file: Path, _changed: int) -> dict[str, Any]:
 
 
 def load_curves(text: str, folder: Path) -> dict[str, Any]:
-    """The acceleration (or specific force) of every flight over the response's time, in g, base axes."""
+    """Return the acceleration (or specific force) of every flight over the response's time, s, in g, base axes."""
     case = build(loads(text, folder=folder))
     flights = {name: motion for name, motion in case.motions.items() if isinstance(motion, Flight)}
     start, duration = case.start, 0.0 if case.response is None else case.response.duration
@@ -236,7 +238,7 @@ _RATE = re.compile(
     r"[pqr]|(?P<turn>roll|pitch|yaw)rate|(?:omega|w|gyro|rate|angularrate|angularvelocity)(?P<axis>[xyz])"
 )
 _RATES = {"roll": "p", "pitch": "q", "yaw": "r", "x": "p", "y": "q", "z": "r"}
-_FACTORS = ("n", "loadfactor")  # which have no dimension: g
+_FACTORS = ("n", "loadfactor")  # load factors, without a unit, are in g
 _LONGEST = 3  # words of a unit in a name, m_s_2
 
 
@@ -255,35 +257,36 @@ def suggested(columns: Iterable[tuple[str, str]]) -> dict[str, str]:
 
 
 def _together(columns: Mapping[str, list[tuple[str, str]]], keys: Iterable[str], unit: str) -> dict[str, str]:
-    """Columns of one quantity, unless one of them has several; with their unit, unless it is another for each."""
-    held = {key: columns[key] for key in keys if key in columns}
-    units = {stated for each in held.values() for _, stated in each}
-    if any(len(each) > 1 for each in held.values()) or len(units) > 1:
+    """Column of each key, and their common unit at the key `unit`; empty if a key has several, or units differ."""
+    candidates = {key: columns[key] for key in keys if key in columns}
+    units = {stated for named in candidates.values() for _, stated in named}
+    if any(len(named) > 1 for named in candidates.values()) or len(units) > 1:
         return {}
-    return {key: each[0][0] for key, each in held.items()} | ({unit: stated} if (stated := "".join(units)) else {})
+    stated = "".join(units)
+    return {key: named[0][0] for key, named in candidates.items()} | ({unit: stated} if stated else {})
 
 
 def _meanings(name: str, unit: str) -> Iterable[tuple[str, str]]:
-    """Quantities that a column may hold, with its unit as a scenario spells it; none where the unit is another's."""
+    """Key of a record that a column may be, and its unit as a scenario spells it; empty if name or unit do not fit."""
     plain = _BRACKETS.sub("", name)
     for words, written in (*_readings(plain, unit), *_readings(re.split(r"[./]", plain)[-1], unit)):
         for quantity, pattern in (("time", _TIME), ("acceleration", _LOAD), ("rate", _RATE)):
             match = pattern.fullmatch(words)
-            known = spelled(written, quantity) if written else ""
-            if match is None or known is None or (known and known not in UNITS[quantity]):
+            spelling = spelled(written, quantity) if written else ""
+            if match is None or spelling is None or (spelling and spelling not in UNITS[quantity]):
                 continue
             groups = match.groupdict()
             if quantity == "acceleration":
                 factor = (groups["before"] or groups["after"]) in _FACTORS
-                return [(groups["axis"] or groups["first"], known or ("g" if factor else ""))]
+                return [(groups["axis"] or groups["first"], spelling or ("g" if factor else ""))]
             if quantity == "rate":
-                return [(_RATES[groups["turn"] or groups["axis"]] if len(words) > 1 else words, known)]
-            return [("time", known)]
+                return [(_RATES[groups["turn"] or groups["axis"]] if len(words) > 1 else words, spelling)]
+            return [("time", spelling)]
     return []
 
 
 def _readings(name: str, unit: str) -> Iterable[tuple[str, str]]:
-    """A name in small letters alone with its unit, which may be its own last words: n_z_g, p_rad_s."""
+    """Possible readings of a name: its letters, lower case, and its unit, which may be its last words, as in n_z_g."""
     words = [each.lower() for each in _WORDS.findall(name)]
     if unit:
         yield "".join(words), unit

@@ -1,4 +1,4 @@
-"""Files of one folder by their plain names, for their owner only: nothing outside it is read or written."""
+"""Files of one folder by their names, without a path, readable for their owner only."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ from gbeam.scenario.text.revise import with_entry
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._()-]{0,99}")
 LARGEST = TEXT_BYTES  # of one file
 MANY = 200  # files
-# Errors that pass: a disk, descriptors or memory that are used up.
+# Errors that may pass: disk, descriptors or memory are used up.
 SHORT = {errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN}
 
 
 def checked(name: str) -> str:
-    """Return the name of a file, if it is one."""
+    """Return a name if it is a plain one of a file; raise InputError otherwise."""
     if not _NAME.fullmatch(name) or name.endswith((".", " ")):
         raise InputError("file", "has a name that is not taken", "use letters, digits, -, _ and a suffix")
     return name
 
 
 def regular(folder: Path, name: str) -> Path:
-    """Return the path of a file of a folder."""
+    """Return the path of a regular file of a folder; InputError if there is none."""
     file = folder / checked(name)
     if not _is_regular(file):
         raise InputError(name, "is not there", "drop the file on the page first")
@@ -40,13 +40,13 @@ def regular(folder: Path, name: str) -> Path:
 
 
 def ensured(folder: Path) -> Path:
-    """Make a folder for its owner only, unless it is there."""
+    """Make a folder for its owner only, unless it exists; return it."""
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     return folder
 
 
 def private(file: Path) -> BinaryIO:
-    """Open a new file for writing, for its owner only; what is there is replaced."""
+    """Open a new file for writing, for its owner only; an existing one is replaced."""
     file.unlink(missing_ok=True)
     return os.fdopen(os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "wb")
 
@@ -57,7 +57,7 @@ def write(file: Path, content: bytes) -> None:
 
 
 def store(folder: Path, name: str, content: bytes) -> Path:
-    """Write a file into a folder."""
+    """Write a file into a folder; InputError if it is too large or one too many."""
     file = folder / checked(name)
     if len(content) > LARGEST:
         raise InputError(
@@ -70,7 +70,7 @@ def store(folder: Path, name: str, content: bytes) -> Path:
 
 
 def names(folder: Path) -> list[str]:
-    """The regular files of a folder."""
+    """Return the names of the regular files of a folder; empty if it does not exist."""
     try:
         return sorted(each.name for each in folder.iterdir() if _NAME.fullmatch(each.name) and _is_regular(each))
     except (FileNotFoundError, NotADirectoryError):
@@ -91,7 +91,7 @@ EXAMPLES = ("Flight and centrifuge", _FLOWN, "Hub", "System of bodies")
 
 
 def example(name: str, records: Path) -> str:
-    """Return the text of an example; its record is put among those of a folder."""
+    """Return the text of an example, after storing its record, if any, in the folder."""
     if name in _TEMPLATES:
         return template(_TEMPLATES[name])
     if name != _FLOWN:
@@ -101,18 +101,18 @@ def example(name: str, records: Path) -> str:
 
 
 def _shipped(name: str) -> Traversable:
-    """A file of the examples: where the package is installed, or in the tree that it runs from."""
+    """A file of the examples, from the installed package, or from the source tree."""
     packed = resources("gbeam.app") / "shipped" / name
     tree = Path(__file__).parents[3] / "examples"
     return packed if packed.is_file() else next(tree.rglob(name))
 
 
 def _kept(content: bytes, records: Path) -> str:
-    """Store a record, beside another of its name; return its name there."""
+    """Store a record, under another name if its own is taken; return the name."""
     for name in (_RECORD, f"example {_RECORD}"):
         try:
             if regular(records, name).read_bytes() == content:
                 return name
-        except InputError:  # is not there
+        except InputError:  # no such file
             return store(records, name, content).name
     raise InputError(_RECORD, "is there already, and is another record", f"rename it in {records}")

@@ -1,4 +1,4 @@
-"""The form of a scenario: every key of the schema, with what is written there and what the schema says of it."""
+"""The form of a scenario: every key of the schema, with its value in the text and its description."""
 
 from __future__ import annotations
 
@@ -32,20 +32,20 @@ def form(data: Any) -> list[Node]:
 
 
 def known_at(path: Path, data: Any) -> bool:
-    """Tell whether the schema has a value at a path: a key that may hold anything but tables."""
+    """True if the schema has a key at a path whose value may be something else than tables."""
     schema = _schema_at(path, data)
     tables = _tables(schema)
     return any(each not in tables and not _names_tables(each) for each in _alternatives(schema)) and bool(schema)
 
 
 def value_at(path: Path, data: Any, text: str) -> Any:
-    """Read what is typed into a field as `--set` does; text alone where the schema has nothing else."""
+    """Read a value typed into a field as `--set` does; as text if the schema allows only text."""
     kinds = {each.get("type", "string") for each in _alternatives(_schema_at(path, data))}
     return text if kinds == {"string"} else value_of(text)
 
 
 def new_table(path: Path, data: Any, choice: str) -> dict[str, Any]:
-    """Return a table of a kind, with the values that the one of another kind at its place shares with it."""
+    """Return a table of a kind, with the values of the table at its place whose keys both kinds have."""
     table = {tag_of(each)[1]: each for each in reversed(_tables(_schema_at(path, data)))}[choice]
     before = written_at(data, path)
     kept = before if isinstance(before, dict) else {}
@@ -69,7 +69,7 @@ def _schema() -> Node:
 
 
 def _top(data: dict[str, Any]) -> Node:
-    """The table of the whole scenario, of a beam or of a system, as it is written."""
+    """Schema of the whole scenario, with the keys of its kind: of a beam, a specimen or a system."""
     schema = _schema()
     keys = kind_of_scenario(data).model_fields.keys()
     required = (each["required"] for each in schema["anyOf"])
@@ -80,20 +80,21 @@ def _top(data: dict[str, Any]) -> Node:
 
 
 def _inside(table: Node, data: dict[str, Any], path: Path) -> list[Node]:
-    """The entries of a table, known ones first."""
+    """Entries of a table: those of the schema, then keys of the text that it does not have."""
     tag = tag_of(table)[0]
     required = table.get("required", ())
-    known = table["properties"]
+    keys = table["properties"]
     entries = [
-        _entry(schema, data, (*path, key), required=key in required) for key, schema in known.items() if key != tag
+        _entry(schema, data, (*path, key), required=key in required) for key, schema in keys.items() if key != tag
     ]
-    return entries + [_entry({}, data, (*path, key), required=False) for key in data if key not in known]
+    return entries + [_entry({}, data, (*path, key), required=False) for key in data if key not in keys]
 
 
-def _entry(schema: Node, around: Any, path: Path, *, required: bool) -> Node:
+def _entry(schema: Node, parent: Any, path: Path, *, required: bool) -> Node:
+    """Entry of the form for a key, or an element of a list, in the data of its parent: see `form`."""
     key = path[-1]
-    written = key in around if isinstance(around, dict) else True
-    raw = around[key] if written else None
+    written = key in parent if isinstance(parent, dict) else True
+    raw = parent[key] if written else None
     node: Node = {"path": path_text(path), "key": str(key), "required": required, "written": written}
     node["help"] = schema.get("description", "")
     alternatives = [*_alternatives(schema)]
@@ -102,12 +103,12 @@ def _entry(schema: Node, around: Any, path: Path, *, required: bool) -> Node:
     tables = _tables(schema)
     if named is not None:
         inside = raw if isinstance(raw, dict) else {}
-        tabled = [_entry(named, inside, (*path, name), required=False) for name in inside]
-        return node | {"kind": "named", "options": _words(named), "inside": tabled}
+        entries = [_entry(named, inside, (*path, name), required=False) for name in inside]
+        return node | {"kind": "named", "options": _words(named), "inside": entries}
     if listed is not None and (raw is None or isinstance(raw, list)):
         count = len(raw or ())
-        tabled = [_entry(listed, raw, (*path, i), required=False) for i in range(min(count, LISTED))]
-        return node | {"kind": "list", "options": _words(listed), "inside": tabled, "count": count}
+        entries = [_entry(listed, raw, (*path, i), required=False) for i in range(min(count, LISTED))]
+        return node | {"kind": "list", "options": _words(listed), "inside": entries, "count": count}
     if tables and (isinstance(raw, dict) or len(tables) == len(alternatives)):
         return node | _table(schema, tables, raw, path)
     return node | _value(schema, alternatives, raw) | {"tables": _words(schema)}
@@ -122,11 +123,11 @@ def _table(schema: Node, tables: list[Node], raw: Any, path: Path) -> Node:
 
 
 def _value(schema: Node, alternatives: list[Node], raw: Any) -> Node:
-    """Text that a field shows: text as it is, anything else as TOML."""
+    """Fields of an entry that is a value: see `form`. Text is shown as it is, anything else as TOML."""
     shown = "" if raw is None else raw if isinstance(raw, str) else toml(raw)
     default = schema.get("default")
     words = [str(word) for each in alternatives for word in _literals(each)]
-    only = words if len(words) and all([*_literals(each)] for each in alternatives) else []
+    options = words if len(words) and all([*_literals(each)] for each in alternatives) else []
     examples = (example for each in alternatives for example in each.get("examples", ()))
     return {
         "kind": "value",
@@ -135,7 +136,7 @@ def _value(schema: Node, alternatives: list[Node], raw: Any) -> Node:
         "default": "" if default in (None, "", [], {}) else default if isinstance(default, str) else toml(default),
         "example": next(examples, ""),
         "unit": next((each["x-unit"] for each in _quantities(schema)), ""),
-        "options": only,
+        "options": options,
     }
 
 
@@ -155,7 +156,7 @@ def _quantities(schema: Node) -> Iterator[Node]:
 
 
 def _words(schema: Node) -> list[str]:
-    """The words of the tables that one may choose of; an empty one for those that only their keys tell apart."""
+    """Words of the kinds of table that a schema allows; "" for tables that only their keys tell apart."""
     return [*dict.fromkeys(tag_of(each)[1] for each in _tables(schema))]
 
 
@@ -164,15 +165,15 @@ def _tables(schema: Node) -> list[Node]:
 
 
 def _table_of(tables: list[Node], raw: Any) -> Node | None:
-    """The table that is written, by its word and its keys; None where the word is none of theirs."""
+    """Schema of the table that is written, by the word of its kind and its keys; None if no kind has that word."""
     written = raw if isinstance(raw, dict) else {}
     tags = [tag_of(each) for each in tables]
-    able = [
+    fitting = [
         table
         for table, (key, word) in zip(tables, tags, strict=True)
         if len(tables) == 1 or not key or written.get(key, table["properties"][key].get("default")) == word
     ]
-    return max(able, key=lambda table: len(table["properties"].keys() & written.keys()), default=None)
+    return max(fitting, key=lambda table: len(table["properties"].keys() & written.keys()), default=None)
 
 
 def _names_tables(schema: Node) -> bool:
@@ -181,7 +182,7 @@ def _names_tables(schema: Node) -> bool:
 
 
 def _alternatives(schema: Node) -> Iterator[Node]:
-    """Schemas of the values that may stand at a place, null apart."""
+    """Schemas of all alternatives that a schema allows, but null."""
     if "properties" in schema:
         yield schema
     elif "$ref" in schema:
@@ -194,7 +195,7 @@ def _alternatives(schema: Node) -> Iterator[Node]:
 
 
 def _schema_at(path: Path, data: Any) -> Node:
-    """The schema of what may stand at a path; empty where the schema has no such key."""
+    """Schema at a path, of the tables that are written in `data`; empty if they have no such key."""
     schema, raw = _schema(), data
     for step in path:
         tables = _tables(schema)

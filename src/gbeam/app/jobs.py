@@ -1,7 +1,7 @@
 """Runs, one folder each: queued, computed one after the other in a process of their own, and kept.
 
-The queue is what the folders say: one that is deleted is forgotten, also while it waits or runs. Where the disk or the
-descriptors are used up the queue waits until they are not.
+The states in the folders are the queue: a run whose folder is deleted is forgotten, even while it waits or runs. While
+the disk is full, or descriptors are used up, the queue waits.
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ from gbeam.results.criteria import GOOD
 
 ID = re.compile(r"\d{8}-\d{6}-[0-9a-f]{8}")
 MEMORY = 16 * 2**30  # bytes of address space, of which compiled programs reserve far more than they use
-SECONDS = 3600  # of processor time, and of time altogether
+SECONDS = 3600  # of processor time, and of wall-clock time
 QUEUED = 100
-PAUSE = 1.0  # s until what is used up is asked for again, and between looks at whether a run's folder is there
-DAMAGED = "damaged"  # state of a run of which nothing else is known
+PAUSE = 1.0  # s until a resource that is used up is tried again, and between checks that a run's folder exists
+DAMAGED = "damaged"  # state of a run whose state cannot be read
 _STATE, _LOG, _MESSAGES, _ANSWER = "state.json", "progress.txt", "messages.txt", "answer.json"
 _SCENARIO = "scenario.toml"
-_BEFORE = ".before"  # has the scenario as it came, of a verb that writes into it
-# Files that may be downloaded, by name, and their places; besides, of what the verb writes, files of these kinds.
+_BEFORE = ".before"  # folder with a copy of the scenario, where the verb writes into it
+# Files that may be downloaded, by name, and their places in a run's folder; so may what the verb writes as KINDS.
 DOWNLOADS = {
     _SCENARIO: _SCENARIO,
     _ANSWER: _ANSWER,
@@ -55,21 +55,21 @@ class Jobs:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self._lock = threading.RLock()  # requests are answered in threads
-        self._unsaved: dict[str, dict[str, Any]] = {}  # what the disk did not take
+        self._unsaved: dict[str, dict[str, Any]] = {}  # facts by run that the disk did not take
         self._process: tuple[str, asyncio.subprocess.Process] | None = None
-        self._cancelled = ""
-        self._trouble = ""  # that the queue waits for
+        self._cancelled = ""  # run to be ended
+        self._trouble = ""  # for which the queue waits to pass
         self._task: asyncio.Task[None] | None = None
-        self._more = asyncio.Event()
+        self._more = asyncio.Event()  # set by a new run
         self._loop: asyncio.AbstractEventLoop | None = None
 
     def start(self) -> None:
-        """Take up what an earlier server left in the queue, and begin."""
-        for left in self.folder.glob(".new-*"):  # an earlier server ended before it was whole
-            shutil.rmtree(left, ignore_errors=True)
-        for each in self.list():
-            if each["state"] == "running":  # its process ended with the server
-                self._note(each["id"], state="interrupted")
+        """Begin to work, first on runs that an earlier server left in the queue."""
+        for incomplete in self.folder.glob(".new-*"):  # an earlier server ended while it was written
+            shutil.rmtree(incomplete, ignore_errors=True)
+        for job in self.list():
+            if job["state"] == "running":  # its process ended with the server
+                self._note(job["id"], state="interrupted")
         self._loop = asyncio.get_running_loop()
         self._task = asyncio.create_task(self._work())
 
@@ -79,8 +79,8 @@ class Jobs:
             self._task.cancel()
             with suppress(asyncio.CancelledError):
                 await self._task
-        for each in [*self._unsaved]:
-            self._note(each)
+        for number in [*self._unsaved]:
+            self._note(number)
 
     def submit(
         self,
@@ -94,9 +94,9 @@ class Jobs:
     ) -> str:
         """Queue a verb on a scenario, with copies of its records; return its id.
 
-        The `case` of a sweep that is there already is not run again; `changes` tell it from the last run of its title.
+        A `case` of a sweep that has a run already gets the id of that; `changes` are from the last run of its title.
         """
-        now = datetime.now()  # in the order of their names they are run
+        now = datetime.now()  # first in the id, as runs are computed in the order of their ids
         number = f"{now:%Y%m%d-%H%M%S}-{now.microsecond:05x}{secrets.randbelow(0x1000):03x}"
         facts = {"title": title, "verb": verb, "case": case, "changes": changes, "arguments": list(arguments)}
         new = ensured(self.folder / f".new-{number}")
@@ -104,28 +104,28 @@ class Jobs:
             for record in records:
                 write(new / record.name, record.read_bytes())
             scenario = text.encode("utf-8")
-            write(new / _SCENARIO, scenario)  # whatever the records are called
+            write(new / _SCENARIO, scenario)  # after the records: one may have this name
             if "--write" in arguments:
                 write(ensured(new / _BEFORE) / _SCENARIO, scenario)
             write(new / _STATE, json.dumps({"state": "queued", **facts}).encode())
             with self._lock:
-                known = self.list()
-                same = next((each["id"] for each in known if case and each["case"] == case), None)
+                jobs = self.list()
+                same = next((job["id"] for job in jobs if case and job["case"] == case), None)
                 if same is not None:
                     return str(same)
-                if sum(each["state"] == "queued" for each in known) >= QUEUED:
+                if sum(job["state"] == "queued" for job in jobs) >= QUEUED:
                     raise InputError("runs", f"wait already, {QUEUED} of them", "cancel some")
                 new.rename(self.folder / number)
         finally:
-            shutil.rmtree(new, ignore_errors=True)  # what is not queued
+            shutil.rmtree(new, ignore_errors=True)  # unless it was renamed
         if self._loop is not None:
             self._loop.call_soon_threadsafe(self._more.set)
         return number
 
     def last(self, title: str) -> str:
-        """Return the scenario of the last run of a title; empty where there is none."""
-        alike = (each["id"] for each in self.list() if each["title"] == title and _SCENARIO in each["files"])
-        number = next(alike, None)
+        """Return the text of the scenario of the last run of a title; empty without one."""
+        numbers = (job["id"] for job in self.list() if job["title"] == title and _SCENARIO in job["files"])
+        number = next(numbers, None)
         return "" if number is None else self.file(number, _SCENARIO).read_text(encoding="utf-8", errors="replace")
 
     def cancel(self, number: str) -> None:
@@ -140,53 +140,54 @@ class Jobs:
                     _end(self._process[1])
 
     def list(self) -> list[dict[str, Any]]:
-        """All runs, the latest first."""
+        """Return the states of all runs, the latest first."""
         if not self.folder.is_dir():
             return []
         jobs = []
         for number in sorted((each.name for each in self.folder.iterdir() if ID.fullmatch(each.name)), reverse=True):
-            with suppress(InputError, FileNotFoundError):  # it has been deleted meanwhile
+            with suppress(InputError, FileNotFoundError):  # deleted in the meantime
                 jobs.append(self.state(number))
         return jobs
 
     def state(self, number: str) -> dict[str, Any]:
         """Return the state, title, last line of progress and files of a run."""
         place = self._place(number)
-        known = _read(place / _STATE) | self._unsaved.get(number, {})
-        if known["state"] == "queued":
+        state = _read(place / _STATE) | self._unsaved.get(number, {})
+        if state["state"] == "queued":
             progress = f"waits: {self._trouble}" if self._trouble else ""
         else:
             progress = _last_line(place / _LOG)
-        return {"id": number, **known, "progress": progress, "files": [*_files(place)]}
+        return {"id": number, **state, "progress": progress, "files": [*_files(place)]}
 
     def file(self, number: str, name: str) -> Path:
-        """The path of a file of a run."""
+        """Return the path of a file of a run; InputError if it has no such file."""
         files = _files(self._place(number))
         if name not in files:
             raise InputError("file", "is none of this run's", f"choose of {', '.join(files)}")
         return regular(files[name].parent, files[name].name)
 
     def complain(self, trouble: str) -> None:
-        """Say on the terminal what keeps the server from its work, once until it has passed."""
+        """Print on the terminal what the queue waits for, once until that has changed."""
         if trouble != self._trouble:
             self._trouble = trouble
             with suppress(OSError):
                 print(f"gbeam: waits until this has passed: {trouble}", file=sys.stderr, flush=True)
 
     def _place(self, number: str) -> Path:
+        """Folder of a run; InputError if there is none."""
         place = self.folder / number if ID.fullmatch(number) else None
         if place is None or place.is_symlink() or not place.is_dir():
             raise InputError("run", "is not there", "choose one of the list")
         return place
 
     def _note(self, number: str, **facts: Any) -> bool:
-        """Keep facts of a run, where the disk does not take them in memory; return whether it did."""
+        """Add facts to the state of a run; if the disk does not take them, keep them in memory and return false."""
         file = self.folder / number / _STATE
         with self._lock:
             unsaved = self._unsaved.pop(number, {}) | facts
             try:
                 write(file, json.dumps(_read(file) | unsaved).encode())
-            except FileNotFoundError:  # it has been deleted
+            except FileNotFoundError:  # the run was deleted
                 return True
             except OSError as error:
                 self._unsaved[number] = unsaved
@@ -195,11 +196,12 @@ class Jobs:
         return True
 
     async def _work(self) -> None:
+        """Compute the queued runs, the earliest first, and wait for more."""
         while True:
             number = ""
             try:
-                saved = all([self._note(each) for each in [*self._unsaved]])
-                number = next((each["id"] for each in reversed(self.list()) if each["state"] == "queued"), "")
+                saved = all([self._note(unsaved) for unsaved in [*self._unsaved]])
+                number = next((job["id"] for job in reversed(self.list()) if job["state"] == "queued"), "")
                 if number and await self._run(number):
                     continue
                 if not number and saved:
@@ -207,72 +209,73 @@ class Jobs:
                     self._more.clear()
                     await self._more.wait()
                     continue
-            except InputError:  # it has been deleted
+            except InputError:  # the run was deleted
                 continue
             except OSError as error:
                 self.complain(error.strerror or str(error))
-            except Exception:  # a mistake in gbeam: the other runs go on
+            except Exception:  # a defect: the other runs go on
                 traceback.print_exc()
                 if number:
                     self._note(number, state="failed")
             await asyncio.sleep(PAUSE)
 
     async def _run(self, number: str) -> bool:
-        """Compute a run to its end; False, and it stays in the queue, where it cannot begin."""
+        """Compute a run to its end; return false if it cannot begin and stays in the queue."""
         place = self._place(number)
         with self._lock:
-            known = _read(place / _STATE)
+            facts = _read(place / _STATE)
             if self.state(number)["state"] != "queued":
-                return True  # cancelled in this moment
+                return True  # just cancelled
             if not self._note(number, state="running"):
                 self._unsaved.pop(number)
                 return False
         try:
-            process = await _begun(place, _command(known))
+            process = await _begun(place, _command(facts))
         except OSError as error:
-            passes = error.errno in SHORT
-            self._note(number, state="queued" if passes else "failed")
-            if passes:
+            temporary = error.errno in SHORT
+            self._note(number, state="queued" if temporary else "failed")
+            if temporary:
                 raise
             return True
         self._trouble = ""
         self._process = number, process
-        if self._cancelled == number:  # while it was started
+        if self._cancelled == number:  # while the process started
             _end(process)
         try:
             state = await self._ended(place, process)
         except asyncio.CancelledError:  # the server ends
-            self._note(number, **known | {"state": "interrupted"})
+            self._note(number, **facts | {"state": "interrupted"})
             raise
         finally:
             _end(process)
             self._process = None
         if place.is_dir():
-            self._note(number, **known | {"state": state})
+            self._note(number, **facts | {"state": state})
         return True
 
     async def _ended(self, place: Path, process: asyncio.subprocess.Process) -> str:
-        """Wait until a process has ended, its time is over or its folder gone; return the state of its run."""
-        end, deadline = asyncio.ensure_future(process.wait()), asyncio.get_running_loop().time() + SECONDS
+        """Wait until a process has ended, its time is over or its folder deleted; return the final state of its run."""
+        end = asyncio.ensure_future(process.wait())
+        deadline = asyncio.get_running_loop().time() + SECONDS
         while not end.done():
             left = deadline - asyncio.get_running_loop().time()
             if left <= 0 or not place.is_dir():
-                return "out of time"  # or deleted, and forgotten
+                return "out of time"  # or deleted, and the state is not kept
             await asyncio.wait([end], timeout=min(left, PAUSE))
         if self._cancelled == place.name:
             return "cancelled"
-        otherwise = {0: "done", 1: "failed", 2: "refused"}.get(end.result(), "ended")
+        by_status = {0: "done", 1: "failed", 2: "refused"}.get(end.result(), "ended")
         while end.result() in (0, 1):
             try:
-                return _state(place, otherwise)
+                return _state(place, by_status)
             except OSError as error:
                 self.complain(error.strerror or str(error))
                 await asyncio.sleep(PAUSE)
-        return otherwise
+        return by_status
 
 
 async def _begun(place: Path, command: Sequence[str]) -> asyncio.subprocess.Process:
-    """Start a command in a run's folder, whose files are for their owner only."""
+    """Start a command in a run's folder, so that only the owner can read its files."""
     environment = {**os.environ, "GBEAM_PROGRESS": "0.5", "GBEAM_PROGRESS_FILE": _LOG, "PYTHONUNBUFFERED": "1"}
     environment["GBEAM_FIGURES"] = "none"  # the report has them
     with private(place / _MESSAGES) as messages, private(place / _ANSWER) as answer:
@@ -289,19 +292,20 @@ async def _begun(place: Path, command: Sequence[str]) -> asyncio.subprocess.Proc
 
 
 def _read(file: Path) -> dict[str, Any]:
-    """State that is kept of a run; that it is damaged, where that cannot be read."""
-    nothing = {"state": DAMAGED, "title": "", "verb": "run", "case": "", "changes": "", "arguments": []}
+    """Facts in the state of a run; the default ones, with the state damaged, if they cannot be read or are wrong."""
+    damaged = {"state": DAMAGED, "title": "", "verb": "run", "case": "", "changes": "", "arguments": []}
     try:
-        known = json.loads(file.read_text(encoding="utf-8"))
+        facts = json.loads(file.read_text(encoding="utf-8"))
     except OSError as error:
         if error.errno in SHORT:
             raise
-        return nothing
+        return damaged
     except (ValueError, RecursionError):
-        return nothing
-    sound = isinstance(known, dict) and all(isinstance(known.get(key), type(value)) for key, value in nothing.items())
-    words = sound and known["verb"] in verbs() and all(isinstance(each, str) for each in known["arguments"])
-    return known if words else nothing
+        return damaged
+    if not isinstance(facts, dict) or any(not isinstance(facts.get(key), type(damaged[key])) for key in damaged):
+        return damaged
+    texts = all(isinstance(argument, str) for argument in facts["arguments"])
+    return facts if facts["verb"] in verbs() and texts else damaged
 
 
 def _last_line(log: Path) -> str:
@@ -313,13 +317,13 @@ def _last_line(log: Path) -> str:
 
 
 def _command(state: Mapping[str, Any]) -> list[str]:
-    """A verb with its result as a report and as JSON."""
+    """Command that runs the verb of a run, within limits, and writes a report and JSON."""
     arguments = [state["verb"], _SCENARIO, *state["arguments"], "--out", "out", "--report", "--json"]
     return [sys.executable, "-c", LIMITED, str(MEMORY), str(SECONDS), *arguments]
 
 
 def _state(place: Path, otherwise: str) -> str:
-    """End of an answer in a few words, as its report says it."""
+    """State of a run by its answer, such as done or not accepted; `otherwise` if the answer does not say it."""
     try:
         answer = json.loads((place / _ANSWER).read_text(encoding="utf-8"))
         state = str(answer.get("state") or answer["outcome"])
@@ -327,16 +331,15 @@ def _state(place: Path, otherwise: str) -> str:
         if error.errno in SHORT:
             raise
         return otherwise
-    except (ValueError, LookupError, TypeError, AttributeError):  # words, or half an answer
+    except (ValueError, LookupError, TypeError, AttributeError):  # no JSON, or another form
         return otherwise
     return "done" if state in GOOD else state
 
 
 def _files(place: Path) -> dict[str, Path]:
-    """The files of a run by the names under which they are downloaded; its report has one name whatever the verb."""
-    fixed = {
-        name: file for name, inside in DOWNLOADS.items() if (file := place / inside).is_file() and file.stat().st_size
-    }
+    """Files of a run by the names under which they are downloaded; every verb's report is report.html."""
+    places = {name: place / inside for name, inside in DOWNLOADS.items()}
+    fixed = {name: file for name, file in places.items() if file.is_file() and file.stat().st_size}
     before = place / _BEFORE / _SCENARIO
     if before.is_file() and _SCENARIO in fixed:
         changed = before.read_bytes() != fixed[_SCENARIO].read_bytes()
@@ -344,13 +347,13 @@ def _files(place: Path) -> dict[str, Path]:
     out = place / "out"
     written = {name: out / name for name in names(out)}
     report = next((file for name, file in written.items() if name.endswith(".html")), None)
-    every = fixed if report is None else fixed | {"report.html": report}
+    files = fixed if report is None else fixed | {"report.html": report}
     kinds = KINDS if report else (*KINDS, ".png")  # a report has the figures
-    return every | {name: file for name, file in written.items() if name.endswith(kinds)}
+    return files | {name: file for name, file in written.items() if name.endswith(kinds)}
 
 
 def _end(process: asyncio.subprocess.Process) -> None:
-    """Kill a process and all that it has started, unless it has ended."""
+    """Kill a process and those that it has started, unless it has ended."""
     if process.returncode is not None:
         return
     with suppress(ProcessLookupError):

@@ -30,11 +30,11 @@ from gbeam.scenario.text.source import parse
 
 _KINDS = {".js": "text/javascript", ".css": "text/css", ".html": "text/html; charset=utf-8"}
 _BINARY = {".nc": "application/octet-stream", ".mat": "application/octet-stream", ".png": "image/png"}
-REFUSALS = "x-gbeam-refusal"  # of a request: it may be answered by one; of an answer: it is one
+REFUSALS = "x-gbeam-refusal"  # header of a request that accepts a refusal with status 200, and of each refusal
 
 
 def _whole(text: str) -> str:
-    """Refuse half a character, which JSON can name and nothing can write."""
+    """Refuse a lone surrogate, half a character, which JSON can escape but no file can hold."""
     if any("\ud800" <= each <= "\udfff" for each in text):
         raise ValueError("half a character")
     return text
@@ -47,7 +47,7 @@ Short = Annotated[Word, Body(embed=True, max_length=1000)]
 
 
 def create_app(folder: Path) -> FastAPI:
-    """Return the application, without its door, over the records and the runs of a folder."""
+    """Return the application on the records and runs of a folder; a `Door` is to guard it."""
     records, jobs = folder / "records", Jobs(folder / "runs")
 
     @asynccontextmanager
@@ -61,8 +61,7 @@ def create_app(folder: Path) -> FastAPI:
 
     @app.exception_handler(GbeamError)
     async def refuse(request: Request, error: GbeamError, status: int = 422) -> JSONResponse:
-        # The page shows it at its place, and asks for it as an answer: a status of failure would stand in the
-        # browser's console as an error of the page.
+        # The page shows it at its place, and asks for status 200: browsers log others in their console as errors.
         status = 200 if REFUSALS in request.headers else status
         return JSONResponse({"errors": documents.problems(error)}, status, {REFUSALS: "1"})
 
@@ -74,11 +73,11 @@ def create_app(folder: Path) -> FastAPI:
 
     @app.exception_handler(ClientDisconnect)
     async def leave(_: Request, __: ClientDisconnect) -> Response:
-        return Response(status_code=400)  # which nobody hears
+        return Response(status_code=400)  # nobody receives it
 
     @app.exception_handler(RequestValidationError)
     async def misread(_: Request, error: RequestValidationError) -> JSONResponse:
-        # Without what was given, as FastAPI has it: that may be what no answer can hold.
+        # FastAPI would repeat the input, which may be text that no answer can hold.
         problems = [{"loc": each["loc"], "msg": each["msg"], "type": each["type"]} for each in error.errors()]
         return JSONResponse({"detail": problems}, 422)
 
@@ -176,10 +175,10 @@ def create_app(folder: Path) -> FastAPI:
         arguments = verbs.arguments(verb, options, data)
         title = str(data.get("title", ""))[:200]
         named = [files.regular(records, name) for name in verbs.records(verb, options)]
-        every = [*documents.records(data, records), *named]
+        inputs = [*documents.records(data, records), *named]
         before = jobs.last(title)
         changes = documents.changes(before, text) if before else ""
-        return {"id": jobs.submit(text, title, every, verb, arguments, case, changes)}
+        return {"id": jobs.submit(text, title, inputs, verb, arguments, case, changes)}
 
     @app.delete("/api/runs/{number}")
     def cancel(number: str) -> dict[str, Any]:
@@ -216,7 +215,9 @@ def _asset(name: str, package: str) -> Callable[[], Response]:
 
 
 def _once(complain: Callable[[str], None]) -> Callable[[asyncio.AbstractEventLoop, dict[str, Any]], None]:
-    """Handle what the event loop meets: that descriptors are used up is said once, not at every connection."""
+    """Return a handler of the event loop's exceptions that complains once, not at every connection, of lacking
+    descriptors, disk or memory.
+    """
 
     def handle(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
         error = context.get("exception")
@@ -229,7 +230,7 @@ def _once(complain: Callable[[str], None]) -> Callable[[asyncio.AbstractEventLoo
 
 
 def serve(folder: Path, port: int, announce: Callable[[str], None]) -> None:
-    """Serve the app on 127.0.0.1 until it is interrupted; `announce` the address once it is there."""
+    """Serve the app on 127.0.0.1 until it is interrupted; call `announce` with the address before it begins."""
     import uvicorn
 
     with alone(files.ensured(folder) / ".lock", "--folder", "open the address that it printed, or name another folder"):

@@ -1,4 +1,4 @@
-"""Verbs that the page offers: those of the command line, and of their options those that name no file."""
+"""Verbs of the command line that the page offers, with those of their options that lead to no file outside."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from cyclopts import ArgumentCollection
 
 PLAIN = 'give text such as "2 s" or "tip.z.max_abs"'
-# The page itself sets, shows and writes; what computes are the processes of this computer. A record of options is *.
+# Options that the page sets itself, or that lead away from this computer; * is a record of options.
 _OF_THE_PAGE = {"SCENARIO", "*", "set", "out", "json", "report", "scheduler", "resume", "yes"}
 _WRITTEN = "found.toml"  # a scenario that a verb makes
 _REPEATED = re.compile("any number of times|given twice")
@@ -29,8 +29,8 @@ _REPEATED = re.compile("any number of times|given twice")
 class Option:
     """An option of a verb, as the command line has it.
 
-    `many` is how often it may be given; `of` what it names: a ``motion``, a ``record``, or before "=" one of the
-    scenario's ``values``; `ticked` what the command line has where it is chosen, of an option without a value.
+    `many` is how often it may be given; `of` says that it names a ``motion``, a ``record``, or before "=" one of the
+    scenario's ``values``; `ticked` is the argument of an option without a value where that is chosen.
     """
 
     name: str
@@ -44,7 +44,7 @@ class Option:
 
 @dataclass(frozen=True)
 class Verb:
-    """A verb: what it answers, and its options."""
+    """A verb: its line of help, and its options."""
 
     about: str
     options: tuple[Option, ...] = ()
@@ -56,11 +56,12 @@ def verbs() -> dict[str, Verb]:
     return {
         name: Verb(about, _options(arguments))
         for name, about in program.verbs().items()
-        if (arguments := program.arguments(name))[0].name == "SCENARIO" and name != "check"  # the page does that
+        if (arguments := program.arguments(name))[0].name == "SCENARIO" and name != "check"  # the page checks itself
     }
 
 
 def _options(arguments: ArgumentCollection) -> tuple[Option, ...]:
+    """Options of a verb by its arguments: example and how often by the words of the help."""
     options = []
     for argument in arguments:
         name, *others = (each.removeprefix("--") for each in argument.names)
@@ -69,7 +70,7 @@ def _options(arguments: ArgumentCollection) -> tuple[Option, ...]:
         words = str(argument.parameter.help)
         quoted, default = re.search(r'"([^"]+)"', words), argument.field_info.default
         if argument.hint is bool:
-            if default:  # chosen is what leaves it out
+            if default:  # the page offers its opposite
                 name, words = others[0], f"do not {words[0].lower()}{words[1:]}"
             options.append(Option(name, words, ticked=f"--{name}"))
         elif "Path" in str(argument.hint) and not argument.required:
@@ -84,24 +85,22 @@ def _options(arguments: ArgumentCollection) -> tuple[Option, ...]:
 
 
 def offered() -> dict[str, Any]:
-    """The verbs and their options, for the page."""
+    """Return the verbs and their options, for JSON."""
     return {name: asdict(verb) for name, verb in verbs().items()}
 
 
 def arguments(verb: str, options: Sequence[str], data: Mapping[str, Any]) -> list[str]:
-    """Return a verb's arguments from ``NAME=VALUE`` texts (NAME alone of what is ticked), each of which stands for
-    itself.
-
-    A sweep may vary no file name, which would lead out of the folder.
+    """Return a verb's arguments from texts ``NAME=VALUE``, or NAME for an option that is ticked; InputError if one is
+    wrong, or if a sweep varies the name of a file, which could lead out of the folder.
     """
-    known = verbs().get(verb)
-    if known is None:
+    offered_verb = verbs().get(verb)
+    if offered_verb is None:
         raise InputError("verb", f"is {verb[:100]!r}", f"choose of {', '.join(verbs())}")
-    by_name = {option.name: option for option in known.options}
+    by_name = {option.name: option for option in offered_verb.options}
     line: list[str] = []
     counts: dict[str, int] = {}
-    for each in options:
-        name, _, value = each.partition("=")
+    for text in options:
+        name, _, value = text.partition("=")
         option = by_name.get(name)
         if option is None:
             raise InputError(name[:100] or "option", f"is no option of {verb} here", f"give {', '.join(by_name)}")
@@ -135,12 +134,13 @@ def arguments(verb: str, options: Sequence[str], data: Mapping[str, Any]) -> lis
 
 
 def records(verb: str, options: Sequence[str]) -> list[str]:
-    """The names of files among a verb's options."""
+    """Return the names of files among a verb's options."""
     named = {option.name for option in verbs()[verb].options if option.of == "record"}
     return [value for name, _, value in (each.partition("=") for each in options) if name in named]
 
 
 def _refuse_file(path: str, data: Mapping[str, Any]) -> None:
+    """Raise InputError unless a path leads to a value of the scenario that names no file."""
     place = parse_path(path)
     key = next((step for step in reversed(place or ()) if isinstance(step, str)), "file")
     written = None if place is None or key in file_keys() else written_at(data, place)
