@@ -34,7 +34,7 @@ def __getattr__(name: str) -> object:
     if name not in _HOME:
         raise AttributeError(f"module 'gbeam' has no attribute {name!r}")
     value = getattr(import_module(f"gbeam.{_HOME[name]}"), name)
-    globals()[name] = value  # from now on it needs no look-up
+    globals()[name] = value  # this function is not called for the name again
     return value
 
 

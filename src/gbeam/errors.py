@@ -1,4 +1,4 @@
-"""Errors that gbeam raises: wrong input, or a computation that failed; each says where, what, and the fix."""
+"""Errors that gbeam raises: wrong input, with place, problem and fix, or a computation that failed."""
 
 from __future__ import annotations
 
@@ -52,18 +52,18 @@ class InputError(GbeamError, ValueError):
         return type(self), (self.where, self.problem, self.fix)
 
     def at(self, where: str) -> InputError:
-        """Return the same error of another place, `where`."""
+        """Return the same error with another place, `where`."""
         return InputError(where, self.problem, self.fix)
 
     def within(self, prefix: str) -> InputError:
-        """Return the same error seen from one level further out, `prefix`."""
+        """Return the same error with `prefix` and a dot before its place."""
         joint = "" if not prefix or not self.where or self.where.startswith("[") else "."
         return self.at(f"{prefix}{joint}{self.where}")
 
 
 @contextmanager
 def naming(where: str | Mapping[str, str]) -> Iterator[None]:
-    """Give the InputErrors raised inside another place, or by a mapping those at some places."""
+    """Give InputErrors raised inside another place; a mapping gives new places by the old ones."""
     try:
         yield
     except InputError as error:
@@ -72,7 +72,7 @@ def naming(where: str | Mapping[str, str]) -> Iterator[None]:
 
 @contextmanager
 def placing_within(prefix: str) -> Iterator[None]:
-    """Give the InputErrors raised inside a prefix of their place: :meth:`InputError.within`."""
+    """Put a prefix before the place of InputErrors raised inside: :meth:`InputError.within`."""
     try:
         yield
     except InputError as error:

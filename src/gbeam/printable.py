@@ -1,4 +1,4 @@
-"""Text from outside, as a terminal, a file or a figure may show it; suggestions for a misspelt name."""
+"""Foreign text made safe to show on a terminal, in a file or a figure; and suggestions for a misspelt name."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ LONGEST = 200  # characters of one value in a message
 
 
 def printable(text: str) -> str:
-    """Return the text with control characters written out, ``\\x1b`` for ESC: a terminal obeys what is left to it."""
+    """Return the text with control characters, which a terminal would obey, as escapes, ``\\x1b`` for ESC."""
     return _UNPRINTABLE.sub(_escaped, text)
 
 
 def storable(text: str) -> str:
-    """Return the text with what no file of text holds written out: null characters, and bytes that are no text."""
+    """Return the text with null characters and lone surrogates, which no text file can hold, as escapes."""
     return _NOT_STORABLE.sub(_escaped, text)
 
 
@@ -27,18 +27,18 @@ def on_one_line(text: str) -> str:
 
 
 def unprintable(text: str) -> str:
-    """Return the first character that :func:`printable` would write out, so written; empty where there is none."""
+    """Return the escape of the first character that :func:`printable` would escape; empty if there is none."""
     match = _UNPRINTABLE.search(text)
     return "" if match is None else _escaped(match)
 
 
 def json_printable(text: str) -> str:
-    """Return JSON with what a terminal would obey, inside strings only, as JSON escapes it."""
+    """Return JSON with control characters, which stand only inside its strings, as escapes of JSON."""
     return _UNPRINTABLE.sub(lambda match: f"\\u{ord(match[0]):04x}", text)
 
 
 def shortened(text: str, longest: int = LONGEST) -> str:
-    """Return the text, or its beginning and end where it is longer than that."""
+    """Return the text, or its beginning and end if it has more than `longest` characters."""
     half = longest // 2
     return text if len(text) <= longest else f"{text[:half]} … {text[-half:]}"
 

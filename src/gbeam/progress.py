@@ -18,10 +18,10 @@ from gbeam.printable import on_one_line
 if TYPE_CHECKING:
     from rich.progress import Progress as _Drawn
 
-INTERVAL = "GBEAM_PROGRESS"  # environment: seconds between lines, for programs that read them, on a terminal too
-FILE = "GBEAM_PROGRESS_FILE"  # environment: the file that has the last line, in place of stderr
+INTERVAL = "GBEAM_PROGRESS"  # environment variable: seconds between lines, which programs read, in place of a bar
+FILE = "GBEAM_PROGRESS_FILE"  # environment variable: a file for the last line, in place of stderr
 EVERY = 5.0  # s between lines where there is no terminal and no notebook
-PATIENCE = 2.0  # s without a sign of life that a user of a command takes
+PATIENCE = 2.0  # s without output that a user of a command accepts
 _REDRAW = 0.1  # s
 _SHOWN: ContextVar[Bar | None] = ContextVar("shown", default=None)
 
@@ -40,15 +40,15 @@ class Bar:
     def __init__(self, first: str = "computing", *, patience: float = 0.0) -> None:
         self._now = (first, 0.0)
         self._patience = patience
-        self._since = monotonic()  # when that was begun
+        self._since = monotonic()  # when the current step began
         self._over = Event()
-        # A thread, not a look at the clock in __call__: before the first call it may be silent for long.
+        # A thread, as it may take long until the first call.
         self._thread = Thread(target=self._show, daemon=True)
         self._bar: _Drawn | None = None
         self._outer: Bar | None = None
 
     def __call__(self, *news: Any) -> None:
-        """Show how much of what is done."""
+        """Note the step and the fraction done, or of a sweep the numbers of cases."""
         if self._outer is not None:
             self._outer(*news)
             return
@@ -66,7 +66,7 @@ class Bar:
         return f"{on_one_line(what)}: {share:.0%}{_left(monotonic() - self._since, share)}"
 
     def _show(self) -> None:
-        """Draw a bar after some patience, or write lines where it is no terminal, until all is over."""
+        """Draw a bar after some patience, or write lines if there is no terminal, until the computation is over."""
         every = _interval()
         if self._over.wait(self._patience if every is None else every):
             return
@@ -129,7 +129,7 @@ class Bar:
 
 
 def tell(progress: Callable[..., None] | bool | None, *news: Any) -> None:
-    """Call `progress` where there is one."""
+    """Call `progress` if it is a function."""
     if callable(progress):
         progress(*news)
 
@@ -147,7 +147,7 @@ def _in_notebook() -> bool:
 
 
 def _interval() -> float | None:
-    """Seconds between lines by the environment; None where it names no time."""
+    """Seconds between lines by the environment; None if it has no such number."""
     try:
         return max(float(os.environ.get(INTERVAL, "")), 0.1)
     except ValueError:
@@ -155,7 +155,7 @@ def _interval() -> float | None:
 
 
 def _left(passed: float, share: float) -> str:
-    """Time left in words, once enough is done to say."""
+    """Time left in words; empty before 2 % and a second are done."""
     if share < 0.02 or passed < 1:
         return ""
     left = passed * (1 - share) / share

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 Verb = Literal["run", "static", "modes", "critical-speed", "plan", "place", "campbell"]
 Varied = Literal["rate", "loads", "acceleration"]
-# Options of all questions, as studies take those of one; a quantity is a number in SI, or text.
+# Options of all questions by name, as studies take them; quantities are numbers in SI, or texts.
 Options = TypedDict(
     "Options",
     {
@@ -47,22 +47,22 @@ STATIONS = 81  # along the beam, at which shapes are given
 
 @dataclass(frozen=True)
 class Needs:
-    """Parts of an answer that are read; the costly ones that are not need not be computed."""
+    """Parts of an answer that will be read; costly parts that will not be read need not be computed."""
 
-    errors: bool = True  # estimates of its own: most of the time of a steady state
+    errors: bool = True  # estimates of errors, which take most of the time of a steady state
     loads: bool = True  # of the sections
-    shapes: bool = False  # all along the beam, not only at the case's own stations
+    shapes: bool = False  # shapes all along the beam, not only at the case's own stations
 
 
 @dataclass(frozen=True)
 class Option:
-    """An option of a question: an argument of its function, with its words."""
+    """An option of a question: an argument of its function, with the words of its help."""
 
     argument: str
     type: Any
     default: Any
     words: str
-    kind: str | Callable[[Mapping[str, Any]], str] = ""  # of a quantity, or what gives it from all options
+    kind: str | Callable[[Mapping[str, Any]], str] = ""  # of a quantity, or a function of all options that gives it
 
     @property
     def flag(self) -> str:
@@ -70,10 +70,9 @@ class Option:
         return f"--{self.argument.rstrip('_').replace('_', '-')}"
 
     def read(self, value: Any, options: Mapping[str, Any]) -> Any:
-        """Value that the function takes, SI of a quantity; InputError where it is none."""
-        choices = next(
-            (get_args(each) for each in (self.type, *get_args(self.type)) if get_origin(each) is Literal), ()
-        )
+        """Return the value for the function, of a quantity in SI; InputError if it is no choice or not of the kind."""
+        types = (self.type, *get_args(self.type))
+        choices = next((get_args(each) for each in types if get_origin(each) is Literal), ())
         if choices and value not in choices:
             raise InputError(self.flag, f"is {value!r}", advise(str(value), choices))
         if not (self.kind and isinstance(value, str)):
@@ -89,55 +88,55 @@ class Question:
 
     name: str  # the command line's verb
     about: str  # in one sentence
-    # of a case, the name of a motion or None, the time at which it is frozen or None, what is needed and options by
-    # name: a record, or several
+    # Function of a case, the name of a motion or None, the time at which it is frozen or None, needs, and options by
+    # keyword; it returns a record, or a tuple of several.
     answer: Callable[..., Any]
-    motion: str | None = ""  # kind of motion that answers, empty for any; None where all that can answer do
-    differentiable: bool = True  # whether its figures are smooth in the scenario's values
-    deforms: bool = True  # whether it is about what deforms, which a rigid specimen does not
-    # Figures that are meant where none is named, of a motion and a beam by their names, or of a machine, and one whose
-    # limits of acceptance are set; of a beam, and of a system of bodies.
+    motion: str | None = ""  # kind of motion that it asks about, "" for any; None for all motions
+    differentiable: bool = True  # true if its figures are smooth in the scenario's values
+    deforms: bool = True  # true if it needs a specimen that deforms
+    # Figures that studies take where none is named, for every {motion}, {beam}, centrifuge ({machine}), and centrifuge
+    # with limits of acceptance ({limited}).
     usual: tuple[str, ...] = ()
     usual_of_systems: tuple[str, ...] = ()
 
     @property
     def options(self) -> dict[str, Option]:
-        """Options by their names: the function's arguments that are annotated with words."""
-        asked = [each for each in inspect.signature(self.answer).parameters.values() if each.kind is each.KEYWORD_ONLY]
-        written = SimpleNamespace(__annotations__={each.name: each.annotation for each in asked})
-        hints = get_type_hints(written, self.answer.__globals__, include_extras=True)
-        known = [(each, get_args(hints[each.name])) for each in asked if get_origin(hints[each.name]) is Annotated]
-        options = [Option(each.name, hint, each.default, *words) for each, (hint, *words) in known]
-        return {each.flag[2:]: each for each in options}
+        """Options by name: the keyword-only arguments of the function that are annotated with words."""
+        keywords = [p for p in inspect.signature(self.answer).parameters.values() if p.kind is p.KEYWORD_ONLY]
+        annotated = SimpleNamespace(__annotations__={p.name: p.annotation for p in keywords})
+        hints = get_type_hints(annotated, self.answer.__globals__, include_extras=True)
+        declared = [(p, get_args(hints[p.name])) for p in keywords if get_origin(hints[p.name]) is Annotated]
+        options = [Option(p.name, hint, p.default, *words) for p, (hint, *words) in declared]
+        return {option.flag[2:]: option for option in options}
 
     def chosen(self, options: Mapping[str, Any]) -> dict[str, Any]:
-        """Options by the arguments of the function, each as it takes it; InputError where one is not its own."""
-        known = self.options
+        """Return options by name as keywords for the function, checked and in SI; InputError if one is unknown."""
+        declared = self.options
         for name in options:
-            if name not in known:
+            if name not in declared:
                 problem = f"is no option of {self.name}"
-                raise InputError(f"--{name}", problem, advise(name, known) if known else "leave it out")
-        every = {name: each.default for name, each in known.items()} | dict(options)
-        return {known[name].argument: known[name].read(value, every) for name, value in options.items()}
+                raise InputError(f"--{name}", problem, advise(name, declared) if declared else "leave it out")
+        values = {name: option.default for name, option in declared.items()} | dict(options)
+        return {declared[name].argument: declared[name].read(value, values) for name, value in options.items()}
 
     @property
     def records(self) -> tuple[type, ...]:
-        """Kind of record that answers of a beam, and that of a system where one is; each motion's where several do."""
+        """Classes of the records that it returns, of a beam and, if it answers for them, of a system."""
         from gbeam.results.study import KINDS
 
-        written = self.answer.__annotations__["return"]
-        if isinstance(written, type):
-            return (written,)
-        names = (each.strip().removeprefix("tuple[").partition(",")[0] for each in written.split("|"))
+        annotation = self.answer.__annotations__["return"]
+        if isinstance(annotation, type):
+            return (annotation,)
+        names = (part.strip().removeprefix("tuple[").partition(",")[0] for part in annotation.split("|"))
         return tuple(self.answer.__globals__.get(name) or KINDS[name] for name in names)
 
     @property
     def of_systems(self) -> bool:
-        """True if systems of bodies have an answer too."""
+        """True if it answers for systems of bodies too."""
         return bool(self.answer.__annotations__.get("case") == "AnyCase")
 
     def refuse(self, case: AnyCase, before: str = "") -> None:
-        """Raise InputError where the case is a system and only one structure answers, or is rigid and has to deform."""
+        """Raise InputError if the case is a system, and the question not of systems, or is rigid and must deform."""
         from gbeam.analysis.case import SystemCase
 
         if isinstance(case, SystemCase) and not self.of_systems:
@@ -147,7 +146,7 @@ class Question:
 
 
 def refuse_rigid(case: AnyCase, verb: str) -> None:
-    """Raise InputError if a specimen has no coordinates, of which a verb needs some."""
+    """Raise InputError if a specimen is rigid, and so has no coordinates."""
     from gbeam.analysis.case import SpecimenCase
 
     if isinstance(case, SpecimenCase) and not case.structure.size:
@@ -170,7 +169,7 @@ def question(name: Verb, about: str, **more: Any) -> Callable[[_Answer], _Answer
 
 
 def question_of(verb: str) -> Question:
-    """Return the question of a verb; InputError where there is none."""
+    """Return the question of a verb; InputError if there is none."""
     if verb not in QUESTIONS:
         raise InputError("--verb", f"is {verb!r}", advise(verb, QUESTIONS))
     return QUESTIONS[verb]
@@ -182,7 +181,7 @@ def differentiable() -> tuple[str, ...]:
 
 
 def motion_of(motions: Mapping[str, Any], name: str | None, kind: str = "") -> str:
-    """The name of the motion that answers: the one named, or else the only one, or the only one of a kind."""
+    """Return `name` if it is a motion; for None the name of the only motion, or of the only one of a kind."""
     if name is not None:
         if name not in motions:
             raise InputError("--motion", f"is {name!r}", f"the scenario has {', '.join(motions)}")
@@ -194,11 +193,11 @@ def motion_of(motions: Mapping[str, Any], name: str | None, kind: str = "") -> s
         raise InputError("motion", "is missing", f"add [motion.NAME]{which}; `gbeam new` shows how")
     if len(choice) > 1 and (alike or not kind):
         raise InputError("--motion", "is missing", f"name one of {', '.join(choice)}")
-    return choice[0]  # without any of the kind it is refused with its reason, as any other would be
+    return choice[0]  # if it is of another kind, the question refuses it with a reason
 
 
 def prepared(case: AnyCase, name: str) -> Any:
-    """A motion prepared for the response's times; None of a ground at rest."""
+    """Return a motion prepared for the response's times; None for ground at rest."""
     settings, motion = case.response, case.environments[name]
     if motion is None or settings is None:
         return motion
@@ -206,20 +205,20 @@ def prepared(case: AnyCase, name: str) -> Any:
 
 
 def reduced(case: AnyCase, needs: Needs) -> AnyCase:
-    """The case whose responses have what is needed, to the last digit as before; automatic numbers of shapes follow
-    from the errors.
+    """Return the case with settings by which only what is needed is computed, with the same digits. A case with
+    automatic numbers of shapes, which follow from the errors, is returned as it is.
     """
     if needs.errors or case.automatic:
         return case
     from gbeam.analysis.case import SystemCase
 
-    compared = isinstance(case, SystemCase) and case.tracks  # by what all of its beams carry
+    compared = isinstance(case, SystemCase) and case.tracks  # comparisons of systems read the loads of their beams
     loads = case.over_time.loads and bool(needs.loads or compared)
     return replace(case, response=replace(case.over_time, estimate=False, loads=loads))
 
 
 def _structure(case: AnyCase, needs: Needs) -> Any:
-    """The case's structure; where no errors are needed it does not know what it was made of, and states none."""
+    """Structure of a case; if no errors are needed, without the sources by which a steady state would estimate them."""
     from gbeam.analysis.case import Case
 
     if not isinstance(case, Case):
@@ -298,13 +297,13 @@ def modes(
 
     name, time = motion_of(case.environments, motion), _time(case, at)
     options: dict[str, Any] = {"gyroscopic": gyroscopic, "errors": needs.errors, "name": name}
-    known = _structure(case, replace(needs, errors=True))  # twist is measured at the edges of sections
-    return modal.modes(known, prepared(case, name), time, **options)
+    structure = _structure(case, replace(needs, errors=True))  # the source has the sections, at whose edges twist shows
+    return modal.modes(structure, prepared(case, name), time, **options)
 
 
 _TURNING = "Of a system, the angle that turns, base.angle; else its only prescribed one, or only one."
 _SPEED = 'Such as "60 rpm"; by default from rest to the largest rate of the motion.'
-# Kinds of what is raised.
+# Kind of quantity of each value that is raised.
 _VARIED: dict[Varied, str] = {"rate": "angular rate", "loads": "ratio", "acceleration": "acceleration"}
 
 
@@ -334,7 +333,7 @@ def critical_speed(
     ] = None,
     progress: Callable[[str, float], None] | None = None,
 ) -> Critical:
-    """The rate, factor of the loads or acceleration of the root, up to `to`, at which beams buckle."""
+    """Lowest rate, factor of the loads, or acceleration of the root, up to `to`, at which the equilibrium is lost."""
     from gbeam.analysis.case import Case
     from gbeam.analysis.steady import stability
     from gbeam.analysis.steady.operating_point import held_base
@@ -386,7 +385,7 @@ def plan(
     deforms=False,
 )
 def place(case: AnyCase, motion: str | None = None, at: float | None = None, needs: Needs = Needs()) -> Placement:
-    """The best placement, without the check by simulation, which costs more: ``run`` at the placement is that."""
+    """Best placement, without a check by simulation, which would take longer than ``run`` at the placement."""
     from gbeam.analysis.imitation.place import place, usual, usual_turns
     from gbeam.analysis.imitation.place_measures import choice_of
 
@@ -431,7 +430,7 @@ def campbell(
 
 
 def machine_of(case: AnyCase, motion: str | None) -> tuple[str, Any]:
-    """The centrifuge that answers, and its name; an InputError where it is none."""
+    """Return name and prepared motion of the centrifuge chosen by `motion`; InputError if that is none."""
     from gbeam.motion import Centrifuge
 
     name = motion_of(case.motions, motion, CENTRIFUGE)

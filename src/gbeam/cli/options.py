@@ -192,7 +192,7 @@ class Input:
 
 
 def signed(facts: dict[str, Any], provenance: Provenance | None) -> dict[str, Any]:
-    """Facts of a result for JSON, with a function for those of its provenance, which take a while and may not be used."""
+    """Facts of a result for JSON, with a function for those of its provenance, which take a while to find."""
 
     def origin() -> dict[str, Any]:
         from gbeam.report.facts import origin_json

@@ -1,4 +1,4 @@
-"""Arguments of the wrong type, refused by the annotations of the public functions that take them."""
+"""Refusal of arguments of the wrong type, by the annotations of public functions, and conversion to SI."""
 
 from __future__ import annotations
 
@@ -21,24 +21,24 @@ _BARE = _NUMBERS | {complex, str, bytes}
 
 
 def refuse_units(where: str, value: Any) -> None:
-    """Raise InputError if a value, or what a list or a mapping holds, is a number with a unit."""
+    """Raise InputError if a value, or an element of a list or mapping, is a number with a unit."""
     if type(value) in _BARE:
         return
     if has_unit(value):
         raise InputError(where, f"is {shortened(str(value), 60)}", f"give numbers without a unit, in SI{_in_si(value)}")
     listed = value.tolist() if getattr(getattr(value, "dtype", None), "kind", "") == "O" else value
     if isinstance(listed, Mapping):
-        parts = {f"{where}[{key!r}]": each for key, each in listed.items()}
+        elements = {f"{where}[{key!r}]": each for key, each in listed.items()}
     elif isinstance(listed, (list, tuple, set)) and not _BARE.issuperset(map(type, listed)):
-        parts = {f"{where}[{i}]": each for i, each in enumerate(listed)}
+        elements = {f"{where}[{i}]": each for i, each in enumerate(listed)}
     else:
         return
-    for place, each in parts.items():
-        refuse_units(place, each)
+    for place, element in elements.items():
+        refuse_units(place, element)
 
 
 def _in_si(value: Any) -> str:
-    """Expression by which pint makes a number in SI of a quantity of its own; empty of another library's."""
+    """Expression, for a message, by which a quantity of pint becomes a number in SI; empty for another library's."""
     try:
         unit = f"{value.to_base_units().units:~}" or "dimensionless"
     except (AttributeError, ValueError):
@@ -54,7 +54,7 @@ _SEQUENCES = (list, tuple, Sequence, Iterable, Collection)
 _MAPPINGS = (dict, Mapping)
 _NUMERIC = ("f", "i", "u")  # NumPy's letters for kinds of numbers
 _OF_NUMBERS = (float, int, Any)
-_PLAIN = (str, bytes, bool, int, float, complex, type(None), list, tuple, dict, set)  # shown as they are
+_PLAIN = (str, bytes, bool, int, float, complex, type(None), list, tuple, dict, set)  # shown by their repr
 _WORDS = {str: "a text", bool: "True or False", int: "a whole number", float: "a number", os.PathLike: "a path"}
 _MAKERS = {
     "Structure": "gbeam.assemble",
@@ -66,12 +66,12 @@ _MAKERS = {
 
 
 def typed(function: F) -> F:
-    """Let a function, or the constructor of a class, refuse arguments that are not what their annotations say.
+    """Decorate a function or class, so that it refuses arguments that do not fit its annotations.
 
-    The error is an InputError with the argument's name; missing and unknown arguments stay Python's TypeError. A text
-    with a unit, as scenarios have it, and pint's quantities are read where the argument has a kind of quantity
-    (`gbeam.guards.kinds`); elsewhere numbers with a unit are refused. Another text for a number, or a fraction for a
-    whole one, is refused only where the call fails: the checks of values know more of them.
+    The error is an InputError with the argument's name; missing and unknown arguments stay Python's TypeError. Texts
+    with a unit and pint's quantities become SI where the argument has a kind of quantity (`gbeam.guards.kinds`);
+    elsewhere numbers with a unit are refused. Other texts for numbers, and fractions for whole numbers, are refused
+    only if the call fails: its own checks of values say more about them. ``progress=True`` becomes a Bar.
     """
     if isinstance(function, type):
         function.__init__ = typed(function.__init__)  # type: ignore[misc]
@@ -99,7 +99,7 @@ def _typed(function: F, method: bool = False) -> F:
     of = owner if method else ""
     kinds = (Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD)
     names = [each.name for each in signature(function).parameters.values() if each.kind in kinds]
-    later = str(signature(function).return_annotation).startswith("Iterator")  # which shows its own bar
+    generates = str(signature(function).return_annotation).startswith("Iterator")  # and shows its own bar
 
     def check(pairs: Iterable[tuple[str, Any]], texts: bool) -> None:
         tests = _tests(function, texts, of)
@@ -115,7 +115,7 @@ def _typed(function: F, method: bool = False) -> F:
         if method and not keywords and all(map(_is_bare, args[1:])):
             return function(*args)
         pairs = (*zip(names, args, strict=False), *keywords.items())
-        if not later and ("progress", True) in pairs:
+        if not generates and ("progress", True) in pairs:
             with Bar() as bar:
                 return call(**dict(pairs) | {"progress": bar})
         if any(type(value) not in _NUMBERS for _, value in pairs):
@@ -143,7 +143,7 @@ def _holds_jax(value: Any) -> bool:
 
 
 def _is_bare(value: Any) -> bool:
-    """True of a number, an array of NumPy's of numbers, or a plain list or mapping of these."""
+    """True for a number, an array of numbers of NumPy, and a plain list or mapping of these."""
     kind = type(value)
     if kind in _NUMBERS:
         return True
@@ -156,19 +156,20 @@ def _is_bare(value: Any) -> bool:
 
 
 def _read(owner: str, arguments: Mapping[str, Any], name: str, value: Any) -> Any:
-    """An argument in SI, where it is a quantity, or holds some, as text or of pint."""
+    """Return an argument with its texts with a unit, and quantities of pint, in SI."""
     kinds = "" if _is_bare(value) else kind_of_argument(owner, name, arguments)
     return in_si(name, value, kinds) if kinds else value
 
 
 @functools.cache
 def _tests(function: Callable[..., Any], texts: bool, method: str) -> dict[str, Test]:
+    """Test of every annotated argument by name; with `texts` texts pass as numbers."""
     return {name: _test(hint, texts) for name, hint in _hints(function, method).items()}
 
 
 @functools.cache
 def _hints(function: Callable[..., Any], method: str) -> dict[str, Any]:
-    """Types of the arguments; any, where a name is imported for type checkers only, but where a method's has a kind."""
+    """Types of the arguments by name; names imported for type checkers only are Any, or numbers of a method."""
     from numpy.typing import ArrayLike
 
     unknown: dict[str, Any] = {}
@@ -183,7 +184,7 @@ def _hints(function: Callable[..., Any], method: str) -> dict[str, Any]:
 
 
 def _alternatives(hint: Any) -> tuple[Any, ...]:
-    """The types of a union; array_like, which is a union, stands for itself."""
+    """Types of a union; ArrayLike, which is a union too, stays one type."""
     from numpy.typing import ArrayLike
 
     parts = get_args(hint) if get_origin(hint) in (Union, types.UnionType) else (hint,)
@@ -192,20 +193,20 @@ def _alternatives(hint: Any) -> tuple[Any, ...]:
 
 
 def _test(hint: Any, texts: bool) -> Test:
-    """Test of whether a value may be what a type hint says; with `texts` a text may be a number."""
+    """Return a test of values for a type hint; with `texts` it lets texts pass as numbers."""
     tests = [_single(each, texts) for each in _alternatives(hint)]
     return tests[0] if len(tests) == 1 else lambda value: any(test(value) for test in tests)
 
 
 def _single(kind: Any, texts: bool) -> Test:
-    """Test of a type that is no union."""
+    """Return a test of values for a type that is no union."""
     from numpy.typing import ArrayLike
 
     origin, parts = get_origin(kind) or kind, get_args(kind)
     if kind is ArrayLike:
         return lambda value: _are_numbers(value, texts)
     if origin is Literal:
-        return lambda value: isinstance(value, str)  # which one is checked where it is used
+        return lambda value: isinstance(value, str)  # the word is checked by the function
     if origin is bool:
         return lambda value: isinstance(value, bool) or _kind(value) == "b"
     if origin is int and not texts:
@@ -219,7 +220,7 @@ def _single(kind: Any, texts: bool) -> Test:
         return lambda value: _has_elements(value, origin) and wrong(value) is None
     if is_typeddict(kind):
         entries = {name: _test(hint, texts) for name, hint in get_type_hints(kind).items()}
-        # Which names there are is checked where they are used.
+        # Unknown names are refused by the function.
         return lambda value: (
             isinstance(value, Mapping) and all(entries[key](each) for key, each in value.items() if key in entries)
         )
@@ -234,11 +235,12 @@ def _single(kind: Any, texts: bool) -> Test:
 
 
 def _kind(value: Any) -> str:
-    """NumPy's letter for the kind of an array's elements; empty of what is no array."""
+    """NumPy's letter for the kind of an array's elements; empty for no array."""
     return str(getattr(getattr(value, "dtype", None), "kind", ""))
 
 
 def _is_number(value: Any, texts: bool) -> bool:
+    """True for numbers, arrays and what has ``__float__``; for texts that do not begin with a number if `texts`."""
     if isinstance(value, (float, int)) or _kind(value) in _NUMERIC:
         return True
     if isinstance(value, str):
@@ -254,21 +256,21 @@ def _are_numbers(value: Any, texts: bool) -> bool:
 
 
 def _has_elements(value: Any, origin: Any) -> bool:
-    """True if a value has elements, in order but where any iterable will do."""
+    """True for a sequence, or any iterable if `origin` is Iterable, but not for texts, mappings and types."""
     if isinstance(value, (str, bytes, Mapping, type)):
         return False
     return isinstance(value, Iterable) if origin is Iterable else hasattr(value, "__getitem__")
 
 
 def _first_wrong(kind: Any, texts: bool) -> Callable[[Any], int | None]:
-    """Number of the first element that is not of the type that it should have; None where none is."""
+    """Return a function that gives the index of the first element of a wrong type in a list, or None."""
     parts = get_args(kind)
     fixed = get_origin(kind) is tuple and Ellipsis not in parts
     tests = [_test(each, texts) for each in parts if each is not Ellipsis]
 
     def find(value: Any) -> int | None:
         if not tests or not isinstance(value, Collection) or (_kind(value) in _NUMERIC and parts[0] in _OF_NUMBERS):
-            return None  # a look at what is no collection would consume it
+            return None  # to look at another iterable would consume it
         if fixed and len(value) != len(parts):
             return len(parts)
         return next((k for k, each in enumerate(value) if not tests[k if fixed else 0](each)), None)
@@ -277,7 +279,7 @@ def _first_wrong(kind: Any, texts: bool) -> Callable[[Any], int | None]:
 
 
 def _refused(name: str, value: Any, hint: Any, texts: bool) -> InputError:
-    """The error of an argument, or of the first of its elements that is wrong."""
+    """Error of an argument, or of its first wrong element."""
     for kind in _alternatives(hint):
         if is_typeddict(kind) and isinstance(value, Mapping):
             for key, entry in get_type_hints(kind).items():
@@ -305,7 +307,7 @@ def _described(hint: Any) -> str:
 
 
 def _word(kind: Any) -> str:
-    """Name with its article of what an argument of a type may be."""
+    """Words, for a message, for a value of a type, such as a number."""
     from numpy.typing import ArrayLike
 
     origin, parts = get_origin(kind) or kind, get_args(kind)
@@ -326,7 +328,7 @@ def _word(kind: Any) -> str:
     if origin in _MAPPINGS:
         return f"a mapping from text to {_described(parts[1])}"
     name = getattr(origin, "__name__", str(origin))
-    if getattr(origin, "_is_protocol", False):  # such as Motion, whose first line says which classes are
+    if getattr(origin, "_is_protocol", False):  # such as Motion, whose docstring begins with the classes that fit
         line = str(origin.__doc__ or name).splitlines()[0].rstrip(".")
         return line[0].lower() + line[1:]
     how = f" (from {_MAKERS[name]})" if name in _MAKERS else ""

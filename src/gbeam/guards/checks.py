@@ -1,8 +1,8 @@
-"""Checks of single values, shared by all who build objects; one table of plausible and of possible ranges.
+"""Checks of single values for the constructors of objects; one table of plausible and of possible ranges.
 
-What JAX traces has no value to check: it passes, so that objects can be built under ``grad`` and ``vmap``. An
-implausible value is computed with and warned of, with the slip of a unit that it looks like; an impossible one, with
-which nothing can be computed, is refused.
+Values that JAX traces pass unchecked, so that objects can be built under ``grad`` and ``vmap``. An implausible value
+is computed with, and a warning names the unit that was probably meant; an impossible one, with which nothing can be
+computed, is refused.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from gbeam.printable import closest, shortened
 
 
 def positive(where: str, value: Any, unit: str, *, zero: bool = False) -> Any:
-    """Return `value` as a float if it is finite and positive (or zero, where `zero` allows it)."""
+    """Return `value` as a float; InputError unless it is finite and positive, or zero with `zero`."""
     if is_jax(value):
         return value
     number = _number(where, value, f"give a number in {unit}")
@@ -31,7 +31,7 @@ def positive(where: str, value: Any, unit: str, *, zero: bool = False) -> Any:
 
 
 def damping_ratios(where: str, value: Any) -> None:
-    """Raise InputError where a ratio of critical damping, or one of several, is negative or damps a vibration away."""
+    """Raise InputError unless a ratio of critical damping, or each of several, is from 0 up to, but not, 1."""
     ratios = as_array(value)
     for i, ratio in enumerate(ratios.ravel()):
         if not 0 <= ratio < 1:
@@ -40,7 +40,7 @@ def damping_ratios(where: str, value: Any) -> None:
 
 
 def finite(where: str, value: Any) -> Any:
-    """Return `value` as a float if it is a finite number."""
+    """Return `value` as a float; InputError unless it is a finite number."""
     if is_jax(value):
         return value
     number = _number(where, value, "give a number")
@@ -50,7 +50,7 @@ def finite(where: str, value: Any) -> Any:
 
 
 def array(where: str, value: Any) -> Any:
-    """Return `value` as an array of float64 of its own library."""
+    """Return `value` as an array of float64, of JAX if it is JAX's; InputError for texts."""
     try:
         if _holds_text(value):
             raise TypeError(value)
@@ -60,13 +60,13 @@ def array(where: str, value: Any) -> Any:
 
 
 def refuse_traced(where: str, value: Any, why: str) -> None:
-    """Raise InputError of a number that JAX traces, and say why it cannot be."""
+    """Raise InputError, with the reason `why`, if JAX traces a number."""
     if is_traced(value):
         raise InputError(where, f"is traced by JAX, and {why}", "give a number")
 
 
 def vector(where: str, value: Any) -> Any:
-    """Return `value` as an array of three finite numbers."""
+    """Return `value` as an array of three finite numbers; InputError otherwise."""
     checked = array(where, value)
     if checked.shape != (3,) or not (is_jax(checked) or all(map(math.isfinite, checked))):
         raise InputError(where, f"is {value!r}", "give three finite components, along x, y and z")
@@ -74,7 +74,7 @@ def vector(where: str, value: Any) -> Any:
 
 
 def _holds_text(value: Any) -> bool:
-    """True if a value is a text, or a list of some: NumPy would read them."""
+    """True for a text, or a list with texts, which NumPy would convert to numbers."""
     return isinstance(value, str) or (isinstance(value, (list, tuple)) and any(map(_holds_text, value)))
 
 
@@ -97,7 +97,7 @@ def choice(where: str, name: str, choices: Iterable[str]) -> None:
 
 
 def index_of(where: str, name: str, names: Sequence[str]) -> int:
-    """Return the index of a name among some; InputError where it is none of them."""
+    """Return the index of a name in `names`; InputError if it is not among them."""
     if name not in names:
         raise InputError(where, f"is {name!r}", f"choose from {', '.join(names)}")
     return names.index(name)
@@ -112,7 +112,7 @@ class Range:
     least: float  # possible
     most: float  # likewise
     unit: str  # SI
-    slips: tuple[tuple[str, float], ...] = ()  # (unit, size) in which a number may have been meant
+    slips: tuple[tuple[str, float], ...] = ()  # units, with sizes, in which a number may have been meant
 
 
 _LENGTHS = (("mm", 1e-3), ("cm", 1e-2), ("um", 1e-6), ("m", 1.0))
@@ -138,7 +138,7 @@ RANGES = {
 
 
 def implausible(where: str, kind: str, value: Any) -> tuple[str, ...]:
-    """A warning, or none."""
+    """Return a tuple with a warning of a value outside the plausible range; empty if it is plausible."""
     limits = RANGES[kind]
     if is_jax(value) or limits.low <= abs(value) <= limits.high:
         return ()
@@ -149,7 +149,7 @@ def implausible(where: str, kind: str, value: Any) -> tuple[str, ...]:
 
 
 def possible(where: str, kind: str, value: Any) -> None:
-    """Raise InputError where nothing can be computed with a value."""
+    """Raise InputError if a value is outside the range that can be computed with."""
     limits = RANGES[kind]
     if is_jax(value) or limits.least <= abs(value) <= limits.most:
         return
@@ -159,7 +159,7 @@ def possible(where: str, kind: str, value: Any) -> None:
 
 
 def _slip(limits: Range, value: float) -> str:
-    """Number in the first other unit in which it is plausible; empty where there is none."""
+    """Value as text in the first other unit in which it would be plausible; empty if there is none."""
     for unit, size in limits.slips:
         if unit != limits.unit and limits.low < abs(value) * size <= limits.high:
             return f"{value:g} {unit}"

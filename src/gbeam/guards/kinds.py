@@ -1,4 +1,4 @@
-"""The kinds of quantity of scenarios and of public functions, and the units that most files write them in."""
+"""Kinds of quantity of scenarios and of arguments of public functions, and their most frequent units."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ _BY_KIND = {
     "ratio": "damping_ratio fatigue_exponent poissons_ratio robust shear_coefficient_y shear_coefficient_z tolerance",
 }
 _BY_NAME = {name: kind for kind, names in _BY_KIND.items() for name in names.split()}
-# Of a function or a class, the arguments whose names mean something else elsewhere; of no kind where it is not known.
+# By function or class: kinds of arguments that differ from those of others of their name; "" where there is none.
 _BY_OWNER: dict[str, dict[str, Declared]] = {
     "AxisLimit": {"acceleration": "angular acceleration", "jerk": "angular jerk"},
     "Case": {"tolerance": ""},
@@ -168,21 +168,21 @@ def kinds(**declared: Declared) -> Callable[[T], T]:
 
 
 def kind_of_argument(owner: str, name: str, arguments: Mapping[str, Any]) -> Kinds:
-    """Return the kind of quantity of one of the arguments of a public function or class; empty where it has none."""
+    """Return the kinds of quantity of an argument of a public function or class; empty if it has none."""
     declared = _BY_OWNER.get(owner, {}).get(name, _BY_NAME.get(name, ""))
     return declared(arguments) if callable(declared) else declared
 
 
 def below(of: Kinds, key: Any) -> Kinds:
-    """Return the kinds of what an argument of some kinds holds at a key, or at a place in order."""
+    """Return the kinds of the element at a key or index of an argument of these kinds."""
     if isinstance(of, Mapping) and isinstance(key, str):
         return of.get(key, of.get("*", ""))
     return of[key] if isinstance(of, tuple) and key in range(len(of)) else only(of)
 
 
 def only(of: Kinds) -> str:
-    """Return the kind that all have; empty where they differ."""
+    """Return the kind that all elements have; empty if they differ."""
     if isinstance(of, str):
         return of
-    each = {only(one) for one in (of.values() if isinstance(of, Mapping) else of)}
-    return each.pop() if len(each) == 1 else ""
+    common = {only(element) for element in (of.values() if isinstance(of, Mapping) else of)}
+    return common.pop() if len(common) == 1 else ""

@@ -1,6 +1,6 @@
-"""Limits of all input, in one table, and of processes: what is more is refused before it is read or allocated.
+"""Limits of all input, in one table, and of processes: larger input is refused before it is read or allocated.
 
-Each limit is far beyond what a sound scenario holds; a refusal says what it would have cost.
+Each limit is far beyond a sensible scenario; a refusal says what the input would have cost.
 """
 
 from __future__ import annotations
@@ -45,8 +45,8 @@ COLUMNS = 10_000  # of one matrix
 ELEMENTS = 32_000_000  # of one array of a file
 SAMPLES = 4_000_000
 
-# Of the process that reads a file by a library in C; besides, three times the file's size, and a second for each
-# READER_RATE bytes of it.
+# Limits of a process that reads a file by a library in C, to which three times the file's size, and a second for each
+# READER_RATE bytes of it, are added.
 READER_BYTES = 2**30  # of address space, of which the libraries take 0.2 GB
 READER_SECONDS = 10  # of processor time
 READER_RATE = 2**24
@@ -54,13 +54,13 @@ MESHER_BYTES, MESHER_SECONDS = 2**33, 600  # of Gmsh, which meshes what it reads
 
 
 def refuse_more(where: str, what: str, count: float, most: int, each: float, fix: str) -> None:
-    """Raise InputError if `count` is more than `most`, with the memory that it would take."""
+    """Raise InputError if `count` is above `most`; its message has the memory, at `each` bytes, that it would take."""
     if not count <= most:
         raise InputError(where, f"makes {count:.4g} {what}, which would take {in_bytes(count * each)}", fix)
 
 
 def refuse_large_file(where: str, path: str | os.PathLike[str], most: int, fix: str) -> None:
-    """Raise InputError unless `path` is a file, with no more bytes than `most`; of what cannot be read, OSError."""
+    """Raise InputError unless `path` is a regular file of at most `most` bytes; OSError if it cannot be accessed."""
     status = os.stat(path)
     if stat.S_ISDIR(status.st_mode):
         raise InputError(where, f"{path} is a folder", "give the path of a file")
@@ -71,7 +71,7 @@ def refuse_large_file(where: str, path: str | os.PathLike[str], most: int, fix: 
 
 
 def in_bytes(count: float) -> str:
-    """Write a number of bytes: ``24 GB``."""
+    """Return a number of bytes as text: ``24 GB``."""
     for unit in ("B", "kB", "MB", "GB"):
         if count < 1000:
             return f"{count:.3g} {unit}"
@@ -80,7 +80,7 @@ def in_bytes(count: float) -> str:
 
 
 def existing(path: Path) -> bool:
-    """True if there is anything at a path; False for one that no file can have."""
+    """True if a path exists; False also for one that no file can have."""
     try:
         return path.exists()
     except (OSError, ValueError):  # too long, or with a null character
@@ -91,9 +91,9 @@ _END_WITH_PARENT = 1  # PR_SET_PDEATHSIG of prctl(2)
 
 
 def restrict(memory: int, seconds: int) -> None:
-    """Limit this process and what it becomes to an address space, bytes, and a processor time, s.
+    """Limit the address space, bytes, and processor time, s, of this process and of programs that replace it.
 
-    Windows has neither limit, and macOS none of memory. A lower limit that was inherited stays.
+    Windows has neither limit, and macOS none of memory. Lower inherited limits stay.
     """
     if sys.platform == "win32":
         return
@@ -102,14 +102,14 @@ def restrict(memory: int, seconds: int) -> None:
     wanted = {resource.RLIMIT_CPU: (seconds, seconds + 5), resource.RLIMIT_CORE: (0, 0)}
     if sys.platform != "darwin":
         wanted[resource.RLIMIT_AS] = (memory, memory)
-    for kind, ends in wanted.items():
-        before = resource.getrlimit(kind)[1]
-        soft, hard = (end if before == resource.RLIM_INFINITY else min(end, before) for end in ends)
+    for kind, pair in wanted.items():
+        inherited = resource.getrlimit(kind)[1]
+        soft, hard = (limit if inherited == resource.RLIM_INFINITY else min(limit, inherited) for limit in pair)
         resource.setrlimit(kind, (soft, hard))
 
 
 def end_with_parent(parent: int) -> None:
-    """Let the system kill this process where the one that started it ends, or has ended; Linux alone does."""
+    """Have the system kill this process when its parent ends, or end now if it has ended; on Linux only."""
     if sys.platform == "linux":
         import ctypes
         import signal
@@ -120,7 +120,7 @@ def end_with_parent(parent: int) -> None:
 
 
 def read_json(file: Path, fix: str) -> dict[str, Any]:
-    """Return the object that a file holds."""
+    """Return the JSON object in a file; InputError, with `fix`, if there is none."""
     try:
         refuse_large_file("", file, TEXT_BYTES, fix)
         value = parse_json(file.read_text(encoding="utf-8"))
@@ -136,18 +136,18 @@ def read_json(file: Path, fix: str) -> dict[str, Any]:
 
 
 def parse_json(text: str) -> Any:
-    """Return what a text holds."""
+    """Return the value of a text of JSON; ValueError if it is wrong or nested too deeply."""
     try:
         value = json.loads(text)
     except RecursionError:
         raise ValueError("nested too deeply") from None
     level = [value]
     for _ in range(NESTING):
-        level = [each for one in level if isinstance(one, (dict, list)) for each in _inside(one)]
+        level = [child for node in level if isinstance(node, (dict, list)) for child in _inside(node)]
         if not level:
             return value
     raise ValueError("nested too deeply")
 
 
-def _inside(one: dict[str, Any] | list[Any]) -> Any:
-    return one.values() if isinstance(one, dict) else one
+def _inside(node: dict[str, Any] | list[Any]) -> Any:
+    return node.values() if isinstance(node, dict) else node

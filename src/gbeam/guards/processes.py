@@ -1,7 +1,7 @@
-"""Processes: foreign files are read in one of their own, with limits of memory and time; locks let one work at a time.
+"""Reading of foreign files in a process of its own, with limits of memory and time; and locks between processes.
 
-The libraries in C that read MAT, HDF5 and netCDF trust what they read: a few bytes end the process that calls them,
-keep it busy for ever, or fill the memory. In another process that is a message.
+The libraries in C that read MAT, HDF5 and netCDF trust their input: a few wrong bytes crash the process, keep it busy
+forever, or fill the memory. In a process of its own that becomes an error with a message.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ from gbeam.guards.limits import READER_BYTES, READER_RATE, READER_SECONDS, end_w
 
 _START = "import json, sys; sys.path[:] = json.loads(sys.argv[1]); from gbeam.guards.processes import serve; serve()"
 LIMITED = "from gbeam.guards.processes import limited; limited()"
-_PATIENCE = 6  # times the processor time: a disk, or a machine that does other things as well
+_PATIENCE = 6  # wall-clock time over processor time, for a slow disk or a busy machine
 _ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-_PLAIN = "biufcS"  # kinds of arrays that are bytes; those of objects hold text
+_PLAIN = "biufcS"  # NumPy's kinds of arrays that are sent as bytes; others hold text
 _OUT_OF_MEMORY = 77  # exit status
 
 
@@ -43,8 +43,8 @@ def confined(
     memory: int | None = None,
     seconds: int | None = None,
 ) -> Any:
-    """Call ``reader(path, *arguments)`` in a process of its own, with so many bytes and s of processor time, those of a
-    reader unless given, and more for large files; return what it returns.
+    """Return ``reader(path, *arguments)``, called in a process of its own with limits of `memory`, bytes, and processor
+    time, `seconds`, which grow with the file. `refuse` makes the error of a file that exceeds them or ends the process.
     """
     size = os.stat(path).st_size
     memory, seconds = (memory or READER_BYTES) + 3 * size, (seconds or READER_SECONDS) + size // READER_RATE
@@ -71,11 +71,11 @@ def confined(
         if status == -getattr(signal, "SIGXCPU", 0):
             raise refuse(f"takes more than {seconds} s of processor time to read")
         if status:
-            name = next((each.name for each in signal.Signals if each == -status), f"status {status}")
+            name = next((known.name for known in signal.Signals if known == -status), f"status {status}")
             raise refuse(f"is damaged: it ends the library that reads it ({name})")
-        outcome, answer, said = _received(reply)
-    for each in said:
-        warnings.warn(each, stacklevel=2)
+        outcome, answer, messages = _received(reply)
+    for message in messages:
+        warnings.warn(message, stacklevel=2)
     if outcome == "refused":
         raise InputError(*answer)
     if outcome == "defect":
@@ -84,20 +84,21 @@ def confined(
 
 
 def serve() -> None:
-    """Answer the request on standard input with a file of arrays on standard output."""
+    """Answer the request on standard input, in JSON, by arrays as a file of NumPy on standard output."""
     parent, memory, seconds, (module, name), arguments = json.load(sys.stdin)
     end_with_parent(parent)
     restrict(memory, seconds)
     try:
-        with os.fdopen(os.dup(1), "wb") as reply, warnings.catch_warnings(record=True) as said:
-            os.dup2(2, 1)  # what a library prints is no answer
-            _send(*_answer(module, name, arguments), said, reply)
+        with os.fdopen(os.dup(1), "wb") as reply, warnings.catch_warnings(record=True) as caught:
+            os.dup2(2, 1)  # libraries may print: not into the answer
+            _send(*_answer(module, name, arguments), caught, reply)
     except MemoryError:
         os._exit(_OUT_OF_MEMORY)
     os._exit(0)  # at once: nothing has to be cleaned up
 
 
 def _answer(module: str, name: str, arguments: Sequence[Any]) -> tuple[str, Any]:
+    """Outcome of a call, done, refused or defect, and its value, the parts of its InputError, or its traceback."""
     try:
         return "done", getattr(import_module(module), name)(*arguments)
     except InputError as error:
@@ -110,9 +111,9 @@ def _answer(module: str, name: str, arguments: Sequence[Any]) -> tuple[str, Any]
         return "defect", format_exc()
 
 
-def _send(outcome: str, answer: Any, said: Iterable[warnings.WarningMessage], reply: IO[bytes]) -> None:
+def _send(outcome: str, answer: Any, caught: Iterable[warnings.WarningMessage], reply: IO[bytes]) -> None:
     arrays: list[NDArray[Any]] = []
-    text = json.dumps(_packed([outcome, answer, [str(each.message) for each in said]], arrays))
+    text = json.dumps(_packed([outcome, answer, [str(warning.message) for warning in caught]], arrays))
     np.savez(reply, np.frombuffer(text.encode(), dtype=np.uint8), *arrays)
 
 
@@ -123,7 +124,7 @@ def _received(reply: IO[bytes]) -> Any:
 
 
 def _packed(value: Any, arrays: list[NDArray[Any]]) -> Any:
-    """Return the value with its arrays replaced by their numbers in a list, as JSON has it."""
+    """Return the value for JSON, its arrays replaced by their numbers, from 1, in the list `arrays`, which grows."""
     if isinstance(value, dict):
         return {"mapping": {str(key): _packed(each, arrays) for key, each in value.items()}}
     if isinstance(value, (list, tuple)):
@@ -150,12 +151,12 @@ def _unpacked(value: Any, arrays: Any) -> Any:
 
 
 _TAKEN = (errno.EAGAIN, errno.EACCES, errno.EDEADLK)
-_BEYOND = 2**30  # where Windows locks a byte: a locked one can't be read
+_BEYOND = 2**30  # offset of the byte that Windows locks, which then cannot be read
 
 
 @contextmanager
 def alone(file: Path, where: str, fix: str) -> Iterator[None]:
-    """Hold a lock file, whose folder exists, and say in it which process does."""
+    """Hold a lock file, with this process's name in it; InputError, with the holder's, if another process holds it."""
     try:
         handle = os.open(file, os.O_RDWR | os.O_CREAT, 0o600)
     except OSError as error:
@@ -173,7 +174,7 @@ def alone(file: Path, where: str, fix: str) -> Iterator[None]:
 
 
 def _taken(handle: int) -> bool:
-    """Take the lock of a file, until that is closed; True also where the file system has no locks."""
+    """Lock a file until it is closed; return false if it is locked, true also if the file system has no locks."""
     try:
         if sys.platform == "win32":
             import msvcrt
@@ -192,10 +193,10 @@ def _taken(handle: int) -> bool:
 
 
 def limited() -> None:
-    """Become ``python -m gbeam ARGUMENTS`` with limits, which stay, by the arguments BYTES, SECONDS, ARGUMENTS."""
+    """Replace this process, with arguments BYTES SECONDS ARGUMENTS, by a limited ``python -m gbeam ARGUMENTS``."""
     memory, seconds, *arguments = sys.argv[1:]
     command = [sys.executable, "-m", "gbeam", *arguments]
-    if sys.platform == "win32":  # has no such limits, and starts another process where others become one
+    if sys.platform == "win32":  # without limits, and execv would start a second process
         sys.exit(subprocess.call(command))
     restrict(int(memory), int(seconds))
     os.execv(sys.executable, command)

@@ -78,7 +78,7 @@ class UnitError(ValueError):
 
 
 def quantity(value: object, kind: str) -> float:
-    """Read a quantity into SI."""
+    """Return a number, or a text with a unit, as a float in SI; UnitError unless it is of that kind and finite."""
     expected = KINDS[kind]
     such_as = f'{expected.phrase}, such as "{expected.example}"'
     # bool is an int to Python, a mistake to the reader of a scenario.
@@ -116,15 +116,16 @@ def quantity(value: object, kind: str) -> float:
 
 
 def in_si(where: str, value: Any, kinds: Kinds) -> Any:
-    """Return a value, or what a list or a mapping holds, in SI: texts that begin with a number and pint's quantities.
+    """Return a value, list or mapping in which texts that begin with a number, and pint's quantities, are in SI.
 
-    Raises InputError where one is of another kind. What is neither stays what it is.
+    Raises InputError if one is of another kind; all else stays as it is.
     """
     if isinstance(value, dict):
         return {key: in_si(f"{where}.{key}", each, below(kinds, key)) for key, each in value.items()}
     if isinstance(value, (list, tuple)):
         parts = [in_si(f"{where}[{i}]", each, below(kinds, i)) for i, each in enumerate(value)]
-        return value if all(one is other for one, other in zip(parts, value, strict=True)) else type(value)(parts)
+        unchanged = all(part is element for part, element in zip(parts, value, strict=True))
+        return value if unchanged else type(value)(parts)
     kind = only(kinds)
     if kind in ("", PLAIN):
         return value
@@ -142,7 +143,7 @@ def in_si(where: str, value: Any, kinds: Kinds) -> Any:
 
 
 def _of_pint(value: Any, kind: str) -> Any:
-    """A quantity of pint in SI, or as the text of a scenario."""
+    """Return a quantity of pint as a number in SI, or, for the kind WRITTEN, as text of a scenario."""
     unit, number = re.sub(r"\bg\b", "gram", f"{value.units:~P}"), value.magnitude
     if kind == WRITTEN:
         texts = [f"{float(each)!r} {unit}".strip() for each in getattr(number, "flat", [number])]
@@ -155,13 +156,13 @@ def _of_pint(value: Any, kind: str) -> Any:
 
 
 def argument(text: str, kind: str) -> float:
-    """Read a quantity of the command line, where a bare number is text too: ``2.5`` is SI, ``60 rpm`` is not."""
+    """Read a quantity of the command line in SI: ``60 rpm``, or a bare number such as ``2.5``, which is in SI."""
     match = NUMBER.fullmatch(text) if len(text) <= QUANTITY else None
     return quantity(float(text) if match and not match[2] else text, kind)
 
 
 def read_quantity(where: str, text: str, kind: str, of: str = "") -> float:
-    """Read a quantity of the command line; the InputError of what is none begins with the words it is `of`."""
+    """Read a quantity of the command line in SI; the problem of an InputError at `where` begins with `of`."""
     try:
         return argument(text, kind)
     except UnitError as error:
@@ -169,14 +170,14 @@ def read_quantity(where: str, text: str, kind: str, of: str = "") -> float:
 
 
 def unit_of(text: str, kind: str) -> tuple[str, float]:
-    """Unit of a quantity of the command line, and its SI value: ``60 rpm`` is in rpm, of 2π/60 rad/s; bare ones SI."""
+    """Return the unit of a quantity and its size in SI: rpm and 2π/60 for ``60 rpm``; the SI unit of a bare number."""
     match = NUMBER.fullmatch(text)
     unit = (match[2] if match else "") or KINDS[kind].unit
     return unit, _factor(unit, kind)
 
 
 def spoken(value: object) -> str:
-    """Name a value of the wrong type as a scenario file would: ``true``, ``'text'``, ``1.5``, ``a list``."""
+    """Return a value of the wrong type in the words of a scenario: ``true``, ``'text'``, ``1.5``, ``a list``."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, (int, float, str)):
@@ -231,7 +232,7 @@ def parsed_factor(unit: str, kind: str) -> float:
 
 
 def _meant(name: str, unit: str, kind: str) -> str | None:
-    """Unit that an unknown name was probably meant to be; None where no usual spelling makes the kind."""
+    """Usual spelling that an unknown unit `name` in `unit` was probably meant to be; None if none gives the kind."""
     registry = _registry()
 
     def makes_the_kind(spelling: str) -> bool:
@@ -244,16 +245,16 @@ def _meant(name: str, unit: str, kind: str) -> str | None:
     def mistyped(spelling: str) -> int:
         return sum(a != b for a, b in zip(name.lower(), spelling.lower(), strict=True))
 
-    for parted in (re.sub("([2-4])$", r"^\1", name), re.sub("N(m+)$", r"N \1", name)):  # mm2, kNm
-        if parted != name and makes_the_kind(parted):
-            return parted
+    for corrected in (re.sub("([2-4])$", r"^\1", name), re.sub("N(m+)$", r"N \1", name)):  # mm2, kNm
+        if corrected != name and makes_the_kind(corrected):
+            return corrected
     fitting = [each for each in _SPELLINGS.split() if makes_the_kind(each)]
     as_long = [each for each in fitting if len(each) == len(name) > 1 and mistyped(each) <= 1]
     return min(as_long, key=mistyped, default=None) or closest(name, fitting)
 
 
 def _converted(amount: Any, kind: str, expected: Kind) -> float:
-    """SI value of an amount of pint's; UnitError if it is of another kind."""
+    """Number in SI of an amount of pint's; UnitError if it is of another kind."""
     registry = _registry()
     if kind == "frequency" and amount.dimensionality == registry.parse_units("rad/s").dimensionality:
         return float(amount.to("hertz").magnitude)
@@ -270,7 +271,7 @@ def _registry() -> UnitRegistry[Any]:
 
 
 def _what(dimensionality: Any) -> str:
-    """Say what a quantity of this dimension is: ``is a mass``."""
+    """Return words for a dimension, such as ``is a mass``, for a message."""
     registry = _registry()
     for kind in KINDS.values():
         if registry.parse_units(kind.unit).dimensionality == dimensionality:
