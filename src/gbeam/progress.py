@@ -67,18 +67,19 @@ class Bar:
 
     def _show(self) -> None:
         """Draw a bar after some patience, or write lines if there is no terminal, until the computation is over."""
-        every = _interval()
-        if self._over.wait(self._patience if every is None else every):
+        interval = _interval()
+        if self._over.wait(self._patience if interval is None else interval):
             return
-        if every is None and (sys.stderr.isatty() or _in_notebook()):
+        if interval is None and (sys.stderr.isatty() or _in_notebook()):
             self._draw()
             return
         while True:
             self._say()
-            if self._over.wait(EVERY if every is None else every):
+            if self._over.wait(EVERY if interval is None else interval):
                 return
 
     def _say(self) -> None:
+        """Write a line on stderr, or into the file that the environment names."""
         file = os.environ.get(FILE)
         if not file:
             print(f"gbeam: {self.line()}", file=sys.stderr, flush=True)
@@ -87,6 +88,7 @@ class Bar:
             Path(file).write_text(f"{self.line()}\n", encoding="utf-8")
 
     def _draw(self) -> None:
+        """Draw a bar until the computation is over."""
         from rich.console import Console
         from rich.progress import BarColumn, Progress, TextColumn
 

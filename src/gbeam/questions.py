@@ -91,7 +91,7 @@ class Question:
     # Function of a case, the name of a motion or None, the time at which it is frozen or None, needs, and options by
     # keyword; it returns a record, or a tuple of several.
     answer: Callable[..., Any]
-    motion: str | None = ""  # kind of motion that it asks about, "" for any; None for all motions
+    motion: str | None = ""  # kind of motion that it asks about, "" for any; None for all that can answer
     differentiable: bool = True  # true if its figures are smooth in the scenario's values
     deforms: bool = True  # true if it needs a specimen that deforms
     # Figures that studies take where none is named, for every {motion}, {beam}, centrifuge ({machine}), and centrifuge
@@ -385,7 +385,7 @@ def plan(
     deforms=False,
 )
 def place(case: AnyCase, motion: str | None = None, at: float | None = None, needs: Needs = Needs()) -> Placement:
-    """Best placement, without a check by simulation, which would take longer than ``run`` at the placement."""
+    """Best placement, without the check by simulation, which takes longer: ``run`` at the placement is that check."""
     from gbeam.analysis.imitation.place import place, usual, usual_turns
     from gbeam.analysis.imitation.place_measures import choice_of
 

@@ -56,7 +56,7 @@ def verbs() -> dict[str, Verb]:
     return {
         name: Verb(about, _options(arguments))
         for name, about in program.verbs().items()
-        if (arguments := program.arguments(name))[0].name == "SCENARIO" and name != "check"  # the page checks itself
+        if (arguments := program.arguments(name))[0].name == "SCENARIO" and name != "check"  # the page does that
     }
 
 

@@ -54,6 +54,7 @@ def deliver(
         return signed(facts_of(*answers, title=title, files=files) | dict(facts or {}), origin)
 
     def make(watch: Watch, hidden: Path) -> None:
+        """Write all files into a folder."""
         from gbeam.figures import figures_of
 
         described = figures_of(answer, title) if figures is None else figures

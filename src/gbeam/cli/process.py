@@ -125,7 +125,7 @@ def command() -> str:
     return storable(shlex.join(["gbeam", *_TOKENS.get()]))
 
 
-_ALIKE = 40  # first characters: of warnings that agree in them one is printed
+_ALIKE = 40  # characters: warnings that begin with the same ones are printed once
 _NARROWEST, _WIDEST = 20, 10_000  # columns of a terminal
 _CACHE = re.compile(r"Error (?:reading|writing) persistent compilation cache entry.*?: (.*)", re.DOTALL)
 

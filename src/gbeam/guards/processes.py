@@ -139,6 +139,7 @@ def _packed(value: Any, arrays: list[NDArray[Any]]) -> Any:
 
 
 def _unpacked(value: Any, arrays: Any) -> Any:
+    """Return the value that `_packed` made JSON of, with its arrays."""
     if isinstance(value, list):
         return [_unpacked(each, arrays) for each in value]
     if not isinstance(value, dict):

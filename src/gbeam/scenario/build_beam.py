@@ -159,6 +159,7 @@ def _columns(rows: Table, unit: str | None) -> dict[str, Any]:
 
 
 def _load(parts: Collector, where: str, table: schema.Load) -> Load | None:
+    """A load of a table; None if it is refused."""
     from gbeam.scenario.build_motion import components
     from gbeam.structure.attachments import Load
 

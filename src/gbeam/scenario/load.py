@@ -85,7 +85,7 @@ class Collector:
         self.errors: list[InputError] = []
 
     def attempt(self, where: str, make: Callable[..., Built], *args: Any, **options: Any) -> Built | None:
-        """Return ``make(*args, **options)``, or None if it raises an InputError, which is kept as one of `where`."""
+        """Return ``make(*args, **options)``, or None if it raises an InputError, which is kept, placed at `where`."""
         try:
             return make(*args, **options)
         except InputError as error:

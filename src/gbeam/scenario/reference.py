@@ -82,9 +82,9 @@ class _Page:
                     self.profiles[name] = None
                     continue
                 place = f"[[{inner}]]" if listed else f"[{inner}]"
-                known = self.places.setdefault(name, [])
-                if place not in known:
-                    known.append(place)
+                places = self.places.setdefault(name, [])
+                if place not in places:
+                    places.append(place)
                     self._visit(self.tables[name], inner)
 
     def _heading(self, name: str) -> str:

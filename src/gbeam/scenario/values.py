@@ -176,12 +176,12 @@ def _is_distribution(node: Any) -> bool:
 
 def from_table(name: str, numbers: Any) -> Distribution:
     """Read a distribution from a table ``{ name = numbers }``, of any types."""
-    known = FAMILIES.get(name)
+    family = FAMILIES.get(name)
     plain = isinstance(numbers, list) and all(
         isinstance(each, (str, int, float)) and not isinstance(each, bool) for each in numbers
     )
-    if not plain and known is not None:
-        raise InputError("", f"has no list of numbers in {name}", f"write {{ {name} = [{_named(known)}] }}")
+    if not plain and family is not None:
+        raise InputError("", f"has no list of numbers in {name}", f"write {{ {name} = [{_named(family)}] }}")
     return read_distribution(name, [each if isinstance(each, str) else repr(each) for each in numbers])
 
 

@@ -149,12 +149,12 @@ def ended(facts: Facts) -> tuple[str, str]:
 
 def without_figures(number: int, width: int, error: Exception) -> Row:
     """Row of a case that raised `error`: no figures, an outcome by the error's type, and its message."""
-    nothing = (math.nan,) * width
+    unknown = (math.nan,) * width
     if isinstance(error, ComputationError):
-        return Row(number, nothing, error.outcome, _line(error))
+        return Row(number, unknown, error.outcome, _line(error))
     if isinstance(error, GbeamError):
-        return Row(number, nothing, "refused", _line(error))
-    return Row(number, nothing, "failed", f"{type(error).__name__}: {_line(error)}")  # a defect, or a measure's own
+        return Row(number, unknown, "refused", _line(error))
+    return Row(number, unknown, "failed", f"{type(error).__name__}: {_line(error)}")  # a defect, or a measure's own
 
 
 def _line(error: Exception) -> str:
@@ -224,10 +224,10 @@ def _answered(inquiry: Inquiry, posed: Sequence[Posed], *, one_structure: bool) 
     answers: dict[int, dict[str, Response | Exception]] = {}  # of cases by index in `posed`, then by motion
     for (k, name), answer in _responses(posed, pairs, settings, one_structure=one_structure):
         number, case, _ = posed[k]
-        known = answers.setdefault(k, {})
-        known[name] = answer
-        if len(known) == len(case.motions):
-            yield _row(inquiry, number, case, {name: known[name] for name in case.motions})
+        by_motion = answers.setdefault(k, {})
+        by_motion[name] = answer
+        if len(by_motion) == len(case.motions):
+            yield _row(inquiry, number, case, {name: by_motion[name] for name in case.motions})
             del answers[k]
 
 

@@ -250,13 +250,13 @@ def _search(
     scale = np.where(start == 0, limits[:, 1] - limits[:, 0], np.abs(start))
     weights = measurement.weights(None, len(start))
     tell_apart(model.slopes(start) * scale * weights[:, None], parameters)
-    first = max(float(np.linalg.norm((before - measured) * weights)), 1.0)
+    first_residual = max(float(np.linalg.norm((before - measured) * weights)), 1.0)
 
     def residual(x: Floats, weights: Floats) -> Floats:
         try:
             return np.asarray((model(x * scale) - measured) * weights)
         except GbeamError:  # the scenario refuses the values, or diverges: the search takes the step back
-            return np.full(len(measured), _IMPOSSIBLE * first / np.sqrt(len(measured)))
+            return np.full(len(measured), _IMPOSSIBLE * first_residual / np.sqrt(len(measured)))
 
     def jacobian(x: Floats, weights: Floats) -> Floats:
         return np.asarray(model.slopes(x * scale) * scale * weights[:, None])
@@ -274,7 +274,7 @@ def _search(
         if change.max() <= (1 + _SETTLED) * change.min():
             break
     misfit = (model(x * scale) - measured) * weights
-    # Where noise is estimated from the residuals the misfit is the same in all searches; else the weights are.
+    # Where noise is estimated from the residuals the misfit is the same in all searches, else the weights are.
     likelihood = float(np.log(weights).sum() - (misfit @ misfit) / 2)
     return Solution(before, x * scale, weights, model.slopes(x * scale) * weights[:, None], likelihood)
 

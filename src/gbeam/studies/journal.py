@@ -116,10 +116,10 @@ class Journal:
             self.read()  # again: another process may have written since
         else:
             refuse_unfinished(self)
-        known = _parsed(self._file.read_bytes()) if resume and self._file.exists() else []
-        whole = [line for line, values in known if values] or [_line({**self._sweep, "figures": list(self.figures)})]
+        lines = _parsed(self._file.read_bytes()) if resume and self._file.exists() else []
+        whole = [line for line, values in lines if values] or [_line({**self._sweep, "figures": list(self.figures)})]
         self._seed = json.loads(whole[0])["crc32"]
-        if known and len(whole) == len(known):
+        if lines and len(whole) == len(lines):
             return
         beside = self._file.with_suffix(".new")
         with open(beside, "wb") as out:

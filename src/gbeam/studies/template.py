@@ -238,10 +238,10 @@ class CaseTemplate:
         return self.case
 
     def quantities(self) -> dict[str, tuple[float, str]]:
-        every = {path_text(path): (value, kind) for path, value, kind in _numbers(self._tree, _KINDS, ())}
+        numbers = {path_text(path): (value, kind) for path, value, kind in _numbers(self._tree, _KINDS, ())}
         # The flight that a machine tracks is a motion of the case already.
         copies = tuple(f"motion.{machine}.flight." for machine in self.case.tracks)
-        return {path: each for path, each in every.items() if not path.startswith(copies)}
+        return {path: number for path, number in numbers.items() if not path.startswith(copies)}
 
     def unit(self, path: str) -> str:
         node: Any = self._tree

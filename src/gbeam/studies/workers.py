@@ -348,13 +348,13 @@ class _Dispatch:
     def _send(self) -> None:
         """Submit batches until enough are under way; cases of killed workers first, each alone."""
         while len(self.under_way) < _AHEAD * self.threads:
-            alone = bool(self.again)
-            batch = [self.again.popleft()] if alone else next(self.left, None)
+            single = bool(self.again)
+            batch = [self.again.popleft()] if single else next(self.left, None)
             if batch is None:
                 return
             future = self.client.submit(compute, gbeam.__version__, self.inquiry, batch, pure=False)
             self.under_way[future] = batch
-            if alone:
+            if single:
                 self.alone.add(future)
             future.add_done_callback(self.done.put)
 

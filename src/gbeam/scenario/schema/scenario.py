@@ -296,6 +296,7 @@ class Environments(Titled):
         yield from ()
 
     def _about_motions(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
+        """Errors of centrifuges that track no flight, or of a response without a duration."""
         for name, motion in self.motion.items():
             if isinstance(motion, Centrifuge):
                 yield from self._tracking(name, motion)

@@ -43,8 +43,8 @@ from gbeam.scenario.schema.scenario import Environments, Titled
 def _kind(body: Any) -> str | None:
     if not isinstance(body, Mapping):
         return getattr(body, "kind", None)
-    known = (name for name, kind in BODIES.items() if kind.known_by and kind.known_by in body)
-    kind = body.get("kind", next(known, None))
+    by_key = (name for name, kind in BODIES.items() if kind.known_by and kind.known_by in body)
+    kind = body.get("kind", next(by_key, None))
     return kind if kind is None or isinstance(kind, str) else str(kind)
 
 
