@@ -17,6 +17,7 @@ import scipy.io
 from scipy import sparse
 
 import gbeam as gb
+from gbeam.io.models.registry import model_of
 from gbeam.motion import constant
 
 pytestmark = pytest.mark.usefixtures("reading_in_process")
@@ -352,3 +353,18 @@ def test_op4_is_read_in_every_form(tmp_path: Path) -> None:
             op4.write(str(path), {"kaa": matrix}, binary=binary, sparse=form)
             read = gb.read_matrix(path, "KAA")
             np.testing.assert_allclose(read.toarray() if sparse.issparse(read) else read, matrix, rtol=1e-15)
+
+
+@pytest.mark.parametrize("order", [("nodes.inp", "grids.bdf"), ("grids.bdf", "nodes.inp")])
+def test_a_node_has_its_axes_whichever_of_two_files_comes_first(tmp_path: Path, order: tuple[str, str]) -> None:
+    """Axes of node 2 by CORD2R (x along y, y against x); node 1 is in the other file only, whose nodes have none."""
+    pytest.importorskip("pyyeti")
+    (tmp_path / "nodes.inp").write_text("*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n", encoding="ascii")
+    cards = ["CORD2R,7,0,0.,0.,0.,0.,0.,1.", ",0.,1.,0.", "GRID,2,0,1.,0.,0.,7", "GRID,3,0,2.,0.,0.,0"]
+    (tmp_path / "grids.bdf").write_text("\n".join(["BEGIN BULK", *cards, "ENDDATA", ""]), encoding="ascii")
+    model = model_of([tmp_path / name for name in order])
+    unknowns = np.array([(node, way) for node in (1, 2, 3) for way in range(1, 7)])
+    places, numbers, _, axes = model.nodes_of(None, unknowns)
+    np.testing.assert_array_equal(numbers, [1, 2, 3])
+    np.testing.assert_array_equal(places, [[0, 0, 0], [1, 0, 0], [2, 0, 0]])
+    np.testing.assert_allclose(axes, [np.eye(3), [[0, -1, 0], [1, 0, 0], [0, 0, 1]], np.eye(3)], atol=1e-12)

@@ -168,12 +168,18 @@ def model_of(paths: Sequence[str | os.PathLike[str]]) -> Model:
 
 
 def _joined(first: dict[str, Any], then: Any) -> dict[str, Any]:
-    """Return the contents of the second file with the nodes of both."""
+    """Return the contents of the second file with the nodes of both, each with the axes of the file that turns it."""
     if not ("numbers" in first and "numbers" in then):
         raise InputError("nodes", "are in two of the files", "give them once")
     new = ~np.isin(then["numbers"], first["numbers"])
-    pairs = {key: (first[key], then[key][new]) for key in ("numbers", "places", "axes") if key in first and key in then}
-    return then | {key: np.concatenate(pair) for key, pair in pairs.items()}
+    nodes = {key: np.concatenate([first[key], then[key][new]]) for key in ("numbers", "places")}
+    if "axes" in first or "axes" in then:
+        nodes["axes"] = np.tile(np.eye(3), (len(nodes["numbers"]), 1, 1))
+        index_of = {number: i for i, number in enumerate(nodes["numbers"].tolist())}
+        for numbers, axes in ((part["numbers"], part["axes"]) for part in (then, first) if "axes" in part):
+            for k in np.flatnonzero(np.abs(axes - np.eye(3)).max(axis=(1, 2)) > 0):  # of two that turn a node the first
+                nodes["axes"][index_of[int(numbers[k])]] = axes[k]
+    return then | nodes
 
 
 def _spread(matrix: Any, rows: Any, all_unknowns: Any) -> Any:
