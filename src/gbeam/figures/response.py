@@ -107,11 +107,11 @@ def _displacement(study: Study, axis: int, *, named: bool) -> Panel:
 def _difference(study: Study, compared: Comparison, axis: int, spans: tuple[Span, ...]) -> Panel:
     """Panel of the difference from flight along an axis, scaled to the times at which the target was not held."""
     difference, covered = compared.difference[:, axis], compared.covered
-    held = difference[covered] if covered.any() else difference
-    scale, unit = scale_of("m", held)
+    counted = difference[covered] if covered.any() else difference
+    scale, unit = scale_of("m", counted)
     # A difference from flight while the target is held must not set the scale.
     limits = ends_of(covered, scale * difference)
-    beyond = limits is not None and largest(difference) > 1.05 * largest(held)
+    beyond = limits is not None and largest(difference) > 1.05 * largest(counted)
     title = f"{compared.centrifuge} − {compared.flight}" + (", scaled to the times compared" if beyond else "")
     line = Line(compared.time, scale * difference, title, **looks(study).get(compared.centrifuge, imitating(0)))
     label = f"difference in {'xyz'[axis]}, {unit}"
@@ -211,10 +211,12 @@ def _carried(
 
 def base(response: Response, title: str = "") -> Figure:
     """Describe the motion of the root."""
-    motion, spans, panels = response.base, stretches(response.axes, response.time), []
+    motion, panels = response.base, []
+    spans = stretches(response.axes, response.time)
     turning = bool(np.any(motion.w_WB_B) or np.any(motion.alpha_WB_B))
     for name in ("a_WO_B", "w_WB_B", "alpha_WB_B") if turning else ("a_WO_B",):
-        values, (words, si) = getattr(motion, name), declared(Base, name)
+        values = getattr(motion, name)
+        words, si = declared(Base, name)
         scale, unit = scale_of(si, values) if name == "a_WO_B" else (1.0, raised(si))
         panel = Panel(f"{words}, {unit}", spans=spans, height=1.0 if turning else 1.6)
         panels.append(components(response.time, scale * values, "xyz", panel))

@@ -47,7 +47,8 @@ def _few(stations: Floats) -> Marks:
 def static(deflections: Sequence[Deflection], title: str = "") -> Figure:
     """Describe where the beam rests, one panel for each direction in which it moves."""
     shapes = [each.displacement for each in deflections]
-    axes, (_, si) = moving(*shapes), declared(Deflection, "displacement")
+    axes = moving(*shapes)
+    si = declared(Deflection, "displacement")[1]
     x_scale, x_unit = scale_of("m", *(each.stations for each in deflections))
     errors = [each.errors.displacement.total for each in deflections]
     panels = []
@@ -90,7 +91,8 @@ def campbell(diagram: Campbell, title: str = "", unit: tuple[float, str] = (1.0,
     shown = near_multiples(diagram.frequency.T, diagram.speed, diagram.orders)
     omitted = len(diagram.direction) - len(shown)
     factor, name = unit
-    speed, top = factor * diagram.speed, 1.05 * float(np.nanmax(diagram.frequency[:, shown]))
+    speed = factor * diagram.speed
+    top = 1.05 * float(np.nanmax(diagram.frequency[:, shown]))
     lines, texts = [], []
     for order in diagram.orders:
         multiple = order * diagram.speed / (2 * np.pi)

@@ -68,7 +68,8 @@ def _drawn(parameter: Parameter, values: Floats, label: str) -> Panel:
 
 def _bands(x: Floats, values: Floats, label: str) -> Panel:
     """Median and the middle nine tenths of the samples over a parameter."""
-    known, quantiles = np.isfinite(values).any(axis=1), np.full((3, len(values)), np.nan)
+    known = np.isfinite(values).any(axis=1)
+    quantiles = np.full((3, len(values)), np.nan)
     quantiles[:, known] = np.nanquantile(values[known], [0.05, 0.5, 0.95], axis=1)
     low, middle, high = quantiles
     return Panel(label, (Line(x, middle, "median", marks="joined"),), areas=(Area(x, low, high, "5 % to 95 %"),))
@@ -76,7 +77,8 @@ def _bands(x: Floats, values: Floats, label: str) -> Panel:
 
 def _histogram(values: Floats, label: str) -> Panel:
     """Histogram of the cases that have a value, with median, 5 and 95 %."""
-    known, title = values[np.isfinite(values)], "lines: median, 5 and 95 %"
+    known = values[np.isfinite(values)]
+    title = "lines: median, 5 and 95 %"
     if not len(known):
         return Panel("cases", title=title, x=label)
     counts, edges = np.histogram(known, bins=max(5, round(math.sqrt(len(known)))))
@@ -116,7 +118,8 @@ def history(result: Sweep, name: str, title: str = "") -> Figure:
     values, time = result.histories[name], result.time
     factor, label = scaled(name, result.units[name], values)
     lines: list[Line] = []
-    areas, note = [], ""
+    areas: list[Area] = []
+    note = ""
     if name in result.statistics:
         statistics, note = result.statistics[name], "dotted: 95 % confidence of the band's edges"
         for k, place in enumerate(list(np.ndindex(statistics.values.shape[:-3]))[:_POINTS]):
@@ -230,7 +233,8 @@ def optimum(result: Optimum, title: str = "") -> Figure:
 
 def sensitivity(result: Sensitivity, name: str, title: str = "") -> Figure:
     """Describe how one measure changes with each parameter."""
-    s, k, chosen = result, result.measures.index(name), result.ranked(name)[:_BARS]
+    s, k = result, result.measures.index(name)
+    chosen = result.ranked(name)[:_BARS]
     size = float(s.figures[k])
     left_out = len(s.parameters) - len(chosen)
     subject = f"{name} = {size:.4g} {raised(s.units[k])}".rstrip()

@@ -61,7 +61,8 @@ def points(response: SystemResponse, title: str = "") -> Figure:
 
 def _moving(moved: np.ndarray) -> list[int]:
     """Indices of the points that move; of points that move alike only the first."""
-    size, chosen = np.abs(moved).max(initial=0.0), list[int]()
+    size = np.abs(moved).max(initial=0.0)
+    chosen: list[int] = []
     for k in range(moved.shape[1]):
         distances = [np.abs(moved[:, k] - moved[:, other]).max(initial=0.0) for other in chosen]
         if np.abs(moved[:, k]).max(initial=0.0) > ROUNDING * size and min(distances, default=np.inf) > ROUNDING * size:
@@ -71,7 +72,8 @@ def _moving(moved: np.ndarray) -> list[int]:
 
 def coordinates(response: SystemResponse, title: str = "") -> Figure:
     """Describe the joints' coordinates and the efforts of their drives."""
-    panels, histories = [], named(response)
+    panels = []
+    histories = named(response)
     size = max((np.abs(history).max(initial=0.0) for history, *_ in histories.values()), default=0.0)
     for name, (history, unit, effort) in histories.items():
         if 0 < np.abs(history).max(initial=0.0) <= ROUNDING * size:  # rounding

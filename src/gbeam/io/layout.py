@@ -132,7 +132,8 @@ def group_of(record: Any, over: tuple[str, ...] = (), pattern: str = "*", unit: 
             continue
         if declaration.optional and unknown(value):
             continue
-        name, after = name_of(key, declaration, pattern), pattern.partition("*")[2]
+        name = name_of(key, declaration, pattern)
+        after = pattern.partition("*")[2]
         dims = tuple(dim + after.lstrip("_") if dim.endswith("_") else dim for dim in (*over, *declaration.dims))
         stated = declaration.unit
         si = unit if stated is BESIDE and unit else stated(record) if callable(stated) else str(stated)

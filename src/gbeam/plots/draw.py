@@ -245,7 +245,8 @@ def _line(axes: Axes, curve: Line, *, named: bool) -> None:
 
 def _bars(axes: Axes, bars: Bars) -> None:
     """Draw groups of bars beside each other, the first name on top."""
-    base, width = -np.arange(len(bars.names), dtype=float), 0.8 / len(bars.values)
+    base = -np.arange(len(bars.names), dtype=float)
+    width = 0.8 / len(bars.values)
     for k, (label, values) in enumerate(bars.values.items()):
         place = base + width * ((len(bars.values) - 1) / 2 - k)
         axes.barh(place, values, height=0.9 * width, color=PALETTE[k % len(PALETTE)], label=label)

@@ -31,7 +31,8 @@ def text(case: Described) -> str:
         first, *more_lines = _lines(record)
         lines += [f"  {'record':<9} {name}: {first}", *(f"  {'':<9} {line}" for line in more_lines)]
     if case.start is not None and case.duration is not None:
-        end, step = case.start + case.duration, "auto" if case.step is None else f"{1e3 * case.step:.4g} ms"
+        end = case.start + case.duration
+        step = "auto" if case.step is None else f"{1e3 * case.step:.4g} ms"
         lines.append(f"  response  {case.start:.4g} to {end:.4g} s, {case.integrator}, step {step}")
     lines += _listed("drawn", [f"{path}: {drawn}; here its centre" for path, drawn in case.distributions.items()])
     lines += [f"  warning: {each}" for each in case.warnings]

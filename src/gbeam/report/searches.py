@@ -35,7 +35,8 @@ def sensitivity(facts: Facts) -> Blocks:
     for name, measure in facts["measures"].items():
         yield Section(f"{name} = {_with_unit(measure)}", (_effects(measure),), titled=True)
     methods = [each["method"] for each in next(iter(facts["measures"].values()))["parameters"]]
-    exact, error = methods.count("exact"), known(facts["run_error"])
+    exact = methods.count("exact")
+    error = known(facts["run_error"])
     of_run = f"; the run's own estimated error: {percent(error)}" if math.isfinite(error) else ""
     notes = []
     if exact:

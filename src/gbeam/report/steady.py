@@ -113,7 +113,8 @@ def growing(facts: Facts, which: Callable[[Facts], str]) -> Block:
 
 def noted(facts: Facts) -> list[Block]:
     """Sentence on what the errors of frequencies leave out, or why there are none."""
-    note, rows = facts.get("error_note"), facts.get("modes", facts.get("tracks", facts.get("poles", [])))
+    note = facts.get("error_note")
+    rows = facts.get("modes", facts.get("tracks", facts.get("poles", [])))
     judged = any(each.get("errors", {}).get("total") is not None for each in rows)
     words = "errors are of modes left out" if judged else "no error estimate"
     return [Sentence(f"{words}: {note}", "faint")] if note else []

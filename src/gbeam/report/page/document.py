@@ -93,7 +93,8 @@ def html(
     header |= viewer(kind, facts, variables or {}, numbers)
     viewer_place = '<div id="gbeam-viewer"></div>' if header.keys() & {"scene", "modes"} else ""
     blocks = [Section("Warnings", tuple(warnings_of(facts))), *blocks_of(kind, facts), *_origin(origin)]
-    body, state = drawn_blocks(blocks, viewer_place, plots), badge(facts.get("state", facts["outcome"]))
+    body = drawn_blocks(blocks, viewer_place, plots)
+    state = badge(facts.get("state", facts["outcome"]))
     title = facts.get("title") or _title(origin) or f"gbeam {verb}"
     return _page(title, state, _subject(verb, origin), body, header, numbers)
 

@@ -171,7 +171,8 @@ def _figure(figure: Figure, numbers: Numbers, header: dict[str, Any]) -> str:
 
 def _plot(panel: Panel, subject: str, numbers: Numbers, specs: list[dict[str, Any]]) -> tuple[str, str]:
     """Add the data of a panel to `specs` and `numbers`, and return the id of its place, and its caption."""
-    place, (quantity, _, unit) = f"plot-{len(specs)}", panel.y.rpartition(", ")
+    place = f"plot-{len(specs)}"
+    quantity, _, unit = panel.y.rpartition(", ")
     quantity, label = quantity or panel.y, panel.y if len(panel.y) <= FITTING else unit
     low, high = panel.limits or (-np.inf, np.inf)
     series = [{**each, "x": numbers.add(x), "y": numbers.add(np.clip(y, low, high))} for each, x, y in _series(panel)]
@@ -239,7 +240,8 @@ def _table(panel: Panel, bars: Bars) -> str:
 
 def _map(panel: Panel, cells: Map, numbers: Numbers, maps: list[dict[str, Any]]) -> str:
     """Add the data of a heat map to `maps` and `numbers`, and return its place."""
-    place, (title, _, unit) = f"map-{len(maps)}", cells.label.rpartition(", ")
+    place = f"map-{len(maps)}"
+    title, _, unit = cells.label.rpartition(", ")
     x, y = (
         {"label": label, "ticks": [f"{value:.6g}" for value in values]}
         for label, values in ((panel.x, cells.x), (panel.y, cells.y))

@@ -190,7 +190,8 @@ def _vectors(values: Facts) -> Floats:
 def _study(kind: type[_R], facts: Facts, variables: Facts) -> Any:
     """The responses in all environments that have one, and their comparisons."""
     response_kind: Any = record_in(kind, "responses")
-    responses, comparisons = dict[str, Any](), []
+    responses: dict[str, Any] = {}
+    comparisons = []
     for name, entry in facts["motions"].items():
         v = under(f"motions/{name}/", variables)
         if "time" in v:
@@ -286,7 +287,8 @@ def _indices(facts: Facts) -> Indices:
 
 def _fit(facts: Facts, v: Facts) -> Facts:
     """Fields of a Fit: columns and abscissa from variables."""
-    abscissa, names = "time" if "time" in v else "mode", ("measured", "fitted", "computed_before")
+    abscissa = "time" if "time" in v else "mode"
+    names = ("measured", "fitted", "computed_before")
     columns = [
         read(FittedColumn, column, {key: v[key][k] for key in names}, name=name)
         for k, (name, column) in enumerate(facts["columns"].items())

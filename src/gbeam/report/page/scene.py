@@ -173,11 +173,13 @@ def _system(name: str, environment: str, v: Variables, numbers: Numbers) -> tupl
     frames: dict[str, tuple[Any, Any, Floats]] = {
         "ground": (Rotation.identity(), np.zeros(3), np.zeros((len(times), 3)))
     }
-    parts, corners, deflected = [], list[Floats](), np.zeros((len(times), 1, 3))
+    parts, corners = [], list[Floats]()
+    deflected = np.zeros((len(times), 1, 3))
     for k, body in enumerate(v["body"]):
         root = points.index(f"{body}.root")
         attitude = v["attitude"][index, root]
-        turn, origin = Rotation.from_quat(np.roll(attitude, -1, axis=-1)), place[:, root]
+        turn = Rotation.from_quat(np.roll(attitude, -1, axis=-1))
+        origin = place[:, root]
         parent = v["hangs_on"][k]
         parent_turn, parent_place, offset = frames[parent.partition(".")[0]]
         if parent in points:
@@ -308,7 +310,8 @@ def shapes_of_system(facts: Mapping[str, Any], v: Variables, numbers: Numbers) -
     """Return every mode of a system as a motion of one period."""
     rows = enumerate(zip(facts["modes"], v["share"], strict=True), 1)
     labels = [f"{i}: {number(each['frequency'])} Hz, {v['body'][share.argmax()]}" for i, (each, share) in rows]
-    beams, motions = [body for body in v["body"] if f"{body}_outline" in v], []
+    motions = []
+    beams = [body for body in v["body"] if f"{body}_outline" in v]
     rest = Rotation.from_quat(np.roll(v["attitude"], -1, axis=-1))
     _, radius = _view(v["place"][None])
 
