@@ -32,8 +32,8 @@ def integrate(
     stop: Callable[[Floats], int | None] | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Trajectory:
-    """Integrate `count` steps from q, qd (n,), split at `corners`, until `stop` says after how many steps of a chunk
-    (k, n) to end; a failed step ends the trajectory, or where JAX traces the equations leaves NaN.
+    """Integrate `count` steps from q, qd (n,), split at `corners`. `stop` maps q (k, n) of a chunk of steps to the
+    number after which to end, or None. A failed step ends the trajectory, or leaves NaN where JAX traces the equations.
     """
     steps = fitted(start, step, count, None if corners is None else corners.felt_by(scheme))
     return through(equations, scheme, q, qd, steps, stop=stop, progress=progress)

@@ -57,20 +57,21 @@ def chunk(
     c = c + added[1]
     anew = scheme.ends and not steps.equal
     groups = [np.arange(n)] if xp is not np or anew else _uncoupled(mass, c, k)
-    answers = [_stages(xp, t, mass, c, k, f, group) for group in groups]
-    maps = answers[0][1] if len(groups) == 1 else np.zeros((len(c), m, n, m * n + 1))
+    # Of each group of coordinates, maps of z to the stages' x and to the next z.
+    of_groups = [_stages(xp, t, mass, c, k, f, group) for group in groups]
+    maps = of_groups[0][1] if len(groups) == 1 else np.zeros((len(c), m, n, m * n + 1))
     if anew:
-        ends = _sum(t.end_z, _unit(m, n)) + _sum(t.end_x, answers[0][0])
+        ends = _sum(t.end_z, _unit(m, n)) + _sum(t.end_x, of_groups[0][0])
         maps = _started_anew(equations, scheme, maps, ends, steps)
-    for group, (_, part) in zip(groups, answers, strict=True):
+    for group, (_, to_next) in zip(groups, of_groups, strict=True):
         if len(groups) > 1:
             columns = np.append((n * np.arange(m)[:, None] + group).ravel(), m * n)
-            maps[:, :, group[:, None], columns] = part
+            maps[:, :, group[:, None], columns] = to_next
     flat_states = recurrence(xp, xp.reshape(maps, (-1, m * n, m * n + 1))[which], xp.reshape(z, (-1,)))
     states, last, parts = xp.reshape(flat_states[:-1], (count, m, n)), xp.reshape(flat_states[-1], (m, n)), []
-    for group, (x, _) in zip(groups, answers, strict=True):
+    for group, (to_stages, _) in zip(groups, of_groups, strict=True):
         state = xp.reshape(states if len(groups) == 1 else states[:, :, group], (count, -1, 1))
-        flat = xp.reshape(x, (len(c), stages * len(group), -1))[which]
+        flat = xp.reshape(to_stages, (len(c), stages * len(group), -1))[which]
         parts.append(xp.reshape((flat[..., :-1] @ state)[..., 0] + flat[..., -1], (count, stages, -1)))
     x = parts[0] if len(groups) == 1 else np.concatenate(parts, axis=-1)[..., np.argsort(np.concatenate(groups))]
     ends = _sum(t.end_z, states) + _sum(t.end_x, x)

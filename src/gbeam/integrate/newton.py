@@ -200,6 +200,8 @@ def steps(
         inverse = _inverse_jacobian(residual, t, carry.z, first, _guess(t, carry))
 
         def step(carry: Carry, stage_inputs: Any) -> Any:
+            """Correct the stages of a step until they have converged; return the next carry, and q, q̇, q̈ and error."""
+
             def unconverged(state: tuple[Array, ...]) -> Array:
                 _, size, before, tries = state
                 return (tries < FEWEST) | ((tries < MOST) & (_left(size, before) > NEAR))

@@ -198,8 +198,8 @@ class Held:
         """
         count, n = len(self.u), onto.shape[1]
         self.answer = inverse @ onto.reshape(count, -1, onto.shape[-1])
-        through = t.d @ self.answer.reshape(count, -1, n * onto.shape[-1])
-        self.step = -through.reshape(count, -1, onto.shape[-1])
+        by_stages = t.d @ self.answer.reshape(count, -1, n * onto.shape[-1])
+        self.step = -by_stages.reshape(count, -1, onto.shape[-1])
 
     def sampled(self, k: int, moved: Array) -> Array:
         """Take the samples of step `k` of the window, whose state is to change by `moved` (m n,); return the change of

@@ -52,6 +52,7 @@ def taken_together(
     """
 
     def step(z: Array, h: Array, phi: Array) -> tuple[Array, tuple[Array, Array, Array]]:
+        """One step of all runs, of lengths h (b,): the next z, and q, q̇, q̈ (n, b) at its end."""
         t = _tableau(unit, h)
         stages, (_, n, b) = len(t.c_q), z.shape
         c, k, f = (
@@ -289,9 +290,9 @@ Residuals = tuple[Any, tuple[int | None, ...], list[Array]]  # form, axes and ar
 def _residuals(runs: Sequence[Run]) -> Residuals:
     """The runs' residuals: their arrays stacked along a first axis of runs, or without it where `common` has them."""
     common = {id(leaf) for leaf in jax.tree.leaves(runs[0].common)}
-    of_runs = list(zip(*(run.residual[0] for run in runs), strict=True))
-    axes = [None if id(leaf[0]) in common and all(x is leaf[0] for x in leaf) else 0 for leaf in of_runs]
-    leaves = [leaf[0] if axis is None else np.asarray(leaf) for leaf, axis in zip(of_runs, axes, strict=True)]
+    by_leaf = list(zip(*(run.residual[0] for run in runs), strict=True))  # of each array, the runs' own
+    axes = [None if id(of_runs[0]) in common and all(x is of_runs[0] for x in of_runs) else 0 for of_runs in by_leaf]
+    leaves = [of_runs[0] if axis is None else np.asarray(of_runs) for of_runs, axis in zip(by_leaf, axes, strict=True)]
     return runs[0].residual[1], tuple(axes), leaves
 
 

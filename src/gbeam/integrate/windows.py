@@ -59,8 +59,8 @@ def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, 
     left out unless the scheme's last stage is the end of the step.
     """
     if not q.size:  # all motion is prescribed
-        still = np.zeros((1 + np.count_nonzero(steps.kept), 0))
-        yield from ((each, each, each, np.ones(len(each), dtype=bool)) for each in (still[:1], still[1:]))
+        empty = np.zeros((1 + np.count_nonzero(steps.kept), 0))
+        yield from ((piece, piece, piece, np.ones(len(piece), dtype=bool)) for piece in (empty[:1], empty[1:]))
         return
     drive, residual = equations.drive, stepped(equations, scheme, steps, len(q))
 
@@ -69,7 +69,7 @@ def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, 
 
     with np.errstate(all="ignore"):  # of iterates that diverge
         qdd = demanded(steps.first[0], q, qd)
-    yield *(each[None] for each in (q, qd, qdd)[: 2 + scheme.ends]), np.array([True])
+    yield *(x[None] for x in (q, qd, qdd)[: 2 + scheme.ends]), np.array([True])
     window, begin = _Window(residual, drive, scheme, steps, sampling_of(equations, steps)), 0
     # A scheme whose last stage is the end of a step begins anew after a jump: no window goes beyond one.
     for end in np.append(np.flatnonzero(steps.anew[:-1]) + 1 if scheme.ends else [], len(steps)).astype(int):
@@ -79,11 +79,11 @@ def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, 
                 converged = window.solve(end, min(end, begin + ENOUGH))
                 if window.first > begin:
                     ended = window.ended()
-                    q, qd = (each[-1] for each in ended[:2])
+                    q, qd = ended[0][-1], ended[1][-1]
                     if scheme.ends and window.first == end and steps.anew[end - 1]:
                         qdd, ended[2][-1] = (demanded(time[end - 1], q, qd) for time in (steps.resume, steps.end))
                     kept = steps.kept[begin : window.first]
-                    yield *(each[kept] for each in ended), np.ones(np.count_nonzero(kept), dtype=bool)
+                    yield *(ends[kept] for ends in ended), np.ones(np.count_nonzero(kept), dtype=bool)
             if not converged:
                 yield *np.full((2 + scheme.ends, 1, len(qdd)), np.nan), np.array([False])
                 return
@@ -323,8 +323,8 @@ class _Window:
         step = (t.g[:, :, None, :, None] * np.eye(n)[:, None, :]).reshape(-1, m * n, m * n)
         if self.held is not None:
             self.held.push(inverse, t, self._between(self.held.sampling.onto, states))
-        through = t.d @ answer.reshape(-1, stages, n * m * n)
-        maps = inverse, answer, step - through.reshape(-1, m * n, m * n)
+        by_stages = t.d @ answer.reshape(-1, stages, n * m * n)
+        maps = inverse, answer, step - by_stages.reshape(-1, m * n, m * n)
         self.maps = maps if not done else tuple(map(np.concatenate, zip(self.maps, maps, strict=True)))
 
     def _forces(self, states: Array) -> Array:

@@ -24,10 +24,10 @@ _NOUNS = {"eb": "block", "ns": "node set", "ss": "side set"}
 
 
 class _Variable(NamedTuple):
-    """Values of a variable and, where they are nodes of elements, `of`: the type of these."""
+    """Values of a variable and, where they are nodes of elements, the type of these."""
 
     values: Any
-    of: str
+    element_type: str
 
 
 def read_exodus(path: Path) -> TextMesh:
@@ -50,7 +50,7 @@ def read_exodus(path: Path) -> TextMesh:
         group[len(mesh.cells) - 1] = np.arange(len(nodes))
     for k, (values, _) in _numbered(stored, "node_ns"):
         mesh.point_sets[_name(stored, "ns", k)] = np.unique(values) - 1
-    types = [block.of for block in blocks.values()]
+    types = [block.element_type for block in blocks.values()]
     for k, (values, _) in _numbered(stored, "elem_ss"):
         element, side = np.asarray(values, dtype=int) - 1, np.asarray(stored[f"side_ss{k}"].values, dtype=int)
         block = np.searchsorted(ends, element, side="right") - 1
@@ -106,19 +106,19 @@ def _name(stored: Mapping[str, _Variable], kind: str, k: int) -> str:
     return stated.strip() or f"{_NOUNS[kind]} {number}"
 
 
-def _kind(of: str, count: int) -> str:
-    dim = _DIMENSIONS.get(of[:3].upper())
+def _kind(element_type: str, count: int) -> str:
+    dim = _DIMENSIONS.get(element_type[:3].upper())
     if dim is None or count not in SHAPES[dim]:
-        raise ValueError(f"elements of type {of} with {count} nodes are not known")
+        raise ValueError(f"elements of type {element_type} with {count} nodes are not known")
     return SHAPES[dim][count]
 
 
-def _on_side(kind: str, of: str, side: int) -> Any:
+def _on_side(kind: str, element_type: str, side: int) -> Any:
     """Indices of an element's nodes on a side, by its number; all nodes if it has no sides, or is not computed."""
     if DIMENSIONS[kind] == 3 and kind in KINDS:
         return on_face(kind, _SIDES[corners_of(kind)][side - 1])
     corners = 3 if kind.startswith("triangle") else 4
-    edge = side - 1 - 2 * ("SHELL" in of.upper())  # the first two sides of shells are their faces
+    edge = side - 1 - 2 * ("SHELL" in element_type.upper())  # the first two sides of shells are their faces
     if DIMENSIONS[kind] != 2 or edge < 0:
         return slice(None)
     middle = [corners + edge] if kind[-1].isdigit() else []

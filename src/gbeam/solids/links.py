@@ -270,12 +270,14 @@ class Linked:
         moved = mean[:3] + np.einsum("pca,ak->pck", arms, mean[3:])
         sources, points = (3 * nodes[:, None] + np.arange(3)).ravel(), 3 * len(self.points)
 
-        def spread(rows: Indices, values: Floats, count: int) -> Any:
+        def on_unknowns(rows: Indices, values: Floats, count: int) -> Any:
+            """Values (rows, 3 g) that act on displacements of the nodes, as a matrix (count, u) on the unknowns."""
             pairs = np.repeat(rows, len(sources)), np.tile(sources, len(rows))
             return coo_array((values.ravel(), pairs), shape=(count, points)).tocsr() @ self._map
 
-        self._turn = self._turn + spread(3 * link + np.arange(3), mean[3:], self._turn.shape[0])
-        self._map = self._map + spread((3 * np.array(members)[:, None] + np.arange(3)).ravel(), moved, points)
+        self._turn = self._turn + on_unknowns(3 * link + np.arange(3), mean[3:], self._turn.shape[0])
+        rows = (3 * np.array(members)[:, None] + np.arange(3)).ravel()
+        self._map = self._map + on_unknowns(rows, moved, points)
 
     def _about(self, arms: Floats) -> Floats:
         """Displacements (p, 3, 3) of tied points by turns about the axes of their links, in columns."""

@@ -198,14 +198,14 @@ def singular(fine: NodalStress, rough: NodalStress, of_fine: Floats, of_rough: F
     top = np.where(top > 0, top, np.inf)
     small, large = _elements(fine, of_fine / top), _elements(rough, of_rough / top)
     count, (_, inside) = len(large.middle), cKDTree(large.middle).query(small.middle)
-    apart, stress, size = np.zeros((3, count))  # of the small elements in each large one, the largest
-    np.maximum.at(apart, inside, small.apart)
+    mismatch, stress, size = np.zeros((3, count))  # of the small elements in each large one, the largest
+    np.maximum.at(mismatch, inside, small.mismatch)
     np.maximum.at(stress, inside, small.stress)
     np.maximum.at(size, inside, small.size)
     with np.errstate(divide="ignore", invalid="ignore"):
         finer = np.log(large.size / size)
-        order, growth = np.log(large.apart / apart) / finer, np.log(stress / large.stress) / finer
-        unlike = (order < CONVERGING) & (apart > UNLIKE * stress) & (finer > np.log(REFINED))
+        order, growth = np.log(large.mismatch / mismatch) / finer, np.log(stress / large.stress) / finer
+        unlike = (order < CONVERGING) & (mismatch > UNLIKE * stress) & (finer > np.log(REFINED))
     suspects = np.flatnonzero(unlike)
     sharing = csr_array(
         (np.ones(large.pairs.size), (np.repeat(np.arange(count), large.counts), large.pairs)),
@@ -222,13 +222,13 @@ def singular(fine: NodalStress, rough: NodalStress, of_fine: Floats, of_rough: F
 
 class _Elements(NamedTuple):
     """Elements (e,) of a mesh under several answers: middles (e, 3) and sizes, m, the largest von Mises `stress` at
-    their nodes, that of the difference, `apart`, of an element's stress to the mean at the node, and their pairs, of
+    their nodes, that of the difference, `mismatch`, of an element's stress to the mean at the node, and their pairs, of
     which each element has so many as `counts` says, one element after the other.
     """
 
     middle: Floats
     size: Floats
-    apart: Floats
+    mismatch: Floats
     stress: Floats
     counts: Indices
     pairs: Indices
@@ -245,9 +245,9 @@ def _elements(nodal: NodalStress, answers: Floats) -> _Elements:
     size, parts = total(mean), []
     for pairs, stress in under.elements(nodal.mesh.blocks):
         box, counts = np.ptp(places[pairs], axis=1), np.full(len(pairs), pairs.shape[1])
-        apart = total(stress - mean[pairs]).max(axis=1)
+        mismatch = total(stress - mean[pairs]).max(axis=1)
         middle, diagonal = places[pairs].mean(axis=1), np.linalg.norm(box, axis=1)
-        parts.append((middle, diagonal, apart, size[pairs].max(axis=1), counts, pairs.ravel()))
+        parts.append((middle, diagonal, mismatch, size[pairs].max(axis=1), counts, pairs.ravel()))
     return _Elements(*map(np.concatenate, zip(*parts, strict=True)))
 
 

@@ -48,7 +48,7 @@ class LargestNorms:
         i, j = np.triu_indices(len(directions))
         forms, products = _single(forms[:, i, j]), _single(np.where(i == j, 1, 2) * along[:, i] * along[:, j]).T
         columns, rest, rounding = map(_single, (columns, rest[:, None], SINGLE * np.square(reach)[:, None]))
-        middle, apart, cell = _cells(along)
+        middle, spread, cell = _cells(along)
         hindmost = order[FOREMOST:]
         for group in np.array_split(hindmost, -(-len(hindmost) // GROUP)):
             # Maps that are largest in the same cell are likely to be so at the same times.
@@ -57,7 +57,7 @@ class LargestNorms:
             np.minimum.at(over_cells, cell, over)
             for which in np.array_split(group, -(-len(group) // TOGETHER)):
                 bounds = rounding[which], rest[which]
-                between = columns[which] @ apart
+                between = columns[which] @ spread
                 kept = _could_be_largest(forms[which] @ products[:, middle], *bounds, over_cells, between)
                 times = np.flatnonzero(kept[cell])
                 kept = _could_be_largest(forms[which] @ products[:, times], *bounds, over[times])
@@ -71,12 +71,12 @@ class LargestNorms:
         self.over[times] = np.maximum(self.over[times], norms.max(axis=0))
 
 
-def _could_be_largest(squares: Any, rounding: Any, rest: Any, over: Floats, apart: Any = 0.0) -> Any:
+def _could_be_largest(squares: Any, rounding: Any, rest: Any, over: Floats, spread: Any = 0.0) -> Any:
     """Flags of times (t,) at which a norm could be the largest of its map, or exceed `over` (t,), the largest so far of
     all maps. Norms are known by their squares (p, t) but for rounding, and for what the rest of the coordinates (p, 1)
-    and other times of a cell, `apart` (p, t), may add.
+    and other times of a cell, `spread` (p, t), may add.
     """
-    most = np.sqrt(np.maximum(squares + rounding, 0)) + rest + apart
+    most = np.sqrt(np.maximum(squares + rounding, 0)) + rest + spread
     least = np.sqrt(np.maximum(squares.max(axis=1, keepdims=True) - rounding, 0)) - rest
     return (most >= least).any(axis=0) | (most.max(axis=0) >= over)
 
@@ -90,9 +90,9 @@ def _cells(q: Floats) -> tuple[Indices, Any, Indices]:
     off = np.abs((q - q.min(axis=0)) / WIDTH - grid - 0.5).sum(axis=1)
     order = np.lexsort((off, cell))
     middle = order[np.unique(cell[order], return_index=True)[1]]
-    apart = np.zeros((len(middle), q.shape[1]))
-    np.maximum.at(apart, cell, np.abs(q - q[middle[cell]]))
-    return middle, _single(apart.T), cell
+    spread = np.zeros((len(middle), q.shape[1]))
+    np.maximum.at(spread, cell, np.abs(q - q[middle[cell]]))
+    return middle, _single(spread.T), cell
 
 
 def _single(values: Floats) -> Any:

@@ -166,7 +166,7 @@ def layered(places: Floats, elements: Sequence[tuple[str, Indices, Floats]]) -> 
     _, index, family = np.unique(family, return_index=True, return_inverse=True)
     total = np.zeros((len(index), 3))
     np.add.at(total, family, along[:, None] * normal)
-    # As far from the middle as the elements are thick, whose normals this one is not.
+    # So long that its part along the elements' own normals is half of their thickness.
     half = total / np.maximum((total**2).sum(axis=1) / np.bincount(family), 1e-300)[:, None]
     half *= thickness[index, None] / 2
     points = np.stack([places[node[index]] + half, places[node[index]] - half], axis=1).reshape(-1, 3)

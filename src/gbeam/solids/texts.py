@@ -148,8 +148,8 @@ def _element(mesh: TextMesh, statement: Statement) -> None:
     if count not in SHAPES[dim] or len(flat) % (count + 1):
         raise ValueError(f"elements of type {name} have not {count} nodes each")
     numbers, *nodes = np.reshape(flat, (-1, count + 1)).T.tolist()
-    for number, nodes_of in zip(numbers, zip(*nodes, strict=True), strict=True):
-        mesh.add("element", number, (SHAPES[dim][count], nodes_of))
+    for number, of_element in zip(numbers, zip(*nodes, strict=True), strict=True):
+        mesh.add("element", number, (SHAPES[dim][count], of_element))
     _extend(mesh.groups, statement, "ELSET", numbers)
 
 

@@ -166,7 +166,9 @@ def exact(target: Target, geometry: Geometry) -> Exact:
 
 
 def unfollowable(target: Target, geometry: Geometry) -> list[tuple[float, float]]:
-    """Stretches, s, that no smooth motion follows and that a target with an idle level can leave out."""
+    """Returns of the load above idle, first and last time, s, that no smooth motion follows: a target with idle can
+    leave them out, unless one has the largest load.
+    """
     if not target.idle > 0:
         return []
     lag: Spline | None = None

@@ -180,16 +180,16 @@ def _nearest(flight: Profile, path: Profile | None, gate: Profile | None, idle: 
 
 
 def _path(
-    times: Floats, loads: Floats, held: Flags, far: Flags, idle: float | None, gravity: bool, arm: Any | None
+    times: Floats, loads: Floats, held: Flags, out_of_reach: Flags, idle: float | None, gravity: bool, arm: Any | None
 ) -> PiecewiseLinear:
     """Direction of the load on knots: angles about the beam and from it, (k, 2) rad, those of the flight's loads (k, 3)
-    where it is neither held nor far out of the gimbals' reach, (k,), gentle between.
+    where it is neither held nor out of the gimbals' reach, (k,), gentle between.
     """
     whole = MIN_TRANSVERSE_LOAD if idle is None else idle
     scale = _QUICK if arm is None else float(np.sqrt(_number(arm) / whole))
     across = np.linalg.norm(loads[:, 1:], axis=1)
     about_beam, weight = unwrapped(times, loads[:, 2], loads[:, 1], whole)
-    about_beam = gentle(times, about_beam, weight, _and_next(~(held | far)) & (weight > 0), scale)
+    about_beam = gentle(times, about_beam, weight, _and_next(~(held | out_of_reach)) & (weight > 0), scale)
     from_beam, weight = unwrapped(times, across, loads[:, 0], whole)
     from_beam = gentle(times, from_beam, weight, _and_next(~held), scale)
     if not gravity:

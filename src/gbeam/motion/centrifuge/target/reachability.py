@@ -41,9 +41,9 @@ def refuse_undirected(load: Floats, idle: float) -> None:
         )
 
 
-def refuse_far(times: Floats, load: Floats, far: Flags) -> None:
-    """Raise InputError: the load leaves the gimbals' reach, and a target that is not the flight's was not allowed."""
-    if far.all():
+def refuse_far(times: Floats, load: Floats, out_of_reach: Flags) -> None:
+    """Raise InputError: the load leaves the gimbals' reach, and no target but the flight's own is allowed."""
+    if out_of_reach.all():
         raise InputError(
             "tracks",
             f"never loads the beam across by {MIN_TRANSVERSE_LOAD / STANDARD_GRAVITY:g} g, and gravity alone is 1 g",
@@ -52,7 +52,7 @@ def refuse_far(times: Floats, load: Floats, far: Flags) -> None:
     refuse_reversal(times, load[:, 1:], OPPOSED * STANDARD_GRAVITY)
     across = np.linalg.norm(load[:, 1:], axis=1) / STANDARD_GRAVITY
     worst = int(np.argmin(across))
-    wrong = np.flatnonzero(far)
+    wrong = np.flatnonzero(out_of_reach)
     raise InputError(
         "tracks",
         f"loads the beam across by {across[worst]:.3g} g only at {times[worst]:.3f} s; where gravity acts the gimbals "
