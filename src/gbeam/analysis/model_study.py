@@ -267,40 +267,42 @@ def _row(
     nan = float("nan")
     if isinstance(answer, Failure):
         return ModelRow(kind, name, answer.outcome, answer.message, (), seconds=seconds)
-    of = answer.of
-    if of.outcome != "done":
-        return ModelRow(kind, name, of.outcome, of.message, of.warnings, seconds=seconds)
+    response = answer.of
+    if response.outcome != "done":
+        return ModelRow(kind, name, response.outcome, response.message, response.warnings, seconds=seconds)
     peak, residual = float(answer.peak[axis]), float(answer.residual[axis])
-    against = (nan, nan, nan, nan)
+    peak_error, residual_error, phase, difference = nan, nan, nan, nan
     if isinstance(reference, _Tip) and reference.of.outcome == "done":
-        top, left = float(reference.peak[axis]), float(reference.residual[axis])
+        reference_peak, reference_residual = float(reference.peak[axis]), float(reference.residual[axis])
         tip = reference.moved[:, axis]
-        if not np.array_equal(reference.of.time, of.time):
+        if not np.array_equal(reference.of.time, response.time):
             # At 40 samples to the lowest period a cubic is wrong by 1e-5 of a vibration, a straight line by 0.3 %.
-            tip = CubicSpline(reference.of.time, tip)(of.time)
+            tip = CubicSpline(reference.of.time, tip)(response.time)
         largest = float(np.abs(answer.moved[:, axis] - tip).max())
-        after = of.time >= answer.residual_from
-        phase = _phase(of.time[after], answer.moved[after, axis], tip[after]) if after.sum() > 8 else nan
-        if top > 0:
-            against = (peak / top - 1, residual / left - 1 if left > 0 else nan, phase, largest / top)
+        after = response.time >= answer.residual_from
+        if reference_peak > 0:
+            peak_error, difference = peak / reference_peak - 1, largest / reference_peak
+            residual_error = residual / reference_residual - 1 if reference_residual > 0 else nan
+            if after.sum() > 8:
+                phase = _phase(response.time[after], answer.moved[after, axis], tip[after])
     return ModelRow(
         model=kind,
         motion=name,
-        outcome=of.outcome,
-        message=of.message,
-        warnings=of.warnings,
+        outcome=response.outcome,
+        message=response.message,
+        warnings=response.warnings,
         peak=peak,
         time_of_peak=float(answer.time_of_peak[axis]),
-        peak_error=against[0],
+        peak_error=peak_error,
         residual=residual,
-        residual_error=against[1],
-        phase=against[2],
-        difference=against[3],
+        residual_error=residual_error,
+        phase=phase,
+        difference=difference,
         hub_angle=answer.hub_angle,
-        error_estimate=of.error_estimate,
-        steps=of.steps,
+        error_estimate=response.error_estimate,
+        steps=response.steps,
         seconds=seconds,
-        time=of.time,
+        time=response.time,
         history=answer.moved[:, axis],
     )
 

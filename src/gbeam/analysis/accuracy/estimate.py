@@ -139,7 +139,7 @@ class Judgement(NamedTuple):
 
     def loads(self, body: str) -> ErrorEstimate:
         """The larger error of the force and the moment at a body's root."""
-        return worst(self.error((body, each)) for each in ("force", "moment"))
+        return worst(self.error((body, load)) for load in ("force", "moment"))
 
 
 def worst(errors: Iterable[ErrorEstimate]) -> ErrorEstimate:

@@ -124,7 +124,7 @@ class OnHub:
 
     @property
     def small(self) -> SmallMotions:
-        """Small motions about rest."""
+        """Linear model of beam and hub about rest, with the column of a unit torque or angular acceleration."""
         linear = linearize(self.structure, self.hub)
         if self.hub.free:
             return SmallMotions(linear.a, linear.b[:, 0], linear.c[:3])
@@ -273,7 +273,7 @@ class OnJoint:
 
     @property
     def small(self) -> SmallMotions:
-        """Small motions about rest."""
+        """Linear model of the system about rest, with the column of a unit effort or acceleration."""
         state, linear = self._rest
         name, at = self.system.point("point", self.point)
         body, tip = self.system.bodies[name], np.zeros((3, len(linear.mass)))
@@ -324,7 +324,7 @@ class OnJoint:
         posed = PosedSystem(system, None, settings, settings, start, settings.step)
         corners = posed.felt.felt_by(scheme)
         grid = fitted(settings.start, settings.duration / count, count, corners)
-        # With the ends of the parts of split steps, too.
+        # Derivatives need the states at all ends of split steps, too.
         steps = replace(grid, kept=np.ones(len(grid), dtype=bool))
         run = through(posed.equations, scheme, *start, steps)
 

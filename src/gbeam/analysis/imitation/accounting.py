@@ -147,7 +147,7 @@ def _apart(load: Floats, other: Floats) -> Floats:
 
 
 def _reasons(time: Floats, low: Flags, held: Flags, episodes: tuple[tuple[float, float, str], ...]) -> Codes:
-    """Reason, an index of `_NAMES`, for which a load at each time is not followed if it is not."""
+    """Reason (t,), an index of `_NAMES`, that holds at each time if the load is not followed then."""
     codes = np.full(len(time), _NAMES.index(_CORNER))
     for start, end, why in episodes:
         inside = (time >= start) & (time <= end)

@@ -254,7 +254,7 @@ def _read(queue: list[_Case], trajectories: list[Trajectory | None]) -> Iterator
 
 
 def _displaced(queue: list[_Case], trajectories: list[Trajectory | None]) -> list[Any]:
-    """For each trajectory the displacements (t, s, 3) m of the stations at every step; None where it is None."""
+    """For each trajectory the displacements (t, s, 3) m of the stations at every step; None for None."""
     displacements: list[Any] = [None] * len(queue)
     completed = [
         (k, case.posed, t) for k, (case, t) in enumerate(zip(queue, trajectories, strict=True)) if t is not None

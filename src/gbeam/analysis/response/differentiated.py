@@ -133,7 +133,7 @@ class Differentiated:
         up, down = fitted(self.begin, kept, before), fitted(start + kept * (count // grid.stride), kept, after)
         felt = self.nominal.felt.felt_by(self.scheme)
         self.parts = up, fitted(start, grid.step, count, felt), down
-        # With the ends of the parts of split steps, too.
+        # Derivatives need the states at all ends of split steps, too.
         problem = self.nominal.problem
         q, qd = problem.q, problem.qd
         self.runs: list[Trajectory | None] = []
@@ -175,7 +175,7 @@ class Differentiated:
                 yield self._response(pair[0], back), self._response(pair[1], moves)
 
     def _slopes(self, pairs: Sequence[Pair], width: Floats) -> list[tuple[Floats, ...] | None]:
-        """Derivatives of q, q̇, q̈ (t, n, p) at the ends of kept steps of spin-up, flight and spin-down, or None."""
+        """Derivatives of q, q̇, q̈ (t, n, p) at the ends of kept steps of spin-up, flight, spin-down; None without."""
         system = linearised(self.nominal, pairs, width)
         less, more = zip(*pairs, strict=True)
         q, qd = (

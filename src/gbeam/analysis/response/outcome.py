@@ -189,8 +189,8 @@ def describe(
     loss = worst_loss(structure, time, base, q)
     lost = ""
     if loss is not None:
-        what = "equilibrium is not stable" if loss.flutter else "stiffness is not positive definite"
-        lost = f"{structure.kind}'s {what} from t = {loss.start:.4g} s, where {' and '.join(loss.causes)}"
+        state = "equilibrium is not stable" if loss.flutter else "stiffness is not positive definite"
+        lost = f"{structure.kind}'s {state} from t = {loss.start:.4g} s, where {' and '.join(loss.causes)}"
     particles = structure.field is None  # they have no other model, nor a length that bounds their displacement
     if trajectory.stopped and particles:
         cause = f": {lost}" if lost else "; give a smaller response.step"

@@ -201,7 +201,7 @@ def displacement_peaks(
     q, qd = (np.stack([getattr(run, name) for run in trajectories]) for name in ("q", "qd"))
 
     def largest(begin: int, measure: Callable[[Floats], Floats]) -> tuple[Floats, Floats]:
-        """Peaks, and their times, from a step on, of what is measured of displacements (..., s, 3)."""
+        """Peaks from a step on, and their times, of a measure of displacements (..., s, 3)."""
         values = measure(moved[:, begin:])
         chosen = near_maxima(time[begin:], values)
         run, sample = np.divmod(chosen, len(time) - begin)

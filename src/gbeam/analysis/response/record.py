@@ -169,22 +169,22 @@ def response_of(
     if peaks is None:
         (peaks,) = displacement_peaks(structure, [trajectory], posed.problem.first, fine[None], settings.residual_from)
 
-    def at(
-        of: Trajectory, steps: Any, known: Base | None = None
+    def read(
+        part: Trajectory, steps: Any, known: Base | None = None
     ) -> tuple[tuple[Any, ...], Base, HubResult | None, Loads | None]:
         """Times and coordinates, base, hub and loads at an index or slice of the steps of a trajectory."""
-        of = of.at(steps)
-        time, q, qd, qdd = of.time, of.q, of.qd, of.qdd
+        part = part.at(steps)
+        time, q, qd, qdd = part.time, part.q, part.qd, part.qdd
         base, hub = posed.moving(time, q, qd, qdd, known)
         loads = None
         if settings.loads:
             loads = section_forces(structure, base, q[:, beam], qd[:, beam], qdd[:, beam], time, motion=motion)
         return (time, q, qd, qdd), base, hub, loads
 
-    (time, q, qd, qdd), over_time, hub, loads = at(entire, slice(None), base)
+    (time, q, qd, qdd), over_time, hub, loads = read(entire, slice(None), base)
     frequencies, _ = structure.rest
     if loads is not None and not traced:
-        of_flight = load_peaks(loads.during(flight), lambda steps: at(trajectory, steps)[3], trajectory.time, stride)
+        of_flight = load_peaks(loads.during(flight), lambda steps: read(trajectory, steps)[3], trajectory.time, stride)
         peaks = replace(peaks, loads=of_flight)
     if hub is not None and not motion.free and loads is not None and loads.drive_torque is not None:
         hub = replace(hub, drive_torque=loads.drive_torque)

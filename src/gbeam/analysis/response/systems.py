@@ -310,7 +310,8 @@ def _described(run: SystemRun, errors: SystemErrors, name: str, warnings: tuple[
         else:
             warnings += (f"{words}; what moves so grows without bound where steps resolve it",)
     warnings += (*settings.warnings, *yielded)
-    warnings += tuple(each for each in doubts(errors, settings.tolerance) if each not in warnings) + system.warnings
+    of_errors = doubts(errors, settings.tolerance)
+    warnings += tuple(warning for warning in of_errors if warning not in warnings) + system.warnings
     warnings += () if traced else run.every(1).unstiffened
     residual: Any = None
     if settings.residual_from is not None:

@@ -55,13 +55,13 @@ def _paired(before: _Speed, after: _Speed) -> tuple[np.ndarray, Floats]:
     return matched(mac(before.coordinates, after.coordinates, after.mass))
 
 
-def _fill(at: Callable[[float], _Speed], low: _Speed, high: _Speed, count: int, depth: int) -> list[_Speed]:
+def _fill(modes_at: Callable[[float], _Speed], low: _Speed, high: _Speed, count: int, depth: int) -> list[_Speed]:
     """Speeds between two, by halving, such that the first `count` modes are recognised from each to the next."""
     _, alike = _paired(low, high)
     if depth == 0 or np.nanmin(alike[:count], initial=1.0) > CONFIDENT:
         return []
-    middle = at((low.rate + high.rate) / 2)
-    return [*_fill(at, low, middle, count, depth - 1), middle, *_fill(at, middle, high, count, depth - 1)]
+    middle = modes_at((low.rate + high.rate) / 2)
+    return [*_fill(modes_at, low, middle, count, depth - 1), middle, *_fill(modes_at, middle, high, count, depth - 1)]
 
 
 @typed
@@ -154,7 +154,7 @@ def campbell(
         return path(structure, rate)
 
     @cache  # crossings ask again for speeds beside them
-    def at(rate: float) -> _Speed:
+    def modes_at(rate: float) -> _Speed:
         tell(progress, f"frequencies at {rate:.4g} rad/s", (rate - start) / (end - start))
         state = point_at(rate)
         moving, first = state.moving, state.first
@@ -166,14 +166,14 @@ def campbell(
     rates = start + (grid - start) * (last - start) / (end - start)
     if isinstance(path, Turning) and isinstance(structure, System):
         path.ahead(structure, rates.tolist())
-    coarse = [at(float(rate)) for rate in rates]
+    coarse = [modes_at(float(rate)) for rate in rates]
     kept = min(modes, len(coarse[0].frequency))
     if not kept:
         held = "; ".join(lost.warnings) or "ask `gbeam modes` what holds or damps it"
         raise InputError("modes", f"have nothing to follow: nothing oscillates at {start:g} rad/s", held)
     followed = coarse[:1]
     for low, high in pairwise(coarse):
-        followed += [*_fill(at, low, high, kept, DEPTH), high]
+        followed += [*_fill(modes_at, low, high, kept, DEPTH), high]
     frequency, damping, alike = np.full((3, len(followed), kept), np.nan)
     track = np.arange(kept)
     index = [track]
@@ -193,7 +193,7 @@ def campbell(
         crossing
         for k in range(kept)
         for order in orders
-        for crossing in _crossings(at, followed, index, rates, frequency[:, k], k, order)
+        for crossing in _crossings(modes_at, followed, index, rates, frequency[:, k], k, order)
     ]
     crossings, errors = [crossing for crossing, _, _ in met], unknown_errors(structure, kept)
     if judgeable(structure):
@@ -250,7 +250,7 @@ def _errors(richer: Richer, point: Any, speed: _Speed, track: np.ndarray) -> Fre
 
 
 def _crossings(
-    at: Callable[[float], _Speed],
+    modes_at: Callable[[float], _Speed],
     speeds: list[_Speed],
     index: list[np.ndarray],
     rates: Floats,
@@ -268,7 +268,7 @@ def _crossings(
 
         def difference(rate: float, mode: Complex = mode) -> float:
             """Frequency of the mode most like this one, less that of the order, Hz."""
-            speed = at(rate)
+            speed = modes_at(rate)
             like = int(mac(mode, speed.coordinates, speed.mass)[0].argmax())
             return float(speed.frequency[like] - order * rate / (2 * np.pi))
 
@@ -277,7 +277,7 @@ def _crossings(
             rate = brentq(difference, float(rates[i]), float(rates[i + 1]), xtol=1e-10, maxiter=200)
         else:  # the mode veers within the step: interpolate the curve
             rate = rates[i] - gap[i] * (rates[i + 1] - rates[i]) / (gap[i + 1] - gap[i])
-        speed = at(rate)
+        speed = modes_at(rate)
         like = int(mac(mode, speed.coordinates, speed.mass)[0].argmax())
         crossing = Crossing(track, order, float(rate), order * float(rate) / (2 * np.pi), speed.direction([like])[0])
         slope = 2 * np.pi * (frequency[i + 1] - frequency[i]) / (rates[i + 1] - rates[i])

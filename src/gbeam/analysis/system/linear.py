@@ -38,7 +38,7 @@ from gbeam.results.system import BeamShape, SystemModes, SystemRest
 
 
 def system_rest(state: SteadySystem, name: str) -> SystemRest:
-    """Describe where a system rests, and what holds it there."""
+    """Describe the equilibrium of a system: places, efforts and loads, with errors and warnings."""
     system, point, time, motion = state.system, state.point, state.drive.time, state.drive.motion
 
     def inputs(of: System, _: Any = None) -> Any:

@@ -152,22 +152,22 @@ class SteadySystem(Steady):
         """Warnings of joints with an angular acceleration: the moment that turns them, and the time to turn by 1°."""
         if self.point.yd.any():
             return ()
-        said, tree, names = [], self.local.tree, self.names
+        warnings, tree, names = [], self.local.tree, self.names
         turns = [each for each in tree.turning if self.local.ydd[each].any() and self.adrift[each].all()]
         mass = self.local.slopes()[3] if turns else np.zeros((0, 0))
         for turn in turns:
             alpha, slides = self.local.ydd[turn], tree.sliding & self.adrift
             moment = carried(mass, slides, mass)[0][turn][:, turn] @ alpha
             size, rate = np.linalg.norm(moment), np.linalg.norm(alpha)
-            about = ", ".join(f"{each + 0.0:.3g}" for each in np.round(moment / size, 3))
+            axis = ", ".join(f"{each + 0.0:.3g}" for each in np.round(moment / size, 3))
             joint = names[int(np.flatnonzero(turn)[0])].rpartition(".")[0]
-            where = f"({about}) of {self.system.joints[joint].body}.root" if len(moment) == 3 else "its axis"
-            said.append(
+            where = f"({axis}) of {self.system.joints[joint].body}.root" if len(moment) == 3 else "its axis"
+            warnings.append(
                 f"{joint} begins to turn ever faster: {size:.4g} N m about {where} accelerate it by {rate:.4g} rad/s², "
                 f"and this is the state at that instant, which lasts while it has hardly turned: by 1° in "
                 f"{np.sqrt(2 * np.deg2rad(1) / rate):.3g} s"
             )
-        return tuple(said)
+        return tuple(warnings)
 
     @property
     def q(self) -> Floats:
