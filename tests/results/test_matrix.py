@@ -48,6 +48,40 @@ def test_every_kind_has_every_output(matrix: dict[str, Any], kind: str, tmp_path
     assert isinstance(result, Figured) and figures_of(result)
 
 
+WRONG = ("nonsense", 3, 1.5, ("a",), ["a"], {"a": 1}, object())
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_a_result_is_asked_wrongly_is_refused_by_name(matrix: dict[str, Any], kind: str, tmp_path: Path) -> None:
+    """Never what Python says of an attribute, a type or a place that is not there."""
+    result = matrix[kind]
+    named = ("plot", "ranked", "signal", "coordinate", "at")
+    for wrong in WRONG:
+        for name in named:
+            if callable(getattr(result, name, None)):  # the times of a fit have such a name too
+                with pytest.raises(gb.InputError):
+                    getattr(result, name)(wrong)
+        if not isinstance(wrong, str):
+            for name in ("save", "report", "to_mat"):
+                if hasattr(result, name):
+                    with pytest.raises(gb.InputError, match="path"):
+                        getattr(result, name)(wrong)
+            with pytest.raises(gb.InputError, match="title"):
+                result.plot(title=wrong)
+    for name in ("save", "report"):  # of the disk, as documented
+        with pytest.raises(OSError):
+            getattr(result, name)(tmp_path / "none" / "x")
+
+
+def test_files_of_another_type_or_that_are_missing_are_refused_by_name(tmp_path: Path) -> None:
+    for read in (gb.Section.read, gb.ImportedModel.read):
+        for wrong in (3, None, [], b"a"):
+            with pytest.raises(gb.InputError, match="paths"):
+                read(wrong)  # type: ignore[arg-type]
+    with pytest.raises(gb.InputError, match="is no file"):
+        gb.Section.read(tmp_path / "none.K")
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_number_of_json_is_declared(matrix: dict[str, Any], kind: str) -> None:
     known = json.loads(as_json(facts(matrix[kind])))

@@ -98,7 +98,13 @@ def _typed(function: F, method: bool = False) -> F:
     owner = function.__qualname__.removesuffix(".__init__").rpartition(".")[2]
     of = owner if method else ""
     kinds = (Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD)
-    names = [each.name for each in signature(function).parameters.values() if each.kind in kinds]
+    every = signature(function).parameters.values()
+    names = [each.name for each in every if each.kind in kinds]
+    rest = [each.name for each in every if each.kind is Parameter.VAR_POSITIONAL]
+
+    def named(args: tuple[Any, ...]) -> list[tuple[str, Any]]:
+        return [*zip(names, args, strict=False), *((name, each) for name in rest for each in args[len(names) :])]
+
     generates = str(signature(function).return_annotation).startswith("Iterator")  # and shows its own bar
 
     def check(pairs: Iterable[tuple[str, Any]], texts: bool) -> None:
@@ -114,7 +120,7 @@ def _typed(function: F, method: bool = False) -> F:
     def call(*args: Any, **keywords: Any) -> Any:
         if method and not keywords and all(map(_is_bare, args[1:])):
             return function(*args)
-        pairs = (*zip(names, args, strict=False), *keywords.items())
+        pairs = (*named(args), *keywords.items())
         if not generates and ("progress", True) in pairs:
             with Bar() as bar:
                 return call(**dict(pairs) | {"progress": bar})
@@ -122,7 +128,7 @@ def _typed(function: F, method: bool = False) -> F:
             read = functools.partial(_read, owner, dict(pairs))
             args = (*map(read, names, args), *args[len(names) :])
             keywords = {name: read(name, value) for name, value in keywords.items()}
-            pairs = (*zip(names, args, strict=False), *keywords.items())
+            pairs = (*named(args), *keywords.items())
         check(pairs, True)
         try:
             return function(*args, **keywords)
@@ -205,6 +211,8 @@ def _single(kind: Any, texts: bool) -> Test:
     origin, parts = get_origin(kind) or kind, get_args(kind)
     if kind is ArrayLike:
         return lambda value: _are_numbers(value, texts)
+    if isinstance(kind, TypeVar) and kind.__bound__ is not None:
+        return _single(kind.__bound__, texts)
     if origin is Literal:
         return lambda value: isinstance(value, str)  # the word is checked by the function
     if origin is bool:

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gbeam.guards.arguments import typed
+from gbeam.guards.checks import index_of
 from gbeam.results.criteria import BROKEN, EXCEEDED, NOT_ACCEPTED
 from gbeam.results.declared import BESIDE, declared, fact, labels, quantity, rows
 from gbeam.results.result import Figured, Flags, Floats, Part
@@ -295,9 +297,10 @@ class Sensitivity(Figured[str]):
         size = np.where(self.figures == 0, np.nan, self.figures)
         return self.derivatives * self.values / size[:, None]
 
+    @typed
     def ranked(self, measure: str = "") -> NDArray[np.intp]:
         """Indices of the parameters by how much one percent of each changes a `measure`, the first by default."""
-        k = self.measures.index(measure) if measure else 0
+        k = index_of("measure", measure, self.measures) if measure else 0
         return np.argsort(-np.abs(self.derivatives[k] * self.values), kind="stable")
 
     def __repr__(self) -> str:

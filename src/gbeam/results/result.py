@@ -14,6 +14,7 @@ from gbeam.arrays.tree import Value
 from gbeam.arrays.types import Complex as Complex
 from gbeam.arrays.types import Flags as Flags
 from gbeam.arrays.types import Floats as Floats
+from gbeam.guards.arguments import typed
 from gbeam.results.declared import document, fact
 
 if TYPE_CHECKING:
@@ -106,6 +107,7 @@ class Result(Value):
 
         return to_xarray(self)
 
+    @typed
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the result to a netCDF file, whole or not at all; xarray, MATLAB and h5py open it.
 
@@ -124,6 +126,7 @@ class Result(Value):
 
         save(self, path, facts_text(self))
 
+    @typed
     def report(self, path: str | os.PathLike[str]) -> None:
         """Write the result as one page of HTML that opens without a network: tables, plots, and the beam in motion.
 
@@ -165,6 +168,7 @@ class Figured(Result, Generic[FigureName]):
 
         return widget(self)
 
+    @typed
     def plot(self, what: FigureName | Literal[""] = "", *, title: str = "") -> Panels:
         """Draw the result with Matplotlib.
 

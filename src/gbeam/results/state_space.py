@@ -264,6 +264,7 @@ class StateSpace(Noted, Figured[Literal["poles"]]):
         names = {kind: [re.sub(r"\W+", "_", each.name) for each in signals] for kind, signals in kinds.items()}
         return control.ss(self.a, self.b, self.c, self.d, self.step, **names)
 
+    @typed
     def to_mat(self, path: str | os.PathLike[str]) -> None:
         """Write a MATLAB file: A, B, C, D, the operating point, names and units, frequencies and their errors.
 

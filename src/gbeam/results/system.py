@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
+from gbeam.guards.arguments import typed
 from gbeam.guards.checks import index_of
 from gbeam.results.declared import INSIDE, declared, fact, internal, labels, part, quantity, rows
 from gbeam.results.errors import (
@@ -297,6 +298,7 @@ class SystemResponse(_Placed, Driven, Figured[str]):
         felt = self.acceleration[:, index_of("point", point, self.points)]
         return felt if sensor is None else sensor.reads(felt, float(self.time[1] - self.time[0]))
 
+    @typed
     def signal(self, name: str) -> Floats:
         """Return what a sensor would read, by the name of an output of :func:`gbeam.linearize`, (t,) SI.
 

@@ -19,7 +19,7 @@ from gbeam.arrays.namespace import is_jax, is_traced, namespace
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.checks import array
-from gbeam.guards.limits import TEXT_BYTES, refuse_large_file
+from gbeam.guards.limits import TEXT_BYTES, existing, refuse_large_file
 from gbeam.guards.units import UnitError, quantity
 from gbeam.structure.material import Material
 
@@ -192,6 +192,8 @@ PROGRAMS = {
 
 def read_matrices(path: str | os.PathLike[str], length_unit: str, mass_unit: str) -> tuple[Floats, Floats]:
     """Stiffness and mass matrices (6, 6) of a file, in SI, whose unit of time is the second."""
+    if not existing(Path(path)):
+        raise InputError("path", f"{path} is no file", "give the output of one section")
     refuse_large_file("path", path, TEXT_BYTES, "give the output of one section")
     lines = Path(path).read_text(encoding="utf-8", errors="replace").splitlines()
     writers = [name for name, each in PROGRAMS.items() if _rows(lines, each.stiffness) or _rows(lines, each.mass)]
