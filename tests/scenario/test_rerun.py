@@ -8,6 +8,7 @@ import json
 import math
 import shutil
 from collections.abc import Callable
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,7 @@ import gbeam as gb
 from gbeam.results.provenance import Environment
 from gbeam.scenario import provenance
 from gbeam.scenario.load import defaults_of, fingerprint
+from gbeam.scenario.rerun import reproduction
 from gbeam.scenario.text.overrides import override
 from gbeam.scenario.text.source import parse
 
@@ -189,6 +191,31 @@ def test_a_number_of_another_version_that_is_more_than_rounding_is_a_difference(
             file["motions/slew/displacement"][3, 0, 2] += change  # out of the plane of the hub
 
         assert gb.rerun(_edited(of_0_2, moved)).reproduced is same
+
+
+@pytest.mark.parametrize(
+    ("then", "now", "units", "differ"),
+    [
+        ({"x": 1.0, "y": 1e-16}, {"x": 1.0, "y": 3e-16}, {"x": "m", "y": "m"}, ""),
+        ({"x": 1.0, "y": 1e-9}, {"x": 1.0, "y": 3e-9}, {"x": "m", "y": "m"}, "y"),
+        ({"x": 1.0, "y": 1e-16}, {"x": 1.0, "y": 3e-16}, {"x": "m", "y": "N"}, "y"),
+        ({"ratio": 1e-17}, {"ratio": 5e-17}, {"ratio": "1"}, ""),
+        ({"ratio": 1e-3}, {"ratio": 1.001e-3}, {"ratio": "1"}, "ratio"),
+        # One without a unit that may be any: Hz over Pa beside Hz over m^4.
+        ({"figure_unit": "Hz", "slope": [3e-12, 3e7]}, {"figure_unit": "Hz", "slope": [4e-12, 3e7]}, {}, ""),
+        ({"figure_unit": "Hz", "slope": 3e-12}, {"figure_unit": "Hz", "slope": 4e-12}, {"slope": "1"}, "slope"),
+        ({"t": 10.0, "x": 1.0, "v": 1e-18}, {"t": 10.0, "x": 1.0, "v": 0.0}, {"t": "s", "x": "m", "v": "m s-1"}, ""),
+        ({"t": 10.0, "x": 1.0, "a": 1e-9}, {"t": 10.0, "x": 1.0, "a": 0.0}, {"t": "s", "x": "m", "a": "m/s^2"}, "a"),
+    ],
+)  # fmt: skip
+def test_rounding_is_what_is_nothing_beside_the_largest_of_its_unit(
+    then: dict[str, Any], now: dict[str, Any], units: dict[str, str], differ: str
+) -> None:
+    origin = gb.read_scenario("examples/zhang2020_example1.toml").provenance
+    assert origin is not None
+    other = replace(origin, environment=Environment("0.2.0", "3", "Linux", {}))
+    again = reproduction("x.nc", then, now, other, {}, lambda name: units.get(name, ""))
+    assert [each.name for each in again.differences if each.size > 1e-9] == ([differ] if differ else [])
 
 
 def test_keys_say_which_default_a_version_had() -> None:

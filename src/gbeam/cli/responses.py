@@ -199,18 +199,22 @@ def answer_again(file: Path) -> Reproduction:
 
 def _compared(file: Path, facts: dict[str, Any], origin: Provenance) -> Reproduction:
     """Run the command of a file again, and compare its facts with those that the file holds."""
-    from gbeam.results.facts import ANY
+    from gbeam.results.facts import ANY, paths_of
+    from gbeam.results.study import KINDS, tree_of_answers
     from gbeam.scenario.rerun import as_read, reproduction
 
     with TemporaryDirectory(prefix="gbeam-") as folder:
         changes, defaults = as_read(str(file), origin, Path(folder))
         again = _answered(file, origin, Path(folder), tuple(changes))
-    declared = again.get("units", {}).items()
-    units = {re.compile(re.escape(form).replace(re.escape(ANY), ".+")): unit for form, unit in declared}
+    kind = again.get("form", {}).get("kind")
+    declared = paths_of(tree_of_answers(KINDS[kind])) if kind in KINDS else ()
+    units = {re.compile(re.escape(form).replace(re.escape(ANY), ".+")): each.unit or "1" for form, each in declared}
     forms = {name: form for name, form, _ in _leaves(again)}
 
     def unit_of(name: str) -> str:
-        return next((unit for pattern, unit in units.items() if pattern.fullmatch(forms[name])), "")
+        possible = forms[name], forms[name].removesuffix("[i]")
+        unit = next((unit for pattern, unit in units.items() if any(map(pattern.fullmatch, possible))), "")
+        return "" if unit in ("unit", "mixed") else unit  # a unit that another key says, or several
 
     then, now = ({name: value for name, _, value in _leaves(each)} for each in (facts, again))
     return reproduction(str(file), then, now, origin, defaults, unit_of)

@@ -6,7 +6,7 @@ import hashlib
 import math
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -37,7 +37,7 @@ _STATED = re.compile(
 )
 # Names of times of peaks: rounding may decide between equal peaks. The peaks themselves are compared.
 _WHEN = re.compile(r"_time($|_)|(^|[./])time_|time_of_|limits\.\d+\.time$")
-ROUNDING = 1e-12  # of the largest value with the same unit, and of 1 without a unit: a smaller difference is rounding
+ROUNDING = 1e-12  # of the largest value with the same unit, and of 1 if dimensionless: a smaller difference is rounding
 # A unit of a rate, as netCDF files and JSON write it: the unit of the quantity, and the power of time.
 _RATE = re.compile(r"(.+?)(?: s-(\d)|/s(?:\^(\d))?)")
 
@@ -175,7 +175,12 @@ def reproduction(
     scales = _scales(then, names, unit_of) if changed else {}
     compared = (_difference(name, then.get(name), now.get(name), unit_of(name), scales) for name in names)
     differences = sorted(filter(None, compared), key=lambda each: -each.size)
-    restated = [d for d in differences if changed and (_WHEN.search(d.name) or (other and _STATED.search(d.name)))]
+
+    def does_not_count(each: Difference) -> bool:
+        peak_time = bool(changed) and _WHEN.search(each.name) is not None and math.isfinite(each.size)
+        return peak_time or (other and _STATED.search(each.name) is not None)
+
+    restated = [each for each in differences if does_not_count(each)]
     return Reproduction(
         file=file,
         compared=len(names),
@@ -226,12 +231,13 @@ def computed(of: Stored) -> dict[str, Any]:
     return values
 
 
-def _scales(values: Mapping[str, Any], names: Iterable[str], unit_of: Callable[[str], str]) -> dict[str, float]:
+def _scales(values: Mapping[str, Any], names: Sequence[str], unit_of: Callable[[str], str]) -> dict[str, float]:
     """Largest size of values by unit; that of a rate at least the quantity's over the longest time."""
-    scales = {"": 1.0, "1": 1.0, "rad": 1.0}
+    of_any_unit = any(name.endswith("unit") for name in names)  # where a file says units, a value without may have any
+    scales = {"rad": 1.0} | ({} if of_any_unit else {"1": 1.0})
     for name in names:
         value = np.asarray(values[name])
-        if value.dtype.kind == "f":
+        if value.dtype.kind == "f" and unit_of(name) not in ("", "1"):
             size = float(np.max(np.abs(value), initial=0.0, where=np.isfinite(value)))
             scales[unit_of(name)] = max(scales.get(unit_of(name), 0.0), size)
     time = scales.get("s") or 1.0
