@@ -233,6 +233,7 @@ def test_a_relay_limits_cycle() -> None:
         ({"law": "pid"}, "law"),
         ({"law": (np.eye(2), np.eye(2), np.eye(2), np.eye(2))}, "law"),
         ({"reference": [1.0]}, "reference"),
+        ({"reference": [1.0, None]}, "reference"),
     ],
 )
 def test_controllers_that_are_none_are_refused(more: dict[str, Any], where: str) -> None:

@@ -26,7 +26,7 @@ Step = Callable[[float, Floats, Any], tuple[Any, Any]]
 
 
 def _kinds(key: str, kind: Callable[[str], str], arguments: Mapping[str, Any]) -> Kinds:
-    """Kinds of what is said of each of some names."""
+    """Kinds of quantity of the signals that the argument `key` names, one each, by a function of a signal's name."""
     names = arguments.get(key)
     return tuple(kind(str(name)) for name in names) if isinstance(names, (list, tuple)) else ""
 
@@ -109,8 +109,8 @@ class Feedback(Value):
         )
         if len(references) != len(self.measure):
             raise InputError("reference", f"has {len(references)} values", f"give one, or {len(self.measure)}")
-        profiles = tuple(as_profile("reference", each) for each in references if each is not None)
-        object.__setattr__(self, "reference", profiles or None)
+        if self.reference is not None:
+            object.__setattr__(self, "reference", tuple(as_profile("reference", each) for each in references))
         if not callable(self.law) or hasattr(self.law, "dt"):
             if self.state is not None:
                 raise InputError("state", "is given of a linear law, which starts at zero", "leave it out")
