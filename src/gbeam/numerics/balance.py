@@ -77,7 +77,7 @@ def unheld(stiffness: Floats, mass: Floats) -> Floats:
 
 def balanced(residual: Floats, stiffness: Floats, mass: Floats, which: Flags) -> tuple[Floats, Floats]:
     """Displacements (n,), and accelerations (n,) of the coordinates `which`, that balance a residual (n,)."""
-    left, k = carried(mass, which, residual, stiffness)
+    remaining, k = carried(mass, which, residual, stiffness)
     k[:, which] = 0.0  # of slides already; a rotation that changes nothing else keeps its angle
-    change = answered(k, mass, -left)
+    change = answered(k, mass, -remaining)
     return change, pulled(residual + stiffness @ change, mass, which)

@@ -130,17 +130,17 @@ class Bodies:
         base, w, alpha = (_components(each[..., None, :]) for each in (a, w, alpha))
         q, qd, qdd = (each[..., None, :] for each in (q, qd, qdd))
         tangents = self.field.moving(q, qd, qdd, base=(w, alpha))
-        at = self._demanded(tangents, base)
+        demand = self._demanded(tangents, base)
         fixed = Tangents(tangents.rotation, tangents.t, tangents.arm) if still else tangents
         columns, side = self.field.columns(fixed), _Side.of(shape, n, axes, still)
         # The root's turn moves t, and turns sections, as a coordinate does.
         moved = side.rows(columns.place[0], cross(UNITS, tangents.t))
         change = side.changes(columns, tangents.t, tangents.td, w)
         work, resultant = _work(mapped(change, self.pairs), moved), _weighted(change, self.first)
-        by_a, mass, swung = _weighted(moved, self.first), self.mass, cross(columns.place[0], at.force)
+        by_a, mass, swung = _weighted(moved, self.first), self.mass, cross(columns.place[0], demand.force)
         lever, about = mapped(swung, outboard), _summed(swung)
         if self.turning is not None:
-            turn = self._turning_changes(tangents, columns, at.turn, side)
+            turn = self._turning_changes(tangents, columns, demand.turn, side)
             work = work + _work(turn, side.rows(columns.angle[0], UNITS))
         if len(self.beside):
             (r, rd, _), points = self.field.carried(tangents), self.field.columns_of_points(fixed, columns)
@@ -148,13 +148,13 @@ class Bodies:
             change = scaled(self.beside, side.changes(points, r, rd, w))
             work, resultant = work + _work(change, moved), add(resultant, _summed(change))
             by_a, mass = add(by_a, _weighted(moved, self.beside)), mass + self.beside.sum()
-            arm = cross(cross(points.angle[0], tangents.arm), at.push)
+            arm = cross(cross(points.angle[0], tangents.arm), demand.push)
             lever = add(lever, mapped(arm, self.field.cumulative.T))
             about = add(about, _summed(arm))
         if not still:
-            carried = add(at.moment, mapped(cross(tangents.t, at.force), outboard))  # by the sections
+            carried = add(demand.moment, mapped(cross(tangents.t, demand.force), outboard))  # by the sections
             # Moments on the nodes do other work where these have turned.
-            force, moment = cross(at.force, columns.angle[0]), add(cross(carried, columns.angle[0]), lever)
+            force, moment = cross(demand.force, columns.angle[0]), add(cross(carried, columns.angle[0]), lever)
             work[..., :n, :n] += self.field.inward(tangents, force, moment)
             work[..., :n, n:] += joined(np, about, (*shape, n))
         out, turns = np.zeros((*shape, 3 * n + 9, n + 6)), 3 * n + 3 + np.array(axes, dtype=int)
@@ -163,8 +163,8 @@ class Bodies:
         out[..., motion, n : n + 3] = joined(np, resultant, (*shape, len(motion)))
         out[..., 3 * n : 3 * n + 3, rows] = np.moveaxis(joined(np, by_a, (*shape, n + 3)), -1, -2)
         out[..., 3 * n : 3 * n + 3, n : n + 3] = mass * np.eye(3)
-        along = self.field.pulled(tangents, at.force, at.moment)
-        value = [along, *(joined(np, vector, (*shape, 1)) for vector in (at.total, at.about))]
+        along = self.field.pulled(tangents, demand.force, demand.moment)
+        value = [along, *(joined(np, vector, (*shape, 1)) for vector in (demand.total, demand.about))]
         return concatenated(value)[..., 0, :], out
 
     def _turning_changes(self, tangents: Tangents, columns: Columns, turn: Vector, side: _Side) -> Vector:

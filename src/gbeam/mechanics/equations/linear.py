@@ -54,8 +54,8 @@ class LoadTerms:
         xp, n = namespace(self.constant, q, values), q.shape[-1]
         flat = xp.reshape(values, (*values.shape[:-2], -1))
         constant, slope = (xp.reshape(each, (flat.shape[-1], -1)) for each in (self.constant, self.slope))
-        turned = xp.reshape(flat @ slope, (*flat.shape[:-1], -1, n))
-        return flat @ constant + (turned * q[..., None, :]).sum(axis=-1)
+        by_coordinate = xp.reshape(flat @ slope, (*flat.shape[:-1], -1, n))
+        return flat @ constant + (by_coordinate * q[..., None, :]).sum(axis=-1)
 
 
 @record

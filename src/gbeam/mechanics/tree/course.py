@@ -45,8 +45,8 @@ class Course:
         while reach < len(since):  # products of 2, 4, 8, ... pieces at once
             since = xp.concatenate([since[:reach], parameters_after(since[:-reach], since[reach:])])
             reach *= 2
-        back = since[zero] * np.array([1.0, -1.0, -1.0, -1.0])
-        self.times, self.attitudes = times, parameters_after(parameters_after(as_array(start), back), since)
+        inverse = since[zero] * np.array([1.0, -1.0, -1.0, -1.0])
+        self.times, self.attitudes = times, parameters_after(parameters_after(as_array(start), inverse), since)
 
     def __call__(self, t: Any) -> tuple[Array, Array, Array]:
         """Euler parameters (..., 4) and their first and second derivatives with respect to time at times t (...)."""

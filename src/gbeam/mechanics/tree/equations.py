@@ -323,8 +323,8 @@ class Tree:
             elastic = elastic + link.body.stored(q[-1])
             if not link.loose:
                 elastic = elastic + link.stored(q[:-1], qd[:-1])
-            mass, first = link.body.mass_moment(q[-1])
-            weight = weight - ((mass * root.p + turned(root.R, first)) * gravity).sum(axis=-1)
+            mass, first_moment = link.body.mass_moment(q[-1])
+            weight = weight - ((mass * root.p + turned(root.R, first_moment)) * gravity).sum(axis=-1)
         return force, moment, namespace(kinetic, elastic).stack([kinetic, elastic, weight], axis=-1)
 
     def local(self, y: Array, yd: Array, ydd: Array) -> tuple[Tree, Array, Array, Array]:

@@ -38,7 +38,7 @@ CARRIED = {"force": "force", "moment": "torque"}
 
 
 def kind_of_signal(name: str) -> str:
-    """Kind of quantity of what may be measured, by its name."""
+    """Kind of quantity, such as "speed", of a signal by its name."""
     signal = name.rpartition(".")[2]
     kind = (_OF_POINTS | CARRIED).get(signal.rpartition("_")[0])
     if kind is not None:
@@ -48,7 +48,7 @@ def kind_of_signal(name: str) -> str:
 
 
 def kind_of_drive(name: str) -> str:
-    """Kind of quantity of what may drive a system, by its name."""
+    """Kind of quantity, such as "torque", of a drive by its name."""
     drive = name.rpartition(".")[2]
     return CARRIED.get(drive.rpartition("_")[0]) or kind_of_value("effort", drive)
 
@@ -72,9 +72,9 @@ def drives_of(system: System) -> dict[str, Driven]:
     for name in sorted(rates, key=system.row):
         drives[name] = Driven("effort", system.row(name), KINDS[kind_of_drive(name)].unit)
     for k, owner in enumerate(system.forces):
-        for i, (each, kind) in enumerate(CARRIED.items()):
+        for i, (part, kind) in enumerate(CARRIED.items()):
             unit = KINDS[kind].unit
-            drives |= {f"{owner}.{each}_{axis}": Driven("wrenches", 3 * i + j, unit, k) for j, axis in enumerate("xyz")}
+            drives |= {f"{owner}.{part}_{axis}": Driven("wrenches", 3 * i + j, unit, k) for j, axis in enumerate("xyz")}
     return drives
 
 
