@@ -238,6 +238,7 @@ def traced(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, s
     step_residual = stepped(equations, scheme, steps, len(q))
 
     def solved(residual: Any, q: Any, qd: Any, driven: Any, inputs: Any) -> Any:
+        """Histories (3, t + 1, n) and samples of a run, computed by NumPy outside of JAX's programs."""
         residual, q, qd, driven, inputs = jax.tree.map(np.asarray, (residual, q, qd, driven, inputs))
         order = np.argsort(times)
 

@@ -57,7 +57,7 @@ class Cards:
 
 
 def cards_of(source: Any, mesh: Any) -> Cards:
-    """Read what a file says besides its mesh; nothing of a file of another kind."""
+    """Read the statements of a file besides its mesh: none unless it is one of Nastran, Abaqus or CalculiX."""
     ending = ending_of(source)
     cards = (_Nastran if ending in NASTRAN else _Abaqus if ending in ABAQUS else Cards)(mesh)
     try:

@@ -122,6 +122,7 @@ def stiffness_matrix(points: Floats, blocks: Sequence[Block]) -> Any:
     """Elastic stiffness (3 k, 3 k), node by node."""
 
     def parts() -> Iterator[Floats]:
+        """Matrices of elements, those (3, 3) of all pairs of their nodes, part by part."""
         for part in chunks(points, blocks, "stiffness"):
             e, q, k, _ = part.gradients.shape
             if part.assumed is not None:
@@ -177,10 +178,10 @@ def geometric_stiffness(points: Floats, blocks: Sequence[Block], static: Floats,
 
 
 def coupled(halves: Floats, stiffness: Floats) -> Floats:
-    """Stiffness (m, n, n) by two halves (2, m, n, n) in coordinates of unit mass with a stiffness (n, n).
+    """Geometric stiffness (m, n, n) of two halves (2, m, n, n), in coordinates of unit mass with a stiffness (n, n).
 
-    The second half couples soft modes with stiff ones by a multiple of the stiff ones' stiffness. The square of that,
-    which terms of fourth degree would take away again, is of second order: of it only near modes are coupled.
+    The second half couples soft modes with stiff ones in proportion to the stiff ones' stiffness. That acts to second
+    order, where terms of fourth degree, which are left out, would cancel it: only modes near in frequency are coupled.
     """
     squares, modes = np.linalg.eigh(stiffness)
     near = np.maximum.outer(squares, squares) < NEAR**2 * np.minimum.outer(squares, squares)

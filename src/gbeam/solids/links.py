@@ -344,12 +344,12 @@ class Linked:
         return stiffness[self._rows]
 
     def geometric_stiffness(self, held: Any, mass: Any, loads: Floats, static: Floats, reduced: Reduced) -> Floats:
-        """Two halves (2, m, n, n) of the stiffness of the forces that hold the points on their links, as these turn:
-        their work in θ × (θ × r)/2, under loads (points · 3, m) with answers `static` (u, m), by the coordinates of a
-        reduction; `held` are the tied points' rows of the stiffness.
+        """Two halves (2, m, n, n) of what links add to :func:`gbeam.solids.elements.geometric_stiffness`: the work of
+        the forces that hold tied points on a link, in the displacements θ × (θ × r)/2 as it turns by θ.
 
-        The first is of the loads' forces, as coordinates turn the links, the second of a coordinate's, as the load and
-        another one do: as in :func:`gbeam.solids.elements.geometric_stiffness`.
+        In the first half the forces are those under loads (points · 3, m), whose answers are `static` (u, m), and two
+        coordinates turn the links; in the second the forces are a coordinate's, and a load and another coordinate turn
+        them. `held` are the tied points' rows of the stiffness.
         """
         shapes = reduced.shapes
         halves = np.zeros((2, loads.shape[-1], shapes.shape[-1], shapes.shape[-1]))

@@ -24,7 +24,9 @@ NEAR = 0.01  # of a given mass, or of the size of the structure
 
 
 def sparse_matrix(where: str, matrix: Any, size: int | None = None) -> Any:
-    """Return a matrix as a symmetric sparse one; an InputError where it is none, or of another size."""
+    """A matrix as a sparse one; InputError unless it is square, of `size`, finite, symmetric, and 0 or more on the
+    diagonal.
+    """
     from scipy.sparse import csr_array
 
     try:

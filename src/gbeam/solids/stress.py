@@ -306,6 +306,7 @@ def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> S
     foremost = [int(pairs[judged[pairs].argmax()]) for pairs in of_kind]
 
     def stress_at(pair: int) -> StressAt:
+        """Stress of a pair at the time at which it is largest."""
         t, node, strength = int(when[pair]), int(node_of[pair]), float(strengths[pair])
         return StressAt(
             von_mises=float(largest[pair]),

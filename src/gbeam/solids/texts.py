@@ -280,6 +280,7 @@ def _read_gmsh(mesh: TextMesh, text: str, _: str) -> bool:
     mesh.groups |= {name: [] for name in names.values()}
 
     def add(number: str, kind: str, nodes: list[str], tags: list[str]) -> None:
+        """Add an element to the mesh, unless it is there, and to the groups of its tags."""
         dim = GMSH.get(int(kind), 3)
         if len(nodes) not in SHAPES[dim] or int(kind) not in GMSH:
             raise ValueError(f"element {number} is of Gmsh's type {kind}")

@@ -32,13 +32,13 @@ def check_sampling(time: Floats, place: Callable[[int], str], *, jitter: bool) -
     """
     steps = np.diff(time)
 
-    def at(i: int) -> str:
+    def later(i: int) -> str:
         return f"{time[i + 1]:g} s at {place(i + 1)}, after {time[i]:g} s"
 
     back = np.flatnonzero(steps <= 0)
     if back.size:
         verb = "repeats" if steps[back[0]] == 0 else "goes back to"
-        raise InputError("record.time", f"{verb} {at(int(back[0]))}", "sort the rows and delete repeated ones")
+        raise InputError("record.time", f"{verb} {later(int(back[0]))}", "sort the rows and delete repeated ones")
     median = float(np.median(steps))
     gaps = np.flatnonzero(steps > _GAP * median)
     if gaps.size:
@@ -56,7 +56,7 @@ def check_sampling(time: Floats, place: Callable[[int], str], *, jitter: bool) -
         rate = float(f"{(len(time) - 1) / (time[-1] - time[0]):.3g}")
         raise InputError(
             "record.time",
-            f"is sampled unevenly: {at(i)}, is {steps[i]:g} s where the interval is {median:g} s",
+            f"is sampled unevenly: {later(i)}, is {steps[i]:g} s where the interval is {median:g} s",
             f'add resample = "{rate:g} Hz": at equal intervals, by a spline through the samples',
         )
     samples = np.arange(len(time))
