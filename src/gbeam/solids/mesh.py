@@ -220,7 +220,7 @@ class SolidMesh(Value):
             positive(f"scale[{i}]", factor, "")
         rotation = Rotation.from_rotvec(turn).as_matrix()
         middles = (size * places * np.asarray(scale, dtype=float) - np.asarray(origin, dtype=float)) @ rotation.T
-        solid_points, numbers, nodes_of = points_of(middles, elements)
+        vertices, numbers, nodes_of = points_of(middles, elements)
 
         def group(where: str, name: str) -> Indices:
             nodes = np.flatnonzero(np.isin(numbers, nodes_in(mesh, where, name)))
@@ -230,20 +230,20 @@ class SolidMesh(Value):
                 )
             return nodes
 
-        clamped = np.zeros(len(solid_points), dtype=bool)
+        clamped = np.zeros(len(vertices), dtype=bool)
         for name in [clamp] if isinstance(clamp, str) else clamp:
             clamped[group("clamp", name)] = True
         named = {
-            name: _node(solid_points, middles[numbers], name, getattr(place, "at", place), group)
+            name: _node(vertices, middles[numbers], name, getattr(place, "at", place), group)
             for name, place in (points or {}).items()
         }
         tip = named.pop(TIP, int(np.argmax(np.linalg.norm(middles[numbers], axis=1) * ~clamped)))
-        weights = np.zeros(len(solid_points))
+        weights = np.zeros(len(vertices))
         for name, mass in (point_masses or {}).items():
             where = f"point_masses.{name}"
             nodes = np.array([tip if name == TIP else named[name]]) if name in {*named, TIP} else group(where, name)
             weights[nodes] += positive(where, mass, "kg") / len(nodes)
-        blocks = _blocks(mesh, solid_points, elements, nodes_of, materials, rotation)
+        blocks = _blocks(mesh, vertices, elements, nodes_of, materials, rotation)
         by_group = materials if isinstance(materials, Mapping) else {"": materials}
         names = _names(by_group)
         kinds = {names[name]: material for name, material in by_group.items()}
@@ -252,22 +252,18 @@ class SolidMesh(Value):
         hung = {name: group(f"interfaces.{name}", of) for name, of in (interfaces or {}).items()}
         exponents = {name: float(material.fatigue_exponent) for name, material in kinds.items()}
         fields: dict[str, Any] = {"strengths": strengths, "exponents": exponents, "interfaces": hung}
-        tied = Links.of(group, links or {}, carried or {}, springs or {}, solid_points, clamped)
+        tied = Links.of(group, links or {}, carried or {}, springs or {}, vertices, clamped)
         statements_read = tuple[str, ...]()
         if mass_unit is not None:
             cards, weight = cards_of(source, mesh), unit_size("mass_unit", mass_unit, "mass")
-            tied, lumped = with_cards(
-                cards, tied, Placed(middles, rotation, solid_points, numbers, clamped), size, weight
-            )
+            tied, lumped = with_cards(cards, tied, Placed(middles, rotation, vertices, numbers, clamped), size, weight)
             weights, statements_read = weights + lumped, cards.words
         if thickness is not None:
             statements_read += THICKNESS
         fields["links"] = tied
         turned = {name: place for name, place in (points or {}).items() if isinstance(place, Place)}
         fields["turns"] = {name: tuple(place.turn) for name, place in turned.items()}
-        solid = cls(
-            solid_points, blocks, clamped, node_numbers_of(mesh)[numbers], weights, named | {TIP: tip}, **fields
-        )
+        solid = cls(vertices, blocks, clamped, node_numbers_of(mesh)[numbers], weights, named | {TIP: tip}, **fields)
         refuse_folded(solid)
         refuse_loose(solid)
         doubts = [*doubts_of(solid, unit or "that of the file"), *left_out(source, mesh, statements_read)]
@@ -423,7 +419,7 @@ class SolidMesh(Value):
         return Places(r0, first, second), turns
 
 
-def _node(solid_points: Floats, middles: Floats, name: str, place: Any, group: Any) -> int:
+def _node(vertices: Floats, middles: Floats, name: str, place: Any, group: Any) -> int:
     """Number of the node nearest to a place, or of a group's only one; of a shell on the face on the place's side, or
     the upper one.
     """
@@ -442,13 +438,13 @@ def _node(solid_points: Floats, middles: Floats, name: str, place: Any, group: A
     if place.shape != (3,) or not np.isfinite(place).all():
         raise InputError(where, f"is {place!r}", "give x, y and z in m, or a group")
     away = np.linalg.norm(middles - place, axis=1)
-    size = float(np.linalg.norm(np.ptp(solid_points, axis=0)))
+    size = float(np.linalg.norm(np.ptp(vertices, axis=0)))
     if away.min() > 0.1 * size:
         x, y, z = middles[away.argmin()]
         fix = f"give a place on the solid, in m: that node is at ({x:.4g}, {y:.4g}, {z:.4g}) m"
         raise InputError(where, f"is {away.min():.3g} m from the nearest node", fix)
     nodes = np.flatnonzero(away == away.min())
-    arms = solid_points[nodes] - middles[nodes]
+    arms = vertices[nodes] - middles[nodes]
     return int(nodes[(arms @ (place - middles[nodes[0]]) > MIDDLE * (arms**2).sum(axis=1)).argmax()])
 
 
