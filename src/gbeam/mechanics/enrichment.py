@@ -27,10 +27,12 @@ TENSION = 1.0  # N L²/EI: from there on the axial force bends the shapes
 
 
 def axial_force(beam: Beam, rule: Quadrature, along: Array, spin: Array) -> Array:
-    """Largest axial force (g,) N at the nodes, under root accelerations (t,) m/s² and squared rates (t,) across."""
+    """Axial force (g,) N at the nodes at the time when it is largest at the root, by the root's accelerations `along`
+    the beam (t,), m/s², and squared angular rates `spin` across it (t,), rad²/s².
+    """
     line = beam.density * beam.section.at(rule.node).area
-    until = rule.cumulative(rule.node)
-    mass, moment = (rule.weight @ f - until @ f for f in (line, line * rule.node))
+    inboard = rule.cumulative(rule.node)
+    mass, moment = (rule.weight @ f - inboard @ f for f in (line, line * rule.node))  # outboard of each node
     for body in beam.masses:
         outboard = rule.node < body.at
         mass, moment = mass + body.mass * outboard, moment + body.mass * body.at * outboard
@@ -149,7 +151,7 @@ def bends(space: Space, force: Array) -> bool:
 
 
 def coupled_space(beam: Beam, rule: Quadrature, counts: Counts) -> Space:
-    """The space of all motions of a beam whose strains move it in several directions at once."""
+    """Space of all motions of a beam whose line, or section by matrices, couples the directions."""
     families = tuple(family for family in range(6) if family < 3 or counts[family])
     nodes, springs = len(rule.node), [*beam.root.springs.values()]
     strained = len(families) * nodes
@@ -165,7 +167,7 @@ def coupled_space(beam: Beam, rule: Quadrature, counts: Counts) -> Space:
     place, moved = particles.positions(rest), particles.slopes(rest)
     axes = np.eye(3)
     pulls = [np.broadcast_to(axis, place.shape) for axis in axes] + [np.cross(axis, place) for axis in axes]
-    loads = [np.einsum("p,pai,pa->i", mass, moved, pull) for pull in pulls]
+    loads = [np.einsum("p,pai,pa->i", mass, moved, pull) for pull in pulls]  # of accelerations, along and about axes
     slopes, angles = field.jacobians(rest)
     first = len(rule.node) + len(beam.masses)
     for load in beam.loads:

@@ -240,7 +240,7 @@ def _frequency(structure: Structure, lowest: float) -> Iterator[str]:
 
 
 def unstiffened(structure: Structure, base: Any, where: str) -> Iterator[str]:
-    """Warn, with its size, of the stiffness by loads of a motion that a structure by matrices lacks.
+    """Warn if the loads of a motion would stiffen a structure whose matrices do not say how, and say by how much.
 
     An acceleration a bends a cantilever by about a/ω², and the square of its lowest frequency changes, by the stress,
     by about a/(ω² L) of itself, in a rotation by about Ω²/ω².

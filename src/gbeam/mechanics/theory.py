@@ -92,7 +92,7 @@ class Theory(NamedTuple):
         return self._replace(slender=slender, thick=thick)
 
     def variants(self, plate: Floats) -> tuple[Structure, Structure]:
-        """The thick beam, and the same with the stiffness of a plate (n, n) besides."""
+        """The thick beam, and the thick beam with the additional stiffness `plate` (n, n)."""
         c = self.thick.coefficients
         return self.thick, replace(self.thick, coefficients=replace(c, stiffness=c.stiffness + plate))
 

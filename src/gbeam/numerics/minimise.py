@@ -63,16 +63,16 @@ _NOTHING = 1e-9  # a value at the start that is less is rounding
 
 
 def least(evaluate: Callable[[Floats], tuple[float, Floats]], low: Floats, high: Floats, x: Floats) -> Floats:
-    """Find the point between bounds (n,), the nearest to `x` of several, at which a convex function is least, by its
-    tangents (Kelley 1960); `evaluate` gives the value and a slope (n,), and the bounds may be equal.
+    """Find the point between bounds (n,) at which a convex function is least, the nearest to `x` if several are, by
+    cutting planes, its tangents (Kelley 1960). `evaluate` gives value and slope (n,); the bounds may be equal.
     """
     import scipy.optimize
 
     start, width, n = np.clip(x, low, high), high - low, len(low)
-    begun = (start - low) / np.where(width > 0, width, 1.0)
-    # Unknown are shares of the way between the bounds, the value over that at the start, and ways from the start.
-    near = np.block([[np.eye(n), np.zeros((n, 1)), -np.eye(n)], [-np.eye(n), np.zeros((n, 1)), -np.eye(n)]])
-    rows, sides = [*near], [*begun, *-begun]
+    start_share = (start - low) / np.where(width > 0, width, 1.0)
+    # Unknown are shares of the way between the bounds, the value over that at the start, and distances from the start.
+    distances = np.block([[np.eye(n), np.zeros((n, 1)), -np.eye(n)], [-np.eye(n), np.zeros((n, 1)), -np.eye(n)]])
+    rows, sides = [*distances], [*start_share, *-start_share]
     bounds, costs = [*[(0.0, 1.0)] * n, (0.0, np.inf), *[(0.0, 1.0)] * n], np.zeros(2 * n + 1)
     costs[n] = 1.0
     x, best = start, (np.inf, start)

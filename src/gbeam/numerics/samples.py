@@ -73,7 +73,7 @@ def separate_peaks(values: Floats, floor: float, dip: float) -> list[tuple[int, 
     """
     peaks: list[tuple[int, slice]] = []
     for run in true_runs(values > floor):
-        part = values[run]
+        part = values[run]  # indices below are of this run
         rises = np.concatenate([[True], part[1:] > part[:-1]])
         falls = np.concatenate([part[:-1] >= part[1:], [True]])
         tops = np.flatnonzero(rises & falls)

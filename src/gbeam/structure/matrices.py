@@ -124,7 +124,7 @@ def particles(matrix: Any, *, rotary: bool) -> tuple[Any, Any]:
 
 
 def between(stations: tuple[float, ...], matrices: tuple[Matrix, ...], x: Any) -> Floats:
-    """Matrices (..., 6, 6) at positions, linear between the stations."""
+    """Matrices (..., 6, 6) at positions x (...), m, linear between the stations."""
     xp = namespace(*matrices)
     values, at = xp.asarray(matrices), np.asarray(x, dtype=float)
     if not stations:

@@ -48,17 +48,18 @@ def saint_venant(long: Floats, thin: Floats, along: Floats, across: Floats) -> t
     """
     n = TERMS[:, None, None] if np.ndim(along) > 1 else TERMS[:, None]
     half, reach = thin / 2, n * np.pi / 2
-    slender = long / thin
-    grown = np.exp(reach * slender * (np.abs(along) - 1)) * (1 + np.exp(-2 * reach * slender * np.abs(along)))
-    decay = grown / (1 + np.exp(-2 * reach * slender))  # cosh over cosh, and likewise sinh over cosh
-    sinh = np.sign(along) * np.exp(reach * slender * (np.abs(along) - 1))
-    sinh = sinh * (1 - np.exp(-2 * reach * slender * np.abs(along))) / (1 + np.exp(-2 * reach * slender))
+    aspect = long / thin
+    # cosh(reach aspect along) and sinh of it, over cosh(reach aspect), by exponentials that do not overflow.
+    cosh = np.exp(reach * aspect * (np.abs(along) - 1)) * (1 + np.exp(-2 * reach * aspect * np.abs(along)))
+    cosh = cosh / (1 + np.exp(-2 * reach * aspect))
+    sinh = np.sign(along) * np.exp(reach * aspect * (np.abs(along) - 1))
+    sinh = sinh * (1 - np.exp(-2 * reach * aspect * np.abs(along))) / (1 + np.exp(-2 * reach * aspect))
     sign = (-1.0) ** ((n - 1) / 2)
     scale = 8 / np.pi**2 * 2 * half
-    on_long = scale * (np.pi**2 / 8 * across - (sign / n**2 * decay * np.sin(reach * across)).sum(axis=0))
+    on_long = scale * (np.pi**2 / 8 * across - (sign / n**2 * cosh * np.sin(reach * across)).sum(axis=0))
     on_long = np.where(np.abs(along) < 1, on_long, 0.0)  # zero on the short sides: the series cancels the first term
     on_short = scale * (sign / n**2 * sinh * np.cos(reach * across)).sum(axis=0)
-    constant = long * thin**3 / 3 * (1 - 192 / np.pi**5 / slender * (np.tanh(reach * slender) / n**5).sum(axis=0))
+    constant = long * thin**3 / 3 * (1 - 192 / np.pi**5 / aspect * (np.tanh(reach * aspect) / n**5).sum(axis=0))
     return on_long / constant, on_short / constant
 
 

@@ -158,14 +158,14 @@ class Quadrature(NamedTuple):
     def _matrix(self, x: Floats, *, integrate: bool) -> Floats:
         """Matrix (points, g) of :meth:`cumulative` or :meth:`interpolation`."""
         per_panel = len(self.node) // (len(self.edges) - 1)
-        onto = _operator(per_panel, integrate=integrate)
+        to_coefficients = _operator(per_panel, integrate=integrate)
         panel = np.clip(np.searchsorted(self.edges, x, side="left") - 1, 0, len(self.edges) - 2)
         low, high = self.edges[panel], self.edges[panel + 1]
-        inside = legendre.legvander(2 * (x - low) / (high - low) - 1, per_panel) @ onto
-        before = np.arange(len(self.node)) // per_panel
+        in_panel = legendre.legvander(2 * (x - low) / (high - low) - 1, per_panel) @ to_coefficients
+        node_panel = np.arange(len(self.node)) // per_panel
         out = np.zeros((len(x), len(self.node)))
-        out[before == panel[:, None]] = (inside * ((high - low) / 2)[:, None] if integrate else inside).ravel()
-        return np.where(before < panel[:, None], self.weight, out) if integrate else out
+        out[node_panel == panel[:, None]] = (in_panel * ((high - low) / 2)[:, None] if integrate else in_panel).ravel()
+        return np.where(node_panel < panel[:, None], self.weight, out) if integrate else out
 
 
 @cache

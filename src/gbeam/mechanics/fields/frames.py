@@ -120,7 +120,7 @@ def _differentiable() -> Any:
         turning = turned(_matrix(values[0]), _spread(about, tangents[1]))
         changes = []
         for (w, x, y, z), sums in zip(values, (frames.node_angles, frames.angles), strict=False):
-            half = scaled(0.5, mapped(turning, sums))
+            half = scaled(0.5, mapped(turning, sums))  # of the turn of each section
             changes.append((-dot(half, (x, y, z)), *add(scaled(w, half), cross(half, (x, y, z)))))
         return values, tuple(changes)
 

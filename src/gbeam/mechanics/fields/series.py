@@ -81,7 +81,7 @@ class SeriesField:
         return self.points(at)
 
     def joined(self, axis: SeriesField) -> SeriesField:
-        """The field of its points and, behind them, of others of the same beam on its axis."""
+        """Field of these points and, behind them, of those of `axis`, on the axis of the same beam."""
         exact, arm = self.exact.joined(axis.exact), self.arm
         if arm is not None:
             arm = namespace(arm).pad(arm, ((0, len(axis.exact.cumulative)), (0, 0)))

@@ -106,7 +106,7 @@ class StrainField:
         return self.points(at)
 
     def joined(self, axis: StrainField) -> StrainField:
-        """The field of its points and, behind them, of others of the same beam on its axis."""
+        """Field of these points and, behind them, of those of `axis`, on the axis of the same beam."""
         xp, offset, count = namespace(self.cumulative, self.offset), self.offset, len(axis.cumulative)
         parts = ((each.cumulative, each.frames.points, each.frames.angles) for each in (self, axis))
         cumulative, points, angles = (xp.concatenate(pair) for pair in zip(*parts, strict=True))

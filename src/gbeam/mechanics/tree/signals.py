@@ -79,12 +79,12 @@ def drives_of(system: System) -> dict[str, Driven]:
 
 
 def signals_of(system: System) -> dict[str, str]:
-    """Names of what may be measured of a system, with their units.
+    """Names of the motions that may be measured of a system, with their units.
 
-    Of joints: ``joint.angle`` and ``joint.angle_rate`` and likewise, of balls the rotation vector ``joint.rx`` and the
-    angular velocity ``joint.wx``; of points their ``place``, ``velocity`` (axes of
-    the ground), ``attitude``, the rotation vector of at most half a turn from the ground's axes to the point's,
-    ``acceleration`` and ``spin``, as sensors there read them (axes of the point).
+    Of joints: each value and its rate, ``joint.angle`` and ``joint.angle_rate``, of balls the rotation vector
+    ``joint.rx`` and the angular velocity ``joint.wx``. Of points: ``place`` and ``velocity`` (axes of the ground),
+    ``attitude``, the rotation vector of at most half a turn from the ground's axes to the point's, ``acceleration`` and
+    ``spin``, as sensors there read them (axes of the point).
     """
     signals: dict[str, str] = {}
     for name, joint in system.joints.items():
