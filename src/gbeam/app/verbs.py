@@ -61,7 +61,7 @@ def verbs() -> dict[str, Verb]:
 
 
 def _options(arguments: ArgumentCollection) -> tuple[Option, ...]:
-    """Options of a verb by its arguments: example and how often by the words of the help."""
+    """Options of a verb by its arguments; the words of the help give the example, and say if it may be repeated."""
     options = []
     for argument in arguments:
         name, *others = (each.removeprefix("--") for each in argument.names)
@@ -80,7 +80,8 @@ def _options(arguments: ArgumentCollection) -> tuple[Option, ...]:
             of = "record" if argument.hint is Path else "motion" if name == "motion" else ""
             of = "values" if "PATH=" in words else of
             example = quoted[1] if quoted else "" if default is None else str(default)
-            options.append(Option(name, words, example, argument.get_choices() or (), many, of))
+            choices = argument.get_choices() or ()
+            options.append(Option(name, words, example=example, choices=choices, many=many, of=of))
     return tuple(options)
 
 

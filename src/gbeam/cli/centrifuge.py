@@ -194,7 +194,8 @@ def _apply(loaded: Input, file: Path, name: str, changes: dict[str, str | list[s
 
     source = loaded.scenario.source
     assert source is not None  # it was read from a file
-    text, place = edited(source, ("motion", name), changes), file.resolve()
+    text = edited(source, ("motion", name), changes)
+    place = file.resolve()
     with naming("--write"):
         publish(place.parent, lambda hidden: (hidden / place.name).write_bytes(text.encode()))
     return str(file)

@@ -173,5 +173,6 @@ def write_found(answer: Fit | Optimum, scenario: Path, file: Path | None) -> Non
     from gbeam.studies.parameters import with_values
 
     with naming("--write"):
-        text, place = with_values(answer.parameters, answer.values.tolist(), scenario, file.parent), file.resolve()
+        text = with_values(answer.parameters, answer.values.tolist(), scenario, file.parent)
+        place = file.resolve()
         publish(place.parent, lambda hidden: (hidden / place.name).write_bytes(text.encode()))

@@ -130,7 +130,8 @@ def critical_speed(
     plot of the lowest frequencies on the way there, a map also as CSV; with --report also critical_speed.html.
     """
     folder = output.folder(scenario)
-    loaded, question = read("critical-speed", scenario, output.overrides), QUESTIONS["critical-speed"]
+    loaded = read("critical-speed", scenario, output.overrides)
+    question = QUESTIONS["critical-speed"]
     if masses is None and positions is not None:
         raise InputError("--positions", "stands without --masses", 'add --masses "0.1 kg, 0.5 kg"')
     if masses is not None:

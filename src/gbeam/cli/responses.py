@@ -66,7 +66,7 @@ def run(
 
 
 def _import_leaves() -> None:
-    with suppress(Exception):  # raised again where it is needed
+    with suppress(Exception):  # the import where it is needed raises it again
         if figures_wanted():
             import gbeam.plots
         import gbeam.io.netcdf  # noqa: F401

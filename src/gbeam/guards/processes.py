@@ -47,7 +47,8 @@ def confined(
     time, `seconds`, which grow with the file. `refuse` makes the error of a file that exceeds them or ends the process.
     """
     size = os.stat(path).st_size
-    memory, seconds = (memory or READER_BYTES) + 3 * size, (seconds or READER_SECONDS) + size // READER_RATE
+    memory = (memory or READER_BYTES) + 3 * size
+    seconds = (seconds or READER_SECONDS) + size // READER_RATE
     function = [reader.__module__, reader.__qualname__]
     request = json.dumps([os.getpid(), memory, seconds, function, [os.fspath(path), *arguments]]).encode()
     with tempfile.TemporaryFile() as reply:

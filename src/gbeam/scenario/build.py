@@ -70,9 +70,11 @@ def build(scenario: AnyScenario, *, ahead: bool = False) -> AnyCase:
         from gbeam.scenario.schema.system import SpecimenScenario
 
         if isinstance(scenario, SpecimenScenario):
-            make, structure = SpecimenCase, {"name": scenario.specimen[0], "structure": specimen_of(parts, scenario)}
+            make = SpecimenCase
+            structure = {"name": scenario.specimen[0], "structure": specimen_of(parts, scenario)}
         else:
-            make, structure = SystemCase, {"system": system_of(parts, scenario)}
+            make = SystemCase
+            structure = {"system": system_of(parts, scenario)}
     motions = flights_and_hubs(parts, scenario)
     response = _response(parts, scenario.response, motions)
     if response is not None:

@@ -50,16 +50,16 @@ def beam_of(parts: Collector, where: str, table: schema.Beam) -> Beam | None:
     return parts.attempt(
         where,
         Beam,
-        line.length if table.length is None else table.length,  # type: ignore[union-attr]
-        section,
-        None if drawn else material,
-        masses,
-        table.damping_ratio,
-        root,
-        loads,
-        points,
-        table.rotary_inertia,
-        line,
+        length=line.length if table.length is None else table.length,  # type: ignore[union-attr]
+        section=section,
+        material=None if drawn else material,
+        masses=masses,
+        damping_ratio=table.damping_ratio,
+        root=root,
+        loads=loads,
+        points=points,
+        rotary_inertia=table.rotary_inertia,
+        line=line,
     )
 
 

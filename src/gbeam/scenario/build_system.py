@@ -29,7 +29,7 @@ def system_of(parts: Collector, scenario: schema.SystemScenario) -> System | Non
     controllers = {name: _controller(parts, f"controllers.{name}", law) for name, law in scenario.controllers.items()}
     if len(parts.errors) > before:
         return None
-    return parts.attempt("", System, bodies, joints, forces, scenario.system.gravity, controllers)
+    return parts.attempt("", System, bodies, joints, forces, gravity=scenario.system.gravity, controllers=controllers)
 
 
 def specimen_of(parts: Collector, scenario: schema.SpecimenScenario) -> Structure | None:
@@ -60,11 +60,14 @@ def _force(parts: Collector, where: str, table: schema.PointForce) -> PointForce
 
 
 def _controller(parts: Collector, where: str, table: schema.Controller) -> Feedback | None:
+    """A controller; None if it is refused, with the reason in `parts`. References are zero unless written."""
     reference = [0.0] * len(table.measure) if table.reference is None else list(table.reference)
     limit = None if table.limit is None else list(table.limit)
 
     def controller() -> Feedback:
-        return Feedback(_law(table), table.measure, table.drive, table.sample, table.delay, limit, reference)
+        return Feedback(
+            _law(table), table.measure, table.drive, table.sample, delay=table.delay, limit=limit, reference=reference
+        )
 
     return parts.attempt(where, controller)
 

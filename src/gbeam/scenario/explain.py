@@ -86,7 +86,7 @@ def _words(source: Source, error: ErrorDetails, path: Path) -> tuple[str, str, M
 
 
 def _path(loc: tuple[int | str, ...], source: Source) -> Path:
-    """Path in the file of a place of pydantic's, which also contains tags of unions."""
+    """Path in the file of a place that pydantic gives, without the tags of unions that it contains."""
     path: Path = ()
     node: Any = source.data
     untagged = True  # no tag of a union has come since the last step of the path

@@ -114,7 +114,7 @@ T = TypeVar("T", bound=Environments)
 
 
 def load(path: str | os.PathLike[str], overrides: Iterable[str] = (), *, distributions: bool = False) -> AnyScenario:
-    """Read and validate a scenario file."""
+    """Read and validate a scenario file; with `distributions` these may stand in place of values."""
     file = Path(path)
     return loads(read_text(file), os.fspath(path), overrides, folder=file.parent, distributions=distributions)
 
@@ -127,7 +127,7 @@ def loads(
     folder: str | os.PathLike[str] = ".",
     distributions: bool = False,
 ) -> AnyScenario:
-    """Validate the text of a scenario."""
+    """Validate the text of a scenario, `name` in messages; with `distributions` these may stand in place of values."""
     source = _source(text, name, overrides, folder, distributions=distributions)
     return _validated(kind_of_scenario(source.data), source)
 

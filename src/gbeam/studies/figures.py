@@ -225,7 +225,7 @@ class History:
 
     @property
     def unit(self) -> str:
-        """SI."""
+        """SI unit."""
         return _LOADS.get(self.quantity, "m")
 
     def at(self, study: Study, times: Floats) -> Floats:

@@ -194,8 +194,10 @@ def _column(table: Table, name: str, unit: str, modal: bool, case: AnyCase, moti
     if strain is not None and (isinstance(case, SpecimenCase) or not strain[1].endswith("x")):
         factor = _MICROSTRAIN.get(unit) or _factor(unit, "ratio", name)
         if isinstance(case, SpecimenCase):
-            return Measured(name, run, "strain", values * factor, "", _gauged(strain[2], strain[1], case), strain[1])
-        return Measured(name, run, "strain", values * factor, "", _position(strain[2], strain[1], case), strain[1])
+            at: float | str = _gauged(strain[2], strain[1], case)
+        else:
+            at = _position(strain[2], strain[1], case)
+        return Measured(name, run, "strain", values * factor, unit="", at=at, face=strain[1])
     point, _, axis = quantity.partition(".")
     points = case.structure.points if isinstance(case, SpecimenCase) else case.beam.named_points
     if axis in tuple("xyz") and point in points:

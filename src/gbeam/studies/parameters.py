@@ -177,7 +177,8 @@ def with_values(
         fix = f"write it beside {os.fspath(scenario)}"
         raise InputError(os.fspath(folder), "is not the folder that the scenario's records are named from", fix)
     template = ScenarioTemplate(base)
-    changes, quantities = changed(physical_values(template, paths), values), template.quantities()
+    changes = changed(physical_values(template, paths), values)
+    quantities = template.quantities()
     return with_quantities(base.source, {path: (value, quantities[path][1]) for path, value in changes.items()})
 
 

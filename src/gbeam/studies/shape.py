@@ -37,7 +37,7 @@ _AFTER = 1.25  # least duration of a scenario with the command, over the command
 
 
 def _drive(arguments: Mapping[str, Any]) -> tuple[bool, bool]:
-    """True if an effort drives, and if what is driven slides."""
+    """Two truths about the command that arguments ask for: it is an effort; its coordinate is a displacement."""
     case = template_of(arguments["scenario"], arguments.get("overrides", ())).built()
     _, name, hub = driven_of(case, arguments.get("motion"), arguments.get("joint"))
     return hub.free, slides(name)
@@ -148,7 +148,7 @@ def shape_hub_command(
 
 
 def driven_of(case: AnyCase, motion: str | None, joint: str | None) -> tuple[Case | SystemCase, str, Hub]:
-    """The case, and what a command drives: a coordinate of its system and a hub of its rate, or free; or its hub."""
+    """The case, the name of what a command drives (a joint's coordinate or a hub), and a hub with its rate, or free."""
     if isinstance(case, SystemCase):
         return case, *driven_joint(case, joint)
     case = case.one_beam("bodies", "gbeam shape")
@@ -190,7 +190,7 @@ def driven_joint(case: SystemCase, name: str | None) -> tuple[str, Hub]:
 
 
 def slides(coordinate: str) -> bool:
-    """True if a coordinate is a displacement; a hub, by its name alone, is none."""
+    """True if a coordinate, ``joint.displacement``, is a displacement; false for the name of a hub."""
     joint, _, moved = coordinate.rpartition(".")
     return bool(joint) and moved in SLIDES
 
@@ -237,7 +237,7 @@ def _goal(hub: Hub, name: str) -> tuple[float | None, float | None]:
 def scenario_with(
     command: ShapedCommand, scenario: str | os.PathLike[str] | Case | SystemCase, overrides: Sequence[str] = ()
 ) -> str:
-    """Return a scenario, as JSON, in which a table of the shaped command drives its hub or joint and rests."""
+    """Return a scenario, as JSON, in which the shaped command, as a table, drives the hub or joint."""
     base = scenario_of(scenario, overrides)
     assert base.source is not None  # it was read from a file
     data: dict[str, Any] = json.loads(json.dumps(base.source.data))

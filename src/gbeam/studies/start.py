@@ -141,7 +141,8 @@ def go_on(
             rows += timed
         if seconds >= _IMPORTS:
             break
-    units, truths = tuple(unit for _, unit, _ in figures), tuple(truth for *_, truth in figures)
+    units = tuple(unit for _, unit, _ in figures)
+    truths = tuple(truth for *_, truth in figures)
     return Start(inquiry, units, truths, example, tuple(rows), seconds)
 
 

@@ -269,7 +269,8 @@ def _below(node: Any, kinds: Kinds) -> dict[Any, tuple[Any, Kinds]]:
         return {k: (each, only(kinds)) for k, each in enumerate(node)}
     if isinstance(node, Mapping):
         return {name: (each, below(kinds, name)) for name, each in node.items()}
-    owner, arguments = getattr(node, "owner", type(node).__name__), arguments_of(node) or {}
+    owner = getattr(node, "owner", type(node).__name__)
+    arguments = arguments_of(node) or {}
     return {name: (each, kind_of_argument(owner, name, arguments) or kinds) for name, each in arguments.items()}
 
 

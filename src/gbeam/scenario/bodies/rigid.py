@@ -81,8 +81,9 @@ def _specimen(parts: Collector, where: str, table: RigidBody) -> Structure | Non
         bolts = table.bolts or None
         moments = inertia_of(_moments(table))
         return RigidSpecimen(
-            table.mass, table.centre, moments, corners, bolts, table.bolt_axis, table.spread_limit, points
-        )
+            table.mass, table.centre, moments, corners,
+            bolts=bolts, bolt_axis=table.bolt_axis, spread_limit=table.spread_limit, points=points,
+        )  # fmt: skip
 
     built = parts.attempt(where, specimen)
     return None if built is None else built.structure

@@ -33,7 +33,7 @@ _OF_SYSTEMS = {"joints", "forces", "controllers", "system"}
 
 
 def kind_of_scenario(data: Mapping[str, Any]) -> type[Scenario | SystemScenario | SpecimenScenario]:
-    """Table of a scenario as written: of one beam, of another specimen, or of a system, made only when needed."""
+    """Class of a scenario by its keys: of one beam, another specimen, or a system, imported only when needed."""
     if "bodies" not in data and ("beam" in data or {"joints", "forces", "system"}.isdisjoint(data)):
         return Scenario
     from gbeam.scenario.schema.system import SpecimenScenario, SystemScenario
