@@ -90,6 +90,25 @@ class StructureRun(Run):
         down = self.posed.spun_down(self.trajectory, progress) if self.whole else None
         return response_of(replace(self, down=down), errors, name)
 
+    def judged(self, steps: StepErrors, tip: Floats, loads: Loads | None) -> tuple[Errors, tuple[str, ...]]:
+        """Errors of the response, whose tip (t, 3) and loads are those of the flight's times, and warnings of them."""
+        posed, settings, stride = self.posed, self.posed.settings, self.stride
+        structure, motion, of_steps = posed.structure, posed.motion, (steps.displacement, steps.loads, steps.stress)
+        doubts: tuple[str, ...] = ()
+
+        def begin(richer: Structure) -> tuple[Floats, Floats]:
+            return start_of(richer, motion, settings.start, settings.begin)[:2]
+
+        if settings.estimate:
+            settled = not motion.free and (self.up is not None or settings.begin.settled)
+            more: Any = {"stride": stride, "begin": None if settled else begin, "tolerance": settings.tolerance}
+            errors, doubts = response_errors(structure, motion, self.trajectory, tip, loads, of_steps, **more)
+        else:
+            displacement, root, stress = (ErrorEstimate(step=step) for step in of_steps)
+            errors = Errors(displacement, root, stress, settings.not_estimated)
+        doubts += inaccuracies(structure, errors, settings)
+        return errors, doubts + effort(settings, len(self.trajectory.time) - 1, stride)
+
     @cached_property
     def moved(self) -> Floats:
         """Displacement of the tip, (t, 3) m."""
@@ -201,24 +220,8 @@ def response_of(
         outcome, message, from_run = describe(structure, posed.problem, last, over_time, peaks, time, q[:, beam])
         if outcome == "done":
             during = None if loads is None else loads.during(flight)
-            tip = np.asarray(displacement[flight, -1])
-
-            def begin(richer: Structure) -> tuple[Floats, Floats]:
-                return start_of(richer, motion, settings.start, settings.begin)[:2]
-
-            steps = step_errors.displacement, step_errors.loads, step_errors.stress
-            if settings.estimate:
-                settled = not motion.free and (up is not None or settings.begin.settled)
-                begun = None if settled else begin
-                tolerance = settings.tolerance
-                errors, doubts = response_errors(
-                    structure, motion, trajectory, tip, during, steps, stride=stride, begin=begun, tolerance=tolerance
-                )
-                from_run += doubts
-            else:
-                of_steps = [ErrorEstimate(step=step) for step in steps]
-                errors = Errors(of_steps[0], of_steps[1], of_steps[2], settings.not_estimated)
-            from_run += inaccuracies(structure, errors, settings) + effort(settings, len(trajectory.time) - 1, stride)
+            errors, doubts = run.judged(step_errors, np.asarray(displacement[flight, -1]), during)
+            from_run += doubts
         span = time[0], time[-1]
         from_inputs = input_warnings(structure, motion, name=name, span=span, base=over_time, rest=frequencies)
         warnings = from_inputs + settings.warnings + from_run + (() if axes is None else axes.warnings)
