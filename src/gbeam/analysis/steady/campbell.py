@@ -64,6 +64,23 @@ def _fill(modes_at: Callable[[float], _Speed], low: _Speed, high: _Speed, count:
     return [*_fill(modes_at, low, middle, count, depth - 1), middle, *_fill(modes_at, middle, high, count, depth - 1)]
 
 
+def _tracked(speeds: Sequence[_Speed], kept: int) -> tuple[Floats, list[np.ndarray]]:
+    """Frequency, damping ratio and MAC (3, v, k) of the first modes from speed to speed, and which modes they are at
+    each, −1 where none resembles them.
+    """
+    values, track = np.full((3, len(speeds), kept), np.nan), np.arange(kept)
+    values[2, 0], index = 1.0, [track]
+    for before, after in pairwise(speeds):
+        match, likeness = _paired(before, after)
+        values[2, len(index)] = np.where(track >= 0, likeness[track], np.nan)
+        track = np.where(track >= 0, match[track], -1)
+        index.append(track)
+    for value, speed, track in zip(np.swapaxes(values, 0, 1), speeds, index, strict=True):
+        valid = track >= 0
+        value[:2, valid] = speed.frequency[track[valid]], speed.damping_ratio[track[valid]]
+    return values, index
+
+
 @typed
 def campbell(
     structure: Structure | System,
@@ -173,21 +190,8 @@ def campbell(
         raise InputError("modes", f"have nothing to follow: nothing oscillates at {start:g} rad/s", held)
     followed = coarse[:1]
     for low, high in pairwise(coarse):
-        followed += [*_fill(modes_at, low, high, kept, DEPTH), high]
-    frequency, damping, alike = np.full((3, len(followed), kept), np.nan)
-    track = np.arange(kept)
-    index = [track]
-    for i, speed in enumerate(followed):
-        if i == 0:
-            likeness = np.ones(kept)
-        else:
-            match, of_all = _paired(followed[i - 1], speed)
-            likeness = np.where(track >= 0, of_all[track], np.nan)
-            track = np.where(track >= 0, match[track], -1)
-            index.append(track)
-        valid = track >= 0
-        frequency[i, valid], damping[i, valid] = speed.frequency[track[valid]], speed.damping_ratio[track[valid]]
-        alike[i] = likeness
+        followed += [*_fill(at, low, high, kept, DEPTH), high]
+    (frequency, damping, alike), index = _tracked(followed, kept)
     rates = np.array([speed.rate for speed in followed])
     met = [
         crossing
