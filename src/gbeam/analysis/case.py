@@ -375,12 +375,12 @@ class SpecimenCase(_InEnvironments):
                     recovery.strain(point, (1.0, 0.0, 0.0))
 
     def assemble(self, stations: ArrayLike | None = None) -> Structure:
-        """Return the structure; its stations are its points.
+        """Return the structure, which needs no assembly; its output stations are its named points.
 
         Parameters
         ----------
         stations : ignored
-            Of beams.
+            Accepted as the cases of beams do.
         """
         return self.structure
 

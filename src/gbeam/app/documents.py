@@ -201,7 +201,7 @@ def head(file: Path) -> dict[str, Any]:
 
 @lru_cache(maxsize=4)
 def _skin(file: Path, _changed: int) -> dict[str, Any]:
-    """Skin of a mesh, read in a process that may end as it does."""
+    """Skin of a mesh for JSON, read in a child process, which may crash; `_changed` (mtime, ns) is a cache key."""
 
     def refuse(problem: str) -> InputError:
         return InputError("mesh", f"{file.name} {problem}", "mesh it more coarsely, or write it again")
@@ -243,16 +243,16 @@ _LONGEST = 3  # words of a unit in a name, m_s_2
 
 
 def suggested(columns: Iterable[tuple[str, str]]) -> dict[str, str]:
-    """Return the keys of a record, but for signs, that names and units of its columns suggest without doubt."""
-    candidates: dict[str, list[tuple[str, str]]] = defaultdict(list)  # columns and their units, by what they may hold
+    """Return record keys that the (name, unit) of exactly one column each suggests; signs are left to the user."""
+    candidates: dict[str, list[tuple[str, str]]] = defaultdict(list)  # (column, unit) by key
     for name, unit in columns:
         for key, stated in _meanings(name, unit):
             candidates[key].append((name, stated))
-    turning = all(key in candidates for key in "pqr")  # one rate alone is none
+    all_rates = all(key in candidates for key in "pqr")  # rates are suggested only together
     return {
         **_together(candidates, ("time",), "time_unit"),
         **_together(candidates, "xyz", "unit"),
-        **(_together(candidates, "pqr", "rate_unit") if turning else {}),
+        **(_together(candidates, "pqr", "rate_unit") if all_rates else {}),
     }
 
 

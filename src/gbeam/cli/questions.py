@@ -60,7 +60,7 @@ def verb_of(question: Question) -> Callable[..., int]:
     ) -> int:
         folder = output.folder(scenario)
         loaded = read(question.name, scenario, output.overrides)
-        chosen = motion
+        chosen = motion  # None: all motions, unless the question needs one of a kind
         if question.motion is not None or motion is not None:
             chosen, _ = loaded.motion(motion, kind=question.motion or "")
         answer = loaded.answer(question, chosen, at, options, Needs(shapes=True))

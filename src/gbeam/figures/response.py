@@ -294,8 +294,9 @@ def _plain(value: float) -> str:
 
 
 def tracking(response: PlotHeading, axes: AxesResult, title: str = "", flight: Response | None = None) -> Figure:
-    """Describe the load that a centrifuge makes at the control point beside the one that it should make."""
-    shown, time = moving(axes.actual, axes.reference), response.time
+    """Figure of the load at the control point over time: size and components, target, machine's and flight's."""
+    components = moving(axes.actual, axes.reference)  # those that are not negligible
+    time = response.time
     scale, unit = scale_of("m/s^2", axes.reference)
     loads: list[tuple[Floats, Floats, str, dict[str, Any]]] = [
         (time, axes.reference, "target", {"colour": REFERENCE, "dash": "dashed"}),
@@ -303,11 +304,11 @@ def tracking(response: PlotHeading, axes: AxesResult, title: str = "", flight: R
     ]
     if flight is not None:
         loads.insert(0, (flight.time, flight.base.a_WO_B, "flight", FLIGHT))
-    size = tuple(Line(at, scale * np.linalg.norm(load, axis=1), name, **look) for at, load, name, look in loads)
+    size = tuple(Line(times, scale * np.linalg.norm(load, axis=1), name, **look) for times, load, name, look in loads)
     idle = (Level(scale * axes.idle, "idle", "dotted"),) if axes.idle > 0 else ()
     panels = [Panel(f"size, {unit}", size, levels=idle, zero=True)]
-    for i in shown:
-        lines = tuple(Line(at, scale * load[:, i], name, **look) for at, load, name, look in loads)
+    for i in components:
+        lines = tuple(Line(times, scale * load[:, i], name, **look) for times, load, name, look in loads)
         panels.append(Panel(f"{'xyz'[i]}, {unit}", lines, named=False, height=0.8))
     panels.append(_error(time, axes))
     spans = stretches(axes, time)

@@ -129,9 +129,9 @@ class Sampling:
         qdd = accelerations(self.residual, q, qd, inputs) if self.controllers.accelerates(c) else 0 * q
         return self.controllers.measured(c, q, qd, qdd, inputs)
 
-    def slopes(self, c: int, q: Array, qd: Array, inputs: Any) -> tuple[Array, Array | None]:
-        """Derivatives of measurements with respect to (q, q̇), (t, k, 2 n), and to the commands before (t, k, m); None
-        of those where only accelerations would follow at once.
+    def measurement_slopes(self, c: int, q: Array, qd: Array, inputs: Any) -> tuple[Array, Array | None]:
+        """Derivatives of measurements with respect to (q, q̇), (t, k, 2 n), and to the commands held before, (t, k, m).
+        The latter are None unless accelerations are measured: positions and rates do not follow a command at once.
         """
         accelerates = self.controllers.accelerates(c)
         qdd = accelerations(self.residual, q, qd, inputs) if accelerates else 0 * q
@@ -143,9 +143,9 @@ class Sampling:
         # M δq̈ = −(K δq + C δq̇ + the derivatives by what is commanded).
         k, damping, mass = slopes(self.residual, q, qd, qdd, inputs)
         rest = np.concatenate([k, damping, self.onto(q, qd, qdd, inputs)], axis=-1)
-        change = by_change @ solved(mass, -rest)
+        by_state, by_command = np.split(by_change @ solved(mass, -rest), [slope.shape[-1]], axis=-1)
         direct = self._by_command(measured, q, qd, qdd, inputs)
-        return slope + change[..., : slope.shape[-1]], change[..., slope.shape[-1] :] + direct
+        return slope + by_state, by_command + direct
 
 
 def sampling_of(equations: NonlinearEquations, steps: Steps) -> Sampling | None:
@@ -180,7 +180,7 @@ class Held:
 
     def begin(self, z: Array) -> None:
         """Linearise the measurements about the states z (t, m, n) at the beginnings of steps."""
-        self.slope = self._at_samples(self.sampling.slopes, z)
+        self.slope = self._at_samples(self.sampling.measurement_slopes, z)
 
     def measure(self, z: Array) -> None:
         """Measure at the states z (t, m, n) of the iterate."""

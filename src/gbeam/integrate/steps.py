@@ -112,14 +112,15 @@ def _shared(start: float, step: float, count: int, corners: tuple[bytes, bytes] 
 
 
 def _fitted(start: float, step: float, count: int, corners: Corners | None) -> Steps:
+    """Steps between even nodes, cut at corners; `kept` ends at a node, `jump` at a jump, after `anew` one restarts."""
     nodes = np.asarray(start + step * np.arange(count + 1), dtype=np.float64)
     if corners is None or not len(corners.time):
         ones, length = np.ones(count, dtype=bool), np.full(count, step)
         return Steps(nodes[:-1], length, nodes[1:], nodes[:-1], nodes[1:], ones, ~ones, ~ones, nodes[1:], length)
     near = _NEAR * step + _ULPS * np.spacing(np.abs(nodes).max())
     nearest = np.clip(np.round((corners.time - start) / step).astype(int), 0, count)
-    apart = np.abs(corners.time - nodes[nearest]) > near
-    cuts = corners.time[apart & (corners.time > start) & (corners.time < nodes[-1])]
+    off_grid = np.abs(corners.time - nodes[nearest]) > near
+    cuts = corners.time[off_grid & (corners.time > start) & (corners.time < nodes[-1])]
     cuts = cuts[np.append(np.diff(cuts) > near, True)[: len(cuts)]]
     times, kept = np.concatenate([nodes, cuts]), np.arange(len(nodes) + len(cuts)) <= count
     order = np.argsort(times)
@@ -127,6 +128,7 @@ def _fitted(start: float, step: float, count: int, corners: Corners | None) -> S
     jump = np.zeros(len(times), dtype=bool)
     jump[np.searchsorted(times, corners.time[corners.jump] - near).clip(max=len(times) - 1)] = True
     length = np.where(kept[1:] & kept[:-1], step, np.diff(times))
+    # The drive is read just inside a step where it jumps at an end.
     first, last = times[:-1] + 2 * near * jump[:-1], times[1:] - 2 * near * jump[1:]
     following, resume = np.append(length[1:], length[-1]), np.append(first[1:], times[-1])
     anew = jump[1:] | (following != length)

@@ -160,7 +160,7 @@ class TracedLoop:
             controllers = self.controllers.of(exact(residual))
             sampling = Sampling(controllers, residual, None, self.steps)
             with np.errstate(all="ignore"):
-                by_state, by_command = sampling.slopes(c, q, qd, controllers.driven(driven, before))
+                by_state, by_command = sampling.measurement_slopes(c, q, qd, controllers.driven(driven, before))
             return by_state, np.zeros(shapes[1]) if by_command is None else by_command
 
         result = tuple(jax.ShapeDtypeStruct(shape, float) for shape in shapes)

@@ -130,14 +130,16 @@ class _Window:
         return None if self.held is None or self.held.settled else self.held
 
     def solve(self, end: int, enough: int) -> bool:
-        """Correct steps before `end` until `enough` have converged; false where one fails."""
+        """Correct the steps of the window, all before `end`, by Newton's method until the first `enough` steps of the
+        run have converged and left; return False where a single step fails. Flags are (t,), one a step.
+        """
         while self.first < enough:
             self._follow(end)
             states = self._states()
             self._differentiate(states)
             self._factor(states)
-            size, moved, count, since, least = self.corrections
-            fresh, before, far, alone = since == 0, size.copy(), not moved[-1] <= MOVED, len(size) == 1
+            size, moved, count, since, least = self.corrections  # its rows, written in place
+            fresh, before, last_far, alone = since == 0, size.copy(), not moved[-1] <= MOVED, len(size) == 1
             forces = self._forces(states)
             rounding = self._rounding(forces) if count.any() else 0 * size  # which a first one hides
             size[:] = self._correct(states, *self.maps)
@@ -148,7 +150,7 @@ class _Window:
             moved[:] = size / reach
             if self.held is not None:
                 self.held.settled = bool((size * QUICKEST <= SETTLED * reach).all())
-            if far and moved[-1] <= MOVED and count[-1] <= QUICK:
+            if last_far and moved[-1] <= MOVED and count[-1] <= QUICK:
                 self.more = min(self.more + self.more // 2 + 1, LONGEST)
             # By derivatives of another state corrections may shrink slowly without being rounding.
             quick, noise = least <= FAST, np.minimum(rounding, self.most)
@@ -157,12 +159,12 @@ class _Window:
             noise = noise + self._left_of(loads)
             good = _converged(size, before, reach, noise, fresh=fresh, quick=quick)
             # Interpolated from states far away, derivatives may be far too large, and corrections by them small.
-            trusted = alone & fresh | (len(self.slope) == 1 and (self.slope == self.reached).all())
+            trusted = (alone & fresh) | (len(self.slope) == 1 and (self.slope == self.reached).all())
             balanced = _largest(self.left) <= BALANCED * _largest(forces) + CANCELLED * _largest(loads)
             doubtful = good & ~trusted & ~balanced
             good &= ~doubtful
             least[:] = np.fmin(least, size / np.where(fresh | np.isinf(before), np.nan, before))
-            slow = ~good & (count > 1) & ~(size <= SLOW * before) | alone & doubtful
+            slow = (~good & (count > 1) & ~(size <= SLOW * before)) | (alone & doubtful)
             since[:] = np.where(slow, np.inf, since + moved)
             if slow.any():
                 self.apart = APART if self.even else max(self.apart // 2, NEAR)

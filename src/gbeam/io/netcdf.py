@@ -109,7 +109,7 @@ def limits_variables(uses: tuple[LimitUse, ...]) -> dict[str, Variable]:
 
 
 def sweep_group(sweep: Sweep) -> Group:
-    """Return what a file holds of a sweep; what is drawn is a coordinate along ``sample``."""
+    """Return what a file holds of a sweep; randomly drawn parameters lie along ``sample``."""
     dims = sweep.dimensions
     data = {
         name: variable(dims, values, sweep.units[name] or "1", f"{sweep.verb}: {name}")
@@ -134,11 +134,11 @@ def sweep_group(sweep: Sweep) -> Group:
         coordinates |= coordinate("time", sweep.time, "s", "time")
     if sweep.statistics:
         coordinates |= labels("bound", BOUNDS)
-    for each in sweep.statistics.values():
-        if PROBABILITY not in each.names:
-            coordinates |= labels("statistic", each.names)
-    for shares in sweep.indices.values():
-        coordinates |= labels("parameter", shares.parameters) | labels("order", ORDERS)
+    for statistic in sweep.statistics.values():
+        if PROBABILITY not in statistic.names:
+            coordinates |= labels("statistic", statistic.names)
+    for sensitivity in sweep.indices.values():
+        coordinates |= labels("parameter", sensitivity.parameters) | labels("order", ORDERS)
     return Group(data | outcome, coordinates, {"title": sweep.title, "verb": sweep.verb, "outcome": sweep.state})
 
 

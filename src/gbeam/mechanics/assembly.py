@@ -237,6 +237,7 @@ def _refuse_traced_places(beam: Beam, *, adapted: bool) -> None:
 
 
 def _stations(beam: Beam, stations: ArrayLike) -> Array:
+    """Positions of output, m: stations in their order, or sorted where named points join them; the tip is last."""
     positions = np.asarray(stations, dtype=float).ravel()
     for i, x in enumerate(positions):
         if not 0 <= x <= beam.length:

@@ -71,17 +71,18 @@ def refuse_unknown(beam: Beam, *, twist: bool, shear_y: bool, shear_z: bool) -> 
 
 
 def _shares(beam: Beam) -> Iterator[tuple[str, float, str, str, float]]:
-    """Bodies and springs: place, value, unit, what it brings, and how often the beam has as much."""
+    """Of each body and spring: scenario key, value, unit, what it adds, and its ratio to the beam's own."""
     mass, length, inertia = _mass(beam), beam.length, "moment of inertia"
     for i, body in enumerate(beam.masses):
-        turned, arm, largest = mass * length**2, max(map(abs, body.offset)), max(body.inertia)
+        scale, arm, largest = mass * length**2, max(map(abs, body.offset)), max(body.inertia)
         yield f"masses[{i}].mass", body.mass, "kg", "mass", body.mass / mass
-        yield f"masses[{i}].inertia", largest, "kg m^2", inertia, largest / turned
-        yield f"masses[{i}].offset", arm, "m", inertia, body.mass * arm**2 / turned
-    along, about_y, about_z = (np.mean(each) for each in beam.rigidities(np.asarray(beam.section.stations or (0.0,))))
-    turning = np.sqrt(about_y * about_z) / length
+        yield f"masses[{i}].inertia", largest, "kg m^2", inertia, largest / scale
+        yield f"masses[{i}].offset", arm, "m", inertia, body.mass * arm**2 / scale
+    rigidities = beam.rigidities(np.asarray(beam.section.stations or (0.0,)))
+    along, about_y, about_z = (np.mean(each) for each in rigidities)
+    bending = np.sqrt(about_y * about_z) / length
     for name, value in beam.root.springs.items():
-        unit, stiffness = ("N m/rad", turning) if name.startswith("rotation") else ("N/m", turning / length**2)
+        unit, stiffness = ("N m/rad", bending) if name.startswith("rotation") else ("N/m", bending / length**2)
         stiffness = along / length if name == "translation_x" else stiffness
         yield f"root.{name}", value, unit, "stiffness", float(value / stiffness)
 

@@ -107,7 +107,7 @@ def theory_of(structure: Structure, hung: tuple[int, ...] = ()) -> Theory:
 
 
 class _Parts:
-    """A beam's energies at nodes, bodies, loads and stations: strains by nodal values, and springs."""
+    """Stiffness, points and motions of a beam: unknowns (m,) are six strains at every node, then the springs."""
 
     def __init__(self, structure: Structure, beam: Beam, rule: Quadrature, hung: tuple[int, ...] = ()) -> None:
         self.structure, self.beam, self.rule = structure, beam, rule
@@ -120,13 +120,14 @@ class _Parts:
         self.families = np.append(np.repeat(np.arange(6), len(x)), [SLENDER[0]] * len(springs))
         gyration = np.sqrt(np.stack([section.inertia_z, section.inertia_y]) / section.area)
         slender = beam.length > SLENDEREST * gyration.max(axis=1)
-        stiff = [strain for strain, each in zip(SHEAR, slender, strict=True) if each and strain not in self.modelled]
+        stiff = [strain for strain, thin in zip(SHEAR, slender, strict=True) if thin and strain not in self.modelled]
         # Without its torsion constant a section does not twist.
         self.known = ~np.isnan(self.stiffness) & ~np.isin(self.families, stiff)
         self.coupling = None if beam.material is not None else beam.section.matrices(x)[0] * rule.weight[:, None, None]
+        # Indices of points: nodes, bodies, loads at a place, stations.
         loaded = [load.at for load in beam.loads if load.at is not None]
-        self.first = len(x) + len(beam.masses)
-        self.first_station = self.first + len(loaded)
+        self.first_load = len(x) + len(beam.masses)
+        self.first_station = self.first_load + len(loaded)
         self.hung = [self.first_station + k for k in hung]
         self.points = np.concatenate([x, [body.at for body in beam.masses], loaded, structure.stations])
         self.cumulative, self.at_nodes = rule.cumulative(self.points), rule.cumulative(x)
@@ -208,7 +209,7 @@ class _Parts:
 
     def work(self, field: StrainField) -> tuple[LoadWork, Any]:
         """The loads on a field, and the points where they act."""
-        return load_work(self.beam, field, self.rule, self.first)
+        return load_work(self.beam, field, self.rule, self.first_load)
 
     def theory(self, families: Families) -> Theory:
         """Both theories, with the structure's own shapes `families` and the strains of :meth:`answers` beside these."""

@@ -169,18 +169,18 @@ def vibrations(linear: Linear, *, gyroscopic: bool = True, zero: float = ZERO) -
 
 
 def _told_apart(value: Complex, modes: Complex, mass: Floats) -> Complex:
-    """Modes (n, k) of which those of one eigenvalue, such as two equal beams have, are along their principal axes in a
-    measure that counts later coordinates more: of any that span the same, these are the ones.
+    """Modes (n, k), equal eigenvalues side by side, with one reproducible basis for each group of equal ones, such as
+    two equal beams have: orthonormal in the mass, along the principal axes of a mass weighted by coordinate number.
     """
-    ends = np.flatnonzero(np.abs(np.diff(value)) > EQUAL * np.abs(value[1:])) + 1
+    starts = np.flatnonzero(np.abs(np.diff(value)) > EQUAL * np.abs(value[1:])) + 1
     out = modes.copy()
-    size = np.sqrt(np.arange(1.0, len(mass) + 1))
-    for some in np.split(np.arange(len(value)), ends):
-        if len(some) > 1:
-            of = modes[:, some]
-            of = of @ np.linalg.inv(np.linalg.cholesky(of.conj().T @ mass @ of)).conj().T
-            weighed = size[:, None] * of
-            out[:, some] = of @ np.linalg.eigh(weighed.conj().T @ mass @ weighed)[1]
+    weight = np.sqrt(np.arange(1.0, len(mass) + 1))
+    for group in np.split(np.arange(len(value)), starts):
+        if len(group) > 1:
+            basis = modes[:, group]
+            basis = basis @ np.linalg.inv(np.linalg.cholesky(basis.conj().T @ mass @ basis)).conj().T
+            weighed = weight[:, None] * basis
+            out[:, group] = basis @ np.linalg.eigh(weighed.conj().T @ mass @ weighed)[1]
     return out
 
 

@@ -149,7 +149,7 @@ class Limits(Protocol):
 
 
 def minimise(cost: Cost, limits: Limits, x: Floats) -> tuple[Floats, float]:
-    """Find the minimum near `x`, which keeps the limits; return it and its cost."""
+    """Return a minimum near `x`, which must be within the limits, and its cost, by sequential quadratic programming."""
     value = cost.cost(x)
     for _ in range(_STEPS):
         hessian, slope = cost.model(x)
@@ -158,12 +158,12 @@ def minimise(cost: Cost, limits: Limits, x: Floats) -> tuple[Floats, float]:
         move = solve_quadratic(hessian, slope, rows, lower - now, upper - now)
         if move is None:
             break
-        promised, part = float(slope @ move), 1.0
-        while (new := cost.cost(x + part * move)) > value + _SUFFICIENT * part * promised:
-            part /= 2
-            if part < _SHORTEST:
+        promised, fraction = float(slope @ move), 1.0  # promised: change of the cost, negative
+        while (new := cost.cost(x + fraction * move)) > value + _SUFFICIENT * fraction * promised:
+            fraction /= 2
+            if fraction < _SHORTEST:
                 return x, value
-        x, gain, value = x + part * move, value - new, new
+        x, gain, value = x + fraction * move, value - new, new
         if gain <= _ENOUGH * (value - cost.bound):
             break
     return x, value

@@ -164,15 +164,15 @@ def _shares(indices: Facts) -> Block:
 
 
 def _over_grid(facts: Facts, estimates: Facts, title: str) -> Block:
-    """A row for every point of the grid: mean and quantiles, or the probability."""
+    """Table of the grid, a row a point: the first statistic with its 95 % interval, then the others."""
     grid = [each for each in facts["parameters"] if not each["distribution"]]
     names = [each for each in estimates if each in ("mean", "5 %", "95 %", PROBABILITY)]
-    values = {name: {at: np.array(estimates[name][at], dtype=float) for at in BOUNDS} for name in names}
+    values = {name: {bound: np.array(estimates[name][bound], dtype=float) for bound in BOUNDS} for name in names}
 
     def row(place: tuple[int, ...]) -> list[Cell]:
-        main, *others = (Cell(number(values[name]["estimate"][place])) for name in names)
-        between = _between({at: values[names[0]][at][place] for at in BOUNDS})
-        return [*(six(each["values"][k]) for each, k in zip(grid, place, strict=True)), main, Cell(between), *others]
+        first, *others = (Cell(number(values[name]["estimate"][place])) for name in names)
+        between = _between({bound: values[names[0]][bound][place] for bound in BOUNDS})
+        return [*(six(each["values"][k]) for each, k in zip(grid, place, strict=True)), first, Cell(between), *others]
 
     heads = [*(_titled(each["path"], each["unit"]) for each in grid), names[0], "95 % confidence", *names[1:]]
     places = np.ndindex(values[names[0]]["estimate"].shape)

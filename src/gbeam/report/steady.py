@@ -90,12 +90,12 @@ def modes_table(facts: Facts, more: Mapping[str, Column]) -> Block:
 
 
 def evenly(facts: Facts) -> Blocks:
-    """Say what a steady state accelerates."""
-    every = [Accelerated(**one) for one in facts.get("accelerated", ())]
-    slides, turns = (
-        ", ".join(str(one) for one in every if math.isnan(one.acceleration) == turn) for turn in (False, True)
-    )
-    parts = [f"in axes of the ground: {slides}"] * bool(slides) + [f"about axes of its root: {turns}"] * bool(turns)
+    """Name the coordinates that a steady state accelerates: translations (m/s²), then rotations (rad/s²)."""
+    accelerated = [Accelerated(**row) for row in facts.get("accelerated", ())]
+    slides = ", ".join(str(each) for each in accelerated if not math.isnan(each.acceleration))
+    turns = ", ".join(str(each) for each in accelerated if math.isnan(each.acceleration))
+    parts = [f"in axes of the ground: {slides}"] if slides else []
+    parts += [f"about axes of its root: {turns}"] if turns else []
     if parts:
         yield Sentence(f"accelerated evenly, {', '.join(parts)}; all else rests")
 

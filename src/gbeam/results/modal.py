@@ -195,12 +195,12 @@ class Campbell(Noted, Figured[Literal["campbell"]]):
         return None if self.critical is None else self.critical.errors
 
     def __repr__(self) -> str:
-        of = f" {self.motion!r}" if self.motion else ""
-        lost = "" if self.critical is None or self.critical.value is None else f"\n  {self.critical.reason}"
+        motion = f" {self.motion!r}" if self.motion else ""
+        critical_reason = "" if self.critical is None or self.critical.value is None else f"\n  {self.critical.reason}"
         return (
-            f"Campbell{of} ({self.model}): {len(self.direction)} modes at {len(self.speed)} speeds, "
+            f"Campbell{motion} ({self.model}): {len(self.direction)} modes at {len(self.speed)} speeds, "
             f"{self.speed[0]:.4g} to {self.speed[-1]:.4g} rad/s; {len(self.crossings)} crossings with multiples "
-            f"{', '.join(str(order) for order in self.orders) or 'none'} of the speed{lost}"
+            f"{', '.join(str(order) for order in self.orders) or 'none'} of the speed{critical_reason}"
         )
 
 

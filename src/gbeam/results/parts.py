@@ -201,12 +201,12 @@ class LoadPeaks(Part):
         """Largest size of the normal stress along the beam; None where fibres are unknown."""
         if not np.isfinite(self.tension.value).all():
             return None
-        tension, compression = self.tension.value.argmax(), self.compression.value.argmin()
-        k = int(self.stress.value.argmax())
+        highest, lowest = self.tension.value.argmax(), self.compression.value.argmin()
+        largest = int(self.stress.value.argmax())
         return StressPeak(
-            *self._place(self.stress, k),
-            Highest(*self._place(self.tension, int(tension))),
-            Lowest(*self._place(self.compression, int(compression))),
+            *self._place(self.stress, largest),
+            Highest(*self._place(self.tension, int(highest))),
+            Lowest(*self._place(self.compression, int(lowest))),
         )
 
     @declared("1", "least margin on yield", role="part", name=None, key="margin", optional=True)
@@ -231,6 +231,7 @@ class LoadPeaks(Part):
         return Highest(*self._place(self.von_mises, int(self.von_mises.value.argmax())))
 
     def _place(self, extremes: Extremes, k: int) -> tuple[float, float, float]:
+        """Value, time, s, and station, m, of the section k."""
         return float(extremes.value[k]), float(extremes.time[k]), float(self.stations[k])
 
     @property

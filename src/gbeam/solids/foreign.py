@@ -325,19 +325,19 @@ def is_mesh(name: str) -> bool:
 
 
 def skin(path: str) -> dict[str, Any]:
-    """Vertices (v, 3) and triangles (f, 3) of the outer faces, in the file's unit, and the groups: their names, how
-    many nodes of elements they hold, and which vertices.
+    """Outer faces of a mesh file: vertices (v, 3), in its unit, triangles (f, 3), and a list of its groups, each with
+    name, number of its nodes that belong to elements, and indices of its vertices.
     """
     mesh = read_mesh(path)
     points = np.asarray(mesh.points, dtype=float)
-    flat = not any(block.dim == 3 and len(block.data) for block in mesh.cells) and points.size
-    elements = elements_of(mesh, SHEET * float(np.ptp(points)) if flat else None)
-    used = np.unique(np.concatenate([block.nodes.ravel() for block in elements]))
+    no_solids = not any(block.dim == 3 and len(block.data) for block in mesh.cells) and points.size
+    elements = elements_of(mesh, SHEET * float(np.ptp(points)) if no_solids else None)
+    used = np.unique(np.concatenate([each.nodes.ravel() for each in elements]))
     if points.ndim != 2 or points.shape[1] != 3 or used[-1] >= len(points) or not np.isfinite(points[used]).all():
         raise InputError("mesh", "has elements whose nodes have no place in space", "write it again")
     points, numbers, nodes_of = points_of(points, elements)
-    blocks = [block._replace(nodes=nodes) for block, nodes in zip(elements, nodes_of, strict=True)]
-    nodes, triangles = surface_of(SimpleNamespace(points=points, blocks=blocks), VERTICES)
+    blocks = [each._replace(nodes=inside) for each, inside in zip(elements, nodes_of, strict=True)]
+    outer, triangles = surface_of(SimpleNamespace(points=points, blocks=blocks), VERTICES)
     groups = list[dict[str, Any]]()
     seen = set[bytes]()
     for name in group_names(mesh)[:GROUPS]:
@@ -345,9 +345,9 @@ def skin(path: str) -> dict[str, Any]:
             inside = np.intersect1d(nodes_in(mesh, "clamp", name), used)
         except InputError:  # a name without elements
             continue
-        if len(inside) and inside.tobytes() not in seen:  # a number that is a name's too is left out
+        if len(inside) and inside.tobytes() not in seen:  # another name, or tag, of the same nodes is left out
             groups.append(
-                {"name": name, "nodes": len(inside), "vertices": np.flatnonzero(np.isin(numbers[nodes], inside))}
+                {"name": name, "nodes": len(inside), "vertices": np.flatnonzero(np.isin(numbers[outer], inside))}
             )
             seen.add(inside.tobytes())
-    return {"vertices": points[nodes].astype(np.float32), "triangles": triangles, "groups": groups}
+    return {"vertices": points[outer].astype(np.float32), "triangles": triangles, "groups": groups}

@@ -220,7 +220,7 @@ def _factor(unit: str, kind: str, name: str) -> float:
 
 
 def _gauged(text: str, axis: str, case: SpecimenCase) -> str:
-    """Name of a point of a solid at which there is a strain."""
+    """Return the gauge's point, stripped; InputError unless the solid has a strain there along `axis`."""
     name, recovery = text.strip(), case.structure.recovery
     if recovery is None:
         raise InputError(OPTION, f"has a gauge at {name!r}, on no mesh", "leave it out")

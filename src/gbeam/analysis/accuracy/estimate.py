@@ -63,16 +63,18 @@ def apart(value: float, reference: float) -> float:
 
 
 def of_bodies(structure: Structure, lacking: Lacking, tip: float, limit: float) -> Iterator[str]:
-    """Warn of bodies, off the tip's axis, that are elsewhere by more than a share of its displacement, m."""
+    """Warn of each mass off the beam's axis that the twist, which the model lacks, displaces by more than `limit`
+    times the displacement `tip`, m, of the tip.
+    """
     if structure.source is None or lacking.causes.get(BEAM, {}).get("twist", 0.0) <= 0:
         return
-    for i, (body, moved) in enumerate(zip(structure.source.beam.masses, lacking.bodies[BEAM], strict=False)):
+    for i, (body, difference) in enumerate(zip(structure.source.beam.masses, lacking.bodies[BEAM], strict=False)):
         arm = float((body.offset[1] ** 2 + body.offset[2] ** 2) ** 0.5)
-        if arm and moved > limit * tip:
-            share = f"{percent(moved / tip)} of the tip's displacement"
+        if arm and difference > limit * tip:
+            share = f"{percent(difference / tip)} of the tip's displacement"
             yield (
                 f"beam.masses[{i}] lies {1e3 * arm:.4g} mm off the axis: the beam twists under it, and it moves by an "
-                f"estimated {1e3 * moved:.3g} mm more or less than computed, {share}; {TORSION}"
+                f"estimated {1e3 * difference:.3g} mm more or less than computed, {share}; {TORSION}"
             )
 
 
@@ -85,15 +87,15 @@ UNKNOWN = "shapes and model are not judged: it is neither a beam, a mesh nor mat
 
 
 def negligible(sizes: Mapping[Quantity, float], body: str, length: float, inertia: float = 0.0) -> set[Quantity]:
-    """Quantities of a body whose largest sizes are rounding, such as the normal stress under a torque alone, or the
-    loads of a root that is free, beside the inertia force of the body, N.
+    """Quantities of a body that are rounding: root force and moment compared with one another (by `length`, m) and
+    with the body's inertia force `inertia`, N; normal stress compared with the shear stress.
     """
-    least = {
+    references = {
         "force": max(sizes[body, "moment"] / length, inertia),
         "moment": max(sizes[body, "force"], inertia) * length,
         "stress": sizes.get((body, "sheared"), 0.0),
     }
-    return {(body, what) for what, each in least.items() if sizes[body, what] <= NOTHING * each}
+    return {(body, what) for what, reference in references.items() if sizes[body, what] <= NOTHING * reference}
 
 
 def unjudged(structure: Structure) -> str:

@@ -149,7 +149,7 @@ class Differentiated:
         return self._posed(less), self._posed(more)
 
     def jumps_move(self, pair: Pair) -> bool:
-        """True if something jumps at another time where a parameter is another: steps that stand still miss that."""
+        """True if the jumps of either problem are not at the nominal times: steps fixed at those would miss them."""
         for posed in pair:
             jumps = self._jumps(posed)
             if len(jumps) != len(self.jumps):

@@ -159,13 +159,14 @@ def _subdivided(time: Floats, at: Indices) -> Floats:
 
 
 def _lagrange(nodes: Floats, t: Floats) -> Floats:
-    """Lagrange's basis of nodes (u, m) at times (u, p), (u, p, m)."""
+    """Values (u, p, m) at times (u, p) of Lagrange's basis polynomials of nodes (u, m)."""
     m = nodes.shape[1]
-    apart = nodes[:, :, None] - nodes[:, None, :] + np.eye(m) * (nodes[:, -1:] - nodes[:, :1])[..., None]
     scale = (nodes[:, -1:] - nodes[:, :1])[..., None]
+    apart = nodes[:, :, None] - nodes[:, None, :] + np.eye(m) * scale  # a factor of 1 on the diagonal
     away = (t[:, :, None] - nodes[:, None, :]) / scale
     weight = 1 / np.prod(apart / scale, axis=2)
     ones = np.ones((*away.shape[:2], 1))
+    # Products of the factors before each node, and of those after it.
     left = np.concatenate([ones, np.cumprod(away[..., :-1], axis=2)], axis=2)
     right = np.concatenate([ones, np.cumprod(away[..., :0:-1], axis=2)], axis=2)[..., ::-1]
     return np.asarray(left * right * weight[:, None, :])

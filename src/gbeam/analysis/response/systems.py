@@ -110,9 +110,10 @@ class SystemRun(Run):
         )
 
     def described(self, errors: StepErrors, name: str, progress: Progress = None) -> SystemResponse:
-        """The response, with the errors of shapes, models and theories if the settings ask for them."""
+        """Return the response, with the errors beyond those of the time steps if the settings ask for an estimate."""
         posed, settings = self.posed, self.posed.settings
-        errors, say = StepErrors() if self.missed else errors, "errors of shapes and models"
+        errors = StepErrors() if self.missed else errors  # unknown where steps may miss a stop
+        say = "errors of shapes and models"
 
         def again(system: System) -> Solution:
             return SystemRun.by_steps(posed.of(system), self.step, partial(tell, progress, say)).every(self.stride)
@@ -120,10 +121,10 @@ class SystemRun(Run):
         stated = SystemErrors(ErrorEstimate(errors.displacement), note=settings.not_estimated)
         if settings.estimate and self.whole:
             tell(progress, say, 0.0)
-            steps = {(body, each): math.nan for body in judged_bodies(posed.system) for each in LOADS}
-            steps |= {PLACE: errors.displacement, **dict(zip(steps, errors.each, strict=False))}
-            settled, closed = settings.begin.state == "equilibrium", again if posed.system.controllers else None
-            stated = system_errors(self.every(self.stride), closed, steps, settled=settled)
+            by_step = {(body, load): math.nan for body in judged_bodies(posed.system) for load in LOADS}
+            by_step |= {PLACE: errors.displacement, **dict(zip(by_step, errors.each, strict=False))}
+            settled, rerun = settings.begin.state == "equilibrium", again if posed.system.controllers else None
+            stated = system_errors(self.every(self.stride), rerun, by_step, settled=settled)
         return _described(self, stated, name, self.missed + self.turned_over)
 
     @cached_property

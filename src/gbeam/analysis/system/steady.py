@@ -271,8 +271,8 @@ class SteadySystem(Steady):
         return np.asarray(energies / np.maximum(energies.sum(axis=1, keepdims=True), 1e-300))
 
     def directions(self, modes: Complex) -> tuple[str, ...]:
-        """The body that moves most in each mode (n, k), and the axis of its root along which a point does, or r and
-        the axis about which it turns where none of its points moves.
+        """Names such as "arm x": of each mode (n, k) the body with most kinetic energy, and the axis of its root along
+        which one of its points moves most; "arm rx", about which it turns most, where none of its points moves.
         """
         of_point = [body for body, name in enumerate(self.system.order) for _ in self.system.points_of(name)]
         roots = self.local.tree.motion(self.local.y, self.local.yd, self.local.ydd, self.local.inputs).roots

@@ -132,7 +132,7 @@ SYMMETRIC, UNIT = 2, 4
 
 
 def read_standard_input(path: str) -> Contents:
-    """Read the polynomials of the body and of its nodes."""
+    """Read standard input data (SID, Wallrapp): body and nodes by name, each m0 + Σ m1 q with arrays m0 and m1."""
     body: dict[str, Any] = {"nodes": [], "numbers": []}
     names = {name.lower(): name for name in (*OF_NODES, *OF_BODY)}
     block: dict[str, Any] | None = None
@@ -156,14 +156,14 @@ def read_standard_input(path: str) -> Contents:
             (body if block is None else block)[match[1].lower()] = _number(match[2])
     if missing := [name for name in OF_BODY if name not in body and name not in ("ksigma", "Gr", "De")]:
         raise InputError("path", f"{path} lacks {', '.join(missing)}", "export the whole body, after Wallrapp")
-    every = [(name, each) for name, each in body.items() if name in OF_BODY]
-    every += [pair for node in body["nodes"] for pair in node.items()]
+    blocks = [(name, block) for name, block in body.items() if name in OF_BODY]
+    blocks += [pair for node in body["nodes"] for pair in node.items()]
     # The standard writes m1(row, coordinate, column); some programs swap the last two.
-    single = [at for _, each in every if each["ncol"] == 1 for at in each["m1"]]
-    swapped = any(at[2] > 0 for at in single)
-    for name, each in every:
-        where = body if name in OF_BODY else next(node for node in body["nodes"] if node.get(name) is each)
-        where[name] = _arrays(each, swapped)
+    single = [index for _, block in blocks if block["ncol"] == 1 for index in block["m1"]]
+    swapped = any(index[2] > 0 for index in single)
+    for name, block in blocks:
+        owner = body if name in OF_BODY else next(node for node in body["nodes"] if node.get(name) is block)
+        owner[name] = _arrays(block, swapped)
     return {"body": body}
 
 

@@ -94,10 +94,12 @@ class Bodies:
         return self.field.pulled(tangents, demanded.force, demanded.moment), demanded.total, demanded.about
 
     def _demanded(self, tangents: Tangents, a: Vector) -> Demanded:
-        """Forces and moments at the nodes, and their sums."""
+        """What the rates of the tangents t and the base's acceleration a demand at the nodes, and its resultants at the
+        root: of mass on the axis, of the sections' own inertia (`turn`), of particles beside the axis (`push`).
+        """
         force, moment = add(mapped(tangents.tdd, self.pairs), scaled(self.first, a)), NONE
-        alone: Any = tuple(part if absent(part) else part[..., 0] for part in a)
-        total = add(_weighted(tangents.tdd, self.first), scaled(self.mass, alone))
+        base: Any = tuple(part if absent(part) else part[..., 0] for part in a)  # without the axis of nodes
+        total = add(_weighted(tangents.tdd, self.first), scaled(self.mass, base))
         about = _summed(cross(tangents.t, force))
         turn, push = NONE, NONE
         if self.turning is not None:

@@ -289,15 +289,17 @@ class LinearBody:
         return energy / 2, Wrench(push, spin)
 
 
-def carried(of: Coefficients) -> Array | None:
-    """C0ᵀR0⁻¹C0 (n, n); None of particles on a line, about which they have no inertia."""
-    mass, S, J = of.rigid[0], of.rigid[1:4], of.second_moment
+def carried(c: Coefficients) -> Array | None:
+    """Inertia (n, n) of the mean rigid motion that has the momentum of deforming, C₀ᵀ R₀⁻¹ C₀ at q = 0.
+    None where the particles lie on a line: the inertia R₀ of the rigid body is singular.
+    """
+    mass, S, J = c.rigid[0], c.rigid[1:4], c.second_moment
     if not is_traced(J):
         least, _, most = np.linalg.eigvalsh(_about_centre(mass, S, J))
         if not least > THIN * most:
             return None
-    v, w = _mean_motion(mass, S, J, of.f_a.T, of.f_al.T)
-    return of.f_a.T @ v.T + of.f_al.T @ w.T
+    v, w = _mean_motion(mass, S, J, c.f_a.T, c.f_al.T)
+    return c.f_a.T @ v.T + c.f_al.T @ w.T
 
 
 def _about_centre(mass: Array, S: Array, J: Array) -> Array:

@@ -68,14 +68,15 @@ class Frame:
     alpha: Array
 
     def carried(self, by: Relative) -> Frame:
-        """Motion of a frame that moves relative to this one."""
+        """Motion, in its own axes, of the frame that moves `by` in this one; None in `by` is zero, or no turn."""
         swept = cross(self.w, by.r)
         a = self.a + cross(self.alpha, by.r) + cross(self.w, swept if by.rd is None else swept + 2 * by.rd)
         if by.rd is not None:
             a = a + by.rdd
         R, p, v, w, alpha = self.R, self.p, self.v, self.w, self.alpha
         if R is not None:
-            p, v = p + turned(R, by.r), v + swept if by.rd is None else v + swept + by.rd
+            p = p + turned(R, by.r)
+            v = v + (swept if by.rd is None else swept + by.rd)
         if by.R is not None:
             w, alpha, a = (turned_back(by.R, each) for each in (w, alpha, a))
             if R is not None:

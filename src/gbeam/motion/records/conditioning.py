@@ -108,7 +108,7 @@ def without_spikes(time: Floats, load: Floats, at: Flags) -> Floats:
 
 
 def filtered(time: Floats, values: Floats, cutoff: float | None, resample: float | None) -> tuple[Floats, Floats]:
-    """Times (t,) and values (t, ...) after the low-pass and at the new rate."""
+    """Times (t,), s, and values (t, n): low-pass at `cutoff`, then splined to `resample`, both Hz; None skips one."""
     step = float(time[-1] - time[0]) / (len(time) - 1)
     if cutoff is not None:
         if np.abs(np.diff(time) - step).max() > UNEVEN * step:

@@ -239,13 +239,14 @@ def _campbell(facts: Facts, _: Facts) -> Facts:
 
 
 def _sensitivity(facts: Facts, _: Facts) -> Facts:
-    every = facts["measures"].values()
-    rows = {each["path"]: each for each in next(iter(every))["parameters"]}
-    by_path = [{one["path"]: one["derivative"] for one in each["parameters"]} for each in every]
+    """Fields of a Sensitivity: derivatives (measures, parameters), parameters in the order of the first measure."""
+    measures = facts["measures"].values()
+    rows = {row["path"]: row for row in next(iter(measures))["parameters"]}
+    by_path = [{row["path"]: row["derivative"] for row in measure["parameters"]} for measure in measures]
     return {
-        "measures": tuple(facts["measures"]), "units": _words(every, "unit"), "figures": _column(every, "value"),
+        "measures": tuple(facts["measures"]), "units": _words(measures, "unit"), "figures": _column(measures, "value"),
         "parameters": tuple(rows), "parameter_units": _words(rows.values(), "unit"),
-        "values": _column(rows.values(), "value"), "derivatives": _array([[one[k] for k in rows] for one in by_path]),
+        "values": _column(rows.values(), "value"), "derivatives": _array([[row[k] for k in rows] for row in by_path]),
     }  # fmt: skip
 
 

@@ -318,14 +318,14 @@ class SystemScenario(Environments, Tree):
         return data
 
     def about_structure(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
-        """Errors of keys that are of one beam only."""
+        """Errors of keys that a body in a system must not have or lacks, and of [response] keys for one beam only."""
         for name, body in self.bodies.items():
             for place, error in OF_TABLE[type(body)].among(body):
                 yield ("bodies", name, *place), error
-        of_tip: list[Loc] = [("response", "stations")] if self.response.stations is not None else []
+        beam_only: list[Loc] = [("response", "stations")] if self.response.stations is not None else []
         initial = self.response.initial
-        of_tip += [("response", "initial", key) for key in initial.settings if key != "state"]
-        for place in of_tip:
+        beam_only += [("response", "initial", key) for key in initial.settings if key != "state"]
+        for place in beam_only:
             yield place, wrong("is of one beam", "leave it out: output is at the points of the bodies", mark="key")
 
 
