@@ -94,8 +94,8 @@ class Bodies:
         return self.field.pulled(tangents, demanded.force, demanded.moment), demanded.total, demanded.about
 
     def _demanded(self, tangents: Tangents, a: Vector) -> Demanded:
-        """What the rates of the tangents t and the base's acceleration a demand at the nodes, and its resultants at the
-        root: of mass on the axis, of the sections' own inertia (`turn`), of particles beside the axis (`push`).
+        """Forces at the nodes that the rates of the tangents t and the base's acceleration a demand, and resultants at
+        the root: of mass on the axis, of the sections' own inertia (`turn`), of particles beside the axis (`push`).
         """
         force, moment = add(mapped(tangents.tdd, self.pairs), scaled(self.first, a)), NONE
         base: Any = tuple(part if absent(part) else part[..., 0] for part in a)  # without the axis of nodes
