@@ -203,7 +203,7 @@ def test_a_study_costs_little_more_than_a_batch_by_hand(
     assert set(swept.outcome) == {"done"}
     # Beside them: runs by which a step is known to be enough, and places of batches that stay empty; 4.5 and 4.9.
     assert steps[0] < 6 * swept.measures["steps"].sum()
-    assert judged[0] <= 2  # the first case's, whose figures are looked up
+    assert judged[0] <= 6  # the first case's, whose figures are looked up, and those by which its steps are judged
 
 
 def test_cases_with_other_steps_stay_apart() -> None:

@@ -190,7 +190,7 @@ def campbell(
         raise InputError("modes", f"have nothing to follow: nothing oscillates at {start:g} rad/s", held)
     followed = coarse[:1]
     for low, high in pairwise(coarse):
-        followed += [*_fill(at, low, high, kept, DEPTH), high]
+        followed += [*_fill(modes_at, low, high, kept, DEPTH), high]
     (frequency, damping, alike), index = _tracked(followed, kept)
     rates = np.array([speed.rate for speed in followed])
     met = [
