@@ -8,6 +8,7 @@ from collections.abc import Iterable
 # Control characters but tab and line feed, C1's included; lone surrogates; marks that reverse the direction of writing.
 _UNPRINTABLE = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
 _NOT_STORABLE = re.compile("[\0\ud800-\udfff]")
+_EXPONENTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 LONGEST = 200  # characters of one value in a message
 
 
@@ -19,6 +20,11 @@ def printable(text: str) -> str:
 def storable(text: str) -> str:
     """Return the text with null characters and lone surrogates, which no text file can hold, as escapes."""
     return _NOT_STORABLE.sub(_escaped, text)
+
+
+def raised(unit: str) -> str:
+    """Return a unit with its exponents as they are printed, rad/s² for rad/s^2."""
+    return re.sub(r"\^(-?\d+)", lambda power: power[1].translate(_EXPONENTS), unit)
 
 
 def on_one_line(text: str) -> str:

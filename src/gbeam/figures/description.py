@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
@@ -11,6 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from gbeam.constants import STANDARD_GRAVITY
+from gbeam.printable import raised
 from gbeam.results.accounting import Accounting
 from gbeam.results.declared import declarations
 from gbeam.results.machine import AxesResult
@@ -229,7 +229,6 @@ _UNITS = {
     "m/s^2": ((0.0, 1.0, "m/s²"), (0.5 * STANDARD_GRAVITY, 1 / STANDARD_GRAVITY, "g0")),
 }
 _READABLE = (0.01, 1e4)  # beyond it a power of ten goes to the axis
-_EXPONENTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
 def scale_of(si: str, *values: Floats | float) -> tuple[float, str]:
@@ -244,11 +243,6 @@ def largest(values: Floats) -> float:
     """Return the largest finite size; zero where there is none."""
     finite = np.abs(values[np.isfinite(values)])
     return float(finite.max()) if finite.size else 0.0
-
-
-def raised(unit: str) -> str:
-    """A unit with its exponents as they are printed, rad/s² for rad/s^2."""
-    return re.sub(r"\^(-?\d+)", lambda power: power[1].translate(_EXPONENTS), unit)
 
 
 def scaled(name: str, unit: str, values: Floats) -> tuple[float, str]:

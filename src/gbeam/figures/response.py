@@ -28,10 +28,10 @@ from gbeam.figures.description import (
     moving,
     not_drawn,
     of_motion,
-    raised,
     scale_of,
     stretches,
 )
+from gbeam.printable import raised
 from gbeam.results.comparison import Comparison
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.machine import AxesResult

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from gbeam.errors import InputError
-from gbeam.figures.description import GREY, REFERENCE, Area, Bars, Figure, Line, Map, Mark, Panel, raised, scaled
+from gbeam.figures.description import GREY, REFERENCE, Area, Bars, Figure, Line, Map, Mark, Panel, scaled
+from gbeam.printable import raised
 from gbeam.results.cases import PROBABILITY, SAMPLE, Parameter, Sensitivity, Sweep
 from gbeam.results.result import Floats
 from gbeam.results.searches import Fit, FittedColumn, Optimum, ShapedCommand

@@ -19,10 +19,10 @@ from gbeam.figures.description import (
     moving,
     not_drawn,
     of_motion,
-    raised,
     scale_of,
 )
 from gbeam.figures.response import carried_along, carried_at_root
+from gbeam.printable import raised
 from gbeam.results.result import Floats
 from gbeam.results.solids import SolidStress, SpecimenLoads, place_words
 from gbeam.results.system import ENERGIES, SystemModes, SystemResponse, SystemRest, named

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from gbeam.constants import STANDARD_GRAVITY
+from gbeam.printable import raised
 from gbeam.report.words import columns, number, percent, rounding
 
 Facts = Mapping[str, Any]  # of the JSON, with None for what is not finite
@@ -167,7 +168,6 @@ def quantities(
     """Yield any JSON: a table of its plain values, and a section of each list of rows and of each object; `units` and
     `words` are by path, `place` is the path of `facts`.
     """
-    from gbeam.figures.description import raised  # with figures of every kind, which `gbeam check` does without
 
     units = facts.get("units", {}) if units is None else units
     shown = {key: value for key, value in facts.items() if key not in _APART and value not in (None, "")}

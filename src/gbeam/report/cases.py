@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.figures.description import raised
+from gbeam.printable import raised
 from gbeam.report.blocks import (
     FIGURES,
     Block,

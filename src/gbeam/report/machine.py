@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from typing import Any
 
-from gbeam.figures.description import raised
+from gbeam.printable import raised
 from gbeam.report.blocks import (
     FIGURES,
     Block,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from gbeam.figures.description import raised
+from gbeam.printable import raised
 from gbeam.report.blocks import (
     FIGURES,
     Block,

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from gbeam.figures.description import raised
+from gbeam.printable import raised
 from gbeam.report.blocks import (
     FIGURES,
     Block,
