@@ -189,9 +189,11 @@ def unit_at(facts: Any, tree: Any, keys: tuple[str | int, ...]) -> str | None:
             return None
     if not isinstance(tree, Entry):
         return None
+    record = facts  # the innermost: its unit stands beside a list of numbers, too
     for key in keys[:-1] if tree.unit == "unit" else ():
         facts = facts[key]
-    return str(facts["unit"]) if tree.unit == "unit" else tree.unit
+        record = facts if isinstance(facts, dict) else record
+    return str(record["unit"]) if tree.unit == "unit" else tree.unit
 
 
 def unknown(value: Any) -> bool:
