@@ -94,8 +94,8 @@ def chunks(drive: Drive, scheme: Scheme, all_stretches: Iterable[Stretch]) -> It
 
 
 def _groups(steps: Steps, size: int, *, restart: bool) -> Iterator[tuple[Any, Any]]:
-    """Of each chunk, indices (groups, size) of its steps, of one length a group, and of each group's last step that
-    counts (groups,): −1 of none; with `restart` a chunk ends where the scheme starts anew.
+    """Yield chunks: indices (groups, size) of their steps, and the place (groups,) of the last step of each group that
+    counts, −1 if none does. With `restart` a chunk ends where the scheme starts anew.
     """
     ends = np.append(np.flatnonzero(steps.anew[:-1]), len(steps) - 1)
     starts = [np.arange(a, b + 1, size) for a, b in zip(np.append(0, ends[:-1] + 1), ends, strict=True)]

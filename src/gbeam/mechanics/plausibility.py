@@ -71,7 +71,7 @@ def refuse_unknown(beam: Beam, *, twist: bool, shear_y: bool, shear_z: bool) -> 
 
 
 def _shares(beam: Beam) -> Iterator[tuple[str, float, str, str, float]]:
-    """Of each body and spring: scenario key, value, unit, what it adds, and its ratio to the beam's own."""
+    """Yield, by body and spring, the scenario key, value, unit, what it adds, and its ratio to the beam's own."""
     mass, length, inertia = _mass(beam), beam.length, "moment of inertia"
     for i, body in enumerate(beam.masses):
         scale, arm, largest = mass * length**2, max(map(abs, body.offset)), max(body.inertia)

@@ -41,7 +41,7 @@ class Hung(NamedTuple):
     moment: Array
 
     def during(self, part: slice) -> Hung:
-        """Those at some of the times."""
+        """Return the forces and moments at some of the times."""
         return self._replace(force=self.force[part], moment=self.moment[part])
 
 

@@ -133,7 +133,7 @@ class Vibrations(NamedTuple):
     largest: float
 
     def oscillating(self, which: Any) -> Vibrations:
-        """The same with only the oscillating modes `which`, indices or flags."""
+        """Return the vibrations with only the oscillating modes `which`, indices or flags."""
         return self._replace(value=self.value[which], modes=self.modes[:, which])
 
     @property

@@ -244,8 +244,8 @@ def refuse_missing(mesh: Any, elements: Iterable[Elements]) -> None:
 
 
 def assigned(mesh: Any, where: str, values: Any, blocks: Iterable[int]) -> dict[int, Indices]:
-    """Of each of some blocks, the index (e,) of the value that an element has: in `values` by group, -1 of none; 0 of
-    a single one.
+    """Return, by block, the index (e,) in `values` of the value that each element has, -1 if it is in no group of
+    these; 0 everywhere if `values` is a single value.
     """
     owner = {i: np.full(len(mesh.cells[i].data), -1 if isinstance(values, Mapping) else 0) for i in blocks}
     if not isinstance(values, Mapping):

@@ -97,7 +97,7 @@ class Wrench:
         return Wrench(self.force + other.force, self.moment + other.moment)
 
     def brought(self, by: Relative) -> Wrench:
-        """The same wrench about the origin, and in the axes, of the frame in which its own moves `by`."""
+        """Return the wrench about the origin, and in the axes, of the frame in which its present one moves `by`."""
         force, moment = self.force, self.moment
         if by.R is not None:
             force, moment = turned(by.R, force), turned(by.R, moment)
