@@ -3,6 +3,7 @@
 # make fuzz: 10,000 malformed inputs, then runs that are interrupted, killed and out of disk (half an hour);
 # make walk: every verb over every example and more trees, its files read again, its page opened (hours);
 # make docs: the documentation site, in out/docs;
+# make changelog: what the fragments in changes/ tell of the next release;
 # make web: the viewer and the app's page, from web/ into the package (needs Node; users of the package do not);
 # make web-check: their tests, and whether what is built in the package is that of web/;
 # make mutants: whether the tests catch deliberate errors in the physics (minutes);
@@ -23,7 +24,7 @@ unexport PYTHONDONTWRITEBYTECODE
 # Folders that ruff reads.
 CODE := src tests validation fuzz mutants benchmarks examples docs .ci
 
-.PHONY: demo test web web-check check validate fuzz walk docs benchmark mutants dist wheels lock audit clean
+.PHONY: demo test web web-check check validate fuzz walk docs changelog benchmark mutants dist wheels lock audit clean
 
 demo: .venv/installed
 	$(BIN)/gbeam run $(EXAMPLE) --out out/f16_8g_turn
@@ -65,6 +66,9 @@ docs: .venv/dev-installed
 	$(BIN)/python benchmarks/reach.py --markdown > out/speed.md && mv out/speed.md docs/
 	$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going docs out/docs
 	@echo "out/docs/index.html"
+
+changelog: .venv/dev-installed
+	$(BIN)/towncrier build --draft --version next
 
 # Linux; a disk that is full needs root. What is wrong is kept in fuzz/findings, and repeated by --repeat FILE.
 fuzz: .venv/dev-installed

@@ -15,7 +15,8 @@ import pytest
 import gbeam
 
 ROOT = Path(__file__).parents[1]
-PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+PROJECT, TOOLS = SETTINGS["project"], SETTINGS["tool"]
 
 
 def test_the_version_is_the_newest_of_the_changes_and_the_one_to_cite() -> None:
@@ -28,6 +29,17 @@ def test_the_version_is_the_newest_of_the_changes_and_the_one_to_cite() -> None:
     assert gbeam.__version__ in (released, following)  # what is not released has a version of its own
     assert f"\nversion: {released}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
     assert "version" in PROJECT["dynamic"]  # read from gbeam.__version__ as the wheel is built
+
+
+def test_every_fragment_of_the_changelog_has_a_kind_and_tells_something() -> None:
+    kinds = {each["directory"] for each in TOOLS["towncrier"]["type"]}
+    fragments = [path for path in (ROOT / "changes").iterdir() if path.name != "README.md"]
+    for fragment in fragments:
+        name = re.fullmatch(r"\+[a-z0-9-]+\.([a-z]+)\.md", fragment.name)
+        assert name is not None and name[1] in kinds, fragment.name
+        assert len(fragment.read_text(encoding="utf-8").split()) in range(4, 120), fragment.name
+    about = (ROOT / "changes" / "README.md").read_text(encoding="utf-8")
+    assert set(re.findall(r"^\| `(\w+)`", about, re.MULTILINE)) == kinds
 
 
 def test_the_oldest_python_is_the_first_of_the_classifiers() -> None:
