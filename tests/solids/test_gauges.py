@@ -78,6 +78,24 @@ def test_strain_is_that_of_hookes_law() -> None:
         assert stress.strain_at("half", way)[0] == pytest.approx(share * pull, rel=1e-3)
 
 
+def test_a_rosette_at_45_degrees_reads_half_of_the_shear() -> None:
+    """On the neutral axis of the side of a bar under its own weight: V Q/(I b G)/2, 1.5 V/A/(2 G), and no pull."""
+    depth, wide = 0.04, 0.004  # upright, so that the shear does not vary across
+    mesh = block("hexahedron20", (12, 1, 6), (L, wide, depth))
+    side = solid(mesh, STEEL, points={"side": (HALF, wide / 2, 0.0)}).reduced(modes=2, damping_ratio=0.0)
+    weight = 10.0
+    stress = side.stress(gb.static(side.structure, acceleration=(0.0, 0.0, weight)))
+    rigidity = STEEL.youngs_modulus / (2 * (1 + 0.3))
+    shear = -1.5 * STEEL.density * weight * (L - HALF) / rigidity  # inertia acts along -z
+    plant = gb.linearize(side.structure, gauges=[gb.Gauge("side", along=(1.0, 0.0, 1.0))])
+    chosen = plant.select(inputs=["base_acceleration_z"], outputs=["strain_1"])
+    gain = float((chosen.d - chosen.c @ np.linalg.solve(chosen.a, chosen.b))[0, 0])
+    assert stress.strain_at("side", (1, 0, 1))[0] == pytest.approx(shear / 2, rel=0.03)
+    assert stress.strain_at("side", (1, 0, -1))[0] == pytest.approx(-shear / 2, rel=0.03)
+    assert weight * gain == pytest.approx(shear / 2, rel=0.03)
+    assert abs(stress.strain_at("side", (1, 0, 0))[0]) < 0.02 * abs(shear)
+
+
 def test_gauges_of_a_linear_model_are_those_of_the_beam() -> None:
     """Of the static gain of the acceleration to the strain; and of the run at rest."""
     solid_gauge, beam_gauge = gb.Gauge("half"), gb.Gauge(HALF, z=H / 2)

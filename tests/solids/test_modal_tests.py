@@ -56,6 +56,17 @@ def test_measured_modes_move_as_the_beam() -> None:
     assert moved(structure).shape[1] == 3
 
 
+def test_modes_may_come_in_any_order() -> None:
+    """Frequencies, dampings, masses and shapes go together, so that the structure moves as it did."""
+    modes, order = measured(), [3, 0, 4, 1, 2]
+    modes["damping_ratio"] = np.array([0.01, 0.02, 0.03, 0.04, 0.05])
+    mixed = {name: modes[name][..., order] for name in ("frequency", "damping_ratio", "shapes", "modal_mass")}
+    mine, theirs = (gb.ModalTest(**each).structure(beam().mass) for each in (modes, modes | mixed))
+    assert mine.damping_ratio == theirs.damping_ratio
+    np.testing.assert_array_equal(mine.station_places.first, theirs.station_places.first)
+    np.testing.assert_array_equal(moved(mine), moved(theirs))
+
+
 def written(path: Path, kind: str, system: int = 1) -> np.ndarray:
     """Write the modes as a laboratory does that measures `kind`; returns the numbers of the nodes."""
     each, numbers = measured(), np.arange(101, 101 + 3 * len(measured()["nodes"]), 3)

@@ -82,6 +82,20 @@ def test_a_beam_comes_back_with_all_coefficients(tmp_path: Path, how: dict[str, 
     np.testing.assert_allclose(mine, theirs, rtol=1e-9)
 
 
+def test_particles_that_stand_in_have_the_moments_of_the_beams(tmp_path: Path) -> None:
+    """Σ m ∂r/∂q and Σ m r ∂r/∂q, by which a body's momentum and its energy of turning move with its coordinates."""
+    path = tmp_path / "strip.sid"
+    path.write_text(written(beam()), encoding="ascii")
+    mine, theirs = gb.read_sid(path), beam()
+    for subscripts in ("k,kan->an", "k,kb,kan->abn"):
+        sums = []
+        for structure in (mine, theirs):
+            mass, places = np.asarray(structure.mass), structure.places
+            operands = (mass, places.first) if "kb" not in subscripts else (mass, places.r0, places.first)
+            sums.append(np.einsum(subscripts, *operands))
+        np.testing.assert_allclose(*sums, atol=1e-12 * np.abs(sums[1]).max())
+
+
 def test_the_example_is_the_strip() -> None:
     """To the digits in which processors differ."""
     number = re.compile(r"[-+]?\d\.\d+E[-+]\d+")

@@ -321,3 +321,40 @@ def test_a_steady_state_begins_where_lower_ones_lead(held: bool, monkeypatch: py
     (fewer, led), (more, alone) = answers
     assert np.abs(led).max() > 0.02 and fewer < 0.85 * more
     np.testing.assert_allclose(led, alone, atol=1e-11)
+
+
+def test_shares_of_energy_are_those_of_both_parts_of_a_mode() -> None:
+    """Two slides across each other on a turning bus: in a mode one moves a quarter of a period after the other."""
+    rate, outer, inner, along, across = 30.0, 2.0, 0.5, 8000.0, 2000.0
+    point, still = (1e-9, 1e-9, 1e-9), {"p": (0, 0, 0)}
+    bodies = {
+        "bus": gb.RigidBody(1.0, (1.0, 1.0, 1.0), points=still),
+        "a": gb.RigidBody(outer, point, points=still),
+        "b": gb.RigidBody(inner, point),
+    }
+    slides = {
+        "sx": gb.Joint("prismatic", "a", on="bus.p", axes=[(1, 0, 0)], stiffness={"displacement": along}),
+        "sy": gb.Joint("prismatic", "b", on="a.p", axes=[(0, 1, 0)], stiffness={"displacement": across}),
+    }
+    spin = gb.Joint("revolute", "bus", axes=[(0, 0, 1)], rate=rate)
+    modes = gb.modes(gb.System(bodies, {"spin": spin, **slides}), errors=False)
+    mass = np.diag([outer + inner, inner])
+    stiffness = np.diag([along, across]) - rate**2 * mass
+    coriolis = 2 * inner * rate * np.array([[0.0, -1.0], [1.0, 0.0]])
+    lower = -np.linalg.solve(mass, np.hstack([stiffness, coriolis]))
+    value, vector = np.linalg.eig(np.vstack([np.eye(4)[2:], lower]))
+    rising = np.argsort(value.imag)[2:]
+    x, y = np.abs(vector[2:, rising]) ** 2
+    energy = np.stack([0 * x, outer * x, inner * (x + y)])
+    assert modes.frequency == pytest.approx(value.imag[rising] / (2 * np.pi), rel=1e-9)
+    np.testing.assert_allclose(modes.share, (energy / energy.sum(axis=0)).T, atol=1e-8)
+
+
+def test_the_effort_that_holds_a_weight_is_against_its_moment() -> None:
+    """A weight at 0.4 m along x turns about +y as it falls: the hinge, held by a rate of zero, pushes back."""
+    arm = gb.RigidBody(1.0, (0.1, 0.2, 0.3), centre=(0.4, 0, 0))
+    held = gb.System(
+        {"arm": arm}, {"axis": gb.Joint("revolute", "arm", axes=[(0, 1, 0)], rate=0.0)}, gravity=(0, 0, -10)
+    )
+    rest = gb.static(held)
+    assert rest.effort == pytest.approx([-4.0]) and rest.ground_moment == pytest.approx([0.0, 4.0, 0.0])
