@@ -85,9 +85,9 @@ benchmark: .venv/dev-installed
 	$(BIN)/python benchmarks/exudyn.py
 	$(BIN)/python benchmarks/batch.py
 
-# One: .venv/bin/python -m mutants WORDS OF ITS NAME
+# One: .venv/bin/python -m mutants WORDS OF ITS NAME; those of a folder of the package: make mutants ROOM=solids
 mutants: .venv/dev-installed
-	JAX_COMPILATION_CACHE_DIR=$(CACHE) $(BIN)/python -m mutants --jobs 2
+	JAX_COMPILATION_CACHE_DIR=$(CACHE) $(BIN)/python -m mutants --jobs 2 --room '$(ROOM)'
 
 dist: .venv/uv-installed
 	$(BIN)/python .ci/dist.py

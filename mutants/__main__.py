@@ -1,4 +1,4 @@
-"""Judge every mutant, or those whose names hold some words: python -m mutants [WORDS] [--jobs N].
+"""Judge every mutant, or those whose names hold some words: python -m mutants [WORDS] [--room ROOM] [--jobs N].
 
 Exit status 0 where the tests catch all of them, else 1. First the same tests run on the source as it is: a test that
 fails there catches nothing.
@@ -16,9 +16,11 @@ from mutants.mutant import CAUGHT, SOURCE, Mutant, judge, mutants, run_tests
 def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m mutants", description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("words", nargs="*", help="part of the names of mutants")
+    parser.add_argument("--room", default="", help="folder of the package in which they are, such as solids")
     parser.add_argument("--jobs", type=int, default=1, help="how many are judged at a time")
     options = parser.parse_args()
-    chosen = [each for each in mutants() if " ".join(options.words) in each.name]
+    words, room = " ".join(options.words), options.room and f"{options.room}/"
+    chosen = [each for each in mutants() if words in each.name and each.file.startswith(room)]
     if not sound(chosen):
         return 1
     width = max((len(each.name) for each in chosen), default=0)
