@@ -315,6 +315,25 @@ OF_GMSH = {
 }  # fmt: skip
 
 
+@pytest.mark.parametrize("place", ["1", "1 1", "1 1 1 0"])
+def test_a_node_of_gmsh_without_three_coordinates_is_named(tmp_path: Path, place: str) -> None:
+    """Nodes of two coordinates each would come out as fewer nodes of three."""
+    text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n" + GROUPED + OF_GMSH["2.2"].format(*range(77, 85))
+    for number in (83, 77):
+        text = re.sub(rf"\n{number} [01] [01] [01]\n", f"\n{number} {place}\n", text)
+        (tmp_path / "a.msh").write_text(text)
+        named = rf"^mesh has node {number} with {len(place.split())} coordinates; give x, y and z of each"
+        with pytest.raises(gb.InputError, match=named):
+            gb.SolidMesh.read(tmp_path / "a.msh", materials=STEEL, clamp="wall", unit="m")
+
+
+def test_coordinates_that_nastran_leaves_out_are_zero(tmp_path: Path) -> None:
+    """A card in fields of 16 without its second line."""
+    (tmp_path / "a.bdf").write_text(BDF.replace(GRIDS[1], f"GRID*   {12:>16}{'':16}{'1.':>16}{'0.':>16}"))
+    read = gb.SolidMesh.read(tmp_path / "a.bdf", materials=STEEL, clamp="7", unit="m")
+    assert read.mass == pytest.approx(7850.0)
+
+
 @pytest.mark.parametrize("version", OF_GMSH)
 @pytest.mark.parametrize("first", [0, 77])
 def test_nodes_of_gmsh_may_have_any_numbers_and_elements_two_groups(tmp_path: Path, version: str, first: int) -> None:
