@@ -66,6 +66,13 @@ def test_a_mass_that_nothing_holds_is_refused() -> None:
         pass
 
 
+def test_what_is_too_large_names_the_library_and_a_licence_that_is_not_free(library: str) -> None:
+    named = {"pypardiso": r"Pardiso of MKL \(proprietary: Intel .*License\)", "rslab": "RSLAB", "scipy": "SuperLU"}
+    with pytest.raises(InputError, match=rf"mesh makes 5e\+07 unknowns, .* hours by {named[library]}; mesh it"):
+        sparse.refuse_cost("mesh", 50_000_000)
+    sparse.refuse_cost("mesh", 200_000)
+
+
 def test_a_negative_spring_is_refused(library: str) -> None:
     if library == "scipy":
         pytest.skip("LU has no signs of pivots: `reduce` judges the modes")

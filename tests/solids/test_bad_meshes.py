@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.numerics import sparse
 
 from .bodies import STEEL, block, solid
 
@@ -125,14 +124,6 @@ def test_linear_elements_are_said_to_lock() -> None:
     assert words.startswith(
         "2 linear elements bend too stiffly (shear locking): use quadratic ones; 2 fill a thickness"
     )
-
-
-def test_too_many_unknowns_say_what_they_would_cost() -> None:
-    with pytest.raises(
-        gb.InputError, match=r"mesh makes 5e\+07 unknowns, whose factors would take about .*B and .* hours"
-    ):
-        sparse.refuse_cost("mesh", 50_000_000)
-    sparse.refuse_cost("mesh", 200_000)
 
 
 def test_a_file_that_is_too_large_says_what_its_mesh_would_cost(tmp_path: Path) -> None:

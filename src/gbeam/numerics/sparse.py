@@ -24,6 +24,7 @@ from gbeam.guards.limits import in_bytes
 BYTES = {"Pardiso": 260.0, "RSLAB": 300.0, "SuperLU": 700.0}
 SECONDS = {"Pardiso": 2e-9, "RSLAB": 2e-9, "SuperLU": 1e-8}
 MOST = 64e9  # bytes
+PROPRIETARY = {"Pardiso": "Pardiso of MKL (proprietary: Intel Simplified Software License)"}
 
 
 @cache
@@ -54,7 +55,7 @@ def refuse_cost(where: str, unknowns: float, of: str = "makes") -> None:
         raise InputError(
             where,
             f"{of} {unknowns:.3g} unknowns, whose factors would take about {in_bytes(memory)} and "
-            f"{seconds / 3600:.2g} hours by {solver()}",
+            f"{seconds / 3600:.2g} hours by {PROPRIETARY.get(solver(), solver())}",
             "mesh it more coarsely, with quadratic elements",
         )
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 import os
+import warnings
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, TypedDict
@@ -95,7 +96,10 @@ def everything(path: str) -> dict[str, Any]:
         return {stem: mmread(path, spmatrix=False)}
     if ending == ".mat":
         try:
-            loaded = {k: v for k, v in loadmat(path, spmatrix=False).items() if not k.startswith("__")}
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")  # numbers of a VAX or a Cray, two of one name, one that is damaged
+                warnings.simplefilter("ignore", DeprecationWarning)
+                loaded = {k: v for k, v in loadmat(path, spmatrix=False).items() if not k.startswith("__")}
         except NotImplementedError:  # of version 7.3, which is HDF5
             return _of_hdf5(path)
         fields = [each[0, 0] for each in loaded.values() if each.dtype.names and each.shape == (1, 1)]
