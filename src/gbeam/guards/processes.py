@@ -25,9 +25,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.errors import ComputationError, InputError
+from gbeam.guards.importing import variables
 from gbeam.guards.limits import READER_BYTES, READER_RATE, READER_SECONDS, end_with_parent, in_bytes, restrict
 
-_START = "import json, sys; sys.path[:] = json.loads(sys.argv[1]); from gbeam.guards.processes import serve; serve()"
+_START = "from gbeam.guards.processes import serve; serve()"
 LIMITED = "from gbeam.guards.processes import limited; limited()"
 _PATIENCE = 6  # wall-clock time over processor time, for a slow disk or a busy machine
 _ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
@@ -54,11 +55,11 @@ def confined(
     with tempfile.TemporaryFile() as reply:
         try:
             status = subprocess.run(
-                [sys.executable, "-P", "-c", _START, json.dumps(sys.path)],
+                [sys.executable, "-P", "-c", _START],
                 input=request,
                 stdout=reply,
                 stderr=subprocess.DEVNULL,
-                env=os.environ | _ONE_THREAD,
+                env=os.environ | variables() | _ONE_THREAD,
                 timeout=_PATIENCE * seconds,
                 check=False,
             ).returncode
