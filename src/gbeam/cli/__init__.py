@@ -56,6 +56,17 @@ def _leave_settings_of_plots() -> None:
             import matplotlib  # noqa: F401
 
 
+def limited() -> int:
+    """Run the command line on the process's arguments after the first two, which limit it: memory, bytes, and time of
+    the processor, s.
+    """
+    from gbeam.guards.limits import restrict
+
+    memory, seconds = (int(sys.argv.pop(1)) for _ in range(2))
+    restrict(memory, seconds)
+    return main()
+
+
 def _status(arguments: list[str]) -> int:
     """Run a verb, and return its exit status; 1 if its output could not be printed."""
     from gbeam.cli import process as streams
