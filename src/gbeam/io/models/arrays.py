@@ -135,6 +135,7 @@ def _of_hdf5(path: str) -> dict[str, Any]:
     return arrays
 
 
+STATE_SPACES = (".npz", ".mat", ".json")
 NAMES = "abcd"
 STEPS = "dt", "ts", "step"
 FIX = "save A, B, C and D as numbers, with dt where they are of discrete time"
@@ -143,7 +144,7 @@ FIX = "save A, B, C and D as numbers, with dt where they are of discrete time"
 def read_state_space(path: str | os.PathLike[str]) -> SimpleNamespace:
     """Read matrices ``a``, ``b``, ``c``, ``d`` and the step ``dt``, s, which is zero in continuous time."""
     ending = Path(path).suffix.lower()
-    if ending not in (".npz", ".mat", ".json"):
+    if ending not in STATE_SPACES:
         raise InputError("file", f"ends in {ending or 'nothing'}", "give .npz, .mat or .json")
 
     def refuse(problem: str) -> InputError:
