@@ -4,7 +4,8 @@
 # make walk: every verb over every example and more trees, its files read again, its page opened (hours);
 # make docs: the documentation site, in out/docs;
 # make changelog: what the fragments in changes/ tell of the next release;
-# make web: the viewer and the app's page, from web/ into the package (needs Node; users of the package do not);
+# make web: the viewer and the app's page, from web/ into the package, with the licences of what they hold in NOTICE
+# (needs Node; users of the package do not);
 # make web-check: their tests, and whether what is built in the package is that of web/;
 # make mutants: whether the tests catch deliberate errors in the physics (minutes);
 # make audit: whether what is locked has known vulnerabilities (needs a network);
@@ -40,7 +41,7 @@ web: web/node_modules/.installed
 web-check: web/node_modules/.installed
 	rm -rf out/web out/web-app
 	cd web && npm test --silent && GBEAM_WEB_OUT=../out/web npm run --silent build -- --logLevel warn
-	diff -r out/web src/gbeam/report/page/assets && diff -r out/web-app src/gbeam/app/assets || { echo "what is built is not that of web/: run make web"; exit 1; }
+	diff -r out/web src/gbeam/report/page/assets && diff -r out/web-app src/gbeam/app/assets && diff out/web-NOTICE NOTICE || { echo "what is built is not that of web/: run make web"; exit 1; }
 
 web/node_modules/.installed: web/package-lock.json
 	@command -v npm > /dev/null || { echo "the viewer is built by Node 20.19 or later with npm, which is not here"; exit 1; }

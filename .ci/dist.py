@@ -6,6 +6,7 @@ the package, the examples that the app offers, and no test, benchmark or other e
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 import sys
@@ -17,7 +18,15 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 DIST = ROOT / "dist"
 UV = Path(sys.executable).with_name("uv")  # installed beside this Python
-NEEDED_TO_BUILD_AND_TEST = ("pyproject.toml", "README.md", "LICENSE", "CHANGELOG.md", "Makefile", "tests/conftest.py")
+NEEDED_TO_BUILD_AND_TEST = (
+    "pyproject.toml",
+    "README.md",
+    "LICENSE",
+    "NOTICE",
+    "CHANGELOG.md",
+    "Makefile",
+    "tests/conftest.py",
+)
 
 
 def main() -> int:
@@ -34,13 +43,15 @@ def main() -> int:
 
 def wheel_faults(wheel: Path) -> list[str]:
     with zipfile.ZipFile(wheel) as archive:
-        held = {name for name in archive.namelist() if ".dist-info/" not in name}
+        held = {re.sub(r"^[^/]*\.dist-info/licenses/", "", name) for name in archive.namelist()}
+    held = {name for name in held if ".dist-info/" not in name}
     package, settings = ROOT / "src", tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     expected = {
         path.relative_to(package).as_posix()
         for path in (package / "gbeam").rglob("*")
         if path.is_file() and "__pycache__" not in path.parts
     } | {*settings["tool"]["hatch"]["build"]["targets"]["wheel"]["force-include"].values()}
+    expected |= {*settings["project"]["license-files"]}
     return [f"{wheel.name} lacks {name}" for name in sorted(expected - held)] + [
         f"{wheel.name} should not hold {name}" for name in sorted(held - expected)
     ]

@@ -13,6 +13,7 @@ from collections import Counter
 from pathlib import Path
 
 from fuzz.app import app
+from fuzz.bodies import body
 from fuzz.cases import Case, make
 from fuzz.commands import command
 from fuzz.judge import judge
@@ -23,7 +24,10 @@ from fuzz.sweeps import sweep
 from fuzz.worker import Answer, call, warm_up
 from gbeam.printable import shortened
 
-KINDS = {"scenario": scenario, "record": record, "command": command, "result": result, "sweep": sweep, "app": app}
+KINDS = {
+    "scenario": scenario, "record": record, "body": body, "command": command, "result": result, "sweep": sweep,
+    "app": app,
+}  # fmt: skip
 FINDINGS = Path(__file__).parent / "findings"
 
 

@@ -19,7 +19,7 @@ PORT = 4321
 RECORD = 'file = "r.csv", time = "t", x = "ax", y = "ay", z = "az", unit = "g"'
 STATE = {"state": "done", "title": "turn", "verb": "run", "case": "", "changes": "", "arguments": []}
 STATES = ("done", "failed", "running", "queued", "cancelled", "refused", "x", "", None, 1)
-WHERE = ("state.json", "scenario.toml", "out/result.nc", "progress.txt", "out", "")
+WHERE = ("state.json", "input/scenario.toml", "out/result.nc", "progress.txt", "out", "")
 
 
 def app(chosen: Random) -> Case:
@@ -28,7 +28,7 @@ def app(chosen: Random) -> Case:
     place = f"home/runs/{NUMBER}"
     files = {
         "home/records/r.csv": text(chosen), f"home/records/r{suffix}": binary(chosen.choice(BINARIES[suffix])),
-        f"{place}/scenario.toml": SCENARIO.replace("RECORD", RECORD).encode(),
+        f"{place}/input/scenario.toml": SCENARIO.replace("RECORD", RECORD).encode(),
         f"{place}/out/result.nc": written("run")["result.nc"], f"{place}/state.json": json.dumps(STATE).encode(),
         f"{place}/progress.txt": b"gbeam: 10% of run\n",
     }  # fmt: skip

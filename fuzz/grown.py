@@ -16,7 +16,7 @@ from gbeam.mechanics.models import KINDS as MODELS
 from gbeam.mechanics.tree.joints import KINDS, SLIDES
 
 CELLS, SIZE = (4, 2, 1), (0.2, 0.04, 0.01)
-_METAL = {"density": "2700 kg/m^3", "youngs_modulus": "70 GPa", "poissons_ratio": 0.3}
+METAL = {"density": "2700 kg/m^3", "youngs_modulus": "70 GPa", "poissons_ratio": 0.3}
 _OUTSIDE = ("matrices", "modal-test", "solid", "standard-input-data")
 
 
@@ -74,7 +74,7 @@ def _beam(chosen: Random, files: dict[str, bytes]) -> dict[str, Any]:
     strip = {"shape": "rectangle", "width": "40 mm", "thickness": "4 mm"}
     shape = chosen.choice((strip, {"shape": "tube", "diameter": "20 mm", "wall": "2 mm"}))
     beam: dict[str, Any] = {
-        "kind": "beam", "length": "0.5 m", "section": shape, "material": _METAL, "damping_ratio": 0.01,
+        "kind": "beam", "length": "0.5 m", "section": shape, "material": METAL, "damping_ratio": 0.01,
         "model": {"kind": kind, "modes": modes},
     }  # fmt: skip
     if chosen.random() < 0.3:
@@ -89,13 +89,13 @@ def _beam(chosen: Random, files: dict[str, bytes]) -> dict[str, Any]:
 def _outside(chosen: Random, files: dict[str, bytes]) -> dict[str, Any]:
     match chosen.choice(_OUTSIDE):
         case "solid":
-            files["block.inp"] = _block()
+            files["block.inp"] = _written()
             return {
                 "mesh": "block.inp", "unit": "m", "clamp": "wall", "modes": 3, "damping_ratio": 0.01,
-                "material": _METAL, "interfaces": {"face": "face"},
+                "material": METAL, "interfaces": {"face": "face"},
             }  # fmt: skip
         case "matrices":
-            files["chain.npz"] = _chain()
+            files["chain.npz"] = chain()
             return {
                 "matrices": "chain.npz", "damping_ratio": 0.01, "modes": 3, "clamp": [0],
                 "points": {"end": 2}, "interfaces": ["end"],
@@ -186,7 +186,7 @@ def _controller(chosen: Random, drive: str, measured: list[str]) -> dict[str, An
 
 
 @cache
-def _block() -> bytes:
+def block() -> Any:
     """A mesh of a block of hexahedra, held at one end, whose other end carries."""
     import meshio
 
@@ -197,14 +197,18 @@ def _block() -> bytes:
     first = np.stack(np.meshgrid(*map(np.arange, CELLS), indexing="ij"), axis=-1).reshape(-1, 3)
     cells = np.ravel_multi_index(tuple(np.moveaxis(first[:, None] + corners, -1, 0)), counts)
     sets = {"wall": np.flatnonzero(nodes[:, 0] == 0), "face": np.flatnonzero(nodes[:, 0] == SIZE[0])}
+    return meshio.Mesh(nodes, [("hexahedron", cells)], point_sets=sets)
+
+
+@cache
+def _written() -> bytes:
     with TemporaryDirectory() as folder:
-        file = Path(folder, "block.inp")
-        meshio.write(file, meshio.Mesh(nodes, [("hexahedron", cells)], point_sets=sets))
+        block().write(file := Path(folder, "block.inp"))
         return file.read_bytes()
 
 
 @cache
-def _chain() -> bytes:
+def chain() -> bytes:
     """Matrices of a steel rod of Euler and Bernoulli, two elements long."""
     length, area, inertia = 0.2, 1e-4, 1e-9
     stiff, mass = np.zeros((18, 18)), np.zeros((18, 18))

@@ -15,10 +15,19 @@ from fuzz.records import SCENARIO, columns
 from fuzz.scenarios import change, corrupted
 
 SLEW = ROOT / "examples" / "hubbeam2009_slew_3.toml"
-ANSWERS = {
-    "modes": [], "static": [], "campbell": [], "linearize": [], "critical-speed": [],
-    "sweep": ["--over=motion.slew.radius=0.1 m:1 m:3", "--measure=tip.y", "--verb=static"],
-}  # fmt: skip
+PENDULUM = ROOT / "fuzz" / "trees" / "double_pendulum.toml"
+SWEEP = ["--over=motion.slew.radius=0.1 m:1 m:3", "--measure=tip.y", "--verb=static"]
+# Verbs on scenarios, and their words: what they write is damaged.
+ANSWERS: dict[str, tuple[str, Path, list[str]]] = {
+    **{verb: (verb, SLEW, []) for verb in ("check", "modes", "static", "campbell", "linearize", "critical-speed")},
+    "sweep": ("sweep", SLEW, SWEEP),
+    "sensitivity": ("sensitivity", SLEW, ["--of=tip.y", "--with=beam.length", "--verb=static"]),
+    "optimize": ("optimize", SLEW, ["--minimise=tip.y", "--over=beam.length", "--verb=static", "--starts=1"]),
+    "shape": ("shape", SLEW, ["--angle=0.1 rad", "--duration=2 s"]),
+    "place": ("place", ROOT / "examples" / "zhang2020_example1.toml", ["--no-proof"]),
+    **{f"{verb} of a system": (verb, PENDULUM, []) for verb in ("check", "modes", "static", "linearize")},
+    "run of a system": ("run", PENDULUM, ["--set=response.duration=0.1 s"]),
+}
 
 
 def result(chosen: Random) -> Case:
@@ -26,8 +35,7 @@ def result(chosen: Random) -> Case:
     verb = chosen.choice(("rerun", "report"))
     match chosen.randrange(10):
         case 0 | 1 | 2:
-            files = written(chosen.choice(list(ANSWERS)))
-            facts = json.loads(next(data for name, data in files.items() if name.endswith(".json")))
+            facts = json.loads(chosen.choice(_ending(".json")))
             for _ in range(chosen.choice((1, 1, 3))):
                 change(chosen, facts)
             return Case("result", [verb, "a.json"], {"a.json": json.dumps(facts).encode("utf-8", "surrogatepass")})
@@ -37,7 +45,7 @@ def result(chosen: Random) -> Case:
             files = {f"z/{name}": data for name, data in written("sweep").items() if name.startswith("sweep.zarr/")}
             return Case("result", [verb, "z/sweep.zarr"], files)
     name = chosen.choice(("r.nc", "out/result.nc", "r.json"))
-    data = written("run")["result.nc"]
+    data = chosen.choice(_ending(".nc"))
     if chosen.random() < 0.1:
         data = chosen.choice((b"", b"CDF\x01", b"\x89HDF\r\n\x1a\n", SCENARIO.encode()))
     for _ in range(chosen.choice((1, 1, 2, 5, 50))):
@@ -57,10 +65,17 @@ def _store(chosen: Random) -> Case:
             del files[name]
             break
         files[name] = (damaged if chosen.random() < 0.5 else corrupted)(chosen, files[name])
-    arguments = ["sweep", "s.toml", *ANSWERS["sweep"], "--out", "out"]
+    arguments = ["sweep", "s.toml", *SWEEP, "--out", "out"]
     if chosen.random() < 0.8:
         arguments += ["--resume"]
     return Case("result", arguments, {"s.toml": SLEW.read_bytes(), **files})
+
+
+@cache
+def _ending(ending: str) -> list[bytes]:
+    """Contents of the files with an ending that all verbs write."""
+    files = (file for verb in (*ANSWERS, "run") for file in written(verb).items())
+    return [data for name, data in files if name.endswith(ending) and "/" not in name]
 
 
 @cache
@@ -76,7 +91,9 @@ def written(verb: str) -> dict[str, bytes]:
             record = 'file = "r.csv", time = "t", x = "ax", y = "ay", z = "az", unit = "g", to = "0.5 s"'
             scenario.write_text(SCENARIO.replace("RECORD", record), encoding="utf-8")
             Path(name, "r.csv").write_text("\n".join(lines), encoding="utf-8")
+            words = []
         else:
-            scenario.write_bytes(SLEW.read_bytes())
-        assert main([verb, str(scenario), *ANSWERS.get(verb, []), "--out", str(out)]) == 0, verb
+            verb, source, words = ANSWERS[verb]
+            scenario.write_bytes(source.read_bytes())
+        assert main([verb, str(scenario), *words, "--out", str(out)]) == 0, verb
         return {str(each.relative_to(out)): each.read_bytes() for each in out.rglob("*") if each.is_file()}

@@ -1,4 +1,4 @@
-"""Scenario files: the examples and the templates, with keys, values, units, nesting, types or bytes changed."""
+"""Scenarios: the examples, the templates and systems, with keys, values, units, nesting, types or bytes changed."""
 
 from __future__ import annotations
 
@@ -51,9 +51,16 @@ def texts() -> tuple[str, ...]:
     return (*examples, template("flight"), template("hub"))
 
 
+@cache
+def trees() -> tuple[str, ...]:
+    """Systems of bodies, each with the files of the examples beside it."""
+    files = sorted((ROOT / "fuzz" / "trees").glob("*.toml"))
+    return tuple(path.read_text(encoding="utf-8").replace("../../examples/", "") for path in files)
+
+
 def scenario(chosen: Random) -> Case:
     """A scenario with one change or a few."""
-    text = chosen.choice(texts())
+    text = chosen.choice(texts() if chosen.random() < 0.6 else trees())
     data = tomllib.loads(text)
     files = {}
     if chosen.random() < 0.6:
@@ -72,9 +79,9 @@ def scenario(chosen: Random) -> Case:
         arguments += ["--set", f"{part}=0.2 s", "--out", "out"]
     elif chosen.random() < 0.2:
         arguments += ["--json"]
-    if b".csv" in changed:
-        for record in (ROOT / "examples" / "data").glob("*.csv"):
-            files[f"data/{record.name}"] = record.read_bytes()
+    for file in (ROOT / "examples" / "data").iterdir():
+        if f"data/{file.name}".encode() in changed:
+            files[f"data/{file.name}"] = file.read_bytes()
     return Case("scenario", arguments, {"s.toml": changed, **files})
 
 

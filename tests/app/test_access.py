@@ -153,6 +153,32 @@ def test_no_run_is_looked_for_elsewhere(site: Site, number: str) -> None:
         assert site.call("GET", f"/api/runs/{number}/{name}", site.opened).status_code in (404, 422)
 
 
+@pytest.mark.parametrize(
+    "name",
+    ["numpy.py", "json.py", "types.py", "gbeam.py", "gbeam.PY", "a.pyc", "a.so", "a.pyd", "a.pth", "a.toml", "a"],
+)
+def test_files_of_other_kinds_than_scenarios_name_are_refused(site: Site, name: str) -> None:
+    """The first four were run: Python imported them where the run began."""
+    from gbeam.app import files
+
+    answer = site.call("PUT", f"/api/records/{name}", site.opened, content=b"t,z\n0,1\n1,1\n")
+    (problem,) = answer.json()["errors"]
+    assert answer.status_code == 422 and not list(site.folder.glob("records/*"))
+    assert problem["path"] == name and problem["message"] == f"ends in {Path(name).suffix or 'nothing'}"
+    assert {".csv", ".mat", ".nc", ".uff", ".msh", ".npz", ".op4"} < {*files.READ} and ", ".join(files.READ) in problem[
+        "hint"
+    ]
+    (site.folder / "records").mkdir()
+    (site.folder / "records" / name).write_bytes(b"t,z\n0,1\n1,1\n")  # of an earlier version
+    record = f'record = {{ file = "{name}", time = "t", x = "0", y = "0", z = "z", unit = "g" }}'
+    text = FAST.replace('acceleration = { z = { profile = "constant", level = "6 g" } }', record)
+    (problem,) = site.call("POST", API, site.opened, json={"text": text}).json()["errors"]
+    assert problem["path"] == "motion.flight.record.file" and "ends in" in problem["message"]
+    assert site.call("GET", f"/api/records/{name}", site.opened).status_code == 422
+    fit = {"text": FAST, "verb": "fit", "options": [f"data={name}", "free=beam.damping_ratio"]}
+    assert site.call("POST", API, site.opened, json=fit).status_code == 422 and not (site.folder / "runs").exists()
+
+
 def test_uploads_are_limited(site: Site, monkeypatch: pytest.MonkeyPatch) -> None:
     import gbeam.app.access as access
     import gbeam.app.files as files

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import json
 import tomllib
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -337,9 +338,12 @@ def test_values_that_are_distributions_are_swept_only(site: Site) -> None:
 
 def test_a_fit_reads_a_file_that_was_dropped(site: Site) -> None:
     site.call("PUT", "/api/records/measured.csv", site.opened, content=b"time,tip.z [mm]\n0,0\n1,1\n")
-    body = {"text": FAST, "verb": "fit", "options": ["data=measured.csv", "free=beam.damping_ratio"]}
+    body = {"text": FAST, "verb": "fit", "options": ["data=measured.csv", "free=beam.damping_ratio", "write"]}
     number = site.call("POST", "/api/runs", site.opened, json=body).json()["id"]
-    assert (site.folder / "runs" / number / "measured.csv").read_text().startswith("time,tip.z")
+    assert (site.folder / "runs" / number / "input" / "measured.csv").read_text().startswith("time,tip.z")
+    # What is written names records as the scenario does: it has to lie beside them.
+    words = json.loads((site.folder / "runs" / number / "state.json").read_text())["arguments"]
+    assert words == ["--data=input/measured.csv", "--free=beam.damping_ratio", "--write=input/found.toml"]
 
 
 @pytest.mark.parametrize("verb", offered())

@@ -19,10 +19,10 @@ import pytest
 from gbeam.app import files
 from gbeam.app import jobs as module
 from gbeam.app.documents import changes
-from gbeam.app.jobs import Jobs
+from gbeam.app.jobs import LIMITED, Jobs
 from gbeam.errors import InputError
-from gbeam.guards.processes import LIMITED
 
+from ..guards.test_importing import SCENARIO, sprung, trap
 from ..scenarios import FAST
 
 WRONG = FAST.replace('"300 mm"', '"300 kg"')
@@ -359,11 +359,27 @@ def test_a_run_ends_after_its_time(tmp_path: Path, sleeping: None, monkeypatch: 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems do not limit a process's address space")
 def test_a_run_has_so_much_memory_only(tmp_path: Path) -> None:
-    hungry = tmp_path / "gbeam.py"  # the first that -m meets, and -P does not see
-    hungry.write_text("import os\nprint(len(b'0' * (2 << 30)))\n")
-    command = [sys.executable, "-P", "-c", LIMITED, str(1 << 30), "60"]
+    hungry = f"from gbeam import cli\ncli.main = lambda: len(b'0' * (2 << 30))\n{LIMITED}"
+    command = [sys.executable, "-P", "-c", hungry, str(1 << 30), "60"]
     ended = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert ended.returncode != 0 and "MemoryError" in ended.stderr
+
+
+def test_a_run_imports_nothing_that_was_uploaded(tmp_path: Path) -> None:
+    """Not even of an earlier version's folder, which took files of any name, beside it or where it is computed."""
+    (tmp_path / "records").mkdir()
+    trap(tmp_path / "records")
+    records = [*(tmp_path / "records").glob("*.*")]
+
+    async def act(jobs: Jobs) -> None:
+        number = jobs.submit(SCENARIO, "a", records, "static")
+        for each in records:
+            shutil.copy(each, tmp_path / "runs" / number)
+        assert await _until(jobs, number, "done", "refused", "failed", "ended") == "done"
+        assert "answer.json" in jobs.state(number)["files"]
+
+    _with(tmp_path / "runs", act)
+    assert sprung(tmp_path) == []
 
 
 def _processes(group: int) -> list[str]:

@@ -39,6 +39,12 @@ def _scenario(folder: Path, file: str) -> Path:
     return path
 
 
+@pytest.fixture(autouse=True)
+def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leave the project's folder, where this file's readers are: none is imported from the current one."""
+    monkeypatch.chdir(tmp_path)
+
+
 @pytest.fixture
 def hurried(monkeypatch: pytest.MonkeyPatch) -> None:
     """Readers have a second of processor time."""

@@ -122,8 +122,12 @@ def test_cutoff_and_resampling() -> None:
     assert float(jnp.sqrt(jnp.mean(inside**2))) < 0.5
     with pytest.raises(InputError, match=r"record.resample is 20 Hz, below the record's 100 Hz, with no cut-off"):
         fly(F16, resample=20.0)
-    with pytest.raises(InputError, match=r"record\.cutoff"):
-        fly(F16, cutoff=60.0)
+    for cutoff in (60.0, 0.06, 1e-9):  # the record has 100 Hz and 15.99 s
+        with pytest.raises(
+            InputError, match=r"record\.cutoff is .* over 15.99 s; give 0.0625391 Hz or more, below 50 Hz"
+        ):
+            fly(F16, cutoff=cutoff)
+    assert fly(F16, cutoff=0.0625391).notes == ("low-pass at 0.0625391 Hz, zero phase",)
     assert fly(F16, resample=20.0, cutoff=5.0).acceleration.times.size == 320
     with pytest.raises(InputError, match=r"resample is 0.3 Hz, which leaves fewer than 6 samples of 15.99 s"):
         fly(F16, resample=0.3, cutoff=0.1)

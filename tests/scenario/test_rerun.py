@@ -357,6 +357,9 @@ def test_the_json_of_a_verb_is_computed_again(
     written.write_text(text.replace('"model": "FOAM"', '"model": "TLAM"').replace('"kind": "FOAM"', '"kind": "TLAM"'))
     answer = gbeam("rerun", written)
     assert answer.status == 1 and "was TLAM, is FOAM" in answer.out
+    written.write_text(text.replace("{", '{"odd": [1.5, {"a": 1e3}],', 1), encoding="utf-8")
+    answer = gbeam("rerun", written)  # damaged: it has names that no answer has
+    assert answer.status == 1 and "odd.0: is not there any more" in answer.out, answer
 
 
 def test_the_netcdf_of_a_search_is_computed_again(

@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.numerics import sparse
 
 from .bodies import STEEL, block, solid
 
@@ -125,14 +124,6 @@ def test_linear_elements_are_said_to_lock() -> None:
     assert words.startswith(
         "2 linear elements bend too stiffly (shear locking): use quadratic ones; 2 fill a thickness"
     )
-
-
-def test_too_many_unknowns_say_what_they_would_cost() -> None:
-    with pytest.raises(
-        gb.InputError, match=r"mesh makes 5e\+07 unknowns, whose factors would take about .*B and .* hours"
-    ):
-        sparse.refuse_cost("mesh", 50_000_000)
-    sparse.refuse_cost("mesh", 200_000)
 
 
 def test_a_file_that_is_too_large_says_what_its_mesh_would_cost(tmp_path: Path) -> None:
@@ -313,6 +304,25 @@ OF_GMSH = {
                  "$EndNodes", "$Elements", "2 2 1 2", "2 1 3 1", "1 {0} {1} {2} {3}", "3 1 5 1",
                  "2 {0} {1} {2} {3} {4} {5} {6} {7}", "$EndElements"),
 }  # fmt: skip
+
+
+@pytest.mark.parametrize("place", ["1", "1 1", "1 1 1 0"])
+def test_a_node_of_gmsh_without_three_coordinates_is_named(tmp_path: Path, place: str) -> None:
+    """Nodes of two coordinates each would come out as fewer nodes of three."""
+    text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n" + GROUPED + OF_GMSH["2.2"].format(*range(77, 85))
+    for number in (83, 77):
+        text = re.sub(rf"\n{number} [01] [01] [01]\n", f"\n{number} {place}\n", text)
+        (tmp_path / "a.msh").write_text(text)
+        named = rf"^mesh has node {number} with {len(place.split())} coordinates; give x, y and z of each"
+        with pytest.raises(gb.InputError, match=named):
+            gb.SolidMesh.read(tmp_path / "a.msh", materials=STEEL, clamp="wall", unit="m")
+
+
+def test_coordinates_that_nastran_leaves_out_are_zero(tmp_path: Path) -> None:
+    """A card in fields of 16 without its second line."""
+    (tmp_path / "a.bdf").write_text(BDF.replace(GRIDS[1], f"GRID*   {12:>16}{'':16}{'1.':>16}{'0.':>16}"))
+    read = gb.SolidMesh.read(tmp_path / "a.bdf", materials=STEEL, clamp="7", unit="m")
+    assert read.mass == pytest.approx(7850.0)
 
 
 @pytest.mark.parametrize("version", OF_GMSH)

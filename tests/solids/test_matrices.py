@@ -185,6 +185,16 @@ def test_matrices_come_from_mat_files_of_version_7_3(tmp_path: Path) -> None:
     np.testing.assert_array_equal(new.rest[0], old.rest[0])
 
 
+@pytest.mark.parametrize(("machine", "name"), [(2, "VAX D-float"), (3, "VAX G-float"), (4, "Cray")])
+def test_numbers_of_machines_that_scipy_misreads_are_refused(tmp_path: Path, machine: int, name: str) -> None:
+    scipy.io.savemat(tmp_path / "k.mat", {"K": SPRINGS}, format="4")
+    data = (tmp_path / "k.mat").read_bytes()
+    assert data[:4] == bytes(4)
+    (tmp_path / "k.mat").write_bytes((1000 * machine).to_bytes(4, "little") + data[4:])
+    with pytest.raises(gb.InputError, match=rf"k\.mat cannot be read: .*'{name}'; returned data may be corrupt"):
+        gb.read_matrix(tmp_path / "k.mat")
+
+
 @pytest.mark.parametrize("name", WRITERS)
 def test_matrices_come_from_files(tmp_path: Path, name: str) -> None:
     WRITERS[name](tmp_path / name)

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import tomlkit
 
-from gbeam.app.files import regular
+from gbeam.app.files import known, regular
 from gbeam.app.form import file_keys, form, known_at, new_table, value_at
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import GbeamError, InputError
@@ -163,7 +163,7 @@ def records(data: Any, folder: Path) -> list[Path]:
             if not isinstance(name, str):
                 continue  # numbers in place of a file; anything else the schema refuses
             try:
-                files.append(regular(folder, name))
+                files.append(regular(folder, known(name)))
             except InputError as error:
                 raise InputError(path_text(path), f"{name[:100]!r} {error.problem}", error.fix) from None
     return files

@@ -13,11 +13,19 @@ from typing import BinaryIO
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import TEXT_BYTES
+from gbeam.io.binary import READERS as RECORDS
 from gbeam.io.kept import write_whole
+from gbeam.io.models.arrays import STATE_SPACES
+from gbeam.io.models.registry import READERS as MODELS
+from gbeam.motion.records.text import ENDINGS as TEXTS
 from gbeam.scenario.template import template
 from gbeam.scenario.text.revise import with_entry
+from gbeam.solids.foreign import MESHES
+from gbeam.structure.matrices import PROGRAMS
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._()-]{0,99}")
+_SECTIONS = (each.ending.lower() for each in PROGRAMS.values())
+READ = tuple(sorted({*TEXTS, *RECORDS, *MODELS, *MESHES, *STATE_SPACES, *_SECTIONS}))  # endings of files in scenarios
 LARGEST = TEXT_BYTES  # of one file
 MANY = 200  # files
 # Errors that may pass: disk, descriptors or memory are used up.
@@ -28,6 +36,14 @@ def checked(name: str) -> str:
     """Return a name if it is a plain one of a file; raise InputError otherwise."""
     if not _NAME.fullmatch(name) or name.endswith((".", " ")):
         raise InputError("file", "has a name that is not taken", "use letters, digits, -, _ and a suffix")
+    return name
+
+
+def known(name: str) -> str:
+    """Return a plain name of a kind of file that scenarios name; raise InputError for any other."""
+    ending = Path(checked(name)).suffix
+    if ending.lower() not in READ:
+        raise InputError(name, f"ends in {ending or 'nothing'}", f"rename it by what it is: {', '.join(READ)}")
     return name
 
 
@@ -57,8 +73,8 @@ def write(file: Path, content: bytes) -> None:
 
 
 def store(folder: Path, name: str, content: bytes) -> Path:
-    """Write a file into a folder; InputError if it is too large or one too many."""
-    file = folder / checked(name)
+    """Write a file of a known kind into a folder; InputError if it is too large or one too many."""
+    file = folder / known(name)
     if len(content) > LARGEST:
         raise InputError(
             name, f"has more than {LARGEST // 2**20} MiB", "cut or resample the record, or mesh more coarsely"

@@ -23,12 +23,13 @@ from pathlib import Path
 from typing import Any
 
 from gbeam.app.files import SHORT, ensured, names, private, regular, write
-from gbeam.app.verbs import verbs
+from gbeam.app.verbs import INPUT, verbs
 from gbeam.errors import InputError
-from gbeam.guards.processes import LIMITED
+from gbeam.guards.importing import variables
 from gbeam.results.criteria import GOOD
 
 ID = re.compile(r"\d{8}-\d{6}-[0-9a-f]{8}")
+LIMITED = "import sys; from gbeam.cli import limited; sys.exit(limited())"
 MEMORY = 16 * 2**30  # bytes of address space, of which compiled programs reserve far more than they use
 SECONDS = 3600  # of processor time, and of wall-clock time
 QUEUED = 100
@@ -38,14 +39,15 @@ _STATE, _LOG, _MESSAGES, _ANSWER = "state.json", "progress.txt", "messages.txt",
 _SCENARIO = "scenario.toml"
 _BEFORE = ".before"  # folder with a copy of the scenario, where the verb writes into it
 # Files that may be downloaded, by name, and their places in a run's folder; so may what the verb writes as KINDS.
-DOWNLOADS = {
-    _SCENARIO: _SCENARIO,
-    _ANSWER: _ANSWER,
-    "words.txt": "words.txt",  # of runs of version 0.2
-    _MESSAGES: _MESSAGES,
-    "found.toml": "found.toml",
-    "command.json": "out/command.json",
-}
+DOWNLOADS = (
+    (_SCENARIO, _SCENARIO),  # of earlier runs
+    (_SCENARIO, f"{INPUT}/{_SCENARIO}"),
+    (_ANSWER, _ANSWER),
+    ("words.txt", "words.txt"),  # of runs of version 0.2
+    (_MESSAGES, _MESSAGES),
+    ("found.toml", f"{INPUT}/found.toml"),
+    ("command.json", "out/command.json"),
+)
 KINDS = (".nc", ".csv", ".mat")
 
 
@@ -101,10 +103,11 @@ class Jobs:
         facts = {"title": title, "verb": verb, "case": case, "changes": changes, "arguments": list(arguments)}
         new = ensured(self.folder / f".new-{number}")
         try:
+            inputs = ensured(new / INPUT)
             for record in records:
-                write(new / record.name, record.read_bytes())
+                write(inputs / record.name, record.read_bytes())
             scenario = text.encode("utf-8")
-            write(new / _SCENARIO, scenario)  # after the records: one may have this name
+            write(inputs / _SCENARIO, scenario)
             if "--write" in arguments:
                 write(ensured(new / _BEFORE) / _SCENARIO, scenario)
             write(new / _STATE, json.dumps({"state": "queued", **facts}).encode())
@@ -276,7 +279,8 @@ class Jobs:
 
 async def _begun(place: Path, command: Sequence[str]) -> asyncio.subprocess.Process:
     """Start a command in a run's folder, so that only the owner can read its files."""
-    environment = {**os.environ, "GBEAM_PROGRESS": "0.5", "GBEAM_PROGRESS_FILE": _LOG, "PYTHONUNBUFFERED": "1"}
+    environment = os.environ | variables()
+    environment |= {"GBEAM_PROGRESS": "0.5", "GBEAM_PROGRESS_FILE": _LOG, "PYTHONUNBUFFERED": "1"}
     environment["GBEAM_FIGURES"] = "none"  # the report has them
     with private(place / _MESSAGES) as messages, private(place / _ANSWER) as answer:
         return await asyncio.create_subprocess_exec(
@@ -318,8 +322,8 @@ def _last_line(log: Path) -> str:
 
 def _command(state: Mapping[str, Any]) -> list[str]:
     """Command that runs the verb of a run, within limits, and writes a report and JSON."""
-    arguments = [state["verb"], _SCENARIO, *state["arguments"], "--out", "out", "--report", "--json"]
-    return [sys.executable, "-c", LIMITED, str(MEMORY), str(SECONDS), *arguments]
+    arguments = [state["verb"], f"{INPUT}/{_SCENARIO}", *state["arguments"], "--out", "out", "--report", "--json"]
+    return [sys.executable, "-P", "-c", LIMITED, str(MEMORY), str(SECONDS), *arguments]
 
 
 def _state(place: Path, otherwise: str) -> str:
@@ -338,8 +342,8 @@ def _state(place: Path, otherwise: str) -> str:
 
 def _files(place: Path) -> dict[str, Path]:
     """Files of a run by the names under which they are downloaded; every verb's report is report.html."""
-    places = {name: place / inside for name, inside in DOWNLOADS.items()}
-    fixed = {name: file for name, file in places.items() if file.is_file() and file.stat().st_size}
+    places = [(name, place / inside) for name, inside in DOWNLOADS]
+    fixed = {name: file for name, file in places if file.is_file() and file.stat().st_size}
     before = place / _BEFORE / _SCENARIO
     if before.is_file() and _SCENARIO in fixed:
         changed = before.read_bytes() != fixed[_SCENARIO].read_bytes()

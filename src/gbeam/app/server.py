@@ -141,14 +141,14 @@ def create_app(folder: Path) -> FastAPI:
     @app.put("/api/records/{name}", openapi_extra={"requestBody": {"content": {"application/octet-stream": {}}}})
     async def upload(name: str, request: Request) -> dict[str, Any]:
         """Keep a record or a mesh; what its columns are, or its skin."""
-        files.checked(name)
+        files.known(name)
         content = await request.body()
         return await run_in_threadpool(lambda: head(files.store(records, name, content)))
 
     @app.get("/api/records/{name}")
     def described_record(name: str) -> dict[str, Any]:
         """Columns of a record that is kept, or the skin of a mesh."""
-        return head(files.regular(records, name))
+        return head(files.regular(records, files.known(name)))
 
     @app.get("/api/runs")
     def runs() -> list[dict[str, Any]]:
@@ -174,7 +174,7 @@ def create_app(folder: Path) -> FastAPI:
         data = parse(documents.NAME, text)
         arguments = verbs.arguments(verb, options, data)
         title = str(data.get("title", ""))[:200]
-        named = [files.regular(records, name) for name in verbs.records(verb, options)]
+        named = [files.regular(records, files.known(name)) for name in verbs.records(verb, options)]
         inputs = [*documents.records(data, records), *named]
         before = jobs.last(title)
         changes = documents.changes(before, text) if before else ""

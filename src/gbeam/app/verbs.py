@@ -18,6 +18,7 @@ from gbeam.scenario.values import find_distributions, parse_path, written_at
 if TYPE_CHECKING:
     from cyclopts import ArgumentCollection
 
+INPUT = "input"  # folder, in that of a run, of its scenario and the files that are read
 PLAIN = 'give text such as "2 s" or "tip.z.max_abs"'
 # Options that the page sets itself, or that lead away from this computer; * is a record of options.
 _OF_THE_PAGE = {"SCENARIO", "*", "set", "out", "json", "report", "scheduler", "resume", "yes"}
@@ -111,7 +112,7 @@ def arguments(verb: str, options: Sequence[str], data: Mapping[str, Any]) -> lis
         if option.ticked:
             if value:
                 raise InputError(name, f"is {value[:100]!r}", "give it without a value")
-            line.append(option.ticked)
+            line.append(option.ticked.replace(_WRITTEN, f"{INPUT}/{_WRITTEN}"))  # beside its records
             continue
         if not value.strip() or value.startswith("--") or unprintable(value):
             raise InputError(name, "holds nothing that can be read", PLAIN)
@@ -122,7 +123,7 @@ def arguments(verb: str, options: Sequence[str], data: Mapping[str, Any]) -> lis
             if not values.strip():
                 raise InputError(name, f"has no values of {path[:100]}", f"write it such as {option.example}")
             _refuse_file(path.strip(), data)
-        line.append(f"--{name}={value}")
+        line.append(f"--{name}={INPUT}/{value}" if option.of == "record" else f"--{name}={value}")
     if verb == "sweep":
         table = data.get("sweep")
         over = table.get("over") if isinstance(table, dict) else None

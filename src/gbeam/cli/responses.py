@@ -209,7 +209,7 @@ def _compared(file: Path, facts: dict[str, Any], origin: Provenance) -> Reproduc
     kind = again.get("form", {}).get("kind")
     declared = paths_of(tree_of_answers(KINDS[kind])) if kind in KINDS else ()
     units = {re.compile(re.escape(form).replace(re.escape(ANY), ".+")): each.unit or "1" for form, each in declared}
-    forms = {name: form for name, form, _ in _leaves(again)}
+    forms = {name: form for each in (facts, again) for name, form, _ in _leaves(each)}
 
     def unit_of(name: str) -> str:
         possible = forms[name], forms[name].removesuffix("[i]")

@@ -25,10 +25,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.errors import ComputationError, InputError
+from gbeam.guards.importing import variables
 from gbeam.guards.limits import READER_BYTES, READER_RATE, READER_SECONDS, end_with_parent, in_bytes, restrict
 
-_START = "import json, sys; sys.path[:] = json.loads(sys.argv[1]); from gbeam.guards.processes import serve; serve()"
-LIMITED = "from gbeam.guards.processes import limited; limited()"
+_START = "from gbeam.guards.processes import serve; serve()"
 _PATIENCE = 6  # wall-clock time over processor time, for a slow disk or a busy machine
 _ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 _PLAIN = "biufcS"  # NumPy's kinds of arrays that are sent as bytes; others hold text
@@ -54,11 +54,11 @@ def confined(
     with tempfile.TemporaryFile() as reply:
         try:
             status = subprocess.run(
-                [sys.executable, "-P", "-c", _START, json.dumps(sys.path)],
+                [sys.executable, "-P", "-c", _START],
                 input=request,
                 stdout=reply,
                 stderr=subprocess.DEVNULL,
-                env=os.environ | _ONE_THREAD,
+                env=os.environ | variables() | _ONE_THREAD,
                 timeout=_PATIENCE * seconds,
                 check=False,
             ).returncode
@@ -192,13 +192,3 @@ def _taken(handle: int) -> bool:
     finally:
         os.lseek(handle, 0, os.SEEK_SET)
     return True
-
-
-def limited() -> None:
-    """Replace this process, with arguments BYTES SECONDS ARGUMENTS, by a limited ``python -m gbeam ARGUMENTS``."""
-    memory, seconds, *arguments = sys.argv[1:]
-    command = [sys.executable, "-m", "gbeam", *arguments]
-    if sys.platform == "win32":  # without limits, and execv would start a second process
-        sys.exit(subprocess.call(command))
-    restrict(int(memory), int(seconds))
-    os.execv(sys.executable, command)

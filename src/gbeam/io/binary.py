@@ -230,7 +230,7 @@ def _unit(label: str) -> str:
     return "" if label.upper() in _NO_NAME else label
 
 
-_READERS: dict[str, Callable[[str, Sequence[str]], Table]] = {
+READERS: dict[str, Callable[[str, Sequence[str]], Table]] = {
     ".mat": read_mat,
     **dict.fromkeys((".h5", ".hdf5", ".hdf", ".he5", ".nc", ".nc4", ".cdf"), read_hdf5),
     **dict.fromkeys((".uff", ".unv", ".ufb", ".uf"), read_uff),
@@ -239,7 +239,7 @@ _READERS: dict[str, Callable[[str, Sequence[str]], Table]] = {
 
 def is_binary(path: str | os.PathLike[str]) -> bool:
     """True if a library reads the file, by the end of its name; everything else is text."""
-    return Path(path).suffix.lower() in _READERS
+    return Path(path).suffix.lower() in READERS
 
 
 def read_binary(path: str | os.PathLike[str], words: Iterable[str] = ()) -> Table:
@@ -279,7 +279,7 @@ def _column(name: str, unit: str, aliases: Sequence[str], samples: Any = None, r
 
 def columns_of(path: str, words: list[str]) -> list[dict[str, Any]]:
     """Return names, units and aliases of the columns of a file, and the samples of those that `words` name."""
-    table = _READERS[Path(path).suffix.lower()](path, words)
+    table = READERS[Path(path).suffix.lower()](path, words)
     needed = set()
     for word in words:
         with suppress(InputError):  # no column, or several: refused where it is looked for

@@ -102,12 +102,12 @@ ORDER = 4
 def low_pass(values: Floats, step: float, cutoff: float) -> Floats:
     """Butterworth low-pass of fourth order, run forwards and backwards: no phase, −6 dB at the cut-off.
 
-    The ends are continued by their point reflection over one period of the cut-off, as far as the samples reach.
+    The ends are continued by their point reflection over one period of the cut-off, which the samples have to cover.
     """
-    if not 0 < cutoff < 0.5 / step:
-        raise InputError(
-            "cutoff", f"is {cutoff:g} Hz, with samples {step:g} s apart", f"give more than 0, below {0.5 / step:g} Hz"
-        )
+    length = max(len(values) - 1, 1) * step
+    if not (1 - 1e-5) / length <= cutoff < 0.5 / step:  # as the fix prints it, rounded
+        problem = f"is {cutoff:g} Hz, with samples {step:g} s apart over {length:g} s"
+        raise InputError("cutoff", problem, f"give {1 / length:g} Hz or more, below {0.5 / step:g} Hz")
     import scipy.signal
 
     sections = scipy.signal.butter(ORDER, cutoff, fs=1 / step, output="sos")

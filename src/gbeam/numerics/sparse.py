@@ -1,4 +1,4 @@
-"""Large sparse symmetric matrices: factors by MKL's Pardiso or SciPy's SuperLU, and lowest modes by Lanczos' iteration.
+"""Large sparse symmetric matrices: factors by the best of the libraries installed, lowest modes by Lanczos iteration.
 
 The iteration has blocks: solving for many right-hand sides costs little more than for one, and a block finds as many
 equal frequencies as it has columns.
@@ -10,6 +10,7 @@ import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
+from importlib import import_module
 from importlib.metadata import PackageNotFoundError, files
 from typing import Any
 
@@ -20,24 +21,25 @@ from gbeam.errors import InputError
 from gbeam.guards.limits import in_bytes
 
 # Measured on solids of quadratic tetrahedra: bytes for each of n^(4/3), seconds for each of n² unknowns.
-BYTES = {"Pardiso": 260.0, "SuperLU": 700.0}
-SECONDS = {"Pardiso": 2e-9, "SuperLU": 1e-8}
+BYTES = {"Pardiso": 260.0, "RSLAB": 300.0, "SuperLU": 700.0}
+SECONDS = {"Pardiso": 2e-9, "RSLAB": 2e-9, "SuperLU": 1e-8}
 MOST = 64e9  # bytes
+PROPRIETARY = {"Pardiso": "Pardiso of MKL (proprietary: Intel Simplified Software License)"}
 
 
 @cache
 def solver() -> str:
-    """Name of the solver that is installed."""
+    """Name of the solver: MKL's Pardiso, which only its own extra brings, RSLAB, else SciPy's SuperLU."""
     # Else pypardiso looks for MKL in all that is installed, for a second at its import and for each solver.
     with suppress(PackageNotFoundError):
         for file in files("mkl") or ():
             if "mkl_rt" in file.name:
                 os.environ.setdefault("PYPARDISO_MKL_RT", str(file.locate()))
-    try:
-        import pypardiso  # noqa: F401
-    except (ImportError, OSError):
-        return "SuperLU"
-    return "Pardiso"
+    for module, name in ("pypardiso", "Pardiso"), ("rslab", "RSLAB"):
+        with suppress(ImportError, OSError):
+            import_module(module)
+            return name
+    return "SuperLU"
 
 
 def cost(unknowns: float) -> tuple[float, float]:
@@ -53,14 +55,14 @@ def refuse_cost(where: str, unknowns: float, of: str = "makes") -> None:
         raise InputError(
             where,
             f"{of} {unknowns:.3g} unknowns, whose factors would take about {in_bytes(memory)} and "
-            f"{seconds / 3600:.2g} hours by {solver()}",
+            f"{seconds / 3600:.2g} hours by {PROPRIETARY.get(solver(), solver())}",
             "mesh it more coarsely, with quadratic elements",
         )
 
 
 @contextmanager
 def factorised(matrix: Any, where: str = "stiffness") -> Iterator[Callable[[Floats], Floats]]:
-    """Yield a function that solves for right-hand sides (n,) or (n, m); InputError if the matrix is singular."""
+    """Yield a function that solves for right-hand sides (n, m); InputError if the matrix is singular."""
     if solver() == "Pardiso":
         from pypardiso import PyPardisoSolver
         from pypardiso.pardiso_wrapper import PyPardisoError
@@ -78,11 +80,22 @@ def factorised(matrix: Any, where: str = "stiffness") -> Iterator[Callable[[Floa
         finally:
             pardiso.free_memory(everything=True)
         return
+    if solver() == "RSLAB":
+        import rslab
+
+        try:
+            factors = rslab.ldlt(matrix)
+        except RuntimeError:
+            raise InputError(where, "is singular", HOLD) from None
+        if factors.inertia[1]:  # pivots below zero
+            raise InputError(where, "is not positive definite", HOLD)
+        yield factors.solve_many
+        return
     from scipy.sparse import csc_matrix
     from scipy.sparse.linalg import splu
 
     try:
-        factors = splu(
+        lower_upper = splu(
             csc_matrix(matrix),
             permc_spec="MMD_AT_PLUS_A",
             diag_pivot_thresh=0.0,
@@ -90,7 +103,7 @@ def factorised(matrix: Any, where: str = "stiffness") -> Iterator[Callable[[Floa
         )
     except RuntimeError:
         raise InputError(where, "is singular", HOLD) from None
-    yield factors.solve
+    yield lower_upper.solve
 
 
 HOLD = "hold the structure, such as by a clamp, so that nothing moves without strain"

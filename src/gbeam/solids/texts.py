@@ -73,6 +73,8 @@ class TextMesh:
 
     def add(self, noun: str, number: int, value: Any) -> None:
         """Add a node or an element, of which there must be no other one with its number."""
+        if noun == "node" and len(value) != 3:
+            raise InputError("mesh", f"has node {number} with {len(value)} coordinates", "give x, y and z of each")
         listed: dict[int, Any] = self.nodes if noun == "node" else self.elements
         if listed.setdefault(number, value) != value:
             raise InputError("mesh", f"has two of {noun} {number}", "number them apart, in one part")
@@ -225,7 +227,7 @@ def _read_nastran(mesh: TextMesh, text: str, file: str) -> bool:
             problem = f"{file} has nodes in coordinate system {row[1]}, which is not read"
             raise InputError("mesh", problem, "export them in the basic system")
         if word == "GRID":
-            mesh.add("node", int(row[0]), tuple(map(real, row[2:5])))
+            mesh.add("node", int(row[0]), tuple(map(real, [*row[2:5], "", ""][:3])))
         elif word in CARDS:
             _nastran_element(mesh, word, row)
         elif word in ("SPC", "SPC1"):

@@ -163,10 +163,11 @@ def no_shear(_: float, stiffness: Floats, **__: Floats) -> tuple[Floats, Floats]
 
 
 class Program(NamedTuple):
-    """A program that writes a section's matrices: the titles above them, the indices in its file of our six strains,
-    and what to ask it for where a matrix is missing.
+    """A program that writes a section's matrices: the ending of its files, the titles above them, the indices in its
+    file of our six strains, and what to ask it for where a matrix is missing.
     """
 
+    ending: str
     stiffness: str
     mass: str
     rows: tuple[int, ...]
@@ -176,12 +177,14 @@ class Program(NamedTuple):
 # VABS writes x along the beam, BECAS z. Another program is one line here.
 PROGRAMS = {
     "VABS": Program(
+        ".K",
         "Timoshenko Stiffness Matrix (1-extension",
         "The 6X6 Mass Matrix",
         (0, 1, 2, 3, 4, 5),
         "ask VABS for Timoshenko's model, with densities of the materials",
     ),
     "BECAS": Program(
+        ".out",
         "Stiffness matrix w.r.t. to the cross section reference point",
         "Mass matrix w.r.t. to the cross section reference point",
         (2, 0, 1, 5, 3, 4),
@@ -198,7 +201,7 @@ def read_matrices(path: str | os.PathLike[str], length_unit: str, mass_unit: str
     lines = Path(path).read_text(encoding="utf-8", errors="replace").splitlines()
     writers = [name for name, each in PROGRAMS.items() if _rows(lines, each.stiffness) or _rows(lines, each.mass)]
     if not writers:
-        known = "the .K of VABS, or the .out of BECAS"
+        known = ", or ".join(f"the {each.ending} of {name}" for name, each in PROGRAMS.items())
         raise InputError("path", f"{path} has no matrices of a section", f"give {known}; or the matrices themselves")
     program = PROGRAMS[writers[0]]
     matrices = []

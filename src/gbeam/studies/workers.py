@@ -31,6 +31,7 @@ from typing import Any
 
 import gbeam
 from gbeam.errors import ComputationError, InputError
+from gbeam.guards.importing import path_of_children, variables
 from gbeam.studies.evaluate import Function, Inquiry, Row, Task, rows
 
 KEPT = 0.5  # s: computation that is lost at most when a process ends; the store is synchronised as often
@@ -85,6 +86,10 @@ class Workers:
         except (pickle.PicklingError, AttributeError, TypeError) as error:
             problem = f"has a function that cannot be sent to another process ({error})"
             raise InputError(_FUNCTIONS, problem, _ELSEWHERE) from None
+        if sys.flags.ignore_environment and not sys.flags.safe_path:
+            problem = "would import from the current folder: Python runs with -E, which leaves out PYTHONSAFEPATH"
+            raise InputError(_WORKERS, problem, "start Python with -I or with -E -P, or leave the workers out")
+        self._path = sys.path if functions else path_of_children()  # what functions of the user's may need
         # Not forked from this process, whose JAX has threads; on Linux from a server that has imported this module.
         method = "forkserver" if sys.platform == "linux" else "spawn"
         if method == "forkserver":
@@ -149,7 +154,7 @@ class Workers:
         """A new process, which imports while this one goes on."""
         pipe, worker_end = self._context.Pipe()
         process = self._context.Process(target=_work, args=(worker_end, self._functions), daemon=True)
-        with _main_hidden(b"__main__" not in self._functions):
+        with _program(needed=b"__main__" in self._functions, path=self._path):
             process.start()
         worker_end.close()
         return _Worker(process, pipe)
@@ -174,8 +179,9 @@ class Workers:
 @contextmanager
 def processes(count: int, functions: Sequence[Function]) -> Iterator[Workers]:
     """Start processes, which import while this one goes on; close them at the end."""
-    threads = os.environ.get(_THREADS)
-    os.environ.setdefault(_THREADS, "1")  # inherited by the processes
+    inherited = variables() | {_THREADS: os.environ.get(_THREADS, "1")}
+    before = {name: os.environ.get(name) for name in inherited}
+    os.environ |= inherited
     try:
         workers = Workers(count, functions)
         try:
@@ -183,20 +189,23 @@ def processes(count: int, functions: Sequence[Function]) -> Iterator[Workers]:
         finally:
             workers.close()
     finally:
-        if threads is None:
-            os.environ.pop(_THREADS, None)
+        for name, value in before.items():
+            del os.environ[name]
+            if value is not None:
+                os.environ[name] = value
 
 
 @contextmanager
-def _main_hidden(hidden: bool) -> Iterator[None]:
-    """Keep processes that start from importing the main program again, which only functions defined in it need."""
-    main = sys.modules["__main__"]
-    if hidden or not os.path.exists(getattr(main, "__file__", None) or ""):  # of a notebook, or typed in
+def _program(*, needed: bool, path: list[str]) -> Iterator[None]:
+    """Let processes that start import from a path, and the main program again only where it defines functions."""
+    main, before = sys.modules["__main__"], sys.path
+    if not needed or not os.path.exists(getattr(main, "__file__", None) or ""):  # of a notebook, or typed in
         sys.modules["__main__"] = ModuleType("__main__")
+    sys.path = path
     try:
         yield
     finally:
-        sys.modules["__main__"] = main
+        sys.modules["__main__"], sys.path = main, before
 
 
 def _work(pipe: Connection, functions: bytes) -> None:

@@ -296,12 +296,12 @@ def _statistics(
     time: Floats, covered: Flags, reference: Floats, actual: Floats, centrifuge: Response, tips: tuple[int, int]
 ) -> Statistics | None:
     """Sizes at each station, and trend and vibration of the tip, whose stations in both runs are `tips`; None if the
-    samples are too few or too far apart to part trend from vibration.
+    samples are too few, too far apart or over too short a time to part trend from vibration.
     """
     if not centrifuge.frequencies.size or len(time) < _FEWEST or not covered.any():
         return None
     step, cutoff = float(time[1] - time[0]), CUTOFF * float(centrifuge.frequencies[0]) / (2 * np.pi)
-    if not cutoff < 0.4 / step:
+    if not 1 / (len(time) - 1) < cutoff * step < 0.4:
         return None
     late = covered & ~(time < centrifuge.residual_from)  # all if that is NaN
     late = late if late.any() else covered

@@ -101,14 +101,15 @@ def verify(
         comparison = compare(in_flight, response, point=point)
         compared = np.isin(response.time, comparison.time[comparison.covered])
         vibration, moved = np.nan, np.nan
-        if mode is not None:
+        step = float(response.time[1] - response.time[0])
+        cutoff = CUTOFF * float(mode.frequency) / (2 * np.pi) if mode is not None else 0.0
+        if cutoff * step * (len(response.time) - 1) > 1:  # time enough to part trend from vibration
             if motion not in carried:
                 carried[motion] = simulated(_Carried(machine), f"{name}, carried")
             # Interpolated, since automatic steps may differ.
             carried_tip = interpolated(response.time, carried[motion].time, carried[motion].displacement[:, tip])
             swing = response.displacement[:, tip] - carried_tip
-            step = float(response.time[1] - response.time[0])
-            swing -= low_pass(swing, step, CUTOFF * float(mode.frequency) / (2 * np.pi))
+            swing -= low_pass(swing, step, cutoff)
             vibration, moved = (
                 float(np.linalg.norm(history[:, across], axis=1).max(initial=0.0))
                 for history in (swing[compared], comparison.difference[comparison.covered])

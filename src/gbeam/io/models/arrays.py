@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 import os
+import warnings
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, TypedDict
@@ -95,7 +96,10 @@ def everything(path: str) -> dict[str, Any]:
         return {stem: mmread(path, spmatrix=False)}
     if ending == ".mat":
         try:
-            loaded = {k: v for k, v in loadmat(path, spmatrix=False).items() if not k.startswith("__")}
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")  # numbers of a VAX or a Cray, two of one name, one that is damaged
+                warnings.simplefilter("ignore", DeprecationWarning)
+                loaded = {k: v for k, v in loadmat(path, spmatrix=False).items() if not k.startswith("__")}
         except NotImplementedError:  # of version 7.3, which is HDF5
             return _of_hdf5(path)
         fields = [each[0, 0] for each in loaded.values() if each.dtype.names and each.shape == (1, 1)]
@@ -131,6 +135,7 @@ def _of_hdf5(path: str) -> dict[str, Any]:
     return arrays
 
 
+STATE_SPACES = (".npz", ".mat", ".json")
 NAMES = "abcd"
 STEPS = "dt", "ts", "step"
 FIX = "save A, B, C and D as numbers, with dt where they are of discrete time"
@@ -139,7 +144,7 @@ FIX = "save A, B, C and D as numbers, with dt where they are of discrete time"
 def read_state_space(path: str | os.PathLike[str]) -> SimpleNamespace:
     """Read matrices ``a``, ``b``, ``c``, ``d`` and the step ``dt``, s, which is zero in continuous time."""
     ending = Path(path).suffix.lower()
-    if ending not in (".npz", ".mat", ".json"):
+    if ending not in STATE_SPACES:
         raise InputError("file", f"ends in {ending or 'nothing'}", "give .npz, .mat or .json")
 
     def refuse(problem: str) -> InputError:

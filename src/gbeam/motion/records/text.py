@@ -117,6 +117,8 @@ def part_within(clock: Floats, of_day: Clock | None, span: Span, counted: Callab
     return slice(int(inside[0]), int(inside[-1]) + 1)
 
 
+# Usual endings of such files; :func:`read_text` reads any other, too.
+ENDINGS = (".asc", ".csv", ".dat", ".log", ".lvm", ".prn", ".tab", ".tsv", ".txt")
 _DELIMITERS = (",", ";", "\t", " ")  # the first that fits best; a space is any white space
 _COMMENT = re.compile(r"\s*(#|%|//|;)+\s*")
 _BEFORE_BRACKET = re.compile(r" (?=[\[(])")
