@@ -14,7 +14,7 @@ from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
 from gbeam.integrate import windows
 from gbeam.integrate.driver import integrate
-from gbeam.integrate.equations import NonlinearEquations, accelerations, slopes
+from gbeam.integrate.equations import LinearEquations, NonlinearEquations, accelerations, slopes
 from gbeam.integrate.schemes import gauss, generalized_alpha, newmark
 from gbeam.integrate.steps import Corners
 
@@ -44,6 +44,38 @@ def load(t: Any) -> Any:
 SWING = NonlinearEquations(Swing(), load)
 START = np.array([1.2, -0.7]), np.array([0.5, 3.0])
 KNOWN = {"step": 0.01, "count": 300, "corners": Corners.of([PUSH], load, 0.0, 3.0)}
+
+
+@record
+class Pushed:
+    """A unit mass under a force."""
+
+    def __call__(self, q: Any, qd: Any, qdd: Any, force: Any) -> Any:
+        return qdd - force
+
+
+def push(t: Any) -> Any:
+    return namespace(t).where(t < PUSH, 0.0, 8.0)[..., None] + 0 * t[..., None]
+
+
+def constant_terms(force: Any) -> Any:
+    return 0 * force[..., None], 0 * force[..., None], force
+
+
+@pytest.mark.parametrize("make", [newmark, lambda: generalized_alpha(0.7), gauss])
+@pytest.mark.parametrize(
+    "equations",
+    [NonlinearEquations(Pushed(), push), LinearEquations(np.eye(1), constant_terms, push)],
+    ids=["windows", "linear"],
+)
+def test_accelerations_are_renewed_where_a_load_jumps(make: Any, equations: Any) -> None:
+    """A mass that a force pushes from 1.3 s on, within a step: every scheme finds its parabola to rounding."""
+    known = {"step": 0.04, "count": 100, "corners": Corners.of([PUSH], push, 0.0, 4.0)}
+    built = integrate(equations, make(), np.zeros(1), np.zeros(1), **known)
+    pushed = np.maximum(built.time - PUSH, 0.0)
+    np.testing.assert_allclose(built.qd[:, 0], 8 * pushed, atol=1e-9)
+    np.testing.assert_allclose(built.q[:, 0], 4 * pushed**2, atol=1e-9)
+    np.testing.assert_allclose(built.qdd[:, 0], np.where(pushed > 0, 8.0, 0.0), atol=1e-9)
 
 
 @pytest.mark.parametrize("make", [newmark, lambda: generalized_alpha(0.7), gauss])
