@@ -1,13 +1,14 @@
 """Random trees of rigid bodies by Kane's equations, written here without gbeam: partial velocities of every body from
 the ground out, what they leave of the accelerations by a complex step along the motion, and an explicit Runge-Kutta
 method of eighth order. Joints of every kind, with springs, dampers, friction, stops, drives and prescribed rates,
-forces that follow and that do not, and gravity along any direction.
+forces that follow and that do not, and gravity along any direction. Friction is Coulomb's, with a sign and events,
+until it holds something: gbeam's is smooth about zero rate.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -23,7 +24,8 @@ NEEDS = ("numpy", "scipy")
 SOURCE = "Kane's equations, DOP853"
 COUNT, DURATION = 24, 0.6
 ALLOWED = {"smooth laws": 1e-8, "friction or stops": 1e-4}
-STEP, SLIP = 1e-30, 1e-3
+STEP = 1e-30
+SLIDING = 0.02  # m/s or rad/s: at a faster rate gbeam's friction, smooth about zero, is Coulomb's
 DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")
 NAMES = {
     "fixed": (),
@@ -209,7 +211,7 @@ class Tree:
             out.append((R @ turned(joint.turn)[0], p, v, w))
         return out
 
-    def motion(self, t: float, q: Array, u: Array) -> Motion:
+    def motion(self, t: float, q: Array, u: Array, sense: Array) -> Motion:
         """Solve the equations at one time."""
         q, u, known, change = q.copy(), u.copy(), np.zeros(len(u), dtype=bool), np.zeros(len(u))
         for joint, at, of in self.layout():
@@ -244,7 +246,7 @@ class Tree:
                 beyond = max(x - high, 0.0) - max(low - x, 0.0)
                 eased, stop = x - joint.law("ease", k), joint.law("stop_stiffness", k) * beyond
                 held = joint.law("stiffness", k) * eased + joint.law("damping", k) * rate + stop
-                held += joint.law("friction", k) * math.tanh(rate / SLIP)
+                held += joint.law("friction", k) * sense[of.start + k]
                 forces[of.start + k] += joint.law("effort", k) - held
                 energy[1] += (joint.law("stiffness", k) * eased**2 + stop * beyond) / 2
         free = np.ix_(~known, ~known)
@@ -257,19 +259,40 @@ class Tree:
         place, velocity = np.array([p for _, p, _, _ in parts]), np.array([v @ u for _, _, v, _ in parts])
         return Motion(change, effort, -force, -moment, place, velocity, energy)
 
-    def run(self, times: Array) -> list[Motion]:
-        """Integrate, and give the motion at some times from zero on."""
+    def run(self, times: Array) -> dict[int, Motion]:
+        """Integrate, and give the motion at those of some times, by their numbers, at which all that rubs slides, until
+        friction by Coulomb's law holds a coordinate; friction turns round where its rate passes zero.
+        """
         q, u = self.start()
+        n, now, sense, out = len(q), 0.0, np.sign(u), dict[int, Motion]()
+        rubbing = [
+            of.start + k for joint, _, of in self.layout() for k in range(len(joint.names)) if joint.law("friction", k)
+        ]
 
         def change(t: float, y: Array) -> Array:
-            at = self.motion(t, y[: len(q)], y[len(q) :])
-            return np.concatenate([self.rates(y[: len(q)], y[len(q) :]), at.change])
+            return np.concatenate([self.rates(y[:n], y[n:]), self.motion(t, y[:n], y[n:], sense).change])
 
-        run = solve_ivp(
-            change, (0.0, times[-1]), np.concatenate([q, u]), "DOP853", times, rtol=1e-9, atol=1e-11, max_step=0.02
-        )
-        assert run.success, run.message
-        return [self.motion(t, y[: len(q)], y[len(q) :]) for t, y in zip(run.t, run.y.T, strict=True)]
+        def passes(k: int) -> Callable[[float, Array], float]:
+            def event(_: float, y: Array) -> float:
+                return float(y[n + k] * sense[k])
+
+            event.terminal, event.direction = True, -1  # type: ignore[attr-defined]
+            return event
+
+        y, events, options = np.concatenate([q, u]), [passes(k) for k in rubbing], {"rtol": 1e-9, "atol": 1e-11}
+        while now < times[-1]:
+            run = solve_ivp(change, (now, times[-1]), y, "DOP853", None, True, events, max_step=0.02, **options)
+            assert run.success, run.message
+            y, before, now = run.y[:, -1], now, float(run.t[-1])
+            for i in np.flatnonzero((times >= before) & (times < now if run.status else times <= now)):
+                q, u = np.split(run.sol(times[i]), [n])
+                if np.abs(u[rubbing]).min(initial=np.inf) > SLIDING:
+                    out[int(i)] = self.motion(times[i], q, u, sense)
+            for k in (k for k, crossed in zip(rubbing, run.t_events or (), strict=True) if len(crossed)):
+                y[n + k], sense[k] = 0.0, -sense[k]
+                if self.motion(now, y[:n], y[n:], sense).change[k] * sense[k] < 0:
+                    return out  # it is held
+        return out
 
 
 def drawn(seed: int, count: int | None = None) -> tuple[gb.System, Tree]:
@@ -390,7 +413,8 @@ def compared(seed: int, count: int | None = None) -> Compared | None:
     run = gb.simulate(system, duration=DURATION, tolerance=1e-5)
     assert run.outcome == "done", run.message
     some = np.linspace(0, len(run.time) - 1, 13).round().astype(int)
-    truth = Motion(*(np.array(each) for each in zip(*tree.run(run.time[some]), strict=True)))
+    motions = tree.run(run.time[some])
+    some, truth = some[[*motions]], Motion(*(np.array(each) for each in zip(*motions.values(), strict=True)))
     order = list(system.order)
     roots = [run.points.index(f"{name}.root") for name in order]
     bodies = [int(name[1:]) for name in order]
