@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 import importlib.util
 import json
 import re
 import subprocess
+import sys
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -48,6 +50,34 @@ def test_the_oldest_python_is_the_first_of_the_classifiers() -> None:
     assert [int(name[2:]) for name in pythons] == list(range(int(pythons[0][2:]), int(pythons[0][2:]) + len(pythons)))
     tried = re.search(r"^PYTHONS = \((.*)\)$", (ROOT / ".ci" / "wheels.py").read_text(encoding="utf-8"), re.MULTILINE)
     assert tried is not None and re.findall(r'"(.*?)"', tried[1]) == pythons
+
+
+# Modules that come with an extra, whose absence is named with its command before anything is computed.
+OF_EXTRAS = {
+    "anywidget", "control", "distributed", "fastapi", "gmsh", "pypardiso", "pyyeti", "rslab", "sectionproperties",
+    "shapely", "starlette", "traitlets", "uvicorn",
+}  # fmt: skip
+MODULES = {  # by distribution
+    "h5netcdf": {"h5netcdf", "h5py"},
+    "jax": {"jax", "jaxlib"},
+    "matplotlib": {"matplotlib", "mpl_toolkits"},
+    "pydantic": {"pydantic", "pydantic_core"},
+    "scikit-fem": {"skfem"},
+}
+
+
+def test_all_that_the_package_imports_comes_with_it_or_with_an_extra() -> None:
+    """A run of any example after `pip install gbeam` ends in no missing module: the bracket's once lacked skfem."""
+    imported = set[str]()
+    for file in (ROOT / "src").rglob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                imported |= {alias.name.partition(".")[0] for alias in node.names}
+            elif isinstance(node, ast.ImportFrom) and not node.level:
+                imported.add(str(node.module).partition(".")[0])
+    names = [re.split(r"[\[>=<]", line)[0] for line in PROJECT["dependencies"]]
+    brought = set[str]().union(*(MODULES.get(name, {name.replace("-", "_")}) for name in names))
+    assert not imported - brought - OF_EXTRAS - set(sys.stdlib_module_names) - {"gbeam"}
 
 
 def test_the_workflow_runs_what_developers_run_and_the_hook_is_make_check() -> None:

@@ -82,9 +82,8 @@ def read_mesh(source: str | os.PathLike[str] | Any) -> Any:
         return _with_masks(_of_med(mesh) if ending_of(source) == ".med" else mesh)
     except InputError:
         raise
-    except ModuleNotFoundError as error:  # meshio, or what it reads some formats by
-        package = "gbeam[mesh]" if error.name == "meshio" else error.name
-        raise InputError("", f"{error.name} is not installed", f'install it with: pip install "{package}"') from None
+    except ModuleNotFoundError as error:  # what meshio reads some formats by
+        raise InputError("", f"{error.name} is not installed", f'install it with: pip install "{error.name}"') from None
     except (Exception, SystemExit) as error:
         if error.args == ("wedge15",):
             fix = "write it for Gmsh as text, or for Nastran, Abaqus, CalculiX or Exodus"

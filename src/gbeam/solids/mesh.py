@@ -145,10 +145,10 @@ class SolidMesh(Value):
         Parameters
         ----------
         source : path or meshio.Mesh
-            A file of Gmsh, Nastran bulk data, Abaqus or CalculiX, VTK, Exodus or another format of meshio; needs the
-            extra ``mesh``. Tetrahedra of 4 and 10 nodes, hexahedra of 8, 20 and 27 and wedges of 6 and 15 are read, and
-            as shells triangles of 3 and 6 nodes and quadrilaterals of 4, 8 and 9, whose middle is left out; other
-            surfaces and lines only name groups. Nodes without such elements are left out. Or a file of STEP, which Gmsh
+            A file of Gmsh, Nastran bulk data, Abaqus or CalculiX, VTK, Exodus or another format of meshio.
+            Tetrahedra of 4 and 10 nodes, hexahedra of 8, 20 and 27 and wedges of 6 and 15 are read, and as shells
+            triangles of 3 and 6 nodes and quadrilaterals of 4, 8 and 9, whose middle is left out; other surfaces and
+            lines only name groups. Nodes without such elements are left out. Or a file of STEP, which Gmsh
             meshes by tetrahedra of 10 nodes; needs the extra ``gmsh``.
         materials : Material, Orthotropic or dict
             Of all elements, or by group: a physical group of Gmsh, a property's number, an element set. Poisson's

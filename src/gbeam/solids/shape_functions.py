@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from gbeam.arrays.types import Floats, Indices
-from gbeam.errors import InputError
 
 ACROSS = 3  # degree of the quadrature through the thickness of a shell
 
@@ -86,13 +85,11 @@ MED_ORDER |= {"hexahedron": [0, 3, 2, 1, 4, 7, 6, 5]}
 MED_ORDER |= {"hexahedron20": [*MED_ORDER["hexahedron"], 11, 10, 9, 8, 15, 14, 13, 12, 16, 19, 18, 17]}
 
 
-def import_skfem() -> Any:
-    """Import scikit-fem; an InputError says how to install it where it is not."""
-    try:
-        import skfem
-    except ModuleNotFoundError:
-        raise InputError("", "scikit-fem is not installed", 'install it with: pip install "gbeam[mesh]"') from None
-    return skfem
+def _element(kind: str) -> Any:
+    """Scikit-fem's class of a kind of element."""
+    import skfem
+
+    return getattr(skfem, KINDS[kind].element)
 
 
 @cache
@@ -101,7 +98,7 @@ def shape_functions(kind: str, degree: int) -> tuple[Floats, Floats, Floats, Flo
     from skfem.quadrature import get_quadrature
     from skfem.refdom import RefLine, RefTri
 
-    domain = getattr(import_skfem(), KINDS[kind].element)().refdom
+    domain = _element(kind)().refdom
     upright = kind.startswith("wedge")
     if upright or KINDS[kind].shell:
         # scikit-fem 12's rule of wedges has the triangle across another axis, and half the weights.
@@ -130,7 +127,7 @@ def _basis(kind: str, points: Floats) -> tuple[Floats, Floats]:
         of_nodes = np.linalg.inv(_monomials(_NODES[kind], _WEDGE15))
         slopes = [_monomials(points, _WEDGE15, along) @ of_nodes for along in range(3)]
         return _monomials(points, _WEDGE15) @ of_nodes, np.stack(slopes, axis=2)
-    element, columns = getattr(import_skfem(), KINDS[kind].element)(), np.ascontiguousarray(points.T)
+    element, columns = _element(kind)(), np.ascontiguousarray(points.T)
     pairs = [element.lbasis(columns, i) for i in _order(kind)]
     values = np.stack([np.broadcast_to(value, len(points)) for value, _ in pairs], axis=1)
     slopes = [np.stack([np.broadcast_to(along, len(points)) for along in slope], axis=1) for _, slope in pairs]
@@ -155,7 +152,7 @@ def shared_area(kind: str, places: Floats) -> Floats:
     """Integrals (k,) of the shape functions of a triangle or quadrilateral, with nodes at places (k, 3), over it."""
     from skfem.quadrature import get_quadrature
 
-    at, weights = get_quadrature(getattr(import_skfem(), KINDS[kind].element)().refdom, KINDS[kind].mass)
+    at, weights = get_quadrature(_element(kind)().refdom, KINDS[kind].mass)
     first, second = tangents(kind, places, np.arange(len(places))[None], at.T)[0].swapaxes(0, 1)
     return np.asarray(weights * np.linalg.norm(np.cross(first, second), axis=1) @ _basis(kind, at.T)[0])
 
@@ -175,7 +172,7 @@ def extrapolation(kind: str) -> Floats:
 
 def middle_nodes(kind: str) -> Floats:
     """Places of the nodes in the reference element, of shells that of the middle surface, in scikit-fem's order."""
-    return _NODES[kind] if kind in _NODES else np.array(getattr(import_skfem(), KINDS[kind].element).doflocs)
+    return _NODES[kind] if kind in _NODES else np.array(_element(kind).doflocs)
 
 
 def reference(kind: str) -> Floats:

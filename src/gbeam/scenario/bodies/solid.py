@@ -114,8 +114,7 @@ class SolidBody(Reduced):
     kind: Literal["solid"] = Field(default="solid", description="kind of the body; may be left out beside mesh")
     mesh: File = Field(
         description="file of Gmsh, Nastran bulk data, Abaqus, CalculiX, VTK, Exodus or another format of meshio, "
-        'relative to the folder of the scenario file; needs pip install "gbeam[mesh]"; or of STEP, which Gmsh meshes, '
-        'with pip install "gbeam[gmsh]"'
+        'relative to the folder of the scenario file; or of STEP, which Gmsh meshes, with pip install "gbeam[gmsh]"'
     )
     unit: str | None = optional('unit of the coordinates in the mesh, such as "mm"; STEP files say theirs')
     mass_unit: str | None = optional(
