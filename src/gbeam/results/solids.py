@@ -302,10 +302,19 @@ class SpecimenLoads(Figured[Literal["specimen"]]):
     def moment_max(self) -> float:
         return float(np.linalg.norm(self.moment, axis=-1).max())
 
-    @declared("N", "tension of the bolt; negative where the specimen is pressed on", "time bolt")
-    def tension(self) -> Floats:
+    @property
+    def bolt_pull(self) -> Floats:
+        """Force along the bolt, (t, b) N: tension, or negative where the specimen is pressed on the fixture."""
         # The bolt pulls the specimen against its axis, which points away from the fixture.
         return -(self.bolt_force @ self.bolt_axis) if len(self.bolts) else np.empty((len(self.time), 0))
+
+    @declared("N", "tension of the bolt", "time bolt")
+    def tension(self) -> Floats:
+        return np.maximum(self.bolt_pull, 0.0)
+
+    @declared("N", "force that presses the specimen on the fixture at the bolt", "time bolt")
+    def compression(self) -> Floats:
+        return np.maximum(-self.bolt_pull, 0.0)
 
     @declared("N", "shear of the bolt", "time bolt")
     def shear(self) -> Floats:
@@ -317,6 +326,11 @@ class SpecimenLoads(Figured[Literal["specimen"]]):
     @declared("N", "largest tension of the bolt", "bolt", name=None, key="tension")
     def bolt_tension(self) -> Floats:
         return self.tension.max(axis=0)
+
+    @declared("N", "largest force that presses the specimen on the fixture at the bolt", "bolt", name=None,
+              key="compression")  # fmt: skip
+    def bolt_compression(self) -> Floats:
+        return self.compression.max(axis=0)
 
     @declared("N", "largest shear of the bolt", "bolt", name=None, key="shear")
     def bolt_shear(self) -> Floats:
@@ -334,9 +348,9 @@ class SpecimenLoads(Figured[Literal["specimen"]]):
             f"on the fixture up to {self.force_max:.4g} N and {self.moment_max:.4g} N m",
         ]
         if len(self.bolts):
-            lines.append(
-                f"bolts: tension up to {self.bolt_tension.max():.4g} N, shear up to {self.bolt_shear.max():.4g} N"
-            )
+            largest = {"tension": self.bolt_tension, "compression": self.bolt_compression, "shear": self.bolt_shear}
+            words = (f"{name} up to {values.max():.4g} N" for name, values in largest.items())
+            lines.append(f"bolts: {', '.join(words)}")
         return lines
 
     def __repr__(self) -> str:

@@ -30,7 +30,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.motion import Centrifuge
 from gbeam.motion.centrifuge.kinematics import axes_result
 from gbeam.motion.flight import Flight
-from gbeam.motion.protocol import Motion
+from gbeam.motion.protocol import Motion, notes_on
 from gbeam.progress import Progress
 from gbeam.results.errors import ErrorEstimate, Errors, StepErrors
 from gbeam.results.machine import AxesResult
@@ -235,6 +235,7 @@ def response_of(
         outcome=outcome,
         message=message,
         warnings=warnings,
+        notes=notes_on({name: motion}),
         time=time,
         stations=np.asarray(structure.stations),
         points=structure.points
