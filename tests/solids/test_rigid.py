@@ -207,3 +207,19 @@ def test_a_box_on_the_centrifuge_is_newtons() -> None:
     about_centre = loads.moment - np.cross((0.01, 0.02, 0.05), loads.force)
     power = (about_centre * w).sum(axis=1)
     assert power == pytest.approx(np.einsum("ti,ij,tj->t", w, np.array(inertia), alpha), abs=1e-9)
+
+
+def test_a_box_has_one_largest_force_and_one_largest_moment() -> None:
+    """Between samples too, whichever part of an answer says them: of a sine they are its amplitude."""
+    box = gb.RigidSpecimen.box(2.0, (0.2, 0.1, 0.1), (0.0, 0.0, 0.05))
+    shaken = gb.Flight(x=gb.Sine(30.0, 1.0))
+    response = gb.simulate(box.structure, shaken, duration=1.0, step=0.035)
+    loads, peaks = response.specimen, response.peaks.loads
+    assert loads is not None and peaks is not None
+    for largest, between, samples, size in (
+        (loads.force_max, peaks.root_force, loads.force, 60.0),
+        (loads.moment_max, peaks.root_moment, loads.moment, 3.0),
+    ):
+        assert largest == between.size.value == pytest.approx(size, rel=1e-4)
+        assert np.abs(samples).max() < 0.999 * size
+    assert f"on the fixture up to {60.0:.4g} N and {3.0:.4g} N m" in repr(response)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -13,7 +13,7 @@ from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.guards.checks import index_of, vector
 from gbeam.results.declared import declared, fact, internal, labels, part, quantity
-from gbeam.results.parts import margin_words, yield_margin
+from gbeam.results.parts import LoadPeaks, margin_words, yield_margin
 from gbeam.results.result import Complex, Figured, Flags, Floats, Part
 
 UNLIMITED = "at sharp edges and the edges of clamps the stress of an elastic solid has no limit as the mesh gets finer"
@@ -255,6 +255,7 @@ class SpecimenLoads(Figured[Literal["specimen"]]):
         "", "direction of the bolts", "axis", key=None, optional=True, default_factory=lambda: np.empty(0)
     )
     spread_limit: float | None = fact("largest spread that is accepted", optional=True, default=None)
+    root: LoadPeaks | None = field(default=None, repr=False)  # peaks of force and moment between these times, if known
 
     @declared("", "whether the spread is within its limit", role="fact", name=None, optional=True)
     def within_limit(self) -> bool | None:
@@ -296,11 +297,13 @@ class SpecimenLoads(Figured[Literal["specimen"]]):
 
     @declared("N", "largest size of the force on the specimen", name=None, key="force.max_abs")
     def force_max(self) -> float:
-        return float(np.linalg.norm(self.force, axis=-1).max())
+        between = 0.0 if self.root is None else float(self.root.root_force.size.value)
+        return max(float(np.linalg.norm(self.force, axis=-1).max()), between)
 
     @declared("N m", "largest size of the moment on the specimen about the root", name=None, key="moment.max_abs")
     def moment_max(self) -> float:
-        return float(np.linalg.norm(self.moment, axis=-1).max())
+        between = 0.0 if self.root is None else float(self.root.root_moment.size.value)
+        return max(float(np.linalg.norm(self.moment, axis=-1).max()), between)
 
     @property
     def bolt_pull(self) -> Floats:
