@@ -1,6 +1,7 @@
 # make demo: install and run the main job; make test: the tests; make check: what CI checks besides;
 # make validate: compare with other codes and write docs/validation.md (minutes; what is not installed is left out);
-# make fuzz: 10,000 malformed inputs, then runs that are interrupted, killed and out of disk (half an hour);
+# make fuzz: the theorems of the tests on new examples, 10,000 malformed inputs, then runs that are interrupted, killed
+# and out of disk (half an hour);
 # make walk: every verb over every example and more trees, its files read again, its page opened (hours);
 # make docs: the documentation site, in out/docs;
 # make changelog: what the fragments in changes/ tell of the next release;
@@ -73,6 +74,7 @@ changelog: .venv/dev-installed
 
 # Linux; a disk that is full needs root. What is wrong is kept in fuzz/findings, and repeated by --repeat FILE.
 fuzz: .venv/dev-installed
+	JAX_COMPILATION_CACHE_DIR=$(CACHE) $(BIN)/pytest -n 2 --dist loadfile -m hypothesis --hypothesis-profile search
 	OPENBLAS_NUM_THREADS=1 JAX_COMPILATION_CACHE_DIR=$(CACHE) $(BIN)/python -m fuzz
 	OPENBLAS_NUM_THREADS=1 JAX_COMPILATION_CACHE_DIR=$(CACHE) $(BIN)/python -m fuzz.faults
 

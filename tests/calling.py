@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -26,6 +27,12 @@ class Answer:
     def json(self) -> Any:
         """Stdout as the one JSON object that it has to be."""
         return json.loads(self.out)
+
+
+def spent() -> float:
+    """Processor time of the processes that this one has run, s."""
+    times = os.times()
+    return times.children_user + times.children_system
 
 
 @pytest.fixture

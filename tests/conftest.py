@@ -23,8 +23,11 @@ import hypothesis
 import numpy as np
 import pytest
 
-# A busy machine is no error.
-hypothesis.settings.register_profile("gbeam", deadline=None)
+# Every run of the tests tries the same examples, and a busy machine is no error. `make fuzz` searches anew each time by
+# the other profile, and keeps in .hypothesis what it finds.
+STEADY: dict[str, Any] = {"deadline": None, "suppress_health_check": [hypothesis.HealthCheck.too_slow]}
+hypothesis.settings.register_profile("gbeam", derandomize=True, database=None, **STEADY)
+hypothesis.settings.register_profile("search", print_blob=True, **STEADY)
 hypothesis.settings.load_profile("gbeam")
 # Compiled programs are kept from run to run, in the project's own ignored folder.
 os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(Path(__file__).parents[1] / ".cache" / "jax"))

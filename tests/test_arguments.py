@@ -115,7 +115,7 @@ class Samples:
                 {
                     "arm": 3.3, "control_point": 0.2, "gravity": False, "inverse": "flat", "start": "idle",
                     "limits": None, "idle": None, "smoothing": 0.0, "mounting": "upright", "turn": (0.0, 0.0, 0.1),
-                    "spin_up": None, "spin_down": None, "clip": False, "span": (0.0, 0.2),
+                    "spin_up": None, "spin_down": None, "clip": False, "ease": 1.0, "span": (0.0, 0.2),
                 },
             ),
             "Choice": ((lambda mounting, width: self.centrifuge, ("upright",), (0.0,)), {"refined": True,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable
 
@@ -25,6 +26,13 @@ def storable(text: str) -> str:
 def raised(unit: str) -> str:
     """Return a unit with its exponents as they are printed, rad/s² for rad/s^2."""
     return re.sub(r"\^(-?\d+)", lambda power: power[1].translate(_EXPONENTS), unit)
+
+
+def percent(share: float) -> str:
+    """Write a share in percent: ``1.3 %``, ``110 %``, and ``over 1000 %``, where digits say nothing."""
+    if not math.isfinite(share):
+        return "–"
+    return "over 1000 %" if share > 10 else f"{100 * share:{'.0f' if share > 0.1 else '.2g'}} %"
 
 
 def on_one_line(text: str) -> str:

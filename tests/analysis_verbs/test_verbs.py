@@ -11,8 +11,10 @@ import numpy as np
 import pytest
 
 from gbeam.figures import steady
+from gbeam.io.netcdf import read_stored
 from gbeam.plots import draw
 from gbeam.results.modal import Campbell
+from gbeam.results.result import each_once
 
 from ..scenarios import SLEWING, SLEWING_AND_FLYING
 
@@ -218,3 +220,56 @@ def test_models(call):
 def test_the_rounding_of_a_profile_turns_no_base(scenario, gbeam):
     answer = gbeam("modes", "hub.toml", "--motion", "slew", "--at", "0 s")
     assert answer.status == 0 and "base turning at 0 rad/s" in answer.out
+
+
+SHORT = ("--set", "response.duration=1 s", "--set", "response.step=50 ms", "--set", "response.estimate=false")
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("check",),
+        ("run", *SHORT),
+        ("static", "--motion", "slew"),
+        ("modes", "--motion", "slew"),
+        ("campbell", "--to", "1 rad/s"),
+        ("critical-speed",),
+        ("critical-speed", "--masses", "0.5 kg", "--positions", "8 m"),
+        ("linearize", "--motion", "slew"),
+        ("models", *SHORT),
+        ("sweep", "--verb", "modes", "--over", "motion.slew.radius=1 m, 2 m", "--measure", "modes[0].frequency"),
+        ("sensitivity", "--verb", "modes", "--with", "motion.slew.radius", "--of", "modes[0].frequency"),
+    ],
+    ids=" ".join,
+)
+def test_every_answer_on_a_hub_says_once_that_gravity_is_left_out(scenario, gbeam, words):
+    """It is meant of a satellite, and not of a test arm: information, which no warning is."""
+    verb, *options = words
+    motion = () if "--motion" in options or verb in ("check", "run", "models") else ("--motion", "slew")
+    answer = gbeam(verb, "hub.toml", *motion, *options)
+    assert answer.status == 0, answer.err
+    (line,) = (line for line in answer.out.splitlines() if "gravity" in line)
+    assert line.startswith("  note: motion.slew: gravity is left out")
+    if verb == "check":  # the offered line is taken, and says nothing of none that is meant
+        gravity = re.search(r"give (gravity = .*\]),", line)[1]
+        text = Path("hub.toml").read_text(encoding="utf-8")
+        for line in (gravity, gravity.replace("-1 g", "0 g")):
+            Path("hub.toml").write_text(text.replace("\nradius", f"\n{line}\nradius"), encoding="utf-8")
+            assert "gravity is left out" not in gbeam("check", "hub.toml").out
+
+
+def test_the_root_of_a_file_and_of_json_has_the_warnings_and_notes_of_every_motion(scenario, gbeam):
+    """Each once, and with the motion's name where it is not of all and does not say it."""
+    run = gbeam("run", "hub.toml", "--json", *SHORT[:4], "--out", "there").json
+    root, motions = read_stored("there/result.nc").attrs[""], run["motions"]
+    assert run["notes"] == motions["slew"]["notes"] and "notes" not in motions["flight"]
+    (warning,) = motions["flight"]["warnings"]  # of its error, which is above the tolerance
+    assert run["warnings"] == [f"flight: {warning}"] and motions["slew"]["warnings"] == []
+    for kind in ("warnings", "notes"):
+        assert root[kind].split("\n") == run[kind]
+    assert each_once({"a": ("x", "y", "motion.a is long"), "b": ("x", "z")}) == (
+        "x",
+        "a: y",
+        "motion.a is long",
+        "b: z",
+    )

@@ -23,7 +23,7 @@ def test_no_request_is_a_defect(tmp_path: Path) -> None:
     for operation in schema.get_all_operations():
         built = operation.ok()
 
-        @hypothesis.settings(max_examples=12, derandomize=True, database=None)
+        @hypothesis.settings(max_examples=12)
         @hypothesis.given(case=built.as_strategy())
         def answered(case: Any) -> None:
             nonlocal tried

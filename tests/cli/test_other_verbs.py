@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 import shutil
 import subprocess
@@ -15,6 +14,8 @@ from typing import Any
 import pytest
 
 from gbeam.cli import program
+
+from ..calling import spent
 
 Call = Callable[..., Any]
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -69,12 +70,6 @@ def test_every_verb_has_help(verb: str, gbeam: Call) -> None:
     assert answer.status == 0
     docstring = program.function(verb).__doc__ or ""
     assert " ".join(docstring.partition("Parameters\n")[0].split()) in " ".join(answer.out.split())
-
-
-def spent() -> float:
-    """Processor time of the processes that this one has run, s."""
-    times = os.times()
-    return times.children_user + times.children_system
 
 
 def imported(heavy: tuple[str, ...], *calls: tuple[object, ...]) -> tuple[list[str], list[str]]:

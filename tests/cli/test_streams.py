@@ -14,6 +14,7 @@ import pytest
 
 from gbeam.cli.process import shorten_warnings
 from gbeam.cli.program import report_defect
+from gbeam.progress import INTERVAL
 
 Call = Callable[..., Any]
 ESCAPE = "\x1b[31m"
@@ -22,7 +23,8 @@ ESCAPE = "\x1b[31m"
 def _closed(number: int, *arguments: object) -> subprocess.CompletedProcess[str]:
     """The command line in a process of its own, with one stream closed."""
     command = ["sh", "-c", f'exec "$0" "$@" {number}>&-', sys.executable, "-m", "gbeam", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+    unhurried = os.environ | {INTERVAL: "100000"}  # of progress, which a busy machine shows
+    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=60, env=unhurried)
 
 
 @pytest.mark.skipif(os.name != "posix", reason="needs a shell")

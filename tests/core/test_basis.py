@@ -128,7 +128,7 @@ def test_quadrature_is_exact_to_its_degree_in_panels() -> None:
     np.testing.assert_allclose(rule.weight @ np.abs(rule.node - 0.25), (0.25**2 + 0.05**2) / 2, rtol=1e-13)
 
 
-@settings(max_examples=20, derandomize=True)
+@settings(max_examples=20)
 @given(st.lists(st.floats(-1.0, 1.0), min_size=5, max_size=5), st.lists(st.floats(0.0, L), min_size=1, max_size=6))
 def test_cumulative_is_exact_for_a_polynomial_in_each_panel(coefficients: list[float], x: list[float]) -> None:
     rule = quadrature(L, 5, [0.08, 0.2])

@@ -152,7 +152,7 @@ def test_scalar_dimension_holds_at_every_station() -> None:
 size = st.floats(0.0, 1.0)
 
 
-@settings(max_examples=30, derandomize=True)
+@settings(max_examples=30)
 @given(st.floats(1e-3, 1e3), st.tuples(size, size, size), st.tuples(*[st.floats(-1.0, 1.0)] * 3))
 def test_particles_are_the_body(
     mass: float, extents: tuple[float, float, float], centre: tuple[float, float, float]

@@ -14,6 +14,8 @@ from typing import Any
 
 import pytest
 
+from gbeam.progress import INTERVAL
+
 from ..calling import Answer, gbeam
 from ..scenarios import FAST, SPECIMEN, model, response
 
@@ -213,7 +215,10 @@ def test_a_scheduler_that_is_not_there_is_one_line(fast: Path) -> None:
         "s",
     ]
     command = [sys.executable, "-c", code, *sweep, "--scheduler", "tcp://127.0.0.1:9"]
-    answer = subprocess.run(command, cwd=fast.parent, capture_output=True, text=True, check=False, timeout=60)
+    unhurried = os.environ | {INTERVAL: "100000"}  # of progress, which a busy machine shows
+    answer = subprocess.run(
+        command, cwd=fast.parent, capture_output=True, text=True, check=False, timeout=60, env=unhurried
+    )
     assert answer.returncode == 2
     said = [line for line in answer.stderr.splitlines() if "%" not in line]
     assert len(said) == 1 and "--scheduler tcp://127.0.0.1:9 does not answer" in said[0], answer.stderr

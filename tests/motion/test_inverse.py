@@ -6,7 +6,7 @@ trapezoid: a turning point of the load a can be followed only where −ä <= a²
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from gbeam.constants import STANDARD_GRAVITY
@@ -44,8 +44,10 @@ def swinging() -> Profile:
     load=st.tuples(*[st.floats(-8, 8)] * 3), sign=st.sampled_from([1, -1]), gravity=st.booleans(),
     inverse=st.sampled_from(sorted(INVERSES)),
 )  # fmt: skip
+@example(load=(0.0, 1.0625, 0.25), sign=1, gravity=True, inverse="exact")
+@example(load=(0.0, 1.05, 0.0), sign=-1, gravity=True, inverse="flat")
 def test_constant_loads_are_exact(load: tuple[float, float, float], sign: int, gravity: bool, inverse: str) -> None:
-    assume(np.hypot(load[1], load[2]) > (1.07 if gravity else 0.1))
+    assume(np.hypot(load[1], load[2]) > (1.05 - 1e-9 if gravity else 0.1))  # what the gimbals reach
     f = np.array(load) * G
     machine = centrifuge(constant(f), inverse, gravity, sign)
     _, actual, _, base = seen(machine, 1.0)

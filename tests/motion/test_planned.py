@@ -12,7 +12,7 @@ from scipy.signal import find_peaks
 from gbeam.arrays import tree
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
-from gbeam.motion import AxisLimit, Centrifuge, Flight, MachineLimits, machines, trapezoid
+from gbeam.motion import AxisLimit, Centrifuge, Flight, MachineLimits, constant, machines, trapezoid
 from gbeam.motion.centrifuge.inverses.axis_splines import AxisSplines, KeptLimits, Tracking
 from gbeam.motion.centrifuge.inverses.instant import Geometry
 from gbeam.motion.centrifuge.limits import Limits
@@ -288,3 +288,17 @@ def test_a_run_shorter_than_the_first_knots_is_planned() -> None:
     for seconds in (0.05, 0.2):
         machine = Centrifuge(Flight(z=30.0), arm=R, control_point=0.2, gravity=False, start="idle", span=(0.0, seconds))
         assert machine.actual(np.linspace(0, seconds, 7)) == pytest.approx(np.array([[0.0, 0.0, 30.0]] * 7), abs=1e-9)
+
+
+def test_only_a_plan_has_an_ease() -> None:
+    arguments = {"arm": R, "control_point": 0.15, "gravity": True, "span": (0.0, 1.0)}
+    flight = Flight(z=constant(2 * G))
+    for inverse in ("flat", "exact", "quasi-static"):
+        with pytest.raises(InputError, match=f"ease is given beside inverse = {inverse}"):
+            Centrifuge(flight, inverse=inverse, ease=0.1, **arguments)
+        assert Centrifuge(flight, inverse=inverse, **arguments).less_eased() is None
+    for wrong in (0.0, -1.0, np.inf):
+        with pytest.raises(InputError, match="ease is"):
+            Centrifuge(flight, ease=wrong, **arguments)
+    gentle = Centrifuge(flight, ease=0.1, **arguments).less_eased()
+    assert gentle is not None and gentle.ease == pytest.approx(0.01)

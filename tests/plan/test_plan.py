@@ -159,7 +159,7 @@ def test_a_broken_promise_is_told_by_every_verb(
     # 6 g, of which gravity is 1, against 3.3 m times (30 rpm)²; the arm's tangential acceleration helps a little.
     steady = 9.80665 * np.sqrt(35) - 3.3 * np.pi**2
     assert spin["tracking_error"]["max"] == pytest.approx(steady, rel=0.05)
-    assert f"{spin['tracking_error']['max']:.3g} m/s²" in warning and "limits used up: axis 1 rate" in warning
+    assert f"{spin['tracking_error']['max'] / 9.80665:.3g} g" in warning and "axis 1 rate used up there" in warning
     if verb == "run":
         with xr.open_dataset(tmp_path / "result.nc", group="motions/spin") as stored:
             assert warning in stored.attrs["warnings"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from gbeam.report.words import columns, errors_in_words, number, percent, stress_words, tidy
+from gbeam.results.errors import ErrorEstimate
 
 HEADS = ["value", "was", "is", "unit"]
 ROWS = [["beam.material.youngs_modulus", "7e+10", "6.9e+10", "Pa"], ["beam.length", "0.3", "0.31", "m"]]
@@ -48,3 +49,11 @@ def test_rounding_beside_what_is_of_a_larger_scale_is_zero() -> None:
 
 def test_a_small_number_of_one_digit_has_no_point() -> None:
     assert [number(2e-7, 1), number(4.0, 1), number(2e-7)] == ["2e-07", "4", "2.000e-07"]
+
+
+@pytest.mark.parametrize("share", [10.1, 97610472735.79, 1e300])
+def test_a_huge_error_has_no_digits(share: float) -> None:
+    huge, half = ErrorEstimate(step=share, model=0.5, total=share + 0.5), ErrorEstimate(total=9.5)
+    assert percent(share) == "over 1000 %" and (percent(9.5), percent(0.004)) == ("950 %", "0.40 %")
+    assert errors_in_words({"total": share, "step": share, "model": 0.5}) == ("over 1000 % (step over 1000, model 50)")
+    assert repr(huge) == "step over 1000 %, model 50 %, total over 1000 %" and repr(half) == "total 950 %"

@@ -51,7 +51,8 @@ def _flutter(doubt: Doubt | None) -> Flutter:
     load = np.arange(6.0).reshape(2, 3)
     gusts = (Gust(speed=3.0), Gust(speed=4.0))
     root = np.array([1 + 2j, 3 - 4j])
-    return Flutter(time=np.array([0.0, 1.0]), load=load, root=root, doubt=doubt, gusts=gusts, warnings=("toy",))
+    return Flutter(time=np.array([0.0, 1.0]), load=load, root=root, doubt=doubt, gusts=gusts, warnings=("toy",),
+                   notes=("a toy",))  # fmt: skip
 
 
 def test_json_follows() -> None:
@@ -64,6 +65,7 @@ def test_json_follows() -> None:
         "gusts": [{"speed": 3.0}, {"speed": 4.0}],
         "word": "calm",
         "warnings": ["toy"],
+        "notes": ["a toy"],
     }
 
 

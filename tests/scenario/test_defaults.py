@@ -64,5 +64,5 @@ def test_a_machine_of_a_file_is_that_of_python(tmp_path: Path) -> None:
     flight = gb.Flight(z=gb.trapezoid(78.5, jerk=39.2, start=1, hold=1))
     of_python = gb.Centrifuge(flight, control_point=0.2, limits=gb.machines["specimen-3.3m"], gravity=False)
     assert isinstance(of_file, gb.Centrifuge)
-    for name in ("geometry", "control_point", "method", "ends", "idle", "smoothing", "clip"):
+    for name in ("geometry", "control_point", "method", "ends", "idle", "smoothing", "clip", "ease"):
         assert repr(getattr(of_file, name)) == repr(getattr(of_python, name)), name

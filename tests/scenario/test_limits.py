@@ -24,10 +24,10 @@ from ..scenarios import FAST
 
 
 def _refused(text: str, *overrides: str) -> str:
-    start = time.perf_counter()
+    start = time.process_time()
     with pytest.raises(ScenarioError) as caught:
         loads(text, "s.toml", overrides)
-    assert time.perf_counter() - start < 5
+    assert time.process_time() - start < 5
     return str(caught.value)
 
 
@@ -94,10 +94,10 @@ def test_lone_surrogates_from_json() -> None:
     ["3 m^9^9^9", "3 m**9**9", "3 m^(9^9)", "3 m^99", "3 m⁹⁹", "3 m^1e9", "3 m^9.5e9", "3 " + "Gm^9*" * 6 + "Gm"],
 )
 def test_powers_of_units(text: str) -> None:
-    start = time.perf_counter()
+    start = time.process_time()
     with pytest.raises(UnitError):
         quantity(text, "length")
-    assert time.perf_counter() - start < 2
+    assert time.process_time() - start < 2
 
 
 @pytest.mark.skipif(os.name != "posix", reason="makes pipes and sparse files")

@@ -48,7 +48,9 @@ def test_bolts_carry_what_the_fixture_gives(seed: int) -> None:
     np.testing.assert_allclose(loads.bolt_force.sum(axis=1), loads.force, atol=1e-9)
     moment = np.cross(loads.bolts, loads.bolt_force).sum(axis=1)
     np.testing.assert_allclose(moment, loads.moment, atol=1e-9)
-    np.testing.assert_allclose(loads.tension**2 + loads.shear**2, (loads.bolt_force**2).sum(axis=-1))
+    along = loads.tension - loads.compression
+    np.testing.assert_allclose(along**2 + loads.shear**2, (loads.bolt_force**2).sum(axis=-1))
+    assert not np.any((loads.tension > 0) & (loads.compression > 0)) and min(along.min(), -along.max()) < 0
 
 
 def test_a_textbooks_bolt_group() -> None:
@@ -58,7 +60,8 @@ def test_a_textbooks_bolt_group() -> None:
     loads = box.loads(gb.Flight(x=constant(50.0)), 1.0, sample=1.0)
     # Accelerated along x at a height of 0.1 m: the rear pair holds it down.
     np.testing.assert_allclose(loads.shear, 100 / 4)
-    np.testing.assert_allclose(loads.tension[0], 100 * 0.1 * 0.1 / (4 * 0.1**2) * np.array([1, -1, 1, -1]))
+    np.testing.assert_allclose(loads.tension[0], 100 * 0.1 * 0.1 / (4 * 0.1**2) * np.array([1, 0, 1, 0]))
+    np.testing.assert_allclose(loads.compression[0], 100 * 0.1 * 0.1 / (4 * 0.1**2) * np.array([0, 1, 0, 1]))
     sideways = gb.RigidSpecimen.box(2.0, (0.1, 0.1, 0.2), (0.3, 0, 0), bolts=bolts, bolt_axis=(0, 0, 1))
     twisted = sideways.loads(gb.Flight(y=constant(50.0)), 1.0, sample=1.0)
     # In-plane: F/n and T r/Σr², Σr² = 4 (0.1² + 0.05²).
@@ -147,10 +150,25 @@ def test_a_box_at_rest_says_what_each_bolt_carries() -> None:
     assert rest.stable and rest.specimen is not None and rest.loads is not None
     np.testing.assert_allclose(rest.loads.root_force[0], (30.0, 0.0, 30.0))
     # The moment 0.05 m × 30 N presses the row behind and lifts that in front, 0.2 m apart; the weight presses on all.
-    tension = [np.sign(x) * 0.05 * 30 / 0.2 / 2 - 30 / 4 for x, *_ in bolts]
-    np.testing.assert_allclose(rest.specimen.tension[0], tension, rtol=1e-12)
+    pressed = [30 / 4 - np.sign(x) * 0.05 * 30 / 0.2 / 2 for x, *_ in bolts]
+    np.testing.assert_allclose(rest.specimen.compression[0], pressed, rtol=1e-12)
+    np.testing.assert_array_equal(rest.specimen.tension, 0)
     np.testing.assert_allclose(rest.specimen.shear[0], 30 / 4)
-    assert "bolts: tension up to -3.75 N, shear up to 7.5 N" in repr(rest)
+    assert "bolts: tension up to 0 N, compression up to 11.25 N, shear up to 7.5 N" in repr(rest)
+
+
+@pytest.mark.parametrize(("down", "pulled", "pressed"), [(1, 67.84, 35.97), (-1, 38.70, 70.57)])
+def test_the_weight_of_the_example_counts_on_its_bolts(down: int, pulled: float, pressed: float) -> None:
+    """By hand: 9 g on 52 mm tips the box, the weight pulls or presses, and tips it by 12 mm; bolts 280 mm apart."""
+    case = gb.read_scenario("examples/rigid_box.toml", [f'motion.arm.gravity=[0, 0, "{down} g"]'])
+    (arm,) = case.motions.values()
+    weight, along = 6.5 * G, 6.5 * 3.312 * 5.1622**2
+    tipped = (0.052 * along - down * 0.012 * weight) / (2 * 0.28)
+    rest = gb.static(case.structure, arm, time=40.0, name="arm").specimen
+    assert rest is not None
+    np.testing.assert_allclose(rest.tension[0, ::2], down * weight / 4 + tipped, rtol=1e-9)
+    np.testing.assert_allclose(rest.compression[0, 1::2], tipped - down * weight / 4, rtol=1e-9)
+    assert (rest.bolt_tension.max(), rest.bolt_compression.max()) == pytest.approx((pulled, pressed), rel=1e-4)
 
 
 def test_a_box_on_the_f16_flight_is_newtons() -> None:
@@ -189,3 +207,19 @@ def test_a_box_on_the_centrifuge_is_newtons() -> None:
     about_centre = loads.moment - np.cross((0.01, 0.02, 0.05), loads.force)
     power = (about_centre * w).sum(axis=1)
     assert power == pytest.approx(np.einsum("ti,ij,tj->t", w, np.array(inertia), alpha), abs=1e-9)
+
+
+def test_a_box_has_one_largest_force_and_one_largest_moment() -> None:
+    """Between samples too, whichever part of an answer says them: of a sine they are its amplitude."""
+    box = gb.RigidSpecimen.box(2.0, (0.2, 0.1, 0.1), (0.0, 0.0, 0.05))
+    shaken = gb.Flight(x=gb.Sine(30.0, 1.0))
+    response = gb.simulate(box.structure, shaken, duration=1.0, step=0.035)
+    loads, peaks = response.specimen, response.peaks.loads
+    assert loads is not None and peaks is not None
+    for largest, between, samples, size in (
+        (loads.force_max, peaks.root_force, loads.force, 60.0),
+        (loads.moment_max, peaks.root_moment, loads.moment, 3.0),
+    ):
+        assert largest == between.size.value == pytest.approx(size, rel=1e-4)
+        assert np.abs(samples).max() < 0.999 * size
+    assert f"on the fixture up to {60.0:.4g} N and {3.0:.4g} N m" in repr(response)

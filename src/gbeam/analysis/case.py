@@ -25,7 +25,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.joints import GROUND, Joint
 from gbeam.mechanics.tree.system import RigidBody, System
 from gbeam.motion import Flight
-from gbeam.motion.protocol import Motion
+from gbeam.motion.protocol import Motion, notes_on
 from gbeam.results.criteria import (
     AT_POINTS,
     DISPLACEMENT,
@@ -498,6 +498,7 @@ def _described(case: AnyCase, doubts: Sequence[Sequence[str]]) -> dict[str, Any]
             if isinstance(motion, Flight) and motion.record is not None
         },
         **over_time,
+        notes=notes_on(case.motions),
         warnings=tuple(dict.fromkeys(warning for warnings in doubts for warning in warnings)),
     )
 

@@ -21,6 +21,7 @@ from gbeam.results.comparison import Comparison
 from gbeam.results.criteria import judging
 from gbeam.results.parts import Extremes, VectorPeaks
 from gbeam.results.response import Readings, Response, Sensor
+from gbeam.results.result import each_once
 from gbeam.results.study import Failure, Study, SystemStudy
 from gbeam.results.system import SystemResponse
 
@@ -99,7 +100,8 @@ def study_of(
         if {flight, name} <= responses.keys() and responses[flight].outcome == responses[name].outcome == "done"
     )
     kind = SystemStudy if isinstance(case, SystemCase) else Study
-    return kind(case.title, dict(responses), comparisons, dict(failures), provenance=case.provenance)
+    said = {key: each_once({n: getattr(run, key) for n, run in responses.items()}) for key in ("warnings", "notes")}
+    return kind(case.title, dict(responses), comparisons, dict(failures), provenance=case.provenance, **said)
 
 
 def _readings(response: Response | SystemResponse, sensors: Mapping[str, Sensor]) -> Readings | None:

@@ -26,7 +26,7 @@ from gbeam.mechanics.models import KINDS, Model
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.signals import deforming
 from gbeam.mechanics.tree.system import System
-from gbeam.motion.protocol import Motion
+from gbeam.motion.protocol import Motion, notes_on
 from gbeam.progress import Progress, tell
 from gbeam.results.response import Response
 from gbeam.results.study import Failure, ModelRow, ModelStudy
@@ -123,7 +123,8 @@ def compare_models(
         axis = _most_moved(answers, name) if isinstance(reference, Failure) else _axis(reference.peak)
         direction[name] = f"{point} {'xyz'[axis]}" if point else "xyz"[axis]
         rows += [_row(kind, name, *answers[kind, name], reference, axis) for kind in KINDS if kind in chosen]
-    return ModelStudy(case.title, REFERENCE, direction, tuple(rows), provenance=case.provenance)
+    notes = notes_on(case.motions)
+    return ModelStudy(case.title, REFERENCE, direction, tuple(rows), notes=notes, provenance=case.provenance)
 
 
 class _Tip(NamedTuple):

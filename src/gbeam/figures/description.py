@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from gbeam.constants import STANDARD_GRAVITY
-from gbeam.printable import raised
+from gbeam.printable import percent, raised
 from gbeam.results.accounting import Accounting
 from gbeam.results.declared import declarations
 from gbeam.results.machine import AxesResult
@@ -144,7 +144,7 @@ def of_motion(name: str, subject: str) -> str:
 
 def estimated(errors: Mapping[str, float]) -> tuple[str, ...]:
     """Note on the estimated errors that are known, fractions by name; none where none is."""
-    known = [f"{name} {100 * error:.2g} %".strip() for name, error in errors.items() if math.isfinite(error)]
+    known = [f"{name} {percent(error)}".strip() for name, error in errors.items() if math.isfinite(error)]
     return (f"estimated error: {', '.join(known)}",) if known else ()
 
 

@@ -177,7 +177,7 @@ def specimen(result: SpecimenLoads, title: str = "") -> Figure:
         axes = [f"{name} {axis}" for axis in "xyz"]
         panels.append(components(result.time, factor * values, axes, Panel(f"{name} on the specimen, {factor_unit}")))
     if len(result.bolts):
-        panels.append(_bolts(result, result.tension, "tension"))
+        panels.append(_bolts(result, result.bolt_pull, "tension (+), compression (−)"))
         panels.append(_bolts(result, result.shear, "shear"))
     subject = of_motion(result.motion, f"rigid specimen of {result.mass:g} kg")
     spread = f"largest spread over the specimen: {100 * result.spread_max:.3g} % of the largest load"

@@ -108,7 +108,7 @@ _BY_NAME = {name: kind for kind, names in _BY_KIND.items() for name in names.spl
 _BY_OWNER: dict[str, dict[str, Declared]] = {
     "AxisLimit": {"acceleration": "angular acceleration", "jerk": "angular jerk"},
     "Case": {"tolerance": ""},
-    "Centrifuge": {"gravity": "", "turn": "angle"},
+    "Centrifuge": {"gravity": "", "turn": "angle", "ease": ""},
     "Choice": {"turns": "angle"},
     "Clamped": {"first": "time", "last": "time"},
     "Convolved": {"width": "time"},

@@ -192,7 +192,7 @@ def groups_of(result: Result, *, every: bool = True) -> dict[str, Group]:
     groups = _study(result, every=every) if isinstance(result, Answers) else {"": _group(result, every=every)}
     origin = result.provenance or Provenance()
     root = groups[""]
-    attrs = provenance_attrs(origin) | {"warnings": "\n".join(result.warnings)}
+    attrs = provenance_attrs(origin) | {"warnings": "\n".join(result.warnings), "notes": "\n".join(result.notes)}
     variables = provenance_variables(origin) if origin.scenario else {}
     groups[""] = Group(variables | root.variables, root.coordinates, root.attrs | attrs)
     return groups

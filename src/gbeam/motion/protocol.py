@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Protocol, Self, runtime_checkable
 
 import numpy as np
@@ -48,6 +48,16 @@ class Motion(Protocol):
 
 
 SAMPLES = 501
+
+
+def notes_on(motions: Mapping[str, Any]) -> tuple[str, ...]:
+    """Notes on motions by name: hubs, built or as a scenario has them, without gravity. In orbit that is meant."""
+    return tuple(
+        f"{f'motion.{name}' if name else 'motion'}: gravity is left out; on a test arm give "
+        'gravity = [0, 0, "-1 g"], in hub axes'
+        for name, motion in motions.items()
+        if motion is not None and motion.kind == "hub" and motion.gravity is None
+    )
 
 
 def implausible_motion(motion: Motion, where: str, span: tuple[float, float], base: Any = None) -> tuple[str, ...]:

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 from gbeam.report.blocks import FIGURES, Block, Facts, Items, Place, Section, Sentence, in_words, quantities
 from gbeam.report.words import as_json, plain
+from gbeam.results.result import each_once
 
 if TYPE_CHECKING:
     from gbeam.results.result import Result
 
-__all__ = ["as_json", "blocks_of", "lines_of", "text", "warnings_of"]
+__all__ = ["as_json", "blocks_of", "lines_of", "remarks_of", "text"]
 # Kinds by the module that has a function of their name; of others every quantity is listed.
 _MODULES = {
     "cases": ("Sweep",),
@@ -60,7 +61,7 @@ def lines_of(kind: type, facts: Facts, **options: Any) -> list[tuple[str, str]]:
 
     title = [Sentence(facts["title"], "verdict")] if facts.get("title") and kind.__name__ in _TITLED else []
     words = {path: each.words for path, each in paths_of(tree_of_answers(kind))}
-    return in_words([*title, *blocks_of(kind.__name__, facts, words, options), *warnings_of(facts)])
+    return in_words([*title, *blocks_of(kind.__name__, facts, words, options), *remarks_of(facts)])
 
 
 def text(*answers: Result) -> str:
@@ -70,13 +71,12 @@ def text(*answers: Result) -> str:
     return "\n".join(line for line, _ in lines_of(type(whole(answers[0])), plain(facts(*answers))))
 
 
-def warnings_of(facts: Facts) -> Iterable[Block]:
-    """Yield the warnings of a result, or of several by motion, each once."""
-    answers = [("", facts), *facts.get("motions", {}).items()]
-    sources: dict[str, list[str]] = {}
-    for name, answer in answers:
-        for warning in answer.get("warnings", ()):
-            sources.setdefault(warning, []).append(name)
-    common = ([""], [name for name, _ in answers[1:]])
-    lines = (line if of in common else f"{', '.join(filter(None, of))}: {line}" for line, of in sources.items())
-    yield Items(tuple(lines), "warning")
+def remarks_of(facts: Facts) -> tuple[Items, Items]:
+    """Return the warnings and the notes of a result, or of several by motion, each once."""
+    answers = facts.get("motions", {})
+
+    def said(kind: str) -> tuple[str, ...]:
+        of_answers = {name: answer.get(kind, ()) for name, answer in answers.items()}
+        return tuple(dict.fromkeys((*facts.get(kind, ()), *each_once(of_answers))))
+
+    return Items(said("warnings"), "warning"), Items(said("notes"), "note")

@@ -159,7 +159,7 @@ def numbered(rows: Iterable[Facts]) -> list[Facts]:
     return [{"number": str(k), **each} for k, each in enumerate(rows, 1)]
 
 
-_APART = ("form", "units", "provenance", "warnings", "files", "title", "outcome", "state", "lines")
+_APART = ("form", "units", "provenance", "warnings", "notes", "files", "title", "outcome", "state", "lines")
 
 
 def quantities(
@@ -253,7 +253,7 @@ def _lines(blocks: Iterable[Block]) -> Iterator[tuple[str, str]]:
             case Sentence():
                 yield block.text, block.tone
             case Items():
-                start = "  warning: " if block.tone == "warning" else ""
+                start = f"  {block.tone}: " if block.tone in ("warning", "note") else ""
                 yield from ((f"{start}{line}", block.tone) for line in block.lines)
             case Verbatim():
                 yield f"  {block.text}", ""

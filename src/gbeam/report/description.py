@@ -36,6 +36,7 @@ def text(case: Described) -> str:
         lines.append(f"  response  {case.start:.4g} to {end:.4g} s, {case.integrator}, step {step}")
     lines += _listed("drawn", [f"{path}: {drawn}; here its centre" for path, drawn in case.distributions.items()])
     lines += [f"  warning: {each}" for each in case.warnings]
+    lines += [f"  note: {each}" for each in case.notes]
     return "\n".join([*lines, "Scenario valid."])
 
 

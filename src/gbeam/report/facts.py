@@ -26,7 +26,8 @@ def whole(result: Result) -> Result:
     """Return a result as its JSON has it: a response in a study of its own; of kinds listed by motion, with a name."""
     if isinstance(result, Response):
         name = result.name or result.environment
-        return Study("", {name: result}, (), warnings=(), provenance=result.provenance)
+        said = result.warnings, result.notes
+        return Study("", {name: result}, (), warnings=said[0], notes=said[1], provenance=result.provenance)
     named: dict[str, Any] = {result.listed_by: result.unnamed}
     return replace(result, **named) if result.listed_by and not getattr(result, result.listed_by) else result
 

@@ -164,8 +164,8 @@ def specimen_tables(rigid: Facts) -> Blocks:
     yield table(named(rigid), corners, "Load at the corners", optional=("limit",))
     bolts = [{"motion": name, **bolt} for name, each in rigid.items() for bolt in numbered(each["bolts"])]
     of_bolts: Columns = {"motion": "motion", "bolt": "number", **_place("place")}
-    of_bolts |= {"tension, N": "tension", "shear, N": "shear"}
-    yield table(bolts, of_bolts, "Largest loads of the bolts, alike and without preload")
+    of_bolts |= {f"{name}, N": name for name in ("tension", "compression", "shear")}
+    yield table(bolts, of_bolts, "Largest loads of the bolts, alike and without preload", optional=("compression, N",))
 
 
 def errors(motions: Facts) -> Blocks:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gbeam.printable import json_printable
+from gbeam.printable import percent as percent_of
 
 if TYPE_CHECKING:
     from gbeam.results.parts import LoadPeaks
@@ -73,17 +74,15 @@ def number(value: float, digits: int = 4) -> str:
 
 def percent(share: float) -> str:
     """Write a share in percent; a dash where it is not known."""
-    if not math.isfinite(share):
-        return "–"
-    (share,) = tidy((share,), 0.0, 1.0)
-    return f"{100 * share:.0f} %" if share >= 0.1 else f"{number(100 * share, 2)} %"
+    (share,) = tidy((share,), 0.0, 1.0) if math.isfinite(share) else (share,)
+    return f"{number(100 * share, 2)} %" if share < 0.1 else percent_of(share)
 
 
 def errors_in_words(errors: Mapping[str, float | None]) -> str:
     """An error with what it is made of, the largest first: ``0.29 % (model 0.27, shapes 0.01, step 0.002)``."""
     parts = {name.replace("_", " "): known(size) for name, size in errors.items() if name != "total"}
     ranked = sorted(((size, name) for name, size in parts.items() if size > rounding(0.0, 1.0)), reverse=True)
-    shares = ", ".join(f"{name} {number(100 * size, 2)}" for size, name in ranked)
+    shares = ", ".join(f"{name} {percent(size).removesuffix(' %')}" for size, name in ranked)
     return f"{percent(known(errors['total']))}{f' ({shares})' if len(ranked) > 1 else ''}"
 
 

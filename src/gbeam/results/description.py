@@ -77,6 +77,7 @@ class Described(Part):
     tracks: Mapping[str, str] = fact("name of the flight that each centrifuge tracks", key=None, default_factory=dict)
     records: Mapping[str, RecordSummary] = rows("records of flights, by name", "motion", default_factory=dict)
     warnings: tuple[str, ...] = fact("what is implausible", default=())
+    notes: tuple[str, ...] = fact("what may be meant so, and is easily overlooked", optional=True, default=())
     distributions: Mapping[str, str] = fact("distribution of each value that has one, by path", default_factory=dict)
 
     @declared("", "kinds of motions, by name", "motion", role="rows", key="motions")

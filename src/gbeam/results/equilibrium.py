@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from gbeam.constants import BY_STRAINS
+from gbeam.printable import percent
 from gbeam.results.declared import INSIDE, declared, fact, internal, part, quantity
 from gbeam.results.declared import quantity as entry  # a critical value has a field of that name
 from gbeam.results.errors import MODEL, SHAPES, THEORY, TOTAL, UNKNOWN, ErrorEstimate, Errors
@@ -62,7 +63,7 @@ class Deflection(Figured[Literal["shape", "loads"]]):
         tip = ", ".join(f"{1e3 * each:.4g}" for each in self.tip)
         stability = "stable" if self.stable else "NOT stable: no beam would stay there"
         total = self.errors.displacement.total
-        error = f"; estimated error {100 * total:.2g} %" if math.isfinite(total) else ""
+        error = f"; estimated error {percent(total)}" if math.isfinite(total) else ""
         head = f"Deflection{motion} ({self.model}) at {self.time:.4g} s:"
         if self.specimen is not None:
             first, *others = self.specimen.lines

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.guards.arguments import typed_methods
+from gbeam.printable import percent
 from gbeam.results.declared import declared, fact, internal, labels, part, quantity, rows
 from gbeam.results.result import Complex, Floats, Part
 
@@ -49,7 +50,7 @@ class ErrorEstimate(Part):
     def __repr__(self) -> str:
         parts = self.causes | {"total": self.total}
         # A static deflection has no steps.
-        known = [f"{k} {100 * x:.2g} %" for k, x in parts.items() if math.isfinite(x) and (x or k != "step")]
+        known = [f"{k} {percent(x)}" for k, x in parts.items() if math.isfinite(x) and (x or k != "step")]
         return ", ".join(known) or "not known"
 
 
@@ -121,7 +122,7 @@ class SystemErrors(Part):
 
     def __repr__(self) -> str:
         errors = zip(self.beams, self.by_beam, strict=True)
-        by_beam = (f"{name} {100 * error:.2g} %" for name, error in errors if not math.isnan(error))
+        by_beam = (f"{name} {percent(error)}" for name, error in errors if not math.isnan(error))
         named = ("displacement", "loads", "stress") if self.beams else ("displacement",)
         lines = [f"{error}: {getattr(self, error)}" for error in named]
         lines.insert(1, ", ".join(by_beam))

@@ -182,6 +182,19 @@ class AxesResult(Part):
         return np.asarray(np.linalg.norm(self.actual - self.reference, axis=1))
 
 
+_BOUND, _BEYOND = 0.99, 1.001  # shares of a limit between which the limit holds an axis back
+
+
+def used_up(shares: Mapping[str, Floats], during: slice) -> list[str]:
+    """Names of the limits that hold an axis back in a stretch, the longest first, by their used `shares` (t,)."""
+    held = {
+        name: int(np.count_nonzero(share[during] >= _BOUND))
+        for name, share in shares.items()
+        if _BOUND <= share[during].max() <= _BEYOND
+    }
+    return sorted(held, key=lambda name: -held[name])
+
+
 @dataclass(frozen=True)
 class Peak:
     """Largest size of a history of a rotation about an axis."""

@@ -17,6 +17,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, index_of, positive
 from gbeam.numerics.samples import displacement
+from gbeam.printable import percent
 from gbeam.results.declared import INSIDE, declared, fact, internal, labels, part, quantity
 from gbeam.results.errors import Errors
 from gbeam.results.machine import AxesFigure, AxesResult, Driven
@@ -378,7 +379,7 @@ class Response(Driven, Figured[ResponseFigure]):
         name = f" {self.name!r}" if self.name else ""
         axis = int(np.argmax(self.peaks.max_abs))
         unknown = math.isnan(self.error_estimate)
-        error = "no error estimate" if unknown else f"estimated error {self.error_estimate:.2g} of the peak"
+        error = "no error estimate" if unknown else f"estimated error {percent(self.error_estimate)} of the peak"
         moved = [
             f"tip up to {1e3 * self.peaks.max_abs[axis]:.4g} mm along {'xyz'[axis]}, "
             f"at {self.peaks.time_of_max[axis]:.4g} s of {self.time[0]:.4g} to {self.time[-1]:.4g} s",
@@ -388,6 +389,5 @@ class Response(Driven, Figured[ResponseFigure]):
             f"Response{name} ({self.environment}, {self.model}): {self.outcome}",
             *([self.message] if self.message else []),
             *(moved if self.specimen is None else self.specimen.lines),
-            *(f"warning: {each}" for each in self.warnings),
         ]
-        return "\n  ".join(lines)
+        return self._with_warnings(*lines)

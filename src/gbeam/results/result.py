@@ -7,6 +7,7 @@ record needs none, and importing a record loads none.
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal, TypeVar
 
@@ -26,6 +27,18 @@ def brief(record: Any) -> str:
     """A record on one line: numbers and words as they are, arrays by their shapes, other records by their names."""
     values = ", ".join(f"{f.name}={_short(getattr(record, f.name))}" for f in fields(record) if f.repr)
     return f"{type(record).__name__}({values})"
+
+
+def each_once(sentences: Mapping[str, Iterable[str]]) -> tuple[str, ...]:
+    """Sentences of answers by the motion's name, each once, and with the names unless it is of all or says its own."""
+    names: dict[str, list[str]] = {}
+    for name, of_answer in sentences.items():
+        for sentence in of_answer:
+            names.setdefault(sentence, []).append(name)
+    return tuple(
+        each if len(of) == len(sentences) or each.startswith(f"motion.{of[0]}") else f"{', '.join(of)}: {each}"
+        for each, of in names.items()
+    )
 
 
 def part_words(span: tuple[float, float], whole: tuple[float, float]) -> str:
@@ -72,6 +85,8 @@ class Result(Value):
     ----------
     warnings : tuple of str
         Why it may not be what it seems: implausible input, or an answer that is not to be trusted.
+    notes : tuple of str
+        What may be meant so, and is easily overlooked, as gravity that is left out.
     provenance : Provenance or None
         The scenario, the records and the command that it comes from, where there is a scenario.
     """
@@ -79,6 +94,9 @@ class Result(Value):
     listed_by: ClassVar[str] = ""  # field that names each where JSON lists several by their motion
     unnamed: ClassVar[str] = ""  # name of one that has none there
     warnings: tuple[str, ...] = fact("why it may not be what it seems", default=(), repr=False)
+    notes: tuple[str, ...] = fact(
+        "what may be meant so, and is easily overlooked", optional=True, default=(), repr=False
+    )
     provenance: Provenance | None = field(default=None, repr=False)
 
     def __init_subclass__(cls, **options: Any) -> None:
@@ -86,8 +104,9 @@ class Result(Value):
         document(cls)
 
     def _with_warnings(self, *lines: str) -> str:
-        """Lines on the screen, with the warnings below."""
-        return "\n  ".join([*lines, *(f"warning: {each}" for each in self.warnings)])
+        """Lines on the screen, with the warnings and notes below."""
+        remarks = {"warning": self.warnings, "note": self.notes}
+        return "\n  ".join([*lines, *(f"{kind}: {each}" for kind, said in remarks.items() for each in said)])
 
     def _repr_html_(self) -> str:
         """The verdict and a small table, in notebooks."""

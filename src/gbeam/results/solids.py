@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -13,7 +13,7 @@ from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.guards.checks import index_of, vector
 from gbeam.results.declared import declared, fact, internal, labels, part, quantity
-from gbeam.results.parts import margin_words, yield_margin
+from gbeam.results.parts import LoadPeaks, margin_words, yield_margin
 from gbeam.results.result import Complex, Figured, Flags, Floats, Part
 
 UNLIMITED = "at sharp edges and the edges of clamps the stress of an elastic solid has no limit as the mesh gets finer"
@@ -255,6 +255,7 @@ class SpecimenLoads(Figured[Literal["specimen"]]):
         "", "direction of the bolts", "axis", key=None, optional=True, default_factory=lambda: np.empty(0)
     )
     spread_limit: float | None = fact("largest spread that is accepted", optional=True, default=None)
+    root: LoadPeaks | None = field(default=None, repr=False)  # peaks of force and moment between these times, if known
 
     @declared("", "whether the spread is within its limit", role="fact", name=None, optional=True)
     def within_limit(self) -> bool | None:
@@ -296,16 +297,27 @@ class SpecimenLoads(Figured[Literal["specimen"]]):
 
     @declared("N", "largest size of the force on the specimen", name=None, key="force.max_abs")
     def force_max(self) -> float:
-        return float(np.linalg.norm(self.force, axis=-1).max())
+        between = 0.0 if self.root is None else float(self.root.root_force.size.value)
+        return max(float(np.linalg.norm(self.force, axis=-1).max()), between)
 
     @declared("N m", "largest size of the moment on the specimen about the root", name=None, key="moment.max_abs")
     def moment_max(self) -> float:
-        return float(np.linalg.norm(self.moment, axis=-1).max())
+        between = 0.0 if self.root is None else float(self.root.root_moment.size.value)
+        return max(float(np.linalg.norm(self.moment, axis=-1).max()), between)
 
-    @declared("N", "tension of the bolt; negative where the specimen is pressed on", "time bolt")
-    def tension(self) -> Floats:
+    @property
+    def bolt_pull(self) -> Floats:
+        """Force along the bolt, (t, b) N: tension, or negative where the specimen is pressed on the fixture."""
         # The bolt pulls the specimen against its axis, which points away from the fixture.
         return -(self.bolt_force @ self.bolt_axis) if len(self.bolts) else np.empty((len(self.time), 0))
+
+    @declared("N", "tension of the bolt", "time bolt")
+    def tension(self) -> Floats:
+        return np.maximum(self.bolt_pull, 0.0)
+
+    @declared("N", "force that presses the specimen on the fixture at the bolt", "time bolt")
+    def compression(self) -> Floats:
+        return np.maximum(-self.bolt_pull, 0.0)
 
     @declared("N", "shear of the bolt", "time bolt")
     def shear(self) -> Floats:
@@ -317,6 +329,11 @@ class SpecimenLoads(Figured[Literal["specimen"]]):
     @declared("N", "largest tension of the bolt", "bolt", name=None, key="tension")
     def bolt_tension(self) -> Floats:
         return self.tension.max(axis=0)
+
+    @declared("N", "largest force that presses the specimen on the fixture at the bolt", "bolt", name=None,
+              key="compression")  # fmt: skip
+    def bolt_compression(self) -> Floats:
+        return self.compression.max(axis=0)
 
     @declared("N", "largest shear of the bolt", "bolt", name=None, key="shear")
     def bolt_shear(self) -> Floats:
@@ -334,9 +351,9 @@ class SpecimenLoads(Figured[Literal["specimen"]]):
             f"on the fixture up to {self.force_max:.4g} N and {self.moment_max:.4g} N m",
         ]
         if len(self.bolts):
-            lines.append(
-                f"bolts: tension up to {self.bolt_tension.max():.4g} N, shear up to {self.bolt_shear.max():.4g} N"
-            )
+            largest = {"tension": self.bolt_tension, "compression": self.bolt_compression, "shear": self.bolt_shear}
+            words = (f"{name} up to {values.max():.4g} N" for name, values in largest.items())
+            lines.append(f"bolts: {', '.join(words)}")
         return lines
 
     def __repr__(self) -> str:

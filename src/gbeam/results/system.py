@@ -11,6 +11,7 @@ import numpy as np
 
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import index_of
+from gbeam.printable import percent
 from gbeam.results.declared import INSIDE, declared, fact, internal, labels, part, quantity, rows
 from gbeam.results.errors import (
     Accelerated,
@@ -334,7 +335,7 @@ class SystemResponse(_Placed, Driven, Figured[str]):
     def __repr__(self) -> str:
         of = f" {self.name!r}" if self.name else ""
         unknown = math.isnan(self.error_estimate)
-        error = "no error estimate" if unknown else f"estimated error {100 * self.error_estimate:.2g} %"
+        error = "no error estimate" if unknown else f"estimated error {percent(self.error_estimate)}"
         lines = [
             f"SystemResponse{of} ({self.environment}): {self.outcome}",
             *([self.message] if self.message else []),
@@ -420,7 +421,7 @@ class SystemRest(_Placed, Figured[str]):
         lines = [f"SystemRest: {moved}", f"force on the ground ({force}) N"]
         lines += evenly(self.accelerated)
         total = self.errors.displacement.total
-        lines += [f"estimated error {100 * total:.2g} %"] if self.errors.beams and math.isfinite(total) else []
+        lines += [f"estimated error {percent(total)}"] if self.errors.beams and math.isfinite(total) else []
         return self._with_warnings(*lines)
 
 

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 # Names, in files and in JSON, of estimates of errors and of sentences, which differ between versions.
 _STATED = re.compile(
-    r"(^|[@./])(error_\w+|errors?|total_error|run_error|accurate_to|warnings|verdict|summary|message|note|theory|reason"
+    r"(^|[@./])(error_\w+|errors?|total_error|run_error|accurate_to|warnings|notes|verdict|summary|message|note|theory|reason"
     r"|not_varied)($|[.])"
 )
 # Names of times of peaks: rounding may decide between equal peaks. The peaks themselves are compared.

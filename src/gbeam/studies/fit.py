@@ -127,7 +127,10 @@ def fit(
     solution = replace(best, before=solutions[0].before)
     described = _described(model, measurement, parameters, limits, solution)
     agreed = agreeing([each.values for each in solutions], solution.values, limits)
-    return replace(described, title=template.title, starts=starts, agreed=agreed, provenance=template.provenance)
+    return replace(
+        described, title=template.title, starts=starts, agreed=agreed, notes=template.notes,
+        provenance=template.provenance,
+    )  # fmt: skip
 
 
 def _described(

@@ -148,6 +148,7 @@ def optimise(
         agreed=agreeing(ends, values, limits),
         outcome=BROKEN if broken else "done",
         warnings=search.warnings + (() if not search.flat else (f"{minimise} does not depend on {', '.join(paths)}",)),
+        notes=template.notes,
         provenance=template.provenance,
     )
 

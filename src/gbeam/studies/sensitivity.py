@@ -131,6 +131,7 @@ def sensitivity(
         run_error=_run_error(nearby.answer, motions),
         not_varied=tuple(refused),
         warnings=tuple(kinked),
+        notes=template.notes,
         provenance=template.provenance,
     )
 

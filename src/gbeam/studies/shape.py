@@ -24,6 +24,7 @@ from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.hub import Hub
 from gbeam.motion.profiles.piecewise import constant
+from gbeam.motion.protocol import notes_on
 from gbeam.printable import advise
 from gbeam.progress import Progress
 from gbeam.questions import motion_of
@@ -144,7 +145,7 @@ def shape_hub_command(
         if isinstance(case, SystemCase) and case.motions:
             raise error.at(f"motion.{motion_of(case.motions, motion)}") from None
         raise error.within("system" if isinstance(case, SystemCase) else where) from None
-    return replace(shaped, motion=name, provenance=case.provenance)
+    return replace(shaped, motion=name, notes=notes_on(case.motions), provenance=case.provenance)
 
 
 def driven_of(case: AnyCase, motion: str | None, joint: str | None) -> tuple[Case | SystemCase, str, Hub]:

@@ -128,6 +128,7 @@ def sweep(
     >>> answer = gb.sweep(hub, moduli, ["modes[0].frequency"], verb="modes")
     >>> answer
     Sweep of modes over 3 beam.material.youngs_modulus: 3 done; modes[0].frequency
+      note: motion.slew: gravity is left out; on a test arm give gravity = [0, 0, "-1 g"], in hub axes
     """
     template = template_of(scenario, overrides, distributions=True)
     table = template.table
@@ -183,7 +184,8 @@ def sweep(
                 journal.add(begun.rows)
                 rows += _collected(computed, rows, len(cases), progress, journal)
     answer = assembled(template.title, cases, names, begun, rows, seed)
-    return replace(answer, warnings=() if journal is None else journal.warnings, provenance=template.provenance)
+    said = () if journal is None else journal.warnings
+    return replace(answer, warnings=said, notes=template.notes, provenance=template.provenance)
 
 
 def _over_time(histories: tuple[str, ...], times: int, verb: str) -> OverTime:

@@ -25,6 +25,7 @@ from gbeam.mechanics.assembly import assemble, model_of
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.joints import GROUND
 from gbeam.mechanics.tree.system import RigidBody, System
+from gbeam.motion.protocol import notes_on
 from gbeam.printable import advise
 from gbeam.results.provenance import Provenance
 from gbeam.scenario.bodies.beam import BeamBody
@@ -91,6 +92,11 @@ class ScenarioTemplate:
     def provenance(self) -> Provenance:
         """Origin of results."""
         return provenance(self.scenario)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Notes on the motions of all cases."""
+        return notes_on(self.scenario.motion)
 
     @property
     def identity(self) -> dict[str, Any]:
@@ -176,6 +182,11 @@ class CaseTemplate:
     @property
     def provenance(self) -> Provenance | None:
         return self.case.provenance
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Notes on the motions of all cases."""
+        return notes_on(self.case.motions)
 
     @property
     def identity(self) -> dict[str, Any]:

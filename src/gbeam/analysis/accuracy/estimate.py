@@ -12,15 +12,11 @@ from gbeam.analysis.accuracy.beam_theory import WORDS, Lacking, largest
 from gbeam.analysis.accuracy.correction import Quantity, Reading
 from gbeam.mechanics.models import TORSION
 from gbeam.mechanics.structure import Structure
+from gbeam.printable import percent as percent
 from gbeam.results.errors import ErrorEstimate
 
 BEAM = "beam"  # name of a beam that is alone
 LIMIT = 0.01  # an error of a steady state above is warned of
-
-
-def percent(share: float) -> str:
-    """A share in percent: ``1.3 %``, ``110 %``."""
-    return f"{100 * share:{'.0f' if share > 0.1 else '.2g'}} %"
 
 
 def cure_of_theory(theory: str) -> str:

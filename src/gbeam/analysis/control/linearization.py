@@ -38,7 +38,7 @@ from gbeam.mechanics.section_forces import sections
 from gbeam.mechanics.structure import Sections, Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion import Flight
-from gbeam.motion.protocol import Motion
+from gbeam.motion.protocol import Motion, notes_on
 from gbeam.numerics.series import STEP
 from gbeam.progress import Progress, tell
 from gbeam.results.errors import FrequencyErrors, along
@@ -416,6 +416,7 @@ def linearize(
         frequency=frequency,
         errors=errors,
         warnings=warnings,
+        notes=notes_on({name: motion}),
     ).select(inputs=inputs, outputs=outputs)
 
 

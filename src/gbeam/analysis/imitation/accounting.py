@@ -15,11 +15,10 @@ from gbeam.guards.checks import choice, positive
 from gbeam.motion.centrifuge.kinematics import moved
 from gbeam.numerics.samples import separate_peaks, true_runs
 from gbeam.results.accounting import TOLERANCE_OF, Accounting, LoadPeak, NotFollowed, PeakPair, Preload
-from gbeam.results.machine import AxesResult
+from gbeam.results.machine import AxesResult, used_up
 
 _DIP = 0.9  # of the lower of two maxima: a load that falls further between them makes them two peaks
 _SLACK = 1e-9  # of idle: a load held at it is not above it
-_BOUND, _BEYOND = 0.99, 1.001  # shares of a limit between which the limit holds an axis back
 _NAMED = 2  # limits named at most
 _NEAR = 0.25  # s around a stretch in which a limit may be used up because of it
 _CORNER, _BELOW = "corner", "below idle"
@@ -177,12 +176,7 @@ def _named(reason: str, shares: Mapping[str, Floats], around: slice) -> str:
     """The reason in words; for a corner the limits that are used up around it, the longest first, if there are any."""
     if reason != _CORNER:
         return reason
-    used = {
-        name: int(np.count_nonzero(share[around] >= _BOUND))
-        for name, share in shares.items()
-        if _BOUND <= share[around].max() <= _BEYOND
-    }
-    return ", ".join(sorted(used, key=lambda name: -used[name])[:_NAMED]) or _CORNER
+    return ", ".join(used_up(shares, around)[:_NAMED]) or _CORNER
 
 
 def _peak(

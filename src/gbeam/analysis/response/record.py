@@ -30,7 +30,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.motion import Centrifuge
 from gbeam.motion.centrifuge.kinematics import axes_result
 from gbeam.motion.flight import Flight
-from gbeam.motion.protocol import Motion
+from gbeam.motion.protocol import Motion, notes_on
 from gbeam.progress import Progress
 from gbeam.results.errors import ErrorEstimate, Errors, StepErrors
 from gbeam.results.machine import AxesResult
@@ -235,6 +235,7 @@ def response_of(
         outcome=outcome,
         message=message,
         warnings=warnings,
+        notes=notes_on({name: motion}),
         time=time,
         stations=np.asarray(structure.stations),
         points=structure.points
@@ -264,13 +265,21 @@ def response_of(
         whole=whole,
         point_acceleration=felt,
         kept_every=settings.kept_every(len(time), float(time[-1] - time[0]) / max(len(time) - 1, 1)),
-        **(_recovered(structure, motion, time, over_time, q[:, beam], name) if settings.loads and not traced else {}),
+        **(
+            _recovered(structure, motion, time, over_time, q[:, beam], name, peaks)
+            if settings.loads and not traced
+            else {}
+        ),
     )
 
 
-def _recovered(structure: Structure, motion: Motion, time: Floats, base: Base, q: Floats, name: str) -> dict[str, Any]:
+def _recovered(
+    structure: Structure, motion: Motion, time: Floats, base: Base, q: Floats, name: str, peaks: Peaks
+) -> dict[str, Any]:
     """Fields that only the responses of curved beams, solids and rigid specimens have, by name."""
     if structure.recovery is None:
         return {} if structure.source is None else {"envelope": structure.source.beam.envelope}
     parts = structure.recovery.parts(time, base, q, motion=name, model=structure.kind, environment=motion.kind)
+    if "specimen" in parts:
+        parts["specimen"] = replace(parts["specimen"], root=peaks.loads)
     return {"envelope": structure.recovery.envelope, **parts}

@@ -38,7 +38,7 @@ from gbeam.mechanics.tree.steps import continuous
 from gbeam.mechanics.tree.system import System
 from gbeam.motion import Centrifuge
 from gbeam.motion.centrifuge.kinematics import axes_result
-from gbeam.motion.protocol import Motion
+from gbeam.motion.protocol import Motion, notes_on
 from gbeam.numerics.eigen import positive_definite
 from gbeam.numerics.series import STEP
 from gbeam.progress import Progress, tell
@@ -347,5 +347,6 @@ def _described(run: SystemRun, errors: SystemErrors, name: str, warnings: tuple[
         residual_amplitude=residual,
         kept_every=settings.kept_every(len(time), run.step * stride),
         warnings=warnings,
+        notes=notes_on({name: motion}),
         **over_time,
     )

@@ -23,7 +23,7 @@ from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.profiles.profile import Profile
-from gbeam.motion.protocol import Motion
+from gbeam.motion.protocol import Motion, notes_on
 from gbeam.numerics.eigen import Steady, mac, matched
 from gbeam.progress import Progress, tell
 from gbeam.results.errors import PARTS, ErrorEstimate, FrequencyErrors
@@ -238,6 +238,7 @@ def campbell(
         critical=lost if lost.value is not None else None,
         errors=errors,
         warnings=warnings,
+        notes=notes_on({name: motion}),
     )
 
 

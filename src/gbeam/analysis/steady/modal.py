@@ -16,7 +16,7 @@ from gbeam.guards.arguments import typed
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
-from gbeam.motion.protocol import Motion
+from gbeam.motion.protocol import Motion, notes_on
 from gbeam.progress import Progress, tell
 from gbeam.results.modal import Modes
 from gbeam.results.system import SystemModes
@@ -159,4 +159,4 @@ def modes(
         warnings += doubtful(stated)
     elif errors:
         stated = unknown_errors(structure, len(computed.eigenvalue))
-    return replace(computed, errors=stated, warnings=warnings, **drawn(structure))
+    return replace(computed, errors=stated, warnings=warnings, notes=notes_on({name: motion}), **drawn(structure))

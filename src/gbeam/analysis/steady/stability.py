@@ -27,7 +27,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.hub import Hub
 from gbeam.motion.profiles.profile import Profile
-from gbeam.motion.protocol import Motion
+from gbeam.motion.protocol import Motion, notes_on
 from gbeam.progress import Progress, tell
 from gbeam.results.equilibrium import Critical, CriticalMap, MapErrors
 from gbeam.results.errors import ErrorEstimate
@@ -112,7 +112,7 @@ def critical_speed(
     """
     path, _ = turned(structure, motion, turning, time, "a critical speed", INSTEAD, name, held=True)
     lost = first_lost_speed(structure, path, upper, progress)
-    return with_frequencies(lost, path, structure, progress)
+    return replace(with_frequencies(lost, path, structure, progress), notes=notes_on({name: motion}))
 
 
 def first_lost_speed(structure: Structure | System, path: Path, upper: float | None, progress: Progress) -> Critical:
@@ -234,7 +234,8 @@ def critical_speed_map(
                 worst = loss.errors
     warnings = input_warnings(unloaded, motion, name=name) + doubtful_loss("hub rate, at worst,", model.kind, worst)
     axes = np.asarray(masses, dtype=float), np.asarray(positions, dtype=float)
-    return CriticalMap(name, model.kind, *axes, speed, limit, errors, warnings=warnings)
+    notes = notes_on({name: motion})
+    return CriticalMap(name, model.kind, *axes, speed, limit, errors, warnings=warnings, notes=notes)
 
 
 @typed

@@ -27,7 +27,7 @@ from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import theory_of
 from gbeam.mechanics.tree.system import System
-from gbeam.motion.protocol import Motion
+from gbeam.motion.protocol import Motion, notes_on
 from gbeam.progress import Progress, tell
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.errors import Errors
@@ -213,6 +213,7 @@ def deflection_at(
         strain_energy=float(structure.strain_energy(q)),
         stable=keeps(point.about, point.base, point.loads),
         warnings=warnings,
+        notes=notes_on({name: motion}),
         loads=loads,
         errors=errors,
         **{key: parts.get(key) for key in ("solid", "surface", "specimen")},

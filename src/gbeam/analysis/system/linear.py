@@ -29,7 +29,7 @@ from gbeam.mechanics.tree.equations import Inputs
 from gbeam.mechanics.tree.signals import Driven, deforming, drives_of, local_names, measurable, signals_of, units_of
 from gbeam.mechanics.tree.steps import parameters_of_all
 from gbeam.mechanics.tree.system import System
-from gbeam.motion.protocol import Motion
+from gbeam.motion.protocol import Motion, notes_on
 from gbeam.numerics.eigen import Steady, Vibrations
 from gbeam.numerics.series import STEP
 from gbeam.results.errors import Instability
@@ -79,6 +79,7 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
         accelerated=state.accelerated,
         stable=not unstable,
         warnings=unstable + doubts(errors, LIMIT) + state.warnings + open_loops(system),
+        notes=notes_on({name: state.drive.motion}),
         assembly=assembly_of(system),
         outlines={
             body: outline
@@ -125,6 +126,7 @@ def system_modes(state: SteadySystem, moving: Vibrations, time: float, name: str
         rigid=len(local.y) - len(moving.value) - (len(moving.diverging) + len(moving.decaying)) // 2,
         instabilities=instabilities(state, moving),
         warnings=warnings,
+        notes=notes_on({name: state.drive.motion}),
     )
 
 
@@ -234,6 +236,7 @@ def linearize_system(
         time=state.drive.time,
         accelerated=state.accelerated,
         warnings=state.warnings + state.point.sticking(system),
+        notes=notes_on({name: state.drive.motion}),
     )
 
 

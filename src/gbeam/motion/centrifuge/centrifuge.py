@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from dataclasses import replace
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -14,7 +15,7 @@ from gbeam.constants import STANDARD_GRAVITY, InverseName, Mounting, Start
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, positive, possible, vector
-from gbeam.motion.centrifuge.course import INVERSES, Course, prepare
+from gbeam.motion.centrifuge.course import INVERSES, LESS, Course, Planned, less_eased, prepare
 from gbeam.motion.centrifuge.inverses.instant import Geometry, Inverse
 from gbeam.motion.centrifuge.kinematics import Axes, control_point_load, forward, moved
 from gbeam.motion.centrifuge.limits import Ends, Limits, Machine, MachineLimits, usage
@@ -75,6 +76,8 @@ class Centrifuge:
         which the arm turns once on the way, or as much more as nine tenths of every limit need.
     clip : bool
         Whether to carry on with a held target where the gimbals cannot reach; to give `idle` does so too.
+    ease : float
+        Of ``planned``: weight of gentle motion of the axes beside the tracking error, times the usual one.
     span : tuple of float, optional
         First and last time of the flight to prepare for, s.
 
@@ -104,6 +107,7 @@ class Centrifuge:
     idle: Any
     smoothing: Any
     clip: bool = static()
+    ease: float = static()
     course: Course | None
 
     def __init__(
@@ -123,6 +127,7 @@ class Centrifuge:
         spin_up: float | None = None,
         spin_down: float | None = None,
         clip: bool = False,
+        ease: float = 1.0,
         span: tuple[float, float] | None = None,
     ) -> None:
         if not isinstance(flight, Flight):
@@ -140,6 +145,9 @@ class Centrifuge:
             problem = "is true, and the record of its flight holds acceleration, not specific force"
             fix = "write gravity = false, or add gravity to the record: its direction changes as the aircraft turns"
             raise InputError("gravity", problem, fix)
+        ease = positive("ease", ease, "times the usual")
+        if ease != 1 and not INVERSES[inverse].plans:
+            raise InputError("ease", f"is given beside inverse = {inverse}, which plans nothing", "leave it out")
         assign(
             self,
             flight=flight,
@@ -152,6 +160,7 @@ class Centrifuge:
             idle=None if idle is None else positive("idle", idle, "m/s²"),
             smoothing=None if smoothing is None else positive("smoothing", smoothing, "s", zero=True),
             clip=bool(clip),
+            ease=float(ease),
             course=None,
         )
         if span is not None:
@@ -208,6 +217,7 @@ class Centrifuge:
             "turn": self.turn,
             **vars(self.ends),
             "clip": self.clip,
+            "ease": self.ease,
             "span": None if self.course is None else self.course.target.span,
         }
 
@@ -266,7 +276,15 @@ class Centrifuge:
     def _solved(self) -> Course:
         """The course with its axis motions."""
         course = self._prepared_for_a_span()
-        return course.solved(self.method, self.limits, self.ends) if course.solution is None else course
+        return course.solved(self.method, self.limits, self.ends, self.ease) if course.solution is None else course
+
+    def less_eased(self) -> Self | None:
+        """The machine with a plan of less ease, sought from its own; None with an inverse that plans nothing."""
+        course = self._solved
+        if not isinstance(course.inverse, Planned):
+            return None
+        plan = less_eased(course.inverse, course.target, self.geometry, self.limits, self.ends, self.ease)
+        return self._changed(course=replace(course, solution=plan), ease=LESS * self.ease)
 
     def axes(self, t: Any) -> Axes:
         """States of the three axes at times `t` (s)."""

@@ -52,8 +52,10 @@ class Planned(Inverse):
 
 
 @lru_cache(maxsize=4)  # keyed by values: equal machines of a study wait once
-def planned(target: Target, geometry: Geometry, limits: Limits, ends: Ends) -> Planned:
+def planned(target: Target, geometry: Geometry, limits: Limits, ends: Ends, ease: float = 1.0) -> Planned:
     """Plan the motion of the axes, as splines of finer and finer knots while that lowers the tracking error.
+
+    Gentle motion counts `ease` times its usual weight.
 
     With `ends.start` ``idle`` the motion begins and ends at the flight's first and last time, with the arm turning at a
     constant rate and the gimbals at rest. Otherwise all is at rest at both ends; with ``pre-yawed`` the search begins
@@ -87,7 +89,7 @@ def planned(target: Target, geometry: Geometry, limits: Limits, ends: Ends) -> P
         if feasible is not None:
             tracking, x = Tracking(splines, geometry, target, ramps), feasible
             for factor in (1.0,) if within_limits else _GENTLER:
-                x, cost = minimise(tracking.gentler(factor), kept, x)
+                x, cost = minimise(tracking.gentler(factor * ease), kept, x)
             c, gain, best, within_limits = splines.coefficients(x), best - cost, cost, True
             if grid.step <= _FINE and gain <= _GAIN * (cost - tracking.bound):
                 break
@@ -97,6 +99,24 @@ def planned(target: Target, geometry: Geometry, limits: Limits, ends: Ends) -> P
     if not within_limits:
         raise _refusal(limits, ends, ramps)
     return Planned(grid.spline(c))
+
+
+LESS = 0.1  # of the ease, with which a plan is sought again to tell what its ease makes of a miss
+
+
+@lru_cache(maxsize=4)
+def less_eased(plan: Planned, target: Target, geometry: Geometry, limits: Limits, ends: Ends, ease: float) -> Planned:
+    """Plan again with :data:`LESS` times the ease, from a plan's motion and on its knots."""
+    from gbeam.motion.centrifuge.inverses.axis_splines import AxisSplines, KeptLimits, Tracking
+    from gbeam.numerics.minimise import minimise
+
+    ramps = build_ramps(target, QuasiStatic(geometry), geometry, limits, ends)
+    grid = Grid(*plan.extent, float(plan.axes.step), _POINTS)
+    splines = AxisSplines(grid, standstill=ramps is not None)
+    tracking = Tracking(splines, geometry, target, ramps).gentler(LESS * ease)
+    x = splines.unknowns(np.asarray(plan.axes.coefficients))
+    x, _ = minimise(tracking, KeptLimits(splines, geometry, limits, target), x)
+    return Planned(grid.spline(splines.coefficients(x)))
 
 
 def _guess(time: Floats, target: Target, geometry: Geometry, ramps: tuple[Ramp, Ramp] | None) -> Floats:
@@ -126,7 +146,7 @@ class Method(NamedTuple):
     """Method by which an inverse is built."""
 
     # an inverse that plans its own ends says so by its extent
-    build: Callable[[Target, Geometry, Limits, Ends], Inverse]
+    build: Callable[[Target, Geometry, Limits, Ends, float], Inverse]
     follows_corners: bool  # of a load that does not turn
     solved: bool  # numerically, and so it needs numbers
     # stretches, s, that it cannot follow
@@ -135,9 +155,9 @@ class Method(NamedTuple):
 
 
 INVERSES: dict[str, Method] = {
-    "quasi-static": Method(lambda target, geometry, limits, ends: QuasiStatic(geometry), True, False),
-    "flat": Method(lambda target, geometry, limits, ends: Flat(geometry), False, False),
-    "exact": Method(lambda target, geometry, limits, ends: exact(target, geometry), False, True, unfollowable),
+    "quasi-static": Method(lambda target, geometry, *_: QuasiStatic(geometry), True, False),
+    "flat": Method(lambda target, geometry, *_: Flat(geometry), False, False),
+    "exact": Method(lambda target, geometry, *_: exact(target, geometry), False, True, unfollowable),
     "planned": Method(planned, True, True, plans=True),
 }
 
@@ -158,9 +178,9 @@ class Course:
         assert self.solution is not None
         return self.solution
 
-    def solved(self, inverse: str, limits: Limits, ends: Ends) -> Course:
+    def solved(self, inverse: str, limits: Limits, ends: Ends, ease: float = 1.0) -> Course:
         """Course with the axis motions, and how they begin and end."""
-        solution = INVERSES[inverse].build(self.target, self.geometry, limits, ends)
+        solution = INVERSES[inverse].build(self.target, self.geometry, limits, ends, ease)
         plans_ends = solution.extent is not None
         ramps = None if plans_ends else build_ramps(self.target, solution, self.geometry, limits, ends)
         return replace(self, solution=solution, ramps=ramps)

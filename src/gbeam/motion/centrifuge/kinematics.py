@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -9,9 +10,11 @@ import numpy as np
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
 from gbeam.arrays.types import Floats
-from gbeam.motion.centrifuge.limits import usage
+from gbeam.motion.centrifuge.limits import Limits, usage
 from gbeam.numerics.samples import cumulative
-from gbeam.results.machine import AxesResult, LimitUse
+from gbeam.printable import percent
+from gbeam.results.accounting import in_g
+from gbeam.results.machine import AxesResult, used_up
 from gbeam.results.parts import Base
 
 if TYPE_CHECKING:
@@ -96,62 +99,66 @@ def axis_angles(axes: Axes, times: Any) -> Floats:
     return np.stack([first, np.unwrap(axes.angle2), np.unwrap(axes.angle3)], axis=1)
 
 
-_USED_UP = 0.99  # share of a limit
-
-
 def axes_result(motion: Centrifuge, time: Floats) -> AxesResult:
     """Axes of a centrifuge at given times (s, ascending), with its limits and where it cannot follow."""
     axes, jerk = motion.axes_and_jerks(time)
-    reference, actual, not_followed = motion.reference(time), motion.actual_by(axes), motion.not_followed(time)
     rate, acceleration = axes.rates, axes.accelerations
-    limits = usage(time, rate, acceleration, jerk, motion.limits)
-    return AxesResult(
+    result = AxesResult(
         angle=axis_angles(axes, time),
         rate=rate,
         acceleration=acceleration,
-        reference=reference,
-        actual=actual,
-        not_followed=not_followed,
+        reference=motion.reference(time),
+        actual=motion.actual_by(axes),
+        not_followed=motion.not_followed(time),
         episodes=tuple((e.start, e.end, e.reason) for e in motion.episodes()),
-        limits=limits,
+        limits=usage(time, rate, acceleration, jerk, motion.limits),
         shortfalls=motion.shortfalls(),
         arm=float(motion.geometry.arm),
         control_point=float(motion.place[0]),
         place=np.asarray(motion.place) if np.any(motion.place[1:]) else None,
         turn=np.array(motion.turn) if any(motion.turn) else None,
-        warnings=(
-            *_broken_promise(motion, time, reference, actual - reference, not_followed, limits),
-            *_short_ramps(motion),
-        ),
         idle=float(motion.target.idle),
         jerk=jerk,
         span=motion.target.span,
         start=motion.ends.start,
         flight=np.asarray(motion.flight.base(np.clip(time, *motion.target.span)).a_WO_B),
     )
+    return replace(result, warnings=(*_broken_promise(motion, time, result), *_short_ramps(motion)))
 
 
-def _broken_promise(
-    motion: Centrifuge,
-    time: Floats,
-    reference: Floats,
-    error: Floats,
-    not_followed: Floats,
-    limits: tuple[LimitUse, ...],
-) -> tuple[str, ...]:
-    """Warn where the load is followed worst, if worse than the inverse promises."""
-    size = np.linalg.norm(error, axis=1)
-    share = np.where(not_followed, 0.0, size / np.maximum(np.linalg.norm(reference, axis=1), 1e-12))
+_FELT, _MOST = 0.1, 0.5  # of a miss: what less ease takes from it is told from there on, and told first
+
+
+def _broken_promise(motion: Centrifuge, time: Floats, axes: AxesResult) -> tuple[str, ...]:
+    """Warn where the load is followed worst, if worse than the inverse promises, with what makes the miss there."""
+    size = axes.tracking_error
+    share = np.where(axes.not_followed, 0.0, size / np.maximum(np.linalg.norm(axes.reference, axis=1), 1e-12))
     missed = share > motion.inverse.within
     if not missed.any():
         return ()
     worst = int(np.argmax(np.where(missed, size, 0.0)))
-    used = ", ".join(f"{use.axis} {use.quantity}" for use in limits if use.share > _USED_UP)
+    causes: list[str] = []
+    if (harder := motion.less_eased()) is not None:
+        left = float(np.linalg.norm(harder.tracking_error(time[worst])))
+        if held := used_up(axes.limit_shares, _around(time, worst, motion.limits)):
+            causes.append(f"{', '.join(held)} used up there")
+        if left < (1 - _FELT) * size[worst]:
+            eased = f"the plan's ease, for ease = {harder.ease:g} leaves {in_g(left)} on the same knots"
+            causes.insert(len(causes) if left > _MOST * size[worst] else 0, eased)
     return (
-        f"the target is followed within {share[worst]:.2g} of it only ({size[worst]:.3g} m/s² at {time[worst]:.3f} s), "
-        f"where {type(motion.inverse).__name__.lower()} promises {motion.inverse.within:g}: {motion.inverse.unless}"
-        + (f" (limits used up: {used})" if used else ""),
+        f"the target is followed within {percent(share[worst])} of it only ({in_g(size[worst])} at "
+        f"{time[worst]:.3f} s), where {type(motion.inverse).__name__.lower()} promises "
+        f"{percent(motion.inverse.within)}: {'; '.join(causes) or motion.inverse.unless}",
     )
+
+
+def _around(time: Floats, at: int, limits: Limits) -> slice:
+    """Samples about one of the times (t,), s: as far from it as an axis needs to reverse its acceleration."""
+    _, acceleration, jerk = np.asarray(limits.axes)
+    known = np.isfinite(acceleration) & np.isfinite(jerk)
+    reversal = float(np.max(2 * acceleration[known] / jerk[known], initial=0.0))
+    ends = time[at] - reversal, np.nextafter(time[at] + reversal, np.inf)
+    return slice(*(int(i) for i in np.searchsorted(time, ends)))
 
 
 def _short_ramps(motion: Centrifuge) -> tuple[str, ...]:

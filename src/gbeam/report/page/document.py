@@ -14,7 +14,7 @@ from gbeam.errors import InputError
 from gbeam.figures import Describe
 from gbeam.guards.limits import parse_json
 from gbeam.printable import json_printable
-from gbeam.report import blocks_of, warnings_of
+from gbeam.report import blocks_of, remarks_of
 from gbeam.report.blocks import Blocks, Section, Sentence, Verbatim, pairs
 from gbeam.report.facts import facts_text
 from gbeam.report.page.parts import Numbers, badge, drawn, drawn_blocks, escaped, heading
@@ -92,7 +92,8 @@ def html(
     verb = PAGES[kind].verb if kind in PAGES else (origin.get("command") or kind).removeprefix("gbeam ").split()[0]
     header |= viewer(kind, facts, variables or {}, numbers)
     viewer_place = '<div id="gbeam-viewer"></div>' if header.keys() & {"scene", "modes"} else ""
-    blocks = [Section("Warnings", tuple(warnings_of(facts))), *blocks_of(kind, facts), *_origin(origin)]
+    warned, noted = remarks_of(facts)
+    blocks = [Section("Warnings", (warned,)), Section("Notes", (noted,)), *blocks_of(kind, facts), *_origin(origin)]
     body = drawn_blocks(blocks, viewer_place, plots)
     state = badge(facts.get("state", facts["outcome"]))
     title = facts.get("title") or _title(origin) or f"gbeam {verb}"
@@ -199,6 +200,6 @@ def _hash(text: str) -> str:
 def html_of(result: Result) -> str:
     """Return a result as HTML for a notebook: the blocks of its page, without figures and viewer."""
     facts = json.loads(facts_text(result))
-    blocks = drawn_blocks([*warnings_of(facts), *blocks_of(str(facts["form"]["kind"]), facts)], "", "")
+    blocks = drawn_blocks([*remarks_of(facts), *blocks_of(str(facts["form"]["kind"]), facts)], "", "")
     title, state = facts.get("title", ""), badge(facts.get("state", facts["outcome"]))
     return f"<div>{heading(title, 3) if title else ''}<p>{state}</p>{blocks}</div>"

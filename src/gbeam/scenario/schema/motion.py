@@ -188,6 +188,11 @@ class Centrifuge(Table):
     smoothing: Time = Field(
         default=0.0, description="width of the kernel that rounds the target's corners; 0 leaves them sharp"
     )
+    ease: Annotated[float, Quantity("ratio", "positive")] = Field(
+        default=1.0,
+        description="of planned: weight of gentle motion of the axes beside the tracking error, times the usual one; "
+        "with less, quick loads are followed better, and the axes move more",
+    )
     start: Start = Field(
         default="rest",
         description="how the machine's motion begins and ends. rest: it spins up from standstill before the flight "

@@ -126,8 +126,6 @@ def build_target(
     corners = clamped(raw, first, last)
     if is_traced(raw(first), width):
         load = smoothed(corners, width) if is_traced(width) or width else corners
-        if gravity:
-            load = _nearest(load, None, None, None, gravity)
         edges = merged_edges([], last)
         return target_of(load=load, corners=corners, stretches=padded_rows([]), edges=edges, rounded=True, turns=True)
     if width:
@@ -148,14 +146,17 @@ def build_target(
     low = np.zeros(times.size, bool) if least is None else size < least * (1 - _ROUNDING)
     gate = _gate(times, size, least, leave_out)
     left_out = np.zeros(times.size, bool) if gate is None else np.asarray(gate(times)) == 0
-    load = _nearest(flight, None, None, None, gravity)
+    load = flight
     if (low | out_of_reach | left_out).any():
         if least is not None:
             refuse_undirected(loads, least)
             if not gravity and not across.any():
                 refuse_reversal(times, loads, least)
         path = _path(times, loads, low | left_out, out_of_reach, least, gravity, arm)
-        load = _nearest(flight, smoothed(path, _PATH * width) if width else path, gate, least, gravity)
+        load = NearestLoad(
+            flight, smoothed(path, _PATH * width) if width else path, gate, least or 0.0,
+            MIN_TRANSVERSE_LOAD if gravity else 0.0, has_idle=least is not None, has_least=gravity,
+        )  # fmt: skip
     values = np.asarray(load(times))
     if not gravity:
         refuse_singular(times, values, least)
@@ -166,16 +167,6 @@ def build_target(
         load=load, corners=corners, stretches=padded_rows(rows), edges=merged_edges(rows, last),
         rounded=width > 0 or not _has_corners(load, first, last),
         turns=bool(np.max(np.abs(steady - steady[0])) > 1e-9),
-    )  # fmt: skip
-
-
-def _nearest(flight: Profile, path: Profile | None, gate: Profile | None, idle: float | None, gravity: bool) -> Profile:
-    """Load nearest to the flight's within idle and the gimbals' reach; the flight's own where neither is asked for."""
-    if not gravity and path is None:
-        return flight
-    return NearestLoad(
-        flight, path, gate, 0.0 if idle is None else idle, MIN_TRANSVERSE_LOAD if gravity else 0.0,
-        has_idle=idle is not None, has_least=gravity,
     )  # fmt: skip
 
 

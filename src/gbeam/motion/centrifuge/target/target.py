@@ -208,9 +208,7 @@ class NearestLoad(Profile):
     """
 
     flight: Profile  # vector, base axes, m/s², without corners
-    # angles, rad, φ = atan2(f_z, f_y) about the beam and β = atan2(hypot(f_y, f_z), f_x) from it; None of a load that
-    # is never below idle, or out of reach for its corners only
-    path: Profile | None
+    path: Profile  # angles, rad, φ = atan2(f_z, f_y) about the beam and β = atan2(hypot(f_y, f_z), f_x) from it
     gate: Profile | None  # one, and zero where the load is held at idle, at whose ends it is below that; None if one
     idle: Any  # least size, m/s²; zero where there is none
     least: Any  # least load across the beam, m/s², likewise
@@ -243,8 +241,6 @@ class NearestLoad(Profile):
         if self.has_least:
             reached = soft_floor(across, self.least, REACH_BAND * self.least)
             share = share * soft_step(across, (1 + _FREE) / 2 * self.least, (_FREE - 1) * self.least)
-        if self.path is None:
-            return stack([along, *(reached * component for component in unit)])
         sine, cosine = sin_cos(self.path.series(now, order))
         if not self.has_idle:
             direction = _blend(share, unit, [cosine[..., 0], sine[..., 0]])
@@ -269,15 +265,13 @@ class NearestLoad(Profile):
 
     @property
     def breaks(self) -> Any:
-        return self.flight.breaks if self.path is None else merged_breaks(self.flight, self.path)
+        return merged_breaks(self.flight, self.path)
 
     def corners(self, step: float) -> Floats:
-        breaks = self.flight.corners(step)
-        return breaks if self.path is None else np.union1d(breaks, self.path.corners(step))
+        return np.union1d(self.flight.corners(step), self.path.corners(step))
 
     def knots(self, step: float) -> Floats:
-        knots = self.flight.knots(step)
-        return knots if self.path is None else np.union1d(knots, self.path.knots(step))
+        return np.union1d(self.flight.knots(step), self.path.knots(step))
 
 
 def _blend(share: Series, flight: list[Series], path: list[Series]) -> list[Series]:
