@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 from typing import Annotated, Any
 
 from cyclopts import Parameter
@@ -20,6 +19,7 @@ from gbeam.cli.options import (
     names,
     number,
     option,
+    usual_folder,
     with_options,
 )
 from gbeam.cli.outputs import LIST, deliver, list_figures
@@ -89,7 +89,7 @@ def sweep(
     """
     if LIST in measure:
         return list_figures(verb or "run", output.json)
-    folder = output.out if output.out is not None else Path("out") / f"{scenario.stem}-sweep"
+    folder = output.out if output.out is not None else usual_folder(scenario, "-sweep")
     refuse_unwritable(folder)
 
     from gbeam.studies.sweep import sweep as compute
