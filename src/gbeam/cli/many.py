@@ -46,9 +46,10 @@ def sweep(
         tuple[str, ...],
         option(
             "--measure",
-            'Figures of the verb by the end of their path in its JSON, "tip.size.max_abs"; of run by default the '
-            "largest of tip and root moment, the share of the flight that is followed, and whether it is accepted; "
-            "list prints all there are, with units.",
+            'Figures of the verb by the end of their path in its JSON, "verdict.tip"; of run by default what '
+            "the verdict of a machine is on (its limits of acceptance, or the largest load), the largest of tip and "
+            "root moment, the share of the flight that is followed, and whether it is accepted; list prints all there "
+            "are, with units.",
         ),
     ] = (),
     history: Annotated[
