@@ -188,8 +188,9 @@ def reproduction(
     def does_not_count(each: Difference) -> bool:
         peak_time = _WHEN.search(each.name) is not None and math.isfinite(each.size)
         old, new = then.get(each.name), now.get(each.name)
-        words = isinstance(old, str) and isinstance(new, str)
-        only_numbers = words and _NUMBER.sub("", old) == _NUMBER.sub("", new)  # which are compared themselves
+        only_numbers = False  # of words, which are compared themselves
+        if isinstance(old, str) and isinstance(new, str):
+            only_numbers = _NUMBER.sub("", old) == _NUMBER.sub("", new)
         stated = other and _STATED.search(each.name) is not None
         return stated or (bool(changed) and (peak_time or only_numbers))
 
