@@ -94,8 +94,8 @@ class Question:
     motion: str | None = ""  # kind of motion that it asks about, "" for any; None for all that can answer
     differentiable: bool = True  # true if its figures are smooth in the scenario's values
     deforms: bool = True  # true if it needs a specimen that deforms
-    # Figures that studies take where none is named, for every {motion}, {beam}, centrifuge ({machine}), and centrifuge
-    # with limits of acceptance ({limited}).
+    # Figures that studies take where none is named, for every {motion}, {beam}, centrifuge ({machine}), centrifuge with
+    # limits of acceptance ({limited}), and figure that its verdict is on ({judged}).
     usual: tuple[str, ...] = ()
     usual_of_systems: tuple[str, ...] = ()
 
@@ -238,12 +238,14 @@ def _time(case: AnyCase, at: float | None) -> float:
     motion=None,
     deforms=False,
     usual=(
+        "comparisons.{judged}",
         "motions.{motion}.tip.size.max_abs",
         "motions.{motion}.loads.root_moment.size.max_abs",
         "comparisons.{machine}.verdict.followed",
         "comparisons.{limited}.verdict.accepted",
     ),
     usual_of_systems=(
+        "comparisons.{judged}",
         "motions.{motion}.points.{beam}.tip.displacement_max",
         "motions.{motion}.beams.{beam}.root_moment.size.max_abs",
         "comparisons.{machine}.verdict.followed",

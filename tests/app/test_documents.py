@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+import gbeam as gb
 from gbeam.app.verbs import arguments
 from gbeam.app.verbs import verbs as offered
 from gbeam.cli.program import parsed
@@ -277,6 +278,14 @@ def test_sweeps_vary_values_of_the_form_only(site: Site, over: list[str], measur
 
 def _sweep(over: list[str], measure: str) -> dict[str, Any]:
     return {"verb": "sweep", "options": [*(f"over={each}" for each in over), f"measure={measure}"]}
+
+
+def test_the_example_of_a_measure_is_one_of_a_flight_and_a_centrifuge(tmp_path: Path) -> None:
+    """It stood in the form of a sweep, and was refused: the tip's peak could be that of either motion."""
+    (measure,) = (each.example for each in offered()["sweep"].options if each.name == "measure")
+    (tmp_path / "fast.toml").write_text(FAST, encoding="utf-8")
+    swept = gb.sweep(tmp_path / "fast.toml", ["motion.spin.arm=2 m, 3.3 m"], [measure])
+    assert list(swept.measures) == [measure] and swept.outcome.tolist() == ["done", "done"]
 
 
 def test_a_case_of_a_sweep_is_run_once(site: Site) -> None:

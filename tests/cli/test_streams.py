@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import io
+import json
 import os
 import subprocess
 import sys
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from gbeam.cli import program
 from gbeam.cli.process import shorten_warnings
 from gbeam.cli.program import report_defect
+from gbeam.guards.limits import SCENARIO_BYTES
 from gbeam.progress import INTERVAL
+from gbeam.scenario.text.source import standard_input
 
 Call = Callable[..., Any]
 ESCAPE = "\x1b[31m"
@@ -34,6 +39,84 @@ def test_closed_streams(fast: Path) -> None:
     assert without_output.stderr == "gbeam: standard output is closed: the answer could not be printed\n"
     without_errors = _closed(2, "check", fast, "--set", "beam.length=x", "--json")
     assert without_errors.returncode == 2 and without_errors.stdout.startswith("{\n")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs a pipe without a reader")
+def test_files_are_written_whatever_becomes_of_the_output(hub: Path, tmp_path: Path) -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    # Unbuffered, as what is longer than the buffer: the first line fails before anything is written.
+    command = [sys.executable, "-u", "-m", "gbeam", "modes", hub.name, "--out", "d", "--report"]
+    done = subprocess.run(command, stdout=writer, stderr=writer, cwd=tmp_path, check=False, timeout=60)
+    os.close(writer)
+    assert done.returncode == 0
+    assert {"modes.json", "modes.html"} <= {file.name for file in (tmp_path / "d").iterdir()}
+
+
+@pytest.fixture
+def piped(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[str], None]]:
+    """Give standard input a text, which is read once a process."""
+
+    def give(text: str) -> None:
+        monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(text.encode()), encoding="utf-8"))
+        standard_input.cache_clear()
+
+    yield give
+    standard_input.cache_clear()
+
+
+def test_a_scenario_from_standard_input_is_the_files(
+    gbeam: Call, hub: Path, tmp_path: Path, piped: Callable[[str], None]
+) -> None:
+    piped(hub.read_text(encoding="utf-8"))
+    answer = gbeam("modes", "-", "--report")
+    assert answer.status == 0 and answer.out == gbeam("modes", hub).out
+    file = tmp_path / "out" / "stdin" / "modes.json"
+    assert json.loads(file.read_text(encoding="utf-8"))["provenance"]["command"] == "gbeam modes - --report"
+    piped("")
+    assert gbeam("rerun", file).status == 0  # reads no standard input
+
+
+# Arguments of every verb that takes a scenario, besides that.
+NEEDED = {"fit": ["--data", "data.csv"], "optimize": ["--minimise", "tip.z.max_abs"]}
+OF_SCENARIOS = [verb for verb in program.verbs() if any(each.name == "SCENARIO" for each in program.arguments(verb))]
+
+
+@pytest.mark.parametrize("verb", OF_SCENARIOS)
+def test_every_verb_reads_standard_input_and_names_it(
+    gbeam: Call, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, piped: Callable[[str], None], verb: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    piped("[beam]\nlenth = 1\n")
+    answer = gbeam(verb, "-", *NEEDED.get(verb, []))
+    assert answer.status == 2 and "<stdin>:2:1: beam.lenth: unknown key\n    2 | lenth = 1\n" in answer.err
+
+
+def test_files_named_on_standard_input_are_relative_to_the_current_folder(
+    gbeam: Call, fast: Path, piped: Callable[[str], None]
+) -> None:
+    rows = "".join(f"{i / 100},{1 + (i % 50) / 50}\n" for i in range(101))
+    (fast.parent / "record.csv").write_text(f"time,z\n{rows}")
+    flight, *_ = fast.read_text(encoding="utf-8").partition("[motion.spin]")
+    constant = 'acceleration = { z = { profile = "constant", level = "6 g" } }'
+    record = 'record = { file = "FILE", time = "time", x = "0", y = "0", z = "z", unit = "g" }'
+    for file, status in (("record.csv", 0), ("none.csv", 2)):
+        piped(f'{flight.replace(constant, record.replace("FILE", file))}[response]\nstep = "1 ms"\n')
+        answer = gbeam("check", "-")
+        assert answer.status == status, answer.err
+        assert status == 0 or ("<stdin>:" in answer.err and "none.csv" in answer.err)
+
+
+def test_nothing_is_written_back_into_standard_input(gbeam: Call, fast: Path, piped: Callable[[str], None]) -> None:
+    piped(fast.read_text(encoding="utf-8"))
+    answer = gbeam("place", "-", "--write")
+    assert answer.status == 2 and "--write has no file to write into" in answer.err and "name its file" in answer.err
+
+
+def test_more_than_a_scenario_has_is_not_read_from_standard_input(gbeam: Call, piped: Callable[[str], None]) -> None:
+    piped("#" * (SCENARIO_BYTES + 5))
+    answer = gbeam("check", "-")
+    assert answer.status == 2 and answer.err.startswith("<stdin>: has more than 1.05 MB\n")
 
 
 def test_a_defect_is_named_with_its_traceback_in_a_file(

@@ -141,9 +141,25 @@ def test_files(tmp_path: Path, text: str) -> None:
         load(tmp_path / "other" / "x")
     with pytest.raises(ScenarioError, match="is a folder"):
         load(tmp_path)
-    file.write_bytes(b"\xff\xfe")
-    with pytest.raises(ScenarioError, match="is not UTF-8 text"):
+    file.write_bytes(b"\x89PNG\r\n\x1a\n\x00")
+    with pytest.raises(ScenarioError, match=r"is not UTF-8 text\n.*save it as UTF-8, or give the path of a scenario"):
         load(file)
+
+
+@pytest.mark.parametrize("mark", [b"", b"\xef\xbb\xbf"])
+def test_a_scenario_in_latin_1_is_told_its_first_byte(tmp_path: Path, mark: bytes) -> None:
+    file = tmp_path / "wing.toml"
+    file.write_bytes(mark + "# a — b\r\n".encode() + 'title = "Flügel, heiß"\r\n[beam]\n'.encode("latin-1"))
+    with pytest.raises(ScenarioError) as refused:
+        load(file)
+    assert str(refused.value) == "\n".join(
+        [
+            f"{file}:2:12: the byte 0xfc, 'ü' in Latin-1, is not UTF-8",
+            '    2 | title = "Flügel, heiß"',
+            "      |            ^",
+            "      = save it as UTF-8",
+        ]
+    )
 
 
 def test_json_is_taken_and_located(text: str, errors: Errors) -> None:

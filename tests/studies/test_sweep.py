@@ -169,14 +169,26 @@ def test_a_measure_that_fails_fails_itself_only(fast: Path) -> None:
     assert swept.measures["length"] == pytest.approx([0.3, 0.3])
 
 
-def test_tip_root_moment_followed_and_accepted_are_measured_by_default(fast: Path) -> None:
-    fast.write_text(fast.read_text(encoding="utf-8") + '[motion.spin.accept]\nfollowed = "50 %"\n', encoding="utf-8")
-    swept = gb.sweep(fast, ["motion.spin.arm=3.3 m"])
+@pytest.mark.parametrize(
+    ("accept", "judged", "rest"),
+    [
+        ("", ["largest_load"], ["followed"]),
+        ('tip = "5 %"\nfollowed = "50 %"', ["tip", "followed"], ["accepted"]),
+    ],
+)
+def test_the_verdict_is_measured_by_default_then_tip_and_root_moment(
+    fast: Path, accept: str, judged: list[str], rest: list[str]
+) -> None:
+    """The tip's peak in flight stood first, and was the map of the page: the same whatever varies of the machine."""
+    fast.write_text(f"{fast.read_text(encoding='utf-8')}[motion.spin.accept]\n{accept}\n", encoding="utf-8")
+    swept = gb.sweep(fast, ["motion.spin.arm=2 m, 3.3 m"])
     ends = ("tip.size.max_abs", "loads.root_moment.size.max_abs")
     moved = [f"motions.{name}.{end}" for name in ("flight", "spin") for end in ends]
-    assert list(swept.measures) == [*moved, *(f"comparisons.spin.verdict.{end}" for end in ("followed", "accepted"))]
-    assert [swept.units[name] for name in swept.measures] == ["m", "N m", "m", "N m", "", ""]
+    verdict = [[f"comparisons.spin.verdict.{end}" for end in each] for each in (judged, rest)]
+    assert list(swept.measures) == [*verdict[0], *moved, *verdict[1]]
+    assert [swept.units[name] for name in moved] == ["m", "N m", "m", "N m"]
     assert all(np.isfinite(each).all() for each in swept.measures.values())
+    assert np.ptp(swept.measures["motions.flight.tip.size.max_abs"]) == 0 < np.ptp(swept.measures[verdict[0][0]])
     slopes = gb.sensitivity(fast, parameters=["beam.length"])
     assert list(slopes.measures) == moved
 

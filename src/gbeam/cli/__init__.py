@@ -17,8 +17,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line on arguments, by default the process's, and return its exit status.
 
     0 done, 1 the computation failed and said why, 2 the input is wrong and it said where, 3 a defect of gbeam; a
-    process that a signal ends has 130 (interrupted) or 143 (terminated). The process's own takes the current folder off
-    the path that it imports from.
+    process that a signal ends has 130 (interrupted) or 143 (terminated). These hold where a pipe is closed that reads
+    the output, too. The process's own takes the current folder off the path that it imports from.
     """
     if argv is not None:
         return _status(list(argv))
@@ -78,11 +78,11 @@ def _status(arguments: list[str]) -> int:
     try:
         status = run(arguments)
         sys.stdout.flush()
-    except OSError as error:
-        # Stdout is closed (`gbeam run ... | head`) or its disk is full, or a file cannot be read or written.
-        if not isinstance(error, BrokenPipeError):
-            complain(str(error))
-        streams.abandon_stdout()
+        error = streams.error_of_stdout()
+    except OSError as unwritten:  # or unread: a file
+        error, status = unwritten, FAILED
+    if error is not None and not isinstance(error, BrokenPipeError):  # `gbeam run ... | head` has read enough
+        complain(str(error))
         return FAILED
     if not has_stdout and status == 0:
         complain("standard output is closed: the answer could not be printed")

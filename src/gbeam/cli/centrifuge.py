@@ -151,6 +151,11 @@ def place(
     weights = None if measure is None else parse(measure)
     widths = [number("--smoothing", text, "time") for text in smoothing]
     folder = output.folder(scenario)
+
+    from gbeam.scenario.text.source import STDIN
+
+    if write_back and scenario == STDIN:
+        raise InputError("--write", "has no file to write into: the scenario is standard input", "name its file")
     loaded = read("place", scenario, output.overrides)
     loaded.motion(motion, kind="centrifuge")
     name, current = machine_of(loaded.case, motion)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 from typing import Annotated, Any
 
 from cyclopts import Parameter
@@ -20,6 +19,7 @@ from gbeam.cli.options import (
     names,
     number,
     option,
+    usual_folder,
     with_options,
 )
 from gbeam.cli.outputs import LIST, deliver, list_figures
@@ -46,9 +46,10 @@ def sweep(
         tuple[str, ...],
         option(
             "--measure",
-            'Figures of the verb by the end of their path in its JSON, "tip.size.max_abs"; of run by default the '
-            "largest of tip and root moment, the share of the flight that is followed, and whether it is accepted; "
-            "list prints all there are, with units.",
+            'Figures of the verb by the end of their path in its JSON, "verdict.tip"; of run by default what '
+            "the verdict of a machine is on (its limits of acceptance, or the largest load), the largest of tip and "
+            "root moment, the share of the flight that is followed, and whether it is accepted; list prints all there "
+            "are, with units.",
         ),
     ] = (),
     history: Annotated[
@@ -89,7 +90,7 @@ def sweep(
     """
     if LIST in measure:
         return list_figures(verb or "run", output.json)
-    folder = output.out if output.out is not None else Path("out") / f"{scenario.stem}-sweep"
+    folder = output.out if output.out is not None else usual_folder(scenario, "-sweep")
     refuse_unwritable(folder)
 
     from gbeam.studies.sweep import sweep as compute

@@ -37,7 +37,7 @@ def option(name: str, words: str) -> Parameter:
 
 
 # Arguments of all verbs, or of many.
-ScenarioFile = Annotated[Path, Parameter(help="Scenario file, TOML or JSON.")]
+ScenarioFile = Annotated[Path, Parameter(help="Scenario file, TOML or JSON; - reads standard input.")]
 Overrides = Annotated[
     tuple[str, ...],
     option("--set", 'Change the scenario, KEY=VALUE, such as "beam.length=250 mm"; any number of times.'),
@@ -57,6 +57,11 @@ Report = Annotated[
 ]
 
 
+def usual_folder(scenario: Path, ending: str = "") -> Path:
+    """Folder of the files of a scenario where --out names none: out/stdin for standard input."""
+    return Path("out") / f"{scenario.stem.strip('<>')}{ending}"
+
+
 @Parameter(name="*")
 @dataclass(frozen=True)
 class Output:
@@ -73,7 +78,7 @@ class Output:
         InputError if it cannot be written to.
         """
         default = self.report or (always and not self.json)
-        folder = self.out if self.out is not None or not default else Path("out") / scenario.stem
+        folder = self.out if self.out is not None or not default else usual_folder(scenario)
         if folder is not None:
             refuse_unwritable(folder)
         return folder

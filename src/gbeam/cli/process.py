@@ -19,7 +19,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from types import FrameType, TracebackType
-from typing import Self
+from typing import Any, Self
 
 from gbeam.printable import on_one_line, shortened, storable
 from gbeam.progress import PATIENCE, Bar
@@ -142,10 +142,41 @@ def prepare() -> bool:
         sys.stdout = sys.stdout or _nowhere()
         sys.stderr = sys.stderr or _nowhere()
     _widen()
-    for stream in (sys.stdout, sys.stderr):
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without µ or ² is no reason to fail
+            raw = getattr(stream.buffer, "raw", stream.buffer)  # unbuffered it is the buffer; a console has another
+            if _own and stream is getattr(sys, f"__{name}__") and isinstance(raw, io.FileIO):
+                setattr(sys, name, _lasting(stream))
     return present
+
+
+class _Lasting(io.FileIO):
+    """File that discards all that comes after an error of writing, which it keeps: a computation goes on without it."""
+
+    error: OSError | None = None
+
+    def write(self, data: Any, /) -> int:
+        """Write bytes, or discard them."""
+        if self.error is None:
+            try:
+                return super().write(data)
+            except OSError as error:
+                self.error = error
+        return memoryview(data).nbytes
+
+
+def _lasting(stream: io.TextIOWrapper) -> io.TextIOWrapper:
+    """Stream that writes where another does, as long as that can be written to."""
+    by_lines = stream.line_buffering or stream.write_through
+    binary = io.BufferedWriter(_Lasting(stream.fileno(), "wb", closefd=False))
+    return io.TextIOWrapper(binary, stream.encoding, errors="replace", line_buffering=by_lines)
+
+
+def error_of_stdout() -> OSError | None:
+    """Error after which nothing more was printed on standard output; None if all was."""
+    return getattr(getattr(getattr(sys.stdout, "buffer", None), "raw", None), "error", None)
 
 
 def _widen() -> None:
@@ -168,12 +199,6 @@ def shorten_warnings() -> None:
             print(f"gbeam: warning: {on_one_line(shortened(text))}", file=sys.stderr)
 
     warnings.showwarning = show
-
-
-def abandon_stdout() -> None:
-    """Discard what is left in the buffer, so that Python does not fail once more as it exits."""
-    with open(os.devnull, "wb") as nowhere:
-        os.dup2(nowhere.fileno(), sys.stdout.fileno())
 
 
 def _nowhere() -> io.TextIOWrapper:

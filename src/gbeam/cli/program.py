@@ -51,7 +51,7 @@ def run(tokens: list[str]) -> int:
     note(tokens)
     try:
         status = _app(tokens[0] if tokens else "")(
-            tokens, exit_on_error=False, print_error=False, result_action="return_value"
+            _named(tokens), exit_on_error=False, print_error=False, result_action="return_value"
         )
     except CycloptsError as error:
         return report_syntax(str(error), as_json)
@@ -73,10 +73,17 @@ def run(tokens: list[str]) -> int:
 def parsed(tokens: list[str]) -> tuple[Callable[..., object], BoundArguments]:
     """Function that a command line calls, and its arguments; ValueError if it calls none."""
     try:
-        verb, bound, _ = _app(tokens[0] if tokens else "").parse_args(tokens, exit_on_error=False, print_error=False)
+        verb, bound, _ = _app(tokens[0] if tokens else "").parse_args(
+            _named(tokens), exit_on_error=False, print_error=False
+        )
     except CycloptsError as error:
         raise ValueError(str(error)) from None
     return verb, bound
+
+
+def _named(tokens: list[str]) -> list[str]:
+    """Arguments with a name for standard input, ``-``, which the parser would take for an option."""
+    return ["<stdin>" if token == "-" else token for token in tokens]
 
 
 def verbs() -> dict[str, str]:

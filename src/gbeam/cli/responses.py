@@ -142,7 +142,8 @@ def rerun(
     records: these are read from where they were.
 
     It is reproduced where nothing differs in the last digit; with other versions, or on another platform, where nothing
-    differs by more than 1e-9 of its largest value. Says what differs, and what has changed since. Writes nothing. Exit
+    differs by more than rounding: 1e-12 of the largest value of its unit, or 1e-9 of its own. Says what differs, and
+    what has changed since. Writes nothing. Exit
     status: 0 reproduced, 1 not, 2 the file cannot be read or holds no scenario.
     """
     from gbeam.report import facts as report
@@ -150,7 +151,7 @@ def rerun(
     again = answer_again(result) if result.suffix == ".json" else _of_netcdf(result)
     show(report.reproduction_text(again), report.reproduction_json(again), json)
     if not again.reproduced:
-        complain(f"not reproduced: {len(again.differences)} of {again.compared} differ")
+        complain(f"not reproduced: {again.beyond} of {again.compared} differ")
         return FAILED
     return 0
 
@@ -214,10 +215,24 @@ def _compared(file: Path, facts: dict[str, Any], origin: Provenance) -> Reproduc
     def unit_of(name: str) -> str:
         possible = forms[name], forms[name].removesuffix("[i]")
         unit = next((unit for pattern, unit in units.items() if any(map(pattern.fullmatch, possible))), "")
-        return "" if unit in ("unit", "mixed") else unit  # a unit that another key says, or several
+        if unit == "mixed":
+            return _unit_of_row(facts, name)
+        return "" if unit == "unit" else unit  # a unit that another key says
 
     then, now = ({name: value for name, _, value in _leaves(each)} for each in (facts, again))
     return reproduction(str(file), then, now, origin, defaults, unit_of)
+
+
+_ROWS = {"A": "states", "B": "states", "C": "outputs", "D": "outputs"}  # of a state-space model, with their units
+
+
+def _unit_of_row(facts: dict[str, Any], name: str) -> str:
+    """Unit of a row of a state-space model's matrix, over those of its columns; empty of all else."""
+    matrix, _, row = name.partition(".")
+    try:
+        return f"{facts[_ROWS[matrix]][int(row)]['unit']} of {matrix}"
+    except (KeyError, IndexError, TypeError, ValueError):  # also of a damaged file
+        return ""
 
 
 def _read(file: Path) -> tuple[dict[str, Any], Provenance]:

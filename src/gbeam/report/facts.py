@@ -97,6 +97,7 @@ def reproduction_json(again: Reproduction) -> dict[str, Any]:
         "file": again.file,
         "compared": again.compared,
         "tolerance": again.tolerance,
+        "rounded": again.rounded,
         "differences": [asdict(each) for each in again.differences],
         "restated": [asdict(each) for each in again.restated],
         "changed": {name: {"then": then, "now": now} for name, (then, now) in again.changed.items()},
@@ -106,12 +107,13 @@ def reproduction_json(again: Reproduction) -> dict[str, Any]:
 
 def reproduction_text(again: Reproduction) -> str:
     """Return a reproduction in words: values compared, differences, changes since."""
-    same = f"within {again.tolerance:g}" if again.tolerance else "the same to the last digit"
-    verdict = same if again.reproduced else "NOT reproduced"
+    verdict = again.agreement.replace("to the", "the same to the")
     lines = [f"{again.file}: {again.compared} values and arrays computed again: {verdict}"]
-    lines += [f"  {each}" for each in again.differences[:LISTED]]
-    if len(again.differences) > LISTED:
-        lines.append(f"  and {len(again.differences) - LISTED} more: see --json")
+    listed = again.beyond or 1  # what is beyond rounding, or else the largest
+    listed = min(listed, LISTED)
+    lines += [f"  {each}" for each in again.differences[:listed]]
+    if len(again.differences) > listed:
+        lines.append(f"  and {len(again.differences) - listed} more: see --json")
     lines += [f"  {each}" for each in again.circumstances()]
     return "\n".join(lines)
 

@@ -230,10 +230,11 @@ class Reproduction(Part):
     compared: int = fact("number of variables and attributes compared")
     differences: tuple[Difference, ...] = rows("differences, the largest first", "difference")
     restated: tuple[Difference, ...] = rows(
-        "what else differs, and does not count: errors and words, which another version states otherwise, and times of "
-        "peaks, of which equal ones may change places by rounding",
+        "what else differs, and does not count: errors and words, which another version states otherwise, numbers in "
+        "words, and times of peaks, of which equal ones may change places by rounding",
         "restated",
     )
+    rounded: int = fact("number of those that differ by rounding alone, beside the largest value of their unit")
     changed: Mapping[str, tuple[str, str]] = fact(
         "what of gbeam, Python, the platform and the dependencies is otherwise: then, and now"
     )
@@ -249,12 +250,22 @@ class Reproduction(Part):
     @property
     def reproduced(self) -> bool:
         """True if no difference is larger than the tolerance."""
-        return all(each.size <= self.tolerance for each in self.differences)
+        return not self.beyond
+
+    @property
+    def beyond(self) -> int:
+        """Number of differences that are larger than the tolerance."""
+        return sum(each.size > self.tolerance for each in self.differences)
+
+    @property
+    def agreement(self) -> str:
+        """``to the last digit``; ``within rounding``, with other versions or elsewhere; or ``NOT reproduced``."""
+        if not self.reproduced:
+            return "NOT reproduced"
+        return "within rounding" if self.differences or self.rounded or self.restated else "to the last digit"
 
     def __repr__(self) -> str:
-        end = "reproduced" if self.reproduced else "NOT reproduced"
-        allowed = f"within {self.tolerance:g}" if self.tolerance else "to the last digit"
-        lines = [f"Reproduction of {self.file}: {end} {allowed}, {self.compared} values and arrays compared"]
+        lines = [f"Reproduction of {self.file}: {self.agreement}, {self.compared} values and arrays compared"]
         lines += [str(each) for each in self.differences[:10]]
         lines += self.circumstances()
         return "\n  ".join(lines)

@@ -30,11 +30,14 @@ from gbeam.scenario.text.source import parse
 if TYPE_CHECKING:
     from gbeam.io.netcdf import Stored
 
-# Names, in files and in JSON, of estimates of errors and of sentences, which differ between versions.
+# Names, in files and in JSON, of estimates of errors, shares where no unit is said, and of sentences too, which both
+# differ between versions.
+_ERRORS = r"error_\w+|errors?|total_error|run_error"
+_SHARE = re.compile(rf"(^|[@./])({_ERRORS})($|[.])")
 _STATED = re.compile(
-    r"(^|[@./])(error_\w+|errors?|total_error|run_error|accurate_to|warnings|notes|verdict|summary|message|note|theory|reason"
-    r"|not_varied)($|[.])"
+    rf"(^|[@./])({_ERRORS}|accurate_to|warnings|notes|verdict|summary|message|note|theory|reason|not_varied)($|[.])"
 )
+_NUMBER = re.compile(r"-?\d+(\.\d+)?(e[+-]?\d+)?")  # in words
 # Names of times of peaks: rounding may decide between equal peaks. The peaks themselves are compared.
 _WHEN = re.compile(r"_time($|_)|(^|[./])time_|time_of_|limits\.\d+\.time$")
 ROUNDING = 1e-12  # of the largest value with the same unit, and of 1 if dimensionless: a smaller difference is rounding
@@ -61,7 +64,8 @@ def rerun(path: str | os.PathLike[str], *, progress: Progress = None) -> Reprodu
     Returns
     -------
     Reproduction
-        It is reproduced where nothing differs, or, with other versions or on another platform, by no more than 1e-9.
+        It is reproduced where nothing differs, or, with other versions or on another platform, by no more than
+        rounding: 1e-12 of the largest value of its unit, or 1e-9 of its own.
         Of another version of gbeam the scenario is read with its defaults, `defaults`, and its errors and words, which
         a version states in its way, are apart, `restated`.
 
@@ -173,12 +177,22 @@ def reproduction(
     # Of another version's file only what both hold is compared: either may hold more.
     names = [name for name in then if not other or name in now]
     scales = _scales(then, names, unit_of) if changed else {}
-    compared = (_difference(name, then.get(name), now.get(name), unit_of(name), scales) for name in names)
-    differences = sorted(filter(None, compared), key=lambda each: -each.size)
+
+    def scale_of(name: str) -> float:
+        share = bool(changed) and unit_of(name) in ("", "1") and _SHARE.search(name) is not None
+        return 1.0 if share else scales.get(unit_of(name), 0.0)
+
+    compared = [_difference(name, then.get(name), now.get(name), unit_of(name), scale_of(name)) for name in names]
+    differences = sorted((each for each in compared if each and each.size), key=lambda each: -each.size)
 
     def does_not_count(each: Difference) -> bool:
-        peak_time = bool(changed) and _WHEN.search(each.name) is not None and math.isfinite(each.size)
-        return peak_time or (other and _STATED.search(each.name) is not None)
+        peak_time = _WHEN.search(each.name) is not None and math.isfinite(each.size)
+        old, new = then.get(each.name), now.get(each.name)
+        only_numbers = False  # of words, which are compared themselves
+        if isinstance(old, str) and isinstance(new, str):
+            only_numbers = _NUMBER.sub("", old) == _NUMBER.sub("", new)
+        stated = other and _STATED.search(each.name) is not None
+        return stated or (bool(changed) and (peak_time or only_numbers))
 
     restated = [each for each in differences if does_not_count(each)]
     return Reproduction(
@@ -186,6 +200,7 @@ def reproduction(
         compared=len(names),
         differences=tuple(each for each in differences if each not in restated),
         restated=tuple(restated),
+        rounded=sum(each is not None and not each.size for each in compared),
         changed=changed,
         defaults=defaults,
     )
@@ -247,8 +262,8 @@ def _scales(values: Mapping[str, Any], names: Sequence[str], unit_of: Callable[[
 
 
 @np.errstate(all="ignore")  # a damaged file may hold any number
-def _difference(name: str, then: Any, now: Any, unit: str, scales: Mapping[str, float]) -> Difference | None:
-    """Difference of a value then and now; None if it is within rounding at the scale of its unit."""
+def _difference(name: str, then: Any, now: Any, unit: str, scale: float) -> Difference | None:
+    """Difference of a value then and now; of size zero if it is within rounding at the scale of its unit."""
     if then is None or now is None:
         return Difference(name, math.inf, "is not there any more" if now is None else "was not there")
     old, new = np.asarray(then), np.asarray(now)
@@ -262,10 +277,8 @@ def _difference(name: str, then: Any, now: Any, unit: str, scales: Mapping[str, 
     if not np.array_equal(old[~finite], new[~finite], equal_nan=True):
         return Difference(name, math.inf, f"was {_short(then)}, is {_short(now)}")
     old, new = old[finite], new[finite]
-    if np.abs(old - new).max() <= ROUNDING * scales.get(unit, 0.0):
-        return None
-    largest = float(np.abs(old).max(initial=0.0))
-    size = float(np.abs(old - new).max() / max(largest, np.finfo(float).tiny))
+    largest, most = float(np.abs(old).max(initial=0.0)), float(np.abs(old - new).max())
+    size = 0.0 if most <= ROUNDING * scale else most / max(largest, float(np.finfo(float).tiny))
     words = f"differs by up to {size:.2g} of its largest value, {largest:.4g}"
     return Difference(name, size, f"{words} {unit}" if unit not in ("", "1") else words)
 

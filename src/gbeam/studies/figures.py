@@ -149,15 +149,26 @@ def _fits(ends: Sequence[str], path: Sequence[str]) -> bool:
 
 
 def usual(template: Template, verb: str, *, judged: bool = False) -> tuple[str, ...]:
-    """Figures of a verb that are taken where none is named; those of comparisons only if `judged`."""
+    """Figures of a verb that are taken where none is named; those of comparisons only if `judged`.
+
+    These begin with what the verdict is on: limits of acceptance, or the largest load where there is none.
+    """
     question = question_of(verb)
     limited = [name for name, accepts in template.imitations.items() if accepts]
     patterns = question.usual_of_systems if template.of_system else question.usual
-    figures = [each.replace("{motion}", name) for name in template.motions for each in patterns if "{motion}" in each]
+    figures = [each for each in patterns if "{judged}" in each]  # the flight alone is in all cases of a machine
+    figures += [each.replace("{motion}", name) for name in template.motions for each in patterns if "{motion}" in each]
     figures += [each for each in patterns if "{motion}" not in each]
-    for key, names in (("{beam}", template.beams), ("{machine}", template.imitations), ("{limited}", limited)):
+    limits = ((name, limit) for name, limits in template.imitations.items() for limit in limits or ("largest_load",))
+    names_by_key = {
+        "{beam}": template.beams,
+        "{machine}": template.imitations,
+        "{limited}": limited,
+        "{judged}": [f"{name}.verdict.{limit}" for name, limit in limits],
+    }
+    for key, names in names_by_key.items():
         figures = [each.replace(key, name) for each in figures for name in (names if key in each else ("",))]
-    return tuple(each for each in figures if judged or not each.startswith("comparisons."))
+    return tuple(dict.fromkeys(each for each in figures if judged or not each.startswith("comparisons.")))
 
 
 def value_at(facts: Facts, keys: Keys) -> float:

@@ -174,7 +174,7 @@ def with_values(
     assert base.source is not None  # it was read from a file
     recorded = any(getattr(motion, "record", None) is not None for motion in base.motion.values())
     if recorded and Path(folder).resolve() != base.source.folder.resolve():
-        fix = f"write it beside {os.fspath(scenario)}"
+        fix = f"write it into {base.source.folder.resolve()}"
         raise InputError(os.fspath(folder), "is not the folder that the scenario's records are named from", fix)
     template = ScenarioTemplate(base)
     changes = changed(physical_values(template, paths), values)

@@ -69,8 +69,9 @@ def sweep(
         list) or ``"beam.damping_ratio=uniform(0.5 %, 2 %)"`` (normal, lognormal, uniform or triangular).
     measure : sequence of str, or mapping of str to callable
         Figures of the verb's JSON by the end of their path, such as ``tip.z.max_abs`` or ``verdict.tip``; or functions
-        of a :class:`gbeam.Case` that return a number, by name. Of run by default the largest of tip and root moment,
-        the share of the flight that a centrifuge follows, and whether it is accepted.
+        of a :class:`gbeam.Case` that return a number, by name. Of run by default what the verdict of a centrifuge
+        is on (its limits of acceptance, or the largest load), the largest of tip and root moment, the share of the
+        flight that is followed, and whether it is accepted.
     histories : sequence of str
         Histories over time as further measures, ``flight.tip.z``: of tip, root_force or root_moment along x, y or z; of
         a system what :meth:`SystemResponse.signal` reads, ``strip.tip.place_z``.

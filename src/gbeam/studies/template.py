@@ -72,10 +72,10 @@ class ScenarioTemplate:
         return tuple(name for name, body in bodies.items() if isinstance(body, BeamBody))
 
     @property
-    def imitations(self) -> dict[str, bool]:
-        """Centrifuges that track a flight, by name, each with whether limits of acceptance are set."""
+    def imitations(self) -> dict[str, tuple[str, ...]]:
+        """Centrifuges that track a flight, by name, each with what its limits of acceptance are on."""
         machines = {name: each for name, each in self.scenario.motion.items() if isinstance(each, Centrifuge)}
-        return {name: bool(each.limits_of_acceptance) for name, each in machines.items() if each.tracks}
+        return {name: tuple(each.limits_of_acceptance) for name, each in machines.items() if each.tracks}
 
     @property
     def table(self) -> SweepTable | None:
@@ -172,8 +172,8 @@ class CaseTemplate:
         return tuple(beams_of(self.case.system)) if isinstance(self.case, SystemCase) else ()
 
     @property
-    def imitations(self) -> dict[str, bool]:
-        return {name: bool(self.case.accept.get(name)) for name in self.case.tracks}
+    def imitations(self) -> dict[str, tuple[str, ...]]:
+        return {name: tuple(self.case.accept.get(name, ())) for name in self.case.tracks}
 
     @property
     def distributions(self) -> Mapping[str, Distribution]:

@@ -69,7 +69,7 @@ export class Verbs {
     this.problems.textContent = "";
     this.about.textContent = this.verbs[verb]!.about;
     this.given = this.verbs[verb]!.options.flatMap((option) =>
-      Array.from({ length: option.many }, () => ({ option, path: "", value: option.name === "measure" && verb === "sweep" ? option.example : "" })),
+      Array.from({ length: option.many }, () => ({ option, path: "", value: "" })),
     );
     this.draw();
   }

@@ -4,22 +4,25 @@ from __future__ import annotations
 
 import json
 import re
+import sys
 import tomllib
 from bisect import bisect_right
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import accumulate
 from pathlib import Path as File
 from typing import Any, Literal
 
 from gbeam.errors import InputError
-from gbeam.guards.limits import SCENARIO_BYTES, refuse_large_file
+from gbeam.guards.limits import SCENARIO_BYTES, in_bytes, refuse_large_file
 from gbeam.printable import closest
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.text.overrides import Override, crowded, excess, no_text
 from gbeam.scenario.values import Distribution, Path, Place, Span, path_text, written_at
 
+STDIN = File("<stdin>")  # in place of the name of a file
+_LONG = "give long tables as a record: [motion.NAME.record]"
 _SPACE = re.compile(r"(?:\s|#[^\n]*)*+")
 _STRING = r"\"(?:[^\"\\\n]|\\.)*+\"|'[^'\n]*+'"
 _KEY = re.compile(rf"{_STRING}|[\w-]++")
@@ -192,10 +195,16 @@ def at_span(name: str, text: str, span: Span, path: str, message: str, hint: str
 
 
 def read_text(path: File) -> str:
-    """Text of a scenario file; ScenarioError, with the reason, if it cannot be read."""
+    """Text of a scenario file, or of standard input; ScenarioError, with the reason, if it cannot be read."""
     try:
-        refuse_large_file("", path, SCENARIO_BYTES, "give long tables as a record: [motion.NAME.record]")
-        return path.read_bytes().decode("utf-8-sig")
+        if path == STDIN:
+            data = standard_input()
+            if len(data) > SCENARIO_BYTES:
+                raise InputError("", f"has more than {in_bytes(SCENARIO_BYTES)}", _LONG)
+        else:
+            refuse_large_file("", path, SCENARIO_BYTES, _LONG)
+            data = path.read_bytes()
+        return data.decode("utf-8-sig")
     except InputError as error:
         problem, hint = error.problem.removeprefix(f"{path} "), error.fix
     except FileNotFoundError:
@@ -204,13 +213,30 @@ def read_text(path: File) -> str:
         near = closest(path.name, neighbours)
         hint = f"did you mean {str(path.with_name(near))!r}?" if near else "`gbeam new` writes one to start from"
         problem = "there is no such file"
-    except UnicodeDecodeError:
-        problem, hint = "is not UTF-8 text", "give the path of a scenario file, TOML or JSON"
+    except UnicodeDecodeError as error:
+        if b"\0" not in data:
+            raise ScenarioError([_in_another_encoding(str(path), error)]) from None
+        problem, hint = "is not UTF-8 text", "save it as UTF-8, or give the path of a scenario file, TOML or JSON"
     except OSError as error:
         problem, hint = f"cannot be read ({error.strerror})", "give the path of a scenario file"
     except ValueError:  # a null character in the name
         problem, hint = "is no name of a file", "give the path of a scenario file"
     raise ScenarioError([Diagnostic(str(path) if str(path).strip() else repr(str(path)), "", problem, hint)])
+
+
+def _in_another_encoding(name: str, error: UnicodeDecodeError) -> Diagnostic:
+    """Diagnostic of the first byte of a text that is not UTF-8."""
+    before, rest = error.object[: error.start].decode("utf-8-sig"), error.object[error.start :].decode("latin-1")
+    lines = before.split("\n")
+    column = len(lines[-1]) + 1
+    problem = f"the byte 0x{ord(rest[0]):02x}, {rest[0]!r} in Latin-1, is not UTF-8"
+    return at_span(name, before + rest, Span(len(lines), column, column + 1), "", problem, "save it as UTF-8")
+
+
+@cache
+def standard_input() -> bytes:
+    """Bytes of a scenario on standard input, which can be read only once, and one more than are read at most."""
+    return sys.stdin.buffer.read(SCENARIO_BYTES + 1) if sys.stdin else b""  # None where it is closed
 
 
 def parse(name: str, text: str) -> dict[str, Any]:
