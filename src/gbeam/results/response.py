@@ -386,7 +386,7 @@ class Response(Driven, Figured[ResponseFigure]):
         ]
         lines = [
             f"Response{name} ({self.environment}, {self.model}): {self.outcome}",
-            *([self.message] if self.message else []),
+            *filter(None, (self.message, self.initial)),
             *(moved if self.specimen is None else self.specimen.lines),
             *(f"warning: {each}" for each in self.warnings),
         ]
