@@ -179,6 +179,7 @@ def of_system(response: SystemResponse) -> Iterator[str]:
     joints = ", ".join(
         f"{name} {number(end)} {unit}" for (name, (_, unit, _)), end in zip(histories.items(), ends, strict=True)
     )
+    yield response.initial
     if joints:
         yield f"at the end {joints}"
     if response.loop is not None:

@@ -387,7 +387,7 @@ class Response(Driven, Figured[ResponseFigure]):
         ]
         lines = [
             f"Response{name} ({self.environment}, {self.model}): {self.outcome}",
-            *([self.message] if self.message else []),
+            *filter(None, (self.message, self.initial)),
             *(moved if self.specimen is None else self.specimen.lines),
         ]
         return self._with_warnings(*lines)

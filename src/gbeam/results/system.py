@@ -239,6 +239,7 @@ class SystemResponse(_Placed, Driven, Figured[str]):
         default_factory=dict,
     )  # fmt: skip
     readings: Readings | None = part("of accelerometers", name="sensor_", key="sensors", optional=True, default=None)
+    initial: str = fact("how it begins, in words", default="")
     integrator: str = fact("integrator", default="gauss")
     step: float = fact("time step", "s", default=math.nan)
     steps: int = fact("number of steps", default=0)
@@ -338,7 +339,7 @@ class SystemResponse(_Placed, Driven, Figured[str]):
         error = "no error estimate" if unknown else f"estimated error {percent(self.error_estimate)}"
         lines = [
             f"SystemResponse{of} ({self.environment}): {self.outcome}",
-            *([self.message] if self.message else []),
+            *filter(None, (self.message, self.initial)),
             f"{_most_moved(self, self.largest, 'up to ')} in {self.time[0]:.4g} to {self.time[-1]:.4g} s",
             f"{self.integrator}, {self.steps} steps of {1e3 * self.step:.4g} ms; {error}",
         ]

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.analysis.accuracy.correction import Posed, Quantity, Reading, State, Within
+from gbeam.analysis.accuracy.correction import Departures, Posed, Quantity, Reading, State, Within
 from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError
 from gbeam.integrate.equations import Trajectory
@@ -22,6 +22,10 @@ from gbeam.structure.beam import assumptions
 
 NAMED, NONE = 0.02, 1e-9  # of the largest cause, and of the energy: a smaller one is not named
 WORDS = {"shear": "shear", "rotary": "rotary inertia", "twist": "twist", "plate": "plate action"}
+
+
+# Initial departure, or None for equilibrium, by linear equations, with a stiffness (n, n) that these have besides.
+Begun = Callable[[Departures, Within, Floats], State | None]
 
 
 class Lacking(NamedTuple):
@@ -39,12 +43,11 @@ def beyond(
     of: Trajectory,
     theories: Mapping[str, Theory],
     pose: Callable[[Mapping[str, Structure]], Posed],
-    begun: Callable[[int], State | None],
+    begun: Begun,
     again: Callable[[Mapping[str, Structure]], Reading] | None = None,
 ) -> Lacking:
     """Differences between slender and thick beams at a solution `of` the equations `solved`; `pose` returns equations
-    with other beams, `begun` the difference of the initial states of so many unknowns, or None for equilibrium. With
-    `again`, systems with either kind of beams are run instead.
+    with other beams, `begun` the difference of their initial states. With `again`, systems with either are run instead.
     """
     slender, thick = ({name: getattr(each, kind) for name, each in theories.items()} for kind in ("slender", "thick"))
     thin = Within.lifted(pose(slender), solved, of)
@@ -64,7 +67,8 @@ def beyond(
         without = thin.more.read(thin.of) if again is None else again(slender)
         for plate in (0 * added, added) if added.any() else (added,):
             if again is None:
-                answer = departures.stiffer(plate).answer(residual + full.of.q @ plate, begun(len(plate)))
+                stiffer = departures.stiffer(plate)
+                answer = stiffer.answer(residual + full.of.q @ plate, begun(stiffer, full, plate))
                 truth = full.moved(answer)
                 for name, theory in theories.items():
                     moved = np.einsum("bai,ti->tba", theory.bodies, answer.value[:, columns[name]])

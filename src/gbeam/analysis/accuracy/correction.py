@@ -117,10 +117,15 @@ class Departures:
         """Departures with more stiffness (n, n)."""
         return replace(self, k=self.k + by)
 
-    def settled(self, residual: Floats) -> State:
-        """Departure at rest in which bodies balance a residual (n,); joints are not displaced but accelerated."""
-        unknown = np.where(self.elastic, self.k[0], self.m[0])
-        return np.where(self.elastic, np.linalg.solve(unknown, -residual), 0.0), np.zeros_like(residual)
+    def settled(self, residual: Floats, bent: Flags | None = None, accelerated: Flags | None = None) -> State:
+        """Departure at rest in which what is `bent`, by default all bodies, balances a residual (n,), while what is
+        `accelerated`, by default the joints, is not displaced; the rest is held.
+        """
+        bent = self.elastic if bent is None else bent
+        active = np.flatnonzero(bent | (~bent if accelerated is None else accelerated))
+        inside, change = np.ix_(active, active), np.zeros_like(residual)
+        change[active] = np.linalg.solve(np.where(bent, self.k[0], self.m[0])[inside], -residual[active])
+        return np.where(bent, change, 0.0), np.zeros_like(residual)
 
     def of_state(self, start: State) -> State:
         """Modal coordinates and rates (n,) of a state."""
@@ -197,19 +202,26 @@ class Within(NamedTuple):
 
     def residual(self) -> Floats:
         """Residual (t, n) of the equations `more`, minus that of `less`."""
-        out = []
-        for times in pieces(len(self.of.time), len(self.more.names)):
-            at, more, less = self.of.at(times), self.more.inputs(times), self.less.inputs(times)
-            left = np.array(self.more.residual(at.q, at.qd, at.qdd, more))
-            # Where inputs jump the solution has a residual in its own equations.
-            left[:, self.shared] -= self.less.residual(*(each[:, self.shared] for each in (at.q, at.qd, at.qdd)), less)
-            out.append(left)
-        return np.concatenate(out)
+        parts = pieces(len(self.of.time), len(self.more.names))
+        return np.concatenate([self._left(times, self.of.at(times)) for times in parts])
+
+    def held_residual(self, accelerated: Flags) -> Floats:
+        """Residual (n,) at the start if nothing but what is `accelerated` were."""
+        first = self.of.at(slice(1))
+        return self._left(slice(1), replace(first, known=np.where(accelerated, first.qdd, 0.0)))[0]
+
+    def _left(self, times: slice, at: Trajectory) -> Floats:
+        """Residual (t, n) of states at a slice of the times."""
+        left = np.array(self.more.residual(at.q, at.qd, at.qdd, self.more.inputs(times)))
+        # Where inputs jump the solution has a residual in its own equations.
+        state = (each[:, self.shared] for each in (at.q, at.qd, at.qdd))
+        left[:, self.shared] -= self.less.residual(*state, self.less.inputs(times))
+        return left
 
     def of_new(self, residual: Floats) -> Floats:
-        """Part of a residual (t, n) in the new coordinates, by too few shapes; in the shared ones it is the model's."""
+        """Part of a residual (..., n) in new coordinates, by too few shapes; in the shared ones it is the model's."""
         new = residual.copy()
-        new[:, self.shared] = 0.0
+        new[..., self.shared] = 0.0
         return new
 
     def departures(self, equations: Posed | None = None) -> Departures:

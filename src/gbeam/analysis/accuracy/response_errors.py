@@ -135,7 +135,7 @@ class Solution:
             return Lacking()
         theory = theory_of(self.structure) if straight else theory_of(self.structure).exact
 
-        def begun(_: int) -> State | None:
+        def begun(*_: Any) -> State | None:
             if begin is None:
                 return None
             slender, thick = (begin(structure) for structure in (theory.slender, theory.thick))

@@ -9,6 +9,7 @@ from typing import Any, get_args
 import numpy as np
 
 from gbeam.analysis.steady.equilibrium import solve_equilibrium
+from gbeam.analysis.system.point import solve_start
 from gbeam.arrays.namespace import Array, is_jax, namespace
 from gbeam.arrays.tree import Value, each_leaf
 from gbeam.arrays.types import Numbers
@@ -21,7 +22,11 @@ from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.results.parts import Base
 
-STATES = get_args(State)
+STATE_WORDS: dict[State, str] = {
+    "equilibrium": "in relative equilibrium",
+    "undeformed": "undeformed",
+    "relief": "in inertia relief",
+}
 _ITERATIONS = 60
 
 
@@ -35,8 +40,12 @@ class Initial(Value):
     Parameters
     ----------
     state : str
-        ``equilibrium``: at rest in the relative equilibrium with the base's motion and the loads then; ``undeformed``:
-        straight and at rest.
+        ``equilibrium``: at rest in the relative equilibrium with the base's motion and the loads then, a free hub at
+        rest. The bodies of a system are bent as where joints hold what they move; what floats, held by nothing but a
+        free joint without springs and prescribed rates, is undeformed. The springs of a clamp are bent, too, unless
+        the joint says where they begin; those at the root of a body that deforms let it go at once.
+        ``undeformed``: straight and at rest. ``relief``: inertia relief, bent as what is accelerated by the forces
+        at the start is bent by its inertia, so that they shake no body.
     acceleration : (3,), optional
         Released from the static deflection under this acceleration of the root, or specific force, base axes, m/s²,
         and under the loads then.
@@ -68,7 +77,7 @@ class Initial(Value):
     tip_velocity: Mapping[Across, float] | None = None
 
     def __post_init__(self) -> None:
-        choice("state", self.state, STATES)
+        choice("state", self.state, STATE_WORDS)
         displaced = [name for name in ("acceleration", "tip_displacement") if getattr(self, name) is not None]
         if displaced and self.state != "equilibrium":
             raise InputError(displaced[0], f'is given beside state = "{self.state}"', "keep one of them")
@@ -90,14 +99,12 @@ class Initial(Value):
         return self == Initial()
 
     def __str__(self) -> str:
-        if self.state == "undeformed":
-            words = "undeformed"
-        elif self.acceleration is not None:
+        if self.acceleration is not None:
             words = f"in the static deflection under ({', '.join(f'{a:.4g}' for a in self.acceleration)}) m/s²"
         elif self.tip_displacement:
             words = f"with its tip displaced by {_components(self.tip_displacement, 1e3, 'mm')}, as by a force there"
         else:
-            words = "in relative equilibrium"
+            words = STATE_WORDS[self.state]
         speed = f"its tip moving at {_components(self.tip_velocity, 1.0, 'm/s')}" if self.tip_velocity else "at rest"
         return f"begins {words}, {speed}"
 
@@ -110,7 +117,7 @@ def begun(initial: Initial | State) -> Initial:
     """The initial state, or that which a name stands for; InputError if it is neither."""
     if isinstance(initial, Initial):
         return initial
-    choice("initial", initial, STATES)
+    choice("initial", initial, STATE_WORDS)
     return Initial(initial)
 
 
@@ -121,7 +128,7 @@ def initial_state(structure: Structure, base: Base | None, time: float, initial:
         q, stable = solve_equilibrium(structure, Base(np.asarray(initial.acceleration), *np.zeros((2, 3))), time)
     elif initial.tip_displacement:
         q = _displaced(structure, initial.tip_displacement)
-    elif initial.state == "equilibrium" and base is not None:
+    elif initial.state != "undeformed" and base is not None:
         q, stable = solve_equilibrium(structure, base, time)
     return q, _moving(structure, q, initial.tip_velocity or {}), stable
 
@@ -191,8 +198,7 @@ def problem_of(structure: Structure, motion: Motion, start: float, initial: Init
     hub: Any = motion if motion.free else None
 
     def drive(t: Array) -> tuple[Any, Any]:
-        of_root = motion.base(t) if hub is None else hub.torque(t)
-        return of_root, None if structure.history is None else structure.history(t)
+        return driven(structure, motion, t)
 
     q, qd, stable = start_of(structure, motion, start, initial)
     if hub is None and structure.linear:
@@ -213,8 +219,24 @@ def problem_of(structure: Structure, motion: Motion, start: float, initial: Init
     return Problem(NonlinearEquations(residual, drive, vibrates=hub is not None), q, qd, residual.first, stable)
 
 
+def driven(structure: Structure, motion: Any, t: Array) -> tuple[Any, Any]:
+    """Inputs of the equations at times (t,): motion of the root, or torque on a free hub, and components of loads."""
+    of_root = motion.torque(t) if motion.free else motion.base(t)
+    return of_root, None if structure.history is None else structure.history(t)
+
+
 def start_of(structure: Structure, motion: Any, start: float, initial: Initial) -> tuple[Array, Array, bool]:
     """Coordinates and rates (n,) of the beam at the start, and its stability, as in `initial_state`."""
+    if motion.free and initial.state == "relief":
+        residual, still = structure.residual(motion), np.zeros(1 + structure.size)
+        inputs = each_leaf(lambda leaf: leaf[0], driven(structure, motion, np.array([start])))
+        bent = np.arange(len(still)) >= residual.first
+        q, _, adrift = solve_start(residual, still, still, inputs, bent=bent, accelerated=~bent)
+        if adrift >= 0:
+            problem = 'no place was found in which the beam rests on its hub; begin with initial = "undeformed"'
+            raise ComputationError("no equilibrium", problem)
+        q = q[residual.first :]
+        return q, _moving(structure, q, initial.tip_velocity or {}), True
     if motion.free:
         loaded, zero = motion.mount.gravity is not None or structure.history is not None, np.zeros(())
         return initial_state(structure, motion.mount.base(zero, zero, zero) if loaded else None, start, initial)

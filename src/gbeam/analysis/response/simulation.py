@@ -54,10 +54,11 @@ def simulate(
 ) -> Response | SystemResponse:
     """Compute the response of a beam in one environment, or of a system of bodies.
 
-    It starts in relative equilibrium with the base's motion at the start (a free hub at rest), without vibration,
-    unless ``initial`` of the settings says otherwise: ``"undeformed"``, or an :class:`Initial` state. A
-    machine's run covers its whole motion on the flight's clock: spin-up comes before `start`, and spin-down after the
-    duration, in whole steps of the results' grid. The step is chosen, and error and peaks are, for the flight's times.
+    It starts in relative equilibrium with the base's motion at the start (a free hub at rest), and what floats
+    undeformed, unless ``initial`` of the settings says otherwise: ``"undeformed"``, ``"relief"``, or an
+    :class:`Initial` state. A machine's run covers its whole motion on the flight's clock: spin-up comes before `start`,
+    and spin-down after the duration, in whole steps of the results' grid. The step is chosen, and error and peaks are,
+    for the flight's times.
 
     Parameters
     ----------
@@ -75,12 +76,11 @@ def simulate(
     Returns
     -------
     Response or SystemResponse
-        Of a structure, with the loads along the beam; of a system with momentum and
-        energy, its flexible bodies at first at rest relative to their roots. The outcome is ``done``, ``diverged`` (the
-        displacement left what the model can mean, or the beam lost its stability) or ``not converged`` (Newton's method
-        failed). Where JAX traces the structure or the motion, its arrays are traced: their derivatives are those of the
-        discrete solution; there is no error estimate, a step that fails leaves NaN, and gauss fits no steps to modes
-        that are traced.
+        Of a structure, with the loads along the beam; of a system with momentum and energy. The outcome is ``done``,
+        ``diverged`` (the displacement left what the model can mean, or the beam lost its stability) or ``not
+        converged`` (Newton's method failed). Where JAX traces the structure or the motion, its arrays are traced: their
+        derivatives are those of the discrete solution; there is no error estimate, a step that fails leaves NaN, and
+        gauss fits no steps to modes that are traced.
 
     Raises
     ------

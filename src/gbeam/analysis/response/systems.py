@@ -14,14 +14,22 @@ from gbeam.analysis.accuracy.correction import PLACE, pieces
 from gbeam.analysis.outline import assembly_of, outline_of
 from gbeam.analysis.response.outcome import yielding
 from gbeam.analysis.response.peaks import half_ranges, load_peaks
-from gbeam.analysis.response.posed_system import PosedSystem, corners, first_step, refuse_long, state_at, with_ends
+from gbeam.analysis.response.posed_system import (
+    PosedSystem,
+    begun_in_words,
+    corners,
+    first_step,
+    refuse_long,
+    state_at,
+    with_ends,
+)
 from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.stepping import LOADS_STEPS, scheme_of, steps_to_try
 from gbeam.analysis.system.accuracy import doubts, system_errors, unmoved
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
 from gbeam.analysis.system.histories import Carried, beams_of, deflection, histories, loads_of, meshes_of
-from gbeam.analysis.system.point import Point, started, started_traced
+from gbeam.analysis.system.point import Point, started, started_traced, unknown_at_start
 from gbeam.analysis.system.richer import judged_bodies
 from gbeam.analysis.system.solution import Solution
 from gbeam.analysis.system.steady import MASSLESS, bent_most, massless
@@ -76,7 +84,7 @@ class SystemRun(Run):
         begin = settings.begin
         if begin != type(begin)(begin.state):
             raise InputError(
-                "initial", "displaces a tip", 'give "equilibrium" or "undeformed"; joints have initial values'
+                "initial", "displaces a tip", 'give "equilibrium", "undeformed" or "relief"; joints have initial values'
             )
         return motion, settings
 
@@ -123,8 +131,9 @@ class SystemRun(Run):
             tell(progress, say, 0.0)
             by_step = {(body, load): math.nan for body in judged_bodies(posed.system) for load in LOADS}
             by_step |= {PLACE: errors.displacement, **dict(zip(by_step, errors.each, strict=False))}
-            settled, rerun = settings.begin.state == "equilibrium", again if posed.system.controllers else None
-            stated = system_errors(self.every(self.stride), rerun, by_step, settled=settled)
+            starting = partial(unknown_at_start, initial=settings.begin.state)
+            rerun = again if posed.system.controllers else None
+            stated = system_errors(self.every(self.stride), rerun, by_step, starting=starting)
         return _described(self, stated, name, self.missed + self.turned_over)
 
     @cached_property
@@ -346,6 +355,7 @@ def _described(run: SystemRun, errors: SystemErrors, name: str, warnings: tuple[
         residual_from=math.nan if settings.residual_from is None else settings.residual_from,
         residual_amplitude=residual,
         kept_every=settings.kept_every(len(time), run.step * stride),
+        initial=begun_in_words(system, settings.begin.state),
         warnings=warnings,
         notes=notes_on({name: motion}),
         **over_time,

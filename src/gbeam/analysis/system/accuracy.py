@@ -15,11 +15,11 @@ from functools import partial
 import numpy as np
 
 from gbeam.analysis.accuracy.beam_theory import Lacking, beyond, described, largest
-from gbeam.analysis.accuracy.correction import PLACE, Quantity, Reading, State
+from gbeam.analysis.accuracy.correction import PLACE, Departures, Quantity, Reading, State, Within
 from gbeam.analysis.accuracy.estimate import UNMOVED, Judgement, cause_and_cure, negligible, percent, worst
 from gbeam.analysis.system.richer import coarser, judged_bodies, left_unjudged, richer, theories_of, with_beams
 from gbeam.analysis.system.solution import Solution
-from gbeam.arrays.types import Floats
+from gbeam.arrays.types import Flags, Floats
 from gbeam.errors import ComputationError
 from gbeam.mechanics.theory import Theory
 from gbeam.mechanics.tree.system import System
@@ -27,7 +27,7 @@ from gbeam.results.errors import ErrorEstimate, SystemErrors
 from gbeam.results.parts import Base
 
 Again = Callable[[System], Solution]
-Begun = Callable[[int], State | None]  # initial state of so many unknowns of a richer system; None: in equilibrium
+Starting = Callable[[System], tuple[Flags, Flags]]  # flags of what a start bends and accelerates: `unknown_at_start`
 Rerun = Callable[[System, Iterable[str]], Reading]  # runs another system, and reads some of its bodies
 FEWEST = 3  # times of a response that is judged
 FAR = "shapes and models are not judged: a system with more shapes does not follow"
@@ -50,12 +50,12 @@ def system_errors(
     again: Again | None,
     steps: Mapping[Quantity, float],
     *,
-    settled: bool,
+    starting: Starting | None = None,
     start: Floats | None = None,
 ) -> SystemErrors:
     """Errors of the places of all points, over the largest displacement from the first places or a `start` (p, 3), and
-    of the beams' root loads and stress; `steps` has the errors of the time steps. Bodies begin `settled`, in
-    equilibrium, or undeformed. Richer systems are linearised, or run by `again` if given (with controllers, at rest).
+    of the beams' root loads and stress; `steps` has the errors of the time steps. Richer systems are
+    linearised, beginning as `starting` says, or run by `again` if given (with controllers, at rest).
     """
     judged, note, count = judged_bodies(solution.system), left_unjudged(solution.system), len(solution.of.time)
     step = steps.get(PLACE, math.nan)
@@ -75,13 +75,10 @@ def system_errors(
     exact = all(body.richer or body.kind == "exact" for body in judged.values())
     rerun = None if again is None else _rerun(again, count)
 
-    def begun(size: int) -> State | None:
-        return None if settled else (np.zeros(size), np.zeros(size))
-
     with np.errstate(all="ignore"):
         try:
             if rerun is None:
-                truth, few_shapes, *alone = _departing(solution, bases, computed, begun, exact=exact)
+                truth, few_shapes, *alone = _departing(solution, bases, computed, starting, exact=exact)
                 shapes, model = (few_shapes, truth), (computed, few_shapes)
             else:
                 same = truth = rerun(richer(solution.system, bases, exact=True).system, judged)
@@ -101,10 +98,10 @@ def system_errors(
             return SystemErrors(ErrorEstimate(step), note=FAR)
         if not np.isfinite(truth[PLACE]).all():
             return SystemErrors(ErrorEstimate(step), note=FAR)
-        mesh = _by_mesh(solution, rerun, judged, begun)
+        mesh = _by_mesh(solution, rerun, judged, starting)
         theories = theories_of(solution.system)
         loop = rerun if count > 1 else None
-        lacking = _beyond(solution, theories, loop, begun) if theories else Lacking()
+        lacking = _beyond(solution, theories, loop, starting) if theories else Lacking()
     extent = float(np.ptp(place, axis=(0, 1)).max(initial=0.0))
     if theories and not lacking.sizes.get(PLACE, math.nan) <= LOST * max(sizes[PLACE], extent):
         lacking = Lacking()
@@ -171,7 +168,9 @@ def _alone(rerun: Rerun, system: System, truth: Reading) -> Reading:
         return {quantity: np.nan * values for quantity, values in truth.items()}
 
 
-def _by_mesh(solution: Solution, rerun: Rerun | None, bodies: Iterable[str], begun: Begun) -> Reading | None:
+def _by_mesh(
+    solution: Solution, rerun: Rerun | None, bodies: Iterable[str], starting: Starting | None
+) -> Reading | None:
     """Readings of the system with coarser meshes of its solids; None if no solid has one."""
     rough = coarser(solution.system)
     if rough is None:
@@ -179,11 +178,12 @@ def _by_mesh(solution: Solution, rerun: Rerun | None, bodies: Iterable[str], beg
     if rerun is not None:
         return rerun(rough, bodies)
     within = solution.within(rough, bodies)
-    return within.moved(within.departures().answer(within.residual(), begun(len(within.less.names))))
+    departures = within.departures()
+    return within.moved(departures.answer(within.residual(), _begun(starting, rough, within, departures)))
 
 
 def _departing(
-    solution: Solution, bases: Mapping[str, Base], computed: Reading, begun: Begun, *, exact: bool
+    solution: Solution, bases: Mapping[str, Base], computed: Reading, starting: Starting | None, *, exact: bool
 ) -> Iterator[Reading]:
     """Readings of linearised richer systems: exact models with more shapes, exact models with the same shapes and, of
     several bodies, each alone richer.
@@ -191,23 +191,34 @@ def _departing(
     rich = richer(solution.system, bases, exact=True)
     within = solution.within(rich.system, bases, rich.shared)
     departures, residual = within.departures(), within.residual()
-    start = begun(residual.shape[1])
-    total = departures.answer(residual, start)
+    total = departures.answer(residual, _begun(starting, rich.system, within, departures))
     yield within.moved(total)
-    yield computed if exact else within.moved(total.less(departures.answer(within.of_new(residual), start)))
+    if exact:
+        yield computed
+    else:
+        start = _begun(starting, rich.system, within, departures, within.of_new)
+        yield within.moved(total.less(departures.answer(within.of_new(residual), start)))
     for name in bases if len(bases) > 1 else ():
         # The residual of a system in which it alone is exact; the others feel it only through the joints.
         one_richer = richer(solution.system, {name: bases[name]}, exact=True)
         alone = solution.within(one_richer.system, (), one_richer.shared)
         kept = [k for k, body in enumerate(alone.more.bodies) if body == name or body not in bases]
-        left = np.zeros_like(residual)
-        left[:, [within.more.names.index(alone.more.names[k]) for k in kept]] = alone.residual()[:, kept]
-        yield within.moved(departures.answer(left, start))
+        onto = np.zeros((len(alone.more.names), residual.shape[1]))
+        onto[kept, [within.more.names.index(alone.more.names[k]) for k in kept]] = 1.0
+        start = _begun(starting, one_richer.system, alone, departures, lambda left: left @ onto, rich.system)  # noqa: B023
+        yield within.moved(departures.answer(alone.residual() @ onto, start))
 
 
-def _beyond(solution: Solution, theories: Mapping[str, Theory], loop: Rerun | None, begun: Begun) -> Lacking:
+def _beyond(
+    solution: Solution, theories: Mapping[str, Theory], loop: Rerun | None, starting: Starting | None
+) -> Lacking:
     """Differences to thick beams: by runs of these in a `loop`, else by the residual in their equations."""
     bent = partial(with_beams, solution.system)
+    thick = bent({name: theory.thick for name, theory in theories.items()})
+
+    def begun(departures: Departures, within: Within, plate: Floats) -> State | None:
+        return _begun(starting, thick, within, departures, lambda left: left + within.of.q[0] @ plate)
+
     return beyond(
         solution.posed(theories),
         solution.of,
@@ -216,3 +227,21 @@ def _beyond(solution: Solution, theories: Mapping[str, Theory], loop: Rerun | No
         begun,
         None if loop is None else lambda beams: loop(bent(beams), theories),
     )
+
+
+def _begun(
+    starting: Starting | None,
+    system: System,
+    within: Within,
+    departures: Departures,
+    part: Callable[[Floats], Floats] = np.asarray,
+    departing: System | None = None,
+) -> State | None:
+    """Initial departure by a `part` of the residual that a solution within another `system` leaves at the start; the
+    `departing` system is the same unless given. None in equilibrium.
+    """
+    if starting is None:
+        return None
+    flags = starting(system)
+    left = part(within.held_residual(flags[1]))
+    return departures.settled(left, *(flags if departing is None else starting(departing)))

@@ -67,7 +67,7 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
         values[key] = np.where(np.abs(values[key]) > ROUNDING * size, values[key], 0.0)
     start = begun["place"][0]
     solids, surfaces = meshes_of(system, np.array([time]), resting["q"], name, "rest")
-    errors = system_errors(standing(system), standing, {}, settled=True, start=start)
+    errors = system_errors(standing(system), standing, {}, start=start)
     return SystemRest(
         name=name,
         time=time,
@@ -164,12 +164,14 @@ def _shapes(state: SteadySystem, modes: Array) -> dict[str, BeamShape]:
 
 
 def frozen(system: System, motion: Motion | None, time: float, at: str) -> SteadySystem:
-    """State of a system to linearise about: `at` is "rest", its equilibrium, or "start", its motion at the start."""
+    """State of a system to linearise about: `at` is "rest", its equilibrium, or "start", its motion at the start, its
+    bodies bent as in inertia relief.
+    """
     choice("at", at, ("rest", "start"))
     drive = Drive(motion, time)
     if at == "rest":
         return steady(system, drive)
-    return SteadySystem(system, drive, started(system, motion, time, "equilibrium"))
+    return SteadySystem(system, drive, started(system, motion, time, "relief"))
 
 
 def linearize_system(

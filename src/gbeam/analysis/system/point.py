@@ -4,21 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from functools import partial
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.arrays.namespace import Array, namespace
+from gbeam.arrays.namespace import Array, holds_jax, namespace
 from gbeam.arrays.tree import each_leaf, together
 from gbeam.arrays.types import Flags, Floats
 from gbeam.errors import ComputationError, InputError
-from gbeam.integrate.equations import Trajectory, slopes
+from gbeam.integrate.equations import Trajectory, accelerations, slopes, solved
 from gbeam.mechanics.tree.equations import SLIP, Inputs, Tree
 from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.signals import local_names
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.balance import SAME, answered, balanced, carried, loose, pulled, rooted, turning_on, unheld
+from gbeam.numerics.series import STEP
 
 ITERATIONS = 50
 MASSLESS = 1e-13  # of the largest: a smaller inertia is rounding
@@ -112,54 +114,117 @@ def _least_moving(mass: Floats) -> tuple[float, Floats]:
     return (sizes[-1] / sizes[0] if sizes.any() else 0.0, rows[-1]) if sizes.size else (np.inf, scale)
 
 
+class Begun(NamedTuple):
+    """Coordinates and accelerations (n,) of a start, and the index of the coordinate that goes on and on where there is
+    none, else −1.
+    """
+
+    q: Array
+    qdd: Array
+    adrift: int = -1
+
+
+def solve_start(residual: Any, q: Array, qd: Array, inputs: Any, *, bent: Flags, accelerated: Flags) -> Begun:
+    """Start near q, qd (n,) at which the forces on coordinates that are `bent`, which rest there, are in balance, and
+    those on `accelerated` ones are answered by their accelerations; the others are held. NaN where JAX traces it and
+    there is none.
+    """
+    held, begun = ~(bent | accelerated), np.zeros(len(bent))
+
+    def forces(z: Array) -> Array:
+        """Forces left over (..., n); z (..., n) are displacements and accelerations."""
+        left = residual(q + bent * z, qd + 0 * z, accelerated * z, inputs)
+        return namespace(left).where(held, z, left)
+
+    first = forces(begun)
+
+    def left(z: Array, share: Any) -> Array:
+        return forces(z) - (1.0 - share) * first
+
+    if holds_jax(residual, q, qd, inputs):
+        from gbeam.mechanics.equations.compiled import root
+
+        z = root(left, begun)
+        return Begun(q + bent * z, accelerated * z)
+    z, reached, stride = begun, 0.0, 1.0
+    while reached < 1.0:
+        share = min(reached + stride, 1.0)
+        moved, change, converged = _root_near(partial(left, share=share), z, bent)
+        if converged:
+            z, reached, stride = moved, share, 2 * stride
+        elif stride > SHORTEST:
+            stride /= 4
+        else:
+            return Begun(q, 0 * begun, int(np.abs(np.nan_to_num(change, nan=np.inf)).argmax()))
+    return Begun(q + bent * z, accelerated * z)
+
+
+@np.errstate(all="ignore")  # corrections may leave all numbers
+def _root_near(left: Any, z: Floats, bent: Flags) -> tuple[Floats, Floats, bool]:
+    """Root of a function near z (n,) by Newton's method, the last correction where `bent`, and True if it converged."""
+    change = z
+    for _ in range(ITERATIONS):
+        slope = left(z + 1j * STEP * np.eye(len(z))).imag.T / STEP
+        change = solved(slope, -left(z))
+        z, change = z + change, np.where(bent, change, 0.0)
+        if np.abs(change).max(initial=0.0) <= CLOSE * (1e-3 + np.abs(z[bent]).max(initial=0.0)):
+            return z, change, True
+    return z, change, False
+
+
 def started(system: System, motion: Motion | None, time: float, initial: str) -> Point:
-    """State at the start of the joints; bodies are undeformed or, if `initial` is "equilibrium", bent so that their
-    own coordinates are not accelerated. ComputationError where no such shape exists.
+    """State at the start of the joints, with the accelerations that its forces make. ComputationError where no shape of
+    the bodies is as `initial` says: see :class:`gbeam.Initial`.
     """
     tree, inputs = system.tree, system.inputs(np.asarray(time), motion)
-    free = tree.free
-    y, yd = (each[free] for each in system.start)
-    elastic = np.array([".q" in system.coordinates[k] for k in free], dtype=bool)
-    ydd, searched = np.zeros_like(y), np.where(elastic, initial == "equilibrium", False)
-    # Newton's method for the coordinates of the bodies, where searched, and all other accelerations.
-    for _ in range(ITERATIONS):
-        begun = Point(tree, y, yd, ydd, inputs)
-        left, k, _, m = begun.slopes()
-        refuse_massless(system, begun, m)
-        change = np.linalg.solve(np.where(searched, k, m), -left)
-        y, ydd = y + np.where(searched, change, 0), ydd + np.where(searched, 0, change)
-        moved = np.abs(np.where(searched, change, 0)).max(initial=0.0)
-        if moved <= CLOSE * (1e-3 + np.abs(y[elastic]).max(initial=0.0)):
-            return Point(tree, y, yd, ydd, inputs)
-    body = _farthest(system, tree, np.where(searched, change, 0)).rpartition(".")[0]
-    fix = 'begin with initial = "undeformed"'
-    raise ComputationError("no equilibrium", f"{body} has no place to rest at the start; {fix}")
+    y, yd = (each[tree.free] for each in system.start)
+    undeformed = Point(tree, y, yd, np.zeros_like(y), inputs)
+    refuse_massless(system, undeformed, undeformed.slopes()[3])
+    bent, accelerated = unknown_at_start(system, initial)
+    y, ydd, adrift = solve_start(tree, y, yd, inputs, bent=bent, accelerated=accelerated)
+    if adrift >= 0:
+        body, fix = system.coordinates[tree.free[adrift]].rpartition(".")[0], 'begin with initial = "undeformed"'
+        raise ComputationError("no equilibrium", f"{body} has no place to rest at the start; {fix}")
+    if not (bent | accelerated).all():  # what was held is let go
+        (ydd,) = accelerations(tree, y[None], yd[None], undeformed.driven())
+    return Point(tree, y, yd, ydd, inputs)
+
+
+def started_traced(system: System, motion: Motion | None, time: float, initial: str) -> tuple[Array, Array]:
+    """Coordinates and rates (n,) as `started` has them, of a system that JAX traces; NaN where no shape is at rest."""
+    inputs = system.inputs(np.asarray(time), motion)
+    y, yd = (each[system.tree.free] for each in system.start)
+    bent, accelerated = unknown_at_start(system, initial)
+    return solve_start(system.tree, y, yd, inputs, bent=bent, accelerated=accelerated).q if bent.any() else y, yd
+
+
+def unknown_at_start(system: System, initial: str) -> tuple[Flags, Flags]:
+    """Flags (n,) of the free coordinates that a start bends and of those that it accelerates; the others are held.
+
+    By `initial` = "equilibrium" joints hold what they move. Springs of a clamp bend as a body does, unless it is said
+    where they begin; springs at the root of a body that deforms let it go, for it has no mass there to be held by. What
+    floats is undeformed.
+    """
+    bent, accelerated = list[bool](), list[bool]()
+    for k in system.tree.free:
+        owner, _, coordinate = system.coordinates[k].rpartition(".")
+        if coordinate.startswith("q"):
+            body, deforms, gives = owner, True, False
+        else:
+            joint = system.joints[owner]
+            body, deforms = joint.body, joint.kind == "fixed" and joint.initial is None and initial == "equilibrium"
+            gives = joint.sprung and body in system.flexible
+        floats = body in system.floating
+        bends = deforms and {"equilibrium": not floats, "undeformed": False, "relief": True}[initial]
+        bent.append(bends)
+        accelerated.append(not bends and (initial != "equilibrium" or floats or gives))
+    return np.array(bent, dtype=bool), np.array(accelerated, dtype=bool)
 
 
 def _farthest(system: System, tree: Tree, values: Any) -> str:
     """Name of the free coordinate with the largest value (n,); of an Euler parameter, the rotation of its joint."""
     name = system.coordinates[tree.free[int(np.abs(np.nan_to_num(values, nan=np.inf)).argmax())]]
     return name if local_names([name]) == [name] else f"the rotation of {name.rpartition('.')[0]}"
-
-
-def started_traced(system: System, motion: Motion | None, time: float, initial: str) -> tuple[Array, Array]:
-    """Coordinates and rates (n,) as `started` has them, of a system that JAX traces; NaN where no shape is at rest."""
-    tree, inputs = system.tree, system.inputs(np.asarray(time), motion)
-    free = tree.free
-    y, yd = (each[free] for each in system.start)
-    elastic = np.array([".q" in system.coordinates[k] for k in free], dtype=bool)
-    if initial != "equilibrium" or not elastic.any():
-        return y, yd
-    import jax.numpy as jnp
-
-    from gbeam.mechanics.equations.compiled import root
-
-    def left(z: Array, share: Any) -> Array:
-        # Unknown are the coordinates of the bodies, and the accelerations of the joints.
-        bent = namespace(z).where(elastic, z, 0.0)
-        return tree(y + bent, yd, z - bent, inputs)
-
-    return y + elastic * root(left, jnp.zeros(len(free))), yd
 
 
 def _alike(point: Point, left: Floats, k: Floats, mass: Floats, turn: Flags) -> bool:

@@ -292,6 +292,17 @@ class Joint(Value):
         return all(getattr(self, name) is None for name in (*_EASY, "stops"))
 
     @property
+    def sprung(self) -> bool:
+        """True if it has a spring."""
+        stiffness = self.holder.stiffness
+        return is_jax(stiffness) or bool(stiffness.any())
+
+    @property
+    def floats(self) -> bool:
+        """True if it is free, and neither a spring nor a prescribed rate holds its body."""
+        return self.kind == "free" and not self.sprung and len(self.rates) < len(self.rate_names)
+
+    @property
     def holds_turns(self) -> bool:
         """True if springs or stops hold the rotation vector of a ball."""
         if not KINDS[self.kind].turns:

@@ -342,6 +342,16 @@ class System(Value):
         return {name: body for name, body in self.bodies.items() if isinstance(body, Structure)}
 
     @property
+    def floating(self) -> tuple[str, ...]:
+        """Names of the bodies that hang on nothing but a free joint, or on a body that does."""
+        names = list[str]()
+        for body in self.order:
+            joint = self.joints[self._holding(body)]
+            if joint.floats or joint.on.partition(".")[0] in names:
+                names.append(body)
+        return tuple(names)
+
+    @property
     def warnings(self) -> tuple[str, ...]:
         """Doubts about the bodies' models, each behind the body's name."""
         bodies = self.bodies.items()

@@ -111,8 +111,11 @@ class Initial(Table):
 
     state: State = Field(
         default="equilibrium",
-        description="equilibrium: at rest in the relative equilibrium with the base's motion and the loads then; "
-        "undeformed: straight and at rest",
+        description="equilibrium: at rest in the relative equilibrium with the base's motion and the loads then, a "
+        "free hub at rest; of a system as where joints hold what they move, and what floats, held by nothing but a "
+        "free joint without springs and prescribed rates, undeformed. Springs of a clamp are bent, too, unless it says "
+        "where they begin; those at the root of a body that deforms let it go at once. undeformed: straight and at "
+        "rest. relief: inertia relief, bent as what the forces at the start accelerate is bent by its inertia",
     )
     acceleration: tuple[Acceleration, Acceleration, Acceleration] | None = optional(
         'released from the static deflection under this acceleration of the root, [0, 0, "2 g"], and under '
