@@ -156,6 +156,16 @@ def test_a_column_under_a_follower_force_is_stable_up_to_becks_load(kind, load, 
     assert modes(structure, Flight(z=constant(0.0))).stable == kept
 
 
+def test_one_shape_under_becks_load_is_unstable_with_more():
+    """It flutters by two motions, of which one shape has none."""
+    for load, flutters in ((0.98 * BECK, False), (1.02 * BECK, True)):
+        push = Load(1.0, force=(-load, 0.0, 0.0), follower=True)
+        one, eight = (column(Model("FOAM", 1, 0, z), push) for z in (1, 8))
+        assert modes(one).stable and modes(eight).stable != flutters
+        for answer, said in ((modes(one), flutters), (linearize(one, Flight(z=0.0)), flutters), (modes(eight), False)):
+            assert any(each.startswith("not stable with more shapes: ") for each in answer.warnings) == said
+
+
 def test_a_run_under_a_follower_force_below_becks_load_is_not_warned_of():
     structure = column(MODELS["FOAM"], Load(1.0, force=(-15.0, 0.0, 0.0), follower=True))
     response = simulate(structure, Flight(z=constant(1e-3)), duration=0.1, step=1e-3, estimate=False)

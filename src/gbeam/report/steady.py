@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from itertools import zip_longest
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from gbeam.report.blocks import (
     FIGURES,
     Block,
     Blocks,
+    Cell,
     Column,
     Columns,
     Facts,
@@ -20,6 +22,7 @@ from gbeam.report.blocks import (
     Section,
     Sentence,
     Value,
+    factor,
     named,
     numbered,
     pairs,
@@ -116,6 +119,7 @@ def noted(facts: Facts) -> list[Block]:
     note = facts.get("error_note")
     rows = facts.get("modes", facts.get("tracks", facts.get("poles", [])))
     judged = any(each.get("errors", {}).get("total") is not None for each in rows)
+    judged |= any(each.get("modulus_error") is not None for each in facts.get("margins", ()))
     words = "errors are of modes left out" if judged else "no error estimate"
     return [Sentence(f"{words}: {note}", "faint")] if note else []
 
@@ -262,23 +266,45 @@ def _accuracy(facts: Facts) -> Blocks:
     yield Sentence(f"{'; '.join(words)}, by {by}{note}")
 
 
+MARGINS = {
+    "gain": "gain",
+    "gain_low": "gain not below",
+    "phase": "phase, deg",
+    "delay": "delay, ms",
+    "modulus": "least distance from -1",
+}
+
+
 def _in_steps(facts: Facts) -> Blocks:
-    """Slowest decay of a loop in steps, and its margins."""
-    poles = zip(facts["eigenvalue"], facts["eigenvalue_imaginary"], strict=True)
+    """Slowest decay of a loop in steps, and its margins, with their errors."""
+    keys = "eigenvalue", "eigenvalue_imaginary", "decay_error", "oscillation_error"
+    poles = zip_longest(*(facts.get(key, ()) for key in keys))
     slowest = [pole for pole in poles if pole[1] >= 0 and pole[0] > -math.pi / facts["step"]][:SLOWEST]
-    decays: Columns = {"decay, 1/s": "0", "frequency, Hz": lambda pole: pole[1] / (2 * math.pi)}
-    yield table(slowest, decays, f"in steps of {1e3 * facts['step']:.4g} ms; slowest to decay")
-    margins = {
-        "drive": "drive",
-        "gain margin": "gain",
-        "at, Hz": "gain_frequency",
-        "gain not below": "gain_low",
-        "phase margin, deg": "phase",
-        "at, Hz ": "phase_frequency",
-        "delay margin, ms": "delay",
-        "least distance from -1": "modulus",
+    decays: Columns = {
+        "decay, 1/s": "0",
+        "error": "2:%",
+        "frequency, Hz": lambda pole: pole[1] / (2 * math.pi),
+        "error ": "3:%",
     }
-    yield table(facts.get("margins", ()), margins, "Margins")
+    errors = "error", "error "
+    yield table(slowest, decays, f"in steps of {1e3 * facts['step']:.4g} ms; slowest to decay", optional=errors)
+    rows = [(each, kind) for each in facts.get("margins", ()) for kind in MARGINS]
+    margins: Columns = {
+        "drive": lambda row: row[0]["drive"] if row[1] == "gain" else "",
+        "margin": lambda row: MARGINS[row[1]],
+        "": _margin,
+        "error": lambda row: None if (error := row[0][f"{row[1]}_error"]) is None else percent(error),
+        "at, Hz": lambda row: row[0].get(f"{row[1]}_frequency"),
+    }
+    yield table(rows, margins, "Margins", optional=("error",))
+
+
+def _margin(row: tuple[Facts, str]) -> Value:
+    """Cell of a margin of a drive, by its name."""
+    margin, kind = row
+    if kind in margin["unknown"].split(", "):
+        return Cell("not known", "bad")
+    return "any" if margin[kind] is None else number(factor(MARGINS[kind]) * margin[kind])
 
 
 def _left_out(facts: Facts, left_out: Facts) -> Blocks:

@@ -150,6 +150,11 @@ class FrequencyErrors(Part):
         default=(),
     )
     note: str = internal("", UNKNOWN, default="")
+    growth: float = internal(
+        "1/s",
+        "rate at which a motion grows in the exact model with more shapes, where none grows in this one",
+        default=0.0,
+    )
 
     @property
     def slender(self) -> Floats:

@@ -12,7 +12,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from gbeam.arrays.tree import Value
-from gbeam.arrays.types import Numbers
+from gbeam.arrays.types import Indices, Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import vector
@@ -20,6 +20,9 @@ from gbeam.results.declared import INSIDE, declared, fact, internal, labels, par
 from gbeam.results.errors import Accelerated, FrequencyErrors, Noted, accelerated, evenly
 from gbeam.results.result import Complex, Figured, Floats, Part
 
+MARGINS = ("gain", "gain_low", "phase", "delay", "modulus")
+_RICHER = "by the same laws around exact models with more shapes, thick beams and coarser meshes; NaN if not known"
+_ERROR = "estimated error, a fraction of it"
 ACCURATE = 0.01  # error of a frequency that is within what a design takes for accurate
 
 
@@ -109,7 +112,7 @@ class Truncation(Part):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Margin(Part):
-    """Stability margins of a loop that is cut at one drive, the others closed."""
+    """Stability margins of a loop that is cut at one drive, the others closed; NaN where an error exceeds one half."""
 
     drive: str = labels("name of the controller and its drive", key="")
     gain: float = quantity(
@@ -121,6 +124,12 @@ class Margin(Part):
     phase_frequency: float = quantity("Hz", "frequency of that gain")
     delay: float = quantity("s", "time by which the loop may be later")
     modulus: float = quantity("", "least distance of the loop's gain from -1")
+    unknown: str = quantity("", "margins that are not known", note="by name; their errors exceed one half", default="")
+    gain_error: float = quantity("", _ERROR, note=_RICHER, default=math.nan)
+    gain_low_error: float = quantity("", _ERROR, default=math.nan)
+    phase_error: float = quantity("", _ERROR, default=math.nan)
+    delay_error: float = quantity("", _ERROR, default=math.nan)
+    modulus_error: float = quantity("", _ERROR, default=math.nan)
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -170,6 +179,14 @@ class StateSpace(Noted, Figured[Literal["poles"]]):
     margins: tuple[Margin, ...] = rows(
         "margins of the loop at every drive of a controller", "drive", name="margin_", optional=True, default=()
     )
+    decay_error: Floats = quantity(
+        "", "estimated error of the eigenvalue's real part, a fraction of it", "eigenvalue", key="/decay_error",
+        optional=True, note="of a loop", default_factory=lambda: np.zeros(0),
+    )  # fmt: skip
+    oscillation_error: Floats = quantity(
+        "", "estimated error of the eigenvalue's imaginary part, a fraction of it", "eigenvalue",
+        key="/oscillation_error", optional=True, note="of a loop", default_factory=lambda: np.zeros(0),
+    )  # fmt: skip
     accelerated: tuple[Accelerated, ...] = accelerated()
     truncation: Truncation | None = part("what a smaller model leaves out", name="truncation_", default=None)
 
@@ -187,7 +204,7 @@ class StateSpace(Noted, Figured[Literal["poles"]]):
         """Eigenvalues s of A, (n,) 1/s, the slowest to decay first; of a sampled model ln z/T of its z."""
         poles: Any = np.asarray(np.linalg.eigvals(self.a), dtype=complex)
         poles = np.log(poles + 1e-300) / self.step if self.step else poles
-        return poles[np.lexsort((poles.imag, np.abs(poles.imag), -poles.real))]
+        return poles[slowest_first(poles)]
 
     @declared("mixed", "of what decays", "hankel", name="hankel_singular_value", key="hankel_singular_values")
     def hankel(self) -> Floats:
@@ -308,9 +325,9 @@ class StateSpace(Noted, Figured[Literal["poles"]]):
                 f"frequencies within {100 * ACCURATE:g} % of the exact model's up to {self.accurate_to:.4g} Hz"
             )
         for margin in self.margins:
-            lines.append(
-                f"{margin.drive}: gain margin {margin.gain:.3g}, phase margin {math.degrees(margin.phase):.3g} deg"
-            )
+            sizes = {"gain": f"{margin.gain:.3g}", "phase": f"{math.degrees(margin.phase):.3g} deg"}
+            words = (f"{k} margin {'not known' if k in margin.unknown else size}" for k, size in sizes.items())
+            lines.append(f"{margin.drive}: {', '.join(words)}")
         if self.truncation is not None:
             share = float(self.truncation.share.max(initial=0.0))
             lines.append(
@@ -318,6 +335,11 @@ class StateSpace(Noted, Figured[Literal["poles"]]):
                 f"{100 * share:.2g} % of the largest gain up to {self.truncation.end:.4g} Hz"
             )
         return self._with_warnings(f"StateSpace{model}{f' on {self.motion!r}' if self.motion else ''}", *lines)
+
+
+def slowest_first(poles: Complex) -> Indices:
+    """Indices (n,) of eigenvalues 1/s in the order of their decay, the slowest first."""
+    return np.lexsort((poles.imag, np.abs(poles.imag), -poles.real))
 
 
 def import_control() -> Any:

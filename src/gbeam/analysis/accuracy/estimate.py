@@ -77,6 +77,7 @@ def of_bodies(structure: Structure, lacking: Lacking, tip: float, limit: float) 
 NOTHING = 1e-7  # of what another load makes
 UNMOVED = 1e-14  # of the length
 FEW_MODES = "too few modes", "raise modes"
+MORE_SHAPES = "raise its model.modes, of a mesh its modes"  # systems have no automatic number of modes
 ROUGH_MESH = "the mesh", "mesh it finer"
 NO_MESH = "the mesh is not judged"
 UNKNOWN = "shapes and model are not judged: it is neither a beam, a mesh nor matrices"

@@ -36,6 +36,7 @@ from gbeam.mechanics.fields.basis import FAMILIES
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import sections
 from gbeam.mechanics.structure import Sections, Structure
+from gbeam.mechanics.tree.control import signal_names
 from gbeam.mechanics.tree.system import System
 from gbeam.motion import Flight
 from gbeam.motion.protocol import Motion, notes_on
@@ -314,7 +315,8 @@ def linearize(
         sample times over their common period, with its references as further inputs and the margins at every drive
         that is sampled once in it; or the name of a controller and such a drive, ``pointing: axis.angle``: the loop
         that is cut there, with negative feedback. Laws that are functions have their slopes where they ask for nothing:
-        where the system rests, or else at no error.
+        where the system rests, or else at no error. Errors of margins and poles are by the same laws around a richer
+        system; a margin whose error exceeds one half is NaN, and a loop that grows has none.
     name : str
         Of the motion.
     progress : callable or bool, optional
@@ -350,11 +352,22 @@ def linearize(
     """
     tell(progress, "equilibrium and slopes", 0.0)
     if isinstance(structure, System):
+        drives = signal_names(structure.controllers, "drive")
+        if loop != "open" and not drives:
+            raise InputError("loop", f"is {loop!r}, and the system has no controllers", "leave it out, or give it some")
+        choice("loop", loop, ("open", "closed", *drives))
         structure, strained = _gauged(structure, gauges)
         state = frozen(structure, motion, time, at)
-        plant = linearize_system(state, inputs=inputs, outputs=outputs, strained=strained, loop=loop, name=name)
-        if at != "rest" or loop != "open":
-            return plant
+        options: Any = {"inputs": inputs, "outputs": outputs, "strained": strained, "name": name}
+        if loop != "open":
+            from gbeam.analysis.steady.loop_errors import JudgedLoops  # takes SciPy's linear algebra
+            from gbeam.analysis.system.closed_loop import Loops
+
+            loops, cut = Loops.of(state, **options), None if loop == "closed" else loop
+            computed = loops.state_space(cut)
+            tell(progress, BY_RICHER, 0.5)
+            return JudgedLoops(state, loops, cut).judge(computed)
+        plant = linearize_system(state, **options)
         tell(progress, BY_RICHER, 0.5)
         frequency, errors, doubts = _poles(state, structure)
         return replace(plant, frequency=frequency, errors=errors, warnings=plant.warnings + doubts)

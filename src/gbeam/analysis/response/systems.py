@@ -119,7 +119,7 @@ class SystemRun(Run):
 
     def described(self, errors: StepErrors, name: str, progress: Progress = None) -> SystemResponse:
         """Return the response, with the errors beyond those of the time steps if the settings ask for an estimate."""
-        posed, settings = self.posed, self.posed.settings
+        posed, settings, warnings = self.posed, self.posed.settings, self.missed + self.turned_over
         errors = StepErrors() if self.missed else errors  # unknown where steps may miss a stop
         say = "errors of shapes and models"
 
@@ -134,7 +134,11 @@ class SystemRun(Run):
             starting = partial(unknown_at_start, initial=settings.begin.state)
             rerun = again if posed.system.controllers else None
             stated = system_errors(self.every(self.stride), rerun, by_step, starting=starting)
-        return _described(self, stated, name, self.missed + self.turned_over)
+            if rerun is not None:
+                from gbeam.analysis.steady.loop_errors import unstable_with_more  # takes SciPy's linear algebra
+
+                warnings += unstable_with_more(posed.system, posed.motion, posed.flight.start)
+        return _described(self, stated, name, warnings)
 
     @cached_property
     def peaks(self) -> list[Floats]:

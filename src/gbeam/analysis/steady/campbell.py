@@ -208,7 +208,7 @@ def campbell(
             _errors(richer, point_at(followed[i].rate), followed[i], index[i]) for i in sorted({0, until // 2, until})
         ]
         parts: dict[str, Any] = {part: np.fmax.reduce([e.parts[part] for e in looked]) for part in PARTS}
-        errors = replace(looked[0], **parts, theory=looked[-1].theory)
+        errors = replace(looked[0], **parts, theory=looked[-1].theory, growth=max(each.growth for each in looked))
         crossings = [
             replace(crossing, errors=crossing_errors(crossing, mode, slope, richer, point_at))
             for crossing, mode, slope in met
@@ -300,7 +300,7 @@ def crossing_errors(
 
     def gaps(rate: float) -> list[float]:
         """Frequency less order × rate, rad/s, of the same model with more shapes, the exact one, and coarser meshes."""
-        return [float(frequency[0]) - order * rate for frequency in richer.references(point_at(rate), mode[None])]
+        return [float(frequency[0]) - order * rate for frequency in richer.references(point_at(rate), mode[None])[:3]]
 
     first = gaps(speed)
 

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gbeam.analysis.accuracy.beam_theory import WORDS, causes, described
-from gbeam.analysis.accuracy.estimate import BEAM, LIMIT, percent, unjudged, wrong_by
+from gbeam.analysis.accuracy.estimate import BEAM, LIMIT, MORE_SHAPES, percent, unjudged, wrong_by
 from gbeam.analysis.steady.operating_point import OperatingPoint
 from gbeam.analysis.system.richer import (
     coarser,
@@ -37,12 +37,15 @@ from gbeam.results.errors import PARTS, ErrorEstimate, FrequencyErrors
 
 BENT = 0.01  # of the kinetic energy: a mode of twist with less bending is hardly excited
 BY_RICHER = "errors, by richer models"  # words of the progress
+NO_REST = "with more shapes no place was found in which it rests"
 SHOWN = 3  # frequencies that the model lacks, named at most
 
 
 def doubtful(errors: FrequencyErrors) -> tuple[str, ...]:
     """Warn of frequencies that are wrong by more than one in a hundred, and of modes that the model lacks."""
     warnings = []
+    if errors.growth:
+        warnings.append(f"not stable with more shapes: a motion grows with {errors.growth:.4g} 1/s; {MORE_SHAPES}")
     above = np.flatnonzero(errors.total > LIMIT)
     if above.size:
         worst = int(above[errors.total[above].argmax()])
@@ -94,41 +97,53 @@ class Richer:
     ) -> FrequencyErrors:
         """Errors of the frequencies of modes (k, n) with eigenvalues (k,) about a steady state."""
         frequency = np.abs(eigenvalue)
-        same, exact, rough = self.references(state, coordinates, gyroscopic=gyroscopic)
+        same, exact, rough, growth = self.references(state, coordinates, gyroscopic=gyroscopic)
         by_theory = self.by_theory(state, coordinates, gyroscopic=gyroscopic)
         shapes, model, total = (np.abs(a / b - 1) for a, b in ((frequency, same), (same, exact), (frequency, exact)))
         mesh = np.abs(rough / frequency - 1)
         total = total + np.nan_to_num(by_theory.shares) + (0.0 if self.rough is None else mesh)
         note = unknown_part(state.of)
         if not note and len(frequency) and np.isnan(total).all():
-            note = "with more shapes no place was found in which it rests"
-        return FrequencyErrors(shapes, self.of_model(model), by_theory.shares, mesh, total, *by_theory[1:], note)
+            note = NO_REST
+        growth = 0.0 if not gyroscopic or len(state.moving.growing) else growth
+        return FrequencyErrors(
+            shapes, self.of_model(model), by_theory.shares, mesh, total, *by_theory[1:], note, growth
+        )
 
     def of_model(self, share: Any) -> Any:
         """Share of an error that the model has; NaN without beams, which alone have other models."""
         return share if self.theories else np.nan * share
 
-    def references(self, state: Any, coordinates: Complex, *, gyroscopic: bool = True) -> tuple[Floats, Floats, Floats]:
+    def references(
+        self, state: Any, coordinates: Complex, *, gyroscopic: bool = True
+    ) -> tuple[Floats, Floats, Floats, float]:
         """Circular frequencies (k,) of the modes most like these (k, n) in three models: the same with more shapes, the
-        exact one, and one with coarser meshes; NaN if a model is lacking or has no equilibrium.
+        exact one, and one with coarser meshes; NaN if a model is lacking or has no equilibrium. And the rate, 1/s, at
+        which a motion grows in the exact one; zero where none does.
         """
+        growth = 0.0
 
         def reference(richer: More | None) -> Floats:
+            nonlocal growth
+            none = np.full(len(coordinates), np.nan)
             if richer is None:
-                return np.full(len(coordinates), np.nan)
+                return none
             try:
                 other = state.richer(richer.model)
-                rate, modes = _oscillating(other, gyroscopic=gyroscopic)
+                moving = other.vibrations(gyroscopic=gyroscopic)
             except (ComputationError, np.linalg.LinAlgError):
-                return np.full(len(coordinates), np.nan)
+                return none
+            if richer is self.exact:
+                growth = float(moving.growing.real.max(initial=0.0))
+            rate, modes = moving.frequency, moving.modes[other.first :].T
             if not rate.size:
-                return np.full(len(coordinates), np.nan)
+                return none
             lifted = among([richer.renamed.get(name, name) for name in state.names], other.names, coordinates)
             mass = other.linear.mass[state.first :, state.first :]
             return np.asarray(rate[mac(lifted, modes, mass).argmax(axis=1)])
 
         exact = reference(self.exact)
-        return exact if self.same is self.exact else reference(self.same), exact, reference(self.rough)
+        return exact if self.same is self.exact else reference(self.same), exact, reference(self.rough), growth
 
     def by_theories(self, of: Structure | System, state: Any = None) -> tuple[list[Any], dict[str, Floats]]:
         """The structure or system with slender beams, with thick ones, and with thick ones and plate action; and the

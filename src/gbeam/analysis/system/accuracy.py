@@ -16,7 +16,7 @@ import numpy as np
 
 from gbeam.analysis.accuracy.beam_theory import Lacking, beyond, described, largest
 from gbeam.analysis.accuracy.correction import PLACE, Departures, Quantity, Reading, State, Within
-from gbeam.analysis.accuracy.estimate import UNMOVED, Judgement, cause_and_cure, negligible, percent, worst
+from gbeam.analysis.accuracy.estimate import MORE_SHAPES, UNMOVED, Judgement, cause_and_cure, negligible, percent, worst
 from gbeam.analysis.system.richer import coarser, judged_bodies, left_unjudged, richer, theories_of, with_beams
 from gbeam.analysis.system.solution import Solution
 from gbeam.arrays.types import Flags, Floats
@@ -140,7 +140,7 @@ def doubts(errors: SystemErrors, tolerance: float) -> tuple[str, ...]:
         worst_beam = int(np.nan_to_num(by_beam).argmax())
         cause, cure = cause_and_cure(error, errors.theory[worst_beam])
         if error.shapes == np.nanmax(parts):
-            cure = "raise its model.modes, of a mesh its modes"  # systems have no automatic number of modes
+            cure = MORE_SHAPES
         most_of = errors.beams[worst_beam]
         warnings.append(f"{what} wrong by an estimated {share} of {size}: {cause}, most of {most_of}; {cure}")
     return tuple(warnings)

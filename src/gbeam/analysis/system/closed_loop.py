@@ -9,15 +9,19 @@ begins; its inputs are held over it. Laws that are functions are taken by their 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cache
-from typing import Any, NamedTuple
+from functools import cache, cached_property
+from types import MappingProxyType
+from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import expm
-from scipy.optimize import brentq
+from scipy.linalg import expm, schur
 
+from gbeam.analysis.system.gauges import Strained
+from gbeam.analysis.system.linear import default_inputs, default_outputs, linearize_system
+from gbeam.analysis.system.steady import SteadySystem
 from gbeam.arrays.types import Complex, Floats
 from gbeam.errors import InputError
 from gbeam.mechanics.tree.control import Feedback, Law, signal_names
@@ -26,6 +30,8 @@ from gbeam.results.state_space import Margin, Signal, StateSpace
 SAMPLES = 1000  # of all controllers in their common period, at most
 FINEST = 10**9  # parts of a step by which a delay is known
 ROUNDING = 1e-6  # of z about one, where two motions of zero frequency meet
+HALVINGS = 45  # of an interval of the grid, about a crossing
+TINY = 1e-30  # beside z, of which it is no part unless z is a pole
 GRID = 2000  # frequencies, evenly in their logarithm, besides those about each pole
 DECADES = 5  # below Nyquist's frequency
 ABOUT = np.concatenate([[0.0], *(sign * np.geomspace(0.02, 50, 40) for sign in (1, -1))])  # a pole, in its widths
@@ -143,122 +149,207 @@ def loop_of(plant: StateSpace, channels: list[Channel], over: Over, cut: int | N
     return Loop(a, b, by_y, by_commands)
 
 
-def response_at(loop: tuple[Floats, Floats, Floats, Floats], step: float, w: Any) -> Complex:
-    """Complex gain (k,) at frequencies w (k,) rad/s of a discrete loop (a, b, c, d) of one input and one output."""
-    a, b, c, d = loop
-    z = np.exp(1j * np.atleast_1d(w) * step)
-    states = np.linalg.solve(z[:, None, None] * np.eye(len(a)) - a, np.broadcast_to(b, (len(z), *b.shape)))
-    return np.asarray(c @ states + d, dtype=complex)[:, 0, 0]
+def response_of(loop: tuple[Floats, Floats, Floats, Floats], step: float) -> Callable[[Floats], Complex]:
+    """Function that gives the complex gain (k,) at frequencies (k,) rad/s of a discrete loop (a, b, c, d) of one input
+    and one output; by Schur's form, whose triangle is solved at all frequencies at once.
+    """
+    triangle, basis = schur(loop[0], output="complex")
+    b, c, d = basis.conj().T @ loop[1][:, 0], loop[2][0] @ basis, loop[3][0, 0]
+
+    def response(w: Floats) -> Complex:
+        z = np.exp(1j * w * step)
+        states = np.empty((len(b), len(w)), dtype=complex)
+        for i in reversed(range(len(b))):
+            states[i] = (b[i] + triangle[i, i + 1 :] @ states[i + 1 :]) / (z - triangle[i, i] + TINY)
+        return np.asarray(c @ states + d)
+
+    return response
 
 
 def margin_of(name: str, loop: tuple[Floats, Floats, Floats, Floats], step: float) -> Margin:
     """Gain, phase, delay and modulus margins of an open loop (a, b, c, d), by steps, s, under negative feedback."""
-    highest = math.pi / step
+    highest, response = math.pi / step, response_of(loop, step)
     poles = np.log(np.linalg.eigvals(loop[0]).astype(complex) + 1e-300) / step
     near = (np.abs(poles.imag)[:, None] + np.maximum(np.abs(poles.real), 1e-9 * highest)[:, None] * ABOUT).ravel()
     w = np.unique(np.concatenate([np.geomspace(10.0**-DECADES * highest, highest, GRID), near]))
     w = w[(w >= 10.0**-DECADES * highest) & (w <= highest)]
-    gains = response_at(loop, step, w)
+    gains = response(w)
 
-    def crossings(values: Floats, of: Callable[[complex], float]) -> list[float]:
-        """Frequencies at which a function of the gain, with values at w, is zero."""
-        ends = np.flatnonzero(np.isfinite(values[:-1] * values[1:]) & (values[:-1] * values[1:] < 0))
-        return [float(brentq(lambda x: of(response_at(loop, step, x)[0]), w[i], w[i + 1], rtol=1e-12)) for i in ends]
+    def crossings(of: Callable[[Complex], Floats]) -> tuple[Floats, Complex]:
+        """Frequencies at which a function of the gain is zero, and the gains there."""
+        values = of(gains)
+        starts = np.flatnonzero(np.isfinite(values[:-1] * values[1:]) & (values[:-1] * values[1:] < 0))
+        low, high, above = w[starts], w[starts + 1], values[starts] > 0
+        for _ in range(HALVINGS):
+            middle = (low + high) / 2
+            beyond = (of(response(middle)) > 0) != above
+            low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
+        return high, response(high)
 
     # Frequencies of gains that are real and negative, and the factors that make them -1.
-    factors = [(x, -1 / gain.real) for x in crossings(gains.imag, lambda g: g.imag)
-               if (gain := response_at(loop, step, x)[0]).real < 0]  # fmt: skip
-    if gains[-1].real < 0:  # real at Nyquist's frequency
-        factors.append((highest, -1 / gains[-1].real))
-    with np.errstate(divide="ignore"):  # where there is no gain at all
-        ones = crossings(np.log(np.abs(gains)), lambda g: math.log(abs(g)))
-    phases = [(x, float(np.angle(-response_at(loop, step, x)[0]))) for x in ones]
+    reals = zip(*(np.append(a, b) for a, b in zip(crossings(np.imag), (highest, gains[-1]), strict=True)), strict=True)
+    factors = [(x, -1 / gain.real) for x, gain in reals if gain.real < 0]  # real at Nyquist's frequency, too
+    ones = zip(*crossings(lambda gain: np.abs(gain) - 1), strict=True)
+    phases = [(x, float(np.angle(-gain))) for x, gain in ones]
     above = min(((k, x) for x, k in factors if k > 1), default=(math.inf, math.nan))
     below = max((k for _, k in factors if k < 1), default=0.0)
     phase = min(((abs(angle), x) for x, angle in phases), default=(math.inf, math.nan))
     delay = min(((angle % (2 * math.pi)) / x for x, angle in phases), default=math.inf)
     return Margin(
         drive=name,
-        gain=above[0],
-        gain_frequency=above[1] / (2 * math.pi),
-        gain_low=below,
+        gain=float(above[0]),
+        gain_frequency=float(above[1] / (2 * math.pi)),
+        gain_low=float(below),
         phase=phase[0],
-        phase_frequency=phase[1] / (2 * math.pi),
-        delay=delay,
+        phase_frequency=float(phase[1] / (2 * math.pi)),
+        delay=float(delay),
         modulus=float(np.abs(1 + gains).min()),
     )
 
 
-def closed_loop(
-    plant: StateSpace, controllers: dict[str, Feedback], outputs: Sequence[int], cut: str | None
-) -> StateSpace:
-    """State-space model over the common period of a plant and its controllers: the closed loop or, with a drive's name
-    as `cut`, the open loop from that drive to its commands; with the margins at every drive that has any.
+@dataclass(frozen=True, eq=False)
+class Loops:
+    """A plant with sampled controllers around it, closed and cut at each drive, over their common `period`, s.
+
+    The first inputs and outputs of the plant are those of the controllers. Of several plants the laws are one.
     """
-    step, channels = channels_of(plant, controllers)
-    drives, measured = signal_names(controllers, "drive"), signal_names(controllers, "measure")
-    aims = [Signal(name, signal.unit) for name, signal in zip(measured, plant.outputs, strict=False)]
-    m, over = len(drives), over_parts(plant, step)
-    period = f"the common period of {1e3 * step:.4g} ms"
-    # The gain of a loop that is cut changes with time where it is sampled more than once in the period.
-    counts = dict(zip(drives, (channel.samples for channel in channels for _ in drives[channel.driven]), strict=True))
-    if cut is not None and counts[cut] > 1:
-        problem = f"cuts {cut}, sampled {counts[cut]} times in {period}, whose gain changes with time"
-        raise InputError("loop", problem, "ask for 'closed'")
-    loops = {name: loop_of(plant, channels, over, cut=k) for k, name in enumerate(drives) if counts[name] == 1}
-    loop = loop_of(plant, channels, over) if cut is None else loops[cut]
-    margins = []
-    for name, opened in loops.items():
-        c, d = (-part[drives.index(name)][None] for part in opened.command)
-        margins.append(margin_of(name, (opened.a, opened.b[:, :1], c, d[:, :1]), step))
-    warnings = plant.warnings
-    if several := [name for name in drives if counts[name] > 1]:
-        warnings += (f"no margins of {', '.join(several)}, sampled more than once in {period}",)
-    size = float(np.abs(np.linalg.eigvals(loop.a)).max())
-    if cut is None and size > 1 + ROUNDING:
-        warnings += (f"the closed loop is not stable: it grows with {math.log(size) / step:.4g} 1/s",)
-    of_laws = [
-        f"{name}.state_{i + 1}"
-        for name, channel in zip(controllers, channels, strict=True)
-        for i in range(len(channel.law[0]))
-    ]
-    of_commands = [
-        f"{drives[i]}, {j + 1} before"
-        for channel in channels
-        for i in range(channel.driven.start, channel.driven.stop)
-        for j in range(channel.late + 1)
-    ]
-    begun = [np.ravel(controller.start) for controller in controllers.values() if controller.stateful]
-    states = plant.states + tuple(Signal(name, "") for name in (*of_laws, *of_commands))
-    chosen = list(outputs)
-    if cut is None:
-        b, c, d = loop.b, loop.y[0][chosen], loop.y[1][chosen]
-        inputs, signals = plant.inputs[m:] + tuple(aims), tuple(plant.outputs[k] for k in chosen)
-        value = plant.output[chosen]
-    else:
-        k = drives.index(cut)
-        b, c, d = loop.b[:, :1], -loop.command[0][k : k + 1], -loop.command[1][k : k + 1, :1]
-        signals = inputs = (Signal(cut, plant.inputs[k].unit),)
-        value = np.zeros(1)
-    return StateSpace(
-        a=loop.a,
-        b=b,
-        c=c,
-        d=d,
-        states=states,
-        inputs=inputs,
-        outputs=signals,
-        state=np.concatenate([plant.state, *begun, np.zeros(len(of_commands))]),
-        input=np.zeros(len(inputs)),
-        output=value,
-        model=plant.model,
-        motion=plant.motion,
-        time=plant.time,
-        accelerated=plant.accelerated,
-        step=step,
-        margins=tuple(margins),
-        warnings=warnings,
-    )
+
+    plant: StateSpace
+    controllers: Mapping[str, Feedback]
+    period: float
+    channels: list[Channel]
+
+    @staticmethod
+    def of(
+        state: SteadySystem,
+        *,
+        inputs: Sequence[str] | None = None,
+        outputs: Sequence[str] | None = None,
+        strained: Mapping[str, Strained] = MappingProxyType({}),
+        name: str = "",
+    ) -> Loops:
+        """The loops of a system about a state, with further `inputs` and `outputs`; InputError as of `channels_of`."""
+        controllers = state.system.controllers
+        free = default_inputs(state.system, state.drive.motion) if inputs is None else inputs
+        wanted = [*default_outputs(state.system), *strained] if outputs is None else outputs
+        plant = _plant(state, controllers, inputs=free, outputs=wanted, strained=strained, name=name)
+        return Loops(plant, controllers, *channels_of(plant, dict(controllers)))
+
+    def around(self, state: SteadySystem) -> Loops:
+        """The loops of the same laws about a state of another system, without further inputs and outputs."""
+        return replace(self, plant=_plant(state, self.controllers, inputs=[], outputs=[]))
+
+    @property
+    def drives(self) -> tuple[str, ...]:
+        """Names of the drives."""
+        return signal_names(self.controllers, "drive")
+
+    @property
+    def often(self) -> dict[str, int]:
+        """Drives that are sampled more than once in the period, with how often: a cut loop's gain changes with time."""
+        counts = [channel.samples for channel in self.channels for _ in self.drives[channel.driven]]
+        return {drive: count for drive, count in zip(self.drives, counts, strict=True) if count > 1}
+
+    @cached_property
+    def _over(self) -> Over:
+        return over_parts(self.plant, self.period)
+
+    @cached_property
+    def closed(self) -> Loop:
+        """The closed loop."""
+        return loop_of(self.plant, self.channels, self._over)
+
+    @cached_property
+    def cuts(self) -> dict[str, Loop]:
+        """Loops that are cut at each drive that is sampled once in the period, the others closed."""
+        once = [name for name in self.drives if name not in self.often]
+        return {name: loop_of(self.plant, self.channels, self._over, cut=self.drives.index(name)) for name in once}
+
+    @cached_property
+    def growth(self) -> float:
+        """Rate, 1/s, at which the closed loop grows; zero where it does not."""
+        size = float(np.abs(np.linalg.eigvals(self.closed.a)).max(initial=0.0))
+        return math.log(size) / self.period if size > 1 + ROUNDING else 0.0
+
+    @cached_property
+    def margins(self) -> tuple[Margin, ...]:
+        """Margins of the loops that are cut; none of a loop that grows, which has none to lose."""
+        margins = []
+        for name, opened in self.cuts.items() if not self.growth else ():
+            c, d = (-part[self.drives.index(name)][None] for part in opened.command)
+            margins.append(margin_of(name, (opened.a, opened.b[:, :1], c, d[:, :1]), self.period))
+        return tuple(margins)
+
+    def state_space(self, cut: str | None) -> StateSpace:
+        """State-space model over the period: the closed loop or, with a drive's name as `cut`, the open loop from that
+        drive to its commands; with the margins at every drive that has any.
+        """
+        plant, drives, channels = self.plant, self.drives, self.channels
+        period = f"the common period of {1e3 * self.period:.4g} ms"
+        if cut in self.often:
+            problem = f"cuts {cut}, sampled {self.often[cut]} times in {period}, whose gain changes with time"
+            raise InputError("loop", problem, "ask for 'closed'")
+        loop = self.closed if cut is None else self.cuts[cut]
+        warnings = plant.warnings
+        if self.often:
+            warnings += (f"no margins of {', '.join(self.often)}, sampled more than once in {period}",)
+        if self.growth:
+            warnings += (f"the closed loop is not stable: it grows with {self.growth:.4g} 1/s, and has no margins",)
+        of_laws = [
+            f"{name}.state_{i + 1}"
+            for name, channel in zip(self.controllers, channels, strict=True)
+            for i in range(len(channel.law[0]))
+        ]
+        of_commands = [
+            f"{drives[i]}, {j + 1} before"
+            for channel in channels
+            for i in range(channel.driven.start, channel.driven.stop)
+            for j in range(channel.late + 1)
+        ]
+        begun = [np.ravel(controller.start) for controller in self.controllers.values() if controller.stateful]
+        m, k = channels[-1].driven.stop, channels[-1].measured.stop
+        if cut is None:
+            aims = zip(signal_names(self.controllers, "measure"), plant.outputs, strict=False)
+            inputs = plant.inputs[m:] + tuple(Signal(name, signal.unit) for name, signal in aims)
+            b, c, d = loop.b, loop.y[0][k:], loop.y[1][k:]
+            signals, value = plant.outputs[k:], plant.output[k:]
+        else:
+            at = drives.index(cut)
+            b, c, d = loop.b[:, :1], -loop.command[0][at : at + 1], -loop.command[1][at : at + 1, :1]
+            signals = inputs = (Signal(cut, plant.inputs[at].unit),)
+            value = np.zeros(1)
+        return replace(
+            plant,
+            a=loop.a,
+            b=b,
+            c=c,
+            d=d,
+            states=plant.states + tuple(Signal(name, "") for name in (*of_laws, *of_commands)),
+            inputs=inputs,
+            outputs=signals,
+            state=np.concatenate([plant.state, *begun, np.zeros(len(of_commands))]),
+            input=np.zeros(len(inputs)),
+            output=value,
+            step=self.period,
+            margins=self.margins,
+            warnings=warnings,
+        )
+
+
+def _plant(
+    state: SteadySystem,
+    controllers: Mapping[str, Feedback],
+    *,
+    inputs: Sequence[str],
+    outputs: Sequence[str],
+    strained: Mapping[str, Strained] = MappingProxyType({}),
+    name: str = "",
+) -> StateSpace:
+    """The plant of a system about a state, whose first inputs and outputs are those of the controllers."""
+    commanded = [drive for controller in controllers.values() for drive in controller.drive]
+    measured = [signal for controller in controllers.values() for signal in controller.measure]
+    options = {"inputs": [*commanded, *inputs], "outputs": [*measured, *outputs]}
+    return linearize_system(state, **options, strained=strained, name=name)
 
 
 STEPS = 1e-5, 1e-6  # of errors and states, by their size or one, both ways

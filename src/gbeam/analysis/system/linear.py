@@ -16,15 +16,14 @@ from gbeam.analysis.outline import assembly_of, outline_of
 from gbeam.analysis.system.accuracy import doubts, system_errors
 from gbeam.analysis.system.gauges import Strained, read_signals
 from gbeam.analysis.system.histories import ROUNDING, beams_of, histories, loads_of, meshes_of
-from gbeam.analysis.system.point import Point, started
+from gbeam.analysis.system.point import Point
 from gbeam.analysis.system.solution import Solution
-from gbeam.analysis.system.steady import Drive, SteadySystem, open_loops, steady
+from gbeam.analysis.system.steady import Drive, SteadySystem, beginning, open_loops, steady
 from gbeam.arrays.namespace import Array
 from gbeam.arrays.types import Complex, Floats
-from gbeam.errors import ComputationError, InputError
+from gbeam.errors import ComputationError
 from gbeam.guards.checks import choice
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.control import signal_names
 from gbeam.mechanics.tree.equations import Inputs
 from gbeam.mechanics.tree.signals import Driven, deforming, drives_of, local_names, measurable, signals_of, units_of
 from gbeam.mechanics.tree.steps import parameters_of_all
@@ -169,9 +168,7 @@ def frozen(system: System, motion: Motion | None, time: float, at: str) -> Stead
     """
     choice("at", at, ("rest", "start"))
     drive = Drive(motion, time)
-    if at == "rest":
-        return steady(system, drive)
-    return SteadySystem(system, drive, started(system, motion, time, "relief"))
+    return steady(system, drive) if at == "rest" else beginning(system, drive)
 
 
 def linearize_system(
@@ -180,37 +177,21 @@ def linearize_system(
     inputs: Sequence[str] | None,
     outputs: Sequence[str] | None,
     strained: Mapping[str, Strained] = MappingProxyType({}),
-    loop: str,
     name: str,
 ) -> StateSpace:
-    """State-space model of small departures of a system, with its controllers in the `loop` unless it is open.
+    """State-space model of small departures of a system, without its controllers.
 
     The inputs are efforts on joints' coordinates, the components of forces at points, and accelerations of the base and
     of prescribed coordinates; the outputs are the joints' coordinates and rates and the places of points, as named.
     """
     system = state.system
-    drives = signal_names(system.controllers, "drive")
-    if loop != "open" and not drives:
-        raise InputError("loop", f"is {loop!r}, and the system has no controllers", "leave it out, or give it some")
-    choice("loop", loop, ("open", "closed", *drives))
-    if loop != "open":
-        from gbeam.analysis.system.closed_loop import closed_loop  # takes SciPy's optimisation, 0.2 s to import
-
-        commanded = [drive for controller in system.controllers.values() for drive in controller.drive]
-        measured = [signal for controller in system.controllers.values() for signal in controller.measure]
-        free = _default_inputs(system, state.drive.motion) if inputs is None else list(inputs)
-        wanted = [*_default_outputs(system), *strained] if outputs is None else list(outputs)
-        options: Any = {"inputs": commanded + free, "outputs": measured + wanted, "strained": strained}
-        plant = linearize_system(state, **options, loop="open", name=name)
-        chosen = range(len(measured), len(measured) + len(wanted))
-        return closed_loop(plant, dict(system.controllers), chosen, None if loop == "closed" else loop)
     local = state.local
     drivable = drives_of(system) | _moves_of(system, state.drive.motion)
-    driven = _default_inputs(system, state.drive.motion) if inputs is None else inputs
+    driven = default_inputs(system, state.drive.motion) if inputs is None else inputs
     for signal in driven:
         choice("inputs", signal, drivable)
     units = measurable(system) | dict.fromkeys(strained, "1")
-    wanted = [*_default_outputs(system), *strained] if outputs is None else [*outputs]
+    wanted = [*default_outputs(system), *strained] if outputs is None else [*outputs]
     for signal in wanted:
         choice("outputs", signal, units)
     read = partial(read_signals, system, local.tree, wanted, strained=strained)
@@ -262,14 +243,14 @@ def _moves_of(system: System, motion: Motion | None) -> dict[str, Driven]:
     return moves
 
 
-def _default_inputs(system: System, motion: Motion | None) -> list[str]:
+def default_inputs(system: System, motion: Motion | None) -> list[str]:
     """Driven coordinates, the components of all forces, and accelerations of the base and of prescribed coordinates."""
     driven = {f"{name}.{each}" for name, joint in system.joints.items() for each in joint.efforts}
     drives = [each for each in drives_of(system) if each in driven or each.partition(".")[0] in system.forces]
     return [*drives, *_moves_of(system, motion)]
 
 
-def _default_outputs(system: System) -> list[str]:
+def default_outputs(system: System) -> list[str]:
     """Coordinates, their rates and the places of points."""
     others = ("acceleration", "velocity", "attitude", "spin")
     return [each for each in signals_of(system) if not each.rpartition(".")[2].startswith(others)]

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from gbeam.analysis.system.point import NONE, Point, adrift, rested, rested_together
+from gbeam.analysis.system.point import NONE, Point, adrift, rested, rested_together, started
 from gbeam.analysis.system.solution import Solution
 from gbeam.arrays.types import Complex, Flags, Floats
 from gbeam.constants import BY_STRAINS
@@ -112,6 +112,7 @@ class SteadySystem(Steady):
     drive: Drive
     point: Point
     known: tuple[Floats, ...] | None = None  # K, C and M, where they have been found
+    begins: bool = False  # True of a state of motion, at the start
     zero = RIGID
     first = 0
 
@@ -286,9 +287,9 @@ class SteadySystem(Steady):
         return tuple(names)
 
     def richer(self, system: System) -> SteadySystem:
-        """Steady state of a system with richer bodies under the same drives; ComputationError if it has none."""
+        """State of a system with richer bodies under the same drives; ComputationError if it has none."""
         try:
-            return steady(system, self.drive)
+            return (beginning if self.begins else steady)(system, self.drive)
         except InputError as error:
             raise ComputationError("no equilibrium", f"with richer bodies, {error}") from error
 
@@ -340,6 +341,11 @@ def steady(system: System, drive: Drive, *, held: bool = False, start: Floats | 
         problem = f"{names} is accelerated by what turns, and not evenly: hold it, or take away what pushes it"
         raise ComputationError("no equilibrium", problem)
     return _released(state, held=held)
+
+
+def beginning(system: System, drive: Drive) -> SteadySystem:
+    """System in motion as it starts, its bodies bent as in inertia relief, so that none of them is shaken."""
+    return SteadySystem(system, drive, started(system, drive.motion, drive.time, "relief"), begins=True)
 
 
 def _held(system: System, drive: Drive) -> Tree:

@@ -1,0 +1,169 @@
+"""Errors of a closed loop: the same laws around systems with more shapes, of thick beams and of coarser meshes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from gbeam.analysis.accuracy.estimate import MORE_SHAPES, ROUGH_MESH
+from gbeam.analysis.steady.frequency_errors import NO_REST, More, Richer, judgeable, unknown_part
+from gbeam.analysis.system.closed_loop import ROUNDING, Loops
+from gbeam.analysis.system.linear import frozen
+from gbeam.analysis.system.steady import SteadySystem
+from gbeam.arrays.types import Complex, Floats, Indices
+from gbeam.errors import ComputationError, InputError
+from gbeam.mechanics.tree.system import System
+from gbeam.motion.protocol import Motion
+from gbeam.results.errors import FrequencyErrors
+from gbeam.results.state_space import MARGINS, Margin, StateSpace, slowest_first
+
+UNKNOWN = 0.5  # of a margin: with a larger error it is not known
+OWN, MORE, COARSER = "", "with more shapes", "with a coarser mesh"
+SLENDER, THICK, PLATED = "of slender beams", "of thick beams", "with plate action"
+CURES = {MORE: f"; {MORE_SHAPES}", COARSER: f"; {ROUGH_MESH[1]}"}
+SHOWN = {  # words, factors and units
+    "gain": ("gain", 1.0, ""),
+    "gain_low": ("gain not below", 1.0, ""),
+    "phase": ("phase", 180 / math.pi, " deg"),
+    "delay": ("delay", 1e3, " ms"),
+    "modulus": ("least distance from -1", 1.0, ""),
+}
+
+
+class Other(NamedTuple):
+    """Loops around another system, and the indices there of the states of those that are judged."""
+
+    loops: Loops
+    columns: Indices
+
+
+class JudgedLoops:
+    """The loops of a system about a state, of which one is `cut` at a drive or none, and the same laws around richer
+    systems.
+    """
+
+    def __init__(self, state: SteadySystem, loops: Loops, cut: str | None = None) -> None:
+        self.loops, self.cut, self.note, self.others = loops, cut, unknown_part(state.of), dict[str, Other]()
+        self.known = judgeable(state.of) or not self.note
+        if not judgeable(state.of):
+            return
+        richer = Richer(state)
+        models = {MORE: richer.exact}
+        if richer.theories:
+            theories = richer.by_theories(state.of, state)[0]
+            models |= zip((SLENDER, THICK, PLATED), (More(model, {}) for model in theories), strict=True)
+        if richer.rough is not None:
+            models[COARSER] = richer.rough
+        try:
+            self.others = {name: self._around(state, model) for name, model in models.items()}
+        except (ComputationError, np.linalg.LinAlgError):
+            self.known, self.note = False, "; ".join(filter(None, (self.note, NO_REST)))
+
+    def _around(self, state: SteadySystem, model: More) -> Other:
+        """The loops around another model, about its state under the same drives."""
+        other, count = state.richer(model.model), len(state.names)
+        first = np.array([other.names.index(model.renamed.get(name, name)) for name in state.names], dtype=int)
+        of_laws = np.arange(2 * count, len(self.loops.closed.a)) + 2 * (len(other.names) - count)  # and of commands
+        return Other(self.loops.around(other), np.concatenate([first, first + len(other.names), of_laws]))
+
+    @property
+    def unstable(self) -> tuple[str, ...]:
+        """Warning that the closed loop decays, and one around a richer system grows; empty if none does."""
+        growing = {name: other.loops.growth for name, other in self.others.items() if other.loops.growth}
+        if self.loops.growth or not growing:
+            return ()
+        name, growth = next(iter(growing.items()))
+        return (f"the closed loop is not stable {name}: it grows with {growth:.4g} 1/s{CURES.get(name, '')}",)
+
+    def judge(self, computed: StateSpace) -> StateSpace:
+        """Return a model of these loops with the errors of its poles and margins; a margin that is not known is NaN."""
+        margins, warnings = [], [*computed.warnings, *self.unstable]
+        by_cause = self._errors(self._margins)
+        for k, margin in enumerate(computed.margins):
+            of_drive = {cause: errors[k] for cause, errors in by_cause.items()}
+            errors = np.sum([*of_drive.values()], axis=0)
+            stated: dict[str, Any] = {f"{name}_error": float(e) for name, e in zip(MARGINS, errors, strict=True)}
+            unknown = np.flatnonzero(errors > UNKNOWN)
+            names = [MARGINS[i] for i in unknown]
+            lost = [*names, *(f"{name}_frequency" for name in names if name in ("gain", "phase"))]
+            stated |= dict.fromkeys(lost, math.nan)
+            margins.append(replace(margin, unknown=", ".join(names), **stated))
+            if names and not self.unstable:
+                cause = max(of_drive, key=lambda name: of_drive[name][unknown].max())
+                words = "; ".join(_beside(name, margin, self.others[cause].loops.margins[k], cause) for name in names)
+                warnings.append(f"margins of {margin.drive} are not known: {words}{CURES.get(cause, '')}")
+        decay, oscillation = np.sum([*self._errors(self._poles).values()], axis=0).T
+        poles: dict[str, Any] = {"decay_error": decay, "oscillation_error": oscillation}
+        none = np.zeros(0)
+        note = FrequencyErrors(none, none, none, none, none, note=self.note) if self.note else None
+        return replace(computed, margins=tuple(margins), warnings=tuple(warnings), errors=note, **poles)
+
+    def _errors(self, read: Callable[[str], Floats]) -> dict[str, Floats]:
+        """Errors by cause, fractions, of values that `read` gives by names of loops; NaN where they are not known."""
+        computed = read(OWN)
+        if not self.known:
+            return {MORE: np.full_like(computed, np.nan)}
+        errors = {MORE: np.zeros_like(computed)}
+        errors |= {name: _apart(read(name), computed) for name in (MORE, COARSER) if name in self.others}
+        if SLENDER in self.others:
+            errors[THICK] = np.maximum(*(_apart(read(name), read(SLENDER)) for name in (THICK, PLATED)))
+        return errors
+
+    def _margins(self, name: str) -> Floats:
+        """Margins (d, 5) of loops by name, NaN where these grow."""
+        loops = self.others[name].loops if name else self.loops
+        none = np.full((len(self.loops.margins), len(MARGINS)), np.nan)
+        return np.array([[getattr(margin, kind) for kind in MARGINS] for margin in loops.margins] or none)
+
+    def _poles(self, name: str) -> Floats:
+        """Real and imaginary parts (n, 2) 1/s of the poles, the slowest to decay first, or of loops by name those most
+        alike, by the trace of the product of their projectors, in which no unit of a state counts.
+        """
+        value, right, left = _modes(self._matrix(self.loops))
+        chosen = value
+        if name:
+            loops, columns = self.others[name]
+            others, right_of, left_of = _modes(self._matrix(loops))
+            chosen = others[np.abs((left @ right_of[columns]) * (left_of[:, columns] @ right).T).argmax(axis=1)]
+        period = self.loops.period
+        value, chosen = (np.asarray(np.log(z + 1e-300) / period, dtype=complex) for z in (value, chosen))
+        parts = np.stack([chosen.real, chosen.imag], axis=1)[slowest_first(value)]
+        return np.asarray(np.where(np.abs(parts) > ROUNDING / period, parts, 0.0))
+
+    def _matrix(self, loops: Loops) -> Floats:
+        return loops.closed.a if self.cut is None else loops.cuts[self.cut].a
+
+
+def _modes(a: Floats) -> tuple[Complex, Complex, Complex]:
+    """Eigenvalues (n,), eigenvectors (n, n) in columns, and in rows those dual to them."""
+    value, right = np.linalg.eig(a)
+    return value + 0j, right + 0j, np.linalg.pinv(right) + 0j
+
+
+def _apart(values: Floats, references: Floats) -> Floats:
+    """Differences from references over these, infinite where only one of both is finite and not zero."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shares = np.abs(values / references - 1)
+    return np.where(values == references, 0.0, np.where(np.isfinite(shares), shares, np.inf))
+
+
+def _beside(kind: str, margin: Margin, other: Margin, cause: str) -> str:
+    """A margin of a kind beside that of another loop, as tables show them."""
+    word, factor, unit = SHOWN[kind]
+    computed, better = (f"{factor * getattr(each, kind):.4g}{unit}" for each in (margin, other))
+    return f"{word} {computed}, {better} {cause}"
+
+
+def unstable_with_more(system: System, motion: Motion | None, time: float) -> tuple[str, ...]:
+    """Warning that the closed loop of a system, as it starts, decays and one around a richer system grows; empty also
+    where a law has no slope.
+    """
+    try:
+        state = frozen(system, motion, time, "start")
+        return JudgedLoops(state, Loops.of(state, inputs=(), outputs=())).unstable
+    except (InputError, ComputationError, np.linalg.LinAlgError):
+        return ()
