@@ -144,13 +144,13 @@ def test_rounding_with_other_versions_is_allowed_in_errors_and_in_numbers_of_wor
 ) -> None:
     origin = gb.read_scenario("examples/zhang2020_example1.toml").provenance
     assert origin is not None
-    here = replace(origin, environment=present())
+    same = replace(origin, environment=present())
     other = replace(origin, environment=replace(present(), python="3.99"))
     again = reproduction("x.nc", {name: then}, {name: now}, other, {}, lambda _: "")
     assert again.reproduced is (kept != "differs")
     assert (again.rounded, len(again.restated)) == (kept == "rounded", kept == "restated")
     assert again.agreement == ("within rounding" if again.reproduced else "NOT reproduced")
-    assert not reproduction("x.nc", {name: then}, {name: now}, here, {}, lambda _: "").reproduced
+    assert not reproduction("x.nc", {name: then}, {name: now}, same, {}, lambda _: "").reproduced
 
 
 @pytest.mark.parametrize(("share", "status"), [(1e-15, 0), (1e-6, 1)])
