@@ -21,17 +21,14 @@ from importlib import import_module
 from pathlib import Path
 from typing import IO, Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.limits import READER_BYTES, READER_RATE, READER_SECONDS, end_with_parent, in_bytes, restrict
+from gbeam.guards.packing import read_packed, write_packed
 
 _START = "import json, sys; sys.path[:] = json.loads(sys.argv[1]); from gbeam.guards.processes import serve; serve()"
 LIMITED = "from gbeam.guards.processes import limited; limited()"
 _PATIENCE = 6  # wall-clock time over processor time, for a slow disk or a busy machine
 _ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-_PLAIN = "biufcS"  # NumPy's kinds of arrays that are sent as bytes; others hold text
 _OUT_OF_MEMORY = 77  # exit status
 
 
@@ -74,7 +71,8 @@ def confined(
         if status:
             name = next((known.name for known in signal.Signals if known == -status), f"status {status}")
             raise refuse(f"is damaged: it ends the library that reads it ({name})")
-        outcome, answer, messages = _received(reply)
+        reply.seek(0)
+        outcome, answer, messages = read_packed(reply)
     for message in messages:
         warnings.warn(message, stacklevel=2)
     if outcome == "refused":
@@ -113,43 +111,7 @@ def _answer(module: str, name: str, arguments: Sequence[Any]) -> tuple[str, Any]
 
 
 def _send(outcome: str, answer: Any, caught: Iterable[warnings.WarningMessage], reply: IO[bytes]) -> None:
-    arrays: list[NDArray[Any]] = []
-    text = json.dumps(_packed([outcome, answer, [str(warning.message) for warning in caught]], arrays))
-    np.savez(reply, np.frombuffer(text.encode(), dtype=np.uint8), *arrays)
-
-
-def _received(reply: IO[bytes]) -> Any:
-    reply.seek(0)
-    with np.load(reply, allow_pickle=False) as arrays:
-        return _unpacked(json.loads(arrays["arr_0"].tobytes()), arrays)
-
-
-def _packed(value: Any, arrays: list[NDArray[Any]]) -> Any:
-    """Return the value for JSON, its arrays replaced by their numbers, from 1, in the list `arrays`, which grows."""
-    if isinstance(value, dict):
-        return {"mapping": {str(key): _packed(each, arrays) for key, each in value.items()}}
-    if isinstance(value, (list, tuple)):
-        return [_packed(each, arrays) for each in value]
-    if isinstance(value, (np.ndarray, np.generic)):
-        array = np.asarray(value)
-        if array.dtype.kind in _PLAIN:
-            arrays.append(array)
-            return {"array": len(arrays)}
-        return {"texts": [str(each) for each in array.flat], "shape": array.shape}
-    return value
-
-
-def _unpacked(value: Any, arrays: Any) -> Any:
-    """Return the value that `_packed` made JSON of, with its arrays."""
-    if isinstance(value, list):
-        return [_unpacked(each, arrays) for each in value]
-    if not isinstance(value, dict):
-        return value
-    if "array" in value:
-        return arrays[f"arr_{value['array']}"]
-    if "texts" in value:
-        return np.array(value["texts"], dtype=object).reshape(value["shape"])
-    return {key: _unpacked(each, arrays) for key, each in value["mapping"].items()}
+    write_packed(reply, [outcome, answer, [str(warning.message) for warning in caught]])
 
 
 _TAKEN = (errno.EAGAIN, errno.EACCES, errno.EDEADLK)
