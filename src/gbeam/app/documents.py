@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +15,7 @@ from gbeam.app.files import regular
 from gbeam.app.form import file_keys, form, known_at, new_table, value_at
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import GbeamError, InputError
-from gbeam.guards.processes import confined
+from gbeam.guards.processes import remembered
 from gbeam.motion import Flight
 from gbeam.motion.records.columns import UNITS, spelled
 from gbeam.motion.records.record import read_table
@@ -27,7 +26,8 @@ from gbeam.scenario.text.revise import toml, with_entry, without_entry
 from gbeam.scenario.text.source import parse
 from gbeam.scenario.values import Path as Place
 from gbeam.scenario.values import parse_path, path_text, walk, written_at
-from gbeam.solids.foreign import is_mesh, skin
+from gbeam.solids.files import skin
+from gbeam.solids.foreign import is_mesh
 
 NAME = "scenario.toml"
 # Keys of a record that say what its columns are.
@@ -193,20 +193,19 @@ MOST = 500  # columns
 def head(file: Path) -> dict[str, Any]:
     """Return the name of a file, with the columns of a record and the keys that they suggest, or the skin of a mesh."""
     if is_mesh(file.name):
-        return {"name": file.name, "columns": [], "suggested": {}, "skin": _skin(file, file.stat().st_mtime_ns)}
+        return {"name": file.name, "columns": [], "suggested": {}, "skin": _skin(file)}
     columns = read_table(file).columns[:MOST]
     keys = suggested((column.name, column.unit) for column in columns)
     return {"name": file.name, "columns": [column.name for column in columns], "suggested": keys}
 
 
-@lru_cache(maxsize=4)
-def _skin(file: Path, _changed: int) -> dict[str, Any]:
-    """Skin of a mesh for JSON, read in a child process, which may crash; `_changed` (mtime, ns) is a cache key."""
+def _skin(file: Path) -> dict[str, Any]:
+    """Skin of a mesh for JSON."""
 
     def refuse(problem: str) -> InputError:
         return InputError("mesh", f"{file.name} {problem}", "mesh it more coarsely, or write it again")
 
-    read = confined(skin, file, refuse=refuse)
+    read = remembered(skin, file, refuse=refuse)
     return {
         "vertices": [float(f"{each:.6g}") for each in read["vertices"].flat],
         "triangles": read["triangles"].ravel().tolist(),

@@ -7,6 +7,7 @@ forever, or fill the memory. In a process of its own that becomes an error with 
 from __future__ import annotations
 
 import errno
+import hashlib
 import json
 import os
 import platform
@@ -17,12 +18,21 @@ import tempfile
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from functools import lru_cache
 from importlib import import_module
 from pathlib import Path
 from typing import IO, Any
 
 from gbeam.errors import ComputationError, InputError
-from gbeam.guards.limits import READER_BYTES, READER_RATE, READER_SECONDS, end_with_parent, in_bytes, restrict
+from gbeam.guards.limits import (
+    BINARY_BYTES,
+    READER_BYTES,
+    READER_RATE,
+    READER_SECONDS,
+    end_with_parent,
+    in_bytes,
+    restrict,
+)
 from gbeam.guards.packing import read_packed, write_packed
 
 _START = "import json, sys; sys.path[:] = json.loads(sys.argv[1]); from gbeam.guards.processes import serve; serve()"
@@ -80,6 +90,58 @@ def confined(
     if outcome == "defect":
         raise RuntimeError(f"{path} cannot be read\n{answer}")
     return answer
+
+
+_ELSEWHERE = "the caller"  # place of an error that the caller's `refuse` makes
+
+
+def remembered(
+    reader: Callable[..., Any],
+    path: str | os.PathLike[str],
+    *arguments: Any,
+    refuse: Callable[[str], InputError],
+    **limits: int,
+) -> Any:
+    """Return what :func:`confined` does, or did or refused of the same content before; `arguments` are hashable.
+
+    The cases of a sweep have one record or mesh, as have the edits of a scenario.
+    """
+    if (content := file_digest(path)) is None:
+        return confined(reader, path, *arguments, refuse=refuse, **limits)
+    answer = _remembered(reader, os.fspath(path), arguments, content, tuple(limits.items()))
+    if isinstance(answer, InputError):
+        raise refuse(answer.problem) if answer.where == _ELSEWHERE else answer.with_traceback(None)
+    return answer
+
+
+@lru_cache(maxsize=4)
+def _remembered(
+    reader: Callable[..., Any],
+    path: str,
+    arguments: tuple[Any, ...],
+    content: str,
+    limits: tuple[tuple[str, int], ...],
+) -> Any:
+    """Return the answer of a reader, or the error that the file cannot be read by; `content` tells files apart."""
+
+    def refuse(problem: str) -> InputError:
+        return InputError(_ELSEWHERE, problem, "")
+
+    try:
+        return confined(reader, path, *arguments, refuse=refuse, **dict(limits))
+    except InputError as error:
+        return error
+
+
+def file_digest(path: str | os.PathLike[str]) -> str | None:
+    """Return the SHA-256 of a file in hexadecimal digits; None if it is no file, is too large, or cannot be read."""
+    try:
+        if not os.path.isfile(path) or os.path.getsize(path) > BINARY_BYTES:
+            return None
+        with open(path, "rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError:
+        return None
 
 
 def serve() -> None:
