@@ -17,10 +17,12 @@ import sys
 import tempfile
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, nullcontext, suppress
+from contextvars import ContextVar
 from functools import lru_cache
 from importlib import import_module
 from pathlib import Path
+from threading import BoundedSemaphore
 from typing import IO, Any
 
 from gbeam.errors import ComputationError, InputError
@@ -29,6 +31,11 @@ from gbeam.guards.limits import (
     READER_BYTES,
     READER_RATE,
     READER_SECONDS,
+    UPLOAD_BYTES,
+    UPLOAD_RATE,
+    UPLOAD_SECONDS,
+    UPLOAD_TIMES,
+    UPLOADS_READ,
     end_with_parent,
     in_bytes,
     restrict,
@@ -40,6 +47,8 @@ LIMITED = "from gbeam.guards.processes import limited; limited()"
 _PATIENCE = 6  # wall-clock time over processor time, for a slow disk or a busy machine
 _ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 _OUT_OF_MEMORY = 77  # exit status
+_TIGHT = ContextVar("tight", default=False)
+_AT_ONCE = BoundedSemaphore(UPLOADS_READ)
 
 
 def confined(
@@ -56,9 +65,12 @@ def confined(
     size = os.stat(path).st_size
     memory = (memory or READER_BYTES) + 3 * size
     seconds = (seconds or READER_SECONDS) + size // READER_RATE
+    if _TIGHT.get():
+        memory = min(memory, UPLOAD_BYTES + UPLOAD_TIMES * size)
+        seconds = min(seconds, UPLOAD_SECONDS + size // UPLOAD_RATE)
     function = [reader.__module__, reader.__qualname__]
     request = json.dumps([os.getpid(), memory, seconds, function, [os.fspath(path), *arguments]]).encode()
-    with tempfile.TemporaryFile() as reply:
+    with _AT_ONCE if _TIGHT.get() else nullcontext(), tempfile.TemporaryFile() as reply:
         try:
             status = subprocess.run(
                 [sys.executable, "-P", "-c", _START, json.dumps(sys.path)],
@@ -108,7 +120,7 @@ def remembered(
     """
     if (content := file_digest(path)) is None:
         return confined(reader, path, *arguments, refuse=refuse, **limits)
-    answer = _remembered(reader, os.fspath(path), arguments, content, tuple(limits.items()))
+    answer = _remembered(reader, os.fspath(path), arguments, content, tuple(limits.items()), _TIGHT.get())
     if isinstance(answer, InputError):
         raise refuse(answer.problem) if answer.where == _ELSEWHERE else answer.with_traceback(None)
     return answer
@@ -121,6 +133,7 @@ def _remembered(
     arguments: tuple[Any, ...],
     content: str,
     limits: tuple[tuple[str, int], ...],
+    tight: bool,
 ) -> Any:
     """Return the answer of a reader, or the error that the file cannot be read by; `content` tells files apart."""
 
@@ -142,6 +155,16 @@ def file_digest(path: str | os.PathLike[str]) -> str | None:
             return hashlib.file_digest(file, "sha256").hexdigest()
     except OSError:
         return None
+
+
+@contextmanager
+def tightly() -> Iterator[None]:
+    """Read files in this context, such as those that an app is sent, within the limits of uploads."""
+    token = _TIGHT.set(True)
+    try:
+        yield
+    finally:
+        _TIGHT.reset(token)
 
 
 def serve() -> None:
