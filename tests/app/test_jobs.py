@@ -315,7 +315,7 @@ def test_all_of_a_run_is_for_its_owner_only(tmp_path: Path, monkeypatch: pytest.
     monkeypatch.setattr(module, "_command", lambda _: [sys.executable, "-c", code, "--json"])
     before = os.umask(0)  # of those who let everybody read
     try:
-        record = files.store(tmp_path / "records", "a.csv", b"t,z")
+        record = files.store(tmp_path / "records", "a.csv", b"t,z", lambda file: tmp_path / "records" / file.name)
         numbers: list[str] = []
 
         async def act(jobs: Jobs) -> None:

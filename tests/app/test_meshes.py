@@ -86,7 +86,7 @@ SQUARE = [[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
     ("name", "content", "said"),
     [
         ("empty.inp", b"", "is empty"),
-        ("nodes.inp", b"*NODE\n1, 0.0, 0.0, 0.0\n", "has no solid elements"),
+        ("nodes.inp", b"*ELEMENT, TYPE=C3D4\n", "has no solid elements"),
         ("bad.vtk", b"nothing of the kind\n", "cannot be read"),
         ("part.step", b"ISO-10303-21;\n", "cannot be read"),
     ],
@@ -94,8 +94,27 @@ SQUARE = [[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
 def test_what_is_no_mesh_of_a_solid_is_refused(
     site: Site, tmp_path: Path, name: str, content: bytes, said: str
 ) -> None:
-    answer = _dropped(site, name, content)
-    assert answer.status_code == 422 and said in answer.json()["errors"][0]["message"]
+    """And is not kept, where the file of that name before stays."""
+    for before in ([], [name]):
+        answer = _dropped(site, name, content)
+        (error,) = answer.json()["errors"]
+        assert answer.status_code == 422 and said in error["message"] and str(tmp_path) not in error["message"]
+        assert site.call("GET", "/api/records", site.opened).json() == before
+        (tmp_path / "records" / name).write_bytes(b"before")
+    assert (tmp_path / "records" / name).read_bytes() == b"before"
+    assert [each.name for each in (tmp_path / "records").iterdir()] == [name]
+
+
+def test_other_files_of_scenarios_are_kept(site: Site, tmp_path: Path) -> None:
+    """Nodes without elements, matrices, a body and a section of other programs, which are no records and no meshes."""
+    examples = BRACKET.parent
+    np.savez(tmp_path / "model.npz", M=np.eye(3), K=np.eye(3))
+    (tmp_path / "nodes.inp").write_text("*NODE\n1, 0.0, 0.0, 0.0\n")
+    files = [examples / "strip.sid", tmp_path / "model.npz", tmp_path / "nodes.inp"]
+    for file in files:
+        answer = _dropped(site, file.name, file.read_bytes())
+        assert answer.json() == {"name": file.name, "columns": [], "suggested": {}}
+    assert set(site.call("GET", "/api/records", site.opened).json()) == {file.name for file in files}
 
 
 def test_a_mesh_of_shells_is_a_thin_sheet(site: Site, tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,6 +20,7 @@ from typing import Any
 
 import pytest
 
+from ..guards.damaged import endless_exodus, large_med, large_vtu
 from ..scenarios import FAST
 
 SOON = 20.0  # s
@@ -48,6 +50,13 @@ class Server:
         """Status and answer of a request."""
         assert self.headers is not None
         answer = self._answer(method, path, body, self.headers)
+        return answer.status, json.loads(answer.read())
+
+    def put(self, name: str, content: bytes) -> tuple[int, Any]:
+        """Status and answer of a file that is dropped."""
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=SOON)
+        connection.request("PUT", f"/api/records/{name}", content, self.headers or {})
+        answer = connection.getresponse()
         return answer.status, json.loads(answer.read())
 
     def _answer(self, method: str, path: str, body: Any, headers: dict[str, str]) -> http.client.HTTPResponse:
@@ -249,3 +258,42 @@ def test_a_server_starts_on_any_folder_of_runs(start: Start, tmp_path: Path) -> 
     _, (run,) = server.call("GET", "/api/runs")
     assert run["state"] == "damaged"
     server.until(server.submit(), lambda run: run["state"] == "done")
+
+
+PATIENT = "from gbeam.guards import processes\nprocesses.READER_SECONDS = processes.UPLOAD_SECONDS = 3600"
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems limit no address space")
+def test_files_that_are_read_for_ever_or_hold_too_much_stop_nobody(start: Start, tmp_path: Path) -> None:
+    """A mesh of 6.6 kB froze every request for good, and one of 5 kB took the server to 1.5 GB; both were kept."""
+    server = start(tmp_path / "kept", PATIENT)
+
+    def largest() -> int:
+        """Most memory that the server had, kB."""
+        status = Path(f"/proc/{server.process.pid}/status").read_text(encoding="utf-8")
+        return int(re.findall(r"VmHWM:\s+(\d+)", status)[0])
+
+    before = largest()
+    for path in (large_med(tmp_path), large_vtu(tmp_path)):
+        status, answer = server.put(path.name, path.read_bytes())
+        assert status == 422 and "MB of memory to read" in answer["errors"][0]["message"]
+    assert largest() < before + 50_000
+    endless_exodus(tmp_path / "a.exo")
+    content = (tmp_path / "a.exo").read_bytes()
+
+    def drop() -> None:
+        with suppress(http.client.RemoteDisconnected):  # the server ends
+            server.put("a.exo", content)
+
+    with ThreadPoolExecutor() as threads:
+        for _ in range(3):
+            threads.submit(drop)
+        time.sleep(1)  # they are read
+        begun = time.monotonic()
+        assert server.call("GET", "/api/records") == (200, [])
+        assert server.call("POST", "/api/document", {"text": FAST})[1]["errors"] == []
+        assert time.monotonic() - begun < SOON
+        server.process.terminate()
+        assert server.process.wait(SOON) == 143
+    assert start(tmp_path / "kept").call("GET", "/api/records") == (200, [])
+    assert not [*(tmp_path / "kept" / "records").iterdir()]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -34,6 +35,12 @@ def row(springs: int) -> csc_array:
     return csc_array(diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(springs - 1, springs - 1)))
 
 
+def lattice(springs: int) -> csc_array:
+    """Such rows along three axes."""
+    one, eye = row(springs), eye_array(springs - 1)
+    return csc_array(kron(kron(one, eye), eye) + kron(kron(eye, one), eye) + kron(kron(eye, eye), one))
+
+
 @pytest.mark.usefixtures("library")
 def test_a_row_of_springs_under_its_weight_is_a_parabola() -> None:
     place = np.arange(1, 1000)
@@ -47,11 +54,9 @@ def test_a_row_of_springs_under_its_weight_is_a_parabola() -> None:
 @pytest.mark.usefixtures("library")
 def test_frequencies_of_a_lattice_of_equal_springs() -> None:
     """ω² = 2 Σ (1 − cos kπ/n): the second to the fourth are one."""
-    n, one = 12, row(12)
-    eye = eye_array(n - 1)
-    stiffness = kron(kron(one, eye), eye) + kron(kron(eye, one), eye) + kron(kron(eye, eye), one)
+    n = 12
     start = np.random.default_rng(0).standard_normal(((n - 1) ** 3, 8))
-    with sparse.factorised(csc_array(stiffness)) as solve:
+    with sparse.factorised(lattice(n)) as solve:
         inverse, _ = sparse.lowest_modes(solve, eye_array((n - 1) ** 3), start, 5)
     first, second = 2 * (1 - np.cos(np.array([1, 2]) * np.pi / n))
     expected = [3 * first, *[2 * first + second] * 3, first + 2 * second]
@@ -79,4 +84,14 @@ def test_a_negative_spring_is_refused(library: str) -> None:
     buckled = row(1000) - 1e-4 * eye_array(999)  # beyond (π/1000)²
     fault = r"springs is not positive definite; hold the structure"
     with pytest.raises(InputError, match=fault), sparse.factorised(csc_array(buckled), "springs"):
+        pass
+
+
+def test_factors_that_no_memory_holds_are_not_begun(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The library would end the process."""
+    monkeypatch.setattr(
+        "rslab.analyze", lambda matrix, **_: SimpleNamespace(memory_plan=lambda _: {"peak_bytes": 2**60})
+    )
+    monkeypatch.setattr(sparse, "solver", lambda: "RSLAB")
+    with pytest.raises(MemoryError), sparse.factorised(row(1000)):
         pass

@@ -17,6 +17,7 @@ import gbeam as gb
 from gbeam.figures import figures_of
 from gbeam.results.facts import facts_of
 from gbeam.scenario import ScenarioError
+from tests.solids.test_imported import reduced, write_storage
 from tests.solids.test_modal_tests import beam, measured
 
 pytestmark = pytest.mark.usefixtures("reading_in_process")
@@ -57,6 +58,18 @@ def test_standard_input_data_are_a_specimen_and_a_body(folder: Path) -> None:
     np.testing.assert_allclose(z, moved.tip[:, 2], atol=2e-3 * np.abs(z).max())
     study.save(folder / "result.nc")
     (folder / "strip.sid").unlink()
+    assert gb.rerun(folder / "result.nc").reproduced
+
+
+def test_matrices_of_several_files_are_computed_again_without_them(folder: Path) -> None:
+    """CalculiX's, whose rows are in a third file: each is named, and the result holds it."""
+    files = write_storage(folder, reduced())
+    names = ", ".join(f'"{file.name}"' for file in files)
+    text = f'[bodies.beam]\nmatrices = [{names}]\nclamp = [7]\nmodes = 5\ndamping_ratio = "1 %"\n'
+    study = gb.study(case_of(folder, text + TURN + RESPONSE))
+    study.save(folder / "result.nc")
+    for file in files:
+        file.unlink()
     assert gb.rerun(folder / "result.nc").reproduced
 
 

@@ -19,6 +19,8 @@ from gbeam.scenario import ScenarioError
 from tests.solids.bodies import block
 from tests.solids.test_shells import sheet
 
+pytestmark = pytest.mark.usefixtures("reading_in_process")
+
 BODY = """
 [bodies.arm]
 mesh = "arm.inp"

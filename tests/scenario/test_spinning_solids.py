@@ -14,6 +14,8 @@ import gbeam as gb
 from gbeam.cli import main
 from tests.solids.bodies import block
 
+pytestmark = pytest.mark.usefixtures("reading_in_process")
+
 SCENARIO = """
 [bodies.arm]
 mesh = "arm.inp"

@@ -16,6 +16,8 @@ import gbeam as gb
 
 from .bodies import STEEL, block, solid
 
+pytestmark = pytest.mark.usefixtures("reading_in_process")
+
 
 def mesh(kind: str = "hexahedron20") -> meshio.Mesh:
     return block(kind, (2, 1, 1), (0.2, 0.05, 0.03), groups={"line": lambda x: (x[:, 0] == 0) & (x[:, 1] == 0)})

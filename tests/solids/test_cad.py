@@ -89,6 +89,17 @@ def test_what_cannot_be_meshed_is_refused(
         read(files[name], **options)
 
 
+@pytest.mark.parametrize("word", ["APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT", "aeia"])
+def test_a_shape_that_refers_to_other_files_is_refused(files: dict[str, Path], word: str) -> None:
+    """Open CASCADE opens them, wherever they lie."""
+    entity = f"#9001={word}('/etc/hostname',#9002,#9003,(#9004));\nENDSEC;\nEND-ISO"
+    path = files["bar.step"].with_name("more.step")
+    path.write_text(files["bar.step"].read_text(encoding="utf-8").replace("ENDSEC;\nEND-ISO", entity))
+    assert word in path.read_text(encoding="utf-8")
+    with pytest.raises(gb.InputError, match=r"more\.step refers to other files.*export the assembly as one file"):
+        read(path)
+
+
 def test_a_scenario_takes_a_shape_and_a_coarser_size(files: dict[str, Path]) -> None:
     scenario = files["bar.step"].with_name("bar.toml")
     scenario.write_text(

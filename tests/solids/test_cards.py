@@ -17,6 +17,8 @@ from gbeam.solids.links import coupling
 from .bodies import STEEL, block
 from .test_shells import sheet
 
+pytestmark = pytest.mark.usefixtures("reading_in_process")
+
 # In mm, t, N and s. Node 901 is at 900, beside the middle of the end, and 902 in the air.
 PLACES = {900: (205.0, 4.0, 0.0), 901: (205.0, 4.0, 0.0), 902: (0.0, 0.0, 300.0)}
 MASS, OFFSET, INERTIA = 1e-3, (3.0, 0.0, 5.0), np.array([[0.4, -0.05, 0.02], [-0.05, 0.5, 0.01], [0.02, 0.01, 0.6]])

@@ -14,6 +14,8 @@ import gbeam as gb
 
 from .bodies import BOTTOM, CORNERS, STEEL, TOP, UPRIGHT, block, elements, solid
 
+pytestmark = pytest.mark.usefixtures("reading_in_process")
+
 # Nodes of hexahedra, in halves of their edges, and corners of sides, from 1.
 MIDDLES = [(1, 1, 1), (1, 1, 0), (1, 1, 2), (0, 1, 1), (2, 1, 1), (1, 0, 1), (1, 2, 1)]
 HEXAHEDRON = np.array([*CORNERS, *BOTTOM, *UPRIGHT, *TOP, *MIDDLES])

@@ -19,6 +19,8 @@ from gbeam.structure.beam import fibre_strain
 from .bodies import STEEL, STIFF, block, solid
 from .test_damage_at_points import HALF, B, H, L, beam, runs
 
+pytestmark = pytest.mark.usefixtures("reading_in_process")
+
 TURN = (0.0, 0.0, np.pi / 6)
 
 

@@ -185,7 +185,7 @@ def write_storage(folder: Path, each: Reduced) -> list[Path]:
         lines = [f"{j + 1} {i + 1} {matrix[i, j]:.17e}" for i, j in zip(*np.tril_indices(len(matrix)), strict=True)]
         (folder / f"beam.{ending}").write_text("\n".join(lines), encoding="ascii")
     (folder / "beam.dof").write_text("\n".join(f"{node}.{way}" for node, way in each.named), encoding="ascii")
-    return [folder / "beam.sti", folder / "beam.mas", nodes_inp(folder, each)]
+    return [*(folder / f"beam.{ending}" for ending in ("sti", "mas", "dof")), nodes_inp(folder, each)]
 
 
 def write_grids(folder: Path, each: Reduced) -> Path:
@@ -300,7 +300,7 @@ def test_calculix_writes_what_is_read(tmp_path: Path) -> None:
     ):
         (tmp_path / f"{name}.inp").write_text(TOWER + step, encoding="ascii")
         subprocess.run(["ccx", name], cwd=tmp_path, check=True, capture_output=True)
-    read = gb.ImportedModel.read(tmp_path / "tower.sti", tmp_path / "tower.mas", tmp_path / "tower.inp")
+    read = gb.ImportedModel.read(*(tmp_path / f"tower.{ending}" for ending in ("sti", "mas", "dof", "inp")))
     model = read.reduced(modes=4, damping_ratio=0)
     lines = (tmp_path / "modes.dat").read_text(encoding="ascii").splitlines()
     first = next(i for i, line in enumerate(lines) if "CYCLES/TIME" in line) + 1
@@ -322,17 +322,25 @@ def nastran_file(name: str) -> str:
 
 def test_an_external_superelement_has_the_frequencies_of_its_f06() -> None:
     """NX Nastran's outboard.out prints them, and the mass that the grid point weight generator finds."""
-    read = gb.ImportedModel.read(nastran_file("outboard.asm"), nastran_file("outboard.op4"))
+    read = gb.ImportedModel.read(*(nastran_file(f"outboard.{ending}") for ending in ("asm", "pch", "op4")))
     printed = {"total_mass": 1.590384, "centre": (184.6398, 150, 150)}
     model = read.reduced(modes=22, damping_ratio=0.02, clamp=read.numbers.tolist(), **printed)
     printed = [1.650001, 1.650249, 1.674265, 1.674687, 7.025350, 7.025411]
     np.testing.assert_allclose(model.rest[0][:6] / (2 * np.pi), printed, rtol=5e-7)
 
 
-def test_a_file_that_another_names_has_to_lie_beside_it(tmp_path: Path) -> None:
-    shutil.copy(nastran_file("outboard.asm"), tmp_path)
-    with pytest.raises(gb.InputError, match=r"outboard\.asm lacks outboard\.pch; put that beside it"):
-        gb.ImportedModel.read(tmp_path / "outboard.asm", nastran_file("outboard.op4"))
+def test_files_are_named_and_not_looked_for(tmp_path: Path) -> None:
+    """Beside another, or in one that it includes: a result would not hold them."""
+    lacking = r"beam\.sti is given without beam\.dof, which says what its rows are; name that file too"
+    with pytest.raises(gb.InputError, match=lacking):
+        gb.ImportedModel.read(*(path for path in write_storage(tmp_path, reduced()) if path.suffix != ".dof"))
+    with pytest.raises(gb.InputError, match=r"outboard\.asm is given without outboard\.pch"):
+        gb.ImportedModel.read(nastran_file("outboard.asm"), nastran_file("outboard.op4"))
+    grids = write_grids(tmp_path, reduced())
+    for including in (f"INCLUDE '{grids}'", f"  include '{grids}'"):
+        (tmp_path / "whole.bdf").write_text(f"{including}\n", encoding="ascii")
+        with pytest.raises(gb.InputError, match=r"whole\.bdf includes other files; delete those lines, and name the"):
+            gb.ImportedModel.read(tmp_path / "whole.bdf", *write_mtx(tmp_path, reduced()))
 
 
 def test_an_op2_file_has_the_eigenvalues_of_its_f06() -> None:

@@ -21,6 +21,8 @@ from gbeam.solids.links import attached
 from .bodies import STIFF, block, solid
 from .test_matrices import frame
 
+pytestmark = pytest.mark.usefixtures("reading_in_process")
+
 LENGTH, WIDTH, HEIGHT = 0.3, 0.02, 0.01
 STRAIGHT = gb.Material(7850.0, 210e9, poissons_ratio=0.0)
 BODY = gb.RigidBody(0.1, (2e-5, 4e-5, 3e-5), centre=(0.02, 0, 0.01))

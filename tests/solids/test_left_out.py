@@ -12,6 +12,8 @@ import gbeam as gb
 
 from .bodies import STEEL, block
 
+pytestmark = pytest.mark.usefixtures("reading_in_process")
+
 NASTRAN = "CONM2          90       1      0.250\nRBE2,91,1,123,2,3\nCELAS2,7,1.0,1,1\nCONM2,92,1,,0.1\n$ CBAR\n"
 ABAQUS = "*Mass, elset=m\n0.25\n*RIGID BODY, NSET=wall, REF NODE=1\n*Distributing  coupling\n*mass scaling\n**Spring\n"
 

@@ -15,6 +15,8 @@ from gbeam.solids.links import WAYS, Linked
 
 from .bodies import STIFF, block, solid
 
+pytestmark = pytest.mark.usefixtures("reading_in_process")
+
 L, H = 0.2, 0.01
 GROUPS = {"end": lambda x: np.isclose(x[:, 0], L), "inner": lambda x: np.isclose(x[:, 0], L / 2)}
 GROUND = {"between": ["a"], "stiffness": {"x": 0.0}}

@@ -19,10 +19,12 @@ from gbeam.report import text
 from gbeam.report.study import of_beam
 from gbeam.report.words import number
 from gbeam.solids.elements import STRAIN, chunks, mass_matrix, stiffness_matrix
-from gbeam.solids.foreign import read_mesh
+from gbeam.solids.files import read_mesh
 from gbeam.solids.shape_functions import KINDS
 
 from .bodies import PAIRS, STEEL, STIFF, Block, block, solid
+
+pytestmark = pytest.mark.usefixtures("reading_in_process")
 
 L, B, H = 1.0, 0.02, 0.01
 STRIP = STIFF.density * B * H, STIFF.youngs_modulus * B * H**3 / 12  # kg/m, N m²

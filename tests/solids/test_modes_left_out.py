@@ -13,6 +13,8 @@ import gbeam as gb
 from gbeam.report import text
 from validation.codes.calculix_specimens import BORE, sector
 
+pytestmark = pytest.mark.usefixtures("reading_in_process")
+
 EXAMPLES = Path(__file__).parents[2] / "examples"
 METAL = gb.Material(density=2700, youngs_modulus=70e9, poissons_ratio=0.33)
 STATED = ("displacement", "loads", "stress")

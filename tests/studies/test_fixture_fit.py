@@ -17,6 +17,8 @@ from gbeam.studies.template import template_of
 
 from ..solids.bodies import block
 
+pytestmark = pytest.mark.usefixtures("reading_in_process")
+
 SCENARIO = """
 [bodies.dummy]
 kind = "rigid"

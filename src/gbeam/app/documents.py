@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
-from functools import lru_cache
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -16,10 +16,12 @@ from gbeam.app.files import known, regular
 from gbeam.app.form import file_keys, form, known_at, new_table, value_at
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import GbeamError, InputError
-from gbeam.guards.processes import confined
+from gbeam.guards.processes import remembered
+from gbeam.io.binary import is_binary
+from gbeam.io.models.registry import contents_of
 from gbeam.motion import Flight
 from gbeam.motion.records.columns import UNITS, spelled
-from gbeam.motion.records.record import read_table
+from gbeam.motion.records.record import columns_of_text, read_table
 from gbeam.scenario import ScenarioError, build, loads
 from gbeam.scenario.schema import kind_of_scenario
 from gbeam.scenario.text.diagnostics import Diagnostic
@@ -27,7 +29,9 @@ from gbeam.scenario.text.revise import toml, with_entry, without_entry
 from gbeam.scenario.text.source import parse
 from gbeam.scenario.values import Path as Place
 from gbeam.scenario.values import parse_path, path_text, walk, written_at
-from gbeam.solids.foreign import is_mesh, skin
+from gbeam.solids.files import skin
+from gbeam.solids.foreign import is_mesh
+from gbeam.structure.matrices import read_matrices
 
 NAME = "scenario.toml"
 # Keys of a record that say what its columns are.
@@ -191,22 +195,48 @@ MOST = 500  # columns
 
 
 def head(file: Path) -> dict[str, Any]:
-    """Return the name of a file, with the columns of a record and the keys that they suggest, or the skin of a mesh."""
-    if is_mesh(file.name):
-        return {"name": file.name, "columns": [], "suggested": {}, "skin": _skin(file, file.stat().st_mtime_ns)}
-    columns = read_table(file).columns[:MOST]
-    keys = suggested((column.name, column.unit) for column in columns)
-    return {"name": file.name, "columns": [column.name for column in columns], "suggested": keys}
+    """Return the name of a file, with the columns of a record and the keys that they suggest, or the skin of a mesh, or
+    neither of another file that a body or a section of a scenario may be made of.
+    """
+    try:
+        if is_mesh(file.name):
+            return {"name": file.name, "columns": [], "suggested": {}, "skin": _skin(file)}
+        columns = _columns(file)
+    except InputError:
+        if not _is_model(file):
+            raise
+        columns = []
+    return {"name": file.name, "columns": [name for name, _ in columns], "suggested": suggested(columns)}
 
 
-@lru_cache(maxsize=4)
-def _skin(file: Path, _changed: int) -> dict[str, Any]:
-    """Skin of a mesh for JSON, read in a child process, which may crash; `_changed` (mtime, ns) is a cache key."""
+def _is_model(file: Path) -> bool:
+    """True if a file holds matrices, nodes, modes or a body of another program, or the matrices of a section."""
+    with suppress(InputError):
+        contents: Any = contents_of(file)
+        return any(map(len, contents.values()))
+    with suppress(InputError):
+        return bool(read_matrices(file, "m", "kg"))
+    return False
+
+
+def _columns(file: Path) -> list[tuple[str, str]]:
+    """Names and units of the columns of a record; one of text is read in a process of its own, too, as it is sent."""
+
+    def refuse(problem: str) -> InputError:
+        return InputError("record.file", f"{file.name} {problem}", "cut or resample the record")
+
+    if is_binary(file):
+        return [(column.name, column.unit) for column in read_table(file).columns[:MOST]]
+    return [tuple(each) for each in remembered(columns_of_text, file, MOST, refuse=refuse)]
+
+
+def _skin(file: Path) -> dict[str, Any]:
+    """Skin of a mesh for JSON."""
 
     def refuse(problem: str) -> InputError:
         return InputError("mesh", f"{file.name} {problem}", "mesh it more coarsely, or write it again")
 
-    read = confined(skin, file, refuse=refuse)
+    read = remembered(skin, file, refuse=refuse)
     return {
         "vertices": [float(f"{each:.6g}") for each in read["vertices"].flat],
         "triangles": read["triangles"].ravel().tolist(),

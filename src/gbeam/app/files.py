@@ -5,11 +5,14 @@ from __future__ import annotations
 import errno
 import os
 import re
+import shutil
 import stat
+from collections.abc import Callable
 from importlib.resources import files as resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import BinaryIO
+from tempfile import TemporaryDirectory
+from typing import BinaryIO, TypeVar
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import TEXT_BYTES
@@ -26,10 +29,13 @@ from gbeam.structure.matrices import PROGRAMS
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._()-]{0,99}")
 _SECTIONS = (each.ending.lower() for each in PROGRAMS.values())
 READ = tuple(sorted({*TEXTS, *RECORDS, *MODELS, *MESHES, *STATE_SPACES, *_SECTIONS}))  # endings of files in scenarios
+_NEW = ".new-"  # begins the names of folders with what is not kept yet
 LARGEST = TEXT_BYTES  # of one file
 MANY = 200  # files
 # Errors that may pass: disk, descriptors or memory are used up.
 SHORT = {errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN}
+
+T = TypeVar("T")
 
 
 def checked(name: str) -> str:
@@ -72,17 +78,32 @@ def write(file: Path, content: bytes) -> None:
     write_whole(file, content, private=True)
 
 
-def store(folder: Path, name: str, content: bytes) -> Path:
-    """Write a file of a known kind into a folder; InputError if it is too large or one too many."""
-    file = folder / known(name)
+def store(folder: Path, name: str, content: bytes, read: Callable[[Path], T]) -> T:
+    """Write a file of a known kind into a folder once `read` has read it; return its answer. InputError if it refuses,
+    or the file is too large or one too many.
+    """
+    known(name)
     if len(content) > LARGEST:
         raise InputError(
             name, f"has more than {LARGEST // 2**20} MiB", "cut or resample the record, or mesh more coarsely"
         )
     if len(names(ensured(folder))) >= MANY:
         raise InputError(name, f"is one too many: {MANY} files are kept", f"delete some in {folder}")
-    write(file, content)
-    return file
+    with TemporaryDirectory(prefix=_NEW, dir=folder) as new:
+        file = Path(new) / name
+        write(file, content)
+        try:
+            answer = read(file)
+        except InputError as error:
+            raise InputError(error.where, error.problem.replace(os.fspath(file), name), error.fix) from None
+        os.replace(file, folder / name)
+    return answer
+
+
+def tidied(folder: Path) -> None:
+    """Remove what an earlier server left in a folder as it ended."""
+    for incomplete in folder.glob(f"{_NEW}*"):
+        shutil.rmtree(incomplete, ignore_errors=True)
 
 
 def names(folder: Path) -> list[str]:
@@ -130,5 +151,5 @@ def _kept(content: bytes, records: Path) -> str:
             if regular(records, name).read_bytes() == content:
                 return name
         except InputError:  # no such file
-            return store(records, name, content).name
+            return store(records, name, content, lambda file: file.name)
     raise InputError(_RECORD, "is there already, and is another record", f"rename it in {records}")

@@ -5,10 +5,12 @@ from __future__ import annotations
 import asyncio
 import errno
 import secrets
+import signal
 from collections.abc import AsyncIterator, Callable, Sequence
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, nullcontext
 from importlib.resources import files as resources
 from pathlib import Path
+from types import FrameType
 from typing import Annotated, Any
 
 from fastapi import Body, FastAPI, Request
@@ -22,9 +24,10 @@ from gbeam.app import documents, files, verbs
 from gbeam.app.access import ASSETS, AT_ONCE, REPORT_POLICY, Connections, Door, listening
 from gbeam.app.documents import head, load_curves
 from gbeam.app.jobs import Jobs
+from gbeam.cli.process import end_on_signals
 from gbeam.errors import GbeamError, InputError
 from gbeam.guards.limits import SCENARIO_BYTES
-from gbeam.guards.processes import alone
+from gbeam.guards.processes import alone, tightly
 from gbeam.io.netcdf import csv_of, read_stored
 from gbeam.scenario.text.source import parse
 
@@ -53,11 +56,13 @@ def create_app(folder: Path) -> FastAPI:
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         asyncio.get_running_loop().set_exception_handler(_once(jobs.complain))
+        files.tidied(records)
         jobs.start()
         yield
         await jobs.stop()
 
     app = FastAPI(title="gbeam", docs_url=None, redoc_url=None, lifespan=lifespan)
+    app.add_middleware(_Tight)
 
     @app.exception_handler(GbeamError)
     async def refuse(request: Request, error: GbeamError, status: int = 422) -> JSONResponse:
@@ -143,7 +148,7 @@ def create_app(folder: Path) -> FastAPI:
         """Keep a record or a mesh; what its columns are, or its skin."""
         files.known(name)
         content = await request.body()
-        return await run_in_threadpool(lambda: head(files.store(records, name, content)))
+        return await run_in_threadpool(files.store, records, name, content, head)
 
     @app.get("/api/records/{name}")
     def described_record(name: str) -> dict[str, Any]:
@@ -206,6 +211,18 @@ def create_app(folder: Path) -> FastAPI:
     return app
 
 
+class _Tight:
+    """Reads files, all of which were sent, within the limits of uploads."""
+
+    def __init__(self, app: Any) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+        """Answer a request."""
+        with tightly() if scope["type"] == "http" else nullcontext():
+            await self._app(scope, receive, send)
+
+
 def _asset(name: str, package: str) -> Callable[[], Response]:
     def asset() -> Response:
         content = (resources(package) / "assets" / name).read_bytes()
@@ -233,6 +250,18 @@ def serve(folder: Path, port: int, announce: Callable[[str], None]) -> None:
     """Serve the app on 127.0.0.1 until it is interrupted; call `announce` with the address before it begins."""
     import uvicorn
 
+    class Server(uvicorn.Server):
+        """Ends its runs and itself at once when it is told to: a request may read a file for long."""
+
+        def handle_exit(self, sig: int, frame: FrameType | None) -> None:
+            self.told = sig
+            super().handle_exit(sig, frame)
+
+        async def shutdown(self, sockets: Any = None) -> None:
+            await self.lifespan.shutdown()
+            end_on_signals()
+            signal.raise_signal(self.told)
+
     with alone(files.ensured(folder) / ".lock", "--folder", "open the address that it printed, or name another folder"):
         try:
             opened = listening(port)
@@ -252,4 +281,4 @@ def serve(folder: Path, port: int, announce: Callable[[str], None]) -> None:
             server_header=False,
         )
         announce(f"http://127.0.0.1:{port}/?token={token}")
-        uvicorn.Server(config).run(sockets=[opened])
+        Server(config).run(sockets=[opened])

@@ -50,6 +50,10 @@ SAMPLES = 4_000_000
 READER_BYTES = 2**30  # of address space, of which the libraries take 0.2 GB
 READER_SECONDS = 10  # of processor time
 READER_RATE = 2**24
+# Of one that an app is sent, if they are lower: what few bytes unpack to many is no record and no mesh.
+UPLOAD_BYTES, UPLOAD_TIMES = 2**29, 10
+UPLOAD_SECONDS, UPLOAD_RATE = 5, 2**22
+UPLOADS_READ = 4  # at once
 MESHER_BYTES, MESHER_SECONDS = 2**33, 600  # of Gmsh, which meshes what it reads
 
 

@@ -7,6 +7,7 @@ forever, or fill the memory. In a process of its own that becomes an error with 
 from __future__ import annotations
 
 import errno
+import hashlib
 import json
 import os
 import platform
@@ -16,23 +17,38 @@ import sys
 import tempfile
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, nullcontext, suppress
+from contextvars import ContextVar
+from functools import lru_cache
 from importlib import import_module
 from pathlib import Path
+from threading import BoundedSemaphore
 from typing import IO, Any
-
-import numpy as np
-from numpy.typing import NDArray
 
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.importing import variables
-from gbeam.guards.limits import READER_BYTES, READER_RATE, READER_SECONDS, end_with_parent, in_bytes, restrict
+from gbeam.guards.limits import (
+    BINARY_BYTES,
+    READER_BYTES,
+    READER_RATE,
+    READER_SECONDS,
+    UPLOAD_BYTES,
+    UPLOAD_RATE,
+    UPLOAD_SECONDS,
+    UPLOAD_TIMES,
+    UPLOADS_READ,
+    end_with_parent,
+    in_bytes,
+    restrict,
+)
+from gbeam.guards.packing import read_packed, write_packed
 
 _START = "from gbeam.guards.processes import serve; serve()"
 _PATIENCE = 6  # wall-clock time over processor time, for a slow disk or a busy machine
 _ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-_PLAIN = "biufcS"  # NumPy's kinds of arrays that are sent as bytes; others hold text
 _OUT_OF_MEMORY = 77  # exit status
+_TIGHT = ContextVar("tight", default=False)
+_AT_ONCE = BoundedSemaphore(UPLOADS_READ)
 
 
 def confined(
@@ -49,9 +65,12 @@ def confined(
     size = os.stat(path).st_size
     memory = (memory or READER_BYTES) + 3 * size
     seconds = (seconds or READER_SECONDS) + size // READER_RATE
+    if _TIGHT.get():
+        memory = min(memory, UPLOAD_BYTES + UPLOAD_TIMES * size)
+        seconds = min(seconds, UPLOAD_SECONDS + size // UPLOAD_RATE)
     function = [reader.__module__, reader.__qualname__]
     request = json.dumps([os.getpid(), memory, seconds, function, [os.fspath(path), *arguments]]).encode()
-    with tempfile.TemporaryFile() as reply:
+    with _AT_ONCE if _TIGHT.get() else nullcontext(), tempfile.TemporaryFile() as reply:
         try:
             status = subprocess.run(
                 [sys.executable, "-P", "-c", _START],
@@ -74,7 +93,8 @@ def confined(
         if status:
             name = next((known.name for known in signal.Signals if known == -status), f"status {status}")
             raise refuse(f"is damaged: it ends the library that reads it ({name})")
-        outcome, answer, messages = _received(reply)
+        reply.seek(0)
+        outcome, answer, messages = read_packed(reply)
     for message in messages:
         warnings.warn(message, stacklevel=2)
     if outcome == "refused":
@@ -82,6 +102,69 @@ def confined(
     if outcome == "defect":
         raise RuntimeError(f"{path} cannot be read\n{answer}")
     return answer
+
+
+_ELSEWHERE = "the caller"  # place of an error that the caller's `refuse` makes
+
+
+def remembered(
+    reader: Callable[..., Any],
+    path: str | os.PathLike[str],
+    *arguments: Any,
+    refuse: Callable[[str], InputError],
+    **limits: int,
+) -> Any:
+    """Return what :func:`confined` does, or did or refused of the same content before; `arguments` are hashable.
+
+    The cases of a sweep have one record or mesh, as have the edits of a scenario.
+    """
+    if (content := file_digest(path)) is None:
+        return confined(reader, path, *arguments, refuse=refuse, **limits)
+    answer = _remembered(reader, os.fspath(path), arguments, content, tuple(limits.items()), _TIGHT.get())
+    if isinstance(answer, InputError):
+        raise refuse(answer.problem) if answer.where == _ELSEWHERE else answer.with_traceback(None)
+    return answer
+
+
+@lru_cache(maxsize=4)
+def _remembered(
+    reader: Callable[..., Any],
+    path: str,
+    arguments: tuple[Any, ...],
+    content: str,
+    limits: tuple[tuple[str, int], ...],
+    tight: bool,
+) -> Any:
+    """Return the answer of a reader, or the error that the file cannot be read by; `content` tells files apart."""
+
+    def refuse(problem: str) -> InputError:
+        return InputError(_ELSEWHERE, problem, "")
+
+    try:
+        return confined(reader, path, *arguments, refuse=refuse, **dict(limits))
+    except InputError as error:
+        return error
+
+
+def file_digest(path: str | os.PathLike[str]) -> str | None:
+    """Return the SHA-256 of a file in hexadecimal digits; None if it is no file, is too large, or cannot be read."""
+    try:
+        if not os.path.isfile(path) or os.path.getsize(path) > BINARY_BYTES:
+            return None
+        with open(path, "rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError:
+        return None
+
+
+@contextmanager
+def tightly() -> Iterator[None]:
+    """Read files in this context, such as those that an app is sent, within the limits of uploads."""
+    token = _TIGHT.set(True)
+    try:
+        yield
+    finally:
+        _TIGHT.reset(token)
 
 
 def serve() -> None:
@@ -113,43 +196,7 @@ def _answer(module: str, name: str, arguments: Sequence[Any]) -> tuple[str, Any]
 
 
 def _send(outcome: str, answer: Any, caught: Iterable[warnings.WarningMessage], reply: IO[bytes]) -> None:
-    arrays: list[NDArray[Any]] = []
-    text = json.dumps(_packed([outcome, answer, [str(warning.message) for warning in caught]], arrays))
-    np.savez(reply, np.frombuffer(text.encode(), dtype=np.uint8), *arrays)
-
-
-def _received(reply: IO[bytes]) -> Any:
-    reply.seek(0)
-    with np.load(reply, allow_pickle=False) as arrays:
-        return _unpacked(json.loads(arrays["arr_0"].tobytes()), arrays)
-
-
-def _packed(value: Any, arrays: list[NDArray[Any]]) -> Any:
-    """Return the value for JSON, its arrays replaced by their numbers, from 1, in the list `arrays`, which grows."""
-    if isinstance(value, dict):
-        return {"mapping": {str(key): _packed(each, arrays) for key, each in value.items()}}
-    if isinstance(value, (list, tuple)):
-        return [_packed(each, arrays) for each in value]
-    if isinstance(value, (np.ndarray, np.generic)):
-        array = np.asarray(value)
-        if array.dtype.kind in _PLAIN:
-            arrays.append(array)
-            return {"array": len(arrays)}
-        return {"texts": [str(each) for each in array.flat], "shape": array.shape}
-    return value
-
-
-def _unpacked(value: Any, arrays: Any) -> Any:
-    """Return the value that `_packed` made JSON of, with its arrays."""
-    if isinstance(value, list):
-        return [_unpacked(each, arrays) for each in value]
-    if not isinstance(value, dict):
-        return value
-    if "array" in value:
-        return arrays[f"arr_{value['array']}"]
-    if "texts" in value:
-        return np.array(value["texts"], dtype=object).reshape(value["shape"])
-    return {key: _unpacked(each, arrays) for key, each in value["mapping"].items()}
+    write_packed(reply, [outcome, answer, [str(warning.message) for warning in caught]])
 
 
 _TAKEN = (errno.EAGAIN, errno.EACCES, errno.EDEADLK)

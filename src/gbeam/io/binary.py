@@ -8,7 +8,7 @@ import warnings
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from functools import lru_cache, partial
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import ELEMENTS, refuse_more
-from gbeam.guards.processes import confined
+from gbeam.guards.processes import remembered
+from gbeam.guards.whole import opened
 from gbeam.io.table import Column, Table, array_columns
 
 if TYPE_CHECKING:
@@ -64,13 +65,13 @@ def hdf5_columns(path: str | os.PathLike[str], *, matlab: bool = False) -> list[
         columns.extend(array_columns(name, shape, lambda: values(path_inside), unit=unit, matlab=matlab))
 
     def values(path_inside: str) -> NDArray[Any]:
-        with h5py.File(path) as file:
+        with h5py.File(path) as file:  # which was looked through
             item = file[path_inside]
             refuse_more("", "numbers", item.size, ELEMENTS, 40.0, "save fewer at a time")
             array = _unpacked(np.asarray(item), item.attrs)
         return array.T if matlab else array
 
-    with h5py.File(path) as file:
+    with opened(path) as file:
         file.visititems(add)
     return columns
 
@@ -244,25 +245,11 @@ def is_binary(path: str | os.PathLike[str]) -> bool:
 
 def read_binary(path: str | os.PathLike[str], words: Iterable[str] = ()) -> Table:
     """Read the names and units of all columns, and the samples of those that are needed."""
-    status = os.stat(path)
-    version = status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns
-    table = _kept(os.fspath(path), tuple(sorted(set(words))), os.getcwd(), version)
-    if isinstance(table, InputError):
-        raise table
-    return table
-
-
-@lru_cache(maxsize=4)  # the cases of a sweep have one record, as have the edits of a scenario
-def _kept(path: str, words: Sequence[str], folder: str, version: tuple[int, ...]) -> Table | InputError:
-    """Return the table of a file, or the error that it cannot be read by; `folder` and `version` tell files apart."""
 
     def refuse(problem: str) -> InputError:
         return InputError("record.file", f"{path} {problem}", "export the record again, with fewer variables")
 
-    try:
-        columns = confined(columns_of, path, words, refuse=refuse)
-    except InputError as error:
-        return error
+    columns = remembered(columns_of, path, tuple(sorted(set(words))), refuse=refuse)
     return Table(tuple(_column(**each) for each in columns))
 
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import EMBEDDED
+from gbeam.guards.whole import opened
 from gbeam.io.kept import write_whole
 from gbeam.io.layout import Group, Variable
 from gbeam.printable import storable
@@ -48,7 +49,7 @@ def image(groups: Mapping[str, Group]) -> bytes:
 def contents(path: str) -> dict[str, Any]:
     """Return the variables of a file by path, and the attributes of variables and groups, undecoded."""
     try:
-        with h5py.File(path) as file:
+        with opened(path) as file:
             return contents_of(file)
     except MemoryError:
         raise

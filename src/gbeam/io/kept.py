@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import hashlib
+import io
 import os
-import pickle
+import sys
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
@@ -16,7 +18,7 @@ from typing import Any, TypeVar
 
 from platformdirs import user_cache_path
 
-from gbeam.guards.limits import BINARY_BYTES
+from gbeam.guards.packing import digest, read_packed, write_packed
 from gbeam.progress import PATIENCE, Bar
 from gbeam.results.provenance import present
 
@@ -29,7 +31,7 @@ _KEEPING = ContextVar("keeping", default=True)
 T = TypeVar("T")
 
 
-def write_whole(path: str | os.PathLike[str], *data: bytes, private: bool = False) -> None:
+def write_whole(path: str | os.PathLike[str], *data: bytes | memoryview, private: bool = False) -> None:
     """Write a file under another name beside it, and rename it once it is on the disk; OSError if that cannot be.
 
     A link at its place is replaced and not followed; a private file is for its owner only.
@@ -51,32 +53,26 @@ def write_whole(path: str | os.PathLike[str], *data: bytes, private: bool = Fals
         raise
 
 
-def kept(what: str, source: Any, make: Callable[[], T]) -> T:
-    """Return ``make()``, or what it returned for an equal source before; `what` is shown if it takes long."""
+def kept(what: str, kind: type[T], source: Callable[[], Any], make: Callable[[], T]) -> T:
+    """Return ``make()``, of a `kind`, or what it returned for an equal source before; `what` is shown if it takes long.
+
+    `source` returns all that it is made from: what changes meanwhile, such as a file, keeps nothing.
+    """
     folder = _folder()
-    # Pickles of values that are read and built alike are alike; if not, it is made once more.
-    file = folder and folder / (hashlib.sha256(_program() + pickle.dumps(source)).hexdigest() + _ENDING)
+    key = digest((_program(), source())) if folder else ""
+    file = folder and folder / f"{key}{_ENDING}"
     if file:
-        with suppress(Exception):  # missing, damaged, of another program: whatever is wrong with it, it is made again
-            return _read(file)
+        with suppress(Exception):  # missing, damaged, of another kind or program: whatever is wrong, it is made again
+            if isinstance(before := _read(file, key), kind):
+                return before
     began = monotonic()
     with Bar(what, patience=PATIENCE):
         value = make()
     if file and _KEEPING.get() and monotonic() - began > WORTH:
         with suppress(OSError):  # a full disk is no error
-            _write(file, value)
+            if digest((_program(), source())) == key:
+                _write(file, key, value)
     return value
-
-
-def content_of(file: str | os.PathLike[str]) -> bytes | None:
-    """Return the SHA-256 of a file; None if it is no file, is too large, or cannot be read."""
-    try:
-        if not os.path.isfile(file) or os.path.getsize(file) > BINARY_BYTES:
-            return None
-        with open(file, "rb") as content:
-            return hashlib.file_digest(content, "sha256").digest()
-    except OSError:
-        return None
 
 
 @contextmanager
@@ -90,36 +86,61 @@ def unkept() -> Iterator[None]:
 
 
 def _folder() -> Path | None:
+    """Folder that keeps values; None where it is off, or others than this user may write in it, which is warned of."""
     named = os.environ.get(FOLDER, "")
     if named.strip().lower() in ("off", "0"):
         return None
-    return Path(named) if named else user_cache_path("gbeam") / "models"
+    folder = Path(named) if named else user_cache_path("gbeam") / "models"
+    if (status := _status(folder)) is None or _private(status):
+        return folder
+    words = f"reduced solids are not kept: others may write in {folder}"
+    warnings.warn(f"{words}; let only you write there, or name another folder in {FOLDER}", stacklevel=2)
+    return None
+
+
+def _status(path: Path) -> os.stat_result | None:
+    try:
+        return path.stat()
+    except (OSError, ValueError):
+        return None
+
+
+def _private(status: os.stat_result) -> bool:
+    """True if a file or a folder is this user's, and no other user's to write; Windows does not say."""
+    return sys.platform == "win32" or (status.st_uid == os.geteuid() and not status.st_mode & 0o022)
 
 
 @cache
-def _program() -> bytes:
+def _program() -> str:
     """Hash of gbeam's own files, versions and platform: what one program made, another does not read."""
-    files = sorted(Path(__file__).parents[1].rglob("*.py"))
     hashed = hashlib.sha256(repr(present()).encode())
-    for file in files:
+    for file in sorted(Path(__file__).parents[1].rglob("*.py")):
         hashed.update(file.read_bytes())
-    return hashed.digest()
+    return hashed.hexdigest()
 
 
-def _read(file: Path) -> Any:
-    content = file.read_bytes()
-    digest, value = content[:32], memoryview(content)[32:]
-    if hashlib.sha256(value).digest() != digest:
+def _read(file: Path, key: str) -> Any:
+    """Value in a file; ValueError or another error if it is damaged, another user's, or kept under another key."""
+    with open(file, "rb") as opened:
+        if not _private(os.fstat(opened.fileno())):
+            raise ValueError(f"{file} may be another user's")
+        content = opened.read()
+    stated, data = content[:32], memoryview(content)[32:]
+    if hashlib.sha256(data).digest() != stated:
         raise ValueError(f"{file} is damaged")
+    of, value = read_packed(io.BytesIO(data), records=True)
+    if of != key:
+        raise ValueError(f"{file} has another name")
     os.utime(file)  # used now
-    return pickle.loads(value)
+    return value
 
 
-def _write(file: Path, value: Any) -> None:
+def _write(file: Path, key: str, value: Any) -> None:
     """Write a file whole or not at all, and remove those that were not used for longest."""
-    content = pickle.dumps(value)
+    data = io.BytesIO()
+    write_packed(data, [key, value])
     file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-    write_whole(file, hashlib.sha256(content).digest(), content, private=True)
+    write_whole(file, hashlib.sha256(data.getbuffer()).digest(), data.getbuffer(), private=True)
     others = [(other.stat(), other) for other in file.parent.glob(f"*{_ENDING}") if other != file]
     room = MOST - file.stat().st_size
     for status, other in sorted(others, key=lambda pair: -pair[0].st_mtime):

@@ -62,7 +62,9 @@ def refuse_cost(where: str, unknowns: float, of: str = "makes") -> None:
 
 @contextmanager
 def factorised(matrix: Any, where: str = "stiffness") -> Iterator[Callable[[Floats], Floats]]:
-    """Yield a function that solves for right-hand sides (n, m); InputError if the matrix is singular."""
+    """Yield a function that solves for right-hand sides (n, m); InputError if the matrix is singular, MemoryError if
+    its factors do not fit.
+    """
     if solver() == "Pardiso":
         from pypardiso import PyPardisoSolver
         from pypardiso.pardiso_wrapper import PyPardisoError
@@ -83,8 +85,12 @@ def factorised(matrix: Any, where: str = "stiffness") -> Iterator[Callable[[Floa
     if solver() == "RSLAB":
         import rslab
 
+        symbolic = rslab.analyze(matrix, path="ldlt")
+        np.empty(
+            symbolic.memory_plan("float64")["peak_bytes"], np.uint8
+        )  # where there is no room, rslab ends the process
         try:
-            factors = rslab.ldlt(matrix)
+            factors = symbolic.factor(matrix)
         except RuntimeError:
             raise InputError(where, "is singular", HOLD) from None
         if factors.inertia[1]:  # pivots below zero

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -13,17 +14,20 @@ from gbeam.guards.limits import BINARY_BYTES, MESHER_BYTES, MESHER_SECONDS, refu
 from gbeam.guards.processes import confined
 from gbeam.numerics.sparse import refuse_cost
 from gbeam.progress import PATIENCE, Bar
-from gbeam.solids.foreign import read_mesh, unit_size
+from gbeam.solids.files import FileMesh, parts_of, read_mesh
+from gbeam.solids.foreign import unit_size
 
 ENDINGS = (".step", ".stp")
 AROUND = 12  # elements around a full circle at least
 UNNAMED = "Open CASCADE"  # begins the names that nobody gave
+# Entity of STEP by which Open CASCADE opens another file, by its long and its short name.
+_ELSEWHERE = re.compile(rb"\b(APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT|AEIA)\b", re.IGNORECASE)
 DENSE = 5  # nodes in a cube of the size: fewer than Gmsh makes, 8 to 12 where a part is several elements thick
 FINEST = 10  # how much shorter than the given size edges may be there
 
 
-def mesh_of(source: Any, unit: str | None, element_size: float | None) -> tuple[Any, float]:
-    """Return meshio's mesh of a source, itself or a file, and the size of its unit, m."""
+def mesh_of(source: Any, unit: str | None, element_size: float | None, *, cards: bool = False) -> tuple[Any, float]:
+    """Return the mesh as of meshio of a source, itself or a file with `cards` or not, and the size of its unit, m."""
     path = Path(source) if isinstance(source, (str, os.PathLike)) else None
     if path is not None and path.suffix.lower() in ENDINGS:
         if unit is not None:
@@ -33,14 +37,14 @@ def mesh_of(source: Any, unit: str | None, element_size: float | None) -> tuple[
         return meshed(path, positive("element_size", element_size, "m")), 1.0
     if element_size is not None:
         raise InputError("element_size", "is given beside a mesh", "leave it out: it is for STEP files")
-    mesh = read_mesh(source)
+    mesh = read_mesh(source, cards=cards)
     if unit is None:
         raise InputError("unit", "is missing", 'give the one that the coordinates are in, such as "mm"')
     return mesh, unit_size("unit", unit, "length")
 
 
-def meshed(path: Path, size: float) -> Any:
-    """Return meshio's mesh, in m, of tetrahedra of 10 nodes with edges of a size (m), finer where surfaces are curved;
+def meshed(path: Path, size: float) -> FileMesh:
+    """Return the mesh, in m, of tetrahedra of 10 nodes with edges of a size (m), finer where surfaces are curved;
     solids and surfaces are groups by their names, or numbers in the order of the file, and `info` says where they are.
     """
 
@@ -50,14 +54,11 @@ def meshed(path: Path, size: float) -> Any:
     with tempfile.TemporaryDirectory() as folder, Bar(f"meshing {path.name}", patience=PATIENCE):
         out = os.path.join(folder, "solid.msh")
         limits = {"memory": MESHER_BYTES, "seconds": MESHER_SECONDS}
-        places = confined(_mesh_into, path, size, out, refuse=refuse, **limits)
-        mesh = read_mesh(out)
-    mesh.info = places
-    return mesh
+        return FileMesh.of(confined(_mesh_into, path, size, out, refuse=refuse, **limits))
 
 
-def _mesh_into(path: str, size: float, out: str) -> dict[str, str]:
-    """Mesh the solids of a file into another one, `out`; return the place of each group in words, by its name."""
+def _mesh_into(path: str, size: float, out: str) -> dict[str, Any]:
+    """Mesh the solids of a file into another one, `out`; return the parts of that, with the places of its groups."""
     try:
         import gmsh
     except ModuleNotFoundError:
@@ -80,6 +81,9 @@ def _mesh_into(path: str, size: float, out: str) -> dict[str, str]:
     model, places = gmsh.model, dict[str, str]()
     try:
         refuse_large_file("mesh", path, BINARY_BYTES, "export fewer parts")
+        if _ELSEWHERE.search(Path(path).read_bytes()):
+            problem = f"{path} refers to other files, which a result would not hold"
+            raise InputError("mesh", problem, "export the assembly as one file")
         model.occ.importShapes(path)
         model.occ.removeAllDuplicates()  # parts that touch share their nodes
         model.occ.synchronize()
@@ -102,4 +106,4 @@ def _mesh_into(path: str, size: float, out: str) -> dict[str, str]:
     except Exception as error:  # Gmsh raises no narrower one
         problem = f"{path} is not meshed by Gmsh: {' '.join(str(error).split())}"
         raise InputError("mesh", problem, "give another element_size, or repair the shape") from None
-    return places
+    return parts_of(out, False) | {"info": places}

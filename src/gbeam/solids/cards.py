@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import os
+import re
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -39,33 +40,66 @@ class Spring(NamedTuple):
     stiffness: Floats
 
 
+# Statements of Nastran, Abaqus and CalculiX that carry mass, stiffness or constraints.
+_CARRYING = re.compile(
+    r"CONM[12]|CMASS[1-4]|NSM\w*|CELAS[1-4]|CBUSH\w*|RBE[123]|RBAR|RROD|RSPLINE|CBAR|CBEAM|CBEND|CROD|CONROD|CTUBE"
+    r"|CWELD|CFAST|CGAP|CSHEAR|C(TRI|QUAD)\w*X\w*|PSHELL|PCOMP\w?|MASS|ROTARY INERTIA|NONSTRUCTURAL MASS|SPRING|TIE"
+    r"|RIGID BODY|CONNECTOR SECTION|(\w+ )?COUPLING|KINEMATIC|DISTRIBUTING|EQUATION|MPC|CONTACT PAIR|GAP|TRANSFORM"
+    r"|(BEAM|SHELL)( GENERAL)? SECTION(, \w+)*|SOLID SECTION, COMPOSITE"
+)
+
+
 @dataclass
 class Cards:
-    """Statements of a file besides its mesh: nodes of each rigid link by its name, masses, springs, and by name the
-    node that has the `mean` motion of others, with their weights; `words` are the statements that are read.
+    """Statements of a file besides its mesh: numbers (k,) of its nodes, and by them the nodes of each rigid link by its
+    name, masses, springs, and by name the node that has the `mean` motion of others, with their weights; `words` are
+    the statements that are read.
     """
 
-    mesh: Any
+    nodes: Any = ()
     rigid: dict[str, tuple[int, ...]] = field(default_factory=dict)
     lumps: list[Lump] = field(default_factory=list)
     springs: list[Spring] = field(default_factory=list)
     mean: dict[str, tuple[int, Mapping[int, float]]] = field(default_factory=dict)
-    words: ClassVar[tuple[str, ...]] = ()
+    words: tuple[str, ...] = ()
 
-    def read(self) -> None:
-        """Read the statements; there are none besides a mesh of another kind."""
+    def parts(self) -> dict[str, Any]:
+        """Return them as plain values and arrays."""
+        mean = {name: [node, [*shares], [*shares.values()]] for name, (node, shares) in self.mean.items()}
+        lumps, springs = ([tuple(each) for each in listed] for listed in (self.lumps, self.springs))
+        return {"rigid": self.rigid, "lumps": lumps, "springs": springs, "mean": mean, "words": self.words}
+
+    @classmethod
+    def of(cls, nodes: Any, parts: Mapping[str, Any]) -> Cards:
+        """Make them of their parts; there are none besides a mesh of another kind."""
+        if not parts:
+            return cls(nodes)
+        mean: dict[str, tuple[int, Mapping[int, float]]] = {
+            name: (node, dict(zip(*shares, strict=True))) for name, (node, *shares) in parts["mean"].items()
+        }
+        lumps, springs = [Lump(*each) for each in parts["lumps"]], [Spring(*each) for each in parts["springs"]]
+        return cls(nodes, parts["rigid"], lumps, springs, mean, parts["words"])
 
 
-def cards_of(source: Any, mesh: Any) -> Cards:
+def carrying(mesh: TextMesh) -> dict[str, int]:
+    """Count the statements of a file on masses, stiffness and constraints by their names."""
+    counts = Counter[str]()
+    for word, options, _ in mesh.statements:
+        name = ", ".join([word, *(option for option in ("COMPOSITE", "OFFSET") if option in options)])
+        counts[name] += bool(_CARRYING.fullmatch(name))
+    return dict(+counts)
+
+
+def read_cards(path: str, mesh: TextMesh) -> Cards:
     """Read the statements of a file besides its mesh: none unless it is one of Nastran, Abaqus or CalculiX."""
-    ending = ending_of(source)
-    cards = (_Nastran if ending in NASTRAN else _Abaqus if ending in ABAQUS else Cards)(mesh)
+    ending = ending_of(path)
+    cards = (_Nastran if ending in NASTRAN else _Abaqus if ending in ABAQUS else _Reader)(mesh)
     try:
         cards.read()
     except InputError:
         raise
     except (ValueError, TypeError, IndexError, KeyError) as error:
-        problem = f"{os.fspath(source)} has masses, links or springs that cannot be read: {error}"
+        problem = f"{path} has masses, links or springs that cannot be read: {error}"
         raise InputError("mesh", problem, "mend them, or leave mass_unit out") from None
     return cards
 
@@ -78,10 +112,23 @@ def refused(name: str, problem: str, fix: str = OTHERWISE) -> InputError:
     return InputError("mesh", f"has {name}, which {problem}", fix)
 
 
-class _Nastran(Cards):
+class _Reader(Cards):
+    """Statements as they are read beside a mesh: none."""
+
+    known: ClassVar[tuple[str, ...]] = ()
+
+    def __init__(self, mesh: TextMesh) -> None:
+        super().__init__(words=self.known)
+        self.mesh = mesh
+
+    def read(self) -> None:
+        """Read the statements."""
+
+
+class _Nastran(_Reader):
     """Cards of Nastran, each by the method of its name."""
 
-    words = ("CONM2", "RBE2", "RBE3", "RBAR", "CELAS1", "CELAS2", "CBUSH")
+    known = ("CONM2", "RBE2", "RBE3", "RBAR", "CELAS1", "CELAS2", "CBUSH")
 
     def read(self) -> None:
         usual = next((row[5] for row in self._rows("GRDSET")), "")
@@ -178,10 +225,10 @@ def _joined(rigid: Mapping[str, tuple[int, ...]]) -> dict[str, tuple[int, ...]]:
     return joined
 
 
-class _Abaqus(Cards):
+class _Abaqus(_Reader):
     """Keywords of Abaqus and CalculiX, each by the method of its name."""
 
-    words = ("MASS", "ROTARY INERTIA", "SPRING", "RIGID BODY", "COUPLING", "KINEMATIC", "DISTRIBUTING",
+    known = ("MASS", "ROTARY INERTIA", "SPRING", "RIGID BODY", "COUPLING", "KINEMATIC", "DISTRIBUTING",
              "DISTRIBUTING COUPLING")  # fmt: skip
 
     def read(self) -> None:

@@ -1,15 +1,10 @@
-"""Meshes in the files of other programs, the groups in them, and the skin by which a group is chosen by sight."""
+"""Elements and groups of a mesh as of meshio, with the units and numbers of its file."""
 
 from __future__ import annotations
 
-import contextlib
-import io
-import os
-import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,137 +12,20 @@ import numpy as np
 from gbeam.arrays.types import Floats, Indices
 from gbeam.errors import InputError
 from gbeam.guards.checks import positive
-from gbeam.guards.limits import BINARY_BYTES, in_bytes, refuse_large_file
 from gbeam.guards.units import UnitError, quantity
-from gbeam.numerics.sparse import refuse_cost
 from gbeam.printable import shortened
 from gbeam.solids.exodus import ENDINGS as EXODUS
-from gbeam.solids.exodus import read_exodus
-from gbeam.solids.shape_functions import KINDS, MED_ORDER
-from gbeam.solids.shells import points_of
-from gbeam.solids.stress import surface_of
-from gbeam.solids.texts import AGAIN, TEXTS, TextMesh, ending_of, text_mesh
+from gbeam.solids.shape_functions import KINDS
+from gbeam.solids.texts import AGAIN
 
 _INTERNAL = "gmsh:"  # begins the names of sets that nobody gave
 _ENTITIES = "gmsh:geometrical"
-# Statements of Nastran, Abaqus and CalculiX that carry mass, stiffness or constraints.
-_CARRYING = re.compile(
-    r"CONM[12]|CMASS[1-4]|NSM\w*|CELAS[1-4]|CBUSH\w*|RBE[123]|RBAR|RROD|RSPLINE|CBAR|CBEAM|CBEND|CROD|CONROD|CTUBE"
-    r"|CWELD|CFAST|CGAP|CSHEAR|C(TRI|QUAD)\w*X\w*|PSHELL|PCOMP\w?|MASS|ROTARY INERTIA|NONSTRUCTURAL MASS|SPRING|TIE"
-    r"|RIGID BODY|CONNECTOR SECTION|(\w+ )?COUPLING|KINEMATIC|DISTRIBUTING|EQUATION|MPC|CONTACT PAIR|GAP|TRANSFORM"
-    r"|(BEAM|SHELL)( GENERAL)? SECTION(, \w+)*|SOLID SECTION, COMPOSITE"
-)
-THICKNESS = ("PSHELL", "SHELL SECTION")
 # Ends of the names of files that hold meshes, also of surfaces and of geometry, of which the reader says what lacks.
 MESHES = {
-    *EXODUS, ".avs", ".bdf", ".fem", ".inp", ".mdpa", ".med", ".mesh", ".meshb", ".msh", ".nas",
-    ".su2", ".ugrid", ".vtk", ".vtu", ".xdmf", ".cgns", ".iges", ".igs", ".obj", ".ply", ".step", ".stl", ".stp",
+    *EXODUS, ".avs", ".bdf", ".fem", ".inp", ".mdpa", ".med", ".mesh", ".meshb", ".msh", ".nas", ".su2", ".ugrid",
+    ".vtk", ".vtu", ".xdmf", ".xmf", ".cgns", ".iges", ".igs", ".obj", ".ply", ".step", ".stl", ".stp",
 }  # fmt: skip
-_IGES = "IGES, which holds surfaces and not the solid", "export the part as STEP"
-_UNREAD = {
-    ".iges": _IGES,
-    ".igs": _IGES,
-    ".cgns": ("CGNS, of which meshio reads no groups", "write it for Gmsh, Nastran, Abaqus, CalculiX or MED"),
-}
-UNKNOWN_BYTES = 40  # of a file as text, of quadratic elements; binary files have 14 to 21, linear elements up to 74
-VERTICES = 20_000  # about: at which groups are still told apart
-GROUPS = 200
-SHEET = 1e-3  # thickness of a shell that is shown, of the size of the mesh
-
-
-def read_mesh(source: str | os.PathLike[str] | Any) -> Any:
-    """Return a mesh as of meshio in a file, or the mesh itself."""
-    if not isinstance(source, (str, os.PathLike)):
-        return source
-    if ending := _UNREAD.get(ending_of(source)):
-        raise InputError("mesh", f"{os.fspath(source)} is {ending[0]}", ending[1])
-    if (size := os.path.getsize(source)) > BINARY_BYTES:
-        refuse_cost("mesh", size / UNKNOWN_BYTES, f"has {in_bytes(size)}, as files of meshes have with some")
-    refuse_large_file("mesh", source, BINARY_BYTES, "mesh it more coarsely")
-    if not os.path.getsize(source):
-        raise InputError("mesh", f"{os.fspath(source)} is empty", "write it again")
-    printed = io.StringIO()
-    try:
-        if (mesh := text_mesh(source)) is not None:
-            return mesh
-        if ending_of(source) in EXODUS:
-            return read_exodus(Path(source))
-        import meshio
-
-        _refuse_node_0(Path(source))
-        _refuse_in_parts(Path(source))
-        # It prints what fails and exits.
-        with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
-            mesh = meshio.read(source)
-        return _with_masks(_of_med(mesh) if ending_of(source) == ".med" else mesh)
-    except InputError:
-        raise
-    except ModuleNotFoundError as error:  # what meshio reads some formats by
-        raise InputError("", f"{error.name} is not installed", f'install it with: pip install "{error.name}"') from None
-    except (Exception, SystemExit) as error:
-        if error.args == ("wedge15",):
-            fix = "write it for Gmsh as text, or for Nastran, Abaqus, CalculiX or Exodus"
-            raise InputError("mesh", f"{os.fspath(source)} has wedges of 15 nodes, which meshio lacks", fix) from None
-        words = shortened(" ".join((printed.getvalue() or str(error)).split()) or "it breaks off", 200)
-        if isinstance(error, KeyError):
-            noun = "number" if isinstance(error.args[0], int) else "set"
-            listed = ending_of(source) in TEXTS
-            words = f"{noun} {error.args[0]} is named in it, and is not there" if listed else f"meshio lacks {error}"
-        fix = "give a file of Gmsh, Nastran, Abaqus, CalculiX, VTK or Exodus, with its ending"
-        raise InputError("mesh", f"{os.fspath(source)} cannot be read: {words}", fix) from None
-
-
-def _refuse_node_0(path: Path) -> None:
-    """Refuse a binary file of Gmsh 2 with a node 0, which meshio takes for the one with the largest number."""
-    content = path.read_bytes() if path.suffix.lower() == ".msh" else b""
-    if head := re.search(rb"\$MeshFormat\s+2\S* 1 .*?\$Nodes\s+(\d+)\n", content, re.DOTALL):
-        numbers = np.frombuffer(content, [("", "<i4"), ("", "<f8", 3)], int(head[1]), head.end())["f0"]
-        if numbers.min() < 1:
-            raise InputError("mesh", f"has node {numbers.min()}", "write it as text, or number its nodes from 1")
-
-
-def _refuse_in_parts(path: Path) -> None:
-    """Refuse a file of XDMF whose numbers are in another one, which a result would not hold."""
-    content = path.read_bytes() if path.suffix.lower() == ".xdmf" else b""
-    if match := re.search(rb'Format="HDF"[^>]*>\s*([^:<]*):', content):
-        other = match[1].decode(errors="replace").strip()
-        fix = 'write one file: VTU, or XDMF with data_format="XML" of meshio'
-        raise InputError("mesh", f"{path} keeps its numbers in {other}", fix)
-
-
-def _of_med(mesh: Any) -> Any:
-    """A mesh of MED with groups by their names, which families of elements and of nodes have, and the nodes of elements
-    in the order of VTK, in which meshio writes them there.
-    """
-    for block in mesh.cells:
-        if block.type in MED_ORDER and len(block.data):
-            first, *along = mesh.points[block.data[0, [0, 1, 3, 4] if "hexa" in block.type else [0, 1, 2, 3]]]
-            if np.linalg.det(along - first) < 0:
-                block.data = block.data[:, MED_ORDER[block.type]]
-    for tags, values, sets in (
-        (getattr(mesh, "cell_tags", {}), mesh.cell_data.get("cell_tags"), mesh.cell_sets),
-        (getattr(mesh, "point_tags", {}), [mesh.point_data.get("point_tags")], mesh.point_sets),
-    ):
-        for name in dict.fromkeys(name for names in tags.values() for name in names):
-            numbers = [number for number, names in tags.items() if name in names]
-            chosen = [np.flatnonzero(np.isin(families, numbers)) for families in values]
-            sets[name] = chosen if sets is mesh.cell_sets else chosen[0]
-    return mesh
-
-
-def _with_masks(mesh: Any) -> Any:
-    """A mesh with its arrays of 0 and 1, as selections of ParaView are, as groups by their names."""
-    for sets, arrays in (
-        (mesh.point_sets, {name: [values] for name, values in mesh.point_data.items()}),
-        (mesh.cell_sets, mesh.cell_data),
-    ):
-        for name, values in arrays.items():
-            masks = [np.asarray(mask) for mask in values]
-            levels = {*np.unique(np.concatenate(masks)).tolist()} if all(mask.ndim == 1 for mask in masks) else set()
-            if levels == {0, 1} and all(mask.dtype.kind in "iub" for mask in masks):
-                chosen = [np.flatnonzero(mask) for mask in masks]
-                sets.setdefault(name, chosen if sets is mesh.cell_sets else chosen[0])
-    return mesh
+THICKNESS = ("PSHELL", "SHELL SECTION")
 
 
 def unit_size(where: str, unit: str, kind: str) -> float:
@@ -161,11 +39,7 @@ def unit_size(where: str, unit: str, kind: str) -> float:
 
 def left_out(source: Any, mesh: Any, read: Collection[str] = ()) -> list[str]:
     """Warning of a file's statements on masses, stiffness and constraints that are not read."""
-    counts = Counter[str]()
-    for word, options, _ in mesh.statements if isinstance(mesh, TextMesh) else ():
-        name = ", ".join([word, *(option for option in ("COMPOSITE", "OFFSET") if option in options)])
-        counts[name] += bool(_CARRYING.fullmatch(name)) and name not in read
-    counts = +counts
+    counts = {name: count for name, count in getattr(mesh, "carrying", {}).items() if name not in read}
     if not counts:
         return []
     listed = ", ".join(f"{name} ({count})" for name, count in counts.items())
@@ -230,7 +104,7 @@ def numbers_of(mesh: Any) -> list[Indices]:
 
 def node_numbers_of(mesh: Any) -> Indices:
     """Numbers of the nodes, by which a text file names them, or from 1."""
-    return np.array(list(getattr(mesh, "nodes", range(1, len(mesh.points) + 1))))
+    return np.asarray(getattr(mesh, "numbers", range(1, len(mesh.points) + 1)))
 
 
 def refuse_missing(mesh: Any, elements: Iterable[Elements]) -> None:
@@ -308,45 +182,20 @@ def no_group(mesh: Any, where: str, name: str) -> InputError:
     return InputError(where, f"is {name!r}, which is no group of the mesh", known)
 
 
-def _tags(mesh: Any) -> list[list[Any]]:
-    """Whole numbers of the elements, such as physical groups or properties, block by block."""
-    return [
-        values
+def tags_of(mesh: Any) -> dict[str, list[Any]]:
+    """Whole numbers of the elements, such as physical groups or properties, by name and block by block."""
+    return {
+        name: values
         for name, values in mesh.cell_data.items()
         if name != _ENTITIES
         and all(np.asarray(tags).ndim == 1 and np.asarray(tags).dtype.kind in "iu" for tags in values)
-    ]
+    }
+
+
+def _tags(mesh: Any) -> list[list[Any]]:
+    return [*tags_of(mesh).values()]
 
 
 def is_mesh(name: str) -> bool:
     """True if a file holds a mesh, by the end of its name."""
     return Path(name).suffix.lower() in MESHES
-
-
-def skin(path: str) -> dict[str, Any]:
-    """Outer faces of a mesh file: vertices (v, 3), in its unit, triangles (f, 3), and a list of its groups, each with
-    name, number of its nodes that belong to elements, and indices of its vertices.
-    """
-    mesh = read_mesh(path)
-    points = np.asarray(mesh.points, dtype=float)
-    no_solids = not any(block.dim == 3 and len(block.data) for block in mesh.cells) and points.size
-    elements = elements_of(mesh, SHEET * float(np.ptp(points)) if no_solids else None)
-    used = np.unique(np.concatenate([each.nodes.ravel() for each in elements]))
-    if points.ndim != 2 or points.shape[1] != 3 or used[-1] >= len(points) or not np.isfinite(points[used]).all():
-        raise InputError("mesh", "has elements whose nodes have no place in space", "write it again")
-    points, numbers, nodes_of = points_of(points, elements)
-    blocks = [each._replace(nodes=inside) for each, inside in zip(elements, nodes_of, strict=True)]
-    outer, triangles = surface_of(SimpleNamespace(points=points, blocks=blocks), VERTICES)
-    groups = list[dict[str, Any]]()
-    seen = set[bytes]()
-    for name in group_names(mesh)[:GROUPS]:
-        try:
-            inside = np.intersect1d(nodes_in(mesh, "clamp", name), used)
-        except InputError:  # a name without elements
-            continue
-        if len(inside) and inside.tobytes() not in seen:  # another name, or tag, of the same nodes is left out
-            groups.append(
-                {"name": name, "nodes": len(inside), "vertices": np.flatnonzero(np.isin(numbers[outer], inside))}
-            )
-            seen.add(inside.tobytes())
-    return {"vertices": points[outer].astype(np.float32), "triangles": triangles, "groups": groups}

@@ -139,9 +139,9 @@ class ImportedModel(Value):
         *paths : path
             One or several that complete one another: NumPy's .npz and .npy, Matrix Market's .mtx and MATLAB's .mat,
             with M and K, with ``nodes``, and with P, the origins of the interface frames, as Simscape's Reduced Order
-            Flexible Solid takes them; matrices of Abaqus and CalculiX (.mtx, and .sti and .mas beside .dof), with nodes
+            Flexible Solid takes them; matrices of Abaqus and CalculiX (.mtx, and .sti and .mas with .dof), with nodes
             of an .inp; by the extra ``nastran`` .op4, .op2 and direct matrix input (.pch), with nodes of bulk data
-            (.bdf, .dat, .nas, .blk) or of an external superelement (.asm).
+            (.bdf, .dat, .nas, .blk) or of an external superelement (.asm with .pch).
         mass, stiffness : str
             Names of the matrices in the files, where they are not the usual ones.
         nodes : (k, 3), optional

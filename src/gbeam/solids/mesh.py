@@ -23,7 +23,7 @@ from gbeam.mechanics.tree.joints import kind_of_value
 from gbeam.mechanics.tree.system import Place, RigidBody
 from gbeam.numerics.sparse import refuse_cost
 from gbeam.solids.cad import mesh_of
-from gbeam.solids.cards import cards_of
+from gbeam.solids.cards import Cards
 from gbeam.solids.elements import (
     Block,
     coupled,
@@ -208,7 +208,7 @@ class SolidMesh(Value):
         """
         from scipy.spatial.transform import Rotation
 
-        mesh, size = mesh_of(source, unit, element_size)
+        mesh, size = mesh_of(source, unit, element_size, cards=mass_unit is not None)
         places = np.asarray(mesh.points, dtype=float)
         if places.ndim != 2 or places.shape[1] != 3 or not np.isfinite(places).all():
             raise InputError("mesh", f"has points of shape {places.shape}, or not finite", "give x, y and z of each")
@@ -255,7 +255,7 @@ class SolidMesh(Value):
         tied = Links.of(group, links or {}, carried or {}, springs or {}, vertices, clamped)
         statements_read = tuple[str, ...]()
         if mass_unit is not None:
-            cards, weight = cards_of(source, mesh), unit_size("mass_unit", mass_unit, "mass")
+            cards, weight = getattr(mesh, "cards", Cards()), unit_size("mass_unit", mass_unit, "mass")
             tied, lumped = with_cards(cards, tied, Placed(middles, rotation, vertices, numbers, clamped), size, weight)
             weights, statements_read = weights + lumped, cards.words
         if thickness is not None:

@@ -35,7 +35,7 @@ def with_cards(cards: Cards, links: Links, nodes: Placed, size: float, mass: flo
     """
     ends = np.cumsum(np.bincount(nodes.numbers, minlength=len(nodes.places)))[:-1]
     points_of = np.split(np.argsort(nodes.numbers, kind="stable"), ends)
-    listed = getattr(cards.mesh, "nodes", ())  # by numbers
+    listed = np.asarray(cards.nodes).tolist()
     solid_of = dict(zip(listed, points_of, strict=False))
     place_of = dict(zip(listed, nodes.places, strict=False))
     within = float(np.linalg.norm(np.ptp(nodes.places, axis=0))) * APART

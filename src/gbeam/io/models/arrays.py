@@ -16,6 +16,7 @@ import numpy as np
 from gbeam.errors import InputError
 from gbeam.guards.limits import BINARY_BYTES, read_json, refuse_large_file
 from gbeam.guards.processes import confined
+from gbeam.guards.whole import opened
 from gbeam.printable import shortened
 
 Matrices = dict[str, Any]
@@ -128,7 +129,7 @@ def _of_hdf5(path: str) -> dict[str, Any]:
         elif node.dtype.kind in "fiu" and "MATLAB_empty" not in node.attrs:
             arrays[name] = node[()].T
 
-    with h5py.File(path) as file:
+    with opened(path) as file:
         for key, each in file.items():
             if not key.startswith("#"):
                 add(key, each)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -41,37 +42,21 @@ def _parts(matrix: Any) -> Any:
     return matrix if isinstance(matrix, np.ndarray) else sparse_parts(matrix)
 
 
-def read_punch(path: str) -> Contents:
-    """Read direct matrix input of a punch file, and grid points in it."""
-    bulk, *_ = _pyyeti()
-    contents: Contents = {"matrices": {}, "unknowns": {}}
-    for name, frame in bulk.rddmig(path, square=True).items():
-        contents["matrices"][name.upper()] = frame.to_numpy()
-        contents["unknowns"][name.upper()] = np.array(frame.index.to_list(), dtype=int)
-    text = Path(path).read_text(encoding="utf-8", errors="replace").upper()
-    return contents | _nodes(path) if any(line.startswith("GRID") for line in text.splitlines()) else contents
-
-
 def read_bulk(path: str) -> Contents:
-    """Read the grid points of bulk data, and direct matrix input in it."""
+    """Read the grid points of bulk data, direct matrix input, and the rows of an external superelement."""
+    bulk, n2p, *_ = _pyyeti()
     text = Path(path).read_text(encoding="utf-8", errors="replace").upper()
-    contents: Contents = _nodes(path)
-    return read_punch(path) | contents if "DMIG" in text else contents
-
-
-def read_superelement(path: str) -> Contents:
-    """Read the boundary of an external superelement, whose matrices are in the OUTPUT4 file of the same export."""
-    bulk, n2p, *_ = _pyyeti()
-    uset = bulk.asm2uset(path, try_rdextrn=True)
-    uset = uset[0] if isinstance(uset, tuple) else uset
-    rows = np.array(uset.index.to_list(), dtype=int)
-    unknowns = np.where(rows[:, 1:] == 0, np.column_stack([rows[:, 0], 0 * rows[:, 0]]), rows)
-    return {"unknowns": {"": unknowns}} | _places(uset, n2p)
-
-
-def _nodes(path: str) -> Contents:
-    bulk, n2p, *_ = _pyyeti()
-    return _places(bulk.bulk2uset(path)[0], n2p)
+    words = {match[1] for match in re.finditer(r"^ *([A-Z]+)", text, re.MULTILINE)}
+    if "INCLUDE" in words:
+        raise InputError("path", f"{path} includes other files", "delete those lines, and name the files too")
+    contents: Contents = {"matrices": {}, "unknowns": {}}
+    if "DMIG" in words:
+        for name, frame in bulk.rddmig(path, square=True, follow_includes=False).items():
+            contents["matrices"][name.upper()] = frame.to_numpy()
+            contents["unknowns"][name.upper()] = np.array(frame.index.to_list(), dtype=int)
+    if "EXTRN" in words:
+        contents["unknowns"][""] = np.array(bulk.rdextrn(path, follow_includes=False), dtype=int)
+    return contents | _places(bulk.bulk2uset(path, follow_includes=False)[0], n2p) if "GRID" in words else contents
 
 
 def _places(uset: Any, n2p: Any) -> Contents:
@@ -100,16 +85,15 @@ def read_matrix(path: str) -> Contents:
 
 
 def read_storage(path: str) -> Contents:
-    """Read the matrix of CalculiX's matrix storage, whose rows are in the file .dof beside it."""
-    entries = np.loadtxt(path, ndmin=2)
-    beside = Path(path).with_suffix(".dof")
-    if not beside.exists():
-        raise InputError("path", f"{path} has no {beside.name} beside it", "copy it there: it says what the rows are")
-    pairs = [line.split(".") for line in beside.read_text(encoding="ascii").split()]
-    name = {".sti": "K", ".mas": "M"}[Path(path).suffix.lower()]
-    i, j = entries[:, :2].astype(int).T - 1
-    matrix = mirrored(entries[:, 2], i, j, len(pairs))
-    return {"matrices": {name: matrix}, "unknowns": {name: np.array(pairs, dtype=int)}}
+    """Read the matrix of CalculiX's matrix storage, whose rows another file has."""
+    entries, name = np.loadtxt(path, ndmin=2), {".sti": "K", ".mas": "M"}[Path(path).suffix.lower()]
+    return _entries(entries, name)
+
+
+def read_rows(path: str) -> Contents:
+    """Read nodes and directions of the rows of CalculiX's matrix storage."""
+    pairs = [line.split(".") for line in Path(path).read_text(encoding="ascii").split()]
+    return {"unknowns": {"": np.array(pairs, dtype=int)}}
 
 
 def read_nodes(path: str) -> Contents:

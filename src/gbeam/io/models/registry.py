@@ -30,13 +30,13 @@ READERS = {
     ".inp": "finite_elements.read_nodes",
     ".op4": "finite_elements.read_op4",
     ".op2": "finite_elements.read_op2",
-    ".pch": "finite_elements.read_punch",
-    ".asm": "finite_elements.read_superelement",
+    ".dof": "finite_elements.read_rows",
     ".sid": "modes.read_standard_input",
     ".uff": "modes.read_universal",
     ".unv": "modes.read_universal",
-    **dict.fromkeys((".bdf", ".dat", ".nas", ".blk"), "finite_elements.read_bulk"),
+    **dict.fromkeys((".bdf", ".dat", ".nas", ".blk", ".pch", ".asm"), "finite_elements.read_bulk"),
 }
+ROWS = {".sti": ".dof", ".mas": ".dof", ".asm": ".pch"}  # endings of files, and of those with their rows
 NAMES = {  # that programs give their matrices
     "mass": ("M", "MASS", "MGG", "MAA", "MAAX", "MXX", "M2GG"),
     "stiffness": ("K", "STIFFNESS", "KGG", "KAA", "KAAX", "KXX", "K2GG"),
@@ -75,7 +75,7 @@ def read_matrix(path: str | os.PathLike[str], name: str = "") -> Any:
     ...     print(gb.read_matrix(os.path.join(folder, "model.npz"), "K").diagonal())
     [1. 2. 3.]
     """
-    matrices = _read(path).get("matrices", {})
+    matrices = contents_of(path).get("matrices", {})
     if name and name not in matrices:
         raise InputError("name", f"is {name!r}, which is no matrix of {path}", f"choose from {', '.join(matrices)}")
     if not matrices:
@@ -155,10 +155,15 @@ class Model:
 
 
 def model_of(paths: Sequence[str | os.PathLike[str]]) -> Model:
-    """Read files that complete one another."""
+    """Read files that complete one another: no reader opens another file than its own."""
+    endings = {Path(path).suffix.lower() for path in paths}
+    for file in map(Path, paths):
+        if (rows := ROWS.get(file.suffix.lower())) and rows not in endings:
+            problem = f"{file} is given without {file.with_suffix(rows).name}, which says what its rows are"
+            raise InputError("path", problem, "name that file too")
     parts: dict[str, Any] = {"matrices": {}, "unknowns": {}}
     for path in paths:
-        part: Any = _read(path)
+        part: Any = contents_of(path)
         for key in ("matrices", "unknowns"):
             parts[key] |= part.get(key, {})
         if "places" in part and "places" in parts:
@@ -193,8 +198,8 @@ def _spread(matrix: Any, rows: Any, all_unknowns: Any) -> Any:
     return coo_array((entries.data, (index[i], index[j])), shape=(len(all_unknowns), len(all_unknowns)))
 
 
-def _read(path: str | os.PathLike[str]) -> Contents:
-    """Read a file in a process of its own."""
+def contents_of(path: str | os.PathLike[str]) -> Contents:
+    """Read a file in a process of its own; InputError if it ends otherwise than models do, or cannot be read."""
     ending = Path(path).suffix.lower()
     if ending not in READERS:
         raise InputError("path", f"{path} ends in {ending or 'nothing'}", f"give one of {', '.join(READERS)}")
@@ -218,9 +223,6 @@ def _reading(path: str) -> Contents:
         contents: Contents = getattr(import_module(f"gbeam.io.models.{module}"), name)(path)
     except (MemoryError, InputError):
         raise
-    except FileNotFoundError as error:  # one that this one names, as .asm does .pch
-        problem = f"{path} lacks {os.path.basename(os.fspath(error.filename or 'a file'))}"
-        raise InputError("path", problem, "put that beside it") from None
     except Exception as error:  # of many kinds
         problem = f"{path} cannot be read: {shortened(str(error), 100)}"
         raise InputError("path", problem, "export it again") from None

@@ -34,6 +34,11 @@ def read_table(path: str | os.PathLike[str], words: Iterable[str] = ()) -> Table
         raise InputError("record.file", problem, "give the path of a record") from None
 
 
+def columns_of_text(path: str, most: int) -> list[tuple[str, str]]:
+    """Return the names and units of the first columns of a record of text, `most` of them."""
+    return [(column.name, column.unit) for column in read_text(path).columns[:most]]
+
+
 @dataclass(frozen=True)
 class Rates:
     """Columns of a record that hold the body's rates about the base axes, with their signs, and their unit."""

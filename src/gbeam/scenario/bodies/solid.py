@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from gbeam.solids.model import SolidModel
 
 _Moduli = tuple[Pressure, Pressure, Pressure]
+_Meshed = tuple[str, float | None]  # file, and largest edge of the elements by which a shape is meshed
 
 
 class Orthotropic(Table):
@@ -187,9 +188,10 @@ class SolidBody(Reduced):
 
 def _body(parts: Collector, where: str, table: SolidBody) -> Structure | None:
     """Structure of a mesh, reduced to modes and kept on disk; None if it is refused."""
-    from gbeam.io.kept import content_of, kept
-    from gbeam.solids.foreign import is_mesh
+    from gbeam.guards.processes import file_digest
+    from gbeam.io.kept import kept
     from gbeam.solids.mesh import SolidMesh
+    from gbeam.solids.model import SolidModel
 
     laws: Any = (
         {name: _material(parts, f"{where}.materials.{name}", each) for name, each in table.materials.items()}
@@ -232,34 +234,27 @@ def _body(parts: Collector, where: str, table: SolidBody) -> Structure | None:
             where = where.replace("thickness", "thicknesses", 1) if table.thicknesses else where
             raise error.at(where) from None
 
-    def source(file: str, size: float | None) -> Any:
-        """Key for the store of reductions: a file's content and options, or the mesh if it may lie in several files."""
-        content = content_of(file) if is_mesh(file) else None
-        return read(file, size) if content is None else (content, Path(file).name, size, mesh_options)
-
-    def reduced(file: str, size: float | None, coarser: Callable[[], SolidModel] | None, *sources: Any) -> SolidModel:
+    def reduced(of: _Meshed, coarser: _Meshed | None = None) -> SolidModel:
         def make() -> SolidModel:
-            mesh = sources[0] if isinstance(sources[0], SolidMesh) else read(file, size)
-            coarse = None if coarser is None else coarser()
+            mesh = read(*of)
+            with _of_coarser():
+                coarse = None if coarser is None else reduced(coarser)
             with naming({"stiffness": "springs" if table.springs else "clamp"}):
                 return mesh.reduced(**options, coarser=coarse)
 
-        return kept(f"reducing {file}", (options, *sources), make)
+        def source() -> Any:
+            """Return all that is read: of a mesh one file, with its name, which says its form."""
+            parts = [(file_digest(file), Path(file).name, size) for file, size in filter(None, (of, coarser))]
+            return options, mesh_options, parts
+
+        return kept(f"reducing {of[0]}", SolidModel, source, make)
 
     def model() -> Structure:
-        size, fine = table.element_size, source(table.mesh, table.element_size)
+        of = table.mesh, table.element_size
         if table.coarser is None and table.coarser_size is None:
-            return reduced(table.mesh, size, None, fine).structure
-        file, key = (table.mesh, "coarser_size") if table.coarser is None else (table.coarser, "coarser")
-        with naming({"coarser": key}):
-            with _of_coarser():
-                coarse = source(file, table.coarser_size)
-
-            def coarser() -> SolidModel:
-                with _of_coarser():
-                    return reduced(file, table.coarser_size, None, coarse)
-
-            return reduced(table.mesh, size, coarser, fine, coarse).structure
+            return reduced(of).structure
+        with naming({"coarser": "coarser_size" if table.coarser is None else "coarser"}):
+            return reduced(of, (table.coarser or table.mesh, table.coarser_size)).structure
 
     return parts.attempt(where, model)
 
