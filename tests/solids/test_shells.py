@@ -241,7 +241,7 @@ def test_nine_nodes_are_eight() -> None:
     """The middle of a quadrilateral of nine nodes is left out."""
     nine, eight = (read(sheet(kind, (4, 1), (0.5, 0.05)), 0.003) for kind in ("quad9", "quad8"))
     np.testing.assert_array_equal(nine.points, eight.points)
-    assert str(nine) == "SolidMesh(23 nodes, 4 quad8, 0.5888 kg)"
+    assert str(nine) == "SolidMesh(23 nodes, 4 quad8, 0.5888 kg, wall holds 3)"
 
 
 def test_groups_have_their_own_thickness_and_material() -> None:

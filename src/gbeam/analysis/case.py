@@ -460,6 +460,7 @@ def describe(case: Case | SpecimenCase | SystemCase) -> Description | SpecimenDe
             centre=np.array(moment) / total,
             coordinates=structure.size,
             points=structure.points,
+            clamps={} if structure.recovery is None else structure.recovery.clamps,
             frequency=np.asarray(structure.rest[0])[: min(MODES, structure.resolved)] / (2 * np.pi),
             **_described(case, doubts),
         )
@@ -506,8 +507,9 @@ def _described(case: AnyCase, doubts: Sequence[Sequence[str]]) -> dict[str, Any]
 def _body(system: System, name: str) -> BodyOfSystem:
     body, points = system.bodies[name], system.points_of(name)
     if isinstance(body, RigidBody):
-        return BodyOfSystem("rigid", body.mass, 0, points)
-    return BodyOfSystem(body.kind, float(body.mass.sum()), body.size, points)
+        return BodyOfSystem("rigid", body.mass, 0, points, {})
+    clamps = {} if body.recovery is None else body.recovery.clamps
+    return BodyOfSystem(body.kind, float(body.mass.sum()), body.size, points, clamps)
 
 
 def _joint(joint: Joint) -> JointOfSystem:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -57,6 +58,11 @@ class Recovery(Protocol):
     @property
     def envelope(self) -> Array:
         """Corners (c, 3) of its convex hull at rest, from the root, m: its load is largest at one of them."""
+        ...
+
+    @property
+    def clamps(self) -> Mapping[str, str]:
+        """Nodes that each group of a mesh's clamp holds, in words, by its name."""
         ...
 
     def parts(self, time: Array, base: Any, q: Array, *, motion: str, model: str, environment: str) -> dict[str, Any]:

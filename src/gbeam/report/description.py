@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from gbeam.constants import STANDARD_GRAVITY
@@ -70,8 +70,13 @@ def _specimen(case: SpecimenDescription) -> list[str]:
     if case.coordinates:
         modes = ", ".join(f"{each:.4g}" for each in case.frequency)
         lines.append(f"  {'':<9} {case.coordinates} coordinates; points {', '.join(case.points)}")
+        lines += [f"  {'':<9} {words}" for words in _clamped(case.clamps)]
         lines.append(f"  modes     at rest, Hz: {modes}")
     return lines
+
+
+def _clamped(clamps: Mapping[str, str]) -> list[str]:
+    return [f"clamp {name} holds {nodes}" for name, nodes in clamps.items()]
 
 
 def _system(case: SystemDescription) -> list[str]:
@@ -79,7 +84,8 @@ def _system(case: SystemDescription) -> list[str]:
     bodies = []
     for name, body in case.bodies.items():
         counted = f", {body.coordinates} coordinate{'' if body.coordinates == 1 else 's'}" if body.coordinates else ""
-        bodies.append(f"{name}: {body.kind}, {body.mass:.4g} kg{counted}; points {', '.join(body.points)}")
+        words = f"{body.kind}, {body.mass:.4g} kg{counted}; points {', '.join(body.points)}"
+        bodies.append("; ".join([f"{name}: {words}", *_clamped(body.clamps)]))
     joints = []
     for name, joint in case.joints.items():
         ways = {"free": joint.free, "driven": joint.driven, "prescribed": joint.prescribed}

@@ -127,6 +127,7 @@ class SpecimenDescription(Described):
     centre: Floats = entry("m", "centre of mass from the root, undeformed", "axis", key="specimen.centre")
     coordinates: int = fact("number of its coordinates: none of a rigid specimen", key="specimen.coordinates")
     points: tuple[str, ...] = fact("names of its points", key="specimen.points")
+    clamps: Mapping[str, str] = fact("nodes that each group of a mesh's clamp holds, by name", key="specimen.clamps")
     frequency: Floats = entry("Hz", "lowest natural frequencies on a base at rest", "mode")
 
 
@@ -138,6 +139,7 @@ class BodyOfSystem(Part):
     mass: float = fact("mass", "kg")
     coordinates: int = fact("number of its own coordinates: none of a rigid body")
     points: tuple[str, ...] = fact("names of its points")
+    clamps: Mapping[str, str] = fact("nodes that each group of a mesh's clamp holds, by name")
 
 
 @dataclass(frozen=True, repr=False, eq=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
@@ -26,6 +27,9 @@ MESHES = {
     ".vtk", ".vtu", ".xdmf", ".xmf", ".cgns", ".iges", ".igs", ".obj", ".ply", ".step", ".stl", ".stp",
 }  # fmt: skip
 THICKNESS = ("PSHELL", "SHELL SECTION")
+_OF_DIM = {0: "point", 1: "line", 2: "surface", 3: "volume"}  # Gmsh's words for groups of these dimensions
+_BARE = re.compile(r"-?\d+")  # a group without a name
+_NUMBER = re.compile(rf"(?:({'|'.join(_OF_DIM.values())}) )?({_BARE.pattern})")  # or its kind and number
 
 
 def unit_size(where: str, unit: str, kind: str) -> float:
@@ -123,8 +127,9 @@ def assigned(mesh: Any, where: str, values: Any, blocks: Iterable[int]) -> dict[
     owner = {i: np.full(len(mesh.cells[i].data), -1 if isinstance(values, Mapping) else 0) for i in blocks}
     if not isinstance(values, Mapping):
         return owner
+    dims = {mesh.cells[i].dim for i in owner}
     for number, name in enumerate(values):
-        chosen = elements_in(mesh, name)
+        chosen = elements_in(mesh, f"{where}.{name}", name, dims)
         if chosen is None:
             raise no_group(mesh, f"{where}.{name}", name)
         for i, index in owner.items():
@@ -139,35 +144,66 @@ def assigned(mesh: Any, where: str, values: Any, blocks: Iterable[int]) -> dict[
 
 def group_names(mesh: Any) -> list[str]:
     """Names of all groups of nodes and elements."""
-    names = [*mesh.point_sets, *mesh.cell_sets, *mesh.field_data]
-    for values in _tags(mesh):
-        names += [str(tag) for tag in sorted({int(tag) for block in values for tag in np.unique(block)})]
-    return list(dict.fromkeys(name for name in names if not name.startswith(_INTERNAL)))
+    numbers = dict.fromkeys(str(tag) for values in _tags(mesh) for block in values for tag in np.unique(block).tolist())
+    names = list[str]()
+    for name in dict.fromkeys([*mesh.point_sets, *mesh.cell_sets, *mesh.field_data, *sorted(numbers, key=int)]):
+        dims = _dims(mesh, _numbered(mesh, name)) if _BARE.fullmatch(name) and name not in mesh.field_data else []
+        names += [f"{_OF_DIM[dim]} {name}" for dim in dims] if len(dims) > 1 else [name]
+    return [name for name in names if not name.startswith(_INTERNAL)]
 
 
-def elements_in(mesh: Any, name: str) -> list[Indices] | None:
-    """Elements of a group in each block of the mesh; None where it is none of elements."""
-    if name in mesh.cell_sets:
-        return [np.asarray([] if members is None else members, dtype=int) for members in mesh.cell_sets[name]]
-    if name not in mesh.field_data and not name.lstrip("-").isdigit():
+def elements_in(mesh: Any, where: str, name: str, dims: Collection[int] = tuple(_OF_DIM)) -> list[Indices] | None:
+    """Elements of a group in each block of the mesh; None where it is none of elements.
+
+    A group without a name is its number, such as "3", or its kind and number, such as "surface 3". An InputError, of
+    what `where` gives, refuses a number that surfaces and volumes have, of those in `dims`.
+    """
+    if name in mesh.cell_sets and not _BARE.fullmatch(name):
+        return _set(mesh, name)
+    if name in mesh.field_data:
+        number, *dims = map(int, mesh.field_data[name])
+    elif match := _NUMBER.fullmatch(name):
+        number = int(match[2])
+        dims = [dim for dim, noun in _OF_DIM.items() if noun == match[1]] if match[1] else dims
+    else:
         return None
-    tag, dim = mesh.field_data[name] if name in mesh.field_data else (int(name), None)
+    chosen = _numbered(mesh, str(number))
+    present = [dim for dim in _dims(mesh, chosen) if dim in dims]
+    if len(present) > 1:
+        nouns = [_OF_DIM[dim] for dim in present]
+        problem = f"is {name!r}, which is {' and '.join(f'a {noun}' for noun in nouns)} of the mesh"
+        raise InputError(where, problem, f'write "{nouns[0]} {number}" or "{nouns[-1]} {number}", or name them')
+    if chosen is None or not present:
+        return None
+    return [members if block.dim in present else members[:0] for members, block in zip(chosen, mesh.cells, strict=True)]
+
+
+def _set(mesh: Any, name: str) -> list[Indices]:
+    return [np.asarray([] if members is None else members, dtype=int) for members in mesh.cell_sets[name]]
+
+
+def _numbered(mesh: Any, number: str) -> list[Indices] | None:
+    """Elements of each block in a group that has this number; None where there is none."""
+    if number in mesh.cell_sets:
+        return _set(mesh, number)
     for values in _tags(mesh):
-        tags = [
-            np.asarray(of_block) if dim in (None, block.dim) else ()
-            for of_block, block in zip(values, mesh.cells, strict=True)
-        ]
-        chosen = [np.flatnonzero(np.equal(of_block, int(tag))) for of_block in tags]
+        chosen = [np.flatnonzero(np.equal(tags, int(number))) for tags in values]
         if any(map(len, chosen)):
             return chosen
     return None
+
+
+def _dims(mesh: Any, chosen: list[Indices] | None) -> list[int]:
+    """Dimensions of the elements of a group, ascending."""
+    pairs = zip(chosen or (), mesh.cells, strict=chosen is not None)
+    return sorted({block.dim for members, block in pairs if len(members)})
 
 
 def nodes_in(mesh: Any, where: str, name: str) -> Indices:
     """Nodes of a group, of nodes or of elements; an InputError where there is none."""
     if name in mesh.point_sets:
         return np.unique(np.asarray(mesh.point_sets[name], dtype=int))
-    elements = elements_in(mesh, name)
+    elements = elements_in(mesh, where, name)
     if elements is None:
         raise no_group(mesh, where, name)
     parts = [block.data[chosen].ravel() for block, chosen in zip(mesh.cells, elements, strict=True)]

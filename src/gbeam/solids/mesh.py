@@ -47,7 +47,7 @@ from gbeam.solids.foreign import (
 from gbeam.solids.links import WAYS, Linked, Links, LinkSpring, attached, refuse_names
 from gbeam.solids.model import SolidModel, beside, hardly_coarser
 from gbeam.solids.placed import Placed, with_cards
-from gbeam.solids.plausibility import doubts_of, refuse_folded, refuse_loose
+from gbeam.solids.plausibility import doubts_of, refuse_folded, refuse_loose, refuse_twice
 from gbeam.solids.shells import points_of, refuse_oblique
 from gbeam.solids.stress import NodalStress
 from gbeam.structure.attachments import TIP, checked_name
@@ -92,6 +92,8 @@ class SolidMesh(Value):
         Nodes of the groups on which other bodies hang, by their names.
     links : Links
         Nodes that move as rigid bodies, what they carry, and springs between them.
+    clamps : dict of int
+        Numbers of nodes that each group of the clamp holds, by its name.
 
     Examples
     --------
@@ -114,6 +116,7 @@ class SolidMesh(Value):
     links: Links = field(default_factory=Links)
     exponents: dict[str, float] = field(default_factory=dict)
     turns: dict[str, Numbers] = field(default_factory=dict)
+    clamps: dict[str, int] = field(default_factory=dict)
 
     @classmethod
     @kinds(
@@ -154,7 +157,8 @@ class SolidMesh(Value):
             Of all elements, or by group: a physical group of Gmsh, a property's number, an element set. Poisson's
             ratio is needed.
         clamp : str or sequence of str
-            Groups whose nodes follow the base.
+            Groups whose nodes follow the base. A number that surfaces and volumes have is refused: it is written
+            "surface 1" or "volume 1".
         unit : str
             Of the mesh's coordinates, such as ``mm``; STEP files say theirs.
         thickness : float or dict of float, optional
@@ -204,7 +208,7 @@ class SolidMesh(Value):
         >>> aluminium = gb.Material(density=2700, youngs_modulus=70e9, poissons_ratio=0.33)
         >>> materials = {"bracket": aluminium, "camera": aluminium}
         >>> gb.SolidMesh.read("examples/data/bracket.msh", materials=materials, clamp="screwed", unit="mm")
-        SolidMesh(2213 nodes, 352 hexahedron20, 0.215 kg)
+        SolidMesh(2213 nodes, 352 hexahedron20, 0.215 kg, screwed holds 93)
         """
         from scipy.spatial.transform import Rotation
 
@@ -230,9 +234,8 @@ class SolidMesh(Value):
                 )
             return nodes
 
-        clamped = np.zeros(len(vertices), dtype=bool)
-        for name in [clamp] if isinstance(clamp, str) else clamp:
-            clamped[group("clamp", name)] = True
+        clamps = {name: group("clamp", name) for name in ([clamp] if isinstance(clamp, str) else clamp)}
+        clamped = np.isin(np.arange(len(vertices)), np.concatenate([np.zeros(0, dtype=int), *clamps.values()]))
         named = {
             name: _node(vertices, middles[numbers], name, getattr(place, "at", place), group)
             for name, place in (points or {}).items()
@@ -252,6 +255,7 @@ class SolidMesh(Value):
         hung = {name: group(f"interfaces.{name}", of) for name, of in (interfaces or {}).items()}
         exponents = {name: float(material.fatigue_exponent) for name, material in kinds.items()}
         fields: dict[str, Any] = {"strengths": strengths, "exponents": exponents, "interfaces": hung}
+        fields["clamps"] = {name: len(np.unique(numbers[nodes])) for name, nodes in clamps.items()}
         tied = Links.of(group, links or {}, carried or {}, springs or {}, vertices, clamped)
         statements_read = tuple[str, ...]()
         if mass_unit is not None:
@@ -265,6 +269,7 @@ class SolidMesh(Value):
         fields["turns"] = {name: tuple(place.turn) for name, place in turned.items()}
         solid = cls(vertices, blocks, clamped, node_numbers_of(mesh)[numbers], weights, named | {TIP: tip}, **fields)
         refuse_folded(solid)
+        refuse_twice(solid)
         refuse_loose(solid)
         doubts = [*doubts_of(solid, unit or "that of the file"), *left_out(source, mesh, statements_read)]
         for name, material in by_group.items():
@@ -276,7 +281,8 @@ class SolidMesh(Value):
         for block in self.blocks:
             counts[block.kind] = counts.get(block.kind, 0) + len(block.nodes)
         elements = ", ".join(f"{count} {kind}" for kind, count in counts.items())
-        return f"SolidMesh({len(np.unique(self.numbers))} nodes, {elements}, {self.mass:.4g} kg)"
+        held = ", ".join(f"{name} holds {count}" for name, count in self.clamps.items())
+        return f"SolidMesh({len(np.unique(self.numbers))} nodes, {elements}, {self.mass:.4g} kg, {held})"
 
     @property
     def mass(self) -> float:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gbeam.arrays.types import Floats
+from gbeam.arrays.types import Floats, Indices
 from gbeam.errors import InputError
 from gbeam.solids.elements import determinants
 from gbeam.solids.shape_functions import KINDS
@@ -20,6 +20,7 @@ STRAIGHT = 1e-6  # of the size: points that are nearer to a line do not hold a b
 LARGE, HEAVY = 20.0, 1e4  # m and kg: nobody mounts more on a machine
 SMALL = 1e-3  # m
 SLIVERS = 0.01  # of all elements: a few long ones of a mesher lock nothing
+APART = 1e-6  # of the size: nodes that are nearer are at one place
 PART = 0.1  # of the linear elements: fewer that fill a thickness are at edges
 
 
@@ -34,6 +35,23 @@ def refuse_folded(mesh: SolidMesh) -> None:
         count = "1 element" if len(bad) == 1 else f"{len(bad)} elements"
         fix = "mesh it again, or number their nodes the other way round"
         raise InputError("mesh", f"has {count} turned inside out or folded: {listed}", fix)
+
+
+def refuse_twice(mesh: SolidMesh) -> None:
+    """Refuse elements on the corners of others, which would count twice."""
+    by_corners: dict[bytes, int] = {}
+    pairs = list[tuple[int, int]]()
+    for block in mesh.blocks:
+        corners = np.sort(block.nodes[:, : corners_of(block.kind)], axis=1)
+        for number, nodes in zip(block.numbers.tolist(), corners, strict=True):
+            if (key := nodes.tobytes()) in by_corners:
+                pairs.append((number, by_corners[key]))
+            by_corners.setdefault(key, number)
+    if pairs:
+        listed = ", ".join(f"{number} on those of {first}" for number, first in pairs[:3])
+        listed += ", ..." if len(pairs) > 3 else ""
+        count = "1 element" if len(pairs) == 1 else f"{len(pairs):,} elements"
+        raise InputError("mesh", f"has {count} on the nodes of others: {listed}", "delete one of each pair")
 
 
 def refuse_loose(mesh: SolidMesh) -> None:
@@ -72,6 +90,13 @@ def doubts_of(mesh: SolidMesh, unit: str) -> list[str]:
         other = "mm" if size > LARGE or mass > HEAVY else "m"
         other = other if other != unit else "another one"
         doubts.append(f"the mesh is {size:.3g} m across and weighs {mass:.3g} kg with unit = {unit!r}; is it {other}?")
+    pairs = np.unique(np.sort(mesh.numbers[_unmerged(mesh, APART * size)]), axis=0)
+    if len(pairs):
+        first, second = pairs[0]
+        doubts.append(
+            f"{len(pairs):,} pairs of nodes lie at one place and are not merged, such as {first} and {second}: "
+            "the mesh does not hold together there; merge them, if it should"
+        )
     of_blocks = _slenderness(mesh)
     linear = [ratios for block, ratios in zip(mesh.blocks, of_blocks, strict=True) if KINDS[block.kind].linear]
     if linear:
@@ -101,6 +126,25 @@ def doubts_of(mesh: SolidMesh, unit: str) -> list[str]:
             "lock in bending; make them shorter, or use hexahedra of 27 nodes"
         )
     return doubts
+
+
+def _unmerged(mesh: SolidMesh, distance: float) -> Indices:
+    """Pairs (p, 2) of points within `distance` of each other, of different nodes that share no element and are not both
+    in rigid links.
+    """
+    from scipy.sparse import coo_array
+    from scipy.spatial import KDTree
+
+    pairs = KDTree(mesh.points).query_pairs(distance, output_type="ndarray")
+    linked = np.isin(pairs, np.concatenate([[-1], *mesh.links.joined])).all(axis=1)
+    pairs = pairs[(mesh.numbers[pairs[:, 0]] != mesh.numbers[pairs[:, 1]]) & ~linked]
+    for block in mesh.blocks:
+        count, corners = block.nodes.shape
+        owned = (block.nodes.ravel(), np.repeat(np.arange(count), corners))
+        elements_of = coo_array((np.ones(count * corners), owned), shape=(len(mesh.points), count)).tocsr()
+        shared = elements_of[pairs[:, 0]].multiply(elements_of[pairs[:, 1]]).sum(axis=1)
+        pairs = pairs[shared == 0]
+    return pairs
 
 
 def _slenderness(mesh: SolidMesh) -> list[Floats]:

@@ -270,6 +270,11 @@ class RigidSpecimen(Value):
         corners = np.asarray(self.corners)
         return hull(corners if self.bolts is None else np.concatenate([corners, np.asarray(self.bolts)]))
 
+    @property
+    def clamps(self) -> dict[str, str]:
+        """Nothing: it is held by its root, not by nodes."""
+        return {}
+
     def parts(self, time: Floats, base: Any, q: Floats, *, motion: str, model: str, environment: str) -> dict[str, Any]:
         """Return the loads of a response of the :attr:`structure`, by the name of its field.
 

@@ -90,6 +90,12 @@ class NodalStress(Value):
         return self.known % len(self.mesh.points)
 
     @property
+    def clamps(self) -> dict[str, str]:
+        """Nodes that each group of the clamp holds, in words, by its name."""
+        count = len(np.unique(self.mesh.numbers))
+        return {name: f"{held:,} of {count:,} nodes" for name, held in self.mesh.clamps.items()}
+
+    @property
     def material(self) -> list[str]:
         """Materials of the pairs."""
         names = _materials(self.mesh)
