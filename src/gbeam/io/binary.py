@@ -58,6 +58,8 @@ def hdf5_columns(path: str | os.PathLike[str], *, matlab: bool = False) -> list[
     def add(path_inside: str, item: h5py.Dataset | h5py.Group) -> None:
         if not isinstance(item, h5py.Dataset) or item.dtype.kind not in "iuf" or path_inside.startswith("#"):
             return
+        if item.shape is None:  # without a space for numbers
+            return
         shape = item.shape[::-1] if matlab else item.shape
         name = path_inside.replace("/", ".") if matlab else path_inside
         unit = _text(item.attrs.get("units", ""))
@@ -67,12 +69,24 @@ def hdf5_columns(path: str | os.PathLike[str], *, matlab: bool = False) -> list[
         with h5py.File(path) as file:
             item = file[path_inside]
             refuse_more("", "numbers", item.size, ELEMENTS, 40.0, "save fewer at a time")
+            _refuse_unwritten(item)
             array = _unpacked(np.asarray(item), item.attrs)
         return array.T if matlab else array
 
     with h5py.File(path) as file:
         file.visititems(add)
     return columns
+
+
+def _refuse_unwritten(item: h5py.Dataset) -> None:
+    """Refuse an array of which not all was written, as by a recorder that stopped: HDF5 reads the rest as zeros."""
+    if item.is_virtual or item.external or not item.size:
+        return
+    parts = math.prod(-(-size // chunk) for size, chunk in zip(item.shape, item.chunks or item.shape, strict=True))
+    written = int(item.id.get_storage_size() > 0) if item.chunks is None else item.id.get_num_chunks()
+    if written < parts:
+        problem = f"has room for {item.size} numbers, of which {written} of {parts} parts were written"
+        raise InputError("", problem, "cut it to what was recorded, and save it again")
 
 
 def _netcdf_3(path: str | os.PathLike[str]) -> list[Column]:
@@ -178,6 +192,7 @@ _TIME = "time"
 _RESPONSES = (0, 1)  # function types: general, time response
 _DIRECTIONS = ("", "X", "Y", "Z", "RX", "RY", "RZ")
 _NO_NAME = ("", "NONE")
+_A_LINE = 6  # values at most
 
 
 def read_uff(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
@@ -212,7 +227,12 @@ def read_uff(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
 
 
 def _samples(data_set: dict[str, Any], key: str) -> np.ndarray[Any, np.dtype[np.float64]]:
-    return np.asarray(data_set[key], dtype=np.float64)[: int(data_set["num_pts"])]
+    """Abscissae or values; InputError unless they are as many as stated, but for what fills the last line."""
+    values, stated = np.asarray(data_set[key], dtype=np.float64), int(data_set["num_pts"])
+    if not 0 <= len(values) - stated < _A_LINE:
+        problem = f"states {stated} samples of {_name(data_set)!r} and holds {len(values)}"
+        raise InputError("record.file", problem, "export it again: the rest, or the header, is of another record")
+    return values[:stated]
 
 
 def _name(data_set: dict[str, Any]) -> str:
