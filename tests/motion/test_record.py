@@ -50,7 +50,7 @@ def replaced(row: int, text: str) -> list[str]:
     [
         ([HEADER, *ROWS], {"z": "-azz"}, "record.z", ["'azz'", "did you mean 'az'", "t, ax, ay, az"]),
         ([HEADER, *ROWS], {"time": "time"}, "record.time", ["'time'"]),
-        ([HEADER, *ROWS], {"unit": "g0"}, "record.unit", ["'g0'", "m/s^2"]),
+        ([HEADER, *ROWS], {"unit": "furlong"}, "record.unit", ["'furlong'", "m/s^2"]),
         ([HEADER + ",az", *[row + ",0" for row in ROWS]], {}, "record.z", ["2 times"]),
         (replaced(4, "0.2,2,4,six"), {}, "record.z", ["row 4", "'six'"]),
         (replaced(4, "0.2,2,,-6"), {}, "record.y", ["row 4", "empty"]),

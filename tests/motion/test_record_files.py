@@ -90,7 +90,9 @@ def test_every_dialect_is_read_to_the_same_numbers(tmp_path: Path, dialect: str)
     assert record.notes == (("time in ms, as the file says",) if "milliseconds" in dialect else ())
 
 
-@pytest.mark.parametrize(("unit", "clock"), [("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("min", 60.0)])
+@pytest.mark.parametrize(
+    ("unit", "clock"), [("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9), ("min", 60.0), ("h", 3600.0)]
+)
 def test_time_in_the_unit_that_the_scenario_names(tmp_path: Path, unit: str, clock: float) -> None:
     path = tmp_path / "record.txt"
     path.write_text(lines("\t", ",", clock=clock))
@@ -200,6 +202,35 @@ def test_universal_files_are_read_to_their_digits(tmp_path: Path) -> None:
         fly(tmp_path / "r.unv", ("t", *names[1:]))
 
 
+def test_universal_files_hold_what_they_state(tmp_path: Path) -> None:
+    """A file that ends early, of which 240 samples are stated and 180 left, was flown as 180."""
+    names = uff(tmp_path / "r.unv")
+    blocks = (tmp_path / "r.unv").read_bytes().split(b"    -1\n    58\n")
+    first = blocks[1].split(b"\n")
+    short = b"\n".join([*first[: -1 - 16], *first[-2:]])
+    (tmp_path / "r.unv").write_bytes(b"    -1\n    58\n".join([blocks[0], short, *blocks[2:]]))
+    with pytest.raises(InputError, match=r"record.file .*states 240 samples of 'Nose' and holds 180; export it again"):
+        fly(tmp_path / "r.unv", names)
+
+
+def test_arrays_that_were_not_written_to_their_end_are_refused(tmp_path: Path) -> None:
+    """A recorder reserves 240 samples and stops at 180; HDF5 reads zeros beyond."""
+    import h5py
+
+    with h5py.File(tmp_path / "r.h5", "w") as file:
+        for name, values in zip(NAMES, NUMBERS.T, strict=True):
+            file.create_dataset(name, (240,), "f8", chunks=(60,))[: 240 if name == "t" else 180] = values[
+                : 240 if name == "t" else 180
+            ]
+        file["nothing"] = h5py.Empty("f8")
+    with pytest.raises(InputError, match=r"record.x column 'a_x' has room for 240 numbers, of which 3 of 4 parts were"):
+        fly(tmp_path / "r.h5")
+    with h5py.File(tmp_path / "r.h5", "r+") as file:
+        for name, values in zip(NAMES, NUMBERS.T, strict=True):
+            file[name][:] = values
+    check(fly(tmp_path / "r.h5"))
+
+
 def test_packed_values_are_unpacked_and_missing_ones_refused(tmp_path: Path) -> None:
     import h5py
 
@@ -225,8 +256,9 @@ def test_packed_values_are_unpacked_and_missing_ones_refused(tmp_path: Path) -> 
     ("text", "where", "words"),
     [
         (lines(header=("t", "a_x", "a_y", "a_z [m/s²]")), "record.unit", ["is g", "'a_z' in m/s²", 'unit = "m/s^2"']),
-        (lines(units="s,in/s^2,in/s^2,in/s^2"), "record.unit", ["in/s^2", "convert"]),
-        (lines(header=("t [h]", *NAMES[1:])), "record.time_unit", ["in h", "convert"]),
+        (lines(units="s,in/s^2,in/s^2,in/s^2"), "record.unit", ["in/s^2", 'write unit = "in/s^2"']),
+        (lines(units="s,g,g,mV"), "record.unit", ["in mV, which is no unit", 'unit = "1 g / 100 mV"']),
+        (lines(header=("t [GPS]", *NAMES[1:])), "record.time_unit", ["in GPS, which is no unit of time"]),
         (lines(";", ",").replace("\n0,5;", "\n0.5;"), "record.time", ["row 3", "'0,01'"]),
         (lines(header=("1", "2", "3", "4")), "record.file", ["no header line"]),
         (lines(decimal=","), "record.file", ["no header line with 8 names"]),
@@ -250,6 +282,57 @@ def test_a_unit_stated_wrongly_by_the_file_can_be_overridden(tmp_path: Path) -> 
     with pytest.raises(InputError, match=r'skip_checks = \["unit"\]'):
         fly(path)
     check(fly(path, time_unit="s", conditioning=Conditioning(skip_checks=("unit",))))
+
+
+@pytest.mark.parametrize(
+    ("header", "scale", "unit"),
+    [
+        (NAMES, 2048.0, "1 g / 2048"),
+        (("t", "a_x [LSB]", "a_y [LSB]", "a_z [LSB]"), 2048.0, "9.80665 m/s^2 / 2048 LSB"),
+        (("t", "a_x [mV]", "a_y [mV]", "a_z [mV]"), 98.0, "1 g / 98 mV"),
+        (("t", "a_x_counts", "a_y_counts", "a_z_counts"), 1000 / 0.061, "0.061 mg"),
+        (("t", "a_x [mm/s²]", "a_y_mm_s2", "a_z"), 9806.65, "mm/s^2"),
+        (NAMES, 980.665, "Gal"),
+        (("t", "a_x (cm/s2)", "a_y", "a_z"), 980.665, "cm/s^2"),
+        (("t", "a_x [mg]", "a_y [mg]", "a_z_mg"), 1000.0, "mg"),
+        (NAMES, 9.80665 / 0.0254, "in/s²"),
+        (("t", "a_x [metres per second squared]", "a_y [m s-2]", "a_z [m*s**-2]"), 9.80665, "m/s^2"),
+        (("t", "acc_m_s2[0]", "acc_m_s2[1]", "acc_m_s2[2]"), 9.80665, "m/s^2"),
+        (("t", "xHighG", "yHighG", "z_high_g"), 9.80665, "m/s^2"),
+        (("t", "n_x [1]", "n_y [1]", "n_z [1]"), 1.0, "g"),
+        (("t", "n[1]", "n[2]", "n[3]"), 9.80665, "m/s^2"),
+    ],
+)
+def test_every_unit_comes_to_the_same_load(tmp_path: Path, header: tuple[str, ...], scale: float, unit: str) -> None:
+    """A unit of the scenario is the file's, or sizes its counts; an index in a name is none."""
+    path = tmp_path / "record.csv"
+    rows = NUMBERS * [1.0, scale, scale, scale]
+    np.savetxt(path, rows, delimiter=",", header=",".join(header), comments="", fmt="%.12g")
+    record = fly(path, header, unit)
+    np.testing.assert_allclose(record.acceleration.values, STANDARD_GRAVITY * NUMBERS[:, 1:], rtol=1e-10, atol=1e-11)
+
+
+@pytest.mark.parametrize(
+    ("header", "unit", "words"),
+    [
+        (("t", "a_x [mV]", "a_y [mV]", "a_z [mV]"), "g", r'give its size, such as unit = "1 g / 100 mV"'),
+        (("t", "a_x_mV", "a_y_mV", "a_z_mV"), "g", r"in mv, which is no unit of acceleration"),
+        (("t", "a_x [V]", "a_y [V]", "a_z [V]"), "1 g / 98 mV", r"is '1 g / 98 mV', and .* in V; give the size of 1 V"),
+        (("t", "a_x [g]", "a_y", "a_z"), "1 g / 2048", r'in g; write unit = "g"'),
+        (("t", "a_x [g]", "a_y [m/s2]", "a_z"), "g", r"two units: the file gives 'a_x \[g\]' in g, 'a_y \[m/s2\]' in"),
+        (NAMES, "1 g / 0", r"give a size above zero"),
+        (NAMES, "1/2048 g", r'or the size of a count, such as "1 g / 2048"'),
+        (NAMES, "m/s^3", r"did you mean 'm/s\^2'"),
+    ],
+)
+def test_units_that_are_none_or_not_the_files_are_refused(
+    tmp_path: Path, header: tuple[str, ...], unit: str, words: str
+) -> None:
+    path = tmp_path / "record.csv"
+    np.savetxt(path, NUMBERS, delimiter=",", header=",".join(header), comments="", fmt="%.12g")
+    with pytest.raises(InputError, match=words) as caught:
+        fly(path, header, unit)
+    assert caught.value.where == "record.unit"
 
 
 def test_rates_in_another_unit_than_the_file_states(tmp_path: Path) -> None:

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from gbeam import InputError
-from gbeam.motion.records.columns import unit_in_name
 from gbeam.motion.records.record import Conditioning, FlightRecord, read_flight
+from gbeam.motion.records.units import unit_in_name
 
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
 RIGHT = {"x": "n_x_g", "y": "-n_y_g", "z": "-n_z_g"}
@@ -37,6 +37,12 @@ def renamed(folder: Path, **names: str) -> Path:
         ("p_rad_s", "rad/s"),
         ("gyro_x_dps", "dps"),
         ("time_ms", "ms"),
+        ("TimeUS", "us"),
+        ("accelerometer_m_s2[1]", "m/s2"),
+        ("acc_g(:,3)", "g"),
+        ("acc_highG", ""),
+        ("acc_high_g", ""),
+        ("az_mV", "mv"),
         ("acc_1", ""),
         ("az", ""),
         ("g", ""),

@@ -18,8 +18,8 @@ from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import GbeamError, InputError
 from gbeam.guards.processes import confined
 from gbeam.motion import Flight
-from gbeam.motion.records.columns import UNITS, spelled
 from gbeam.motion.records.record import read_table
+from gbeam.motion.records.units import UNITS, spelled
 from gbeam.scenario import ScenarioError, build, loads
 from gbeam.scenario.schema import kind_of_scenario
 from gbeam.scenario.text.diagnostics import Diagnostic

@@ -5,22 +5,22 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
 from gbeam.arrays.types import Floats, Indices
-from gbeam.constants import AccelerationUnit, Check, RateUnit, RecordQuantity, TimeUnit
+from gbeam.constants import Check, RecordQuantity
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import BINARY_BYTES, SAMPLES, refuse_large_file, refuse_more
 from gbeam.io.binary import is_binary, read_binary
 from gbeam.io.table import NO_COLUMN, Clock, Table
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
-from gbeam.motion.records.columns import UNITS, load_factors, mirrored, refuse_other_kinds, unit_of
+from gbeam.motion.records.columns import load_factors, mirrored, refuse_other_kinds
 from gbeam.motion.records.conditioning import FEWEST, filtered, spikes, without_spikes
 from gbeam.motion.records.soundness import CHECKS, Samples, oddities, refuse_unsound, summary
 from gbeam.motion.records.text import Span, check_interval, check_sampling, part_within, read_text
+from gbeam.motion.records.units import Unit, unit_of
 from gbeam.printable import advise
 
 
@@ -41,7 +41,7 @@ class Rates:
     p: str
     q: str
     r: str
-    unit: RateUnit
+    unit: str  # rad/s, deg/s, rpm, or the size of a count
 
 
 @dataclass(frozen=True)
@@ -99,10 +99,10 @@ def read_record(
     x: str,
     y: str,
     z: str,
-    unit: AccelerationUnit | Literal["m/s²", "ft/s²"],
+    unit: str,
     conditioning: Conditioning = Conditioning(),
     *,
-    time_unit: TimeUnit | None = None,
+    time_unit: str | None = None,
     quantity: RecordQuantity = "specific-force",
     span: Span = (None, None),
 ) -> PiecewiseLinear:
@@ -120,11 +120,12 @@ def read_record(
         Names of the columns that hold the components in base axes; a leading ``-`` changes the sign (aircraft
         records have z down), ``0`` stands for a component that is zero.
     unit : str
-        ``g`` (9.80665 m/s²) or ``m/s^2``.
+        ``g`` (9.80665 m/s²), ``mg``, ``m/s^2``, ``cm/s^2``, ``mm/s^2``, ``ft/s^2`` or ``in/s^2``, or the size of a
+        count, such as ``1 g / 2048`` or ``1 g / 100 mV``.
     conditioning : Conditioning
         Of :class:`gbeam.motion.records.record.Conditioning`; by default nothing is done to the record.
     time_unit : str, optional
-        ``s``, ``ms``, ``us`` or ``min``; what the file says if left out, or else s.
+        ``s``, ``ms``, ``us``, ``ns``, ``min``, ``h`` or ``day``; what the file says if left out, or else s.
     quantity : str
         ``specific-force``, 1 g upwards in level flight, which is checked; or ``acceleration``.
     span : tuple
@@ -166,7 +167,7 @@ def read_flight(
     *,
     rates: Rates | None = None,
     conditioning: Conditioning = Conditioning(),
-    time_unit: TimeUnit | None = None,
+    time_unit: str | None = None,
     quantity: RecordQuantity = "specific-force",
     span: Span = (None, None),
 ) -> FlightRecord:
@@ -180,8 +181,8 @@ def read_flight(
     table = read_table(path, [time, *names.values(), *turns.values()])
     if "columns" not in skip:
         refuse_other_kinds(table, names)
-    unit, load_scale = _scale(table, "unit", "acceleration", unit, names, trust=trust)
-    rate_scale = 1.0 if rates is None else _scale(table, "rate_unit", "rate", rates.unit, turns, trust=trust)[1]
+    load_unit = _unit(table, "unit", "acceleration", unit, names, trust=trust)
+    rate_unit = load_unit if rates is None else _unit(table, "rate_unit", "rate", rates.unit, turns, trust=trust)
     clock, seconds, of_day = _times(table, time, time_unit, trust=trust)
     refuse_more("record.file", "samples", len(clock), SAMPLES, 200.0, "cut the record, or export it at a lower rate")
     if len(clock) < FEWEST:
@@ -191,24 +192,24 @@ def read_flight(
     jitter = check_sampling(when, lambda i: table.place(part.start + i), jitter=conditioning.resample is not None)
     if "sampling" not in skip:
         check_interval(when, seconds)
-    load = load_scale * table.vector(names, len(clock), part)
+    load = load_unit.size * table.vector(names, len(clock), part)
 
     def samples(index: Indices) -> Samples:
         specific = quantity == "specific-force"
-        return Samples(clock[index], load[index], names, unit, specific, lambda i: table.place(int(index[i])))
+        return Samples(clock[index], load[index], names, load_unit, specific, lambda i: table.place(int(index[i])))
 
     flown = samples(np.arange(part.start, part.stop))
     known = np.flatnonzero(np.isfinite(load).all(axis=1))  # outside the part there may be what is no number
     refuse_unsound(
         flown, flown if len(when) == len(clock) else samples(known), (*skip, "spikes") if conditioning.despike else skip
     )
-    notes = [f"time in {seconds}, as the file says"] if time_unit is None and seconds != "s" else []
+    notes = [f"time in {seconds.text}, as the file says"] if time_unit is None and seconds.size != 1 else []
     if "columns" not in skip:
-        notes += [*mirrored(table, names), *load_factors(table, names, unit, specific=flown.specific)]
+        notes += [*mirrored(table, names), *load_factors(table, names, load_unit.text, specific=flown.specific)]
     notes += oddities(flown)
     calm, spike_notes = _despiked(flown, despike=conditioning.despike)
     notes += spike_notes
-    body_rates = rate_scale * table.vector(turns, len(clock), part)[part] if turns else np.empty((len(when), 0))
+    body_rates = rate_unit.size * table.vector(turns, len(clock), part)[part] if turns else np.empty((len(when), 0))
     new, both = filtered(when, np.concatenate([calm, body_rates], axis=1), conditioning.cutoff, conditioning.resample)
     if jitter:
         notes.append(f"times up to {1e3 * jitter:.3g} ms off even ones: a spline through the samples is flown")
@@ -222,30 +223,20 @@ def read_flight(
     return FlightRecord(PiecewiseLinear(new, both[:, :3], record=facts), flown_rates)
 
 
-def _scale(
-    table: Table,
-    key: str,
-    kind: str,
-    declared: str | None,
-    columns: dict[str, str],
-    *,
-    trust: bool,
-    otherwise: str = "",
-) -> tuple[str, float]:
-    """The unit that scenario and file agree on, and its size in SI."""
-    agreed = unit_of(key, kind, declared, table.stated_units(columns), trust=trust) or otherwise
-    return agreed, UNITS[kind][agreed]
+def _unit(table: Table, key: str, kind: str, declared: str | None, columns: dict[str, str], *, trust: bool) -> Unit:
+    """The unit that scenario and file agree on, s where neither says one."""
+    return unit_of(key, kind, declared, table.stated_units(columns), trust=trust) or Unit("s", 1.0)
 
 
-def _times(table: Table, name: str, unit: str | None, *, trust: bool) -> tuple[Floats, str, Clock | None]:
+def _times(table: Table, name: str, unit: str | None, *, trust: bool) -> tuple[Floats, Unit, Clock | None]:
     """Times in s, the unit that they were in, and the clock where they are times of day."""
     times, of_day = table.times(name)
     if of_day is not None and unit not in (None, "s"):
         raise InputError("record.time_unit", f"is {unit}, and the times are times of day", "leave it out")
     if of_day is not None:
-        return times, "s", of_day
-    seconds, scale = _scale(table, "time_unit", "time", unit, {"time": name}, trust=trust, otherwise="s")
-    return scale * times, seconds, None
+        return times, Unit("s", 1.0), of_day
+    seconds = _unit(table, "time_unit", "time", unit, {"time": name}, trust=trust)
+    return seconds.size * times, seconds, None
 
 
 def _despiked(record: Samples, *, despike: bool) -> tuple[Floats, list[str]]:

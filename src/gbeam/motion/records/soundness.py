@@ -11,12 +11,13 @@ import numpy as np
 from gbeam.arrays.types import Flags, Floats
 from gbeam.constants import STANDARD_GRAVITY, Check
 from gbeam.errors import InputError
-from gbeam.motion.records.columns import UNITS
 from gbeam.motion.records.conditioning import dropout, flat_tops, spikes, without_spikes
+from gbeam.motion.records.units import UNITS, Unit
 from gbeam.numerics.samples import true_runs
 from gbeam.results.description import Level, RecordSummary, Vector
 
 CHECKS = get_args(Check)
+_SIZES = UNITS["acceleration"]
 LARGEST = 50.0  # g
 _FRAGMENT = 2.0  # s
 _BEGINS = 3.0  # g: above that, no flight begins
@@ -37,13 +38,14 @@ class Samples:
     time: Floats  # (t,) s
     load: Floats  # (t, 3) m/s², base axes
     names: dict[str, str]  # columns of x, y and z, with their signs
-    unit: str  # that the load was read in
+    unit: Unit  # that the load was read in
     specific: bool  # whether it is specific force, 1 g upwards in level flight
     place: Callable[[int], str]  # where a sample is in its file, in words
 
     def said(self, value: float) -> str:
-        """A load, m/s², in the record's unit."""
-        return f"{value / UNITS['acceleration'][self.unit]:.4g} {self.unit}"
+        """A load, m/s², in the record's unit; in g where that is a count."""
+        unit = self.unit.text if self.unit.text in _SIZES else "g"
+        return f"{value / _SIZES[unit]:.4g} {unit}"
 
 
 def refuse_unsound(record: Samples, whole: Samples, skip: Collection[str]) -> None:
@@ -103,45 +105,60 @@ def _check_size(record: Samples, size: Floats) -> None:
     """Refuse a load that nothing withstands in the declared unit."""
     i = int(size.argmax())
     if size[i] > LARGEST * STANDARD_GRAVITY:
-        sizes = UNITS["acceleration"]
-        smaller = [unit for unit in sizes if sizes[unit] < sizes[record.unit]]
         raise InputError(
             "record.unit",
-            f"is {record.unit}, which makes {size[i] / STANDARD_GRAVITY:.3g} g of {record.place(i)}, "
+            f"is {record.unit.text}, which makes {size[i] / STANDARD_GRAVITY:.3g} g of {record.place(i)}, "
             f"at {record.time[i]:g} s",
-            "; ".join([*([_wants(*smaller)] if smaller else []), _trust("unit")]),
+            "; ".join([*_other_units(record, size), _trust("unit")]),
         )
 
 
 def _check_level(record: Samples, size: Floats) -> None:
     """Refuse a load that is level flight in another unit and no flight in the declared one."""
-    in_g, units = size / STANDARD_GRAVITY, UNITS["acceleration"]
-    first = slice(max(int(1 / np.median(np.diff(record.time))), 4))
-    begins, peak, level_share = float(np.median(in_g[first])), in_g.max(), _share(in_g, LEVEL)
-    others = []
-    for unit in units:
-        as_other = in_g * units[unit] / units[record.unit]
-        begins_level = _BEGINS_LEVEL[0] < float(np.median(as_other[first])) < _BEGINS_LEVEL[1]
-        if unit != record.unit:
-            others.append((begins_level, _share(as_other, LEVEL), unit))
-    for begins_level, other_share, other in sorted(others, reverse=True):  # the likeliest first
-        if record.unit == "g":
-            # Level at 9.8 and nowhere at 1; a rocket that passes 9.8 g has been at less.
-            doubtful = begins > _BEGINS or (other_share > _SOME and level_share < _HARDLY and peak > _PILOTED)
-        else:
-            # A flight that is level at 0.1 g either pulls more than 1 g to stay in the air, or is in g.
-            doubtful = peak < _NEVER or (other_share > _SOME and (peak < LEVEL[1] or begins_level))
-        if doubtful:
-            raise InputError(
-                "record.unit",
-                f"is {record.unit}, and the record begins at {record.said(begins * STANDARD_GRAVITY)} and reaches "
-                f"{record.said(size.max())}, {peak:.3g} g: level flight is 1 g, which is 9.81 m/s^2",
-                f"{_wants(other)}; {_ACCELERATION}; {_trust('unit')}",
-            )
+    if not _is_flight(record, size, record.unit.size):
+        peak = float(size.max())
+        raise InputError(
+            "record.unit",
+            f"is {record.unit.text}, and the record begins at {record.said(np.median(size[_beginning(record)]))} and "
+            f"reaches {record.said(peak)}, {peak / STANDARD_GRAVITY:.3g} g: level flight is 1 g, which is 9.81 m/s^2",
+            "; ".join([*_other_units(record, size), _ACCELERATION, _trust("unit")]),
+        )
 
 
-def _wants(*units: str) -> str:
-    return ", ".join(f'a record in {unit} wants unit = "{unit}"' for unit in units)
+def _other_units(record: Samples, size: Floats) -> list[str]:
+    """Advice to write another unit: of those in which the record may be a flight's, those in which it begins level."""
+    judged = _lasts(record) and record.specific
+    fitting = []
+    for unit, each in _SIZES.items():
+        in_g = size * each / record.unit.size / STANDARD_GRAVITY
+        sound = _is_flight(record, size, each) if judged else each < record.unit.size
+        if each != record.unit.size and in_g.max() <= LARGEST and sound:
+            fitting.append((_begins_level(record, in_g), _share(in_g, LEVEL), unit))
+    likely = [each for each in fitting if each[0]] or fitting
+    return [f"if it is in {unit}, {record.unit.instead('unit', unit)}" for *_, unit in sorted(likely, reverse=True)]
+
+
+def _is_flight(record: Samples, size: Floats, unit: float) -> bool:
+    """True if the size (t,) of a load may be that of a flight in a unit of so many m/s²; of a count only the user knows
+    it, of the others one in which the record is level tells another.
+    """
+    in_g = size * unit / record.unit.size / STANDARD_GRAVITY
+    peak, begins = float(in_g.max()), float(np.median(in_g[_beginning(record)]))
+    others = [each for each in _SIZES.values() if unit in _SIZES.values() and not 0.5 < each / unit < 2]
+    level = [other for other in (in_g * each / unit for each in others) if _share(other, LEVEL) > _SOME]
+    if unit == STANDARD_GRAVITY:
+        # Level at 9.8 and nowhere at 1; a rocket that passes 9.8 g has been at less.
+        return begins <= _BEGINS and not (level and _share(in_g, LEVEL) < _HARDLY and peak > _PILOTED)
+    # A flight that is level at 0.1 g either pulls more than 1 g to stay in the air, or is in g.
+    return peak >= _NEVER and not any(peak < LEVEL[1] or _begins_level(record, other) for other in level)
+
+
+def _beginning(record: Samples) -> slice:
+    return slice(max(int(1 / np.median(np.diff(record.time))), 4))
+
+
+def _begins_level(record: Samples, in_g: Floats) -> bool:
+    return bool(_BEGINS_LEVEL[0] < np.median(in_g[_beginning(record)]) < _BEGINS_LEVEL[1])
 
 
 def _share(size: Floats, band: tuple[float, float]) -> float:

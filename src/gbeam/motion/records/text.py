@@ -6,6 +6,7 @@ import codecs
 import csv
 import os
 import re
+from collections import Counter
 from collections.abc import Callable
 from statistics import mode
 
@@ -15,14 +16,15 @@ from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.limits import BINARY_BYTES, TEXT_BYTES, in_bytes, refuse_large_file
 from gbeam.io.table import Clock, Column, Table, is_clock
-from gbeam.motion.records.columns import UNITS, is_unit
 from gbeam.motion.records.conditioning import FEWEST, UNEVEN
+from gbeam.motion.records.units import UNITS, Unit, is_unit, unit_in_name
 
 Span = tuple[float | str | None, float | str | None]
 
 SLOWEST = 5.0  # Hz
 _FASTEST, _BRIEF = 1000.0, 10.0  # Hz, s: flight loads need no such rate, and last longer
 _USUAL = (1e-3, 0.2)  # s: intervals of flight records
+_ROUND = 1 + 1e-9
 _GAP = 1.9  # of the median interval: a sample is missing, and no clock that jitters is as late
 
 
@@ -64,16 +66,15 @@ def check_sampling(time: Floats, place: Callable[[int], str], *, jitter: bool) -
     return float(np.abs(time - even).max()) if uneven.size else 0.0
 
 
-def check_interval(time: Floats, unit: str) -> None:
+def check_interval(time: Floats, unit: Unit) -> None:
     """Refuse an interval of times (t,) s that no record of a flight has, and say which unit would make it one."""
     step, length = float(np.median(np.diff(time))), float(time[-1] - time[0])
     trust = 'if it is right as it is, add skip_checks = ["sampling"]'
-    sizes = UNITS["time"]
-    number = step / sizes[unit]
+    sizes, number = UNITS["time"], step / unit.size
     likely = [
-        other for other, size in sizes.items() if other != unit and _USUAL[0] <= number * size * (1 + 1e-9) <= _USUAL[1]
+        other for other, size in sizes.items() if size != unit.size and _USUAL[0] <= number * size * _ROUND <= _USUAL[1]
     ]
-    hint = f'is the time in {likely[0]}? then write time_unit = "{likely[0]}"; ' if likely else ""
+    hint = f"is the time in {likely[0]}? then {unit.instead('time_unit', likely[0])}; " if likely else ""
     if step > 1 / SLOWEST:
         raise InputError(
             "record.time",
@@ -146,6 +147,7 @@ def read_text(path: str | os.PathLike[str]) -> Table:
     rows = [(number, _cells(line, delimiter)) for number, line in lines]
     first = next((i for i, (_, cells) in enumerate(rows) if len(cells) == width and _is_data(cells)), len(rows))
     header, units = _header(path, [line for _, line in lines[:first]], delimiter, width)
+    indices = _indices(header)
     data = [row for row, (_, line) in zip(rows[first:], lines[first:], strict=True) if not _comment(line, ";")]
     for number, cells in data:
         if len(cells) != len(header):
@@ -153,7 +155,10 @@ def read_text(path: str | os.PathLike[str]) -> Table:
                 "record.file", f"row {number} has {len(cells)} cells, the header {len(header)}", "complete the row"
             )
     return Table(
-        tuple(_column(name, unit, data, i) for i, (name, unit) in enumerate(zip(header, units, strict=True))),
+        tuple(
+            _column(name, unit, data, i, indexed=name in indices)
+            for i, (name, unit) in enumerate(zip(header, units, strict=True))
+        ),
         [number for number, _ in data],
     )
 
@@ -249,9 +254,20 @@ def _header(path: str | os.PathLike[str], lines: list[str], delimiter: str, widt
     return header, [""] * width
 
 
-def _column(header: str, unit: str, data: list[Row], i: int) -> Column:
+def _indices(header: list[str]) -> set[str]:
+    """Names that end in an index in brackets, ``acc[0]``; ``n_z [1]`` is a number of g, if no other has an index."""
+    numbered = {name: match for name in header if (match := _BRACKETS.fullmatch(name)) and match[2].strip().isdecimal()}
+    stems = Counter(match[1] for match in numbered.values())
+    return {
+        name
+        for name, match in numbered.items()
+        if match[2].strip() != "1" or stems[match[1]] > 1 or unit_in_name(match[1])
+    }
+
+
+def _column(header: str, unit: str, data: list[Row], i: int, *, indexed: bool) -> Column:
     """Column `i` of the data, with a decimal point; its unit may stand in brackets behind its name."""
-    bracket = _BRACKETS.fullmatch(header)
+    bracket = None if indexed else _BRACKETS.fullmatch(header)
     aliases: tuple[str, ...] = ()
     if bracket is not None:
         aliases, unit = (bracket[1],), unit or bracket[2]
