@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from gbeam.constants import STANDARD_GRAVITY
@@ -102,16 +102,24 @@ def _lines(record: RecordSummary) -> Iterator[str]:
     clock = f", 0 s being {record.clock}" if record.clock else ""
     quantity = record.quantity.replace("-", " ")
     yield f"{Path(record.file).name}, {record.samples} samples at {record.rate:.4g} Hz, {part}{clock}, {quantity}"
-    axes = zip("xyz", record.columns, record.smallest, record.largest, strict=True)
-    width = max(map(len, record.columns))
-    for axis, column, smallest, largest in axes:
-        low, high = (f"{value / STANDARD_GRAVITY:.4g}" for value in (smallest, largest))
-        yield f"{axis} = {column:<{width}}  {low} to {high} g" if column != "0" else f"{axis} = 0"
+    loads = zip("xyz", record.columns, record.smallest, record.largest, strict=True)
+    yield from _ranges(loads, STANDARD_GRAVITY, "g", max(map(len, record.columns)))
+    if record.rates is not None:
+        turns = record.rates
+        rates = zip("pqr", turns.columns, turns.smallest, turns.largest, strict=True)
+        yield from _ranges(rates, math.pi / 180, "deg/s", max(map(len, turns.columns)))
     yield f"largest load {_load(record.peak)} at {record.time_of_peak:.6g} s"
     if record.level is not None:
         yield f"level from {record.level.start:.6g} to {record.level.end:.6g} s: {_load(record.level.load)} on average"
     elif record.quantity == "specific-force":
         yield "nowhere near 1 g"
+
+
+def _ranges(columns: Iterable[tuple[str, str, float, float]], size: float, unit: str, width: int) -> Iterator[str]:
+    """Yield component, column and range of columns in a unit of a size in SI."""
+    for key, column, smallest, largest in columns:
+        low, high = (f"{value / size:.4g}" for value in (smallest, largest))
+        yield f"{key} = {column:<{width}}  {low} to {high} {unit}" if column != "0" else f"{key} = 0"
 
 
 def _load(load: Vector) -> str:

@@ -25,6 +25,15 @@ class Level(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
+class BodyRates(Part):
+    """Rates of the body in a record, about base axes."""
+
+    columns: tuple[str, str, str] = entry("", "columns of p, q and r, with their signs", "axis")
+    smallest: Vector = entry("rad/s", "smallest rate", "axis")
+    largest: Vector = entry("rad/s", "largest rate", "axis")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
 class RecordSummary(Part):
     """A flight's record as its file has it, in base axes."""
 
@@ -42,6 +51,7 @@ class RecordSummary(Part):
     level: Level | None = part(
         "longest stretch near 1 g; None where it is nowhere, or the load is no specific force", default=None
     )
+    rates: BodyRates | None = part("of the body; None where it is flown without", default=None)
     clock: str = fact("time of day at zero seconds; empty where times are numbers", default="")
     notes: tuple[str, ...] = fact("what was done to it, and what looks odd", default=())
 

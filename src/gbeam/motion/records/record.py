@@ -16,9 +16,9 @@ from gbeam.guards.limits import BINARY_BYTES, SAMPLES, refuse_large_file, refuse
 from gbeam.io.binary import is_binary, read_binary
 from gbeam.io.table import NO_COLUMN, Clock, Table
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
-from gbeam.motion.records.columns import load_factors, mirrored, refuse_other_kinds
+from gbeam.motion.records.columns import RATE, load_factors, mirrored, refuse_other_axes, refuse_other_kinds
 from gbeam.motion.records.conditioning import FEWEST, filtered, spikes, without_spikes
-from gbeam.motion.records.soundness import CHECKS, Samples, oddities, refuse_unsound, summary
+from gbeam.motion.records.soundness import CHECKS, Samples, oddities, refuse_unsound, summary, summary_of_rates
 from gbeam.motion.records.text import Span, check_interval, check_sampling, part_within, read_text
 from gbeam.motion.records.units import Unit, unit_of
 from gbeam.printable import advise
@@ -181,6 +181,9 @@ def read_flight(
     table = read_table(path, [time, *names.values(), *turns.values()])
     if "columns" not in skip:
         refuse_other_kinds(table, names)
+        if turns:
+            refuse_other_kinds(table, turns, RATE)
+            refuse_other_axes(table, names, turns)
     load_unit = _unit(table, "unit", "acceleration", unit, names, trust=trust)
     rate_unit = load_unit if rates is None else _unit(table, "rate_unit", "rate", rates.unit, turns, trust=trust)
     clock, seconds, of_day = _times(table, time, time_unit, trust=trust)
@@ -218,7 +221,8 @@ def read_flight(
     if conditioning.resample is not None:
         notes.append(f"resampled at {conditioning.resample:g} Hz")
     zero = "" if of_day is None else of_day.first
-    facts = summary(flown, os.fspath(path), (float(clock[0]), float(clock[-1])), zero, tuple(notes))
+    turning = summary_of_rates(turns, body_rates)
+    facts = summary(flown, os.fspath(path), (float(clock[0]), float(clock[-1])), turning, zero, tuple(notes))
     flown_rates = None if rates is None else PiecewiseLinear(new, both[:, 3:])
     return FlightRecord(PiecewiseLinear(new, both[:, :3], record=facts), flown_rates)
 

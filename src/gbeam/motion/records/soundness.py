@@ -14,7 +14,7 @@ from gbeam.errors import InputError
 from gbeam.motion.records.conditioning import dropout, flat_tops, spikes, without_spikes
 from gbeam.motion.records.units import UNITS, Unit
 from gbeam.numerics.samples import true_runs
-from gbeam.results.description import Level, RecordSummary, Vector
+from gbeam.results.description import BodyRates, Level, RecordSummary, Vector
 
 CHECKS = get_args(Check)
 _SIZES = UNITS["acceleration"]
@@ -208,7 +208,7 @@ _LISTED = 4  # flat tops
 
 
 def summary(
-    record: Samples, file: str, whole: tuple[float, float], clock: str, notes: tuple[str, ...]
+    record: Samples, file: str, whole: tuple[float, float], rates: BodyRates | None, clock: str, notes: tuple[str, ...]
 ) -> RecordSummary:
     """Summarise a record."""
     time, load = record.time, record.load
@@ -228,9 +228,18 @@ def summary(
         peak=_vector(load[top]),
         time_of_peak=float(time[top]),
         level=_level(record) if record.specific else None,
+        rates=rates,
         clock=clock,
         notes=notes,
     )
+
+
+def summary_of_rates(turns: dict[str, str], rates: Floats) -> BodyRates | None:
+    """Summarise body rates (t, 3), rad/s, of columns; None without any."""
+    if not turns:
+        return None
+    p, q, r = turns.values()
+    return BodyRates((p, q, r), _vector(rates.min(axis=0)), _vector(rates.max(axis=0)))
 
 
 def oddities(record: Samples) -> Iterator[str]:
