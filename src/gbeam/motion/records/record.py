@@ -17,10 +17,11 @@ from gbeam.io.binary import is_binary, read_binary
 from gbeam.io.table import NO_COLUMN, Clock, Table
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
 from gbeam.motion.records.columns import RATE, load_factors, mirrored, refuse_other_axes, refuse_other_kinds
-from gbeam.motion.records.conditioning import FEWEST, filtered, spikes, without_spikes
+from gbeam.motion.records.conditioning import FEWEST, LEAST_TURN, filtered, spikes, without_spikes
 from gbeam.motion.records.soundness import CHECKS, Samples, oddities, refuse_unsound, summary, summary_of_rates
 from gbeam.motion.records.text import Span, check_interval, check_sampling, part_within, read_text
 from gbeam.motion.records.units import Unit, unit_of
+from gbeam.numerics.samples import true_runs
 from gbeam.printable import advise
 
 
@@ -55,7 +56,7 @@ class Conditioning:
     resample : float or None
         New sampling rate, Hz; times may then jitter.
     despike : bool
-        Replace single samples far off their neighbours.
+        Replace spikes, runs of up to five samples between two jumps far off what is around them, by straight lines.
     skip_checks : bool or tuple of str
         Checks to leave out, of ``sampling``, ``spikes``, ``unit``, ``sign``, ``dropouts`` and ``columns``; True leaves
         out all.
@@ -210,10 +211,10 @@ def read_flight(
     if "columns" not in skip:
         notes += [*mirrored(table, names), *load_factors(table, names, load_unit.text, specific=flown.specific)]
     notes += oddities(flown)
-    calm, spike_notes = _despiked(flown, despike=conditioning.despike)
-    notes += spike_notes
     body_rates = rate_unit.size * table.vector(turns, len(clock), part)[part] if turns else np.empty((len(when), 0))
-    new, both = filtered(when, np.concatenate([calm, body_rates], axis=1), conditioning.cutoff, conditioning.resample)
+    calm, spike_notes = _despiked(flown, turns, body_rates, despike=conditioning.despike)
+    notes += spike_notes
+    new, both = filtered(when, calm, conditioning.cutoff, conditioning.resample)
     if jitter:
         notes.append(f"times up to {1e3 * jitter:.3g} ms off even ones: a spline through the samples is flown")
     if conditioning.cutoff is not None:
@@ -243,11 +244,25 @@ def _times(table: Table, name: str, unit: str | None, *, trust: bool) -> tuple[F
     return seconds.size * times, seconds, None
 
 
-def _despiked(record: Samples, *, despike: bool) -> tuple[Floats, list[str]]:
-    """The load, without its spikes if `despike`, and a note on them."""
-    odd = spikes(record.load)
-    count, first = int(odd.any(axis=1).sum()), int(np.argmax(odd.any(axis=1)))
-    done = "were replaced" if despike else "are kept; despike = true replaces them"
-    where = f"the first at {record.time[first]:g} s ({record.place(first)})"
-    notes = [f"{count} sample(s) that look like spikes, {where}, {done}"] if count else []
-    return without_spikes(record.time, record.load, odd) if despike and count else record.load, notes
+def _despiked(record: Samples, turns: Iterable[str], rates: Floats, *, despike: bool) -> tuple[Floats, list[str]]:
+    """The load and the rates (t, n) of the body, without their spikes if `despike`, and a note on these."""
+    values = np.concatenate([record.load, rates], axis=1)
+    odd = np.concatenate([spikes(record.load), spikes(rates, LEAST_TURN)], axis=1)
+    off = np.asarray(odd.any(axis=1))
+    if not off.any():
+        return values, []
+    calm, first = without_spikes(record.time, values, odd), int(np.argmax(off))
+    done, was, now = (
+        ("were replaced", "was", "is") if despike else ("are kept; despike = true replaces them", "is", "then")
+    )
+    said = [record.said] * len(record.names) + [lambda value: f"{np.degrees(value):.4g} deg/s"] * rates.shape[1]
+    ranges = [
+        f"{key} {was} {say(before.min())} to {say(before.max())}, {now} {say(after.min())} to {say(after.max())}"
+        for key, say, before, after in zip((*record.names, *turns), said, values.T, calm.T, strict=True)
+        if (before != after).any()
+    ]
+    note = (
+        f"{off.sum()} sample(s) that look like spikes, in {len(true_runs(off))} run(s), the first at "
+        f"{record.time[first]:g} s ({record.place(first)}), {done}: {'; '.join(ranges)}"
+    )
+    return calm if despike else values, [note]

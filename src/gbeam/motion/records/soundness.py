@@ -49,7 +49,7 @@ class Samples:
 
 
 def refuse_unsound(record: Samples, whole: Samples, skip: Collection[str]) -> None:
-    """Raise InputError if a record does not look like a flight's; single samples far off are judged first.
+    """Raise InputError if a record does not look like a flight's; spikes are judged first.
 
     A fragment of less than 2 s need hold no level flight: of that only the size is judged, and dropouts.
     """

@@ -241,7 +241,9 @@ class Record(Table):
     resample: Annotated[float, Quantity("frequency", "positive")] | None = optional(
         "new sampling rate, such as 200 Hz, and times may jitter; the record's own if left out"
     )
-    despike: StrictBool = Field(default=False, description="replace single samples far off their neighbours")
+    despike: StrictBool = Field(
+        default=False, description="replace spikes, up to five samples between two jumps, by straight lines"
+    )
     skip_checks: _Skipped = Field(
         default=False,
         description="true to take the record as it is, or a list of the checks to leave out: sampling (rate), spikes, "
