@@ -231,6 +231,53 @@ def test_arrays_that_were_not_written_to_their_end_are_refused(tmp_path: Path) -
     check(fly(tmp_path / "r.h5"))
 
 
+def test_fields_of_compounds_are_columns(tmp_path: Path) -> None:
+    """As tables of PyTables and packet recorders have them, nested and with vectors; each by its path or last word."""
+    import h5py
+
+    kind = np.dtype([("t", "f8"), ("name", "S3"), ("acc", [("x", "f4"), ("yz", "f8", (2,))]), ("n_z", "f8")])
+    rows = np.zeros(len(T), kind)
+    rows["t"], rows["acc"]["yz"], rows["n_z"] = NUMBERS[:, 0], NUMBERS[:, 2:], 1
+    rows["acc"]["x"] = NUMBERS[:, 1]
+    with h5py.File(tmp_path / "r.h5", "w") as file:
+        file["imu"] = rows
+        file["imu"].attrs["units"] = ["s", "g", "g", "g"]  # of the fields of numbers
+    record = fly(tmp_path / "r.h5", ("imu/t", "imu/acc/x", "imu/acc/yz[:,0]", "imu/acc/yz[:,1]"))
+    np.testing.assert_allclose(record.acceleration.values, STANDARD_GRAVITY * NUMBERS[:, 1:], rtol=1e-7)
+    with pytest.raises(
+        InputError, match=r"columns are imu/t, imu/acc/x, imu/acc/yz\[:,0\], imu/acc/yz\[:,1\], imu/n_z"
+    ):
+        fly(tmp_path / "r.h5", ("t", "x", "y", "n_z"))
+
+
+DATED = Path(__file__).parents[1] / "data" / "records" / "datetime.mat"
+
+
+@pytest.mark.parametrize("version", ["5", "7.3"])
+def test_a_variable_that_only_matlab_reads_leaves_the_others(version: str, tmp_path: Path) -> None:
+    """`when` is a datetime, of which MATLAB writes an object: SciPy tells no shape of it and failed for all."""
+    path = DATED
+    if version == "7.3":
+        import h5py
+
+        path = tmp_path / "r.mat"
+        v73_mat(path)
+        with h5py.File(path, "r+") as file:
+            for name, values in zip(("t", "ax", "ay", "az"), NUMBERS.T, strict=True):
+                if name in file:
+                    del file[name]
+                file[name] = 9.80665 * values[None] if name != "t" else values[None]
+            file["when"] = np.zeros((6, 1), dtype=np.uint32)
+            file["when"].attrs.update(MATLAB_class=np.bytes_("datetime"), MATLAB_object_decode=np.int32(3))
+    assert fly(path, ("t", "ax", "ay", "az"), "m/s^2").acceleration.times[-1] == pytest.approx(
+        1.99 if path == DATED else 2.39
+    )
+    with pytest.raises(
+        InputError, match=r"record.time column 'when' is of MATLAB's class datetime.*seconds\(t - t\(1\)\)"
+    ):
+        fly(path, ("when", "ax", "ay", "az"), "m/s^2")
+
+
 def test_packed_values_are_unpacked_and_missing_ones_refused(tmp_path: Path) -> None:
     import h5py
 

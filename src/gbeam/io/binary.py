@@ -29,8 +29,9 @@ _NETCDF_3 = b"CDF"  # which is not HDF5
 def read_hdf5(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
     """Read an HDF5 or netCDF file.
 
-    A vector is a column by its path, ``group/az``, or the path's last word; a matrix is one column per vector,
-    ``acc[:,0]``. The attribute `units` is the unit; `scale_factor`, `add_offset` and `_FillValue` are applied.
+    A vector is a column by its path, ``group/az``, or the path's last word, as is a field of a compound, ``imu/az``; a
+    matrix is one column per vector, ``acc[:,0]``. The attribute `units` is the unit; `scale_factor`, `add_offset` and
+    `_FillValue` are applied.
     """
     with _refused(path, "cannot be read", "give an HDF5 or netCDF file"):
         with open(path, "rb") as file:
@@ -56,26 +57,55 @@ def hdf5_columns(path: str | os.PathLike[str], *, matlab: bool = False) -> list[
     columns: list[Column] = []
 
     def add(path_inside: str, item: h5py.Dataset | h5py.Group) -> None:
-        if not isinstance(item, h5py.Dataset) or item.dtype.kind not in "iuf" or path_inside.startswith("#"):
+        if not isinstance(item, h5py.Dataset) or item.shape is None or path_inside.startswith("#"):
             return
-        if item.shape is None:  # without a space for numbers
-            return
-        shape = item.shape[::-1] if matlab else item.shape
         name = path_inside.replace("/", ".") if matlab else path_inside
-        unit = _text(item.attrs.get("units", ""))
-        columns.extend(array_columns(name, shape, lambda: values(path_inside), unit=unit, matlab=matlab))
+        if "MATLAB_empty" in item.attrs:  # it holds its sizes
+            return
+        if matlab and _text(item.attrs.get("MATLAB_class", "double")) not in _NUMBERS:
+            columns.append(_object(name, _text(item.attrs["MATLAB_class"])))
+            return
+        units = np.ravel(item.attrs.get("units", ""))
+        fields = [*_fields(item.dtype)]
+        for k, (inside, shape) in enumerate(fields):
+            unit = _text(units[k if len(units) == len(fields) else 0]) if len(units) in (1, len(fields)) else ""
+            whole = item.shape[::-1] if matlab else item.shape + shape
+            read = partial(values, path_inside, inside)
+            columns.extend(array_columns("/".join([name, *inside]), whole, read, unit=unit, matlab=matlab))
 
-    def values(path_inside: str) -> NDArray[Any]:
+    def values(path_inside: str, inside: Sequence[str]) -> NDArray[Any]:
         with h5py.File(path) as file:
             item = file[path_inside]
             refuse_more("", "numbers", item.size, ELEMENTS, 40.0, "save fewer at a time")
             _refuse_unwritten(item)
-            array = _unpacked(np.asarray(item), item.attrs)
+            array = item[inside[0]] if inside else np.asarray(item)
+            for field in inside[1:]:
+                array = array[field]
+            array = _unpacked(array, {} if inside else item.attrs)
         return array.T if matlab else array
 
     with h5py.File(path) as file:
         file.visititems(add)
     return columns
+
+
+def _fields(kind: np.dtype[Any], inside: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], tuple[int, ...]]]:
+    """Yield path and shape of the numbers in one element of a type: of itself, or of the fields of a compound."""
+    base, shape = kind.base, kind.shape
+    if base.kind in "iuf":
+        yield inside, shape
+    for name in base.names or () if not shape else ():
+        yield from _fields(base[name], (*inside, name))
+
+
+def _object(name: str, kind: str) -> Column:
+    """Column that only MATLAB can read, which says so when it is asked for."""
+
+    def read() -> NDArray[Any]:
+        fix = "save numbers beside it, such as s = seconds(t - t(1)) of a datetime t, or z = T.z of a table T"
+        raise InputError("", f"is of MATLAB's class {kind}, which only MATLAB reads", fix)
+
+    return Column(name, read)
 
 
 def _refuse_unwritten(item: h5py.Dataset) -> None:
@@ -120,10 +150,13 @@ _ATTRIBUTES = "units", "_FillValue", "missing_value", *_PACKING
 
 def _text(attribute: Any) -> str:
     value = np.ravel(attribute)[0] if np.size(attribute) else ""
-    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
+    return (
+        value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value) if isinstance(value, str) else ""
+    )
 
 
 _STRUCTURES = ("struct", "object")
+_OPAQUE = ("s0", "s1", "s2", "arr")  # fields by which SciPy shows an object: name, system, class, contents
 _NUMBERS = ("double", "single", "logical", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)))
 
 
@@ -135,6 +168,7 @@ def read_mat(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
     """
     with _refused(path, "is not a MAT file", "save the record by MATLAB"), warnings.catch_warnings():
         warnings.filterwarnings("error", ".*may be corrupt")  # numbers of a VAX or a Cray, which SciPy misreads
+        warnings.filterwarnings("ignore", "Duplicate variable name")  # of objects, which SciPy calls None
         columns = _any_version(path, words)
     if not columns:
         fix = "save vectors of numbers; a table T as s = table2struct(T, 'ToScalar', true)"
@@ -150,6 +184,9 @@ def _any_version(path: str | os.PathLike[str], words: Sequence[str]) -> list[Col
         variables = scipy.io.whosmat(path)
     except NotImplementedError:  # scipy's word for version 7.3
         return hdf5_columns(path, matlab=True)
+    except TypeError:  # of a variable that has no shape, such as a datetime
+        loaded = scipy.io.loadmat(path, simplify_cells=True)
+        return [each for name, value in loaded.items() if name[:2] != "__" for each in _columns(name, value)]
     columns: list[Column] = []
     for name, shape, kind in variables:
         if kind in _NUMBERS:
@@ -183,6 +220,9 @@ def _columns(name: str, value: Any) -> list[Column]:
     """Columns of a value of a MAT file, or of the fields of a structure; none of what is no array of real numbers."""
     if isinstance(value, dict):
         return [column for field, part in value.items() for column in _columns(f"{name}.{field}", part)]
+    if isinstance(value, np.ndarray) and value.dtype.names == _OPAQUE:
+        name, _, kind, _ = value[0]
+        return [_object(_text(name), _text(kind))]
     if not isinstance(value, np.ndarray) or value.dtype.kind not in "iuf":
         return []
     return array_columns(name, value.shape, lambda: value, matlab=True)
