@@ -107,16 +107,19 @@ def test_spikes_go_only_when_asked(tmp_path: Path) -> None:
     path = spoilt(tmp_path, lambda rows: column(rows, 3, slice(800, 801), "-11"))
     kept, mended = fly(path), fly(path, despike=True)
     assert float(kept.acceleration.values[800, 2]) == pytest.approx(11 * 9.80665)
-    assert "row 802" in kept.notes[0] and "despike = true replaces them: z is -0.4157 g to 11 g, then" in kept.notes[0]
+    assert (
+        "row 802" in kept.summary.notes[0]
+        and "despike = true replaces them: z is -0.4157 g to 11 g, then" in kept.summary.notes[0]
+    )
     clean = fly(F16).acceleration.values
     assert float(jnp.abs(mended.acceleration.values - clean).max()) < 0.05
-    assert "were replaced" in mended.notes[0]
+    assert "were replaced" in mended.summary.done[0]
 
 
 def test_cutoff_and_resampling() -> None:
     plain, slow = fly(F16), fly(F16, cutoff=5.0, resample=200.0)
     assert slow.acceleration.times.size == 3199
-    assert slow.notes == ("low-pass at 5 Hz, zero phase", "resampled at 200 Hz")
+    assert slow.summary.done == ("low-pass at 5 Hz, zero phase", "resampled at 200 Hz")
     inside = slow.acceleration(plain.acceleration.times[200:-200]) - plain.acceleration.values[200:-200]
     assert float(jnp.sqrt(jnp.mean(inside**2))) < 0.5
     with pytest.raises(InputError, match=r"record.resample is 20 Hz, below the record's 100 Hz, with no cut-off"):
@@ -201,7 +204,7 @@ def test_three_bad_samples_are_replaced_and_the_ranges_said(tmp_path: Path) -> N
     assert np.abs(mended.acceleration.values - whole.acceleration.values).max() < 0.05
     assert mended.rates is not None and whole.rates is not None
     assert np.abs(mended.rates.values - whole.rates.values).max() < 0.02
-    (note,) = mended.notes
+    (note,) = mended.summary.done
     assert note == (
         "5 sample(s) that look like spikes, in 2 run(s), the first at 3 s (row 302), were replaced: "
         "z was -0.4157 g to 13 g, is -0.4157 g to 8.059 g; "
@@ -220,12 +223,12 @@ def test_a_sensor_at_the_end_of_its_range_is_named(tmp_path: Path) -> None:
     def clipped(rows: Rows) -> Rows:
         return column(rows, 3, slice(None), lambda cell: f"{max(float(cell), -7.98):g}")
 
-    (note,) = fly(spoilt(tmp_path, clipped)).notes
+    (note,) = fly(spoilt(tmp_path, clipped)).summary.notes
     assert note == (
         "z, column 'n_z_g', stands at its extreme, 7.98 g, from 4.43 to 6.59 s (rows 445 to 661): "
         "its sensor seems to be at the end of its range, and what is beyond is lost"
     )
-    assert fly(F16).notes == ()
+    assert fly(F16).summary.notes == ()
 
 
 def test_flat_tops_are_those_of_curves_that_are_cut_off() -> None:

@@ -60,6 +60,10 @@ TEXT: dict[str, str | bytes] = {
     "row of units in brackets": lines("\t", units="[s]\t[g]\t[g]\t[g]"),
     "row of units below a header in a comment": lines(header=("# t", *NAMES[1:]), units="s,g,g,g"),
     "units in the names": lines(header=("t [s]", "a_x [g]", "a_y (g)", "a_z [-]")),
+    "Fortran's exponents": "\n".join(
+        [",".join(NAMES), *(",".join(f"{x:.15E}".replace("E", "D") for x in row) for row in NUMBERS)]
+    ),
+    "a last column of remarks": lines("\t", header=(*NAMES, "Comment")),
     "index without a name": ";" + lines(";", ",").replace("\n", "\n1;")[:-2],
     "milliseconds": lines(header=("t [ms]", *NAMES[1:]), clock=1e-3),
     "milliseconds in a row of units": lines(";", ",", units="ms;g;g;g", clock=1e-3),
@@ -87,7 +91,7 @@ def test_every_dialect_is_read_to_the_same_numbers(tmp_path: Path, dialect: str)
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
     record = fly(path)
     check(record)
-    assert record.notes == (("time in ms, as the file says",) if "milliseconds" in dialect else ())
+    assert record.summary.done == (("time in ms, as the file says",) if "milliseconds" in dialect else ())
 
 
 @pytest.mark.parametrize(
@@ -380,6 +384,82 @@ def test_units_that_are_none_or_not_the_files_are_refused(
     with pytest.raises(InputError, match=words) as caught:
         fly(path, header, unit)
     assert caught.value.where == "record.unit"
+
+
+def labview(samples: int = 240, step: float = 0.01, unit: str = "g", end: str = "\t") -> str:
+    """A measurement file of LabVIEW's, with its names one more than the rows have numbers."""
+    channels = [
+        ("Channels", "3", "", ""), ("Samples", *[samples] * 3), ("Y_Unit_Label", *[unit] * 3),
+        ("X_Dimension", *["Time"] * 3), ("X0", *["0.0000000000000000E+0"] * 3), ("Delta_X", *[f"{step:f}"] * 3),
+    ]  # fmt: skip
+    head = ["LabVIEW Measurement", "Writer_Version\t2", "Separator\tTab", "Decimal_Separator\t.", "X_Columns\tOne"]
+    head += ["***End_of_Header***", "", *("\t".join(map(str, row)) + end for row in channels), "***End_of_Header***"]
+    return "\r\n".join([*head, *lines("\t", header=(*NAMES, "Comment")).splitlines(), ""])
+
+
+def test_labviews_header_says_units_rate_and_samples(tmp_path: Path) -> None:
+    path = tmp_path / "r.lvm"
+    for end in ("\t", ""):
+        path.write_text(labview(end=end))
+        check(fly(path))
+        assert fly(path).summary.notes == ()
+    path.write_text(labview(samples=800))
+    assert fly(path).summary.notes == ("the file's header states 800 samples, and it holds 240",)
+    path.write_text(labview(step=0.005))
+    with pytest.raises(
+        InputError, match=r"record.time has 100 Hz, and the file states Delta_X, 200 Hz; if the file is"
+    ):
+        fly(path)
+    check(fly(path, conditioning=Conditioning(skip_checks=("sampling",))))
+    path.write_text(labview(unit="m/s^2"))
+    with pytest.raises(InputError, match=r'record.unit is g, .* in m/s\^2; write unit = "m/s\^2"'):
+        fly(path)
+
+
+def _matlab(path: Path) -> None:
+    import scipy.io
+
+    scipy.io.savemat(path, {"Fs": 100.0, "acc": NUMBERS[:, 1:], "other": {"fs": 7.0, "x": NUMBERS[:, 1]}})
+
+
+def _matlab_73(path: Path) -> None:
+    import h5py
+
+    with h5py.File(path, "w", userblock_size=512) as file:
+        file["Fs"], file["acc"], file["other/fs"] = np.array([[100.0]]), NUMBERS[:, 1:].T, np.array([[7.0]])
+    with path.open("r+b") as file:
+        file.write(b"MATLAB 7.3 MAT-file".ljust(124) + b"\x00\x02IM")
+
+
+@pytest.mark.parametrize("write", [_matlab, _matlab_73])
+def test_a_file_without_times_is_flown_at_its_sample_rate(tmp_path: Path, write: Callable[[Path], None]) -> None:
+    """The file's own is offered, and another is refused; that of other columns says nothing."""
+    path, names = tmp_path / "r.mat", ("acc(:,1)", "acc(:,2)", "acc(:,3)")
+    write(path)
+    with pytest.raises(
+        InputError, match=r'no column \'t\'; .* or write sample_rate = "100 Hz" in place of time, the Fs of'
+    ):
+        fly(path, ("t", *names))
+    check(read_flight(path, None, *names, "g", sample_rate=100.0))
+    with pytest.raises(
+        InputError, match=r'record.sample_rate is 200 Hz, and the file states Fs.* sample_rate = "100 Hz"'
+    ):
+        read_flight(path, None, *names, "g", sample_rate=200.0)
+
+
+def test_sample_rates_of_hdf5_are_those_of_their_groups(tmp_path: Path) -> None:
+    import h5py
+
+    with h5py.File(tmp_path / "r.h5", "w") as file:
+        for name, values in zip(NAMES, NUMBERS.T, strict=True):
+            file[f"imu/{name}"] = values
+        file["imu/a_x"].attrs["sample_rate"] = 100
+        file["gps/fs"], file["imu"].attrs["wf_increment"] = 5.0, 0.01
+    check(fly(tmp_path / "r.h5"))
+    with h5py.File(tmp_path / "r.h5", "r+") as file:
+        file["imu"].attrs["wf_increment"] = 0.02
+    with pytest.raises(InputError, match=r"has 100 Hz, and the file states imu/wf_increment, 50 Hz"):
+        fly(tmp_path / "r.h5")
 
 
 def test_rates_in_another_unit_than_the_file_states(tmp_path: Path) -> None:

@@ -111,7 +111,7 @@ def test_a_unit_of_another_quantity_is_refused(tmp_path: Path) -> None:
 )
 def test_a_mirrored_mapping_is_said(columns: dict[str, str], mirrored: bool) -> None:
     options = {"quantity": "acceleration"} if columns.get("z") == "-n_x_g" else {}
-    notes = fly(**columns, **options).notes
+    notes = fly(**columns, **options).summary.notes
     assert any("(determinant -1)" in note for note in notes) is mirrored
 
 
@@ -179,9 +179,9 @@ def test_the_components_of_one_array_are_its_axes(tmp_path: Path) -> None:
 def test_a_load_factor_is_specific_force_in_g(tmp_path: Path) -> None:
     path = renamed(tmp_path, n_x_g="a", n_y_g="b", n_z_g="n_z")
     columns = {"x": "a", "y": "-b", "z": "-n_z"}
-    assert fly(path, **columns).notes == ()
-    (note,) = fly(path, quantity="acceleration", **columns).notes
+    assert fly(path, **columns).summary.notes == ()
+    (note,) = fly(path, quantity="acceleration", **columns).summary.notes
     assert note.startswith("'n_z' is a load factor by its name, which is specific force")
     trusting = Conditioning(skip_checks=("unit", "sign"))
     kept = read_flight(path, "time_s", *columns.values(), "m/s^2", conditioning=trusting)
-    assert kept.notes == ("'n_z' is a load factor by its name, which is in g, and unit is m/s^2",)
+    assert kept.summary.notes == ("'n_z' is a load factor by its name, which is in g, and unit is m/s^2",)

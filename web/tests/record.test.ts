@@ -18,6 +18,9 @@ it("says what a record lacks, first of all a column", () => {
 it("writes rates together or not at all, and nothing that is left out", () => {
   const chosen = { file: "a.csv", time: "t", time_unit: "", z: "z", unit: "g", p: "0", q: "0", rate_unit: "rad/s", cutoff: "5 Hz" };
   expect(written(chosen)).toEqual({ file: "a.csv", time: "t", x: "0", y: "0", z: "z", unit: "g" });
+  expect(written({ ...chosen, sample_rate: "100 Hz", time_unit: "ms", vehicle: "other" })).toEqual({
+    file: "a.csv", sample_rate: "100 Hz", x: "0", y: "0", z: "z", unit: "g", vehicle: "other",
+  });
   expect(written({ ...chosen, p: "roll" })).toMatchObject({ p: "roll", q: "0", r: "0", rate_unit: "rad/s" });
 });
 

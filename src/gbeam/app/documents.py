@@ -31,7 +31,8 @@ from gbeam.solids.foreign import is_mesh, skin
 
 NAME = "scenario.toml"
 # Keys of a record that say what its columns are.
-COLUMNS = ("file", "time", "time_unit", "x", "y", "z", "unit", "quantity", "p", "q", "r", "rate_unit")
+COLUMNS = ("file", "time", "time_unit", "sample_rate", "x", "y", "z", "unit", "quantity", "vehicle")
+COLUMNS += ("p", "q", "r", "rate_unit")
 CHANGES = 3  # between two scenarios, at most, that are listed
 _LONG = 40  # characters of a value in that list
 _DURATION: Place = ("response", "duration")
@@ -194,8 +195,11 @@ def head(file: Path) -> dict[str, Any]:
     """Return the name of a file, with the columns of a record and the keys that they suggest, or the skin of a mesh."""
     if is_mesh(file.name):
         return {"name": file.name, "columns": [], "suggested": {}, "skin": _skin(file, file.stat().st_mtime_ns)}
-    columns = read_table(file).columns[:MOST]
+    table = read_table(file)
+    columns = table.columns[:MOST]
     keys = suggested((column.name, column.unit) for column in columns)
+    rates = {each.rate for each in table.stated}
+    keys |= {"sample_rate": f"{rates.pop():g} Hz"} if "time" not in keys and len(rates) == 1 else {}
     return {"name": file.name, "columns": [column.name for column in columns], "suggested": keys}
 
 

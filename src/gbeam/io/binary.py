@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from gbeam.errors import InputError
 from gbeam.guards.limits import ELEMENTS, refuse_more
 from gbeam.guards.processes import confined
-from gbeam.io.table import Column, Table, array_columns
+from gbeam.io.table import Column, Stated, Table, array_columns, states_rate
 
 if TYPE_CHECKING:
     import h5py
@@ -36,7 +36,7 @@ def read_hdf5(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
     with _refused(path, "cannot be read", "give an HDF5 or netCDF file"):
         with open(path, "rb") as file:
             old = file.read(3) == _NETCDF_3
-        return Table(tuple(_netcdf_3(path) if old else hdf5_columns(path)))
+        return Table(tuple(_netcdf_3(path))) if old else hdf5_table(path)
 
 
 @contextmanager
@@ -50,13 +50,18 @@ def _refused(path: str | os.PathLike[str], problem: str, fix: str) -> Iterator[N
         raise InputError("record.file", f"{path} {problem} ({error})", fix) from None
 
 
-def hdf5_columns(path: str | os.PathLike[str], *, matlab: bool = False) -> list[Column]:
-    """Columns of an HDF5 file; MATLAB's hold every matrix transposed."""
+def hdf5_table(path: str | os.PathLike[str], *, matlab: bool = False) -> Table:
+    """Columns of an HDF5 file, and the sample rates that it states; MATLAB's hold every matrix transposed."""
     import h5py  # 0.2 s to import
 
-    columns: list[Column] = []
+    columns, stated = list[Column](), list[Stated]()
+    between = "." if matlab else "/"
 
     def add(path_inside: str, item: h5py.Dataset | h5py.Group) -> None:
+        for name in filter(states_rate, item.attrs):
+            stated.extend(_stated(f"{path_inside}/{name}".lstrip("/").replace("/", between), item.attrs[name], between))
+        if isinstance(item, h5py.Dataset) and item.size == 1 and item.dtype.kind in "iuf":
+            stated.extend(_stated(path_inside.replace("/", between), item[()], between))
         if not isinstance(item, h5py.Dataset) or item.shape is None or path_inside.startswith("#"):
             return
         name = path_inside.replace("/", ".") if matlab else path_inside
@@ -85,8 +90,16 @@ def hdf5_columns(path: str | os.PathLike[str], *, matlab: bool = False) -> list[
         return array.T if matlab else array
 
     with h5py.File(path) as file:
+        add("", file)
         file.visititems(add)
-    return columns
+    return Table(tuple(columns), stated=tuple(stated))
+
+
+def _stated(path: str, value: Any, between: str) -> Iterator[Stated]:
+    """Yield the sample rate that a value of a file is by its name."""
+    number = np.asarray(value)
+    if number.size == 1 and number.dtype.kind in "iuf":
+        yield from Stated.read(path, float(number.item()), between)
 
 
 def _fields(kind: np.dtype[Any], inside: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], tuple[int, ...]]]:
@@ -169,25 +182,29 @@ def read_mat(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
     with _refused(path, "is not a MAT file", "save the record by MATLAB"), warnings.catch_warnings():
         warnings.filterwarnings("error", ".*may be corrupt")  # numbers of a VAX or a Cray, which SciPy misreads
         warnings.filterwarnings("ignore", "Duplicate variable name")  # of objects, which SciPy calls None
-        columns = _any_version(path, words)
-    if not columns:
+        table = _any_version(path, words)
+    if not table.columns:
         fix = "save vectors of numbers; a table T as s = table2struct(T, 'ToScalar', true)"
         raise InputError("record.file", f"{path} holds no numeric variables", fix)
-    return Table(tuple(columns))
+    return table
 
 
-def _any_version(path: str | os.PathLike[str], words: Sequence[str]) -> list[Column]:
+def _any_version(path: str | os.PathLike[str], words: Sequence[str]) -> Table:
     """Columns of a MAT file: of its vectors and matrices, and of the structures that `words` may name."""
     import scipy.io  # 0.2 s to import
 
     try:
         variables = scipy.io.whosmat(path)
     except NotImplementedError:  # scipy's word for version 7.3
-        return hdf5_columns(path, matlab=True)
+        return hdf5_table(path, matlab=True)
     except TypeError:  # of a variable that has no shape, such as a datetime
-        loaded = scipy.io.loadmat(path, simplify_cells=True)
-        return [each for name, value in loaded.items() if name[:2] != "__" for each in _columns(name, value)]
-    columns: list[Column] = []
+        loaded = {k: v for k, v in scipy.io.loadmat(path, simplify_cells=True).items() if k[:2] != "__"}
+        columns = [each for name, value in loaded.items() for each in _columns(name, value)]
+        return Table(tuple(columns), stated=tuple(_numbers_stated(loaded)))
+    columns = list[Column]()
+    numbers = {
+        name: _loaded(path, name) for name, shape, kind in variables if kind in _NUMBERS and math.prod(shape) == 1
+    }
     for name, shape, kind in variables:
         if kind in _NUMBERS:
             squeezed = tuple(size for size in shape if size != 1)
@@ -195,10 +212,22 @@ def _any_version(path: str | os.PathLike[str], words: Sequence[str]) -> list[Col
     structures = [name for name, _, kind in variables if kind in _STRUCTURES]
     missing = {word.removeprefix("-").strip() for word in words} - {each.name for each in columns} - {"0"}
     named = [name for name in structures if any(word.startswith(f"{name}.") for word in missing)]
-    columns += [column for name in named for column in _columns(name, _loaded(path, name))]
+    parts = {name: _loaded(path, name) for name in named}
+    columns += [column for name, value in parts.items() for column in _columns(name, value)]
     if not words or missing - {each.name for each in columns}:  # a part's last word, or a mistake
-        columns += [c for name in structures if name not in named for c in _columns(name, _loaded(path, name))]
-    return columns
+        others = {name: _loaded(path, name) for name in structures if name not in named}
+        columns += [column for name, value in others.items() for column in _columns(name, value)]
+        parts |= others
+    return Table(tuple(columns), stated=tuple(_numbers_stated(numbers | parts)))
+
+
+def _numbers_stated(values: Mapping[str, Any], of: str = "") -> Iterator[Stated]:
+    """Yield the sample rates among values by name, and among the fields of structures."""
+    for name, value in values.items():
+        if isinstance(value, dict):
+            yield from _numbers_stated(value, f"{of}{name}.")
+        elif np.ndim(value) == 0:
+            yield from _stated(f"{of}{name}", value, ".")
 
 
 def _loaded(path: str | os.PathLike[str], name: str) -> Any:
@@ -263,7 +292,8 @@ def read_uff(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
         values = _samples(data_set, "data")
         unit = _unit(data_set["ordinate_axis_units_lab"])
         columns.append(Column(name, lambda values=values: values, unit, (point,)))  # type: ignore[misc]
-    return Table(tuple(columns))
+    steps = {float(data_set["abscissa_inc"] or 0) for data_set in sets if data_set["abscissa_spacing"] == 1}
+    return Table(tuple(columns), stated=tuple(each for step in steps for each in Stated.read("dt", step, "/")))
 
 
 def _samples(data_set: dict[str, Any], key: str) -> np.ndarray[Any, np.dtype[np.float64]]:
@@ -320,10 +350,11 @@ def _kept(path: str, words: Sequence[str], folder: str, version: tuple[int, ...]
         return InputError("record.file", f"{path} {problem}", "export the record again, with fewer variables")
 
     try:
-        columns = confined(columns_of, path, words, refuse=refuse)
+        parts = confined(parts_of, path, words, refuse=refuse)
     except InputError as error:
         return error
-    return Table(tuple(_column(**each) for each in columns))
+    columns, stated = (parts[name] for name in ("columns", "stated"))
+    return Table(tuple(_column(**each) for each in columns), stated=tuple(Stated(*each) for each in stated))
 
 
 def _column(name: str, unit: str, aliases: Sequence[str], samples: Any = None, refusal: Sequence[str] = ()) -> Column:
@@ -337,17 +368,20 @@ def _column(name: str, unit: str, aliases: Sequence[str], samples: Any = None, r
     return Column(name, read, unit, tuple(aliases))
 
 
-def columns_of(path: str, words: list[str]) -> list[dict[str, Any]]:
-    """Return names, units and aliases of the columns of a file, and the samples of those that `words` name."""
+def parts_of(path: str, words: list[str]) -> dict[str, Any]:
+    """Return names, units and aliases of the columns of a file, with the samples of those that `words` name, and the
+    sample rates that it states.
+    """
     table = _READERS[Path(path).suffix.lower()](path, words)
     needed = set()
     for word in words:
         with suppress(InputError):  # no column, or several: refused where it is looked for
             needed.add(table.column("", table.signed(word)[1] or ""))
-    return [
+    columns = [
         {"name": each.name, "unit": each.unit, "aliases": each.aliases} | (_sampled(each) if each in needed else {})
         for each in table.columns
     ]
+    return {"columns": columns, "stated": [[each.name, each.rate, each.of] for each in table.stated]}
 
 
 def _sampled(column: Column) -> dict[str, Any]:

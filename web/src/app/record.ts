@@ -28,12 +28,13 @@ const named = (units: string[]): Options => units.map((each) => [each, each.repl
 const TIMES: Options = [["", "the file's unit, or s"], ...named(["s", "ms", "us", "ns", "min", "h", "day"])];
 const LOADS = named(["g", "mg", "m/s^2", "cm/s^2", "mm/s^2", "ft/s^2", "in/s^2"]);
 const TURNS = named(["rad/s", "deg/s", "rpm"]);
+const VEHICLES: Options = [["aircraft", "an aircraft"], ["rocket", "a rocket"], ["other", "something else"]];
 const HOLDS: Options = [["specific-force", "specific force"], ["acceleration", "acceleration"]];
 
 /** What a record still lacks before it can be used, in words; nothing where it is whole. */
 export function lacking(chosen: Mapping): string {
   const turns = RATES.filter((key) => chosen[key] && chosen[key] !== "0");
-  if (!chosen["time"]) return "choose the column of time";
+  if (!chosen["time"] && !chosen["sample_rate"]) return "choose the column of time, or give a sample rate";
   if (AXES.every((key) => (chosen[key] ?? "0") === "0")) return "choose a column for x, y or z";
   if (!chosen["unit"]) return "choose the unit of x, y and z";
   if (turns.length && !chosen["rate_unit"]) return "choose the unit of p, q and r";
@@ -54,7 +55,8 @@ export function ratesAlong(chosen: Mapping, suggested: Mapping): Mapping {
 /** What is written of a record: rates all together, or none of them. */
 export function written(chosen: Mapping): Mapping {
   const turning = RATES.some((key) => chosen[key] && chosen[key] !== "0");
-  const keys = ["file", "time", "time_unit", ...AXES, "unit", "quantity", ...(turning ? [...RATES, "rate_unit"] : [])];
+  const clock = chosen["sample_rate"] ? ["sample_rate"] : ["time", "time_unit"];
+  const keys = ["file", ...clock, ...AXES, "unit", "quantity", "vehicle", ...(turning ? [...RATES, "rate_unit"] : [])];
   const pairs = keys.map((key) => [key, chosen[key] || ([...AXES, ...RATES].includes(key) ? "0" : "")] as const);
   return Object.fromEntries(pairs.filter(([, value]) => value));
 }
@@ -140,16 +142,33 @@ export class RecordPanel {
       ...(suggested.length ? [element("p", "faint", "Dashed: suggested by the columns' names and units. Check them, and choose the signs of x, y and z: p, q and r follow.")] : []),
       this.row(
         flight,
-        field("time", "Time", listed),
+        field("time", "Time", chosen["sample_rate"] ? [["", "none"], ...listed] : listed),
         field("time_unit", "Time in", TIMES),
+        this.rate(chosen),
         ...AXES.map((key) => field(key, `${key} is`, signed, "0")),
         field("unit", "Unit", LOADS),
         field("quantity", "Holds", HOLDS, "specific-force"),
+        field("vehicle", "Of", VEHICLES, "aircraft"),
       ),
       rates,
       this.row(act, ready),
     );
     this.which();
+  }
+
+  /** A sample rate, which takes the place of a column of time. */
+  private rate(chosen: Mapping): HTMLElement {
+    const label = element("label", "", "or sample rate ");
+    const input = element("input");
+    input.placeholder = "such as 100 Hz";
+    input.size = 12;
+    input.value = chosen["sample_rate"] ?? "";
+    input.addEventListener("input", () => {
+      chosen["sample_rate"] = input.value.trim();
+      this.judge();
+    });
+    label.append(input);
+    return label;
   }
 
   /** Which flight follows the record, and whether it can. */

@@ -73,6 +73,13 @@ def mirrored(table: Table, names: dict[str, str]) -> Iterator[str]:
         )
 
 
+def upended(table: Table, names: dict[str, str]) -> dict[str, str]:
+    """Columns with another sign of z, and of y where axes would be mirrored without."""
+    keys = "yz" if round(float(np.linalg.det(_mapping(table, names, _AXIS)))) == 1 else "z"
+    signed = {key: table.signed(names[key]) for key in keys}
+    return {key: column if sign < 0 else f"-{column}" for key, (sign, column) in signed.items() if column is not None}
+
+
 def refuse_other_axes(table: Table, names: dict[str, str], turns: dict[str, str]) -> None:
     """Refuse body rates p, q and r about other axes than those of the loads x, y and z, by the columns' names.
 

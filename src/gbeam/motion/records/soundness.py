@@ -9,19 +9,21 @@ from typing import get_args
 import numpy as np
 
 from gbeam.arrays.types import Flags, Floats
-from gbeam.constants import STANDARD_GRAVITY, Check
+from gbeam.constants import STANDARD_GRAVITY, Check, Vehicle
 from gbeam.errors import InputError
 from gbeam.motion.records.conditioning import dropout, flat_tops, spikes, without_spikes
 from gbeam.motion.records.units import UNITS, Unit
 from gbeam.numerics.samples import true_runs
-from gbeam.results.description import BodyRates, Level, RecordSummary, Vector
+from gbeam.results.description import BodyRates, Curves, Level, Vector
 
 CHECKS = get_args(Check)
 _SIZES = UNITS["acceleration"]
 LARGEST = 50.0  # g
 _FRAGMENT = 2.0  # s
 _BEGINS = 3.0  # g: above that, no flight begins
+_BOOST = 3.0  # g: beyond that, along an axis, a vehicle is pushed and does not turn over
 _OUTSTANDING = 1.5  # a spike that much above the rest would be the record's peak
+_LASTS = 1.0  # s: for less, what passes 1 g is no level flight
 LEVEL = (0.75, 1.35)  # g: level flight, thrust included
 _BEGINS_LEVEL = (0.7, 1.6)  # g
 _SOME, _HARDLY = 0.05, 0.02  # of the record
@@ -29,6 +31,8 @@ _TURNED = 0.7  # of the load: within 45° of upwards or downwards
 _NEVER = 0.7  # g: what stays below does not fly level anywhere
 _PILOTED = 12.0  # g: no aircraft, and few rockets
 _ACCELERATION = 'if it is acceleration without gravity, add quantity = "acceleration"'
+_ROCKET = 'if it is a rocket\'s, add vehicle = "rocket"'
+_OTHER = 'if it is of no aircraft or rocket, add vehicle = "other"'
 
 
 @dataclass(frozen=True)
@@ -40,6 +44,8 @@ class Samples:
     names: dict[str, str]  # columns of x, y and z, with their signs
     unit: Unit  # that the load was read in
     specific: bool  # whether it is specific force, 1 g upwards in level flight
+    vehicle: Vehicle
+    upended: dict[str, str]  # columns by axis that turn z over
     place: Callable[[int], str]  # where a sample is in its file, in words
 
     def said(self, value: float) -> str:
@@ -58,12 +64,12 @@ def refuse_unsound(record: Samples, whole: Samples, skip: Collection[str]) -> No
         _check_spikes(record, odd, size)
     if "unit" not in skip:
         _check_size(record, size)
-    if _lasts(whole) and whole.specific and not {"unit", "sign"} <= set(skip):
+    if _flies(whole) and not {"unit", "sign"} <= set(skip):
         if whole is not record:
             _, calm, size = _calmed(whole)
         if "unit" not in skip:
             _check_level(whole, size)
-        if "sign" not in skip:
+        if "sign" not in skip and whole.vehicle == "aircraft":
             _check_sign(whole, calm[:, 2], size)
     if "dropouts" not in skip:
         _check_dropouts(record)
@@ -71,6 +77,11 @@ def refuse_unsound(record: Samples, whole: Samples, skip: Collection[str]) -> No
 
 def _lasts(record: Samples) -> bool:
     return float(record.time[-1] - record.time[0]) >= _FRAGMENT
+
+
+def _flies(record: Samples) -> bool:
+    """True if a record holds specific force, of an aircraft or a rocket, for so long that 1 g is somewhere."""
+    return _lasts(record) and record.specific and record.vehicle != "other"
 
 
 def _calmed(record: Samples) -> tuple[Flags, Floats, Floats]:
@@ -121,13 +132,18 @@ def _check_level(record: Samples, size: Floats) -> None:
             "record.unit",
             f"is {record.unit.text}, and the record begins at {record.said(np.median(size[_beginning(record)]))} and "
             f"reaches {record.said(peak)}, {peak / STANDARD_GRAVITY:.3g} g: level flight is 1 g, which is 9.81 m/s^2",
-            "; ".join([*_other_units(record, size), _ACCELERATION, _trust("unit")]),
+            "; ".join([*_other_units(record, size), _ACCELERATION, *_vehicles(record), _trust("unit")]),
         )
+
+
+def _vehicles(record: Samples) -> list[str]:
+    """Advice to say another vehicle, of which less is asked."""
+    return [_ROCKET, _OTHER] if record.vehicle == "aircraft" else [_OTHER]
 
 
 def _other_units(record: Samples, size: Floats) -> list[str]:
     """Advice to write another unit: of those in which the record may be a flight's, those in which it begins level."""
-    judged = _lasts(record) and record.specific
+    judged = _flies(record)
     fitting = []
     for unit, each in _SIZES.items():
         in_g = size * each / record.unit.size / STANDARD_GRAVITY
@@ -146,6 +162,8 @@ def _is_flight(record: Samples, size: Floats, unit: float) -> bool:
     peak, begins = float(in_g.max()), float(np.median(in_g[_beginning(record)]))
     others = [each for each in _SIZES.values() if unit in _SIZES.values() and not 0.5 < each / unit < 2]
     level = [other for other in (in_g * each / unit for each in others) if _share(other, LEVEL) > _SOME]
+    if record.vehicle == "rocket":
+        return peak >= _NEVER and not any(_begins_level(record, other) for other in level if begins > _BEGINS_LEVEL[1])
     if unit == STANDARD_GRAVITY:
         # Level at 9.8 and nowhere at 1; a rocket that passes 9.8 g has been at less.
         return begins <= _BEGINS and not (level and _share(in_g, LEVEL) < _HARDLY and peak > _PILOTED)
@@ -166,19 +184,27 @@ def _share(size: Floats, band: tuple[float, float]) -> float:
 
 
 def _check_sign(record: Samples, upwards: Floats, size: Floats) -> None:
-    """Refuse a record whose level flight, where it is along z, is more often downwards than upwards."""
+    """Refuse a record whose level flight, where it is along z, is more often downwards than upwards.
+
+    To turn z over is advised only if it neither begins upright, as a rocket does on its pad, nor is pushed upwards by
+    more than downwards.
+    """
     in_g = size / STANDARD_GRAVITY
     level = (in_g > LEVEL[0]) & (in_g < LEVEL[1])
     down, up = level & (upwards < -_TURNED * size), level & (upwards > _TURNED * size)
     if down.mean() < _SOME or down.sum() <= up.sum():
         return
-    i, name = int(down.argmax()), record.names["z"]
-    turned = name[1:].strip() if name.startswith("-") else f"-{name}"
+    i = int(down.argmax())
+    boost = upwards / STANDARD_GRAVITY - np.copysign(_BOOST, upwards)
+    pushed = np.sum(boost[upwards > 0].clip(0)) > -np.sum(boost[upwards < 0].clip(None, 0))
+    upright = np.median(upwards[_beginning(record)]) > _BEGINS_LEVEL[0] * STANDARD_GRAVITY
+    turned = "write " + ", ".join(f'{axis} = "{name}"' for axis, name in record.upended.items())
+    hanging = _trust("sign", "if the specimen hangs upside down")
     raise InputError(
         "record.z",
         f"is {record.said(upwards[i])} at {record.time[i]:g} s ({record.place(i)}), and downwards for "
         f"{100 * down.sum() / level.sum():.0f} % of level flight, which is 1 g upwards, along +z",
-        f'write z = "{turned}"; {_ACCELERATION}; {_trust("sign", "if the specimen hangs upside down")}',
+        "; ".join([*([] if pushed or upright else [turned]), _ACCELERATION, *_vehicles(record), hanging]),
     )
 
 
@@ -207,39 +233,18 @@ _ALONG = 0.7  # of the largest load: within 45° of the beam
 _LISTED = 4  # flat tops
 
 
-def summary(
-    record: Samples, file: str, whole: tuple[float, float], rates: BodyRates | None, clock: str, notes: tuple[str, ...]
-) -> RecordSummary:
-    """Summarise a record."""
-    time, load = record.time, record.load
+def curves(time: Floats, load: Floats, rates: Floats) -> Curves:
+    """Summarise a load (t, 3), m/s², and rates (t, 3) or none (t, 0), rad/s, at times (t,), s."""
     top = int(np.linalg.norm(load, axis=1).argmax())
-    first, last = float(time[0]), float(time[-1])
-    x, y, z = record.names.values()
-    return RecordSummary(
-        file=file,
-        columns=(x, y, z),
-        quantity="specific-force" if record.specific else "acceleration",
+    return Curves(
         samples=len(time),
-        rate=(len(time) - 1) / (last - first),
-        span=(first, last),
-        whole=whole,
+        rate=float((len(time) - 1) / (time[-1] - time[0])),
         smallest=_vector(load.min(axis=0)),
         largest=_vector(load.max(axis=0)),
         peak=_vector(load[top]),
         time_of_peak=float(time[top]),
-        level=_level(record) if record.specific else None,
-        rates=rates,
-        clock=clock,
-        notes=notes,
+        rates=BodyRates(_vector(rates.min(axis=0)), _vector(rates.max(axis=0))) if rates.size else None,
     )
-
-
-def summary_of_rates(turns: dict[str, str], rates: Floats) -> BodyRates | None:
-    """Summarise body rates (t, 3), rad/s, of columns; None without any."""
-    if not turns:
-        return None
-    p, q, r = turns.values()
-    return BodyRates((p, q, r), _vector(rates.min(axis=0)), _vector(rates.max(axis=0)))
 
 
 def oddities(record: Samples) -> Iterator[str]:
@@ -266,14 +271,18 @@ def oddities(record: Samples) -> Iterator[str]:
         )
 
 
-def _level(record: Samples) -> Level | None:
-    """Longest stretch of level flight, with its mean load; None without any."""
+def level(record: Samples) -> Level | None:
+    """Longest stretch of level flight, of a second at least, with its mean load; None without any."""
+    if not record.specific or record.vehicle != "aircraft":
+        return None
     in_g = np.linalg.norm(record.load, axis=1) / STANDARD_GRAVITY
     runs = true_runs((in_g > LEVEL[0]) & (in_g < LEVEL[1]))
     if not runs:
         return None
     longest = max(runs, key=lambda run: run.stop - run.start)
     ends = float(record.time[longest.start]), float(record.time[longest.stop - 1])
+    if ends[1] - ends[0] < _LASTS:
+        return None
     return Level(*ends, _vector(record.load[longest].mean(axis=0)))
 
 

@@ -17,7 +17,7 @@ from pydantic import (
     model_validator,
 )
 
-from gbeam.constants import AccelerationUnit, Check, RateUnit, RecordQuantity, TimeUnit
+from gbeam.constants import AccelerationUnit, Check, RateUnit, RecordQuantity, TimeUnit, Vehicle
 from gbeam.errors import InputError
 from gbeam.scenario.schema.fields import (
     ONE_OR_LIST,
@@ -209,9 +209,12 @@ class Record(Table):
         description="text of any dialect, or by its suffix MAT (.mat), HDF5 (.h5, .hdf5), netCDF (.nc) or UFF 58 "
         "(.uff, .unv), relative to the folder of the scenario file"
     )
-    time: str = Field(
-        description="name of the column of times, numbers or times of day; in MAT, HDF5 and netCDF of the variable, "
-        "such as rec.t or acc(:,1); in UFF time"
+    time: str | None = optional(
+        "name of the column of times, numbers or times of day; in MAT, HDF5 and netCDF of the variable, such as rec.t "
+        "or acc(:,1); in UFF time"
+    )
+    sample_rate: Annotated[float, Quantity("frequency", "positive")] | None = optional(
+        "in place of time, such as 100 Hz: the first sample is at 0 s"
     )
     time_unit: _TimeUnit | None = optional("unit of the times; what the file says if left out, or else s")
     x: str = Field(description='column of the x component, along the beam; "-" in front changes the sign, "0" is none')
@@ -224,6 +227,11 @@ class Record(Table):
         default="specific-force",
         description="what the components are. specific-force: what accelerometers measure, 1 g upwards in level "
         "flight; acceleration: none then",
+    )
+    vehicle: Vehicle = Field(
+        default="aircraft",
+        description="of what it is. aircraft: flies level somewhere, 1 g upwards along z; rocket: begins at 1 g, or is "
+        "pushed, along any axis; other: nothing of that is asked",
     )
     p: str | None = optional("column of the body rate about x; p, q and r fly the specimen with them")
     q: str | None = optional('column of the body rate about y; "-" and "0" as for x, y and z')
@@ -239,7 +247,11 @@ class Record(Table):
         "cut-off of a zero-phase low-pass, -6 dB, such as 5 Hz; none if left out"
     )
     resample: Annotated[float, Quantity("frequency", "positive")] | None = optional(
-        "new sampling rate, such as 200 Hz, and times may jitter; the record's own if left out"
+        "new sampling rate, such as 200 Hz; the record's own if left out. With it, or with cutoff, times may jitter, "
+        "repeat and come late"
+    )
+    bridge: Duration | None = optional(
+        "longest gap, such as 50 ms, that is bridged with resample or cutoff: lost samples are put on straight lines"
     )
     despike: StrictBool = Field(
         default=False, description="replace spikes, up to five samples between two jumps, by straight lines"
@@ -249,6 +261,19 @@ class Record(Table):
         description="true to take the record as it is, or a list of the checks to leave out: sampling (rate), spikes, "
         "unit (size, level flight), sign (level flight is upwards), dropouts, columns (their names)",
     )
+
+    @model_validator(mode="after")
+    def _one_clock(self) -> Record:
+        if self.time is not None and self.sample_rate is not None:
+            refuse([(("sample_rate",), wrong("is given beside time", "give one of them", mark="key"))])
+        if self.time is None and self.sample_rate is None:
+            refuse([((), wrong("time is missing", 'give the column of times, or sample_rate = "100 Hz"', mark="key"))])
+        if self.sample_rate is not None and self.time_unit is not None:
+            refuse([(("time_unit",), wrong("is given without time", "leave it out", mark="key"))])
+        if self.bridge is not None and self.resample is None and self.cutoff is None:
+            hint = 'add resample = "100 Hz", or a cutoff: what is bridged is evened out'
+            refuse([(("bridge",), wrong("is given without resample and cutoff", hint, mark="key"))])
+        return self
 
     @model_validator(mode="after")
     def _rates_together(self) -> Record:
