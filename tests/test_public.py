@@ -19,7 +19,7 @@ from gbeam.mechanics.models import KINDS as MODELS
 from gbeam.mechanics.tree.joints import KINDS as JOINTS
 from gbeam.motion.centrifuge.centrifuge import MOUNTINGS
 from gbeam.motion.centrifuge.course import INVERSES
-from gbeam.motion.records.columns import UNITS
+from gbeam.motion.records.units import UNITS
 from gbeam.questions import QUESTIONS, Options, Verb
 from gbeam.results.result import Result
 from gbeam.scenario.schema.scenario import PARAMETERS

@@ -21,9 +21,11 @@ JointKind = Literal["fixed", "revolute", "prismatic", "cylindrical", "universal"
 Measure = Literal["root-shear", "root-moment", "vibration", "tip", "load"]  # of a place for a specimen
 MachineName = Literal["human-7.6m", "specimen-3.3m", "large-15m"]
 RecordQuantity = Literal["specific-force", "acceleration"]
-AccelerationUnit = Literal["g", "m/s^2", "ft/s^2"]  # of records, as the next two
-RateUnit = Literal["rad/s", "deg/s"]
-TimeUnit = Literal["s", "ms", "us", "min"]
+# Of records, in whose place a text may give the size of a count, such as "1 g / 2048".
+AccelerationUnit = Literal["g", "m/s^2", "ft/s^2", "mg", "mm/s^2", "cm/s^2", "in/s^2"]
+RateUnit = Literal["rad/s", "deg/s", "rpm"]
+Vehicle = Literal["aircraft", "rocket", "other"]  # that a record is of
+TimeUnit = Literal["s", "ms", "us", "ns", "min", "h", "day"]
 Check = Literal["sampling", "spikes", "unit", "sign", "dropouts", "columns"]  # of a record
 Coordinate = Literal["x", "y", "z", "rx", "ry", "rz", "angle", "displacement", "angle_1", "angle_2"]  # of joints
 Rate = Literal[Coordinate, "wx", "wy", "wz"]

@@ -235,6 +235,16 @@ def test_a_person_maps_a_record_and_opens_what_a_verb_made(browser: Any, address
     suggested = page.locator(".suggested select").evaluate_all("all => all.map(x => x.value)")
     assert suggested == ["t_ms", "ms", "Acceleration Z [g]", "g", "p_rad_s", "q_rad_s", "r_rad_s", "rad/s"]
     assert page.get_by_label("x is").input_value() == "0" and use.is_enabled()
+    # Rates follow the axes of the loads, until one is chosen.
+    (tmp_path / "c.csv").write_text("t,n_x,n_y,n_z,p,q,r\n0,0,0,1,0,0,0\n")
+    file.set_input_files(tmp_path / "c.csv")
+    title.get_by_text("c.csv, not used yet").wait_for()
+    for axis in "yz":
+        page.get_by_label(f"{axis} is").select_option(f"-n_{axis}")
+    assert [page.get_by_label(f"{key} is").input_value() for key in "pqr"] == ["p", "-q", "-r"]
+    page.get_by_label("q is").select_option("q")
+    page.get_by_label("z is").select_option("n_z")
+    assert page.get_by_label("r is").input_value() == "-r"
     _holds(page)
     page.reload()
     page.wait_for_selector("html[data-gbeam]")

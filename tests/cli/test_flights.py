@@ -141,19 +141,49 @@ def test_check_says_what_a_record_is(scenario: Path, gbeam: Call) -> None:
     answer = gbeam("check", scenario)
     assert answer.status == 0
     assert answer.out.split("tracks flight\n")[1].split("  response")[0] == (
-        "  record    flight: flight.csv, 1600 samples at 100 Hz, 0 to 15.99 s, specific force\n"
+        "  record    flight: flight.csv, 0 to 15.99 s, specific force\n"
+        "                          read and flown\n"
+        "            samples       1600 at 100 Hz\n"
         "            x = 0\n"
         "            y = 0\n"
-        "            z = z  1.5 to 6 g\n"
-        "            largest load 6 g (x 0, y 0, z 6) at 3 s\n"
-        "            nowhere near 1 g\n"
+        "            z = z         1.5 to 6 g\n"
+        "            largest load  6 g (x 0, y 0, z 6) at 3 s\n"
+        "            nowhere level, near 1 g, for a second\n"
     )
     described = gbeam("check", scenario, "--json").json["records"]["flight"]
-    assert described["samples"] == 1600 and described["rate"] == pytest.approx(100)
-    assert described["largest"] == {"x": 0, "y": 0, "z": pytest.approx(6 * 9.80665)} and described["level"] is None
+    assert described["read"] == described["flown"] and described["level"] is None
+    assert described["read"]["samples"] == 1600 and described["read"]["rate"] == pytest.approx(100)
+    assert described["read"]["largest"] == {"x": 0, "y": 0, "z": pytest.approx(6 * 9.80665)}
     part = gbeam("check", scenario, "--set", "motion.flight.record.from=2 s", "--set", TO)
-    assert "flight.csv, 401 samples at 100 Hz, 2 to 6 of 15.99 s, specific force" in part.out
+    assert "flight.csv, 2 to 6 of 15.99 s, specific force\n" in part.out and "401 at 100 Hz" in part.out
     assert "warning: motion.flight: 2 to 6 of 15.99 s are flown, and the rest is left out" in part.out
+
+
+def test_check_says_what_is_read_beside_what_is_flown(scenario: Path, gbeam: Call) -> None:
+    """After lost samples, spikes, cut-off and resampling, which are asked for: no warning says so."""
+    rows = Path("flight.csv").read_text(encoding="utf-8").splitlines()
+    rows[901:904] = [f"{0.01 * i:.2f},9" for i in (900, 901, 902)]
+    del rows[401:405]
+    Path("flight.csv").write_text("\n".join(rows), encoding="utf-8")
+    asked = ["despike=true", "bridge=50 ms", "cutoff=10 Hz", "resample=200 Hz"]
+    answer = gbeam("check", scenario, *[word for each in asked for word in ("--set", f"motion.flight.record.{each}")])
+    assert answer.status == 0 and "warning" not in answer.out, answer.err
+    table = answer.out.split("specific force\n")[1].split("  response")[0]
+    assert table == (
+        "                          read                        flown\n"
+        "            samples       1596 at 99.75 Hz            3199 at 200 Hz\n"
+        "            x = 0\n"
+        "            y = 0\n"
+        "            z = z         1.5 to 9 g                  1.494 to 6.004 g\n"
+        "            largest load  9 g (x 0, y 0, z 9) at 9 s  6.004 g (x 0, y 0, z 6) at 3.03 s\n"
+        "            nowhere level, near 1 g, for a second\n"
+        "            3 sample(s) that look like spikes, in 1 run(s), the first at 9 s (row 898), were replaced: "
+        "z was 1.5 g to 9 g, is 1.5 g to 6 g\n"
+        "            low-pass at 10 Hz, zero phase\n"
+        "            resampled at 200 Hz\n"
+        "            gaps on straight lines, from s   to s         lost  after\n"
+        "                                        3.99  4.04          4  row 401\n"
+    )
 
 
 def test_check_and_run_say_what_is_odd_in_a_record(scenario: Path, gbeam: Call) -> None:
@@ -165,7 +195,7 @@ def test_check_and_run_say_what_is_odd_in_a_record(scenario: Path, gbeam: Call) 
     Path("flight.csv").write_text("\n".join(["t,z", *lines]), encoding="utf-8")
     notes = (
         "motion.flight.record: z, column 'z', stands at its extreme, 5.537 g, from 2.8 to 4.2 s (rows 282 to 422): ",
-        "motion.flight.record: 1 sample(s) that look like spikes, the first at 8 s (row 802), are kept; despike = true",
+        "motion.flight.record: 1 sample(s) that look like spikes, in 1 run(s), the first at 8 s (row 802), are kept; d",
     )
     checked, ran = gbeam("check", scenario, "--json").json, gbeam("run", scenario, "--set", TO, "--json").json
     for note in notes:

@@ -50,7 +50,7 @@ def replaced(row: int, text: str) -> list[str]:
     [
         ([HEADER, *ROWS], {"z": "-azz"}, "record.z", ["'azz'", "did you mean 'az'", "t, ax, ay, az"]),
         ([HEADER, *ROWS], {"time": "time"}, "record.time", ["'time'"]),
-        ([HEADER, *ROWS], {"unit": "g0"}, "record.unit", ["'g0'", "m/s^2"]),
+        ([HEADER, *ROWS], {"unit": "furlong"}, "record.unit", ["'furlong'", "m/s^2"]),
         ([HEADER + ",az", *[row + ",0" for row in ROWS]], {}, "record.z", ["2 times"]),
         (replaced(4, "0.2,2,4,six"), {}, "record.z", ["row 4", "'six'"]),
         (replaced(4, "0.2,2,,-6"), {}, "record.y", ["row 4", "empty"]),
@@ -62,7 +62,7 @@ def replaced(row: int, text: str) -> list[str]:
             [*[HEADER, *ROWS][:6], *ROWS[8:], "1.2,5,10,-15", "1.3,5,10,-15", "1.4,5,10,-15"],
             {},
             "record.time",
-            ["gap", "0.4 s to 0.8 s", "row 7"],
+            ["1 gap", "0.4 s to 0.8 s", "after row 6"],
         ),
         (replaced(7, "0.502,5,10,-15"), {}, "record.time", ["unevenly", "row 7"]),
         (replaced(6, "0.4,4,8"), {}, "record.file", ["row 6", "3 cells", "4"]),

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import product
 from pathlib import Path
 
 import pytest
 
 from gbeam import InputError
-from gbeam.motion.records.columns import unit_in_name
-from gbeam.motion.records.record import Conditioning, FlightRecord, read_flight
+from gbeam.motion.records.record import Conditioning, FlightRecord, Rates, read_flight
+from gbeam.motion.records.units import unit_in_name
 
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
 RIGHT = {"x": "n_x_g", "y": "-n_y_g", "z": "-n_z_g"}
@@ -37,6 +38,12 @@ def renamed(folder: Path, **names: str) -> Path:
         ("p_rad_s", "rad/s"),
         ("gyro_x_dps", "dps"),
         ("time_ms", "ms"),
+        ("TimeUS", "us"),
+        ("accelerometer_m_s2[1]", "m/s2"),
+        ("acc_g(:,3)", "g"),
+        ("acc_highG", ""),
+        ("acc_high_g", ""),
+        ("az_mV", "mv"),
         ("acc_1", ""),
         ("az", ""),
         ("g", ""),
@@ -104,16 +111,77 @@ def test_a_unit_of_another_quantity_is_refused(tmp_path: Path) -> None:
 )
 def test_a_mirrored_mapping_is_said(columns: dict[str, str], mirrored: bool) -> None:
     options = {"quantity": "acceleration"} if columns.get("z") == "-n_x_g" else {}
-    notes = fly(**columns, **options).notes
+    notes = fly(**columns, **options).summary.notes
     assert any("(determinant -1)" in note for note in notes) is mirrored
+
+
+TURNED = {
+    "aircraft axes": (("n_x_g", "-n_y_g", "-n_z_g"), ("p_rad_s", "-q_rad_s", "-r_rad_s")),
+    "upright": (("-n_z_g", "-n_y_g", "-n_x_g"), ("-r_rad_s", "-q_rad_s", "-p_rad_s")),
+    "across": (("n_y_g", "n_x_g", "-n_z_g"), ("q_rad_s", "p_rad_s", "-r_rad_s")),
+}
+
+
+@pytest.mark.parametrize("name", TURNED)
+def test_body_rates_follow_the_axes_of_the_loads(name: str) -> None:
+    """A rotation R takes components of both: of loads and of rates, which all other signs and orders are not."""
+    loads, right = TURNED[name]
+    options = {"quantity": "acceleration"}
+    read_flight(F16, "time_s", *loads, "g", rates=Rates(*right, "rad/s"), **options)  # type: ignore[arg-type]
+    plain = [each.lstrip("-") for each in right]
+    for signs in product(("", "-"), repeat=3):
+        turns = [sign + each for sign, each in zip(signs, plain, strict=True)]
+        if turns == [*right]:
+            continue
+        with pytest.raises(
+            InputError, match=r"record\.[pqr] is '.*' beside [xyz] = '.*': p, q and r are about other"
+        ) as caught:
+            read_flight(F16, "time_s", *loads, "g", rates=Rates(*turns, "rad/s"), **options)  # type: ignore[arg-type]
+        assert f'write p = "{right[0]}", q = "{right[1]}", r = "{right[2]}"; ' in caught.value.fix
+    trusting = Conditioning(skip_checks=("columns",))
+    rates = Rates(*plain, "rad/s")
+    read_flight(F16, "time_s", *loads, "g", rates=rates, conditioning=trusting, **options)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("loads", "turns", "words"),
+    [
+        (("0", "0", "-n_z_g"), ("p_rad_s", "-q_rad_s", "r_rad_s"), r"record.r is 'r_rad_s' beside z = '-n_z_g'"),
+        (("0", "0", "-n_z_g"), ("0", "0", "-r_rad_s"), ""),
+        (("n_x_g", "-n_y_g", "n_z_g"), ("p_rad_s", "-q_rad_s", "-r_rad_s"), ""),  # a load factor upwards
+        (("n_x_g", "-n_y_g", "n_z_g"), ("p_rad_s", "-q_rad_s", "r_rad_s"), r"record.p mirrors .*\(determinant -1\)"),
+        (("n_x_g", "-n_y_g", "-n_z_g"), ("roll_deg", "-q_rad_s", "-r_rad_s"), r"names 'roll_deg', by its name an angl"),
+        (("n_x_g", "-n_y_g", "-n_z_g"), ("p_rad_s", "-p_rad_s", "-r_rad_s"), r"names 'p_rad_s', which is p too"),
+    ],
+)
+def test_one_axis_alone_and_mirrored_loads(loads: tuple[str, ...], turns: tuple[str, ...], words: str) -> None:
+    def flown() -> FlightRecord:
+        return read_flight(F16, "time_s", *loads, "g", rates=Rates(*turns, "rad/s"), quantity="acceleration")  # type: ignore[misc]
+
+    if not words:
+        assert flown().rates is not None
+        return
+    with pytest.raises(InputError, match=words):
+        flown()
+
+
+def test_the_components_of_one_array_are_its_axes(tmp_path: Path) -> None:
+    """PX4 names accelerometer_m_s2[0] to [2] beside gyro_rad[0] to [2]."""
+    names = {f"{one}_{axis}{end}": f"{two}[{k}]" for one, axes, end, two in (("n", "xyz", "_g", "acc"),
+             ("", "pqr", "_rad_s", "gyro_rad")) for k, axis in enumerate(axes)}  # fmt: skip
+    path = renamed(tmp_path, **{key.lstrip("_"): each for key, each in names.items()})
+    loads = ("time_s", "acc[0]", "-acc[1]", "-acc[2]", "g")
+    assert read_flight(path, *loads, rates=Rates("gyro_rad[0]", "-gyro_rad[1]", "-gyro_rad[2]", "rad/s")).rates
+    with pytest.raises(InputError, match=r"record.q is 'gyro_rad\[1\]' beside y = '-acc\[1\]'"):
+        read_flight(path, *loads, rates=Rates("gyro_rad[0]", "gyro_rad[1]", "-gyro_rad[2]", "rad/s"))
 
 
 def test_a_load_factor_is_specific_force_in_g(tmp_path: Path) -> None:
     path = renamed(tmp_path, n_x_g="a", n_y_g="b", n_z_g="n_z")
     columns = {"x": "a", "y": "-b", "z": "-n_z"}
-    assert fly(path, **columns).notes == ()
-    (note,) = fly(path, quantity="acceleration", **columns).notes
+    assert fly(path, **columns).summary.notes == ()
+    (note,) = fly(path, quantity="acceleration", **columns).summary.notes
     assert note.startswith("'n_z' is a load factor by its name, which is specific force")
     trusting = Conditioning(skip_checks=("unit", "sign"))
     kept = read_flight(path, "time_s", *columns.values(), "m/s^2", conditioning=trusting)
-    assert kept.notes == ("'n_z' is a load factor by its name, which is in g, and unit is m/s^2",)
+    assert kept.summary.notes == ("'n_z' is a load factor by its name, which is in g, and unit is m/s^2",)

@@ -92,6 +92,75 @@ def test_level_flight_downwards_is_the_wrong_sign(tmp_path: Path, name: str) -> 
     fly(path, "g", z="-z", conditioning=Conditioning(skip_checks=("sign",)))
 
 
+# On its pad, a boost along z, a fall, and a descent under a parachute, tail first.
+BOOSTED = along((0, 1), (2, 1), (2.1, 6), (5, 6), (5.1, 0), (12, 0), (13, -1), (40, -1))
+
+
+@pytest.mark.parametrize(
+    ("load", "advised"),
+    [
+        (BOOSTED, False),
+        (BOOSTED[103:], False),  # from its pad to 3 g is left out
+        (along((0, 1), (2, 1), (2.1, 2.5), (5, 2.5), (5.1, 0), (12, 0), (13, -1), (40, -1)), False),
+        (-BOOSTED[:600], True),
+        (-FLIGHTS["6 g turn"], True),
+    ],
+)
+def test_no_advice_turns_a_boost_upside_down(tmp_path: Path, load: Floats, advised: bool) -> None:
+    """A record that begins upright, or is pushed upwards by more than downwards, is not told to turn z over, but to say
+    what it is of; the next call takes that.
+    """
+    path = write(tmp_path, load)
+    with pytest.raises(InputError, match=r"record.(z|unit) is ") as caught:
+        fly(path, "g")
+    assert ('z = "-z"' in caught.value.fix) is advised
+    for vehicle in ("rocket", "other"):
+        assert f'add vehicle = "{vehicle}"' in caught.value.fix
+        kept = fly(path, "g", vehicle=vehicle)
+        np.testing.assert_allclose(kept.acceleration.values, STANDARD_GRAVITY * load, rtol=1e-6, atol=1e-7)
+        assert kept.summary.level is None and kept.summary.vehicle == vehicle
+
+
+def test_z_is_turned_over_with_y(tmp_path: Path) -> None:
+    """A half turn about x keeps axes right-handed: aircraft axes as they are want both signs."""
+    load = FLIGHTS["6 g turn"] * [1, -1, -1]
+    np.savetxt(path := tmp_path / "r.csv", np.column_stack([STEP * np.arange(len(load)), load]), delimiter=",",
+               header="t,ax,ay,az", comments="")  # fmt: skip
+    with pytest.raises(InputError, match=r'record.z is .*write y = "-ay", z = "-az"; '):
+        read_flight(path, "t", "ax", "ay", "az", "g")
+    assert read_flight(path, "t", "ax", "-ay", "-az", "g").summary.notes == ()
+
+
+def test_of_another_vehicle_nothing_is_asked_but_its_size(tmp_path: Path) -> None:
+    """A machine's axis, at 3200 Hz for a second, and a sledge in fractions of g; never 500 g."""
+    quick = write(tmp_path, FLIGHTS["level cruise"] * 0.05, step=1 / 3200)
+    with pytest.raises(InputError, match=r'record.time lasts 0.312 s .*add vehicle = "other"'):
+        fly(quick, "g")
+    assert fly(quick, "g", vehicle="other").summary.read.samples == 1000
+    slow = write(tmp_path, FLIGHTS["level cruise"] * 0.05, "m/s^2")
+    with pytest.raises(InputError, match=r'record.unit is m/s\^2, .* add vehicle = "other"'):
+        fly(slow, "m/s^2")
+    fly(slow, "m/s^2", vehicle="other")
+    with pytest.raises(InputError, match=r"record.unit is g, which makes 5.. g of"):
+        fly(write(tmp_path, FLIGHTS["level cruise"] * 500), "g", vehicle="other")
+
+
+def test_a_rocket_may_begin_in_its_boost(tmp_path: Path) -> None:
+    load = along((0, 5), (4, 9), (4.1, 0), (20, 0))
+    with pytest.raises(InputError, match=r"begins at 5.*g"):
+        fly(write(tmp_path, load), "g")
+    fly(write(tmp_path, load), "g", vehicle="rocket")
+    with pytest.raises(InputError, match=r'if it is in m/s\^2, write unit = "m/s\^2"'):
+        fly(write(tmp_path, BOOSTED, "m/s^2"), "g", vehicle="rocket")
+
+
+def test_level_is_level_for_a_second(tmp_path: Path) -> None:
+    """A ramp through 1 g is level nowhere; the stretch that is said is the longest."""
+    assert fly(write(tmp_path, along((0, 2), (2, 2), (3, 0.2), (4, 2), (20, 3))), "g").summary.level is None
+    level = fly(write(tmp_path, along((0, 2), (2, 2), (3, 1), (4.5, 1), (5, 2), (20, 3))), "g").summary.level
+    assert level is not None and 1.5 < level.end - level.start < 2.4 and level.start > 2.5
+
+
 def test_a_beam_that_points_up_or_hangs_has_no_sign_to_check(tmp_path: Path) -> None:
     load = FLIGHTS["6 g turn"][:, [2, 1, 0]]
     fly(write(tmp_path, load), "g")
@@ -148,7 +217,7 @@ def test_a_spike_is_offered_despike_before_anything_else(tmp_path: Path, name: s
 def test_the_unit_is_judged_without_small_spikes(tmp_path: Path) -> None:
     load = FLIGHTS["level cruise"].copy()
     load[500, 2] = 1.3
-    assert "despike = true" in fly(write(tmp_path, load), "g").notes[0]
+    assert "despike = true" in fly(write(tmp_path, load), "g").summary.notes[0]
     with pytest.raises(InputError, match=r"record\.unit"):
         fly(write(tmp_path, load), "m/s^2")
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -40,7 +40,7 @@ def test_a_part_is_the_same_samples_on_the_same_clock() -> None:
     np.testing.assert_array_equal(part.acceleration.times, whole.acceleration.times[200:601])
     np.testing.assert_array_equal(part.acceleration.values, whole.acceleration.values[200:601])
     record = part.acceleration.record
-    assert record is not None and (record.span, record.whole, record.samples) == ((2.0, 6.0), (0.0, 15.99), 401)
+    assert record is not None and (record.span, record.whole, record.read.samples) == ((2.0, 6.0), (0.0, 15.99), 401)
     rates = Rates("p_rad_s", "-q_rad_s", "-r_rad_s", "rad/s")
     turning, all_turning = fly(rates=rates, span=(2.0, 6.0)).rates, fly(rates=rates).rates
     assert turning is not None and all_turning is not None
@@ -60,7 +60,7 @@ def test_what_is_outside_the_part_may_be_unsound(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="stands still"):
         fly(path, span=(4.0, None), conditioning=Conditioning(skip_checks=("spikes",)))
     # A part that begins at 5 g, in which nothing is level.
-    assert fly(path, span=(4.0, 8.0)).notes == ()
+    assert fly(path, span=(4.0, 8.0)).summary.notes == ()
 
 
 @pytest.mark.parametrize(
@@ -131,14 +131,163 @@ def test_a_clock_that_jitters_is_resampled(tmp_path: Path) -> None:
         read = read_flight(path, *names, conditioning=Conditioning(resample=100.0, **options))
         times = np.asarray(read.acceleration.times)
         assert np.ptp(np.diff(times)) < 1e-12
-        assert read.notes[0].startswith("times up to 3.1") and "a spline through the samples is flown" in read.notes[0]
+        assert (
+            read.summary.done[0].startswith("times up to 3.1")
+            and "a spline through the samples is flown" in read.summary.done[0]
+        )
         true = 9.80665 * (1 + 3 * np.sin(2 * np.pi * 0.5 * times) ** 2)
         # At its labels the load would be off by 3 ms of its slope, 0.3 m/s².
         assert np.abs(read.acceleration.values[:, 2] - true)[50:-50].max() < 5e-3
     missing = np.delete(np.column_stack([even, 0 * load, 0 * load, load]), 800, axis=0)
     np.savetxt(path, missing, delimiter=",", header="t,x,y,z", comments="")
-    with pytest.raises(InputError, match=r"has a gap of 0.02 s from 7.99 s to 8.01 s"):
+    with pytest.raises(InputError, match=r"has 1 gap, where the interval is 0.01 s: 0.02 s from 7.99 s to 8.01 s"):
         read_flight(path, *names, conditioning=Conditioning(resample=100.0))
+
+
+WAVE = np.column_stack([0.01 * np.arange(1600), *np.zeros((2, 1600)), 1 + np.sin(0.05 * np.arange(1600)) ** 2])
+
+
+def saved(folder: Path, rows: np.ndarray, stamps: Sequence[object] | None = None) -> Path:
+    """A table of t, x, y, z, with other texts for the times."""
+    path = folder / "wave.csv"
+    times = rows[:, 0] if stamps is None else stamps
+    lines = [",".join([f"{t:.9g}" if isinstance(t, float) else str(t), *(f"{v:.9g}" for v in row[1:])]) for t, row in
+             zip(times, rows, strict=True)]  # fmt: skip
+    path.write_text("\n".join(["t,x,y,z", *lines]), encoding="utf-8")
+    return path
+
+
+def wave(path: Path, time: str | None = "t", **options: object) -> FlightRecord:
+    return read_flight(path, time, "x", "y", "z", "g", **options)  # type: ignore[arg-type]
+
+
+def test_lost_samples_are_bridged_and_each_gap_is_told(tmp_path: Path) -> None:
+    """Of three gaps all are told, and those up to the stated length are put on straight lines, where a slow wave is."""
+    path = saved(tmp_path, np.delete(WAVE, [100, 101, 102, 500, *range(900, 912)], axis=0))
+    told = (
+        r"has 3 gaps, where the interval is 0.01 s: 0.04 s from 0.99 s to 1.03 s \(after row 101\), "
+        r"0.02 s from 4.99 s to 5.01 s \(after row 498\), 0.13 s from 8.99 s to 9.12 s \(after row 897\); "
+    )
+    with pytest.raises(InputError, match=told + r'add bridge = "130 ms" and resample = "100 Hz": lost samples are put'):
+        wave(path)
+    for other in ({"resample": 100.0}, {"cutoff": 20.0}, {"resample": 100.0, "bridge": 0.04}):
+        with pytest.raises(InputError, match=told + r'(add|write) bridge = "130 ms": lost'):
+            wave(path, conditioning=Conditioning(**other))
+    record = wave(path, conditioning=Conditioning(resample=100.0, bridge=0.13))
+    gaps = record.summary.gaps
+    assert [(each.start, each.end, each.lost, each.after) for each in gaps] == [
+        (0.99, 1.03, 3, "row 101"),
+        (4.99, 5.01, 1, "row 498"),
+        (8.99, 9.12, 12, "row 897"),
+    ]
+    assert (record.summary.read.samples, record.summary.flown.samples) == (1584, 1600)
+    np.testing.assert_allclose(record.acceleration.times, WAVE[:, 0], atol=1e-12)
+    off = record.acceleration.values[:, 2] / 9.80665 - WAVE[:, 3]
+    assert np.abs(off).max() < 0.13**2 / 8 * 2 * 5**2  # curvature of sin², over a straight line of 0.13 s
+    assert np.abs(np.delete(off, np.r_[99:104, 499:502, 899:913])).max() < 1e-3
+
+
+def test_long_gaps_are_no_detail(tmp_path: Path) -> None:
+    """A part between them is offered, which the next call takes."""
+    path = saved(tmp_path, np.delete(WAVE, np.r_[300:330, 1200:1300], axis=0))
+    with pytest.raises(InputError, match=r'write from = "3.3 s", to = "11.99 s", .*; add bridge = "1010 ms"'):
+        wave(path)
+    assert wave(path, span=(3.3, 11.99)).summary.read.samples == 870
+
+
+def test_late_and_repeated_samples_are_put_in_order(tmp_path: Path) -> None:
+    """Two that changed places and one that repeats a time; a time with two samples has their mean."""
+    order = np.arange(1600)
+    order[[200, 201]] = 201, 200
+    rows = WAVE[order]
+    rows = np.insert(rows, 801, rows[800] + [0, 0, 0, 0.1], axis=0)
+    path = saved(tmp_path, rows)
+    with pytest.raises(
+        InputError, match=r'goes back to 2 s at row 203, repeats 8 s at row 803; add resample = "100 Hz"'
+    ):
+        wave(path)
+    record = wave(path, conditioning=Conditioning(resample=100.0))
+    right = WAVE[:, 3].copy()
+    right[800] += 0.05
+    np.testing.assert_allclose(record.acceleration.values[:, 2], 9.80665 * right, rtol=1e-8)
+    assert record.summary.done[:2] == (
+        "times go back 1 times: the samples are put in order",
+        "1 samples repeat a time: the mean of its samples is flown",
+    )
+
+
+def test_a_clock_that_was_set_is_two_records(tmp_path: Path) -> None:
+    """A part alone at its times is offered; where two overlap, the file is to be split."""
+    alone = WAVE.copy()
+    alone[:600, 0] += 100
+    with pytest.raises(InputError, match=r'goes back by 99.99 s at row 602: .* write from = "6 s", to = "15.99 s"'):
+        wave(saved(tmp_path, alone))
+    assert wave(saved(tmp_path, alone), span=(6.0, 15.99)).summary.read.samples == 1000
+    both = np.concatenate([WAVE, WAVE])
+    with pytest.raises(InputError, match=r"goes back by 15.99 s at row 1602: .*split the file at row 1602"):
+        wave(saved(tmp_path, both), conditioning=Conditioning(resample=100.0))
+
+
+@pytest.mark.parametrize(
+    "stamps",
+    [
+        [f"12:34:{i // 100:02d}" for i in range(1600)],
+        [float(i // 100) for i in range(1600)],
+        ["7"] * 1600,
+    ],
+)
+def test_a_clock_of_whole_seconds_is_replaced_by_the_sample_rate(tmp_path: Path, stamps: list[object]) -> None:
+    path = saved(tmp_path, WAVE, stamps)
+    with pytest.raises(InputError, match=r'record.time repeats .*write sample_rate = "100 Hz" in place of time'):
+        wave(path)
+    record = wave(path, None, sample_rate=100.0)
+    np.testing.assert_allclose(record.acceleration.times, WAVE[:, 0], atol=1e-12)
+    with pytest.raises(InputError, match=r"record.sample_rate is given beside time"):
+        wave(path, sample_rate=100.0)
+    with pytest.raises(InputError, match="is missing, and so is time"):
+        wave(path, None)
+
+
+def test_rows_that_are_written_twice_are_no_coarse_clock(tmp_path: Path) -> None:
+    path = saved(tmp_path, WAVE.repeat(3, axis=0))
+    with pytest.raises(InputError, match=r'repeats 0 s at row 3, .* and 3180 more; add resample = "100 Hz"'):
+        wave(path)
+    record = wave(path, conditioning=Conditioning(resample=100.0))
+    np.testing.assert_allclose(record.acceleration.values[:, 2], 9.80665 * WAVE[:, 3], rtol=1e-8)
+
+
+def test_times_since_1970_count_from_the_first(tmp_path: Path) -> None:
+    """In ns a float has steps of 256: the times are those of the record, not those of the clock's numbers."""
+    path = saved(tmp_path, WAVE, [1637290175093369303 + 10_000_000 * i for i in range(1600)])
+    record = wave(path, time_unit="ns")
+    np.testing.assert_allclose(record.acceleration.times, WAVE[:, 0], atol=3e-7)
+    assert record.summary.clock == "1637290175093369303 ns"
+    part = wave(path, time_unit="ns", span=(2.0, 6.0)).summary
+    assert part.read.samples == pytest.approx(401, abs=1)
+
+
+@pytest.mark.parametrize(
+    ("stamp", "first"),
+    [
+        (lambda i: f"2024-3-23--13-41-{38 + i // 100}-{10 * (i % 100)}", "2024-3-23--13-41-38-0"),
+        (lambda i: f"2024/03/23 13:41:{38 + i // 100}.{i % 100:02d}", "2024/03/23 13:41:38.00"),
+        (lambda i: f"23.3.2024 13:41:{38 + i // 100}.{i % 100:02d}", "23.3.2024 13:41:38.00"),
+        (lambda i: f"3/23/2024 1:41:{38 + i // 100}.{i % 100:02d} PM", "3/23/2024 1:41:38.00 PM"),
+        (lambda i: f"2024-03-23 13:41:{38 + i // 100}:{10 * (i % 100):03d}", "2024-03-23 13:41:38:000"),
+    ],
+)
+def test_dates_as_loggers_write_them(tmp_path: Path, stamp: Callable[[int], str], first: str) -> None:
+    record = wave(saved(tmp_path, WAVE, [stamp(i) for i in range(1600)]))
+    np.testing.assert_allclose(record.acceleration.times, WAVE[:, 0], atol=1e-9)
+    assert record.summary.clock == first
+
+
+def test_what_is_no_date_of_a_logger() -> None:
+    assert read_clock(["2024-2-28--23-59-59-500", "2024-2-29--0-0-0-25"])[1].tolist() == [0, 0.525]  # type: ignore[index]
+    assert read_clock(["3/4/2024 11:59:59 PM", "3/5/2024 12:00:01 AM"])[1].tolist() == [0, 2]  # type: ignore[index]
+    assert read_clock(["12:34:57", "12:34:56.9"])[1].tolist() == pytest.approx([0, -0.1])  # type: ignore[index]
+    for text in ("12-34-56", "2024-2-30--1-1-1", "2024-2-3--24-1-1", "13:41:38 PM", "2024-3-23"):
+        assert read_clock([text]) is None
 
 
 def test_a_flight_knows_of_what_it_is_a_part() -> None:

@@ -102,13 +102,17 @@ def test_a_law_is_read_from_a_file(ending: str, tmp_path: Path) -> None:
     assert gb.rerun(tmp_path / "result.nc").reproduced
 
 
+SINGLE = {name: [[1.0]] for name in "ABCD"}
+
+
 @pytest.mark.parametrize(
     ("parts", "change", "problem"),
     [
         ({"A": [[1.0]], "B": [[1.0]], "C": [[1.0]]}, "", "holds no D"),
         ({name: [[np.nan]] for name in "ABCD"}, "", "not finite"),
-        ({**{name: [[1.0]] for name in "ABCD"}, "dt": 0.03}, "", "step"),
-        ({**{name: [[1.0]] for name in "ABCD"}, "dt": 0.02}, ', { kind = "gains", gains = [[1]] }', "give it alone"),
+        ({**SINGLE, "dt": 0.03}, "", "step"),
+        ({**SINGLE, "dt": 0.02}, ', { kind = "gains", gains = [[1]] }', "give it alone"),
+        ({**SINGLE, "dt": 0.02, "Ts": 0.01}, "", "says dt = 0.02 and ts = 0.01"),
         ({}, ", a = [[1]]", "is given beside file"),
         (None, "", "there is no file"),
     ],
@@ -123,6 +127,21 @@ def test_files_of_laws_that_are_none_are_refused(parts: Any, change: str, proble
     with pytest.raises(ScenarioError) as caught:
         build(loads(text, folder=tmp_path))
     assert problem in str(caught.value) and "law" in str(caught.value)
+
+
+@pytest.mark.parametrize("ending", [".npz", ".mat", ".json"])
+@pytest.mark.parametrize("step", [True, -1.0, "10 ms"])
+def test_discrete_time_without_its_step_is_not_taken_for_continuous(ending: str, step: Any, tmp_path: Path) -> None:
+    """dt of python-control is True, Ts of MATLAB is -1, where the law is discrete and nobody said in which steps."""
+    file, parts = tmp_path / f"law{ending}", SINGLE | {"dt": step}
+    if ending == ".npz":
+        np.savez(file, **parts)
+    elif ending == ".mat":
+        savemat(file, parts)
+    else:
+        file.write_text(json.dumps(parts))
+    with pytest.raises(ScenarioError, match=r"says dt = .*: discrete, and the sample time is not said"):
+        build(loads(FILED.replace("FILE", file.name), folder=tmp_path))
 
 
 @pytest.mark.parametrize(

@@ -196,7 +196,7 @@ class TestRecord:
         self.write(tmp_path)
         (error,) = errors(recorded.replace("f.csv", "ff.csv"))
         assert error.hint == "did you mean 'f.csv'?"
-        (error,) = errors(recorded.replace('"g"', '"m/s2"'))
+        (error,) = errors(recorded.replace('"g"', '"m/s3"'))
         assert (error.path, error.hint) == ("motion.flight.record.unit", "did you mean 'm/s^2'?")
         (error,) = errors(recorded.replace("[motion.spin]", INLINE + "\n[motion.spin]"))
         assert (error.path, error.message) == ("motion.flight.acceleration", "is given beside record")

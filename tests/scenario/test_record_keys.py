@@ -31,7 +31,7 @@ def test_the_unit_of_the_f16_is_guarded_and_can_be_overridden() -> None:
     ("override", "path", "words"),
     [
         ("time_unit=ms", "time_unit", 'time_unit = "s"'),
-        ("time_unit=hours", "time_unit", "unknown choice 'hours'"),
+        ("time_unit=moons", "time_unit", "is 'moons'; choose s or ms"),
         ("z=n_z_g", "z", 'z = "-n_z_g"'),
         ('skip_checks=["sing"]', "skip_checks[0]", "did you mean 'sign'?"),
         ("skip_checks=1", "skip_checks", "not true or false"),

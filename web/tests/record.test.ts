@@ -1,6 +1,6 @@
 import { expect, it } from "vitest";
 import type { Entry } from "../src/app/api";
-import { flightsOf, lacking, written } from "../src/app/record";
+import { flightsOf, lacking, ratesAlong, written } from "../src/app/record";
 
 it("says what a record lacks, first of all a column", () => {
   const chosen: Record<string, string> = { file: "a.csv" };
@@ -18,7 +18,22 @@ it("says what a record lacks, first of all a column", () => {
 it("writes rates together or not at all, and nothing that is left out", () => {
   const chosen = { file: "a.csv", time: "t", time_unit: "", z: "z", unit: "g", p: "0", q: "0", rate_unit: "rad/s", cutoff: "5 Hz" };
   expect(written(chosen)).toEqual({ file: "a.csv", time: "t", x: "0", y: "0", z: "z", unit: "g" });
+  expect(written({ ...chosen, sample_rate: "100 Hz", time_unit: "ms", vehicle: "other" })).toEqual({
+    file: "a.csv", sample_rate: "100 Hz", x: "0", y: "0", z: "z", unit: "g", vehicle: "other",
+  });
   expect(written({ ...chosen, p: "roll" })).toMatchObject({ p: "roll", q: "0", r: "0", rate_unit: "rad/s" });
+});
+
+it("turns rates about the axes that the loads are chosen along", () => {
+  const suggested = { time: "t", x: "nx", y: "ny", z: "nz", p: "p", q: "q", r: "r" };
+  expect(ratesAlong({ x: "nx", y: "ny", z: "nz" }, suggested)).toEqual({ p: "p", q: "q", r: "r" });
+  expect(ratesAlong({ x: "nx", y: "-ny", z: "-nz" }, suggested)).toEqual({ p: "p", q: "-q", r: "-r" });
+  expect(ratesAlong({ x: "-nz", y: "-ny", z: "-nx" }, suggested)).toEqual({ p: "-r", q: "-q", r: "-p" });
+  expect(ratesAlong({ x: "ny", y: "nz", z: "nx" }, suggested)).toEqual({ p: "q", q: "r", r: "p" });
+  expect(ratesAlong({ x: "nx", y: "-ny", z: "nz" }, suggested)).toEqual({}); // mirrored
+  expect(ratesAlong({ x: "nx", y: "ny", z: "ny" }, suggested)).toEqual({});
+  expect(ratesAlong({ x: "nx", y: "-ny", z: "0" }, suggested)).toEqual({});
+  expect(ratesAlong({ x: "nx", y: "-ny", z: "-nz" }, { ...suggested, r: "" })).toEqual({});
 });
 
 it("finds the flights of a form, with their records", () => {

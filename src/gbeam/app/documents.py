@@ -20,8 +20,8 @@ from gbeam.guards.processes import remembered
 from gbeam.io.binary import is_binary
 from gbeam.io.models.registry import contents_of
 from gbeam.motion import Flight
-from gbeam.motion.records.columns import UNITS, spelled
 from gbeam.motion.records.record import columns_of_text, read_table
+from gbeam.motion.records.units import UNITS, spelled
 from gbeam.scenario import ScenarioError, build, loads
 from gbeam.scenario.schema import kind_of_scenario
 from gbeam.scenario.text.diagnostics import Diagnostic
@@ -35,7 +35,8 @@ from gbeam.structure.matrices import read_matrices
 
 NAME = "scenario.toml"
 # Keys of a record that say what its columns are.
-COLUMNS = ("file", "time", "time_unit", "x", "y", "z", "unit", "quantity", "p", "q", "r", "rate_unit")
+COLUMNS = ("file", "time", "time_unit", "sample_rate", "x", "y", "z", "unit", "quantity", "vehicle")
+COLUMNS += ("p", "q", "r", "rate_unit")
 CHANGES = 3  # between two scenarios, at most, that are listed
 _LONG = 40  # characters of a value in that list
 _DURATION: Place = ("response", "duration")
@@ -198,15 +199,17 @@ def head(file: Path) -> dict[str, Any]:
     """Return the name of a file, with the columns of a record and the keys that they suggest, or the skin of a mesh, or
     neither of another file that a body or a section of a scenario may be made of.
     """
+    columns, rates = list[tuple[str, str]](), set[float]()
     try:
         if is_mesh(file.name):
             return {"name": file.name, "columns": [], "suggested": {}, "skin": _skin(file)}
-        columns = _columns(file)
+        columns, rates = _columns(file)
     except InputError:
         if not _is_model(file):
             raise
-        columns = []
-    return {"name": file.name, "columns": [name for name, _ in columns], "suggested": suggested(columns)}
+    keys = suggested(columns)
+    keys |= {"sample_rate": f"{rates.pop():g} Hz"} if "time" not in keys and len(rates) == 1 else {}
+    return {"name": file.name, "columns": [name for name, _ in columns], "suggested": keys}
 
 
 def _is_model(file: Path) -> bool:
@@ -219,15 +222,19 @@ def _is_model(file: Path) -> bool:
     return False
 
 
-def _columns(file: Path) -> list[tuple[str, str]]:
-    """Names and units of the columns of a record; one of text is read in a process of its own, too, as it is sent."""
+def _columns(file: Path) -> tuple[list[tuple[str, str]], set[float]]:
+    """Names and units of the columns of a record, and the sample rates, Hz, that it states; one of text is read in a
+    process of its own, too, as it is sent.
+    """
 
     def refuse(problem: str) -> InputError:
         return InputError("record.file", f"{file.name} {problem}", "cut or resample the record")
 
     if is_binary(file):
-        return [(column.name, column.unit) for column in read_table(file).columns[:MOST]]
-    return [tuple(each) for each in remembered(columns_of_text, file, MOST, refuse=refuse)]
+        table = read_table(file)
+        return [(column.name, column.unit) for column in table.columns[:MOST]], {each.rate for each in table.stated}
+    columns, rates = remembered(columns_of_text, file, MOST, refuse=refuse)
+    return [tuple(each) for each in columns], {*rates}
 
 
 def _skin(file: Path) -> dict[str, Any]:

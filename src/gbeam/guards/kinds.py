@@ -100,7 +100,7 @@ _BY_KIND = {
     "angle": "angle setting_angle",
     "angular rate": "rate rates speeds",
     "power": "power",
-    "frequency": "frequency",
+    "frequency": "frequency sample_rate",
     "ratio": "damping_ratio fatigue_exponent poissons_ratio robust shear_coefficient_y shear_coefficient_z tolerance",
 }
 _BY_NAME = {name: kind for kind, names in _BY_KIND.items() for name in names.split()}

@@ -19,7 +19,7 @@ from gbeam.errors import InputError
 from gbeam.guards.limits import ELEMENTS, refuse_more
 from gbeam.guards.processes import remembered
 from gbeam.guards.whole import opened
-from gbeam.io.table import Column, Table, array_columns
+from gbeam.io.table import Column, Stated, Table, array_columns, states_rate
 
 if TYPE_CHECKING:
     import h5py
@@ -30,13 +30,14 @@ _NETCDF_3 = b"CDF"  # which is not HDF5
 def read_hdf5(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
     """Read an HDF5 or netCDF file.
 
-    A vector is a column by its path, ``group/az``, or the path's last word; a matrix is one column per vector,
-    ``acc[:,0]``. The attribute `units` is the unit; `scale_factor`, `add_offset` and `_FillValue` are applied.
+    A vector is a column by its path, ``group/az``, or the path's last word, as is a field of a compound, ``imu/az``; a
+    matrix is one column per vector, ``acc[:,0]``. The attribute `units` is the unit; `scale_factor`, `add_offset` and
+    `_FillValue` are applied.
     """
     with _refused(path, "cannot be read", "give an HDF5 or netCDF file"):
         with open(path, "rb") as file:
             old = file.read(3) == _NETCDF_3
-        return Table(tuple(_netcdf_3(path) if old else hdf5_columns(path)))
+        return Table(tuple(_netcdf_3(path))) if old else hdf5_table(path)
 
 
 @contextmanager
@@ -50,30 +51,86 @@ def _refused(path: str | os.PathLike[str], problem: str, fix: str) -> Iterator[N
         raise InputError("record.file", f"{path} {problem} ({error})", fix) from None
 
 
-def hdf5_columns(path: str | os.PathLike[str], *, matlab: bool = False) -> list[Column]:
-    """Columns of an HDF5 file; MATLAB's hold every matrix transposed."""
+def hdf5_table(path: str | os.PathLike[str], *, matlab: bool = False) -> Table:
+    """Columns of an HDF5 file, and the sample rates that it states; MATLAB's hold every matrix transposed."""
     import h5py  # 0.2 s to import
 
-    columns: list[Column] = []
+    columns, stated = list[Column](), list[Stated]()
+    between = "." if matlab else "/"
 
     def add(path_inside: str, item: h5py.Dataset | h5py.Group) -> None:
-        if not isinstance(item, h5py.Dataset) or item.dtype.kind not in "iuf" or path_inside.startswith("#"):
+        for name in filter(states_rate, item.attrs):
+            stated.extend(_stated(f"{path_inside}/{name}".lstrip("/").replace("/", between), item.attrs[name], between))
+        if isinstance(item, h5py.Dataset) and item.size == 1 and item.dtype.kind in "iuf":
+            stated.extend(_stated(path_inside.replace("/", between), item[()], between))
+        if not isinstance(item, h5py.Dataset) or item.shape is None or path_inside.startswith("#"):
             return
-        shape = item.shape[::-1] if matlab else item.shape
         name = path_inside.replace("/", ".") if matlab else path_inside
-        unit = _text(item.attrs.get("units", ""))
-        columns.extend(array_columns(name, shape, lambda: values(path_inside), unit=unit, matlab=matlab))
+        if "MATLAB_empty" in item.attrs:  # it holds its sizes
+            return
+        if matlab and _text(item.attrs.get("MATLAB_class", "double")) not in _NUMBERS:
+            columns.append(_object(name, _text(item.attrs["MATLAB_class"])))
+            return
+        units = np.ravel(item.attrs.get("units", ""))
+        fields = [*_fields(item.dtype)]
+        for k, (inside, shape) in enumerate(fields):
+            unit = _text(units[k if len(units) == len(fields) else 0]) if len(units) in (1, len(fields)) else ""
+            whole = item.shape[::-1] if matlab else item.shape + shape
+            read = partial(values, path_inside, inside)
+            columns.extend(array_columns("/".join([name, *inside]), whole, read, unit=unit, matlab=matlab))
 
-    def values(path_inside: str) -> NDArray[Any]:
+    def values(path_inside: str, inside: Sequence[str]) -> NDArray[Any]:
         with h5py.File(path) as file:  # which was looked through
             item = file[path_inside]
             refuse_more("", "numbers", item.size, ELEMENTS, 40.0, "save fewer at a time")
-            array = _unpacked(np.asarray(item), item.attrs)
+            _refuse_unwritten(item)
+            array = item[inside[0]] if inside else np.asarray(item)
+            for field in inside[1:]:
+                array = array[field]
+            array = _unpacked(array, {} if inside else item.attrs)
         return array.T if matlab else array
 
     with opened(path) as file:
+        add("", file)
         file.visititems(add)
-    return columns
+    return Table(tuple(columns), stated=tuple(stated))
+
+
+def _stated(path: str, value: Any, between: str) -> Iterator[Stated]:
+    """Yield the sample rate that a value of a file is by its name."""
+    number = np.asarray(value)
+    if number.size == 1 and number.dtype.kind in "iuf":
+        yield from Stated.read(path, float(number.item()), between)
+
+
+def _fields(kind: np.dtype[Any], inside: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], tuple[int, ...]]]:
+    """Yield path and shape of the numbers in one element of a type: of itself, or of the fields of a compound."""
+    base, shape = kind.base, kind.shape
+    if base.kind in "iuf":
+        yield inside, shape
+    for name in base.names or () if not shape else ():
+        yield from _fields(base[name], (*inside, name))
+
+
+def _object(name: str, kind: str) -> Column:
+    """Column that only MATLAB can read, which says so when it is asked for."""
+
+    def read() -> NDArray[Any]:
+        fix = "save numbers beside it, such as s = seconds(t - t(1)) of a datetime t, or z = T.z of a table T"
+        raise InputError("", f"is of MATLAB's class {kind}, which only MATLAB reads", fix)
+
+    return Column(name, read)
+
+
+def _refuse_unwritten(item: h5py.Dataset) -> None:
+    """Refuse an array of which not all was written, as by a recorder that stopped: HDF5 reads the rest as zeros."""
+    if item.is_virtual or item.external or not item.size:
+        return
+    parts = math.prod(-(-size // chunk) for size, chunk in zip(item.shape, item.chunks or item.shape, strict=True))
+    written = int(item.id.get_storage_size() > 0) if item.chunks is None else item.id.get_num_chunks()
+    if written < parts:
+        problem = f"has room for {item.size} numbers, of which {written} of {parts} parts were written"
+        raise InputError("", problem, "cut it to what was recorded, and save it again")
 
 
 def _netcdf_3(path: str | os.PathLike[str]) -> list[Column]:
@@ -107,10 +164,13 @@ _ATTRIBUTES = "units", "_FillValue", "missing_value", *_PACKING
 
 def _text(attribute: Any) -> str:
     value = np.ravel(attribute)[0] if np.size(attribute) else ""
-    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
+    return (
+        value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value) if isinstance(value, str) else ""
+    )
 
 
 _STRUCTURES = ("struct", "object")
+_OPAQUE = ("s0", "s1", "s2", "arr")  # fields by which SciPy shows an object: name, system, class, contents
 _NUMBERS = ("double", "single", "logical", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)))
 
 
@@ -122,22 +182,30 @@ def read_mat(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
     """
     with _refused(path, "is not a MAT file", "save the record by MATLAB"), warnings.catch_warnings():
         warnings.filterwarnings("error", ".*may be corrupt")  # numbers of a VAX or a Cray, which SciPy misreads
-        columns = _any_version(path, words)
-    if not columns:
+        warnings.filterwarnings("ignore", "Duplicate variable name")  # of objects, which SciPy calls None
+        table = _any_version(path, words)
+    if not table.columns:
         fix = "save vectors of numbers; a table T as s = table2struct(T, 'ToScalar', true)"
         raise InputError("record.file", f"{path} holds no numeric variables", fix)
-    return Table(tuple(columns))
+    return table
 
 
-def _any_version(path: str | os.PathLike[str], words: Sequence[str]) -> list[Column]:
+def _any_version(path: str | os.PathLike[str], words: Sequence[str]) -> Table:
     """Columns of a MAT file: of its vectors and matrices, and of the structures that `words` may name."""
     import scipy.io  # 0.2 s to import
 
     try:
         variables = scipy.io.whosmat(path)
     except NotImplementedError:  # scipy's word for version 7.3
-        return hdf5_columns(path, matlab=True)
-    columns: list[Column] = []
+        return hdf5_table(path, matlab=True)
+    except TypeError:  # of a variable that has no shape, such as a datetime
+        loaded = {k: v for k, v in scipy.io.loadmat(path, simplify_cells=True).items() if k[:2] != "__"}
+        columns = [each for name, value in loaded.items() for each in _columns(name, value)]
+        return Table(tuple(columns), stated=tuple(_numbers_stated(loaded)))
+    columns = list[Column]()
+    numbers = {
+        name: _loaded(path, name) for name, shape, kind in variables if kind in _NUMBERS and math.prod(shape) == 1
+    }
     for name, shape, kind in variables:
         if kind in _NUMBERS:
             squeezed = tuple(size for size in shape if size != 1)
@@ -145,10 +213,22 @@ def _any_version(path: str | os.PathLike[str], words: Sequence[str]) -> list[Col
     structures = [name for name, _, kind in variables if kind in _STRUCTURES]
     missing = {word.removeprefix("-").strip() for word in words} - {each.name for each in columns} - {"0"}
     named = [name for name in structures if any(word.startswith(f"{name}.") for word in missing)]
-    columns += [column for name in named for column in _columns(name, _loaded(path, name))]
+    parts = {name: _loaded(path, name) for name in named}
+    columns += [column for name, value in parts.items() for column in _columns(name, value)]
     if not words or missing - {each.name for each in columns}:  # a part's last word, or a mistake
-        columns += [c for name in structures if name not in named for c in _columns(name, _loaded(path, name))]
-    return columns
+        others = {name: _loaded(path, name) for name in structures if name not in named}
+        columns += [column for name, value in others.items() for column in _columns(name, value)]
+        parts |= others
+    return Table(tuple(columns), stated=tuple(_numbers_stated(numbers | parts)))
+
+
+def _numbers_stated(values: Mapping[str, Any], of: str = "") -> Iterator[Stated]:
+    """Yield the sample rates among values by name, and among the fields of structures."""
+    for name, value in values.items():
+        if isinstance(value, dict):
+            yield from _numbers_stated(value, f"{of}{name}.")
+        elif np.ndim(value) == 0:
+            yield from _stated(f"{of}{name}", value, ".")
 
 
 def _loaded(path: str | os.PathLike[str], name: str) -> Any:
@@ -170,6 +250,9 @@ def _columns(name: str, value: Any) -> list[Column]:
     """Columns of a value of a MAT file, or of the fields of a structure; none of what is no array of real numbers."""
     if isinstance(value, dict):
         return [column for field, part in value.items() for column in _columns(f"{name}.{field}", part)]
+    if isinstance(value, np.ndarray) and value.dtype.names == _OPAQUE:
+        name, _, kind, _ = value[0]
+        return [_object(_text(name), _text(kind))]
     if not isinstance(value, np.ndarray) or value.dtype.kind not in "iuf":
         return []
     return array_columns(name, value.shape, lambda: value, matlab=True)
@@ -179,6 +262,7 @@ _TIME = "time"
 _RESPONSES = (0, 1)  # function types: general, time response
 _DIRECTIONS = ("", "X", "Y", "Z", "RX", "RY", "RZ")
 _NO_NAME = ("", "NONE")
+_A_LINE = 6  # values at most
 
 
 def read_uff(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
@@ -209,11 +293,17 @@ def read_uff(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
         values = _samples(data_set, "data")
         unit = _unit(data_set["ordinate_axis_units_lab"])
         columns.append(Column(name, lambda values=values: values, unit, (point,)))  # type: ignore[misc]
-    return Table(tuple(columns))
+    steps = {float(data_set["abscissa_inc"] or 0) for data_set in sets if data_set["abscissa_spacing"] == 1}
+    return Table(tuple(columns), stated=tuple(each for step in steps for each in Stated.read("dt", step, "/")))
 
 
 def _samples(data_set: dict[str, Any], key: str) -> np.ndarray[Any, np.dtype[np.float64]]:
-    return np.asarray(data_set[key], dtype=np.float64)[: int(data_set["num_pts"])]
+    """Abscissae or values; InputError unless they are as many as stated, but for what fills the last line."""
+    values, stated = np.asarray(data_set[key], dtype=np.float64), int(data_set["num_pts"])
+    if not 0 <= len(values) - stated < _A_LINE:
+        problem = f"states {stated} samples of {_name(data_set)!r} and holds {len(values)}"
+        raise InputError("record.file", problem, "export it again: the rest, or the header, is of another record")
+    return values[:stated]
 
 
 def _name(data_set: dict[str, Any]) -> str:
@@ -249,8 +339,9 @@ def read_binary(path: str | os.PathLike[str], words: Iterable[str] = ()) -> Tabl
     def refuse(problem: str) -> InputError:
         return InputError("record.file", f"{path} {problem}", "export the record again, with fewer variables")
 
-    columns = remembered(columns_of, path, tuple(sorted(set(words))), refuse=refuse)
-    return Table(tuple(_column(**each) for each in columns))
+    parts = remembered(parts_of, path, tuple(sorted(set(words))), refuse=refuse)
+    columns, stated = (parts[name] for name in ("columns", "stated"))
+    return Table(tuple(_column(**each) for each in columns), stated=tuple(Stated(*each) for each in stated))
 
 
 def _column(name: str, unit: str, aliases: Sequence[str], samples: Any = None, refusal: Sequence[str] = ()) -> Column:
@@ -264,17 +355,20 @@ def _column(name: str, unit: str, aliases: Sequence[str], samples: Any = None, r
     return Column(name, read, unit, tuple(aliases))
 
 
-def columns_of(path: str, words: list[str]) -> list[dict[str, Any]]:
-    """Return names, units and aliases of the columns of a file, and the samples of those that `words` name."""
+def parts_of(path: str, words: list[str]) -> dict[str, Any]:
+    """Return names, units and aliases of the columns of a file, with the samples of those that `words` name, and the
+    sample rates that it states.
+    """
     table = READERS[Path(path).suffix.lower()](path, words)
     needed = set()
     for word in words:
         with suppress(InputError):  # no column, or several: refused where it is looked for
             needed.add(table.column("", table.signed(word)[1] or ""))
-    return [
+    columns = [
         {"name": each.name, "unit": each.unit, "aliases": each.aliases} | (_sampled(each) if each in needed else {})
         for each in table.columns
     ]
+    return {"columns": columns, "stated": [[each.name, each.rate, each.of] for each in table.stated]}
 
 
 def _sampled(column: Column) -> dict[str, Any]:

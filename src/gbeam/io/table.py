@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import date
 from functools import lru_cache
@@ -23,6 +23,14 @@ CLOCK = (
     r" ?(?:Z|UTC|(?P<ahead>[+-]\d\d):?(?P<also>\d\d)?)?"
 )
 _CLOCK = re.compile(CLOCK)
+# As loggers write it: 2024-3-23--13-41-38-830, 23.03.2024 13:41:38,83, 3/23/2024 1:41:38.830 PM, 13:41:38:830.
+_LOGGED = re.compile(
+    r"(?:(?:(?P<year>\d{4})[-/.](?P<month>\d{1,2})[-/.](?P<date>\d{1,2})|(?P<either>\d{1,2}/\d{1,2}/\d{4})"
+    r"|(?P<date_first>\d{1,2})\.(?P<then_month>\d{1,2})\.(?P<then_year>\d{4}))(?P<dated>--|[T_-]| +))?"
+    r"(?P<hour>\d{1,2})(?P<between>[:-])(?P<minute>\d{1,2})(?P=between)(?P<second>\d{1,2})"
+    r"(?:[.,](?P<fraction>\d{1,9})|[:_-](?P<thousandths>\d{1,3}))?(?: ?(?P<half>[AP])\.?M\.?)?",
+    re.IGNORECASE,
+)
 _SECOND, _DAY = 10**9, 86_400 * 10**9  # ns
 _Reading = tuple[int | None, int]  # the day, where it is known, and ns from its midnight
 
@@ -41,7 +49,7 @@ class Clock:
 
 def is_clock(text: str) -> bool:
     """True if a text is a time of day."""
-    return _CLOCK.fullmatch(text) is not None
+    return _CLOCK.fullmatch(text) is not None or _logged(text) is not None
 
 
 def read_clock(cells: Sequence[str]) -> tuple[Clock, NDArray[np.float64]] | None:
@@ -50,8 +58,11 @@ def read_clock(cells: Sequence[str]) -> tuple[Clock, NDArray[np.float64]] | None
     if first is None:
         return None
     readings = (_reading(cell) for cell in cells)
-    seconds = [np.nan if reading is None else _since(first, reading) / _SECOND for reading in readings]
-    return Clock(cells[0]), np.array(seconds)
+    seconds = np.array([np.nan if reading is None else _since(first, reading) / _SECOND for reading in readings])
+    if first[0] is None:  # past midnight, or back by less than half a day
+        known = np.isfinite(seconds)
+        seconds[known] = np.unwrap(seconds[known], period=_DAY / _SECOND)
+    return Clock(cells[0]), seconds
 
 
 def _since(first: _Reading, now: _Reading) -> int:
@@ -64,7 +75,7 @@ def _reading(text: str) -> _Reading | None:
     """Day, if known, and ns from its midnight, in UTC if it has a zone; None if a text is no time of day."""
     match = _CLOCK.fullmatch(text)
     if match is None:
-        return None
+        return _logged(text)
     day = _day(match["date"]) if match["date"] else int(match["day"]) if match["day"] else None
     if match["date"] and day is None:
         return None
@@ -72,6 +83,26 @@ def _reading(text: str) -> _Reading | None:
     minutes = int(match["minute"]) - (60 * int(ahead) + int(f"{ahead[0]}{match['also'] or 0}"))
     seconds = 3600 * int(match["hour"]) + 60 * minutes + int(match["second"])
     return day, seconds * _SECOND + int((match["fraction"] or "").ljust(9, "0"))
+
+
+def _logged(text: str) -> _Reading | None:
+    """Day, if known, and ns from its midnight, as loggers write them; None if a text is no such time.
+
+    Of 3/4/2024 nobody knows which is the month; it counts as the time of day alone.
+    """
+    match = _LOGGED.fullmatch(text)
+    if match is None or (match["between"] == "-" and not match["dated"]):
+        return None
+    parts = [match["year"] or match["then_year"], match["month"] or match["then_month"]]
+    parts += [match["date"] or match["date_first"]]
+    day = None if None in parts else _day("-".join(each.zfill(2) for each in parts))
+    hour, minute, second = (int(match[name]) for name in ("hour", "minute", "second"))
+    if match["half"]:
+        hour = hour % 12 + 12 * (match["half"] in "Pp") if 1 <= hour <= 12 else 24
+    if hour > 23 or minute > 59 or second > 60 or (None not in parts and day is None):
+        return None
+    fraction = match["fraction"] or (match["thousandths"] or "").zfill(3)
+    return day, ((60 * hour + minute) * 60 + second) * _SECOND + int(fraction.ljust(9, "0"))
 
 
 @lru_cache(maxsize=2)  # days of a record
@@ -99,11 +130,44 @@ class Column:
 
 
 @dataclass(frozen=True)
+class Stated:
+    """Sample rate that a file states, of the columns whose names begin so."""
+
+    name: str  # as in the file
+    rate: float  # Hz
+    of: str = ""
+
+    @classmethod
+    def read(cls, path: str, value: float, between: str) -> Iterator[Stated]:
+        """Yield the rate that a number at a path in a file is by its name: ``imu/fs`` in Hz, ``dt`` in s."""
+        of, _, name = path.rpartition(between)
+        if states_rate(name) and 0 < value < math.inf:
+            yield cls(path, value if _plain(name) in _RATES else 1 / value, of)
+
+
+def states_rate(name: str) -> bool:
+    """True if a number of this name is a sample rate, or the time between samples."""
+    return _plain(name) in _RATES | _STEPS
+
+
+def _plain(name: str) -> str:
+    return re.sub("[^a-z]", "", name.lower())
+
+
+_SAMPLE = ("sample", "sampling")
+_RATES = {"fs", "srate", "sfreq"} | {each + end for each in _SAMPLE for end in ("rate", "freq", "frequency")}
+_STEPS = {"dt", "ts", "deltat", "deltax", "wfincrement"}
+_STEPS |= {each + end for each in _SAMPLE for end in ("time", "interval", "period")}
+
+
+@dataclass(frozen=True)
 class Table:
     """Columns of one file."""
 
     columns: tuple[Column, ...]
     rows: Sequence[int] | None = None  # row of every sample in a text file; None where the file has no rows
+    stated: tuple[Stated, ...] = ()
+    remarks: tuple[str, ...] = ()  # of what looks odd in the file
 
     def place(self, i: int) -> str:
         """Place of sample `i` in the file, in words."""
@@ -134,12 +198,20 @@ class Table:
         samples = self._samples(axis, name)
         return self._finite(axis, name, samples, _numbers(samples), part)
 
-    def times(self, name: str) -> tuple[Floats, Clock | None]:
-        """Return the column of times (t,), all finite; times of day are s from the first, with their clock."""
+    def times(self, name: str) -> tuple[Floats, Clock | None, str]:
+        """Return the column of times (t,), all finite; times of day are s from the first, with their clock; and the
+        first as the file has it.
+        """
         samples = self._samples("time", name)
         by_clock = None if isinstance(samples, np.ndarray) else read_clock(samples)
         clock, values = (None, _numbers(samples)) if by_clock is None else by_clock
-        return self._finite("time", name, samples, values, slice(None)), clock
+        first = str(samples[0]) if len(samples) else ""
+        return self._finite("time", name, samples, values, slice(None)), clock, first
+
+    def count(self, names: dict[str, str]) -> int:
+        """Number of samples of the first column among components, named as in :meth:`vector`."""
+        columns = ((axis, column) for axis, (_, column) in ((a, self.signed(n)) for a, n in names.items()) if column)
+        return next((len(self._samples(axis, column)) for axis, column in columns), 0)
 
     def _samples(self, axis: str, name: str) -> Sequence[str] | NDArray[Any]:
         column = self.column(axis, name)
@@ -154,12 +226,18 @@ class Table:
         if bad.size:
             i = int(bad[0]) + (part.start or 0)
             cell = samples[i]
-            if isinstance(cell, str) and not _is_number(cell):
+            if isinstance(cell, str) and math.isnan(_number(cell)) and cell.lower().lstrip("+-") != "nan":
                 shown, what = repr(cell) if cell else "empty", "a number"
             else:
                 shown, what = str(cell), "a finite number"
             raise InputError(f"record.{axis}", f"{self.place(i)}, column {name!r} is {shown}", f"put {what} there")
         return values
+
+    def rates(self, names: Iterable[str]) -> dict[str, float]:
+        """Return the sample rates, Hz, that the file states of columns, named with their signs, by their own names."""
+        columns = [column for _, column in map(self.signed, names) if column is not None]
+        of = [self.column("", column).name for column in columns]
+        return {each.name: each.rate for each in self.stated if any(name.startswith(each.of) for name in of)}
 
     def vector(self, names: dict[str, str], count: int, part: slice = slice(None)) -> Floats:
         """Stack components by axis, columns with their signs, (count, 3), whose `part` must be finite.
@@ -223,12 +301,16 @@ def _numbers(samples: Sequence[str] | NDArray[Any]) -> Floats:
     try:
         return np.asarray(samples, dtype=np.float64)
     except ValueError:
-        return np.array([float(cell) if _is_number(cell) else math.nan for cell in samples])
+        return np.array([_number(cell) for cell in samples])
 
 
-def _is_number(cell: str) -> bool:
+_FORTRAN = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[dD]([+-]?\d+)|([+-]\d{3}))")  # 1.5D+02, 1.5+102
+
+
+def _number(cell: str) -> float:
+    """Number in a cell; NaN if there is none."""
+    match = _FORTRAN.fullmatch(cell)
     try:
-        float(cell)
+        return float(f"{match[1]}e{match[2] or match[3]}" if match else cell)
     except ValueError:
-        return False
-    return True
+        return math.nan

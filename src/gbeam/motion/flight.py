@@ -122,7 +122,7 @@ class Flight:
         if holds_jax(self):
             return None
         if self.record is not None:
-            (first, last), slack = self.record.whole, (1 + _ROUNDING) / self.record.rate
+            (first, last), slack = self.record.whole, (1 + _ROUNDING) / self.record.read.rate
         else:
             extent = merged_extent(*(profile for profile in (self.acceleration, self.rates) if profile is not None))
             if extent is None:

@@ -86,7 +86,7 @@ def implausible_values(motion: Any, where: str, span: tuple[float, float], base:
 
 
 def _of_flight(flight: Flight, where: str, span: tuple[float, float]) -> Iterator[str]:
-    """Notes on a flight's record: steps taken, oddities, and that only a part of it is flown."""
+    """Oddities of a flight's record, and that only a part of it is flown."""
     if flight.record is not None:
         yield from (f"{where}.record: {note}" for note in flight.record.notes)
     whole = flight.part_of(*span) if span[1] > span[0] else None

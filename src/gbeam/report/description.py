@@ -9,6 +9,7 @@ from pathlib import Path
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.report.words import tidy
 from gbeam.results.description import (
+    Curves,
     Described,
     Description,
     RecordSummary,
@@ -102,23 +103,51 @@ def _system(case: SystemDescription) -> list[str]:
     return [line for head, lines in parts.items() for line in _listed(head, lines)]
 
 
+_GAPS = 20  # in lines
+
+
 def _lines(record: RecordSummary) -> Iterator[str]:
-    """Yield lines on a record, loads in g; its notes are among the warnings."""
+    """Yield lines on a record, what is read beside what is flown if they differ; its notes are among the warnings."""
     span = f"{record.span[0]:.6g} to {record.span[1]:.6g} s"
     part = span if record.span == record.whole else part_words(record.span, record.whole)
     clock = f", 0 s being {record.clock}" if record.clock else ""
-    quantity = record.quantity.replace("-", " ")
-    yield f"{Path(record.file).name}, {record.samples} samples at {record.rate:.4g} Hz, {part}{clock}, {quantity}"
-    axes = zip("xyz", record.columns, record.smallest, record.largest, strict=True)
-    width = max(map(len, record.columns))
-    for axis, column, smallest, largest in axes:
-        low, high = (f"{value / STANDARD_GRAVITY:.4g}" for value in (smallest, largest))
-        yield f"{axis} = {column:<{width}}  {low} to {high} g" if column != "0" else f"{axis} = 0"
-    yield f"largest load {_load(record.peak)} at {record.time_of_peak:.6g} s"
+    of = (
+        "" if record.vehicle == "aircraft" else f" of {'a rocket' if record.vehicle == 'rocket' else 'another vehicle'}"
+    )
+    yield f"{Path(record.file).name}, {part}{clock}, {record.quantity.replace('-', ' ')}{of}"
+    read, flown = (_cells(record, each) for each in (record.read, record.flown))
+    same = [*read.values()] == [*flown.values()]
+    rows = [("", "read and flown" if same else "read", "flown")]
+    rows += [(name, cell, flown[name]) for name, cell in read.items()]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for name, *cells in rows:
+        shown = cells[:1] if same else cells
+        yield "  ".join(f"{cell:<{width}}" for cell, width in zip((name, *shown), widths, strict=False)).rstrip()
     if record.level is not None:
         yield f"level from {record.level.start:.6g} to {record.level.end:.6g} s: {_load(record.level.load)} on average"
-    elif record.quantity == "specific-force":
-        yield "nowhere near 1 g"
+    elif record.quantity == "specific-force" and record.vehicle == "aircraft":
+        yield "nowhere level, near 1 g, for a second"
+    yield from record.done
+    if record.gaps:
+        yield "gaps on straight lines, from s   to s         lost  after"
+    for gap in record.gaps[:_GAPS]:
+        yield f"{'':23}{gap.start:>9.6g}  {gap.end:<9.6g}  {gap.lost:>4}  {gap.after}"
+    if len(record.gaps) > _GAPS:
+        yield f"and {len(record.gaps) - _GAPS} more, which --json has"
+
+
+def _cells(record: RecordSummary, curves: Curves) -> dict[str, str]:
+    """Samples, ranges of all columns, and the largest load, of a record as it is read or flown."""
+    cells = {"samples": f"{curves.samples} at {curves.rate:.4g} Hz"}
+    columns = [*zip("xyz", record.columns, curves.smallest, curves.largest, strict=True)]
+    scales = [(STANDARD_GRAVITY, "g")] * len(columns)
+    if record.rate_columns is not None and curves.rates is not None:
+        columns += zip("pqr", record.rate_columns, curves.rates.smallest, curves.rates.largest, strict=True)
+        scales += [(math.pi / 180, "deg/s")] * 3
+    for (key, column, smallest, largest), (size, unit) in zip(columns, scales, strict=True):
+        low, high = (f"{value / size:.4g}" for value in (smallest, largest))
+        cells[f"{key} = {column}"] = f"{low} to {high} {unit}" if column != "0" else ""
+    return cells | {"largest load": f"{_load(curves.peak)} at {curves.time_of_peak:.6g} s"}
 
 
 def _load(load: Vector) -> str:

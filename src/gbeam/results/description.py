@@ -25,25 +25,59 @@ class Level(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class RecordSummary(Part):
-    """A flight's record as its file has it, in base axes."""
+class BodyRates(Part):
+    """Ranges of the body's rates, about base axes."""
 
-    file: str = fact("the file")
-    columns: tuple[str, str, str] = entry("", "columns of x, y and z, with their signs", "axis")
-    quantity: str = fact("specific-force or acceleration")
-    samples: int = fact("number of samples of the part that is flown")
+    smallest: Vector = entry("rad/s", "smallest rate", "axis")
+    largest: Vector = entry("rad/s", "largest rate", "axis")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Curves(Part):
+    """Samples of a record, in base axes."""
+
+    samples: int = fact("their number")
     rate: float = fact("sample rate", "Hz")
-    span: tuple[float, float] = entry("s", "first and last time of the part that is flown", "ends")
-    whole: tuple[float, float] = entry("s", "first and last time of the file", "ends")
     smallest: Vector = entry("m/s^2", "smallest load", "axis")
     largest: Vector = entry("m/s^2", "largest load", "axis")
     peak: Vector = entry("m/s^2", "the load where it is largest in size", "axis")
     time_of_peak: float = entry("s", "its time")
+    rates: BodyRates | None = part("of the body; None where it is flown without", default=None)
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Gap(Part):
+    """Samples that a record has lost, and that were put on a straight line."""
+
+    start: float = entry("s", "the sample before them")
+    end: float = entry("s", "the sample behind them")
+    lost: int = fact("their number")
+    after: str = fact("place of the sample before them in the file")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class RecordSummary(Part):
+    """A flight's record, as its file has it and as it is flown."""
+
+    file: str = fact("the file")
+    columns: tuple[str, str, str] = entry("", "columns of x, y and z, with their signs", "axis")
+    quantity: str = fact("specific-force or acceleration")
+    vehicle: str = fact("aircraft, rocket or other")
+    span: tuple[float, float] = entry("s", "first and last time of the part that is flown", "ends")
+    whole: tuple[float, float] = entry("s", "first and last time of the file", "ends")
+    read: Curves = part("the part, as the file has it")
+    flown: Curves = part("the part, as it is flown: without spikes, filtered, resampled")
     level: Level | None = part(
-        "longest stretch near 1 g; None where it is nowhere, or the load is no specific force", default=None
+        "longest stretch near 1 g, of a second or more; None without, or of what is no aircraft's specific force",
+        default=None,
     )
-    clock: str = fact("time of day at zero seconds; empty where times are numbers", default="")
-    notes: tuple[str, ...] = fact("what was done to it, and what looks odd", default=())
+    rate_columns: tuple[str, str, str] | None = entry(
+        "", "columns of p, q and r, with their signs", "axis", default=None
+    )
+    gaps: tuple[Gap, ...] = rows("gaps that were bridged", "gap", default=())
+    clock: str = fact("what the clock of the file shows at zero seconds; empty where that is zero", default="")
+    done: tuple[str, ...] = fact("what was done to it, as asked", default=())
+    notes: tuple[str, ...] = fact("what looks odd", default=())
 
 
 @dataclass(frozen=True, repr=False, eq=False)

@@ -242,11 +242,11 @@ def _not_all_of(
 ) -> Iterator[InputError]:
     """Refuse a run from `start` to `end`, s, beyond a record, or over a part that its table does not ask for."""
     first, last = record.span
-    interval = (1 + 1e-6) / record.rate  # 1600 samples at 100 Hz are 16 s of flight
+    interval = (1 + 1e-6) / record.read.rate  # 1600 samples at 100 Hz are 16 s of flight
     flown = f"{last - first:.6g} s" if first == 0 else f"{last - first:.6g} s, from {first:.6g} to {last:.6g} s"
     whole = f"the record of {name!r} lasts {flown}"
     if end > last + interval:
-        fix = f"give {last + 1 / record.rate - start:g} s or less, or leave it out"
+        fix = f"give {last + 1 / record.read.rate - start:g} s or less, or leave it out"
         yield InputError("response.duration", f"reaches to {end:g} s, and {whole}", fix)
         return
     asked = [f'from = "{start:g} s"'] if start > first + interval else []

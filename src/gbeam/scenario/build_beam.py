@@ -128,7 +128,7 @@ def _through(file: str, unit: str | None, twist: Any, smooth: bool) -> Line:
 
 def _columns(rows: Table, unit: str | None) -> dict[str, Any]:
     """Columns of a line's file by name, in SI; `unit` is of lengths without one. InputError for an unknown column."""
-    from gbeam.motion.records.columns import unit_in_name, words_of
+    from gbeam.motion.records.units import unit_in_name, words_of
 
     columns: dict[str, Any] = {}
     for column in rows.columns:

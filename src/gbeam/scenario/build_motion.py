@@ -126,10 +126,12 @@ def _record(table: Record) -> FlightRecord:
     rates = None
     if table.p is not None and table.q is not None and table.r is not None and table.rate_unit is not None:
         rates = Rates(table.p, table.q, table.r, table.rate_unit)
-    conditions = {key: getattr(table, key) for key in ("cutoff", "resample", "despike", "skip_checks")}
-    columns = values_of(table, *conditions, "file", "p", "q", "r", "rate_unit", "begin", "to")
+    conditions = {key: getattr(table, key) for key in ("cutoff", "resample", "despike", "bridge", "skip_checks")}
+    columns = values_of(table, *conditions, "file", "time", "p", "q", "r", "rate_unit", "begin", "to")
     span = table.begin, table.to
-    return read_flight(table.file, **columns, rates=rates, conditioning=Conditioning(**conditions), span=span)
+    return read_flight(
+        table.file, table.time, **columns, rates=rates, conditioning=Conditioning(**conditions), span=span
+    )
 
 
 def _recorded(record: FlightRecord, smoothing: float) -> motion.Flight:

@@ -24,25 +24,39 @@ export function flightsOf(form: Entry[]): Flight[] {
 
 const AXES = ["x", "y", "z"];
 const RATES = ["p", "q", "r"];
-const TIMES: Options = [["", "the file's unit, or s"], ...["s", "ms", "us", "min"].map((each) => [each, each] as const)];
-const LOADS: Options = [["g", "g"], ["m/s^2", "m/s²"], ["ft/s^2", "ft/s²"]];
-const TURNS: Options = [["rad/s", "rad/s"], ["deg/s", "°/s"]];
+const named = (units: string[]): Options => units.map((each) => [each, each.replace("^2", "²").replace("deg", "°")] as const);
+const TIMES: Options = [["", "the file's unit, or s"], ...named(["s", "ms", "us", "ns", "min", "h", "day"])];
+const LOADS = named(["g", "mg", "m/s^2", "cm/s^2", "mm/s^2", "ft/s^2", "in/s^2"]);
+const TURNS = named(["rad/s", "deg/s", "rpm"]);
+const VEHICLES: Options = [["aircraft", "an aircraft"], ["rocket", "a rocket"], ["other", "something else"]];
 const HOLDS: Options = [["specific-force", "specific force"], ["acceleration", "acceleration"]];
 
 /** What a record still lacks before it can be used, in words; nothing where it is whole. */
 export function lacking(chosen: Mapping): string {
   const turns = RATES.filter((key) => chosen[key] && chosen[key] !== "0");
-  if (!chosen["time"]) return "choose the column of time";
+  if (!chosen["time"] && !chosen["sample_rate"]) return "choose the column of time, or give a sample rate";
   if (AXES.every((key) => (chosen[key] ?? "0") === "0")) return "choose a column for x, y or z";
   if (!chosen["unit"]) return "choose the unit of x, y and z";
   if (turns.length && !chosen["rate_unit"]) return "choose the unit of p, q and r";
   return "";
 }
 
+/** Columns of p, q and r about the axes that x, y and z are chosen along; `suggested` has all six along the file's axes.
+ * None where no rotation takes those three to the beam's. */
+export function ratesAlong(chosen: Mapping, suggested: Mapping): Mapping {
+  const axes = AXES.map((key) => AXES.findIndex((axis) => suggested[axis] && chosen[key]?.replace(/^-/, "") === suggested[axis]));
+  const signs = AXES.map((key, n) => (chosen[key] === suggested[AXES[axes[n]!]!] ? 1 : -1));
+  const [i, j, k] = axes as [number, number, number];
+  const determinant = signs.reduce((product, sign) => product * sign, -Math.sign((j - i) * (k - j) * (i - k)));
+  if (axes.includes(-1) || determinant !== 1 || RATES.some((key) => !suggested[key])) return {};
+  return Object.fromEntries(RATES.map((key, n) => [key, (signs[n] === 1 ? "" : "-") + suggested[RATES[axes[n]!]!]]));
+}
+
 /** What is written of a record: rates all together, or none of them. */
 export function written(chosen: Mapping): Mapping {
   const turning = RATES.some((key) => chosen[key] && chosen[key] !== "0");
-  const keys = ["file", "time", "time_unit", ...AXES, "unit", "quantity", ...(turning ? [...RATES, "rate_unit"] : [])];
+  const clock = chosen["sample_rate"] ? ["sample_rate"] : ["time", "time_unit"];
+  const keys = ["file", ...clock, ...AXES, "unit", "quantity", "vehicle", ...(turning ? [...RATES, "rate_unit"] : [])];
   const pairs = keys.map((key) => [key, chosen[key] || ([...AXES, ...RATES].includes(key) ? "0" : "")] as const);
   return Object.fromEntries(pairs.filter(([, value]) => value));
 }
@@ -93,18 +107,29 @@ export class RecordPanel {
       ready.textContent = lacking(chosen);
       act.disabled = !this.motion || lacking(chosen) !== "";
     };
+    const rates = element("details");
+    const turns = ratesAlong(chosen, head.suggested);
+    let following = RATES.every((key) => chosen[key] && chosen[key] === turns[key]); // until a rate is chosen
+    const follow = (): void => {
+      for (const [key, value] of Object.entries(ratesAlong(chosen, head.suggested))) {
+        chosen[key] = value;
+        rates.querySelector<HTMLSelectElement>(`[data-key=${key}] select`)!.value = value;
+      }
+    };
     const field = (key: string, name: string, options: Options, first = ""): HTMLElement => {
       const known = options.some(([value]) => value === (chosen[key] ?? first));
       const all = known ? options : ([["", "choose"], ...options] as Options);
       const label = choice(name, all, known ? (chosen[key] ?? first) : "", (value) => {
         chosen[key] = value;
         label.classList.remove("suggested");
+        if (RATES.includes(key)) following = false;
+        if (AXES.includes(key) && following) follow();
         this.judge();
       });
+      label.dataset["key"] = key;
       if (suggested.includes(key)) label.classList.add("suggested");
       return label;
     };
-    const rates = element("details");
     rates.open = RATES.some((key) => chosen[key]);
     rates.append(
       element("summary", "", "Body rates"),
@@ -114,19 +139,36 @@ export class RecordPanel {
     const words = this.dropped ? `Record ${head.name}, not used yet` : `Record of ${this.motion}: ${head.name}`;
     this.root.replaceChildren(
       element("h3", "", words),
-      ...(suggested.length ? [element("p", "faint", "Dashed: suggested by the columns' names and units. Check them, and choose the signs.")] : []),
+      ...(suggested.length ? [element("p", "faint", "Dashed: suggested by the columns' names and units. Check them, and choose the signs of x, y and z: p, q and r follow.")] : []),
       this.row(
         flight,
-        field("time", "Time", listed),
+        field("time", "Time", chosen["sample_rate"] ? [["", "none"], ...listed] : listed),
         field("time_unit", "Time in", TIMES),
+        this.rate(chosen),
         ...AXES.map((key) => field(key, `${key} is`, signed, "0")),
         field("unit", "Unit", LOADS),
         field("quantity", "Holds", HOLDS, "specific-force"),
+        field("vehicle", "Of", VEHICLES, "aircraft"),
       ),
       rates,
       this.row(act, ready),
     );
     this.which();
+  }
+
+  /** A sample rate, which takes the place of a column of time. */
+  private rate(chosen: Mapping): HTMLElement {
+    const label = element("label", "", "or sample rate ");
+    const input = element("input");
+    input.placeholder = "such as 100 Hz";
+    input.size = 12;
+    input.value = chosen["sample_rate"] ?? "";
+    input.addEventListener("input", () => {
+      chosen["sample_rate"] = input.value.trim();
+      this.judge();
+    });
+    label.append(input);
+    return label;
   }
 
   /** Which flight follows the record, and whether it can. */

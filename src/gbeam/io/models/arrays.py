@@ -162,12 +162,29 @@ def read_state_space(path: str | os.PathLike[str]) -> SimpleNamespace:
         raise refuse(f"holds no {lacking}")
     try:
         parts = {name: np.atleast_2d(np.asarray(named[name], dtype=float)) for name in NAMES}
-        step = next((float(np.ravel(named[key])[0]) for key in STEPS if key in named), 0.0)
-    except (TypeError, ValueError, IndexError):
+    except (TypeError, ValueError):
         raise refuse("holds what are no numbers") from None
-    if not all(np.isfinite(each).all() for each in parts.values()) or not 0 <= step < math.inf:
-        raise refuse("holds numbers that are not finite, or a step below zero")
-    return SimpleNamespace(**parts, dt=step)
+    if not all(np.isfinite(each).all() for each in parts.values()):
+        raise refuse("holds numbers that are not finite")
+    steps = {key: _step(key, named[key]) for key in STEPS if key in named}
+    if len(set(steps.values())) > 1:
+        raise refuse(f"says {' and '.join(f'{key} = {each:g}' for key, each in steps.items())}")
+    return SimpleNamespace(**parts, dt=next(iter(steps.values()), 0.0))
+
+
+def _step(key: str, value: Any) -> float:
+    """Step of a law, s.
+
+    Discrete time of which the step is not said is True in python-control and -1 in MATLAB; MATLAB's true is a number
+    of eight bits in its files.
+    """
+    array = np.asarray(value)
+    number = array.dtype.kind in "fiu" and array.dtype != np.uint8 and array.size == 1
+    if not number or not 0 <= array.item() < math.inf:
+        said = shortened(str(array.item() if array.size == 1 else value), 40)
+        problem = f"says {key} = {said}: discrete, and the sample time is not said"
+        raise InputError("file", problem, f"save {key} as the sample time in s, such as 0.01, or 0 in continuous time")
+    return float(array.item())
 
 
 def _numbers(path: str) -> dict[str, Any]:
@@ -179,4 +196,4 @@ def _numbers(path: str) -> dict[str, Any]:
     except Exception as error:  # of many kinds
         raise InputError("file", f"cannot be read: {shortened(str(error), 100)}", FIX) from None
     arrays = {key: np.asarray(each) for key, each in contents.items() if hasattr(each, "dtype")}
-    return {key: each for key, each in arrays.items() if each.dtype.kind in "fiu"}
+    return {key: each for key, each in arrays.items() if each.dtype.kind in "fiu" or key.lower() in STEPS}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Literal
 
 import numpy as np
 
@@ -16,9 +15,10 @@ from gbeam.numerics.samples import low_pass, true_runs
 
 FEWEST = 6  # samples of a record
 UNEVEN = 0.01  # of the median interval
-_WINDOW, _OUTLIER = 3, 6.0  # samples either side; deviations from the window's median
-_LEAST_JUMP = 0.5  # m/s²: a smaller step is no dropout and no spike
-_BESIDE = 0.25, 0.75  # of a spike's bend, the other way: the bend of its neighbours
+_LONGEST_RUN, _SIDE, _NEARBY = 5, 3, 8  # samples of a spike, beside it, and runs on either side that it is judged by
+_OUTLIER, _SPREAD = 6.0, 1.4826  # deviations of normal noise; one of them over the median of the sizes
+LEAST_JUMP, LEAST_TURN = 0.5, 0.05  # m/s², rad/s: a smaller step is no dropout and no spike
+_BESIDE = 0.3  # of a spike: its neighbours are less off; those on a corner are off by half as much
 _FLAT, _STEADY, _STEP = 4, 3, 5.0  # samples of a flat top; steps that lead there; one of so many times the resolution
 _FULL = 1.1 * STANDARD_GRAVITY  # m/s²: no sensor's range ends at level flight
 _NEARLY = 0.99  # of a rate: what is that near to it is not below it
@@ -43,7 +43,7 @@ def dropout(values: Floats, step: float) -> tuple[int, int] | None:
             (change[last : last + 1], change[last + 1 : last + 4]),
             (change[max(first - 1, 0) : first], change[max(first - 4, 0) : max(first - 1, 0)]),
         ):
-            if jump.size and beside.size and abs(jump[0]) > max(_LEAST_JUMP, 3 * float(np.abs(beside).max())):
+            if jump.size and beside.size and abs(jump[0]) > max(LEAST_JUMP, 3 * float(np.abs(beside).max())):
                 return int(first), int(last)
         if last < len(values) - 1 or (last - first) * step < 0.5 or first < 3:
             continue
@@ -53,35 +53,40 @@ def dropout(values: Floats, step: float) -> tuple[int, int] | None:
     return None
 
 
-def spikes(load: Floats) -> Flags:
-    """Flags (t, 3) of single samples far off, per channel, by either of two tests.
+def spikes(load: Floats, least_jump: float = LEAST_JUMP) -> Flags:
+    """Flags (t, n) of spikes, per channel: runs of up to five samples between two jumps, far off what is around them.
 
-    Hampel's: off the median of the seven around them. On a flank beside a peak these deviate from their median as much
-    as a spike does, so the other is: off the straight line between their neighbours, which themselves are off by half
-    as much the other way. Far is six deviations of what is around, and of the whole record.
+    Off is measured from the straight line between the medians of the three samples before a run and after it, which is
+    that of a flank too. All of a run is off, its neighbours are not; far is six deviations of what runs of its length
+    are off nearby, and in the whole record. Of bad samples between good ones and good ones between bad, the shorter and
+    outer ones are bad.
     """
-    windows = _windows(load, _WINDOW, "odd")
-    middle = np.median(windows, axis=-1)
-    bend = np.zeros_like(load)
-    bend[1:-1] = load[1:-1] - (load[:-2] + load[2:]) / 2
-    least, most = (share * np.abs(bend) for share in _BESIDE)
-    beside = np.stack([np.roll(bend, 1, axis=0), np.roll(bend, -1, axis=0)]) * -np.sign(bend)
-    single = ((beside > least) & (beside < most)).all(axis=0)
-    around = np.delete(_windows(np.abs(bend), _WINDOW + 1, "even"), [_WINDOW, _WINDOW + 1, _WINDOW + 2], axis=-1)
-    return _far(load - middle, np.abs(windows - middle[..., None])) | (single & _far(bend, around))
+    flags = np.zeros(load.shape, dtype=bool)
+    padded = np.pad(load, ((_SIDE, _SIDE), (0, 0)), mode="reflect", reflect_type="odd")  # a slope goes on
+    middle = _median_of_three(padded[:-2], padded[1:-1], padded[2:])
+    for length in range(1, min(_LONGEST_RUN, len(load) // 2) + 1):
+        count = len(load) - length + 1  # of runs, by their first sample
+        before, after = middle[:count], middle[length + _SIDE : length + _SIDE + count]
+        lines = (before + (after - before) * (k + 2) / (length + 3) for k in range(-1, length + 1))
+        off = [np.abs(padded[k + _SIDE :][:count] - line) for k, line in enumerate(lines, start=-1)]
+        least, mean = np.minimum.reduce(off[1:-1]), np.mean(off[1:-1], axis=0)
+        far = np.maximum(_OUTLIER * _SPREAD * np.median(mean, axis=0), least_jump)
+        beside = np.maximum(off[0], off[-1])
+        run = (least > far) & (beside < _BESIDE * least)
+        run &= ~np.logical_or.reduce([flags[k:][:count] for k in range(length)])
+        first, channel = np.nonzero(run)
+        distances = length + _SIDE + np.arange(_NEARBY)
+        nearby = np.clip(first + np.concatenate([-distances, distances])[:, None], 0, count - 1)
+        far = np.maximum(_OUTLIER * _SPREAD * np.median(mean[nearby, channel], axis=0), far[channel])
+        run[first, channel] = (least[first, channel] > far) & (beside[first, channel] < far)
+        run[length:-length] &= ~(run[: -2 * length] & run[2 * length :])
+        for k in range(length):
+            flags[k:][:count] |= run
+    return flags
 
 
-def _windows(values: Floats, beside: int, reflected: Literal["odd", "even"]) -> Floats:
-    """Samples around each, (t, 3, 2 beside + 1); beyond the ends a slope goes on (odd), or a size does (even)."""
-    padded = np.pad(values, ((beside, beside), (0, 0)), mode="reflect", reflect_type=reflected)
-    return np.lib.stride_tricks.sliding_window_view(padded, 2 * beside + 1, axis=0)
-
-
-def _far(off: Floats, around: Floats) -> Flags:
-    """Flags of samples `off` by more than six deviations of the windows `around` them, and of the median window."""
-    spread = 1.4826 * np.median(around, axis=-1)
-    spread = np.maximum(spread, np.median(spread, axis=0))
-    return np.asarray(np.abs(off) > np.maximum(_OUTLIER * spread, _LEAST_JUMP))
+def _median_of_three(a: Floats, b: Floats, c: Floats) -> Floats:
+    return np.asarray(np.maximum(np.minimum(a, b), np.minimum(np.maximum(a, b), c)))
 
 
 def flat_tops(values: Floats) -> Iterator[tuple[float, list[slice]]]:

@@ -3,25 +3,36 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
 from gbeam.arrays.types import Floats, Indices
-from gbeam.constants import AccelerationUnit, Check, RateUnit, RecordQuantity, TimeUnit
+from gbeam.constants import Check, RecordQuantity, Vehicle
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
+from gbeam.guards.checks import positive
 from gbeam.guards.limits import BINARY_BYTES, SAMPLES, refuse_large_file, refuse_more
 from gbeam.io.binary import is_binary, read_binary
-from gbeam.io.table import NO_COLUMN, Clock, Table
+from gbeam.io.table import NO_COLUMN, Table
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
-from gbeam.motion.records.columns import UNITS, load_factors, mirrored, refuse_other_kinds, unit_of
-from gbeam.motion.records.conditioning import FEWEST, filtered, spikes, without_spikes
-from gbeam.motion.records.soundness import CHECKS, Samples, oddities, refuse_unsound, summary
-from gbeam.motion.records.text import Span, check_interval, check_sampling, part_within, read_text
+from gbeam.motion.records.columns import (
+    RATE,
+    load_factors,
+    mirrored,
+    refuse_other_axes,
+    refuse_other_kinds,
+    upended,
+)
+from gbeam.motion.records.conditioning import FEWEST, LEAST_TURN, filtered, spikes, without_spikes
+from gbeam.motion.records.soundness import CHECKS, Samples, curves, level, oddities, refuse_unsound
+from gbeam.motion.records.text import read_text
+from gbeam.motion.records.times import Span, Timeline, Times, check_interval
+from gbeam.motion.records.units import Unit, unit_of
+from gbeam.numerics.samples import true_runs
 from gbeam.printable import advise
+from gbeam.results.description import RecordSummary
 
 
 def read_table(path: str | os.PathLike[str], words: Iterable[str] = ()) -> Table:
@@ -34,9 +45,12 @@ def read_table(path: str | os.PathLike[str], words: Iterable[str] = ()) -> Table
         raise InputError("record.file", problem, "give the path of a record") from None
 
 
-def columns_of_text(path: str, most: int) -> list[tuple[str, str]]:
-    """Return the names and units of the first columns of a record of text, `most` of them."""
-    return [(column.name, column.unit) for column in read_text(path).columns[:most]]
+def columns_of_text(path: str, most: int) -> tuple[list[tuple[str, str]], list[float]]:
+    """Return the names and units of the first columns of a record of text, `most` of them, and the sample rates, Hz,
+    that it states.
+    """
+    table = read_text(path)
+    return [(column.name, column.unit) for column in table.columns[:most]], [each.rate for each in table.stated]
 
 
 @dataclass(frozen=True)
@@ -46,7 +60,7 @@ class Rates:
     p: str
     q: str
     r: str
-    unit: RateUnit
+    unit: str  # rad/s, deg/s, rpm, or the size of a count
 
 
 @dataclass(frozen=True)
@@ -58,9 +72,11 @@ class Conditioning:
     cutoff : float or None
         Of a zero-phase low-pass (fourth-order Butterworth forwards and backwards, −6 dB), Hz.
     resample : float or None
-        New sampling rate, Hz; times may then jitter.
+        New sampling rate, Hz. With it, or with a cut-off, times may jitter, repeat, come late and have gaps to bridge.
     despike : bool
-        Replace single samples far off their neighbours.
+        Replace spikes, runs of up to five samples between two jumps far off what is around them, by straight lines.
+    bridge : float or None
+        Longest gap that is bridged, s: lost samples are put on straight lines, before the low-pass and resampling.
     skip_checks : bool or tuple of str
         Checks to leave out, of ``sampling``, ``spikes``, ``unit``, ``sign``, ``dropouts`` and ``columns``; True leaves
         out all.
@@ -69,7 +85,13 @@ class Conditioning:
     cutoff: float | None = None
     resample: float | None = None
     despike: bool = False
+    bridge: float | None = None
     skip_checks: bool | tuple[Check, ...] = False
+
+    @property
+    def evened(self) -> bool:
+        """True if the samples are evened out: times may jitter, repeat and come late then."""
+        return self.cutoff is not None or self.resample is not None
 
     @property
     def skipped(self) -> tuple[Check, ...]:
@@ -92,23 +114,26 @@ class FlightRecord:
     rates: PiecewiseLinear | None = None  # angular velocity, rad/s, base axes
 
     @property
-    def notes(self) -> tuple[str, ...]:
-        """Steps taken, and oddities of the record."""
-        return () if self.acceleration.record is None else self.acceleration.record.notes
+    def summary(self) -> RecordSummary:
+        """The record in numbers: what is read and what is flown, what was done to it, and what looks odd."""
+        assert self.acceleration.record is not None
+        return self.acceleration.record
 
 
 @typed
 def read_record(
     path: str | os.PathLike[str],
-    time: str,
+    time: str | None,
     x: str,
     y: str,
     z: str,
-    unit: AccelerationUnit | Literal["m/s²", "ft/s²"],
+    unit: str,
     conditioning: Conditioning = Conditioning(),
     *,
-    time_unit: TimeUnit | None = None,
+    time_unit: str | None = None,
+    sample_rate: float | None = None,
     quantity: RecordQuantity = "specific-force",
+    vehicle: Vehicle = "aircraft",
     span: Span = (None, None),
 ) -> PiecewiseLinear:
     """Read an acceleration (or specific-force) record.
@@ -118,20 +143,26 @@ def read_record(
     path : path
         Of text (commas, semicolons, tabs or white space; decimal point or comma), or by its suffix a MAT file
         (``.mat``), HDF5 or netCDF (``.h5``, ``.hdf5``, ``.nc``) or a universal file (``.uff``, ``.unv``).
-    time : str
+    time : str or None
         Name of the column of times: numbers, or times of day such as ``12:34:56.789`` and ``2024-05-03T12:34:56Z``,
-        which count from the first.
+        which count from the first, as do seconds since 1970; None with a sample rate.
     x, y, z : str
         Names of the columns that hold the components in base axes; a leading ``-`` changes the sign (aircraft
         records have z down), ``0`` stands for a component that is zero.
     unit : str
-        ``g`` (9.80665 m/s²) or ``m/s^2``.
+        ``g`` (9.80665 m/s²), ``mg``, ``m/s^2``, ``cm/s^2``, ``mm/s^2``, ``ft/s^2`` or ``in/s^2``, or the size of a
+        count, such as ``1 g / 2048`` or ``1 g / 100 mV``.
     conditioning : Conditioning
         Of :class:`gbeam.motion.records.record.Conditioning`; by default nothing is done to the record.
     time_unit : str, optional
-        ``s``, ``ms``, ``us`` or ``min``; what the file says if left out, or else s.
+        ``s``, ``ms``, ``us``, ``ns``, ``min``, ``h`` or ``day``; what the file says if left out, or else s.
+    sample_rate : float, optional
+        In place of times, Hz; the first sample is at 0 s.
     quantity : str
         ``specific-force``, 1 g upwards in level flight, which is checked; or ``acceleration``.
+    vehicle : str
+        ``aircraft``, which flies level somewhere, 1 g upwards along z; ``rocket``, whose axes say nothing of up; or
+        ``other``, of which nothing is asked but a possible size.
     span : tuple
         First and last time of the part that is flown, s on the record's own clock, or a time of day where it has these;
         None is the record's end. What is outside is not checked, but for level flight.
@@ -152,18 +183,19 @@ def read_record(
     --------
     >>> columns = {"time": "time_s", "x": "n_x_g", "y": "-n_y_g", "z": "-n_z_g"}
     >>> record = gb.read_record("examples/data/f16_8g_turn.csv", **columns, unit="g").record
-    >>> print(record.samples, f"{record.largest[2] / 9.80665:.2f} g at {record.time_of_peak} s")
+    >>> print(record.read.samples, f"{record.flown.largest[2] / 9.80665:.2f} g at {record.flown.time_of_peak} s")
     1600 8.06 g at 4.92 s
     """
     return read_flight(
-        path, time, x, y, z, unit, conditioning=conditioning, time_unit=time_unit, quantity=quantity, span=span
-    ).acceleration
+        path, time, x, y, z, unit, conditioning=conditioning, time_unit=time_unit, sample_rate=sample_rate,
+        quantity=quantity, vehicle=vehicle, span=span,
+    ).acceleration  # fmt: skip
 
 
 @np.errstate(all="ignore")  # numbers beyond a float's are refused by their row, without a warning before
 def read_flight(
     path: str | os.PathLike[str],
-    time: str,
+    time: str | None,
     x: str,
     y: str,
     z: str,
@@ -171,93 +203,142 @@ def read_flight(
     *,
     rates: Rates | None = None,
     conditioning: Conditioning = Conditioning(),
-    time_unit: TimeUnit | None = None,
+    time_unit: str | None = None,
+    sample_rate: float | None = None,
     quantity: RecordQuantity = "specific-force",
+    vehicle: Vehicle = "aircraft",
     span: Span = (None, None),
 ) -> FlightRecord:
     """Read a record with the body's rates, and say what was done to it; see :func:`read_record`."""
-    skip = conditioning.skipped
+    skip, evened = conditioning.skipped, conditioning.evened
     trust = "unit" in skip
     names = {"x": x, "y": y, "z": z}
     turns = {} if rates is None else {"p": rates.p, "q": rates.q, "r": rates.r}
     if {*names.values()} == {NO_COLUMN}:
         raise InputError("record", 'takes nothing of the file: x, y and z are "0"', "name a column for one of them")
-    table = read_table(path, [time, *names.values(), *turns.values()])
+    columns = [*names.values(), *turns.values()]
+    table = read_table(path, columns if time is None else [time, *columns])
     if "columns" not in skip:
         refuse_other_kinds(table, names)
-    unit, load_scale = _scale(table, "unit", "acceleration", unit, names, trust=trust)
-    rate_scale = 1.0 if rates is None else _scale(table, "rate_unit", "rate", rates.unit, turns, trust=trust)[1]
-    clock, seconds, of_day = _times(table, time, time_unit, trust=trust)
+        if turns:
+            refuse_other_kinds(table, turns, RATE)
+            refuse_other_axes(table, names, turns)
+    load_unit = _unit(table, "unit", "acceleration", unit, names, trust=trust)
+    rate_unit = load_unit if rates is None else _unit(table, "rate_unit", "rate", rates.unit, turns, trust=trust)
+    stated = {} if "sampling" in skip else table.rates(columns)
+    times = _times(table, time, time_unit, sample_rate, names, stated, trust=trust)
+    clock = times.values
     refuse_more("record.file", "samples", len(clock), SAMPLES, 200.0, "cut the record, or export it at a lower rate")
     if len(clock) < FEWEST:
         raise InputError("record.file", f"{path} has {table.counted(len(clock))}", f"give {FEWEST} samples or more")
-    part = part_within(clock, of_day, span, table.counted)
-    when = clock[part]
-    jitter = check_sampling(when, lambda i: table.place(part.start + i), jitter=conditioning.resample is not None)
-    if "sampling" not in skip:
-        check_interval(when, seconds)
-    load = load_scale * table.vector(names, len(clock), part)
+    part = times.part(span, table.counted)
+    load = load_unit.size * table.vector(names, len(clock), part)
+    turning = rate_unit.size * table.vector(turns, len(clock), part) if turns else np.empty((len(clock), 0))
 
-    def samples(index: Indices) -> Samples:
-        specific = quantity == "specific-force"
-        return Samples(clock[index], load[index], names, unit, specific, lambda i: table.place(int(index[i])))
-
-    flown = samples(np.arange(part.start, part.stop))
-    known = np.flatnonzero(np.isfinite(load).all(axis=1))  # outside the part there may be what is no number
-    refuse_unsound(
-        flown, flown if len(when) == len(clock) else samples(known), (*skip, "spikes") if conditioning.despike else skip
+    line = Timeline.of(
+        times, part, np.concatenate([load, turning], axis=1), table.place, bridge=conditioning.bridge, evened=evened
     )
-    notes = [f"time in {seconds}, as the file says"] if time_unit is None and seconds != "s" else []
+    if "sampling" not in skip:
+        check_interval(line.time, times, stated, brief=vehicle == "other")
+
+    def samples(time: Floats, load: Floats, rows: Indices) -> Samples:
+        turned = upended(table, names)
+        specific = quantity == "specific-force"
+        return Samples(time, load, names, load_unit, specific, vehicle, turned, lambda i: table.place(int(rows[i])))
+
+    flown = samples(line.time, line.values[:, :3], line.rows)
+    known = np.flatnonzero(np.isfinite(load).all(axis=1))  # outside the part there may be what is no number
+    whole = flown if part == slice(0, len(clock)) else samples(clock[known], load[known], known)
+    refuse_unsound(flown, whole, (*skip, "spikes") if conditioning.despike else skip)
+    notes = [*table.remarks]
     if "columns" not in skip:
-        notes += [*mirrored(table, names), *load_factors(table, names, unit, specific=flown.specific)]
+        notes += [*mirrored(table, names), *load_factors(table, names, load_unit.text, specific=flown.specific)]
     notes += oddities(flown)
-    calm, spike_notes = _despiked(flown, despike=conditioning.despike)
-    notes += spike_notes
-    body_rates = rate_scale * table.vector(turns, len(clock), part)[part] if turns else np.empty((len(when), 0))
-    new, both = filtered(when, np.concatenate([calm, body_rates], axis=1), conditioning.cutoff, conditioning.resample)
-    if jitter:
-        notes.append(f"times up to {1e3 * jitter:.3g} ms off even ones: a spline through the samples is flown")
+    calm, spiked = _despiked(flown, turns, line.values[:, 3:], despike=conditioning.despike)
+    new, both = filtered(line.time, calm, conditioning.cutoff, conditioning.resample)
+    done = [f"time in {times.unit.text}, as the file says"] if time_unit is None and times.unit.size != 1 else []
+    done += line.done
+    (done if conditioning.despike else notes).extend(spiked)
     if conditioning.cutoff is not None:
-        notes.append(f"low-pass at {conditioning.cutoff:g} Hz, zero phase")
+        done.append(f"low-pass at {conditioning.cutoff:g} Hz, zero phase")
     if conditioning.resample is not None:
-        notes.append(f"resampled at {conditioning.resample:g} Hz")
-    zero = "" if of_day is None else of_day.first
-    facts = summary(flown, os.fspath(path), (float(clock[0]), float(clock[-1])), zero, tuple(notes))
+        done.append(f"resampled at {conditioning.resample:g} Hz")
+    as_read = line.values[line.read]
+    facts = RecordSummary(
+        file=os.fspath(path),
+        columns=(x, y, z),
+        quantity=quantity,
+        vehicle=vehicle,
+        span=(float(line.time[0]), float(line.time[-1])),
+        whole=times.ends,
+        read=curves(line.time[line.read], as_read[:, :3], as_read[:, 3:]),
+        flown=curves(new, both[:, :3], both[:, 3:]),
+        level=level(flown),
+        rate_columns=None if rates is None else (rates.p, rates.q, rates.r),
+        gaps=line.gaps,
+        clock="" if times.zero is None else times.zero.first,
+        done=tuple(done),
+        notes=tuple(notes),
+    )
     flown_rates = None if rates is None else PiecewiseLinear(new, both[:, 3:])
     return FlightRecord(PiecewiseLinear(new, both[:, :3], record=facts), flown_rates)
 
 
-def _scale(
+def _unit(table: Table, key: str, kind: str, declared: str | None, columns: dict[str, str], *, trust: bool) -> Unit:
+    """The unit that scenario and file agree on, s where neither says one."""
+    return unit_of(key, kind, declared, table.stated_units(columns), trust=trust) or Unit("s", 1.0)
+
+
+def _times(
     table: Table,
-    key: str,
-    kind: str,
-    declared: str | None,
+    name: str | None,
+    unit: str | None,
+    rate: float | None,
     columns: dict[str, str],
+    stated: Mapping[str, float],
     *,
     trust: bool,
-    otherwise: str = "",
-) -> tuple[str, float]:
-    """The unit that scenario and file agree on, and its size in SI."""
-    agreed = unit_of(key, kind, declared, table.stated_units(columns), trust=trust) or otherwise
-    return agreed, UNITS[kind][agreed]
-
-
-def _times(table: Table, name: str, unit: str | None, *, trust: bool) -> tuple[Floats, str, Clock | None]:
-    """Times in s, the unit that they were in, and the clock where they are times of day."""
-    times, of_day = table.times(name)
+) -> Times:
+    """Times of the samples, of the column `name`, or at a rate in place of it."""
+    if name is None or rate is not None:
+        if name is not None or rate is None:
+            problem = "is given beside time" if name is not None else "is missing, and so is time"
+            raise InputError("record.sample_rate", problem, "give one of them")
+        interval = 1 / positive("record.sample_rate", rate, "Hz")
+        return Times(interval * np.arange(table.count(columns)), Unit("s", 1.0), key="sample_rate")
+    try:
+        numbers, of_day, first = table.times(name)
+    except InputError as error:
+        usual = next((each for each in stated.values()), 100.0)
+        known = f", the {next(iter(stated))} of the file" if stated else ""
+        fix = f'{error.fix}; or write sample_rate = "{usual:g} Hz" in place of time{known}'
+        raise InputError(error.where, error.problem, fix) from None
     if of_day is not None and unit not in (None, "s"):
         raise InputError("record.time_unit", f"is {unit}, and the times are times of day", "leave it out")
     if of_day is not None:
-        return times, "s", of_day
-    seconds, scale = _scale(table, "time_unit", "time", unit, {"time": name}, trust=trust, otherwise="s")
-    return scale * times, seconds, None
+        return Times(numbers, Unit("s", 1.0), of_day)
+    return Times.of_numbers(numbers, _unit(table, "time_unit", "time", unit, {"time": name}, trust=trust), first)
 
 
-def _despiked(record: Samples, *, despike: bool) -> tuple[Floats, list[str]]:
-    """The load, without its spikes if `despike`, and a note on them."""
-    odd = spikes(record.load)
-    count, first = int(odd.any(axis=1).sum()), int(np.argmax(odd.any(axis=1)))
-    done = "were replaced" if despike else "are kept; despike = true replaces them"
-    where = f"the first at {record.time[first]:g} s ({record.place(first)})"
-    notes = [f"{count} sample(s) that look like spikes, {where}, {done}"] if count else []
-    return without_spikes(record.time, record.load, odd) if despike and count else record.load, notes
+def _despiked(record: Samples, turns: Iterable[str], rates: Floats, *, despike: bool) -> tuple[Floats, list[str]]:
+    """The load and the rates (t, n) of the body, without their spikes if `despike`, and a note on these."""
+    values = np.concatenate([record.load, rates], axis=1)
+    odd = np.concatenate([spikes(record.load), spikes(rates, LEAST_TURN)], axis=1)
+    off = np.asarray(odd.any(axis=1))
+    if not off.any():
+        return values, []
+    calm, first = without_spikes(record.time, values, odd), int(np.argmax(off))
+    done, was, now = (
+        ("were replaced", "was", "is") if despike else ("are kept; despike = true replaces them", "is", "then")
+    )
+    said = [record.said] * len(record.names) + [lambda value: f"{np.degrees(value):.4g} deg/s"] * rates.shape[1]
+    ranges = [
+        f"{key} {was} {say(before.min())} to {say(before.max())}, {now} {say(after.min())} to {say(after.max())}"
+        for key, say, before, after in zip((*record.names, *turns), said, values.T, calm.T, strict=True)
+        if (before != after).any()
+    ]
+    note = (
+        f"{off.sum()} sample(s) that look like spikes, in {len(true_runs(off))} run(s), the first at "
+        f"{record.time[first]:g} s ({record.place(first)}), {done}: {'; '.join(ranges)}"
+    )
+    return calm if despike else values, [note]

@@ -9,18 +9,21 @@ from typing import get_args
 import numpy as np
 
 from gbeam.arrays.types import Flags, Floats
-from gbeam.constants import STANDARD_GRAVITY, Check
+from gbeam.constants import STANDARD_GRAVITY, Check, Vehicle
 from gbeam.errors import InputError
-from gbeam.motion.records.columns import UNITS
 from gbeam.motion.records.conditioning import dropout, flat_tops, spikes, without_spikes
+from gbeam.motion.records.units import UNITS, Unit
 from gbeam.numerics.samples import true_runs
-from gbeam.results.description import Level, RecordSummary, Vector
+from gbeam.results.description import BodyRates, Curves, Level, Vector
 
 CHECKS = get_args(Check)
+_SIZES = UNITS["acceleration"]
 LARGEST = 50.0  # g
 _FRAGMENT = 2.0  # s
 _BEGINS = 3.0  # g: above that, no flight begins
+_BOOST = 3.0  # g: beyond that, along an axis, a vehicle is pushed and does not turn over
 _OUTSTANDING = 1.5  # a spike that much above the rest would be the record's peak
+_LASTS = 1.0  # s: for less, what passes 1 g is no level flight
 LEVEL = (0.75, 1.35)  # g: level flight, thrust included
 _BEGINS_LEVEL = (0.7, 1.6)  # g
 _SOME, _HARDLY = 0.05, 0.02  # of the record
@@ -28,6 +31,8 @@ _TURNED = 0.7  # of the load: within 45° of upwards or downwards
 _NEVER = 0.7  # g: what stays below does not fly level anywhere
 _PILOTED = 12.0  # g: no aircraft, and few rockets
 _ACCELERATION = 'if it is acceleration without gravity, add quantity = "acceleration"'
+_ROCKET = 'if it is a rocket\'s, add vehicle = "rocket"'
+_OTHER = 'if it is of no aircraft or rocket, add vehicle = "other"'
 
 
 @dataclass(frozen=True)
@@ -37,17 +42,20 @@ class Samples:
     time: Floats  # (t,) s
     load: Floats  # (t, 3) m/s², base axes
     names: dict[str, str]  # columns of x, y and z, with their signs
-    unit: str  # that the load was read in
+    unit: Unit  # that the load was read in
     specific: bool  # whether it is specific force, 1 g upwards in level flight
+    vehicle: Vehicle
+    upended: dict[str, str]  # columns by axis that turn z over
     place: Callable[[int], str]  # where a sample is in its file, in words
 
     def said(self, value: float) -> str:
-        """A load, m/s², in the record's unit."""
-        return f"{value / UNITS['acceleration'][self.unit]:.4g} {self.unit}"
+        """A load, m/s², in the record's unit; in g where that is a count."""
+        unit = self.unit.text if self.unit.text in _SIZES else "g"
+        return f"{value / _SIZES[unit]:.4g} {unit}"
 
 
 def refuse_unsound(record: Samples, whole: Samples, skip: Collection[str]) -> None:
-    """Raise InputError if a record does not look like a flight's; single samples far off are judged first.
+    """Raise InputError if a record does not look like a flight's; spikes are judged first.
 
     A fragment of less than 2 s need hold no level flight: of that only the size is judged, and dropouts.
     """
@@ -56,12 +64,12 @@ def refuse_unsound(record: Samples, whole: Samples, skip: Collection[str]) -> No
         _check_spikes(record, odd, size)
     if "unit" not in skip:
         _check_size(record, size)
-    if _lasts(whole) and whole.specific and not {"unit", "sign"} <= set(skip):
+    if _flies(whole) and not {"unit", "sign"} <= set(skip):
         if whole is not record:
             _, calm, size = _calmed(whole)
         if "unit" not in skip:
             _check_level(whole, size)
-        if "sign" not in skip:
+        if "sign" not in skip and whole.vehicle == "aircraft":
             _check_sign(whole, calm[:, 2], size)
     if "dropouts" not in skip:
         _check_dropouts(record)
@@ -69,6 +77,11 @@ def refuse_unsound(record: Samples, whole: Samples, skip: Collection[str]) -> No
 
 def _lasts(record: Samples) -> bool:
     return float(record.time[-1] - record.time[0]) >= _FRAGMENT
+
+
+def _flies(record: Samples) -> bool:
+    """True if a record holds specific force, of an aircraft or a rocket, for so long that 1 g is somewhere."""
+    return _lasts(record) and record.specific and record.vehicle != "other"
 
 
 def _calmed(record: Samples) -> tuple[Flags, Floats, Floats]:
@@ -103,45 +116,67 @@ def _check_size(record: Samples, size: Floats) -> None:
     """Refuse a load that nothing withstands in the declared unit."""
     i = int(size.argmax())
     if size[i] > LARGEST * STANDARD_GRAVITY:
-        sizes = UNITS["acceleration"]
-        smaller = [unit for unit in sizes if sizes[unit] < sizes[record.unit]]
         raise InputError(
             "record.unit",
-            f"is {record.unit}, which makes {size[i] / STANDARD_GRAVITY:.3g} g of {record.place(i)}, "
+            f"is {record.unit.text}, which makes {size[i] / STANDARD_GRAVITY:.3g} g of {record.place(i)}, "
             f"at {record.time[i]:g} s",
-            "; ".join([*([_wants(*smaller)] if smaller else []), _trust("unit")]),
+            "; ".join([*_other_units(record, size), _trust("unit")]),
         )
 
 
 def _check_level(record: Samples, size: Floats) -> None:
     """Refuse a load that is level flight in another unit and no flight in the declared one."""
-    in_g, units = size / STANDARD_GRAVITY, UNITS["acceleration"]
-    first = slice(max(int(1 / np.median(np.diff(record.time))), 4))
-    begins, peak, level_share = float(np.median(in_g[first])), in_g.max(), _share(in_g, LEVEL)
-    others = []
-    for unit in units:
-        as_other = in_g * units[unit] / units[record.unit]
-        begins_level = _BEGINS_LEVEL[0] < float(np.median(as_other[first])) < _BEGINS_LEVEL[1]
-        if unit != record.unit:
-            others.append((begins_level, _share(as_other, LEVEL), unit))
-    for begins_level, other_share, other in sorted(others, reverse=True):  # the likeliest first
-        if record.unit == "g":
-            # Level at 9.8 and nowhere at 1; a rocket that passes 9.8 g has been at less.
-            doubtful = begins > _BEGINS or (other_share > _SOME and level_share < _HARDLY and peak > _PILOTED)
-        else:
-            # A flight that is level at 0.1 g either pulls more than 1 g to stay in the air, or is in g.
-            doubtful = peak < _NEVER or (other_share > _SOME and (peak < LEVEL[1] or begins_level))
-        if doubtful:
-            raise InputError(
-                "record.unit",
-                f"is {record.unit}, and the record begins at {record.said(begins * STANDARD_GRAVITY)} and reaches "
-                f"{record.said(size.max())}, {peak:.3g} g: level flight is 1 g, which is 9.81 m/s^2",
-                f"{_wants(other)}; {_ACCELERATION}; {_trust('unit')}",
-            )
+    if not _is_flight(record, size, record.unit.size):
+        peak = float(size.max())
+        raise InputError(
+            "record.unit",
+            f"is {record.unit.text}, and the record begins at {record.said(np.median(size[_beginning(record)]))} and "
+            f"reaches {record.said(peak)}, {peak / STANDARD_GRAVITY:.3g} g: level flight is 1 g, which is 9.81 m/s^2",
+            "; ".join([*_other_units(record, size), _ACCELERATION, *_vehicles(record), _trust("unit")]),
+        )
 
 
-def _wants(*units: str) -> str:
-    return ", ".join(f'a record in {unit} wants unit = "{unit}"' for unit in units)
+def _vehicles(record: Samples) -> list[str]:
+    """Advice to say another vehicle, of which less is asked."""
+    return [_ROCKET, _OTHER] if record.vehicle == "aircraft" else [_OTHER]
+
+
+def _other_units(record: Samples, size: Floats) -> list[str]:
+    """Advice to write another unit: of those in which the record may be a flight's, those in which it begins level."""
+    judged = _flies(record)
+    fitting = []
+    for unit, each in _SIZES.items():
+        in_g = size * each / record.unit.size / STANDARD_GRAVITY
+        sound = _is_flight(record, size, each) if judged else each < record.unit.size
+        if each != record.unit.size and in_g.max() <= LARGEST and sound:
+            fitting.append((_begins_level(record, in_g), _share(in_g, LEVEL), unit))
+    likely = [each for each in fitting if each[0]] or fitting
+    return [f"if it is in {unit}, {record.unit.instead('unit', unit)}" for *_, unit in sorted(likely, reverse=True)]
+
+
+def _is_flight(record: Samples, size: Floats, unit: float) -> bool:
+    """True if the size (t,) of a load may be that of a flight in a unit of so many m/s²; of a count only the user knows
+    it, of the others one in which the record is level tells another.
+    """
+    in_g = size * unit / record.unit.size / STANDARD_GRAVITY
+    peak, begins = float(in_g.max()), float(np.median(in_g[_beginning(record)]))
+    others = [each for each in _SIZES.values() if unit in _SIZES.values() and not 0.5 < each / unit < 2]
+    level = [other for other in (in_g * each / unit for each in others) if _share(other, LEVEL) > _SOME]
+    if record.vehicle == "rocket":
+        return peak >= _NEVER and not any(_begins_level(record, other) for other in level if begins > _BEGINS_LEVEL[1])
+    if unit == STANDARD_GRAVITY:
+        # Level at 9.8 and nowhere at 1; a rocket that passes 9.8 g has been at less.
+        return begins <= _BEGINS and not (level and _share(in_g, LEVEL) < _HARDLY and peak > _PILOTED)
+    # A flight that is level at 0.1 g either pulls more than 1 g to stay in the air, or is in g.
+    return peak >= _NEVER and not any(peak < LEVEL[1] or _begins_level(record, other) for other in level)
+
+
+def _beginning(record: Samples) -> slice:
+    return slice(max(int(1 / np.median(np.diff(record.time))), 4))
+
+
+def _begins_level(record: Samples, in_g: Floats) -> bool:
+    return bool(_BEGINS_LEVEL[0] < np.median(in_g[_beginning(record)]) < _BEGINS_LEVEL[1])
 
 
 def _share(size: Floats, band: tuple[float, float]) -> float:
@@ -149,19 +184,27 @@ def _share(size: Floats, band: tuple[float, float]) -> float:
 
 
 def _check_sign(record: Samples, upwards: Floats, size: Floats) -> None:
-    """Refuse a record whose level flight, where it is along z, is more often downwards than upwards."""
+    """Refuse a record whose level flight, where it is along z, is more often downwards than upwards.
+
+    To turn z over is advised only if it neither begins upright, as a rocket does on its pad, nor is pushed upwards by
+    more than downwards.
+    """
     in_g = size / STANDARD_GRAVITY
     level = (in_g > LEVEL[0]) & (in_g < LEVEL[1])
     down, up = level & (upwards < -_TURNED * size), level & (upwards > _TURNED * size)
     if down.mean() < _SOME or down.sum() <= up.sum():
         return
-    i, name = int(down.argmax()), record.names["z"]
-    turned = name[1:].strip() if name.startswith("-") else f"-{name}"
+    i = int(down.argmax())
+    boost = upwards / STANDARD_GRAVITY - np.copysign(_BOOST, upwards)
+    pushed = np.sum(boost[upwards > 0].clip(0)) > -np.sum(boost[upwards < 0].clip(None, 0))
+    upright = np.median(upwards[_beginning(record)]) > _BEGINS_LEVEL[0] * STANDARD_GRAVITY
+    turned = "write " + ", ".join(f'{axis} = "{name}"' for axis, name in record.upended.items())
+    hanging = _trust("sign", "if the specimen hangs upside down")
     raise InputError(
         "record.z",
         f"is {record.said(upwards[i])} at {record.time[i]:g} s ({record.place(i)}), and downwards for "
         f"{100 * down.sum() / level.sum():.0f} % of level flight, which is 1 g upwards, along +z",
-        f'write z = "{turned}"; {_ACCELERATION}; {_trust("sign", "if the specimen hangs upside down")}',
+        "; ".join([*([] if pushed or upright else [turned]), _ACCELERATION, *_vehicles(record), hanging]),
     )
 
 
@@ -190,29 +233,17 @@ _ALONG = 0.7  # of the largest load: within 45° of the beam
 _LISTED = 4  # flat tops
 
 
-def summary(
-    record: Samples, file: str, whole: tuple[float, float], clock: str, notes: tuple[str, ...]
-) -> RecordSummary:
-    """Summarise a record."""
-    time, load = record.time, record.load
+def curves(time: Floats, load: Floats, rates: Floats) -> Curves:
+    """Summarise a load (t, 3), m/s², and rates (t, 3) or none (t, 0), rad/s, at times (t,), s."""
     top = int(np.linalg.norm(load, axis=1).argmax())
-    first, last = float(time[0]), float(time[-1])
-    x, y, z = record.names.values()
-    return RecordSummary(
-        file=file,
-        columns=(x, y, z),
-        quantity="specific-force" if record.specific else "acceleration",
+    return Curves(
         samples=len(time),
-        rate=(len(time) - 1) / (last - first),
-        span=(first, last),
-        whole=whole,
+        rate=float((len(time) - 1) / (time[-1] - time[0])),
         smallest=_vector(load.min(axis=0)),
         largest=_vector(load.max(axis=0)),
         peak=_vector(load[top]),
         time_of_peak=float(time[top]),
-        level=_level(record) if record.specific else None,
-        clock=clock,
-        notes=notes,
+        rates=BodyRates(_vector(rates.min(axis=0)), _vector(rates.max(axis=0))) if rates.size else None,
     )
 
 
@@ -240,14 +271,18 @@ def oddities(record: Samples) -> Iterator[str]:
         )
 
 
-def _level(record: Samples) -> Level | None:
-    """Longest stretch of level flight, with its mean load; None without any."""
+def level(record: Samples) -> Level | None:
+    """Longest stretch of level flight, of a second at least, with its mean load; None without any."""
+    if not record.specific or record.vehicle != "aircraft":
+        return None
     in_g = np.linalg.norm(record.load, axis=1) / STANDARD_GRAVITY
     runs = true_runs((in_g > LEVEL[0]) & (in_g < LEVEL[1]))
     if not runs:
         return None
     longest = max(runs, key=lambda run: run.stop - run.start)
     ends = float(record.time[longest.start]), float(record.time[longest.stop - 1])
+    if ends[1] - ends[0] < _LASTS:
+        return None
     return Level(*ends, _vector(record.load[longest].mean(axis=0)))
 
 

@@ -1,4 +1,4 @@
-"""Columns of text files, and times of day as times of a record."""
+"""Columns of text files."""
 
 from __future__ import annotations
 
@@ -6,128 +6,27 @@ import codecs
 import csv
 import os
 import re
-from collections.abc import Callable
+from collections import Counter
+from itertools import zip_longest
 from statistics import mode
 
-import numpy as np
-
-from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.limits import BINARY_BYTES, TEXT_BYTES, in_bytes, refuse_large_file
-from gbeam.io.table import Clock, Column, Table, is_clock
-from gbeam.motion.records.columns import UNITS, is_unit
-from gbeam.motion.records.conditioning import FEWEST, UNEVEN
-
-Span = tuple[float | str | None, float | str | None]
-
-SLOWEST = 5.0  # Hz
-_FASTEST, _BRIEF = 1000.0, 10.0  # Hz, s: flight loads need no such rate, and last longer
-_USUAL = (1e-3, 0.2)  # s: intervals of flight records
-_GAP = 1.9  # of the median interval: a sample is missing, and no clock that jitters is as late
-
-
-def check_sampling(time: Floats, place: Callable[[int], str], *, jitter: bool) -> float:
-    """Refuse times (t,) s that stand still, go back, jump or, unless `jitter` is allowed, are uneven; return the
-    largest distance, s, from even times.
-    """
-    steps = np.diff(time)
-
-    def later(i: int) -> str:
-        return f"{time[i + 1]:g} s at {place(i + 1)}, after {time[i]:g} s"
-
-    back = np.flatnonzero(steps <= 0)
-    if back.size:
-        verb = "repeats" if steps[back[0]] == 0 else "goes back to"
-        raise InputError("record.time", f"{verb} {later(int(back[0]))}", "sort the rows and delete repeated ones")
-    median = float(np.median(steps))
-    gaps = np.flatnonzero(steps > _GAP * median)
-    if gaps.size:
-        i = int(gaps[0])
-        raise InputError(
-            "record.time",
-            f"has a gap of {steps[i]:g} s from {time[i]:g} s to {time[i + 1]:g} s ({place(i + 1)}); "
-            f"the interval is {median:g} s",
-            "fill in the missing samples or cut the record there",
-        )
-    off = np.abs(steps - median)
-    uneven = np.flatnonzero(off > UNEVEN * median)
-    if uneven.size and not jitter:
-        i = int(uneven[0])
-        rate = float(f"{(len(time) - 1) / (time[-1] - time[0]):.3g}")
-        raise InputError(
-            "record.time",
-            f"is sampled unevenly: {later(i)}, is {steps[i]:g} s where the interval is {median:g} s",
-            f'add resample = "{rate:g} Hz": at equal intervals, by a spline through the samples',
-        )
-    samples = np.arange(len(time))
-    even = np.polynomial.Polynomial.fit(samples, time, 1)(samples)
-    return float(np.abs(time - even).max()) if uneven.size else 0.0
-
-
-def check_interval(time: Floats, unit: str) -> None:
-    """Refuse an interval of times (t,) s that no record of a flight has, and say which unit would make it one."""
-    step, length = float(np.median(np.diff(time))), float(time[-1] - time[0])
-    trust = 'if it is right as it is, add skip_checks = ["sampling"]'
-    sizes = UNITS["time"]
-    number = step / sizes[unit]
-    likely = [
-        other for other, size in sizes.items() if other != unit and _USUAL[0] <= number * size * (1 + 1e-9) <= _USUAL[1]
-    ]
-    hint = f'is the time in {likely[0]}? then write time_unit = "{likely[0]}"; ' if likely else ""
-    if step > 1 / SLOWEST:
-        raise InputError(
-            "record.time",
-            f"has a sample every {step:g} s ({1 / step:g} Hz), too coarse for the corners of a manoeuvre",
-            f"{hint}export the record at 20 Hz or more; {trust}",
-        )
-    if step < 1 / _FASTEST and length < _BRIEF:
-        raise InputError(
-            "record.time",
-            f"lasts {length:.3g} s with a sample every {step:.3g} s ({1 / step:.4g} Hz), which no flight load needs",
-            f"{hint}{trust}",
-        )
-
-
-def part_within(clock: Floats, of_day: Clock | None, span: Span, counted: Callable[[int], str]) -> slice:
-    """Return the samples within a span of a record's times (t,) s."""
-    if span == (None, None):
-        return slice(0, len(clock))
-    first, last = float(clock[0]), float(clock[-1])
-    interval = float(np.median(np.diff(clock)))
-    shown = f"{first:g} to {last:g} s" if of_day is None else f"0 to {last:g} s, 0 s being {of_day.first}"
-
-    def read(key: str, value: float | str | None, otherwise: float) -> float:
-        if value is None:
-            return otherwise
-        number = of_day.seconds(value) if isinstance(value, str) and of_day is not None else value
-        if number is None or isinstance(number, str):
-            raise InputError(f"record.{key}", f"is {value!r}", f"give a time of the record's own clock, {shown}")
-        if not first - interval <= number <= last + interval:
-            what = value if isinstance(value, str) else f"{value:g} s"
-            raise InputError(f"record.{key}", f"is {what}, and the record lasts {shown}", "give a time of it")
-        return float(number)
-
-    begin, end = read("from", span[0], first), read("to", span[1], last)
-    slack = 1e-6 * interval
-    inside = np.flatnonzero((clock >= begin - slack) & (clock <= end + slack))
-    if inside.size < FEWEST:
-        problem = f"leaves {counted(inside.size)} from {begin:g} to {end:g} s"
-        fix = f"give more of {shown}: {FEWEST} samples at least"
-        raise InputError(f"record.{'from' if span[1] is None else 'to'}", problem, fix)
-    return slice(int(inside[0]), int(inside[-1]) + 1)
-
+from gbeam.io.table import Column, Stated, Table, is_clock
+from gbeam.motion.records.units import is_unit, unit_in_name
 
 # Usual endings of such files; :func:`read_text` reads any other, too.
 ENDINGS = (".asc", ".csv", ".dat", ".log", ".lvm", ".prn", ".tab", ".tsv", ".txt")
 _DELIMITERS = (",", ";", "\t", " ")  # the first that fits best; a space is any white space
 _COMMENT = re.compile(r"\s*(#|%|//|;)+\s*")
 _BEFORE_BRACKET = re.compile(r" (?=[\[(])")
-_NUMBER = re.compile(r"[+-]?(\d+[.,]?\d*|[.,]\d+)(e[+-]?\d+)?|[+-]?(nan|inf)", re.IGNORECASE)
+_NUMBER = re.compile(r"[+-]?(\d+[.,]?\d*|[.,]\d+)([ed][+-]?\d+|[+-]\d{3})?|[+-]?(nan|inf)", re.IGNORECASE)
 _BRACKETS = re.compile(r"(.*?)\s*[\[(]([^\])]*)[\])]")
 _BYTE_ORDER_MARKS = {codecs.BOM_UTF8: "utf-8-sig", codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
 _BLANK = " \t\f,;"  # spreadsheets write empty rows as delimiters alone
 _LINE_END = re.compile(r"\r\n|\r|\n")
 _NOT_TEXT = re.compile(r"[\x00-\x08\x0e-\x1f]")
+_LABVIEW, _END = "LabVIEW Measurement", "***End_of_Header***"
 _SAMPLE = 40  # lines from which the delimiter is judged
 
 Row = tuple[int, list[str]]
@@ -146,18 +45,42 @@ def read_text(path: str | os.PathLike[str]) -> Table:
     body = [line for _, line in lines[len(lines) // 2 :] if not _COMMENT.match(line)][:_SAMPLE]
     delimiter, width = _dialect(path, body)
     rows = [(number, _cells(line, delimiter)) for number, line in lines]
-    first = next((i for i, (_, cells) in enumerate(rows) if len(cells) == width and _is_data(cells)), len(rows))
-    header, units = _header(path, [line for _, line in lines[:first]], delimiter, width)
+    of_labview = rows[0][1][0] == _LABVIEW
+    ends = [i + 1 for i, (_, cells) in enumerate(rows) if of_labview and cells[0] == _END]
+    start = max(ends[:2], default=0)  # of names and data: the heads of the file and of its first piece lie before
+    data_rows = (i for i in range(start, len(rows)) if len(rows[i][1]) == width and _is_data(rows[i][1]))
+    first = next(data_rows, len(rows))
+    header, units = _header(path, [line for _, line in lines[start:first]], delimiter, width)
+    indices = _indices(header)
     data = [row for row, (_, line) in zip(rows[first:], lines[first:], strict=True) if not _comment(line, ";")]
     for number, cells in data:
-        if len(cells) != len(header):
+        if len(cells) not in (width, len(header)):
             raise InputError(
                 "record.file", f"row {number} has {len(cells)} cells, the header {len(header)}", "complete the row"
             )
-    return Table(
-        tuple(_column(name, unit, data, i) for i, (name, unit) in enumerate(zip(header, units, strict=True))),
-        [number for number, _ in data],
+    others, stated, remarks = _labview({cells[0]: cells[1:] for _, cells in rows[:start]}, len(data))
+    units = [unit or other for unit, other in zip_longest(units, others[:width], fillvalue="")]
+    columns = (
+        _column(name, unit, data, i, indexed=name in indices)
+        for i, (name, unit) in enumerate(zip(header[:width], units, strict=False))
     )
+    return Table(tuple(columns), [number for number, _ in data], stated, remarks)
+
+
+def _labview(said: dict[str, list[str]], count: int) -> tuple[list[str], tuple[Stated, ...], tuple[str, ...]]:
+    """Units of the columns, sample rate and remarks of what LabVIEW's header says, of one column of X or none.
+
+    Its number of samples is that of the first piece, or of the whole.
+    """
+    labels, time = said.get("Y_Unit_Label", []), ["s" if said.get("X_Dimension", [])[:1] == ["Time"] else ""]
+    units = {"One": time + labels, "No": labels}.get("".join(said.get("X_Columns", ["One"])[:1]), []) if labels else []
+    try:
+        stated = tuple(Stated.read("Delta_X", float(said["Delta_X"][0]), "/"))
+        samples = int(said["Samples"][0])
+    except (KeyError, ValueError, IndexError):
+        return units, (), ()
+    remark = f"the file's header states {samples} samples, and it holds {count}"
+    return units, stated, (remark,) if samples != count else ()
 
 
 def _decoded(path: str | os.PathLike[str]) -> str:
@@ -238,6 +161,9 @@ def _header(path: str | os.PathLike[str], lines: list[str], delimiter: str, widt
         cells = _cells(line if comment is None else comment, delimiter)
         if len(cells) == width - 1 and comment is None:  # every row of data ends in a delimiter
             cells = [*cells, ""]
+        remarks = len(cells) == width + 1 and delimiter != " "  # names of the columns, and of a last one that is empty
+        if remarks and comment is None and line is lines[-1] and not _is_data(cells):
+            return cells, [""] * width
         if len(cells) == width and not _is_data(cells):
             headers.append((comment is not None, cells))
     plain = [i for i, (commented, _) in enumerate(headers) if not commented]
@@ -251,9 +177,20 @@ def _header(path: str | os.PathLike[str], lines: list[str], delimiter: str, widt
     return header, [""] * width
 
 
-def _column(header: str, unit: str, data: list[Row], i: int) -> Column:
+def _indices(header: list[str]) -> set[str]:
+    """Names that end in an index in brackets, ``acc[0]``; ``n_z [1]`` is a number of g, if no other has an index."""
+    numbered = {name: match for name in header if (match := _BRACKETS.fullmatch(name)) and match[2].strip().isdecimal()}
+    stems = Counter(match[1] for match in numbered.values())
+    return {
+        name
+        for name, match in numbered.items()
+        if match[2].strip() != "1" or stems[match[1]] > 1 or unit_in_name(match[1])
+    }
+
+
+def _column(header: str, unit: str, data: list[Row], i: int, *, indexed: bool) -> Column:
     """Column `i` of the data, with a decimal point; its unit may stand in brackets behind its name."""
-    bracket = _BRACKETS.fullmatch(header)
+    bracket = None if indexed else _BRACKETS.fullmatch(header)
     aliases: tuple[str, ...] = ()
     if bracket is not None:
         aliases, unit = (bracket[1],), unit or bracket[2]

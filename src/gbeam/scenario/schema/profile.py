@@ -6,9 +6,19 @@ from functools import reduce
 from operator import or_
 from typing import TYPE_CHECKING, Annotated, Any, Generic, Literal, TypeVar, get_args
 
-from pydantic import ConfigDict, Discriminator, Field, StrictBool, Tag, model_validator
+from pydantic import (
+    AfterValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    StrictBool,
+    Tag,
+    WithJsonSchema,
+    model_validator,
+)
 
-from gbeam.constants import AccelerationUnit, Check, RateUnit, RecordQuantity, TimeUnit
+from gbeam.constants import AccelerationUnit, Check, RateUnit, RecordQuantity, TimeUnit, Vehicle
+from gbeam.errors import InputError
 from gbeam.scenario.schema.fields import (
     ONE_OR_LIST,
     Acceleration,
@@ -166,6 +176,32 @@ _Skipped = Annotated[
 ]
 
 
+def _unit_of(quantity: str, words: Any, example: str) -> Any:
+    """Type of a unit of a record: one of the words, another spelling of one, or the size of a count."""
+
+    def read(text: str) -> str:
+        from gbeam.motion.records.units import sized  # not needed where there is no record
+
+        try:
+            sized("unit", quantity, text)
+        except InputError as error:
+            raise wrong(error.problem, error.fix) from None
+        return text
+
+    either = [{"enum": [*get_args(words)]}, {"type": "string", "examples": [example]}]
+    return Annotated[str, AfterValidator(read), WithJsonSchema({"anyOf": either})]
+
+
+if TYPE_CHECKING:  # type checkers make no types
+    _LoadUnit = str
+    _RateUnit = str
+    _TimeUnit = str
+else:
+    _LoadUnit = _unit_of("acceleration", AccelerationUnit, "1 g / 2048")
+    _RateUnit = _unit_of("rate", RateUnit, "1 deg/s / 16.4")
+    _TimeUnit = _unit_of("time", TimeUnit, "1 s / 32768")
+
+
 class Record(Table):
     """A measured flight: a file of named columns."""
 
@@ -173,24 +209,34 @@ class Record(Table):
         description="text of any dialect, or by its suffix MAT (.mat), HDF5 (.h5, .hdf5), netCDF (.nc) or UFF 58 "
         "(.uff, .unv), relative to the folder of the scenario file"
     )
-    time: str = Field(
-        description="name of the column of times, numbers or times of day; in MAT, HDF5 and netCDF of the variable, "
-        "such as rec.t or acc(:,1); in UFF time"
+    time: str | None = optional(
+        "name of the column of times, numbers or times of day; in MAT, HDF5 and netCDF of the variable, such as rec.t "
+        "or acc(:,1); in UFF time"
     )
-    time_unit: TimeUnit | None = optional("unit of the times; what the file says if left out, or else s")
+    sample_rate: Annotated[float, Quantity("frequency", "positive")] | None = optional(
+        "in place of time, such as 100 Hz: the first sample is at 0 s"
+    )
+    time_unit: _TimeUnit | None = optional("unit of the times; what the file says if left out, or else s")
     x: str = Field(description='column of the x component, along the beam; "-" in front changes the sign, "0" is none')
     y: str = Field(description='column of the y component, along the width; "-" in front changes the sign, "0" is none')
     z: str = Field(description='column of the z component, through the thickness; "-" and "0" likewise')
-    unit: AccelerationUnit = Field(description="unit of the components: g is 9.80665 m/s^2")
+    unit: _LoadUnit = Field(
+        description="unit of the components, g being 9.80665 m/s^2, or the size of a count: 1 g / 2048, 1 g / 100 mV"
+    )
     quantity: RecordQuantity = Field(
         default="specific-force",
         description="what the components are. specific-force: what accelerometers measure, 1 g upwards in level "
         "flight; acceleration: none then",
     )
+    vehicle: Vehicle = Field(
+        default="aircraft",
+        description="of what it is. aircraft: flies level somewhere, 1 g upwards along z; rocket: begins at 1 g, or is "
+        "pushed, along any axis; other: nothing of that is asked",
+    )
     p: str | None = optional("column of the body rate about x; p, q and r fly the specimen with them")
     q: str | None = optional('column of the body rate about y; "-" and "0" as for x, y and z')
     r: str | None = optional('column of the body rate about z; "-" and "0" likewise')
-    rate_unit: RateUnit | None = optional("unit of p, q and r")
+    rate_unit: _RateUnit | None = optional("unit of p, q and r")
     begin: Moment | None = optional(
         "first time of the part that is flown, on the record's own clock, such as 2 s, or 12:34:56.7 where "
         "its times are times of day; the record's first if left out",
@@ -201,14 +247,33 @@ class Record(Table):
         "cut-off of a zero-phase low-pass, -6 dB, such as 5 Hz; none if left out"
     )
     resample: Annotated[float, Quantity("frequency", "positive")] | None = optional(
-        "new sampling rate, such as 200 Hz, and times may jitter; the record's own if left out"
+        "new sampling rate, such as 200 Hz; the record's own if left out. With it, or with cutoff, times may jitter, "
+        "repeat and come late"
     )
-    despike: StrictBool = Field(default=False, description="replace single samples far off their neighbours")
+    bridge: Duration | None = optional(
+        "longest gap, such as 50 ms, that is bridged with resample or cutoff: lost samples are put on straight lines"
+    )
+    despike: StrictBool = Field(
+        default=False, description="replace spikes, up to five samples between two jumps, by straight lines"
+    )
     skip_checks: _Skipped = Field(
         default=False,
         description="true to take the record as it is, or a list of the checks to leave out: sampling (rate), spikes, "
         "unit (size, level flight), sign (level flight is upwards), dropouts, columns (their names)",
     )
+
+    @model_validator(mode="after")
+    def _one_clock(self) -> Record:
+        if self.time is not None and self.sample_rate is not None:
+            refuse([(("sample_rate",), wrong("is given beside time", "give one of them", mark="key"))])
+        if self.time is None and self.sample_rate is None:
+            refuse([((), wrong("time is missing", 'give the column of times, or sample_rate = "100 Hz"', mark="key"))])
+        if self.sample_rate is not None and self.time_unit is not None:
+            refuse([(("time_unit",), wrong("is given without time", "leave it out", mark="key"))])
+        if self.bridge is not None and self.resample is None and self.cutoff is None:
+            hint = 'add resample = "100 Hz", or a cutoff: what is bridged is evened out'
+            refuse([(("bridge",), wrong("is given without resample and cutoff", hint, mark="key"))])
+        return self
 
     @model_validator(mode="after")
     def _rates_together(self) -> Record:

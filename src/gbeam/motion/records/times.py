@@ -1,0 +1,284 @@
+"""Times of a record: its clock, the part that is flown, their order, gaps and intervals."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from gbeam.arrays.types import Floats, Indices
+from gbeam.errors import InputError
+from gbeam.guards.limits import SAMPLES, refuse_more
+from gbeam.io.table import Clock
+from gbeam.motion.records.conditioning import FEWEST, UNEVEN
+from gbeam.motion.records.units import UNITS, Unit
+from gbeam.results.description import Gap
+
+Span = tuple[float | str | None, float | str | None]
+Place = Callable[[int], str]
+
+SLOWEST = 5.0  # Hz
+_FASTEST, _BRIEF = 1000.0, 10.0  # Hz, s: flight loads need no such rate, and last longer
+_USUAL = (1e-3, 0.2)  # s: intervals of flight records
+_ROUND = 1 + 1e-9
+_GAP = 1.9  # of the usual interval: a sample is missing, and no clock that jitters is as late
+_LATE = 5.0  # intervals that a sample may come late: by more the clock was set, or another record begins
+_BRIDGED = 0.25  # s: what is lost for longer is no detail
+_RESOLVED = 1e-6  # of an interval: what a clock's numbers must tell apart
+_LISTED = 20  # in a message
+TRUST = 'if the file is wrong, add skip_checks = ["sampling"]'
+
+
+@dataclass(frozen=True)
+class Times:
+    """Times of a record's samples."""
+
+    values: Floats  # (t,) s
+    unit: Unit  # that they were in
+    zero: Clock | None = None  # of which the first is zero seconds; None where the numbers themselves are flown
+    key: str = "time"  # of the record, which says them; or sample_rate
+
+    @classmethod
+    def of_numbers(cls, numbers: Floats, unit: Unit, first: str) -> Times:
+        """Times from numbers in a unit; from `first`, where floats of that size are too coarse, as of 1970 in ns."""
+        interval = float(np.median(np.abs(np.diff(numbers)))) if len(numbers) > 1 else math.inf
+        if np.spacing(np.abs(numbers).max(initial=0)) > _RESOLVED * interval > 0:
+            return cls((numbers - numbers[0]) * unit.size, unit, Clock(f"{first} {unit.text}"))
+        return cls(numbers * unit.size, unit)
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """First and last time, s."""
+        return float(self.values.min()), float(self.values.max())
+
+    def part(self, span: Span, counted: Callable[[int], str]) -> slice:
+        """Return the samples within a span of the record's own clock."""
+        if span == (None, None):
+            return slice(0, len(self.values))
+        first, last = self.ends
+        interval = float(np.median(np.abs(np.diff(self.values))))
+        shown = f"{first:g} to {last:g} s" + ("" if self.zero is None else f", 0 s being {self.zero.first}")
+
+        def read(key: str, value: float | str | None, otherwise: float) -> float:
+            if value is None:
+                return otherwise
+            number = self.zero.seconds(value) if isinstance(value, str) and self.zero is not None else value
+            if number is None or isinstance(number, str):
+                raise InputError(f"record.{key}", f"is {value!r}", f"give a time of the record's own clock, {shown}")
+            if not first - interval <= number <= last + interval:
+                what = value if isinstance(value, str) else f"{value:g} s"
+                raise InputError(f"record.{key}", f"is {what}, and the record lasts {shown}", "give a time of it")
+            return float(number)
+
+        begin, end = read("from", span[0], first), read("to", span[1], last)
+        slack = 1e-6 * interval
+        inside = np.flatnonzero((self.values >= begin - slack) & (self.values <= end + slack))
+        if inside.size < FEWEST:
+            problem = f"leaves {counted(inside.size)} from {begin:g} to {end:g} s"
+            fix = f"give more of {shown}: {FEWEST} samples at least"
+            raise InputError(f"record.{'from' if span[1] is None else 'to'}", problem, fix)
+        return slice(int(inside[0]), int(inside[-1]) + 1)
+
+
+@dataclass(frozen=True)
+class Timeline:
+    """Samples of the part of a record that is flown, in the order of their times and without gaps."""
+
+    time: Floats  # (n,) s
+    values: Floats  # (n, k)
+    rows: Indices  # (n,) sample of the file that each is, or is behind
+    gaps: tuple[Gap, ...]  # that were bridged
+    done: tuple[str, ...]  # in words
+
+    @classmethod
+    def of(
+        cls, times: Times, part: slice, values: Floats, place: Place, *, bridge: float | None, evened: bool
+    ) -> Timeline:
+        """Timeline of the `part` of a record and values (t, k).
+
+        Where samples are `evened` out later, times may jitter, repeat and come late, and lost samples of gaps up to
+        `bridge`, s, are put on straight lines; InputError otherwise.
+        """
+        clock = times.values[part]
+        order, starts = _in_order(clock, values[part], lambda i: place(part.start + i), evened=evened)
+        rows, time = part.start + order[starts], clock[order[starts]]
+        gaps = _gaps(time, lambda i: place(int(rows[i])), bridge, evened=evened)
+        whole, bridged = _bridged(time, _averaged(values[part], order, starts), gaps)
+        rows = rows[np.searchsorted(time, whole, side="right") - 1]
+        jitter = _unevenness(whole, lambda i: place(int(rows[i])), evened=evened)
+        done = []
+        if late := int(np.sum(np.diff(clock) < 0)):
+            done.append(f"times go back {late} times: the samples are put in order")
+        if repeated := len(order) - len(starts):
+            done.append(f"{repeated} samples repeat a time: the mean of its samples is flown")
+        if jitter:
+            done.append(f"times up to {1e3 * jitter:.3g} ms off even ones: a spline through the samples is flown")
+        return cls(whole, bridged, rows, gaps, tuple(done))
+
+    @property
+    def read(self) -> Indices:
+        """Samples that the file has, of all."""
+        lost = [(self.time > gap.start) & (self.time < gap.end) for gap in self.gaps]
+        return np.flatnonzero(~np.logical_or.reduce(lost)) if lost else np.arange(len(self.time))
+
+
+def _in_order(time: Floats, values: Floats, place: Place, *, evened: bool) -> tuple[Indices, Indices]:
+    """Samples (t,) of times (t,), s, and values (t, n), in the order of their times, and the first (m,) of each time.
+
+    InputError, unless samples are `evened`, if times repeat or a few come late; always for a clock that is too coarse,
+    or goes back by more.
+    """
+    order, steps = np.argsort(time, kind="stable"), np.diff(time)
+    starts = np.flatnonzero(np.diff(time[order], prepend=-math.inf) > 0)
+    back = np.flatnonzero(steps <= 0)
+    if not back.size:
+        return order, starts
+    forward = steps[steps > 0]
+    usual = float(np.median(forward)) if forward.size else math.inf
+    changes = np.flatnonzero(steps > 0) + 1  # samples at which the clock has just ticked
+    fresh = (np.diff(values, axis=0) != 0).any(axis=1)  # no sample that was written again
+    if np.mean(steps == 0) > 0.5 and np.mean(fresh[steps == 0]) > 0.5:
+        rate = _near((changes[-1] - changes[0]) / np.ptp(time[changes])) if changes.size > 1 else 100.0
+        ticks = f"ticks every {usual:g} s" if forward.size else "stands still"
+        problem = (
+            f"repeats {time[back[0]]:g} s at {place(int(back[0]) + 1)}: the clock {ticks}, and samples lie between"
+        )
+        raise InputError("record.time", problem, f'write sample_rate = "{rate:g} Hz" in place of time')
+    late = np.maximum.accumulate(time) - time
+    farthest = int(late.argmax())
+    if late[farthest] > _LATE * usual:
+        raise InputError("record.time", *_set_back(time, farthest, float(late[farthest]), place))
+    if not evened:
+        told = [
+            f"{'repeats' if steps[i] == 0 else 'goes back to'} {time[i + 1]:g} s at {place(int(i) + 1)}"
+            for i in back[:_LISTED]
+        ]
+        done = "late samples are put in order, and those of one time become their mean"
+        fix = f'add resample = "{_near(1 / usual):g} Hz": {done}'
+        raise InputError("record.time", ", ".join(told) + _more(len(back)), fix)
+    return order, starts
+
+
+def _set_back(time: Floats, i: int, by: float, place: Place) -> tuple[str, str]:
+    """Problem and fix of a clock that goes back by more than a late sample: a part between such steps, if it is alone
+    at its times.
+    """
+    edges = [0, *(np.flatnonzero(np.diff(time) < 0) + 1).tolist(), len(time)]
+    first, last = max(pairwise(edges), key=lambda ends: ends[1] - ends[0])
+    begin, end = float(time[first]), float(time[last - 1])
+    problem = f"goes back by {by:g} s at {place(i)}: the clock was set, or another record begins"
+    alone = np.count_nonzero((time >= begin) & (time <= end)) == last - first >= FEWEST
+    apart = f'write from = "{begin:.12g} s", to = "{end:.12g} s", of {place(first)} to {place(last - 1)}'
+    return problem, apart if alone else f"split the file at {place(i)}, and fly one of its parts"
+
+
+def _averaged(values: Floats, order: Indices, starts: Indices) -> Floats:
+    """Values (t, …) in an order, the mean of those from each start to the next, (n, …)."""
+    if len(starts) == len(order):
+        return values[order]
+    counts = np.diff(starts, append=len(order)).reshape(-1, *[1] * (values.ndim - 1))
+    return np.asarray(np.add.reduceat(values[order], starts, axis=0) / counts)
+
+
+def _gaps(time: Floats, place: Place, bridge: float | None, *, evened: bool) -> tuple[Gap, ...]:
+    """Gaps in times (t,), s, all of which are to be bridged; InputError, with all of them, unless they may be."""
+    steps = np.diff(time)
+    usual = float(np.median(steps))
+    wide = np.flatnonzero(steps > _GAP * usual)
+    gaps = tuple(
+        Gap(float(time[i]), float(time[i + 1]), round(float(steps[i]) / usual) - 1, place(int(i))) for i in wide
+    )
+    longest = float(steps[wide].max(initial=0))
+    if not wide.size or (evened and bridge is not None and longest <= bridge * _ROUND):
+        return gaps
+    listed = [f"{gap.end - gap.start:g} s from {gap.start:g} s to {gap.end:g} s (after {gap.after})" for gap in gaps]
+    problem = (
+        f"has {len(gaps)} gap{'s' if len(gaps) > 1 else ''}, where the interval is {usual:g} s: "
+        + ", ".join(listed[:_LISTED])
+        + _more(len(gaps))
+    )
+    also = "" if evened else f' and resample = "{_near(1 / usual):g} Hz"'
+    act = "add" if bridge is None else "write"
+    over = f'{act} bridge = "{_up(1e3 * longest):g} ms"{also}: lost samples are put on straight lines'
+    whole = np.split(np.arange(len(time)), np.flatnonzero(steps > max(_BRIDGED, _GAP * usual)) + 1)
+    kept = max(whole, key=len)
+    cut = f'write from = "{time[kept[0]]:.12g} s", to = "{time[kept[-1]]:.12g} s", between the long ones'
+    fixes = [cut, over] if longest > _BRIDGED and len(kept) >= FEWEST else [over]
+    raise InputError("record.time", problem, "; ".join(fixes))
+
+
+def _bridged(time: Floats, values: Floats, gaps: Sequence[Gap]) -> tuple[Floats, Floats]:
+    """Times (t,), s, and values (t, n) with the lost samples of gaps, at equal intervals on straight lines."""
+    if not gaps:
+        return time, values
+    lost = sum(gap.lost for gap in gaps)
+    refuse_more("record.bridge", "samples", len(time) + lost, SAMPLES, 24.0, "bridge shorter gaps")
+    parts = [np.linspace(gap.start, gap.end, gap.lost + 2)[1:-1] for gap in gaps]
+    fresh = np.sort(np.concatenate([time, *parts]))
+    return fresh, np.stack([np.interp(fresh, time, channel) for channel in values.T], axis=1)
+
+
+def _unevenness(time: Floats, place: Place, *, evened: bool) -> float:
+    """Largest distance of times (t,), s, from even ones, zero of slight ones; InputError unless they are `evened`."""
+    steps = np.diff(time)
+    median = float(np.median(steps))
+    uneven = np.flatnonzero(np.abs(steps - median) > UNEVEN * median)
+    if not uneven.size:
+        return 0.0
+    if not evened:
+        i, rate = int(uneven[0]), _near((len(time) - 1) / np.ptp(time))
+        late = f"{time[i + 1]:g} s at {place(i + 1)}, after {time[i]:g} s, is {steps[i]:g} s"
+        problem = f"is sampled unevenly: {late} where the interval is {median:g} s"
+        fix = f'add resample = "{rate:g} Hz": at equal intervals, by a spline through the samples'
+        raise InputError("record.time", problem, fix)
+    samples = np.arange(len(time))
+    return float(np.abs(time - np.polynomial.Polynomial.fit(samples, time, 1)(samples)).max())
+
+
+def check_interval(time: Floats, times: Times, stated: Mapping[str, float], *, brief: bool) -> None:
+    """Refuse an interval of times (t,) s that no record of a flight has, unless it may be `brief`, or that the file
+    states otherwise, in Hz by name; say which unit would make it one.
+    """
+    where, step, length = f"record.{times.key}", float(np.median(np.diff(time))), float(time[-1] - time[0])
+    for name, rate in stated.items():
+        if abs(rate * step - 1) > UNEVEN:
+            by_rate = times.key == "sample_rate"
+            problem = f"{'is' if by_rate else 'has'} {_near(1 / step):g} Hz, and the file states {name}, {rate:g} Hz"
+            instead = f'write sample_rate = "{rate:g} Hz"; ' if by_rate else ""
+            raise InputError(where, problem, f"{instead}{TRUST}")
+    trust = 'if it is right as it is, add skip_checks = ["sampling"]'
+    sizes, number = UNITS["time"], step / times.unit.size
+    likely = [
+        unit
+        for unit, size in sizes.items()
+        if size != times.unit.size and _USUAL[0] <= number * size * _ROUND <= _USUAL[1]
+    ]
+    hint = f"is the time in {likely[0]}? then {times.unit.instead('time_unit', likely[0])}; " if likely else ""
+    hint = "" if times.key != "time" else hint
+    if step > _ROUND / SLOWEST:
+        problem = f"has a sample every {step:g} s ({1 / step:g} Hz), too coarse for the corners of a manoeuvre"
+        raise InputError(where, problem, f"{hint}export the record at 20 Hz or more; {trust}")
+    if step < 1 / _FASTEST and length < _BRIEF and not brief:
+        problem = (
+            f"lasts {length:.3g} s with a sample every {step:.3g} s ({1 / step:.4g} Hz), which no flight load needs"
+        )
+        fix = f"{hint}if it is no aircraft's or rocket's, add vehicle = \"other\"; {trust}"
+        raise InputError(where, problem, fix)
+
+
+def _near(number: float) -> float:
+    """A number to three digits."""
+    return float(f"{number:.3g}")
+
+
+def _up(number: float) -> float:
+    """The next number of three digits above one."""
+    unit = 10.0 ** (math.floor(math.log10(number)) - 2)
+    return float(f"{math.ceil(number / unit - 1e-6) * unit:.3g}")
+
+
+def _more(count: int) -> str:
+    return f" and {count - _LISTED} more" if count > _LISTED else ""

@@ -1,0 +1,191 @@
+"""Units of records: how scenarios and files spell them, sizes of counts, and the one that both agree on."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from gbeam.constants import STANDARD_GRAVITY
+from gbeam.errors import InputError
+from gbeam.printable import advise, shortened
+
+# Per quantity, the units that a record may be in and their size in SI.
+UNITS: dict[str, dict[str, float]] = {
+    "acceleration": {
+        **{"g": STANDARD_GRAVITY, "m/s^2": 1.0, "ft/s^2": 0.3048, "mg": STANDARD_GRAVITY / 1000},
+        **{"mm/s^2": 1e-3, "cm/s^2": 1e-2, "in/s^2": 0.0254},
+    },
+    "rate": {"rad/s": 1.0, "deg/s": math.pi / 180, "rpm": math.pi / 30},
+    "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0, "day": 86400.0},
+}
+_FEET = {"ft": "f", "in": "i"}  # in fps2 and ips2
+_PER_SECOND_SQUARED = ("{}/s^2", "{}/s2", "{}/s/s", "{}s^-2", "{}s-2")
+# Spellings after `_plain`: of the units above, and of other quantities, such as those of files that are no records.
+_SPELLINGS: dict[str, dict[str, str]] = {
+    "acceleration": {
+        **dict.fromkeys(("g", "g0", "gn", "gs", "g's", "gee", "g-force", "gforce", "-", "1"), "g"),  # a load factor
+        **dict.fromkeys(("mg", "mgs"), "mg"),
+        **dict.fromkeys(("gal", "gals"), "cm/s^2"),
+        "ms2": "m/s^2",
+        **{
+            each.format(length): f"{length}/s^2"
+            for length in ("m", "mm", "cm", "ft", "in")
+            for each in (*_PER_SECOND_SQUARED, f"{_FEET.get(length, length)}ps2")
+        },
+    },
+    "rate": {
+        **dict.fromkeys(("rad/s", "rads-1", "rads^-1", "rps", "radps", "s-1", "s^-1", "1/s"), "rad/s"),
+        **dict.fromkeys(("deg/s", "degs-1", "degs^-1", "°/s", "dps", "degps"), "deg/s"),
+        "rpm": "rpm",
+    },
+    "time": {
+        **dict.fromkeys(("s", "secs"), "s"),
+        **dict.fromkeys(("ms", "msec", "millis"), "ms"),
+        **dict.fromkeys(("us", "usec", "micros"), "us"),
+        **dict.fromkeys(("ns", "nsec", "nanos"), "ns"),
+        **dict.fromkeys(("min", "mins", "minute", "minutes"), "min"),
+        **dict.fromkeys(("h", "hr", "hrs", "hour", "hours"), "h"),
+        **dict.fromkeys(("day", "days"), "day"),
+    },
+    "length": {unit: unit for unit in ("m", "mm", "cm", "in", "ft")},
+    "angle": {unit: unit for unit in ("deg", "rad", "°")},
+    "signal": {unit: unit for unit in ("mv", "uv", "volts", "counts", "lsb", "adc")},  # of a sensor without its scale
+}
+_LONG = {
+    **{f"{prefix}met{end}": f"{short}m" for prefix, short in (("milli", "m"), ("centi", "c"), ("", ""))
+       for end in ("ers", "res", "er", "re")},
+    **dict.fromkeys(("milliseconds", "millisecond"), "ms"), **dict.fromkeys(("microseconds", "microsecond"), "us"),
+    **dict.fromkeys(("nanoseconds", "nanosecond"), "ns"), **dict.fromkeys(("seconds", "second", "sec"), "s"),
+    **dict.fromkeys(("degrees", "degree"), "deg"), **dict.fromkeys(("radians", "radian"), "rad"),
+    **dict.fromkeys(("feet", "foot"), "ft"), **dict.fromkeys(("inches", "inch"), "in"),
+    "per": "/", "squared": "^2",
+}  # fmt: skip
+_WORD = re.compile(rf"(?<![a-z])({'|'.join(_LONG)})(?![a-z])")
+
+_BARE = ("1", "-")  # a load factor's units: in a name they are a number and a dash
+_TELLING = ("acceleration", "rate", "signal")  # of which a unit at the end of a name is one of nothing else
+_INDEX = re.compile(r"\s*[\[(][\d:, ]*[\])]$")  # acc[1], acc(:,3)
+_RANGES = ("high", "low")  # high g: a sensor's range
+_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_SIZED = re.compile(rf"(?:({_NUMBER})\s*)?([^\d\s/.+-].*?)(?:\s*/\s*({_NUMBER})\s*([^\W\d]*))?")
+
+
+@dataclass(frozen=True)
+class Unit:
+    """Unit of columns of a record."""
+
+    text: str  # in words: g, or 1 g / 2048
+    size: float  # in SI
+    stated: bool = False  # true if the file states one
+
+    def instead(self, key: str, unit: str) -> str:
+        """Advice to write another unit at a key of the record, which a file that states this one would contradict."""
+        return f'write {key} = "{unit}"' + (' and skip_checks = ["unit"]' if self.stated else "")
+
+
+def words_of(name: str) -> list[str]:
+    """Words of a column's name, in small letters: ``acc_Z [m/s^2]`` has acc, z, m, s and 2."""
+    return _separated(_CAMEL.sub(" ", name))
+
+
+_CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])")
+
+
+def _separated(name: str) -> list[str]:
+    return re.findall(r"[^\W_]+", name.lower())
+
+
+def unit_in_name(name: str) -> str:
+    """Unit in which a column's name ends, as files spell it: g of ``a_z_g``, rad/s of ``p_rad_s``; empty if none.
+
+    It stands behind a separator, or has two letters: ``timeUS`` is in µs, ``accHighG`` in nothing.
+    """
+    stem = _INDEX.sub("", name)
+    *before, last = _separated(stem) or [""]
+    camel = _CAMEL.split(stem)[-1].lower()
+    candidates = [f"{before[-1]}/{last}"] if len(before) > 1 else []
+    candidates += [last] if before and last not in _BARE and before[-1] not in _RANGES else []
+    candidates += [camel] if 1 < len(camel) < len(last) else []
+    return next((text for text in candidates if is_unit(text)), "")
+
+
+def is_unit(text: str) -> bool:
+    """True if a cell of a file is a unit of time, acceleration or rate, perhaps in brackets."""
+    return any(spelled(text, quantity) is not None for quantity in _SPELLINGS)
+
+
+def spelled(text: str, quantity: str) -> str | None:
+    """Return the unit that a spelling stands for, a key of ``UNITS`` for the quantities there; None for none."""
+    words = text.strip().strip("[]()").replace("²", "^2").replace("**", "^").replace("µ", "u").replace("μ", "u")
+    words = words.lower().split(" since ")[0]  # "seconds since 2024-01-01", as netCDF has it
+    words = _WORD.sub(lambda word: _LONG[word[1]], words)
+    return _SPELLINGS[quantity].get("".join(words.replace("·", "").replace("*", "").split()))
+
+
+def sized(key: str, quantity: str, text: str) -> tuple[Unit, str | None]:
+    """Return the unit that a scenario names at a key of its record, and, where it sizes the numbers of the file, such
+    as ``1 g / 2048`` or ``1 g / 100 mV``, in which unit these are; None where it is one of ``UNITS`` itself.
+    """
+    match = _SIZED.fullmatch(text.strip())
+    unit = None if match is None else spelled(match[2], quantity)
+    if match is None or unit is None or match[2] in _BARE:
+        examples = {"acceleration": "1 g / 2048", "rate": "1 deg/s / 16.4", "time": "1 s / 32768"}
+        listed = f'choose {" or ".join(UNITS[quantity])}, or the size of a count, such as "{examples[quantity]}"'
+        near = advise(text, UNITS[quantity], listed="")
+        raise InputError(f"record.{key}", f"is {shortened(repr(text))}", near if near.startswith("did") else listed)
+    number, count = float(match[1] or 1), float(match[3] or 1)
+    size = number * UNITS[quantity][unit] / count if count else math.inf
+    if not 0 < size < math.inf:
+        raise InputError(f"record.{key}", f"is {text!r}", "give a size above zero")
+    counted = match[1] is not None or match[3] is not None
+    return Unit(text.strip() if counted else unit, size), (match[4] or "") if counted else None
+
+
+def unit_of(
+    key: str, quantity: str, declared: str | None, stated: Iterable[tuple[str, str]], *, trust: bool
+) -> Unit | None:
+    """Return the unit that the scenario and the file, by column, agree on; None where neither says one.
+
+    Of a unit that gbeam does not know, numbers are of no use without their size; `trust` is in the scenario alone.
+    """
+    unit, counts = (None, None) if declared is None else sized(key, quantity, declared)
+    if unit is not None and trust:
+        return unit
+    first = ""
+    for column, stated_unit in stated:
+        text = (stated_unit or unit_in_name(column)).strip()
+        canonical = spelled(text, quantity)
+        others = [kind for kind in _TELLING if kind != quantity and text not in _BARE and spelled(text, kind)]
+        if not text or (canonical is None and not (others or (stated_unit and text not in _BARE))):
+            continue
+        if counts is not None and canonical is None:
+            if counts and stated_unit and counts.lower() != text.strip("[]()").lower():
+                problem = f"is {declared!r}, and the file gives column {column!r} in {text}"
+                raise InputError(f"record.{key}", problem, f"give the size of 1 {text}; {_TRUST}")
+            continue
+        problem = f"is {declared or 'missing'}, and the file gives column {column!r} in {text}"
+        if canonical is None:
+            raise InputError(f"record.{key}", *_unknown(key, quantity, text, problem, others))
+        if first and unit is not None and canonical != unit.text:
+            problem = f"is of columns in two units: the file gives {first!r} in {unit.text}, {column!r} in {text}"
+            raise InputError(f"record.{key}", problem, f"convert one of them; {_TRUST}")
+        if unit is not None and canonical != unit.text:
+            raise InputError(f"record.{key}", problem, f'write {key} = "{canonical}"; {_TRUST}')
+        unit, first = Unit(canonical, UNITS[quantity][canonical], stated=True), first or column
+    return unit
+
+
+_TRUST = 'if the file is wrong, add skip_checks = ["unit"]'
+
+
+def _unknown(key: str, quantity: str, text: str, problem: str, others: list[str]) -> tuple[str, str]:
+    """Problem and fix of a unit that is of another quantity, or not known."""
+    if others and others != ["signal"]:
+        return f"{problem}, of {others[0]}", f"name another column; {_TRUST}"
+    if quantity == "time":
+        return f"{problem}, which is no unit of time", 'write time_unit = "s" and skip_checks = ["unit"] if it is in s'
+    unit, plain = ("g", text.strip("[]()")) if quantity == "acceleration" else ("deg/s", text.strip("[]()"))
+    such = f'such as {key} = "1 {unit} / 100{f" {plain}" if plain.isalpha() else ""}"'
+    return f"{problem}, which is no unit of {quantity}", f"give its size, {such}; {_TRUST}"
