@@ -8,11 +8,13 @@ import re
 import shlex
 import sys
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.printable import json_printable, on_one_line, printable, shortened
 
+if TYPE_CHECKING:
+    from gbeam.results.result import Decided
 if sys.platform != "win32":
     import resource  # now, as nothing can be imported once memory is used up
 
@@ -37,6 +39,14 @@ def report(error: GbeamError, as_json: bool) -> int:
     placed = isinstance(error, ScenarioError)
     mark, words = ("", str(error)) if placed else ("gbeam: ", on_one_line(shortened(str(error), LONGEST)))
     return _refuse(f"{mark}{words}", _diagnostics(error), as_json)
+
+
+def ended(*answers: Decided) -> int:
+    """Print what is not known of answers on stderr; return the exit status."""
+    unknown = [each for each in answers if each.outcome != "done"]
+    for each in unknown:
+        complain(each.message)
+    return FAILED if unknown else 0
 
 
 def report_syntax(message: str, as_json: bool) -> int:

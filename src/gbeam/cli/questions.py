@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
+from gbeam.cli.failures import ended
 from gbeam.cli.options import (
     At,
     Input,
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from gbeam.mechanics.tree.system import System
     from gbeam.results.state_space import Gauge
 
-_STATUS = "Exit status: 0 done, 1 there is no answer, 2 the input is wrong."
+_STATUS = "Exit status: 0 done, 1 there is no answer or stability is not known, 2 the input is wrong."
 
 
 def __getattr__(name: str) -> Callable[..., int]:
@@ -68,7 +69,7 @@ def verb_of(question: Question) -> Callable[..., int]:
             answer, name, folder, output, verb=question.name, origin=loaded.case.provenance,
             title=loaded.case.title, listed=False,
         )  # fmt: skip
-        return 0
+        return ended(*(answer if isinstance(answer, tuple) else (answer,)))
 
     verb.__name__ = name
     several = "Without --motion for all of them. " if question.motion is None else ""
@@ -126,8 +127,9 @@ def critical_speed(
     """The rate, load or acceleration at which the equilibrium of a beam or a system is lost.
 
     Where there is none up to the end of the search, the value is null and the reason says so; that is an answer, with
-    exit status 0. 2: the input is wrong, such as a motion without a hub. With --out writes critical_speed.json and a
-    plot of the lowest frequencies on the way there, a map also as CSV; with --report also critical_speed.html.
+    exit status 0. 1: a solid bends too far for a stiffness of first order, and it is not known; 2: the input is wrong,
+    such as a motion without a hub. With --out writes critical_speed.json and a plot of the lowest frequencies on the
+    way there, a map also as CSV; with --report also critical_speed.html.
     """
     folder = output.folder(scenario)
     loaded = read("critical-speed", scenario, output.overrides)
@@ -150,7 +152,7 @@ def critical_speed(
         critical, "critical_speed", folder, output, origin=loaded.case.provenance, listed=False,
         figures={"critical_speed": partial(steady.critical, critical, loaded.case.title)},
     )  # fmt: skip
-    return 0
+    return ended(critical)
 
 
 def critical_map(

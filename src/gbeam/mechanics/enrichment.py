@@ -233,9 +233,10 @@ class Twin(NamedTuple):
     def model(
         self, kind: str, *, directions: tuple[bool, bool, bool] = (True, True, True)
     ) -> tuple[Structure, NDArray[np.int_]]:
-        """The richer structure, and the indices of the structure's own coordinates in it."""
-        assert self.structure.richer is not None
-        return self.structure.richer, np.arange(self.structure.size)
+        """The richer structure, or its exact model, and the indices of the structure's own coordinates in it."""
+        richer = self.structure.richer
+        assert richer is not None
+        return richer.bent if kind == "exact" else richer, np.arange(self.structure.size)
 
 
 def enrichment(structure: Structure, base: Base | None = None) -> Enrichment | Twin:

@@ -195,6 +195,7 @@ def _mass(beam: Beam) -> float:
     return float(beam.density * np.mean(area) * beam.length)
 
 
+BENT = 0.02  # of the length: from there on the places, linear in the coordinates, are wrong by one in a hundred
 NEGLIGIBLE = 1e-9  # of the stiffness: what is less is rounding of a motion at rest
 NOTICED = 0.01  # of the largest: a smaller share along a direction without shapes is none
 STIFFER = 10.0  # times the other direction: from there on the driven one should be meant
@@ -257,6 +258,39 @@ def unstiffened(structure: Structure, base: Any, where: str) -> Iterator[str]:
             f"{where} loads the body so that the stiffness that is left out changes the square of its lowest "
             f"frequency by the order of {100 * share:.2g} %"
         )
+
+
+def bend(structure: Structure, q: Any) -> float:
+    """Largest displacement of a station at coordinates (..., n) over the length, where places are linear in these: zero
+    of a beam.
+    """
+    if structure.field is not None or not structure.size:
+        return 0.0
+    return float(np.linalg.norm(structure.displacement(q), axis=-1).max() / structure.length)
+
+
+def elastic_bend(structure: Structure, base: Any) -> float:
+    """That of the static answer to a motion of the base (..., 3), by the elastic stiffness alone."""
+    if structure.field is not None:
+        return 0.0
+    c = structure.coefficients
+    _, _, force = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
+    return bend(structure, np.linalg.solve(c.stiffness, force[..., None])[..., 0])
+
+
+def of_first_order(share: float) -> str:
+    """Clause on a bend, as a share of the length, that is too far for a stiffness of first order; else ""."""
+    if share < BENT:
+        return ""
+    return f"it bends by {100 * share:.2g} % of its length, and its stiffness is of first order in that"
+
+
+def bent_far(structure: Structure, share: float) -> Iterator[str]:
+    """Warn of a bend, as a share of the length, that is too far for a stiffness of first order."""
+    if clause := of_first_order(share):
+        known = structure.richer is not None and structure.richer.bending is not None
+        left_out = "stated as error of the model" if known else "not known"
+        yield f"{clause}: what that leaves out is {left_out}"
 
 
 def _without_shapes(structure: Structure, base: Any, where: str, span: tuple[float, float]) -> Iterator[str]:

@@ -18,8 +18,11 @@ from gbeam.errors import InputError
 from gbeam.numerics.sparse import HOLD, factorised, lowest_modes
 
 if TYPE_CHECKING:
+    from gbeam.mechanics.equations.linear import Bending
     from gbeam.mechanics.structure import Structure
 
+Solve = Callable[[Floats], Floats]
+BendingOf = Callable[[Floats, Floats, Solve], "Bending"]
 NEGATIVE = 1e-6  # of the largest: a mass that is less than none, and no rounding
 ZERO = 1e-10  # of the largest of the eigenvalues computed: a smaller one is that of a motion without strain
 ALIKE = 1e-9  # of its energy: what is left of a static answer beside the modes and the others adds nothing
@@ -32,7 +35,8 @@ FAINT = 1e-14  # of the largest: a product of shapes that is rounding
 class Reduced:
     """Shapes (u, n) of unit modal mass, their stiffness (n, n), and static displacements (u, m) under the loads. The
     first `size` shapes, ascending in frequency, are a model's coordinates: they span `modes` modes and the static
-    displacements. The others are what a few more modes have beside these, by which their error is judged.
+    displacements. The others are what a few more modes have beside these, by which their error is judged, as it is by
+    the forces of `bending`, where these are known.
     """
 
     shapes: Floats
@@ -40,6 +44,7 @@ class Reduced:
     static: Floats
     modes: int
     size: int
+    bending: Bending | None = None
 
     def structure(self, build: Callable[[int, Any], Structure], damping_ratio: Any) -> Structure:
         """Build a structure in the first `size` coordinates whose `richer` is one in all. A list of damping ratios that
@@ -53,7 +58,7 @@ class Reduced:
             return damping_ratio
 
         few, every = self.size, len(self.stiffness)
-        return replace(build(few, ratios(few)), richer=build(every, ratios(every)))
+        return replace(build(few, ratios(few)), richer=replace(build(every, ratios(every)), bending=self.bending))
 
 
 def linear_fields(points: Floats) -> Floats:
@@ -68,9 +73,10 @@ def inertial_loads(weights: Floats) -> Floats:
     return -np.einsum("kf,ac->kcaf", weights, np.eye(3)).reshape(3 * len(weights), 12)
 
 
-def reduce(stiffness: Any, mass: Any, loads: Floats, modes: int) -> Reduced:
+def reduce(stiffness: Any, mass: Any, loads: Floats, modes: int, bending: BendingOf | None = None) -> Reduced:
     """Reduce matrices (u, u) of the free unknowns to their lowest modes and static displacements under `loads` (u, m);
-    InputError unless there are so many modes, and stiffness and mass are positive.
+    InputError unless there are so many modes, and stiffness and mass are positive. `bending` gives the forces of higher
+    order of shapes (u, n) with a stiffness (n, n), by a function that answers loads (u, m).
     """
     count, more = len(loads), min(MORE, len(loads) - modes)
     if not 1 <= modes <= count:
@@ -82,6 +88,18 @@ def reduce(stiffness: Any, mass: Any, loads: Floats, modes: int) -> Reduced:
         else:
             start = np.random.default_rng(0).standard_normal((count, WIDTH))
             inverse, vector = lowest_modes(solve, mass, start, modes, more)
+        reduced = _reduced(stiffness, mass, static, modes, more, inverse, vector)
+        if bending is None:
+            return reduced
+        return replace(reduced, bending=bending(reduced.shapes, reduced.stiffness, solve))
+
+
+def _reduced(
+    stiffness: Any, mass: Any, static: Floats, modes: int, more: int, inverse: Floats, vector: Floats
+) -> Reduced:
+    """Reduce matrices (u, u) to `modes` of some modes (u, k), with inverse eigenvalues (k,), and static displacements
+    (u, m), and to `more` of these modes besides.
+    """
     moving = _moving(inverse)
     if not inverse[:modes].min() > -ZERO * inverse.max():
         raise InputError("stiffness", "is not positive definite", HOLD)

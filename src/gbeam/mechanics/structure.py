@@ -17,6 +17,7 @@ from gbeam.guards.checks import implausible, positive
 from gbeam.mechanics.equations.dalembert import Complete, CompleteHub, FreeHub, OnBase, OnHub, free_hub, ground_of
 from gbeam.mechanics.equations.inertia import Inertia
 from gbeam.mechanics.equations.linear import (
+    Bending,
     Coefficients,
     Geometric,
     coefficients,
@@ -143,6 +144,8 @@ class Structure:
         Whether the stress of loads is left out of the stiffness of a structure of particles.
     recovery : Recovery or None
         What responses of a solid or a rigid specimen have besides.
+    bending : Bending or None
+        Of a solid, forces of higher order where it bends far; only the equations of `bent` have them.
     richer : Structure or None
         The same with more coordinates, of which its own come first, where some more modes were kept than it has: by
         these the error of those left out is judged.
@@ -186,6 +189,7 @@ class Structure:
     unstiffened: bool = static(default=False)
     recovery: Recovery | None = static(default=None)
     modes: int | None = static(default=None)
+    bending: Bending | None = static(default=None)
     richer: Structure | None = static(default=None)
     coarser: Structure | None = static(default=None)
 
@@ -330,7 +334,7 @@ class Structure:
         """Coefficients of small departures from coordinates `q` (n,), and the elastic forces there, (n,)."""
         c = self.coefficients
         if self.linear:
-            return c, c.stiffness @ q
+            return c.about(q), c.elastic(q)
         assert self.inertia is not None
         places, geometric = self.inertia.about(q)
         loads = None if self.work is None or self.load_values is None else self.work.about(len(self.load_values), q)
@@ -346,6 +350,21 @@ class Structure:
     def judged(self) -> bool:
         """True if the errors of the shapes that it leaves out can be estimated."""
         return (self.source is not None or self.richer is not None) and not self.traced
+
+    @property
+    def exact(self) -> bool:
+        """True if no model is known that is more exact, with as many shapes."""
+        return self.kind == "exact" or (self.richer is not None and self.richer.bending is None)
+
+    @property
+    def bent(self) -> Structure:
+        """The same with forces of higher order where it bends far, of the kind exact; itself where none are known."""
+        if self.bending is None:
+            return self
+        at, soft = self.station_places, self.bending.soft
+        second = soft @ self.bending.places @ soft.T + (0.0 if at.second is None else at.second)
+        coefficients = replace(self.coefficients, bending=self.bending)
+        return replace(self, kind="exact", coefficients=coefficients, station_places=replace(at, second=second))
 
     @property
     def resolved(self) -> int:

@@ -216,6 +216,11 @@ class Steady:
         """Names of the coordinates by which modes are recognised, those that deform a body ``body.q1``."""
         raise NotImplementedError
 
+    @property
+    def bend(self) -> float:
+        """Largest bend of a body whose stiffness is of first order in it, as a share of its length."""
+        raise NotImplementedError
+
     def directions(self, modes: Complex) -> tuple[str, ...]:
         """Words for what each mode (n, k) moves most."""
         raise NotImplementedError

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.types import Floats
+from gbeam.arrays.types import Floats, Indices
 from gbeam.errors import InputError
 from gbeam.guards.limits import in_bytes
 
@@ -174,6 +174,15 @@ def _orthonormal(
         if value[kept].min(initial=1.0) * share.min(initial=1.0) ** 2 > OUTSIDE:
             break
     return vectors, weighed
+
+
+def add_to_rows(total: Floats, rows: Indices, values: Floats) -> None:
+    """Add values (k, ...) to rows (k,) of `total`, of which several may be the same."""
+    from scipy.sparse import csr_array
+
+    met, place = np.unique(rows, return_inverse=True)
+    sums = csr_array((np.ones(len(rows)), (place, np.arange(len(rows)))), shape=(len(met), len(rows)))
+    total[met] += (sums @ values.reshape(len(rows), -1)).reshape(len(met), *values.shape[1:])
 
 
 def _products(basis: list[Floats], weighed: Floats) -> Floats:

@@ -44,7 +44,7 @@ def deflection(facts: Facts) -> Blocks:
     motions = facts["motions"]
     for name, rest in motions.items():
         if not rest["stable"]:
-            yield Sentence(f"motion {name}: UNSTABLE, no beam would stay there", "bad")
+            yield Sentence(f"motion {name}: {rest.get('message') or 'UNSTABLE, no beam would stay there'}", "bad")
     yield Section("View", (Place("viewer"),))
     tips: Columns = {"motion": "name", "at, s": "time", "model": "model"}
     tips |= {f"{axis}, mm": f"tip.{axis}:.6g" for axis in "xyz"}
@@ -104,23 +104,21 @@ def evenly(facts: Facts) -> Blocks:
 
 
 def growing(facts: Facts, which: Callable[[Facts], str]) -> Block:
-    """Items on what grows, with words of `which` mode that is."""
-    return Items(
-        tuple(
-            f"{each['kind']}{which(each)}: grows by {number(each['growth_rate'])} per second"
-            for each in facts["instabilities"]
-        ),
-        "bad",
+    """Items on what grows, with words of `which` mode that is, and that stability is not known."""
+    grows = (
+        f"{each['kind']}{which(each)}: grows by {number(each['growth_rate'])} per second"
+        for each in facts["instabilities"]
     )
+    return Items(tuple(filter(None, (*grows, facts.get("message")))), "bad")
 
 
 def noted(facts: Facts) -> list[Block]:
     """Sentence on what the errors of frequencies leave out, or why there are none."""
     note = facts.get("error_note")
     rows = facts.get("modes", facts.get("tracks", facts.get("poles", [])))
-    judged = any(each.get("errors", {}).get("total") is not None for each in rows)
+    judged, bent = (any(each.get("errors", {}).get(name) is not None for each in rows) for name in ("total", "model"))
     judged |= any(each.get("modulus_error") is not None for each in facts.get("margins", ()))
-    words = "errors are of modes left out" if judged else "no error estimate"
+    words = f"errors are of modes left out{' and of the bend' * bent}" if judged else "no error estimate"
     return [Sentence(f"{words}: {note}", "faint")] if note else []
 
 
@@ -260,8 +258,11 @@ def _accuracy(facts: Facts) -> Blocks:
         beyond = totals[accurate:][np.isfinite(totals[accurate:])]
         error = f"up to {percent(float(beyond.max()))} off" if len(beyond) else "not judged"
         words.append(f"{'higher ones' if accurate else 'frequencies'} {error}")
-    same_model = all(each is None for each in models)
-    by = "the model with more modes" if same_model else "the exact model with more shapes and the theory of thick beams"
+    by = "the model with more modes"
+    if any(each.get("errors", {}).get("beam_theory") is not None for each in facts["poles"]):
+        by = "the exact model with more shapes and the theory of thick beams"
+    elif any(each is not None for each in models):
+        by += " and forces of higher order"
     note = f"; {facts['error_note']}" if facts.get("error_note") else ""
     yield Sentence(f"{'; '.join(words)}, by {by}{note}")
 

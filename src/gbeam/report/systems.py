@@ -56,6 +56,7 @@ def system_rest(facts: Facts) -> Blocks:
 
 def _rest(rest: Facts) -> Blocks:
     """Displacements and coordinates of a system at rest, its loads, stress and errors, and on a page all else."""
+    yield Items(tuple(filter(None, [rest.get("message")])), "bad")
     yield from evenly(rest)
     cells = {"point": "name", **{f"{axis}, mm": f"displacement.{axis}:.6g" for axis in "xyz"}}
     places = (abs(each) for point in rest["points"].values() for each in point["place"].values())

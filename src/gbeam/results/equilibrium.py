@@ -13,12 +13,12 @@ from gbeam.results.declared import quantity as entry  # a critical value has a f
 from gbeam.results.errors import MODEL, SHAPES, THEORY, TOTAL, UNKNOWN, ErrorEstimate, Errors
 from gbeam.results.facts import at_place
 from gbeam.results.parts import Base, Loads
-from gbeam.results.result import Figured, Floats, Part, brief
+from gbeam.results.result import Decided, Figured, Floats, Part, brief
 from gbeam.results.solids import SolidStress, SpecimenLoads, Surface
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Deflection(Figured[Literal["shape", "loads"]]):
+class Deflection(Decided, Figured[Literal["shape", "loads"]]):
     """Relative equilibrium at a frozen base motion."""
 
     listed_by, unnamed = "motion", "beam"
@@ -38,9 +38,9 @@ class Deflection(Figured[Literal["shape", "loads"]]):
         key=None,
     )
     strain_energy: float = quantity("J", "strain energy")
-    stable: bool = fact(
+    stable: bool | None = fact(
         "whether the stiffness about the equilibrium is positive definite",
-        note="under loads that follow the beam, whether no vibration about it grows",
+        note="under loads that follow the beam, whether no vibration about it grows; None where that is not known",
     )
     loads: Loads | None = internal("", "forces, moments and stresses of the sections, of one time", default=None)
     errors: Errors = part("of displacement, root loads and stress", name=None, default_factory=Errors)
@@ -61,7 +61,7 @@ class Deflection(Figured[Literal["shape", "loads"]]):
     def __repr__(self) -> str:
         motion = f" {self.motion!r}" if self.motion else ""
         tip = ", ".join(f"{1e3 * each:.4g}" for each in self.tip)
-        stability = "stable" if self.stable else "NOT stable: no beam would stay there"
+        stability = "stable" if self.stable else self.message or "NOT stable: no beam would stay there"
         total = self.errors.displacement.total
         error = f"; estimated error {percent(total)}" if math.isfinite(total) else ""
         head = f"Deflection{motion} ({self.model}) at {self.time:.4g} s:"
@@ -76,14 +76,14 @@ LOST = {"critical_speed": "rad/s", "critical_acceleration": "m/s^2", "critical_l
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Critical(Figured[Literal["critical"]]):
+class Critical(Decided, Figured[Literal["critical"]]):
     """Point at which the stiffness about the relative equilibrium stops being positive definite, or something grows."""
 
     quantity: str = fact("quantity that is raised", note="hub rate or rate, acceleration along x, or load factor")
     unit: str = fact("unit of the quantity", note="rad/s, m/s^2, or none of a factor of the loads", name=None)
     value: float | None = entry(lambda self: self.unit, "critical value; missing where it is not reached", key=None)
     searched_to: float = entry(lambda self: self.unit, "end of the search")
-    kind: str = fact("how it is lost", note="divergence, flutter, no equilibrium or none")
+    kind: str = fact("how it is lost", note="divergence, flutter, no equilibrium, none or not known")
     direction: str = fact("direction of the mode that is lost", note="empty where there is none")
     reason: str = fact("the answer as a sentence")
     model: str = fact("kind of the model")

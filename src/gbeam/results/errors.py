@@ -256,10 +256,11 @@ class Oscillating(Noted):
 
     eigenvalue: Complex
     instabilities: tuple[Instability, ...]
+    outcome: str
 
-    @declared("", "whether nothing grows", role="fact")
-    def stable(self) -> bool:
-        return not self.instabilities
+    @declared("", "whether nothing grows; None where that is not known", role="fact")
+    def stable(self) -> bool | None:
+        return None if self.outcome != "done" else not self.instabilities
 
     @declared("Hz", "natural frequency", "mode")
     def frequency(self) -> Floats:

@@ -12,7 +12,7 @@ from gbeam.results.declared import declared, fact, internal, part, quantity, row
 from gbeam.results.equilibrium import Critical
 from gbeam.results.errors import ErrorEstimate, FrequencyErrors, Instability, Noted, Oscillating, totals
 from gbeam.results.parts import Base
-from gbeam.results.result import Complex, Figured, Floats, Part
+from gbeam.results.result import Complex, Decided, Figured, Floats, Part
 from gbeam.results.solids import SurfaceModes
 
 SHOWN = 6  # frequencies in a short description
@@ -21,7 +21,7 @@ FEW = 2  # modes drawn in any case
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Modes(Oscillating, Figured[Literal["modes"]]):
+class Modes(Oscillating, Decided, Figured[Literal["modes"]]):
     """Small vibrations about a relative equilibrium, ascending in frequency."""
 
     json_rows: ClassVar[dict[str, str]] = {"mode": "modes"}
@@ -116,7 +116,7 @@ class Modes(Oscillating, Figured[Literal["modes"]]):
         listed = [f"{f:.4g} Hz {way}" for f, way in zip(self.frequency, self.direction, strict=True)]
         others = f" and {len(listed) - SHOWN} more" if len(listed) > SHOWN else ""
         lines = [f"Modes{motion} ({self.model}) at {self.time:.4g} s: {', '.join(listed[:SHOWN])}{others}"]
-        lines += map(str, self.instabilities)
+        lines += [*map(str, self.instabilities), *filter(None, [self.message])]
         return self._with_warnings(*lines)
 
 

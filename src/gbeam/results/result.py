@@ -164,6 +164,21 @@ class Result(Value):
         write_report(self, path)
 
 
+NOT_KNOWN = "not known"
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Decided(Result):
+    """A result that says whether a state is stable, unless that is not known."""
+
+    outcome: str = fact(
+        "how it ended",
+        note="done, or not known: stiffness of first order would not keep a body that bends as far",
+        default="done",
+    )
+    message: str = fact("why it is not known", default="")
+
+
 FigureName = TypeVar("FigureName", bound=str)
 
 

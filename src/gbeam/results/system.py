@@ -26,7 +26,7 @@ from gbeam.results.facts import at_place
 from gbeam.results.machine import AxesResult, Driven
 from gbeam.results.parts import Base, LoadPeaks, Loads, Outline
 from gbeam.results.response import Readings, Sensor
-from gbeam.results.result import Complex, Figured, Floats, Part
+from gbeam.results.result import Complex, Decided, Figured, Floats, Part
 from gbeam.results.solids import SolidStress, Surface, SurfaceModes
 
 _EULER, _TURNS, _SPINS = ("e0", "e1", "e2", "e3"), ("rx", "ry", "rz"), ("wx", "wy", "wz")  # of balls
@@ -350,7 +350,7 @@ class SystemResponse(_Placed, Driven, Figured[str]):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class SystemRest(_Placed, Figured[str]):
+class SystemRest(_Placed, Decided, Figured[str]):
     """Static equilibrium of a system.
 
     Examples
@@ -379,7 +379,9 @@ class SystemRest(_Placed, Figured[str]):
     attitude: Floats = quantity("", "Euler parameters of the point's axes in those of the ground", "point euler")
     q: Floats = quantity("", "coordinates: m and rad of joints, their own of flexible bodies", "coordinate")
     effort: Floats = quantity("", "force N or torque N m of the drive on each coordinate", "coordinate")
-    stable: bool = fact("whether it comes back after any small disturbance, or stays near")
+    stable: bool | None = fact(
+        "whether it comes back after any small disturbance, or stays near", note="None where that is not known"
+    )
     ground_force: Floats = quantity("N", "force on the ground", "axis", frame="ground")
     ground_moment: Floats = quantity("N m", "moment on the ground about its origin", "axis", frame="ground")
     loads: Mapping[str, Loads] = internal(
@@ -427,7 +429,7 @@ class SystemRest(_Placed, Figured[str]):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class SystemModes(Oscillating, Figured[Literal["modes"]]):
+class SystemModes(Oscillating, Decided, Figured[Literal["modes"]]):
     """Small vibrations of a system about a steady state: a place in which it rests, or is accelerated evenly.
 
     Examples

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gbeam.arrays.tree import Value
-from gbeam.arrays.types import Floats, Indices
+from gbeam.arrays.types import Flags, Floats, Indices
 from gbeam.solids.shape_functions import KINDS, jacobians, shape_functions
 from gbeam.solids.shells import FACTOR, shell_strains
 
@@ -184,6 +184,10 @@ def coupled(halves: Floats, stiffness: Floats) -> Floats:
     order, where terms of fourth degree, which are left out, would cancel it: only modes near in frequency are coupled.
     """
     squares, modes = np.linalg.eigh(stiffness)
-    near = np.maximum.outer(squares, squares) < NEAR**2 * np.minimum.outer(squares, squares)
-    total = halves[0] + modes @ (modes.T @ halves[1] @ modes * near) @ modes.T
+    total = halves[0] + modes @ (modes.T @ halves[1] @ modes * near(squares)) @ modes.T
     return np.asarray(total + total.swapaxes(1, 2))
+
+
+def near(squares: Floats) -> Flags:
+    """Flags (n, n) of pairs of modes near in frequency, by the squares (n,) of frequencies."""
+    return np.maximum.outer(squares, squares) < NEAR**2 * np.minimum.outer(squares, squares)

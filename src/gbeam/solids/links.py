@@ -335,6 +335,11 @@ class Linked:
         return np.asarray(self._map @ unknowns).reshape(len(self.points), 3, -1)
 
     @property
+    def tied(self) -> bool:
+        """True if some points move by links, or by those of shells."""
+        return bool(len(self._tied)) or len(self.points) > self.count
+
+    @property
     def _rows(self) -> Indices:
         """Rows of the tied points in matrices of all."""
         return np.asarray((3 * self._tied[:, None] + np.arange(3)).ravel())

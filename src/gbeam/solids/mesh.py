@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,7 @@ from gbeam.mechanics.structure import Structure, linear_structure
 from gbeam.mechanics.tree.joints import kind_of_value
 from gbeam.mechanics.tree.system import Place, RigidBody
 from gbeam.numerics.sparse import refuse_cost
+from gbeam.solids.bending import bending
 from gbeam.solids.cad import mesh_of
 from gbeam.solids.cards import Cards
 from gbeam.solids.elements import (
@@ -348,6 +350,8 @@ class SolidMesh(Value):
             linked.condensed(kron(mass, eye_array(3), format="csr")),
             linked.condensed(loads),
             modes,
+            # Links would have to turn by more than their linear map.
+            None if linked.tied else partial(bending, self, linked, modes, partial(self._at_stations, centres, forces)),
         )
         del stiffness
         everywhere, static = (linked.displacements(unknowns) for unknowns in (reduced.shapes, reduced.static))
@@ -407,21 +411,31 @@ class SolidMesh(Value):
 
         return np.asarray(Rotation.from_rotvec(self.turns.get(point, (0.0, 0.0, 0.0))).as_matrix())
 
+    def _at_stations(self, centres: Floats, forces: Floats, fields: Floats) -> Floats:
+        """Displacements (s, 3, m) of the named points by those (k, 3, m) of all, of interfaces by the `forces` on their
+        centres.
+        """
+        moved = (forces.T @ fields.reshape(-1, fields.shape[-1])).reshape(len(centres), 2, 3, fields.shape[-1])
+        return np.insert(
+            fields[[*self.stations.values()]], [len(self.stations) - 1] * len(centres), moved[:, 0], axis=0
+        )
+
     def _outputs(self, centres: Floats, forces: Floats, shapes: Floats, pushed: Floats) -> tuple[Places, Floats | None]:
         """Places of the named points, of interfaces by the `forces` on their centres and, to second order, what these
         add to the stiffness, `pushed`; and rotations (s, 3, n), not a number where unknown, or None without interfaces.
         """
-        *nodes, tip = self.stations.values()
-        ends, n, count = [*nodes, tip], shapes.shape[-1], len(centres)
-        r0, first = self.points[ends], shapes[ends]
+        n, count = shapes.shape[-1], len(centres)
+        ends, before_tip = [*self.stations.values()], [len(self.stations) - 1] * count
+        r0, first = (
+            np.insert(self.points[ends], before_tip, centres, axis=0),
+            self._at_stations(centres, forces, shapes),
+        )
         if not count:
             return Places(r0, first), None
         moved = (forces.T @ shapes.reshape(-1, n)).reshape(count, 2, 3, n)
-        before_tip = [len(nodes)] * count
         # Work of a force in displacements of second order: what its stress adds to the stiffness, with the other sign.
         second = np.insert(np.zeros((len(ends), 3, n, n)), before_tip, -pushed.reshape(count, 3, n, n), axis=0)
         turns = np.insert(np.full((len(ends), 3, n), np.nan), before_tip, moved[:, 1], axis=0)
-        r0, first = np.insert(r0, before_tip, centres, axis=0), np.insert(first, before_tip, moved[:, 0], axis=0)
         return Places(r0, first, second), turns
 
 

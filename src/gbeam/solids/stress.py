@@ -13,6 +13,7 @@ import numpy as np
 from gbeam.arrays.tree import Value
 from gbeam.arrays.types import Complex, Flags, Floats, Indices
 from gbeam.errors import InputError
+from gbeam.numerics.sparse import add_to_rows
 from gbeam.results.solids import SolidStress, StressAt, Surface, SurfaceModes, von_mises
 from gbeam.solids.elements import TENSOR, chunks
 from gbeam.solids.norms import LargestNorms
@@ -52,8 +53,6 @@ class NodalStress(Value):
     @classmethod
     def of(cls, mesh: Any, shapes: Floats) -> Self:
         """Stresses in shapes (k, 3, n) of nodes, extrapolated to these, and averaged over elements of one material."""
-        from scipy.sparse import csr_array
-
         count, names, n = len(mesh.points), _materials(mesh), shapes.shape[-1]
         pairs = [names.index(block.material) * count + np.unique(block.nodes) for block in mesh.blocks]
         known = np.unique(np.concatenate(pairs))
@@ -62,10 +61,8 @@ class NodalStress(Value):
         total, shared = np.zeros((len(known), 6, n)), np.zeros(len(known))
         for element_pairs, stresses in empty.elements(mesh.blocks):
             pair, stress = element_pairs.ravel(), stresses.reshape(-1, 6, n)
-            met, place = np.unique(pair, return_inverse=True)
-            sums = csr_array((np.ones(len(pair)), (place, np.arange(len(pair)))), shape=(len(met), len(pair)))
-            total[met] += (sums @ stress.reshape(len(pair), -1)).reshape(len(met), *stress.shape[1:])
-            shared[met] += np.bincount(place)
+            add_to_rows(total, pair, stress)
+            add_to_rows(shared, pair, np.ones(len(pair)))
         whole = replace(empty, every_table=total / shared[:, None, None])
         return replace(whole, felt_at=whole.most(np.arange(len(known))))
 

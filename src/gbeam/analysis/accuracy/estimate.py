@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from gbeam.analysis.accuracy.beam_theory import WORDS, Lacking, largest
 from gbeam.analysis.accuracy.correction import Quantity, Reading
 from gbeam.mechanics.models import TORSION
+from gbeam.mechanics.plausibility import of_first_order
 from gbeam.mechanics.structure import Structure
 from gbeam.printable import percent as percent
 from gbeam.results.errors import ErrorEstimate
+from gbeam.results.result import NOT_KNOWN
 
 BEAM = "beam"  # name of a beam that is alone
 LIMIT = 0.01  # an error of a steady state above is warned of
@@ -33,16 +35,18 @@ def cause_and_cure(errors: ErrorEstimate, theory: str) -> tuple[str, str]:
         return ROUGH_MESH
     if errors.beam_theory > max(shapes, model):
         return f"the theory of slender beams ({theory})", cure_of_theory(theory)
-    if math.isnan(model) and not math.isnan(shapes):  # of a solid, whose model is not judged
-        return FEW_MODES
+    if math.isnan(errors.beam_theory) and not math.isnan(shapes):  # of a solid
+        return BENT_FAR if model > shapes else FEW_MODES
     if not shapes >= model:
         return "the model", 'check with model.kind = "exact"'
     return "too few shapes", "raise model.modes, which one [beam] may leave out"
 
 
-def fuller(model: float) -> str:
-    """Words for the model that an error is judged by; `model` is that part of the error, NaN if not known."""
-    return "the model with more modes" if math.isnan(model) else "the exact model"
+def fuller(errors: ErrorEstimate) -> str:
+    """Words for the model that errors are judged by."""
+    if math.isnan(errors.model):
+        return "the model with more modes"
+    return "the model with forces of higher order" if math.isnan(errors.beam_theory) else "the exact model"
 
 
 def wrong_by(what: str, size: str, errors: ErrorEstimate, theory: str) -> str:
@@ -74,10 +78,20 @@ def of_bodies(structure: Structure, lacking: Lacking, tip: float, limit: float) 
             )
 
 
+def not_known(bend: float, lost: str) -> dict[str, Any]:
+    """Outcome and message, by name, of a state that is `lost` by a stiffness of first order, if its bend, as a share of
+    the length, is too far for that; else empty.
+    """
+    clause = of_first_order(bend)
+    words = f"whether it would stay there is not known: {lost}, but {clause}"
+    return {"outcome": NOT_KNOWN, "message": words} if clause else {}
+
+
 NOTHING = 1e-7  # of what another load makes
 UNMOVED = 1e-14  # of the length
 FEW_MODES = "too few modes", "raise modes"
 MORE_SHAPES = "raise its model.modes, of a mesh its modes"  # systems have no automatic number of modes
+BENT_FAR = "the bend, in which its stiffness is of first order", "give a strip or a rod as [beam], which is exact"
 ROUGH_MESH = "the mesh", "mesh it finer"
 NO_MESH = "the mesh is not judged"
 UNKNOWN = "shapes and model are not judged: it is neither a beam, a mesh nor matrices"

@@ -236,7 +236,7 @@ def errors_of(
         nothing.add(PLACE)
     judgement = Judgement(shapes, model, beyond.sizes, steps, sizes, nothing, mesh)
     tip, loads, stress = judgement.error(PLACE), judgement.loads(BEAM), judgement.error(STRESS)
-    if structure.source is None:
+    if structure.source is None and structure.exact:
         tip, loads, stress = (replace(error, model=math.nan) for error in (tip, loads, stress))
     return Errors(tip, loads, stress, unjudged(structure), described(structure, beyond.causes.get(BEAM, {})))
 

@@ -12,19 +12,22 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.analysis.accuracy.estimate import FEW_MODES, ROUGH_MESH, cure_of_theory, percent
+from gbeam.analysis.accuracy.estimate import BENT_FAR, FEW_MODES, ROUGH_MESH, cure_of_theory, percent
 from gbeam.analysis.response.problem import Problem
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.steady.equilibrium import expanded
 from gbeam.arrays.namespace import Array
+from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Floats
 from gbeam.guards.limits import BOUNDLESS
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.equations.linear import Coefficients
+from gbeam.mechanics.plausibility import bent_far, elastic_bend, of_first_order
 from gbeam.mechanics.structure import Structure
 from gbeam.numerics.eigen import eigenvalues, growth_rate, stability_margin, symmetric, unsymmetric
 from gbeam.results.errors import Errors
 from gbeam.results.parts import Base, LoadPeaks, Peaks
+from gbeam.results.result import NOT_KNOWN
 
 _BLOCK = 2000  # times whose stiffness is computed together
 _STRETCHES, _MOST = 4, 32  # stretches whose growth is computed, and times of each, at most
@@ -187,10 +190,14 @@ def describe(
             (),
         )
     loss = worst_loss(structure, time, base, q)
-    lost = ""
+    lost, first = "", 0
     if loss is not None:
+        first = int(np.searchsorted(time, loss.start))
         state = "equilibrium is not stable" if loss.flutter else "stiffness is not positive definite"
         lost = f"{structure.kind}'s {state} from t = {loss.start:.4g} s, where {' and '.join(loss.causes)}"
+    bent = of_first_order(elastic_bend(structure, each_leaf(lambda values: values[first], base)))
+    if bent and loss is not None and (trajectory.stopped or loss.growth > GROWN):
+        return NOT_KNOWN, f"whether it diverges is not known: {lost}, but {bent}", ()
     particles = structure.field is None  # they have no other model, nor a length that bounds their displacement
     if trajectory.stopped and particles:
         cause = f": {lost}" if lost else "; give a smaller response.step"
@@ -219,17 +226,20 @@ def describe(
             f"beam stays where this run has it; {cure}",
             (),
         )
-    warnings = []
+    warnings, unknown = [], f"; that is not known, for {bent}" if bent else ""
     if loss is not None and loss.growth > NOTICED:
         warnings.append(
             f"{lost}, to t = {loss.end:.4g} s: whatever deviates grows {math.exp(loss.growth):.2g}-fold meanwhile"
+            f"{unknown}"
         )
     elif not problem.stable:
         warnings.append(
-            "the run starts from an equilibrium that is not stable, which no beam would keep; `gbeam critical-speed` "
-            "finds where that begins"
+            "the run starts from an equilibrium that is not stable, which no beam would keep"
+            f"{unknown or '; `gbeam critical-speed` finds where that begins'}"
         )
     warnings += yielding(peaks.loads)
+    if particles:
+        warnings += bent_far(structure, peaks.max_size / structure.length)
     if particles and peaks.max_size > structure.length:
         warnings.append(
             f"the displacement reaches {peaks.max_size:.4g} m, and no particle rests farther than "
@@ -256,7 +266,7 @@ def inaccuracies(structure: Structure, errors: Errors, settings: ResponseSetting
     }
     names = {"shapes": "too few shapes", "beam_theory": "the theory of slender beams"}
     if structure.richer is not None:
-        names["shapes"], cures["shapes"] = FEW_MODES
+        (names["shapes"], cures["shapes"]), (names["model"], cures["model"]) = FEW_MODES, BENT_FAR
     parts = [(getattr(worst, part), part, cure) for part, cure in cures.items()]
     causes = [
         f"{percent(size)} from {names.get(part, f'the {part}')} ({cure})"

@@ -326,7 +326,7 @@ def _described(run: SystemRun, errors: SystemErrors, name: str, warnings: tuple[
     warnings += (*settings.warnings, *yielded)
     of_errors = doubts(errors, settings.tolerance)
     warnings += tuple(warning for warning in of_errors if warning not in warnings) + system.warnings
-    warnings += () if traced else run.every(1).unstiffened
+    warnings += () if traced else run.every(1).left_out
     residual: Any = None
     if settings.residual_from is not None:
         # Points of flexible bodies vibrate about their roots, others about the ground.

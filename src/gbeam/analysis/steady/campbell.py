@@ -164,7 +164,8 @@ def campbell(
     )
     lost = first_lost_speed(structure, holding, end, progress)
     # The last speed is short of the critical one, where a frequency is zero.
-    last = end if lost.value is None or lost.value <= start else start + (lost.value - start) * (1 - 1e-6)
+    limit = lost.value if lost.outcome == "done" else lost.searched_to
+    last = end if limit is None or limit <= start else start + (limit - start) * (1 - 1e-6)
 
     @cache
     def point_at(rate: float) -> Any:
@@ -223,6 +224,8 @@ def campbell(
     if (more := len(coarse[-1].frequency) - len(coarse[0].frequency)) > 0:
         begun = "a motion begins" if more == 1 else f"{more} motions begin"
         warnings += (f"{begun} to oscillate as it turns faster, and is not followed from {start:g} rad/s: begin later",)
+    if lost.message:
+        warnings += (lost.message,)
     if lost.value is not None:
         warnings += tuple(warning for warning in lost.warnings if warning not in warnings)
     return Campbell(
@@ -337,7 +340,7 @@ def doubtful_crossings(crossings: Sequence[Crossing], theory: str) -> tuple[str,
     if len(above) > 1:
         where += f", and {len(above) - 1} more where modes meet multiples,"
     if math.isinf(worst.errors.total):
-        whose = fuller(worst.errors.model)
+        whose = fuller(worst.errors)
         return (f"the speed at which {where} is {'not' if len(above) == 1 else 'in part not'} one of {whose}'s",)
     size = percent(worst.errors.total) + (" at most" if len(above) > 1 else "")
     return (wrong_by(f"the speed at which {where}", size, worst.errors, theory),)

@@ -85,6 +85,10 @@ def equilibrium_about(structure: Structure, base: Base) -> tuple[Equilibrium, Co
     c = structure.coefficients
     _, stiffness, force = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, values)
     q = _solved(stiffness, force)
+    if c.bending is not None:
+        q = _bent(c, base, values, q)
+        c = c.about(q)
+        stiffness = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, values)[1]
     if np.isfinite(q).all():
         stable = positive_definite(stiffness) if values is None else keeps(c, base, values)
         return Equilibrium(q, stable), c
@@ -128,6 +132,21 @@ def _along_a_path(structure: Structure, base: Base, values: Array | None) -> tup
                 f"the rate is {_rate(base):.4g} rad/s",
             )
     return Equilibrium(q, stable if values is None else keeps(about, base, values)), about
+
+
+def _bent(c: Coefficients, base: Base, values: Array | None, q: Array) -> Array:
+    """Equilibrium (n,) of a body that bends far, from that of its linear equations, by Newton's method; NaN where it
+    does not converge.
+    """
+    assert c.bending is not None
+    frozen, still = (base.a_WO_B, base.w_WB_B, base.alpha_WB_B, values), np.zeros_like(q)
+    stiffness = c.at(*frozen)[1]
+    for _ in range(_ITERATIONS):
+        correction = _solved(stiffness + c.bending.slope(q), -c.residual(q, still, still, *frozen))
+        q = q + correction
+        if not np.abs(correction).max() > 1e-13 + 1e-12 * np.abs(q).max():
+            return q
+    return np.nan * q
 
 
 def _near(structure: Structure, q: Array, other: Array) -> bool:

@@ -88,7 +88,8 @@ class Richer:
             self.theories = {} if of.source is None else {BEAM: theory_of(of)}
         self.beams = {name: bodies[name] for name in self.theories}
         self.exact = _with_more(state, exact=True)
-        only_exact = all(body.richer is not None or body.kind == "exact" for body in bodies.values())
+        self.one_model = all(body.richer is not None and body.exact for body in bodies.values())
+        only_exact = all(body.exact for body in bodies.values())
         self.same = self.exact if only_exact else _with_more(state, exact=False)
         self.rough = None if rough is None else More(rough, {})
 
@@ -111,8 +112,8 @@ class Richer:
         )
 
     def of_model(self, share: Any) -> Any:
-        """Share of an error that the model has; NaN without beams, which alone have other models."""
-        return share if self.theories else np.nan * share
+        """Share of an error that the model has; NaN where no body has another model."""
+        return np.nan * share if self.one_model else share
 
     def references(
         self, state: Any, coordinates: Complex, *, gyroscopic: bool = True

@@ -10,7 +10,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from gbeam.analysis.accuracy.estimate import LIMIT, apart, fuller, percent, wrong_by
+from gbeam.analysis.accuracy.estimate import LIMIT, apart, fuller, not_known, percent, wrong_by
 from gbeam.analysis.steady.frequency_errors import Richer, among, judgeable, unknown_part
 from gbeam.analysis.system.linear import instabilities
 from gbeam.analysis.system.steady import Loaded, Turning, open_loops
@@ -23,6 +23,7 @@ from gbeam.numerics.eigen import ZERO, Steady, symmetric, symmetric_modes, vibra
 from gbeam.progress import Progress, tell
 from gbeam.results.equilibrium import Critical
 from gbeam.results.errors import ErrorEstimate, along
+from gbeam.results.result import NOT_KNOWN
 
 SCAN = 64  # values at which the equilibrium is looked at before Brent's method
 
@@ -98,7 +99,12 @@ def first_loss_along(
         parts = (symmetric(each) for each in (state.linear.stiffness, state.linear.mass))  # others store no energy
         direction = state.directions(symmetric_modes(*parts)[1][:, :1])[0]
     way = f" {along(direction)}" if direction else ""
-    return answer(root, kind, direction, f"{of.kind}: {kind}{way} at {root:.6g} {unit}")
+    reason = f"{kind}{way} at {root:.6g} {unit}"
+    # Half way, where nothing grows yet without bound, with half of the load or less.
+    if undecided := not_known(2 * path(of, root / 2).bend, reason):
+        words = f"{of.kind} keeps its equilibrium up to there, and {undecided['message']}"
+        return replace(answer(None, NOT_KNOWN, direction, words), searched_to=root, **undecided)
+    return answer(root, kind, direction, f"{of.kind}: {reason}")
 
 
 FOLLOWED = 20  # steps to the critical value, closer to one another near it, where frequencies fall by a root
@@ -132,7 +138,7 @@ CLOSE = 1e-6  # of the critical value: tolerance of its root
 def judged(critical: Critical, path: Path, structure: Structure | System, progress: Progress = None) -> Critical:
     """The critical value with errors estimated by richer models, and warnings if above one in a hundred."""
     critical = replace(critical, error_note=unknown_part(structure))
-    if critical.value == 0 or not judgeable(structure):
+    if critical.value == 0 or critical.kind == NOT_KNOWN or not judgeable(structure):
         return critical
     if critical.value is None:
         doubts = _unseen(critical, path, structure, progress)
@@ -147,7 +153,7 @@ def judged(critical: Critical, path: Path, structure: Structure | System, progre
     if richer.rough is not None:
         errors = errors.adding(mesh=apart(_lost(richer.rough.model, path, at, progress), at))
     if not richer.theories:
-        errors = replace(errors, model=math.nan)
+        errors = replace(errors, model=richer.of_model(errors.model))
         doubts = doubtful_loss(critical.quantity, critical.model, errors)
         return replace(critical, errors=errors, warnings=critical.warnings + doubts)
     models, plates = richer.by_theories(structure)
@@ -227,7 +233,7 @@ def doubtful_loss(quantity: str, model: str, errors: ErrorEstimate, theory: str 
     """Warn of a critical value with an error above one in a hundred, or that the richer model does not have."""
     if math.isinf(errors.total):
         return (
-            f"the critical {quantity} is {model}'s own: {fuller(errors.model)} keeps its equilibrium to "
+            f"the critical {quantity} is {model}'s own: {fuller(errors)} keeps its equilibrium to "
             f"{SHARES[-1]:g} times that at least",
         )
     if not errors.total > LIMIT:

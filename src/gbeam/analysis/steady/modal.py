@@ -3,23 +3,26 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import overload
+from typing import TypeVar, overload
 
 import numpy as np
 
+from gbeam.analysis.accuracy.estimate import not_known
 from gbeam.analysis.steady.frequency_errors import BY_RICHER, Richer, doubtful, judgeable, unknown_errors
 from gbeam.analysis.steady.operating_point import OperatingPoint, drawn, extent, operating_point
 from gbeam.analysis.system.linear import instabilities, largest_component, system_modes
 from gbeam.analysis.system.steady import Drive, steady
 from gbeam.arrays.tree import each_leaf
 from gbeam.guards.arguments import typed
-from gbeam.mechanics.plausibility import input_warnings
+from gbeam.mechanics.plausibility import bend, bent_far, input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion, notes_on
 from gbeam.progress import Progress, tell
 from gbeam.results.modal import Modes
 from gbeam.results.system import SystemModes
+
+AnyModes = TypeVar("AnyModes", Modes, SystemModes)
 
 
 def modes_at(
@@ -62,6 +65,12 @@ def modes_at(
         overdamped=moving.decaying,
         surface=None if recovery is None or not len(moving.value) else recovery.in_modes((coordinates / scale).T),
     )
+
+
+def decided(computed: AnyModes, bend: float) -> AnyModes:
+    """Modes about a state, without the instabilities of a stiffness of first order where it bends too far for that."""
+    undecided = not_known(bend, str(computed.instabilities[0])) if computed.instabilities else {}
+    return replace(computed, instabilities=(), **undecided) if undecided else computed
 
 
 @overload
@@ -139,7 +148,7 @@ def modes(
     if isinstance(structure, System):
         state = steady(structure, Drive(motion, time))
         moving = state.vibrations(gyroscopic=gyroscopic)
-        of_system = system_modes(state, moving, time, name)
+        of_system = decided(system_modes(state, moving, time, name), state.bend)
         if not errors:
             return of_system
         if not judgeable(structure):
@@ -151,7 +160,8 @@ def modes(
     structure.require_coordinates()
     point = operating_point(structure, motion, time)
     warnings = input_warnings(structure, motion, name=name, span=(time, time), base=point.base)
-    computed = modes_at(structure, point, gyroscopic=gyroscopic, name=name, time=time)
+    computed = decided(modes_at(structure, point, gyroscopic=gyroscopic, name=name, time=time), point.bend)
+    warnings += tuple(bent_far(structure, bend(structure, point.q)))
     stated = None
     if errors and judgeable(structure):
         tell(progress, BY_RICHER, 0.5)

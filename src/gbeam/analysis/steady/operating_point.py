@@ -18,6 +18,7 @@ from gbeam.errors import ComputationError, InputError
 from gbeam.integrate.equations import slopes
 from gbeam.mechanics.equations.dalembert import OnBase, OnHub
 from gbeam.mechanics.equations.linear import Coefficients
+from gbeam.mechanics.plausibility import elastic_bend
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.eigen import Linear, Steady
@@ -68,6 +69,11 @@ class OperatingPoint(Steady):
     def loads(self) -> Array | None:
         """Components of the loads, (loads, 6); None without loads."""
         return self.inputs[1]
+
+    @property
+    def bend(self) -> float:
+        """Bend, as a share of the length, by the elastic stiffness alone."""
+        return elastic_bend(self.structure, self.base)
 
     @cached_property
     def linear(self) -> Linear:

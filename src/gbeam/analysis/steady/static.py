@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import overload
+from typing import Any, overload
 
 import numpy as np
 
 from gbeam.analysis.accuracy.beam_theory import largest
 from gbeam.analysis.accuracy.correction import PLACE, Reading
-from gbeam.analysis.accuracy.estimate import LIMIT, cause_and_cure, of_bodies, percent, unjudged
+from gbeam.analysis.accuracy.estimate import LIMIT, cause_and_cure, not_known, of_bodies, percent, unjudged
 from gbeam.analysis.accuracy.response_errors import BENT, Solution, errors_of
 from gbeam.analysis.steady.equilibrium import keeps, solve_equilibrium
 from gbeam.analysis.steady.operating_point import OperatingPoint, on_base, operating_point
@@ -22,7 +22,7 @@ from gbeam.guards.arguments import typed
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.models import TORSION
-from gbeam.mechanics.plausibility import input_warnings
+from gbeam.mechanics.plausibility import bend, bent_far, input_warnings
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import theory_of
@@ -199,9 +199,12 @@ def deflection_at(
     loads = section_forces(structure, over_time, q[None], still, still, np.array([time]), motion=motion)
     errors, doubts = static_errors(point)
     warnings = input_warnings(structure, motion, name=name, span=(time, time), base=base) + doubts
+    warnings += tuple(bent_far(structure, bend(structure, q)))
     names = {"motion": name, "model": structure.kind, "environment": "" if motion is None else motion.kind}
     recovery, times = structure.recovery, np.array([time])
-    parts = {} if recovery is None else recovery.parts(times, over_time, q[None], **names)
+    stable: bool | None = keeps(point.about, point.base, point.loads)
+    undecided = {} if stable else not_known(point.bend, "its stiffness is not positive definite")
+    parts: dict[str, Any] = {} if recovery is None else recovery.parts(times, over_time, q[None], **names)
     return Deflection(
         motion=name,
         model=structure.kind,
@@ -211,10 +214,11 @@ def deflection_at(
         displacement=displacement,
         q=q,
         strain_energy=float(structure.strain_energy(q)),
-        stable=keeps(point.about, point.base, point.loads),
+        stable=None if undecided else stable,
         warnings=warnings,
         notes=notes_on({name: motion}),
         loads=loads,
         errors=errors,
-        **{key: parts.get(key) for key in ("solid", "surface", "specimen")},
+        **{key: parts[key] for key in ("solid", "surface", "specimen") if key in parts},
+        **undecided,
     )

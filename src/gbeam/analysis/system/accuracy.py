@@ -72,7 +72,7 @@ def system_errors(
         nothing |= negligible(sizes, name, body.length, inertia)
     if unmoved(sizes[PLACE], place):
         nothing.add(PLACE)
-    exact = all(body.richer or body.kind == "exact" for body in judged.values())
+    exact = all(body.exact for body in judged.values())
     rerun = None if again is None else _rerun(again, count)
 
     with np.errstate(all="ignore"):

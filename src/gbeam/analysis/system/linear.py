@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.accuracy.estimate import LIMIT
+from gbeam.analysis.accuracy.estimate import LIMIT, not_known
 from gbeam.analysis.outline import assembly_of, outline_of
 from gbeam.analysis.system.accuracy import doubts, system_errors
 from gbeam.analysis.system.gauges import Strained, read_signals
@@ -48,10 +48,12 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
         for y in (system.start[0][system.tree.free], point.y)
     )
     values = {key: history[0] for key, history in resting.items()}
-    unstable = tuple[str, ...]()
+    unstable, undecided = tuple[str, ...](), dict[str, Any]()
     try:
         if len(growing := state.moving.growing):
-            unstable = (f"unstable, no system would stay there: grows by {growing[0].real:.4g} per second",)
+            grows = f"grows by {growing[0].real:.4g} per second"
+            undecided = not_known(state.bend, f"what deviates {grows}")
+            unstable = () if undecided else (f"unstable, no system would stay there: {grows}",)
     except ComputationError as error:
         unstable = (f"whether it would stay there is not known, {error}",)
 
@@ -76,7 +78,7 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
         displacement=values["place"] - start,
         errors=errors,
         accelerated=state.accelerated,
-        stable=not unstable,
+        stable=None if undecided else not unstable,
         warnings=unstable + doubts(errors, LIMIT) + state.warnings + open_loops(system),
         notes=notes_on({name: state.drive.motion}),
         assembly=assembly_of(system),
@@ -89,6 +91,7 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
         solids=solids,
         surfaces=surfaces,
         **{key: values[key] for key in ("place", "attitude", "q", "effort", "ground_force", "ground_moment")},
+        **undecided,
     )
 
 

@@ -13,8 +13,9 @@ from gbeam.analysis.accuracy.correction import PLACE, IntArray, Posed, Quantity,
 from gbeam.analysis.system.histories import Carried, carried, loads_of
 from gbeam.arrays.types import Floats
 from gbeam.integrate.equations import Trajectory
-from gbeam.mechanics.plausibility import unstiffened
+from gbeam.mechanics.plausibility import bend, bent_far, unstiffened
 from gbeam.mechanics.tree.equations import Inputs
+from gbeam.mechanics.tree.signals import deforming
 from gbeam.mechanics.tree.system import RigidBody, System
 from gbeam.results.parts import Base
 
@@ -101,9 +102,21 @@ class Solution:
         return {name: Base(roots[name].a, roots[name].w, roots[name].alpha) for name in bodies}
 
     @property
-    def unstiffened(self) -> tuple[str, ...]:
-        """Warnings of bodies made of matrices, which lack stiffness by loads: how large it would be in this motion."""
-        lacking = [name for name, body in self.system.flexible.items() if body.unstiffened]
+    def bends(self) -> dict[str, float]:
+        """Largest bends, as shares of the length, of flexible bodies by name."""
+        q = np.zeros((len(self.of.time), len(self.system.coordinates)))
+        q[:, self.system.tree.free] = self.of.q
+        columns = {name: deforming(self.system.coordinates, name) for name in self.system.flexible}
+        return {name: bend(body, q[:, columns[name]]) for name, body in self.system.flexible.items()}
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """Warnings of bodies made of matrices, which lack stiffness by loads: how large it would be in this motion; and
+        of those that bend too far for a stiffness of first order.
+        """
+        flexible = self.system.flexible
+        lacking = [name for name, body in flexible.items() if body.unstiffened]
         bases = self.bases(lacking) if lacking else {}
-        warnings = ((name, unstiffened(self.system.flexible[name], base, "its motion")) for name, base in bases.items())
+        warnings = [(name, unstiffened(flexible[name], base, "its motion")) for name, base in bases.items()]
+        warnings += [(name, bent_far(flexible[name], share)) for name, share in self.bends.items()]
         return tuple(f"{name}: {warning}" for name, of_body in warnings for warning in of_body)

@@ -127,9 +127,13 @@ class SteadySystem(Steady):
         return Solution(self.system, self.point.standing(), self.point.driven)
 
     @property
+    def bend(self) -> float:
+        return max(self.solution.bends.values(), default=0.0)
+
+    @property
     def warnings(self) -> tuple[str, ...]:
         """Doubts about the bodies' models, and what they leave out in this state."""
-        return self.system.warnings + self.solution.unstiffened + self._held_spin + self._spun_up
+        return self.system.warnings + self.solution.left_out + self._held_spin + self._spun_up
 
     @property
     def _held_spin(self) -> tuple[str, ...]:
@@ -186,6 +190,11 @@ class SteadySystem(Steady):
         k, c, m = self.known or self.local.slopes()[1:]
         if not positive_definite(m):
             raise ComputationError(MASSLESS, massless(self.system, self.names, self.local.y))
+        for name, body in self.system.flexible.items():
+            if (bending := body.coefficients.bending) is not None:
+                columns = deforming(self.names, name)
+                q, k = self.local.y[columns], np.array(k)
+                k[np.ix_(columns, columns)] += bending.stiffness(q) - bending.slope(q)
         return Linear(m, c, k - m @ self.follows, np.zeros((len(m), 0)))
 
     @cached_property

@@ -15,7 +15,7 @@ from typing import Any
 from gbeam.arrays.namespace import Array, concatenated, namespace
 from gbeam.arrays.tree import record, static
 from gbeam.mechanics.equations.inertia import Inertia
-from gbeam.mechanics.equations.linear import Coefficients, LoadTerms
+from gbeam.mechanics.equations.linear import Bending, Coefficients, LoadTerms
 from gbeam.mechanics.equations.virtual_work import LoadWork
 from gbeam.motion.hub import Mount
 from gbeam.results.parts import Base
@@ -80,6 +80,7 @@ class FreeHub:
     weight: Weight | None
     loads: LoadTerms | None
     hub_force: bool = static()
+    bending: Bending | None = None
 
     def residual(self, y: Array, yd: Array, ydd: Array, torque: Array, load_values: Array | None = None) -> Array:
         """Residual (..., n + 1) of y = (θ, q) under a torque on the hub, N m, and load components (..., loads, 6)."""
@@ -94,6 +95,8 @@ class FreeHub:
             turning = turning + 2 * rate * _dot(swept, qd) + _dot(qd, b1qd)
         rate, alpha = rate[..., None], alpha[..., None]
         beam = qdd @ self.mass + damped + rate * turned + elastic - rate**2 * swept + alpha * coupling
+        if self.bending is not None:
+            beam = beam + self.bending.forces(q)
         if self.weight is not None:
             about, along = self.weight.forces(angle, q)
             turning, beam = turning - about, beam - along
@@ -146,6 +149,7 @@ def free_hub(c: Coefficients, mount: Any, ground: Ground, *, hub_force: bool = T
         weight=weight,
         loads=c.loads,
         hub_force=hub_force,
+        bending=c.bending,
     )
 
 

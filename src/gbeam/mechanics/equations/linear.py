@@ -59,6 +59,44 @@ class LoadTerms:
 
 
 @record
+class Bending:
+    """Elastic forces of second and third order in modes p = basisᵀ q, (n, r), of which the first b, c, bend a body far.
+
+    Among themselves these have the forces `drawn` (b, b, b) c c and `bent` (b, b, b, b) c c c, symmetric in the modes
+    whose c they are multiplied by, while all others follow. They add `second` (b, b, r, r) c c to the stiffness of all
+    modes. `places` (s, 3, b, b) are second derivatives of the places of stations.
+    """
+
+    basis: Array
+    drawn: Array
+    bent: Array
+    second: Array
+    places: Array
+
+    @property
+    def soft(self) -> Array:
+        """Coordinates (n, b) of the modes that bend the body far."""
+        return self.basis[:, : len(self.drawn)]
+
+    def forces(self, q: Array) -> Array:
+        """Forces (..., n) at coordinates (..., n)."""
+        xp, c = namespace(self.basis, q), q @ self.soft
+        forces = xp.einsum("kij,...k,...j->...i", self.drawn, c, c)
+        return (forces + xp.einsum("klij,...k,...l,...j->...i", self.bent, c, c, c)) @ self.soft.T
+
+    def slope(self, q: Array) -> Array:
+        """Derivatives (n, n) of the forces at coordinates (n,)."""
+        xp, c = namespace(self.basis, q), q @ self.soft
+        slope = 2 * xp.einsum("kij,k->ij", self.drawn, c) + 3 * xp.einsum("klij,k,l->ij", self.bent, c, c)
+        return self.soft @ slope @ self.soft.T
+
+    def stiffness(self, q: Array) -> Array:
+        """Stiffness (n, n) added at coordinates (n,), where all other modes move too."""
+        xp, c = namespace(self.basis, q), q @ self.soft
+        return self.basis @ xp.einsum("k,l,klij->ij", c, c, self.second) @ self.basis.T
+
+
+@record
 class Coefficients:
     """Constant coefficients of a linear model (2020 (16), (20)–(22); 2009 (24)–(34)); `rigid` (10,) is of the straight
     structure: mass, first moment, second moments xx, yy, zz, xy, yz, zx.
@@ -76,6 +114,7 @@ class Coefficients:
     f_a: Array
     rigid: Array
     loads: LoadTerms | None = None
+    bending: Bending | None = None
 
     @property
     def size(self) -> int:
@@ -142,7 +181,19 @@ class Coefficients:
         """Residual on a base whose motion is given, (..., n); zero where the equations hold."""
         velocity, stiffness, force = self.at(a_WO_B, w_WB_B, alpha_WB_B, load_values)
         internal = velocity @ qd[..., None] + stiffness @ q[..., None]
-        return qdd @ self.mass + internal[..., 0] - force
+        left = qdd @ self.mass + internal[..., 0] - force
+        return left if self.bending is None else left + self.bending.forces(q)
+
+    def elastic(self, q: Array) -> Array:
+        """Elastic forces (..., n) at coordinates (..., n)."""
+        linear = q @ self.stiffness
+        return linear if self.bending is None else linear + self.bending.forces(q)
+
+    def about(self, q: Array) -> Coefficients:
+        """Coefficients of small departures from coordinates (n,)."""
+        if self.bending is None:
+            return self
+        return replace(self, stiffness=self.stiffness + self.bending.stiffness(q), bending=None)
 
     def strain_energy(self, q: Array) -> Array:
         """½ qᵀKq, J."""

@@ -242,7 +242,7 @@ class LinearBody:
         swelling = (root.w[..., None, None, :] @ Ji)[..., 0, :]  # ∂(J ω)/∂q
         moment = cross(S, root.a) + turned(J, root.alpha) + turned(swelling, qd) + hd
         moment = moment + cross(root.w, turned(J, root.w) + h)
-        along = qdd @ c.mass + qd @ c.damping + q @ c.stiffness
+        along = qdd @ c.mass + qd @ c.damping + c.elastic(q)
         along = along + turned_back(Si, root.a) + turned_back(hi, root.alpha)
         along = along + turned_back(_times(c.gyroscopic, qd) - 0.5 * swelling, root.w)
         if self.carried is not None:  # the mean motion v, ω that has the momentum of deforming, R (v, ω) = (Ṡ, h)

@@ -1,0 +1,106 @@
+"""Forces of second and third order that the lowest modes of a solid, which bend it far, bring to its modes.
+
+With Green's strain the stiffness of a bent solid is that of the straight one, a term linear in the bend and one
+quadratic in it. Both are large and wrong alone: a strip that is bent by a linear map of coordinates becomes longer.
+Displacements of second order, with which the solid answers the forces of the bend, take most of them away. What is left
+is small in a stout solid, and in a thin one of the size of its stiffness.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gbeam.arrays.types import Floats
+from gbeam.mechanics.equations.linear import Bending
+from gbeam.numerics.sparse import add_to_rows
+from gbeam.solids.elements import FEW, TENSOR, chunks, geometric_stiffness, near
+
+if TYPE_CHECKING:
+    from gbeam.solids.links import Linked
+    from gbeam.solids.mesh import SolidMesh
+
+SOFT = 2  # modes that bend a solid far: those of a rod of any section
+ROWS, COLUMNS = np.array([[0, 1, 2, 1, 0, 0], [0, 1, 2, 2, 2, 1]])  # of strains
+REACH = 3.0  # times the highest frequency of the modes: shapes of higher ones follow statically
+
+
+def bending(
+    mesh: SolidMesh,
+    linked: Linked,
+    modes: int,
+    stations: Callable[[Floats], Floats],
+    shapes: Floats,
+    stiffness: Floats,
+    solve: Callable[[Floats], Floats],
+) -> Bending:
+    """Return forces of higher order of a solid in shapes (u, n) of unit mass with a stiffness (n, n); `solve` answers
+    loads on the unknowns, and `stations` reads displacements (k, 3, m) of the nodes at the stations, (s, 3, m).
+    """
+    squares, basis = np.linalg.eigh(stiffness)
+    reached = squares <= REACH**2 * squares[modes - 1]
+    squares, basis = squares[reached], basis[:, reached]
+    count, r, b = len(mesh.points), len(squares), min(SOFT, len(squares))
+    moved = linked.displacements(shapes @ basis)[:count]
+    forces, quartic = _of_higher_order(mesh, moved, b)
+    loads = linked.condensed(forces.reshape(3 * count, b * r))
+    answers = -solve(loads)
+    condensed = (loads.T @ answers).reshape(b, r, b, r).swapaxes(1, 2)
+    displaced = linked.displacements(answers)[:count].reshape(count, 3, b, r)
+    # Of second order to each pair of modes that bend it, after those that do.
+    static = np.concatenate([moved[..., :b], displaced[..., :b].reshape(count, 3, b * b)], axis=2)
+    halves = geometric_stiffness(mesh.points, mesh.blocks, static, moved)
+    halves = halves + halves.swapaxes(2, 3)
+    linear, of_second = np.split(halves.sum(axis=0), [b])
+    close = near(squares)
+    first = (linear - halves[0, :b]) * ~close  # of near modes the model has it
+    alone = quartic + of_second.reshape(b, b, r, r) / 2 + condensed
+    by_modes, by_first = (np.einsum("kim,lmj->klmij", each, each) for each in (linear, first))
+    # The first modes while all others follow statically.
+    held = alone + ((by_modes + by_first / 2)[:, :, :b] / squares[:b, None, None]).sum(axis=2)
+    drawn, bent = (first - linear / 2)[:, :b, :b], held[..., :b, :b] / 3
+    drawn = (drawn + np.transpose(drawn, (2, 1, 0))) / 2
+    bent = sum(np.transpose(bent, axes) for axes in ((0, 1, 2, 3), (0, 3, 2, 1), (3, 1, 2, 0))) / 3
+    # All modes, moved by others as these vibrate with them.
+    with np.errstate(divide="ignore"):
+        answer = np.where(close, 0.0, 1 / (squares[:, None] - squares))
+    vibrating = (by_first * (answer[:, :, None] + answer[:, None]) / 2).sum(axis=2)
+    second = (alone + (by_modes / squares[:, None, None]).sum(axis=2) - vibrating) * close
+    at_rest = stations(moved)
+    places = stations(displaced[..., :b].reshape(count, 3, b * b)).reshape(*at_rest.shape[:2], b, b)
+    places = places + np.einsum("sam,kmi->saki", at_rest[..., :b] / squares[:b], linear[:, :b, :b])
+    return Bending(basis, drawn, bent, second, places)
+
+
+def _of_higher_order(mesh: SolidMesh, moved: Floats, b: int) -> tuple[Floats, Floats]:
+    """Forces of second order (k, 3, b, r) on the nodes, by shapes (k, 3, r) that the solid moves in while the first b
+    bend it, and the stiffness (b, b, r, r) by the strains of second order of those.
+    """
+    count, _, r = moved.shape
+    forces, quartic, of_bend = np.zeros((count, b, 3, r)), np.zeros((b * r, b * r)), np.zeros((b, b, r, r))
+    # Of each point the bends k, axes x and y, components c and shapes i, in this order.
+    for part in chunks(mesh.points, mesh.blocks, "stiffness", FEW):
+        of_elements, volume = part.slopes(moved), part.volume.ravel()[:, None, None, None, None]
+        stress = part.stress(moved, of_elements)[:, :, TENSOR].reshape(-1, 3, 3, r)
+        slopes = of_elements.reshape(-1, 3, 3, r)
+        bent, wide = np.moveaxis(slopes[..., :b], 3, 1), slopes.reshape(-1, 1, 3, 3 * r)
+        shape = (len(slopes), b, 3, 3, r)
+        products = (bent @ np.swapaxes(slopes, 1, 2).reshape(-1, 1, 3, 3 * r)).reshape(shape)
+        strain = products[:, :, ROWS, COLUMNS]
+        strain[:, :, 3:] += products[:, :, COLUMNS[3:], ROWS[3:]]
+        stretched = part.elasticity @ strain * volume[..., 0]
+        pull = (np.moveaxis(stress[..., :b], 3, 1) @ wide).reshape(shape)
+        pull += np.swapaxes((bent.swapaxes(2, 3) @ stress.reshape(-1, 1, 3, 3 * r)).reshape(shape), 2, 3)
+        pull = pull * volume + stretched[:, :, TENSOR]
+        e, q, n, _ = part.gradients.shape
+        along = part.gradients.swapaxes(1, 2).reshape(e, n, 3 * q)
+        at_nodes = along @ pull.swapaxes(1, 2).reshape(e, 3 * q, 3 * b * r)
+        add_to_rows(forces, part.nodes.ravel(), at_nodes.reshape(-1, b, 3, r))
+        tall = (np.moveaxis(each, 2, 1).reshape(-1, b * r) for each in (strain, stretched))
+        quartic += next(tall).T @ next(tall)
+        for k, l in np.ndindex(b, b):
+            turned = stretched[:, k, :, l][:, TENSOR] @ wide[:, 0]
+            of_bend[k, l] += slopes.reshape(-1, r).T @ turned.reshape(-1, r) / 2
+    return np.swapaxes(forces, 1, 2), quartic.reshape(b, r, b, r).swapaxes(1, 2) + of_bend
