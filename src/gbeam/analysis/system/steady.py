@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
-from gbeam.analysis.system.point import NONE, Point, adrift, rested, rested_together, started
+from gbeam.analysis.system.point import NEAR, NONE, Point, adrift, relaxed, rested, rested_together, started
 from gbeam.analysis.system.solution import Solution
 from gbeam.arrays.types import Complex, Flags, Floats
 from gbeam.constants import BY_STRAINS
@@ -215,6 +216,18 @@ class SteadySystem(Steady):
         return whole
 
     @property
+    def grows(self) -> bool:
+        """True if a small departure grows; False where that is not known."""
+        with suppress(ComputationError):
+            return len(self.moving.growing) > 0
+        return False
+
+    def moved(self, start: Floats) -> float:
+        """Largest distance of a joint's coordinate, m or rad, from coordinates `start` (n,)."""
+        joints = [".q" not in name for name in self.system.coordinates]
+        return float(np.abs((self.coordinates - start)[joints]).max(initial=0.0))
+
+    @property
     def names(self) -> list[str]:
         """Names of the local coordinates: those of the system, Euler parameters but for the first one as rotations."""
         local = local_names(self.system.coordinates)
@@ -289,7 +302,13 @@ class SteadySystem(Steady):
     def richer(self, system: System) -> SteadySystem:
         """State of a system with richer bodies under the same drives; ComputationError if it has none."""
         try:
-            return (beginning if self.begins else steady)(system, self.drive)
+            if self.begins:
+                return beginning(system, self.drive)
+            # Joints begin where they rest here: there may be several places.
+            resting = zip(self.system.coordinates, self.coordinates, strict=True)
+            joints = {name: value for name, value in resting if ".q" not in name}
+            pairs = zip(system.coordinates, system.start[0], strict=True)
+            return steady(system, self.drive, start=np.array([joints.get(*pair) for pair in pairs]))
         except InputError as error:
             raise ComputationError("no equilibrium", f"with richer bodies, {error}") from error
 
@@ -302,9 +321,9 @@ class SteadySystem(Steady):
         square, modes = symmetric_modes(*(symmetric(each) for each in (self.linear.stiffness, self.linear.mass)))
         rate = np.sqrt(np.abs(square))
         rate = np.maximum(rate, 1e-6 * rate.max(initial=0.0) or 1.0)
-        left, *before = self._slopes_after(0.0)
+        left, *before = self._turned(0.0).local.slopes()
         for turn in TURNS:
-            left_after, *after = self._slopes_after(turn)
+            left_after, *after = self._turned(turn).local.slopes()
             moved = np.append(*balanced(left_after - left, before[0], before[2], self.adrift))
             # K, C and M in modes of unit mass, over their frequencies.
             pairs = zip(before, after, (1.0, 0.5, 0.0), strict=True)
@@ -313,8 +332,8 @@ class SteadySystem(Steady):
                 return True
         return False
 
-    def _slopes_after(self, turn: float) -> tuple[Floats, ...]:
-        """Residual, K, C and M with all that turns ahead by an angle, rad, and the other coordinates as they are."""
+    def _turned(self, turn: float) -> Point:
+        """The point with all that turns ahead by an angle, rad, and the other coordinates as they are."""
         tree, inputs = self.point.tree, replace(self.drive, turn=turn).inputs(self.system)
         y, prescribed = np.array(self.point.y), inputs.prescribed
         if self.drive.coordinate:
@@ -327,15 +346,15 @@ class SteadySystem(Steady):
             efforts=self.point.inputs.efforts,
             prescribed=None if prescribed is None or not prescribed.size else prescribed,
         )
-        return replace(self.point, y=y, inputs=inputs).local.slopes()
+        return replace(self.point, y=y, inputs=inputs)
 
 
 def steady(system: System, drive: Drive, *, held: bool = False, start: Floats | None = None) -> SteadySystem:
     """System in equilibrium relative to what turns, whose coordinate is free, under the effort that it needs, unless
-    `held`. The search begins at coordinates `start`, by default those of the joints.
+    `held`. The search begins at coordinates `start`, by default those of the joints. Where it ends nowhere, or far from
+    there in a state that is unstable, the system goes from there down its forces, to one that is stable if it can.
     """
-    tree, inputs = _held(system, drive), drive.inputs(system)
-    state = SteadySystem(system, drive, rested(system, tree, inputs, start))
+    state = _branch(system, drive, system.start[0] if start is None else start)
     if state.accelerated and state.changing:
         names = " and ".join(each.coordinate for each in state.accelerated)
         problem = f"{names} is accelerated by what turns, and not evenly: hold it, or take away what pushes it"
@@ -346,6 +365,24 @@ def steady(system: System, drive: Drive, *, held: bool = False, start: Floats | 
 def beginning(system: System, drive: Drive) -> SteadySystem:
     """System in motion as it starts, its bodies bent so that their own coordinates are not accelerated."""
     return SteadySystem(system, drive, started(system, drive.motion, drive.time, "equilibrium"), begins=True)
+
+
+def _branch(system: System, drive: Drive, start: Floats) -> SteadySystem:
+    """The equilibrium of :func:`steady`, what turns held."""
+    parts, state, lost = (system, _held(system, drive), drive.inputs(system), start), None, None
+    try:
+        state = SteadySystem(system, drive, rested(*parts))
+        if state.moved(start) <= NEAR or not state.grows:
+            return state
+    except ComputationError as error:
+        lost = error
+    with suppress(ComputationError, np.linalg.LinAlgError):
+        other = SteadySystem(system, drive, relaxed(*parts))
+        if state is None or not other.grows:
+            return other
+    if state is None:
+        raise lost or ComputationError("no equilibrium", "")
+    return state
 
 
 def _held(system: System, drive: Drive) -> Tree:
