@@ -9,6 +9,7 @@ import numpy as np
 
 from gbeam.arrays.namespace import Array, namespace
 from gbeam.arrays.types import Complex, Flags, Floats, Indices
+from gbeam.numerics.whirl import Whirl
 
 
 def symmetric_modes(stiffness: Array, mass: Array) -> tuple[Array, Array]:
@@ -214,6 +215,11 @@ class Steady:
     @property
     def names(self) -> list[str]:
         """Names of the coordinates by which modes are recognised, those that deform a body ``body.q1``."""
+        raise NotImplementedError
+
+    @property
+    def whirl(self) -> Whirl | None:
+        """Points as they turn in the ground frame; None where nothing turns."""
         raise NotImplementedError
 
     def directions(self, modes: Complex) -> tuple[str, ...]:

@@ -20,7 +20,7 @@ from gbeam.mechanics.tree.frames import Frame, turned_back
 from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.signals import deforming, local_names
 from gbeam.mechanics.tree.steps import turned_on
-from gbeam.mechanics.tree.system import System
+from gbeam.mechanics.tree.system import ROOT, System
 from gbeam.motion.hub import Hub
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.balance import balanced, carried, following
@@ -33,6 +33,7 @@ from gbeam.numerics.eigen import (
     symmetric_modes,
 )
 from gbeam.numerics.series import STEP
+from gbeam.numerics.whirl import QUARTERS, Whirl, whirl_of
 from gbeam.results.errors import Accelerated
 
 MASSLESS = "no positive mass"  # an outcome
@@ -263,6 +264,21 @@ class SteadySystem(Steady):
         skew = np.stack([R.imag @ np.swapaxes(R.real, -1, -2) / STEP for R in rotations])
         turns = np.stack([skew[..., 2, 1], skew[..., 0, 2], skew[..., 1, 0]], axis=1)
         return np.stack([frame.p.imag.T / STEP for frame in frames]), turns
+
+    @property
+    def whirl(self) -> Whirl | None:
+        """Its points, of rigid bodies the roots, as they turn in the ground frame; None where nothing turns."""
+        ground, prescribed = self.local.inputs.ground, self.local.inputs.prescribed
+        driven = self.drive.rate if self.drive.coordinate else None
+        rates = np.append(0.0 if prescribed is None else prescribed[1], driven or 0.0)
+        rate = float(np.abs(rates).max())
+        of_points = ((body, point) for body in self.system.order for point in self.system.points_of(body))
+        kept = [k for k, (body, point) in enumerate(of_points) if body in self.system.flexible or point == ROOT]
+        angles = QUARTERS if rate > STILL else np.zeros(1)
+        states = [replace(self, point=self._turned(angle), known=None) if angle else self for angle in angles]
+        places = np.array([[frame.p for frame in state.frames] for state in states])[:, kept]
+        slopes = np.array([np.concatenate(state.slopes_of_frames, axis=1) for state in states])[:, kept]
+        return whirl_of(places, slopes, rate, np.asarray(ground.w), np.asarray(ground.a))
 
     @property
     def slopes_of_points(self) -> Floats:
