@@ -113,12 +113,15 @@ def campbell(diagram: Campbell, title: str = "", unit: tuple[float, str] = (1.0,
     if diagram.critical is not None and diagram.critical.value is not None:
         marks = (Mark(factor * diagram.critical.value, diagram.critical.kind),)
     words, unit_name = declared(Campbell, "frequency")
-    turning = "rate" if diagram.model == "system" else declared(Campbell, "speed")[0]
-    over = f"{turning}, {name}"
+    rate = "rate" if diagram.model == "system" else declared(Campbell, "speed")[0]
+    over = f"{rate}, {name}"
+    spans = tuple((factor * each.start, factor * each.end, "not stable") for each in diagram.unstable)
     panel = Panel(
-        f"{words}, {unit_name}", tuple(lines), x=over, marks=marks, texts=tuple(texts), limits=(0.0, top), height=2.4
-    )
-    subject = of_motion(diagram.motion, f"frequencies about the equilibrium, {diagram.model}")
+        f"{words}, {unit_name}", tuple(lines), x=over, marks=marks, texts=tuple(texts), limits=(0.0, top), height=2.4,
+        spans=spans,
+    )  # fmt: skip
+    turning = ", in the turning frame" if diagram.frame == "turning" else ""
+    subject = of_motion(diagram.motion, f"frequencies about the equilibrium{turning}, {diagram.model}")
     subject += f"; {omitted} higher mode{'s' if omitted > 1 else ''} not drawn" if omitted else ""
     errors = {"": math.nan if diagram.errors is None else diagram.errors.largest}
     return Figure(title, subject, (panel,), estimated(errors))

@@ -9,6 +9,7 @@ import numpy as np
 from gbeam.arrays.types import Flags, Floats
 
 HELD = 1e-12  # of the largest stiffness, scaled: a smaller one holds nothing
+STRIDE = 0.3  # m, rad or strain
 SAME = 1e-8  # of what a rotation changes where nothing is accelerated anew: less is rounding
 
 
@@ -73,6 +74,20 @@ def unheld(stiffness: Floats, mass: Floats) -> Floats:
     size = scales(stiffness, mass)
     directions, sizes, _ = np.linalg.svd(size[:, None] * stiffness * size)
     return np.linalg.qr(size[:, None] * directions[:, sizes <= HELD * sizes.max(initial=0.0)])[0]
+
+
+def relaxation(residual: Floats, stiffness: Floats, mass: Floats, which: Flags) -> Floats:
+    """Displacements (n,) of a step down the forces of a residual (n,), with the coordinates `which` accelerated: about
+    STRIDE where the forces are large, those of Newton's method near a state that the stiffness holds.
+    """
+    (left, k, m), held = carried(mass, which, residual, stiffness, mass), ~which
+    left, k, m = left[held], k[held][:, held], m[held][:, held]
+    faster, square = np.linalg.solve(m, left), np.linalg.eigvals(np.linalg.solve(m, k))
+    # With so much inertia added, the stiffness is positive, and no coordinate moves far.
+    shift = max(0.0, -2 * square.real.min(initial=0.0)) + np.abs(faster).max(initial=0.0) / STRIDE
+    change = np.zeros_like(residual)
+    change[held] = np.linalg.solve(k + (shift + HELD * np.abs(square).max(initial=0.0)) * m, -left)
+    return change
 
 
 def balanced(residual: Floats, stiffness: Floats, mass: Floats, which: Flags) -> tuple[Floats, Floats]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from gbeam.arrays.namespace import Array, namespace
 from gbeam.arrays.types import Complex, Flags, Floats, Indices
+from gbeam.numerics.whirl import Whirl
 
 
 def symmetric_modes(stiffness: Array, mass: Array) -> tuple[Array, Array]:
@@ -219,6 +220,11 @@ class Steady:
     @property
     def bend(self) -> float:
         """Largest bend of a body whose stiffness is of first order in it, as a share of its length."""
+        raise NotImplementedError
+
+    @property
+    def whirl(self) -> Whirl | None:
+        """Points as they turn in the ground frame; None where nothing turns."""
         raise NotImplementedError
 
     def directions(self, modes: Complex) -> tuple[str, ...]:

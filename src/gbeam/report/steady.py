@@ -88,8 +88,10 @@ def modes_table(facts: Facts, more: Mapping[str, Column]) -> Block:
     def damping(each: Facts) -> Value:
         return f"{each['damping_ratio'] if abs(each['damping_ratio']) > ROUNDING else 0.0:.4g}"
 
-    cells: Columns = {"mode": "number", "frequency, Hz": "frequency:.6g", "damping ratio": damping, **more}
-    return Section("Modes", (table(numbered(facts["modes"]), cells, optional=tuple(ERROR)), *noted(facts)))
+    cells: Columns = {"mode": "number", "frequency, Hz": "frequency:.6g", GROUND: "ground_frequency:.6g"}
+    cells |= {"damping ratio": damping, **more}
+    modes_of = table(numbered(facts["modes"]), cells, optional=(GROUND, *ERROR))
+    return Section("Modes", (modes_of, *framed(facts), *noted(facts)))
 
 
 def evenly(facts: Facts) -> Blocks:
@@ -141,10 +143,15 @@ def campbell(facts: Facts, speeds: Mapping[str, float] = _SPEEDS) -> Blocks:
         lost_at = ", ".join(f"{number(factor * facts['critical_speed'])} {unit}" for unit, factor in speeds.items())
         reason = f" ({facts['critical_speed_reason']})" if facts.get("critical_speed_reason") else ""
         error = _stated(facts.get("critical_speed_errors", {}))
-        yield Sentence(f"the equilibrium is lost at {lost_at}{reason}{error}", "bad")
-    ends = {"Hz at the start": "frequency.0:.6g", "Hz at the end": "frequency.-1:.6g"}
-    tracks = table(numbered(facts["tracks"]), {"mode": "number", "along": "direction", **ends, **ERROR})
-    yield Section("Modes", (tracks, *noted(facts)))
+        on = high > facts["critical_speed"]
+        after = "" if not on or facts["unstable"] else "; stable beyond"
+        yield Sentence(f"{'critical' if on else 'the equilibrium is lost'} at {lost_at}{reason}{error}{after}", "bad")
+    yield Items(tuple(_stretch(each, speeds) for each in facts["unstable"]), "bad")
+    ends: Columns = {"Hz at the start": "frequency.0:.6g", "Hz at the end": "frequency.-1:.6g"}
+    ends |= {GROUND: "ground_frequency.-1:.6g"}
+    cells: Columns = {"mode": "number", "along": "direction", **ends, **ERROR}
+    tracks = table(numbered(facts["tracks"]), cells, optional=(GROUND,))
+    yield Section("Modes", (tracks, *framed(facts), *noted(facts)))
     crossings: Columns = {
         "mode": lambda each: each["track"] + 1,
         "multiple": lambda each: f"{each['order']} ×",
@@ -154,6 +161,21 @@ def campbell(facts: Facts, speeds: Mapping[str, float] = _SPEEDS) -> Blocks:
     }
     remark = () if facts["crossings"] else (Sentence("no crossing in this range", "faint"),)
     yield Section("Crossings", (table(facts["crossings"], crossings), *remark))
+
+
+def _stretch(each: Facts, speeds: Mapping[str, float]) -> str:
+    """Words for a stretch of speed in which the equilibrium is not stable."""
+    ends = ", ".join(f"{number(k * each['start'])} to {number(k * each['end'])} {unit}" for unit, k in speeds.items())
+    growth = each["growth"]
+    return f"{ends}: {'no equilibrium' if growth is None else f'not stable, growing with up to {number(growth)} 1/s'}"
+
+
+GROUND = "in the ground frame, Hz"
+
+
+def framed(facts: Facts) -> list[Block]:
+    """Sentence on the frame of frequencies, where it turns."""
+    return [Sentence("frequencies in the turning frame", "faint")] if facts["frame"] == "turning" else []
 
 
 def critical(facts: Facts) -> Blocks:
@@ -228,6 +250,7 @@ def state_space(facts: Facts) -> Blocks:
     names = {each["name"] for each in facts["outputs"]}
     used = [each for each in numbered(facts.get("gauges", ())) if f"strain_{each['number']}" in names]
     yield table(used, gauges, "Gauges", optional=("fibre y, mm", "fibre z, mm"))
+    yield from framed(facts)
     yield from _accuracy(facts)
     if facts["step"]:
         yield from _in_steps(facts)

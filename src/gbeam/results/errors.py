@@ -18,6 +18,9 @@ SHAPES, MODEL = "estimated error from too few shapes", "estimated error of the m
 THEORY, TOTAL = "estimated error of the theory of slender beams", "estimated error in all"
 MESH, COARSER = "estimated error of a solid's mesh", "by the difference to a coarser one"
 UNKNOWN = "what is not estimated, and why"
+FRAME = "frame of the frequencies: ground, or turning with what turns"
+IN_GROUND = "frequency in the ground frame, of rotors alike about their axis"
+SEVERAL = "NaN of a mode that has several there"
 SLENDER = "against one with shear, rotary inertia and twist, and by plate action"
 
 

@@ -10,7 +10,17 @@ import numpy as np
 
 from gbeam.results.declared import declared, fact, internal, part, quantity, rows
 from gbeam.results.equilibrium import Critical
-from gbeam.results.errors import ErrorEstimate, FrequencyErrors, Instability, Noted, Oscillating, totals
+from gbeam.results.errors import (
+    FRAME,
+    IN_GROUND,
+    SEVERAL,
+    ErrorEstimate,
+    FrequencyErrors,
+    Instability,
+    Noted,
+    Oscillating,
+    totals,
+)
 from gbeam.results.parts import Base
 from gbeam.results.result import Complex, Decided, Figured, Floats, Part
 from gbeam.results.solids import SurfaceModes
@@ -103,6 +113,8 @@ class Modes(Oscillating, Decided, Figured[Literal["modes"]]):
     )  # fmt: skip
 
     surface: SurfaceModes | None = part("surface of a solid, for pictures", name="surface_", key=None, default=None)
+    frame: str = fact(FRAME, default="ground")
+    ground_frequency: Floats = quantity("Hz", IN_GROUND, "mode", optional=True, note=SEVERAL, empty=True)
 
     @property
     def edge(self) -> Complex:
@@ -151,6 +163,15 @@ class Crossing(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
+class Unstable(Part):
+    """A stretch of speed in which something grows, or there is no equilibrium."""
+
+    start: float = quantity("rad/s", "speed at which the stretch begins")
+    end: float = quantity("rad/s", "speed at which the stretch ends, or the diagram does")
+    growth: float = quantity("1/s", "rate at which a motion grows, the largest", note="NaN without an equilibrium")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
 class Campbell(Noted, Figured[Literal["campbell"]]):
     """Frequencies against speed, each column one mode followed through crossings and veering."""
 
@@ -173,6 +194,11 @@ class Campbell(Noted, Figured[Literal["campbell"]]):
         note="the largest of those at the first, a middle and the last speed",
         default=None,
     )
+    unstable: tuple[Unstable, ...] = rows(
+        "stretches of speed in which the equilibrium is not stable", "stretch", name="unstable_", default=()
+    )
+    frame: str = fact(FRAME, default="ground")
+    ground_frequency: Floats = quantity("Hz", IN_GROUND, "speed mode", optional=True, note=SEVERAL, empty=True)
 
     @declared("", "estimated error of the frequency in all", "mode", name=None)
     def error_estimate(self) -> Floats:

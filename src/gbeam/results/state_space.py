@@ -17,7 +17,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import vector
 from gbeam.results.declared import INSIDE, declared, fact, internal, labels, part, quantity, rows
-from gbeam.results.errors import Accelerated, FrequencyErrors, Noted, accelerated, evenly
+from gbeam.results.errors import FRAME, Accelerated, FrequencyErrors, Noted, accelerated, evenly
 from gbeam.results.result import Complex, Figured, Floats, Part
 
 MARGINS = ("gain", "gain_low", "phase", "delay", "modulus")
@@ -173,6 +173,7 @@ class StateSpace(Noted, Figured[Literal["poles"]]):
     errors: FrequencyErrors | None = part(
         "errors of these frequencies", "pole", name=None, note="None where there is no estimate", default=None
     )
+    frame: str = fact(FRAME, default="ground")
     step: float = fact(
         "time between samples", "s", note="of several their common period; 0 in continuous time", default=0.0
     )

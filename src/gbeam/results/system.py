@@ -14,6 +14,9 @@ from gbeam.guards.checks import index_of
 from gbeam.printable import percent
 from gbeam.results.declared import INSIDE, declared, fact, internal, labels, part, quantity, rows
 from gbeam.results.errors import (
+    FRAME,
+    IN_GROUND,
+    SEVERAL,
     Accelerated,
     FrequencyErrors,
     Instability,
@@ -485,6 +488,9 @@ class SystemModes(Oscillating, Decided, Figured[Literal["modes"]]):
         "surfaces of meshes for pictures, by the name of the body", "body", optional=True, name="surface_", key=None,
         default_factory=dict,
     )  # fmt: skip
+
+    frame: str = fact(FRAME, default="ground")
+    ground_frequency: Floats = quantity("Hz", IN_GROUND, "mode", optional=True, note=SEVERAL, empty=True)
 
     @declared("", "body that moves most", "mode", name=None)
     def foremost(self) -> tuple[str, ...]:

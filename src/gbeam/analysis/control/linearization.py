@@ -42,7 +42,7 @@ from gbeam.motion import Flight
 from gbeam.motion.protocol import Motion, notes_on
 from gbeam.numerics.series import STEP
 from gbeam.progress import Progress, tell
-from gbeam.results.errors import FrequencyErrors, along
+from gbeam.results.errors import along
 from gbeam.results.state_space import ACCURATE, Gauge, Signal, StateSpace, import_control
 from gbeam.structure.attachments import TIP
 from gbeam.structure.beam import Beam, fibre_strain, names_at
@@ -369,8 +369,10 @@ def linearize(
             return JudgedLoops(state, loops, cut).judge(computed)
         plant = linearize_system(state, **options)
         tell(progress, BY_RICHER, 0.5)
-        frequency, errors, doubts = _poles(state, structure)
-        return replace(plant, frequency=frequency, errors=errors, warnings=plant.warnings + doubts)
+        of_system, doubts = _poles(state, structure)
+        if state.begins and state.point.yd.any():
+            of_system["frame"] = "turning"
+        return replace(plant, **of_system, warnings=plant.warnings + doubts)
     choice("loop", loop, ("open",))
     motion = Flight(z=0.0) if motion is None else motion
     structure.require_coordinates()
@@ -407,10 +409,10 @@ def linearize(
         states += tuple(BASE_RATES[i - 3] for i in acts)
         begun, held = np.concatenate([begun, held[acts]]), held[kept]
     warnings = input_warnings(structure, motion, name=name, span=(time, time), base=point.base)
-    frequency, errors = np.zeros(0), None
+    poles: dict[str, Any] = {}
     if q is None and qd is None:
         tell(progress, BY_RICHER, 0.5)
-        frequency, errors, doubts = _poles(point, structure)
+        poles, doubts = _poles(point, structure)
         warnings += doubts
     return StateSpace(
         a=a,
@@ -426,16 +428,18 @@ def linearize(
         model=structure.kind,
         motion=name,
         time=time,
-        frequency=frequency,
-        errors=errors,
+        **poles,
         warnings=warnings,
         notes=notes_on({name: motion}),
     ).select(inputs=inputs, outputs=outputs)
 
 
-def _poles(state: Any, of: Structure | System) -> tuple[Floats, FrequencyErrors | None, tuple[str, ...]]:
-    """Frequencies (k,) Hz of the poles about a steady state, their errors, and warnings of errors and instability."""
+def _poles(state: Any, of: Structure | System) -> tuple[dict[str, Any], tuple[str, ...]]:
+    """Fields of the poles about a steady state: frequencies (k,) Hz, their errors and frame; and warnings of errors and
+    instability.
+    """
     frequency, errors, doubts = np.zeros(0), unknown_errors(of, 0), tuple[str, ...]()
+    turning = {"frame": "turning"} if state.whirl is not None and state.whirl.turning else {}
     if judgeable(of):
         frequency, errors = pole_errors(state)
         doubts = doubtful(errors) if errors.within(ACCURATE) == 0 else ()
@@ -444,7 +448,7 @@ def _poles(state: Any, of: Structure | System) -> tuple[Floats, FrequencyErrors 
         f"{motion.growth_rate:.4g} 1/s"
         for motion in instabilities(state, state.moving)
     )
-    return frequency, errors, (*doubts, *growing)
+    return {"frequency": frequency, "errors": errors, **turning}, (*doubts, *growing)
 
 
 @typed

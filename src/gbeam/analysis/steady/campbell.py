@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache
-from itertools import pairwise
+from itertools import groupby, pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,8 +27,11 @@ from gbeam.motion.protocol import Motion, notes_on
 from gbeam.numerics.eigen import Steady, mac, matched
 from gbeam.progress import Progress, tell
 from gbeam.results.errors import PARTS, ErrorEstimate, FrequencyErrors
-from gbeam.results.modal import Campbell, Crossing
+from gbeam.results.modal import Campbell, Crossing, Unstable
 
+NEARNESS = 0.2  # of a MAC: modes that are alike are told apart by their frequencies
+BESIDE = 1e-3  # of a critical speed: so near to it the equilibrium is looked at
+ENDS = 14  # halvings of a step in which a stretch of speed ends
 CONFIDENT = 0.9  # MAC: a mode less like itself from one speed to the next is looked at in between
 SURE = 0.95  # of a critical speed: nearer, a frequency goes to zero and has no relative error
 DEPTH = 8  # halvings of a step at most: faster veering looks like a crossing
@@ -50,9 +53,25 @@ class _Speed(NamedTuple):
         return self.state.directions(self.modes[:, which])
 
 
+def _alike(before: _Speed, after: _Speed) -> tuple[Floats, Floats]:
+    """MACs (k, l) of modes at two speeds, and these less what speaks against a pair: frequencies that are apart by more
+    than the speeds. Of a whirl that has changed its sense in between the conjugate is like the one before.
+    """
+    scores, macs = [], []
+    step = abs(after.rate - before.rate) / (2 * np.pi) or 1.0
+    for coordinates, frequency in ((after.coordinates, after.frequency), (after.coordinates.conj(), -after.frequency)):
+        apart = np.abs(before.frequency[:, None] - frequency) / step
+        macs.append(mac(before.coordinates, coordinates, after.mass))
+        scores.append(macs[-1] - NEARNESS * apart / (1 + apart))
+    return np.where(scores[0] >= scores[1], *macs), np.maximum(*scores)
+
+
 def _paired(before: _Speed, after: _Speed) -> tuple[np.ndarray, Floats]:
     """For each mode of `before` the index of the most similar one of `after`, −1 for none, and their MAC."""
-    return matched(mac(before.coordinates, after.coordinates, after.mass))
+    macs, scores = _alike(before, after)
+    match, value = matched(scores)[0], np.full(len(scores), np.nan)
+    value[match >= 0] = macs[match >= 0, match[match >= 0]]
+    return match, value
 
 
 def _fill(modes_at: Callable[[float], _Speed], low: _Speed, high: _Speed, count: int, depth: int) -> list[_Speed]:
@@ -66,7 +85,7 @@ def _fill(modes_at: Callable[[float], _Speed], low: _Speed, high: _Speed, count:
 
 def _tracked(speeds: Sequence[_Speed], kept: int) -> tuple[Floats, list[np.ndarray]]:
     """Frequency, damping ratio and MAC (3, v, k) of the first modes from speed to speed, and which modes they are at
-    each, −1 where none resembles them.
+    each, −1 where none resembles them. One that has ceased to oscillate goes on with one that begins to.
     """
     values, track = np.full((3, len(speeds), kept), np.nan), np.arange(kept)
     values[2, 0], index = 1.0, [track]
@@ -74,6 +93,9 @@ def _tracked(speeds: Sequence[_Speed], kept: int) -> tuple[Floats, list[np.ndarr
         match, likeness = _paired(before, after)
         values[2, len(index)] = np.where(track >= 0, likeness[track], np.nan)
         track = np.where(track >= 0, match[track], -1)
+        ended, begun = np.flatnonzero(track < 0), np.setdiff1d(np.arange(len(after.frequency)), match)
+        count = min(len(ended), len(begun))
+        track[ended[:count]] = begun[:count]
         index.append(track)
     for value, speed, track in zip(np.swapaxes(values, 0, 1), speeds, index, strict=True):
         valid = track >= 0
@@ -128,7 +150,8 @@ def campbell(
     Returns
     -------
     Campbell
-        Up to the critical speed, if there is one in the range.
+        Up to the critical speed, if there is one in the range and no speed beyond it is stable; else beyond it, with
+        the stretches of speed that are not.
 
     Raises
     ------
@@ -163,13 +186,30 @@ def campbell(
         else turned(structure, motion, turning, time, "a critical speed", INSTEAD, name, held=True)[0]
     )
     lost = first_lost_speed(structure, holding, end, progress)
-    # The last speed is short of the critical one, where a frequency is zero.
-    limit = lost.value if lost.outcome == "done" else lost.searched_to
-    last = end if limit is None or limit <= start else start + (limit - start) * (1 - 1e-6)
 
     @cache
     def point_at(rate: float) -> Any:
         return path(structure, rate)
+
+    @cache
+    def growth_at(rate: float) -> float:
+        """Rate of growth, 1/s; NaN without an equilibrium, zero of one that is stable."""
+        try:
+            return float(point_at(rate).moving.growing.real.max(initial=0.0))
+        except (ComputationError, np.linalg.LinAlgError):
+            return math.nan
+
+    def solve_ahead(rates: Floats) -> None:
+        if isinstance(path, Turning) and isinstance(structure, System):
+            path.ahead(structure, rates.tolist())
+
+    known = lost.outcome == "done"
+    limit = lost.value if known else lost.searched_to
+    critical = limit if limit is not None and limit > start else math.inf
+    solve_ahead(beyond := grid[grid > critical])
+    # Short of a critical speed, where a frequency is zero, unless a speed beyond it is known and stable.
+    ends = len(beyond) > 0 and (not known or all(growth_at(rate) != 0.0 for rate in beyond.tolist()))
+    last = start + (critical - start) * (1 - 1e-6) if ends else end
 
     @cache  # crossings ask again for speeds beside them
     def modes_at(rate: float) -> _Speed:
@@ -182,9 +222,10 @@ def campbell(
         return _Speed(rate, moving.frequency / (2 * np.pi), damping, moving.modes[first:].T, mass, state, moving.modes)
 
     rates = start + (grid - start) * (last - start) / (end - start)
-    if isinstance(path, Turning) and isinstance(structure, System):
-        path.ahead(structure, rates.tolist())
-    coarse = [modes_at(float(rate)) for rate in rates]
+    if critical < last:
+        rates = np.sort(np.append(rates, critical * (1 + BESIDE * np.array([-1.0, 1.0]))))
+    solve_ahead(rates)
+    coarse = [modes_at(rate) for rate in rates.tolist() if not math.isnan(growth_at(rate))]
     kept = min(modes, len(coarse[0].frequency))
     if not kept:
         held = "; ".join(lost.warnings) or "ask `gbeam modes` what holds or damps it"
@@ -193,6 +234,7 @@ def campbell(
     for low, high in pairwise(coarse):
         followed += [*_fill(modes_at, low, high, kept, DEPTH), high]
     (frequency, damping, alike), index = _tracked(followed, kept)
+    unstable = _stretches(np.union1d(rates, [speed.rate for speed in followed]).tolist(), growth_at)
     rates = np.array([speed.rate for speed in followed])
     met = [
         crossing
@@ -202,12 +244,11 @@ def campbell(
     ]
     crossings, errors = [crossing for crossing, _, _ in met], unknown_errors(structure, kept)
     if judgeable(structure):
-        until = len(rates) - 1 if lost.value is None else int(np.searchsorted(rates, SURE * last, "right")) - 1
-        fastest = point_at(float(rates[until]))
+        sound = np.flatnonzero(np.abs(rates / critical - 1) > 1 - SURE).tolist() or [0]
+        fastest: Any = followed[sound[-1]].state
         richer = Richer(fastest)
-        looked = [
-            _errors(richer, point_at(followed[i].rate), followed[i], index[i]) for i in sorted({0, until // 2, until})
-        ]
+        chosen = sorted({sound[0], sound[(len(sound) - 1) // 2], sound[-1]})
+        looked = [_errors(richer, followed[i].state, followed[i], index[i]) for i in chosen]
         parts: dict[str, Any] = {part: np.fmax.reduce([e.parts[part] for e in looked]) for part in PARTS}
         errors = replace(looked[0], **parts, theory=looked[-1].theory, growth=max(each.growth for each in looked))
         crossings = [
@@ -239,10 +280,47 @@ def campbell(
         orders=tuple(orders),
         crossings=tuple(sorted(crossings, key=lambda crossing: crossing.speed)),
         critical=lost if lost.value is not None else None,
+        unstable=unstable,
+        **_framed(followed, index),
         errors=errors,
         warnings=warnings,
         notes=notes_on({name: motion}),
     )
+
+
+def _stretches(rates: Sequence[float], growth_at: Callable[[float], float]) -> tuple[Unstable, ...]:
+    """Stretches of speed, among ascending ones, rad/s, in which something grows or there is no equilibrium."""
+
+    def end(low: float, high: float) -> float:
+        """Speed between two at which it is stable below and not above, or the other way round."""
+        stable = growth_at(low) == 0.0
+        for _ in range(ENDS):
+            middle = (low + high) / 2
+            low, high = (middle, high) if (growth_at(middle) == 0.0) == stable else (low, middle)
+        return (low + high) / 2
+
+    stretches = []
+    for stable, group in groupby(range(len(rates)), key=lambda i: growth_at(rates[i]) == 0.0):
+        if not stable:
+            first, *_, last = [*group] * 2
+            start = rates[0] if first == 0 else end(rates[first - 1], rates[first])
+            stop = rates[-1] if last == len(rates) - 1 else end(rates[last], rates[last + 1])
+            growth = np.array([growth_at(rates[i]) for i in range(first, last + 1)])
+            stretches.append(Unstable(start, stop, float(np.fmax.reduce(growth))))
+    return tuple(stretches)
+
+
+def _framed(speeds: Sequence[_Speed], index: Sequence[np.ndarray]) -> dict[str, Any]:
+    """Fields that say the frame of followed frequencies, with those in the ground frame where any is known."""
+    whirl, known = speeds[-1].state.whirl, np.full((len(speeds), len(index[0])), np.nan)
+    if whirl is None or not whirl.turning:
+        return {}
+    if np.isfinite(whirl.in_ground(speeds[-1].frequency, speeds[-1].modes)).any():
+        for row, speed, track in zip(known, speeds, index, strict=True):
+            modes, frequency, whirl = speed.modes[:, track], speed.frequency[track], speed.state.whirl
+            values = frequency if whirl is None else whirl.in_ground(frequency, modes)
+            row[:] = np.where(track >= 0, values, np.nan)
+    return {"frame": "turning", "ground_frequency": known if np.isfinite(known).any() else np.zeros((0, 0))}
 
 
 def _errors(richer: Richer, point: Any, speed: _Speed, track: np.ndarray) -> FrequencyErrors:
@@ -272,12 +350,13 @@ def _crossings(
     gap = frequency - order * rates / (2 * np.pi)
     crossings = []
     for i in np.flatnonzero((gap[:-1] > 0) & (gap[1:] <= 0) | (gap[:-1] < 0) & (gap[1:] >= 0)):
-        mode = speeds[i].coordinates[index[i][track]][None]
+        k = [index[i][track]]
+        mode = speeds[i]._replace(coordinates=speeds[i].coordinates[k], frequency=speeds[i].frequency[k])
 
-        def difference(rate: float, mode: Complex = mode) -> float:
+        def difference(rate: float, mode: _Speed = mode) -> float:
             """Frequency of the mode most like this one, less that of the order, Hz."""
             speed = modes_at(rate)
-            like = int(mac(mode, speed.coordinates, speed.mass)[0].argmax())
+            like = int(_alike(mode, speed)[1].argmax())
             return float(speed.frequency[like] - order * rate / (2 * np.pi))
 
         ends = difference(rates[i]), difference(rates[i + 1])
@@ -286,7 +365,7 @@ def _crossings(
         else:  # the mode veers within the step: interpolate the curve
             rate = rates[i] - gap[i] * (rates[i + 1] - rates[i]) / (gap[i + 1] - gap[i])
         speed = modes_at(rate)
-        like = int(mac(mode, speed.coordinates, speed.mass)[0].argmax())
+        like = int(_alike(mode, speed)[1].argmax())
         crossing = Crossing(track, order, float(rate), order * float(rate) / (2 * np.pi), speed.direction([like])[0])
         slope = 2 * np.pi * (frequency[i + 1] - frequency[i]) / (rates[i + 1] - rates[i])
         crossings.append((crossing, speed.coordinates[like], float(slope)))

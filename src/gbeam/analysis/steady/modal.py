@@ -10,7 +10,7 @@ import numpy as np
 from gbeam.analysis.accuracy.estimate import not_known
 from gbeam.analysis.steady.frequency_errors import BY_RICHER, Richer, doubtful, judgeable, unknown_errors
 from gbeam.analysis.steady.operating_point import OperatingPoint, drawn, extent, operating_point
-from gbeam.analysis.system.linear import instabilities, largest_component, system_modes
+from gbeam.analysis.system.linear import framed, instabilities, largest_component, system_modes
 from gbeam.analysis.system.steady import Drive, steady
 from gbeam.arrays.tree import each_leaf
 from gbeam.guards.arguments import typed
@@ -54,6 +54,7 @@ def modes_at(
         gyroscopic=gyroscopic,
         eigenvalue=moving.value,
         direction=direction,
+        **framed(point.whirl, moving.frequency / (2 * np.pi), moving.modes),
         coordinates=coordinates.T,
         stations=np.asarray(structure.stations),
         shape=shape / scale[:, None, None],

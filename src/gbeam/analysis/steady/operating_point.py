@@ -22,6 +22,7 @@ from gbeam.mechanics.plausibility import elastic_bend
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.eigen import Linear, Steady
+from gbeam.numerics.whirl import Whirl, whirl_of
 from gbeam.results.modal import outermost
 from gbeam.results.parts import Base
 
@@ -94,6 +95,17 @@ class OperatingPoint(Steady):
     def names(self) -> list[str]:
         """Names of the beam's coordinates."""
         return [f"{BEAM}.q{k + 1}" for k in range(self.structure.size)]
+
+    @property
+    def whirl(self) -> Whirl | None:
+        """Its stations as they turn in the ground frame; None where the base does not. On a free hub, which swings with
+        the beam, no frequency is known there.
+        """
+        places = self.structure.station_places.r0 + self.structure.displacement(self.q)
+        slopes = np.pad(self.structure.station_slopes(self.q), ((0, 0), (0, 0), (self.first, 0)))
+        base = (np.asarray(each) for each in (self.base.w_WB_B, self.base.a_WO_B))
+        whirl = whirl_of(places[None], slopes[None], 0.0, *base)
+        return whirl._replace(rate=math.nan) if whirl and self.first else whirl
 
     def richer(self, structure: Structure) -> OperatingPoint:
         """Relative equilibrium of another structure in the same motion, under the same loads."""

@@ -31,6 +31,7 @@ from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion, notes_on
 from gbeam.numerics.eigen import Steady, Vibrations
 from gbeam.numerics.series import STEP
+from gbeam.numerics.whirl import Whirl
 from gbeam.results.errors import Instability
 from gbeam.results.state_space import Signal, StateSpace
 from gbeam.results.system import BeamShape, SystemModes, SystemRest
@@ -103,7 +104,9 @@ def system_modes(state: SteadySystem, moving: Vibrations, time: float, name: str
     scale = np.where(largest == 0, 1, largest)
     warnings = state.warnings + open_loops(system) + state.point.sticking(system)
     reduced = [each for each in system.flexible.values() if each.resolved < each.size]
+    of_frame = framed(state.whirl, moving.frequency / (2 * np.pi), moving.modes)
     if state.changing:
+        of_frame.pop("ground_frequency", None)
         warnings += (f"the system turns, and its equations with it: these are modes of the place at {time:g} s",)
     return SystemModes(
         name=name,
@@ -114,6 +117,7 @@ def system_modes(state: SteadySystem, moving: Vibrations, time: float, name: str
         shape=shape / scale[:, None, None],
         turn=turn / scale[:, None, None],
         share=state.shares(moving.modes),
+        **of_frame,
         place=np.stack([frame.p for frame in state.frames]),
         attitude=parameters_of_all(np.stack([frame.R for frame in state.frames])),
         assembly=assembly_of(system),
@@ -130,6 +134,13 @@ def system_modes(state: SteadySystem, moving: Vibrations, time: float, name: str
         warnings=warnings,
         notes=notes_on({name: state.drive.motion}),
     )
+
+
+def framed(whirl: Whirl | None, frequency: Floats, modes: Complex) -> dict[str, Any]:
+    """Fields of a result that say the frame of frequencies (k,) Hz of modes (n, k), with those in the ground frame."""
+    if whirl is None or not whirl.turning:
+        return {}
+    return {"frame": "turning", "ground_frequency": whirl.in_ground(frequency, modes)}
 
 
 def largest_component(shape: Complex) -> Complex:

@@ -19,12 +19,24 @@ from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.signals import local_names
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
-from gbeam.numerics.balance import SAME, answered, balanced, carried, loose, pulled, rooted, turning_on, unheld
+from gbeam.numerics.balance import (
+    SAME,
+    answered,
+    balanced,
+    carried,
+    loose,
+    pulled,
+    relaxation,
+    rooted,
+    turning_on,
+    unheld,
+)
 from gbeam.numerics.series import STEP
 
-ITERATIONS = 50
+ITERATIONS, RELAXING = 50, 100
 MASSLESS = 1e-13  # of the largest: a smaller inertia is rounding
-FEW, NEAR = 8, 0.1  # corrections of several states at once, and how far these may lead: m, rad or strain
+FEW = 8  # corrections of several states at once
+NEAR = 0.1  # m, rad or strain: a state so near to where its search begins is that which is meant
 SHORTEST = 1 / 64  # share of what is out of balance that is taken away at once
 NONE = 1e-6  # m/s² or rad/s²: a smaller acceleration is rounding
 CLOSE = 1e-12  # of the coordinates: where the next correction would be smaller, they have converged
@@ -252,16 +264,20 @@ def adrift(point: Point, left: Floats, slope: Sequence[Floats]) -> Flags:
     return np.any([slides, *(turn for turn, turns_on in zip(turning, free, strict=True) if turns_on)], axis=0)
 
 
-def _newton(point: Point, left_over: Floats) -> tuple[Point, tuple[Floats, ...], Floats, bool]:
-    """Solve residual = `left_over` (n,) by Newton's method: the point, K, C, M, last correction, True if converged."""
+def _newton(
+    point: Point, left_over: Floats, *, relaxing: bool = False
+) -> tuple[Point, tuple[Floats, ...], Floats, bool]:
+    """Solve residual = `left_over` (n,) by Newton's method: the point, K, C, M, last correction, True if converged. If
+    `relaxing` each correction goes down the forces, as the tree itself would, and so ends where the stiffness holds.
+    """
     before, tree, accelerated = 0.0, point.tree, point.tree.sliding
     if accelerated.any() or tree.turning:
         left, *slope = point.slopes()
         accelerated = adrift(point, left, slope)
         point = replace(point, ydd=point.ydd + pulled(left - left_over, slope[-1], accelerated))
-    for _ in range(ITERATIONS):
+    for _ in range(RELAXING if relaxing else ITERATIONS):
         left, k, c, m = point.slopes()
-        change, _ = balanced(left - left_over, k, m, accelerated)
+        change = relaxation(left, k, m, accelerated) if relaxing else balanced(left - left_over, k, m, accelerated)[0]
         size = float(np.abs(change).max(initial=0.0))
         # Steps of a radian at most: a beam far from its equilibrium turns by as much.
         point = replace(point, y=point.y + change / max(1.0, size))
@@ -272,7 +288,7 @@ def _newton(point: Point, left_over: Floats) -> tuple[Point, tuple[Floats, ...],
         limit = CLOSE * (1.0 + np.abs(point.y).max(initial=0.0))
         if min(size, 1.0) * min(size / before if before else 1.0, 1.0) <= limit:
             return point, (k, c, m), change, True
-        before = size
+        before = min(size, 1.0)  # as much as was taken of it
     return point, (k, c, m), change, False
 
 
@@ -341,6 +357,17 @@ def rested(system: System, tree: Tree, inputs: Inputs, start: Floats | None = No
             name = _farthest(system, tree, change)
             problem = f"no place was found in which the system rests: {name} goes on and on; hold what is free"
             raise ComputationError("no equilibrium", problem)
+    return _steady(system, point, slope)
+
+
+def relaxed(system: System, tree: Tree, inputs: Inputs, start: Floats) -> Point:
+    """State of rest, as of `rested`, to which a tree goes from coordinates `start` down its forces; ComputationError
+    where it goes on.
+    """
+    still = np.zeros(len(tree.free))
+    point, slope, _, converged = _newton(Point(tree, start[tree.free], still, still, inputs), still, relaxing=True)
+    if not converged:
+        raise ComputationError("no equilibrium", "no place was found in which the system comes to rest")
     return _steady(system, point, slope)
 
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
-from gbeam.analysis.system.point import NONE, Point, adrift, rested, rested_together, started
+from gbeam.analysis.system.point import NEAR, NONE, Point, adrift, relaxed, rested, rested_together, started
 from gbeam.analysis.system.solution import Solution
 from gbeam.arrays.types import Complex, Flags, Floats
 from gbeam.constants import BY_STRAINS
@@ -19,7 +20,7 @@ from gbeam.mechanics.tree.frames import Frame, turned_back
 from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.signals import deforming, local_names
 from gbeam.mechanics.tree.steps import turned_on
-from gbeam.mechanics.tree.system import System
+from gbeam.mechanics.tree.system import ROOT, System
 from gbeam.motion.hub import Hub
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.balance import balanced, carried, following
@@ -32,6 +33,7 @@ from gbeam.numerics.eigen import (
     symmetric_modes,
 )
 from gbeam.numerics.series import STEP
+from gbeam.numerics.whirl import QUARTERS, Whirl, whirl_of
 from gbeam.results.errors import Accelerated
 
 MASSLESS = "no positive mass"  # an outcome
@@ -224,6 +226,18 @@ class SteadySystem(Steady):
         return whole
 
     @property
+    def grows(self) -> bool:
+        """True if a small departure grows; False where that is not known."""
+        with suppress(ComputationError):
+            return len(self.moving.growing) > 0
+        return False
+
+    def moved(self, start: Floats) -> float:
+        """Largest distance of a joint's coordinate, m or rad, from coordinates `start` (n,)."""
+        joints = [".q" not in name for name in self.system.coordinates]
+        return float(np.abs((self.coordinates - start)[joints]).max(initial=0.0))
+
+    @property
     def names(self) -> list[str]:
         """Names of the local coordinates: those of the system, Euler parameters but for the first one as rotations."""
         local = local_names(self.system.coordinates)
@@ -259,6 +273,21 @@ class SteadySystem(Steady):
         skew = np.stack([R.imag @ np.swapaxes(R.real, -1, -2) / STEP for R in rotations])
         turns = np.stack([skew[..., 2, 1], skew[..., 0, 2], skew[..., 1, 0]], axis=1)
         return np.stack([frame.p.imag.T / STEP for frame in frames]), turns
+
+    @property
+    def whirl(self) -> Whirl | None:
+        """Its points, of rigid bodies the roots, as they turn in the ground frame; None where nothing turns."""
+        ground, prescribed = self.local.inputs.ground, self.local.inputs.prescribed
+        driven = self.drive.rate if self.drive.coordinate else None
+        rates = np.append(0.0 if prescribed is None else prescribed[1], driven or 0.0)
+        rate = float(np.abs(rates).max())
+        of_points = ((body, point) for body in self.system.order for point in self.system.points_of(body))
+        kept = [k for k, (body, point) in enumerate(of_points) if body in self.system.flexible or point == ROOT]
+        angles = QUARTERS if rate > STILL else np.zeros(1)
+        states = [replace(self, point=self._turned(angle), known=None) if angle else self for angle in angles]
+        places = np.array([[frame.p for frame in state.frames] for state in states])[:, kept]
+        slopes = np.array([np.concatenate(state.slopes_of_frames, axis=1) for state in states])[:, kept]
+        return whirl_of(places, slopes, rate, np.asarray(ground.w), np.asarray(ground.a))
 
     @property
     def slopes_of_points(self) -> Floats:
@@ -298,7 +327,13 @@ class SteadySystem(Steady):
     def richer(self, system: System) -> SteadySystem:
         """State of a system with richer bodies under the same drives; ComputationError if it has none."""
         try:
-            return (beginning if self.begins else steady)(system, self.drive)
+            if self.begins:
+                return beginning(system, self.drive)
+            # Joints begin where they rest here: there may be several places.
+            resting = zip(self.system.coordinates, self.coordinates, strict=True)
+            joints = {name: value for name, value in resting if ".q" not in name}
+            pairs = zip(system.coordinates, system.start[0], strict=True)
+            return steady(system, self.drive, start=np.array([joints.get(*pair) for pair in pairs]))
         except InputError as error:
             raise ComputationError("no equilibrium", f"with richer bodies, {error}") from error
 
@@ -311,9 +346,9 @@ class SteadySystem(Steady):
         square, modes = symmetric_modes(*(symmetric(each) for each in (self.linear.stiffness, self.linear.mass)))
         rate = np.sqrt(np.abs(square))
         rate = np.maximum(rate, 1e-6 * rate.max(initial=0.0) or 1.0)
-        left, *before = self._slopes_after(0.0)
+        left, *before = self._turned(0.0).local.slopes()
         for turn in TURNS:
-            left_after, *after = self._slopes_after(turn)
+            left_after, *after = self._turned(turn).local.slopes()
             moved = np.append(*balanced(left_after - left, before[0], before[2], self.adrift))
             # K, C and M in modes of unit mass, over their frequencies.
             pairs = zip(before, after, (1.0, 0.5, 0.0), strict=True)
@@ -322,8 +357,8 @@ class SteadySystem(Steady):
                 return True
         return False
 
-    def _slopes_after(self, turn: float) -> tuple[Floats, ...]:
-        """Residual, K, C and M with all that turns ahead by an angle, rad, and the other coordinates as they are."""
+    def _turned(self, turn: float) -> Point:
+        """The point with all that turns ahead by an angle, rad, and the other coordinates as they are."""
         tree, inputs = self.point.tree, replace(self.drive, turn=turn).inputs(self.system)
         y, prescribed = np.array(self.point.y), inputs.prescribed
         if self.drive.coordinate:
@@ -336,15 +371,15 @@ class SteadySystem(Steady):
             efforts=self.point.inputs.efforts,
             prescribed=None if prescribed is None or not prescribed.size else prescribed,
         )
-        return replace(self.point, y=y, inputs=inputs).local.slopes()
+        return replace(self.point, y=y, inputs=inputs)
 
 
 def steady(system: System, drive: Drive, *, held: bool = False, start: Floats | None = None) -> SteadySystem:
     """System in equilibrium relative to what turns, whose coordinate is free, under the effort that it needs, unless
-    `held`. The search begins at coordinates `start`, by default those of the joints.
+    `held`. The search begins at coordinates `start`, by default those of the joints. Where it ends nowhere, or far from
+    there in a state that is unstable, the system goes from there down its forces, to one that is stable if it can.
     """
-    tree, inputs = _held(system, drive), drive.inputs(system)
-    state = SteadySystem(system, drive, rested(system, tree, inputs, start))
+    state = _branch(system, drive, system.start[0] if start is None else start)
     if state.accelerated and state.changing:
         names = " and ".join(each.coordinate for each in state.accelerated)
         problem = f"{names} is accelerated by what turns, and not evenly: hold it, or take away what pushes it"
@@ -355,6 +390,24 @@ def steady(system: System, drive: Drive, *, held: bool = False, start: Floats | 
 def beginning(system: System, drive: Drive) -> SteadySystem:
     """System in motion as it starts, its bodies bent as in inertia relief, so that none of them is shaken."""
     return SteadySystem(system, drive, started(system, drive.motion, drive.time, "relief"), begins=True)
+
+
+def _branch(system: System, drive: Drive, start: Floats) -> SteadySystem:
+    """The equilibrium of :func:`steady`, what turns held."""
+    parts, state, lost = (system, _held(system, drive), drive.inputs(system), start), None, None
+    try:
+        state = SteadySystem(system, drive, rested(*parts))
+        if state.moved(start) <= NEAR or not state.grows:
+            return state
+    except ComputationError as error:
+        lost = error
+    with suppress(ComputationError, np.linalg.LinAlgError):
+        other = SteadySystem(system, drive, relaxed(*parts))
+        if state is None or not other.grows:
+            return other
+    if state is None:
+        raise lost or ComputationError("no equilibrium", "")
+    return state
 
 
 def _held(system: System, drive: Drive) -> Tree:

@@ -143,6 +143,8 @@ def _value(kind: type, name: str, declaration: Declaration, facts: Facts) -> Any
             return read(inner, {part: [cell[part] for cell in cells] for part in names}) if names else None
         if "tuple" in hint:
             return tuple(cells)
+        if len(declaration.dims) > 1 and all(cell is None for cell in cells):
+            return None
         arrays = [_bare(np.nan if cell is None else cell, hint, declaration) for cell in cells]
         return np.stack(arrays, declaration.dims.index(row_dim)) if arrays else None
     value = facts if key == INSIDE else _at(facts, key)
