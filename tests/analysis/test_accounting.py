@@ -13,6 +13,7 @@ from gbeam import Comparison, InputError, Response, compare
 from gbeam.analysis.imitation.accounting import History, account
 from gbeam.arrays.tree import each_leaf
 from gbeam.report.machine import accounting_lines as lines
+from gbeam.report.machine import judged_lines
 from gbeam.results.facts import facts_of
 from gbeam.results.machine import AxesResult, LimitUse
 from gbeam.results.parts import Base
@@ -154,6 +155,11 @@ def test_accepted_by_each_limit(pair: tuple[Response, Response]) -> None:
     for name, limit in {"tip": 0.009, "peaks": 0.009, "followed": 0.19}.items():
         bad = compare(*reproduced(), accept=one | {name: limit})
         assert bad.accepted is False and [each.name for each in bad.criteria if not each.passed] == [name]
+        # What is kept does not stand under what is not.
+        refused, kept = list(judged_lines(bad))[:2]
+        assert refused == f"not accepted: {bad.refusal}" and refused.count("(") == 1
+        assert kept.startswith("kept: ") and name not in kept and kept.count("(") == 3
+    assert next(judged_lines(good)).startswith("accepted: tip -1 % (limit 1.1 %), peaks 1 % at 4.00 s (limit 1.1 %), ")
     # What is not known is not accepted.
     unknown = compare(*reproduced(), accept={"root_moment": 0.5})
     assert unknown.accepted is False and str(unknown.criteria[0]) == "root_moment unknown (limit 50 %)"
@@ -167,7 +173,12 @@ def test_limits_that_mean_nothing(accept: dict[str, float]) -> None:
 
 def test_the_tolerance_decides(pair: tuple[Response, Response]) -> None:
     wide = compare(*pair, tolerance=0.5).accounting
-    assert wide.followed_share == pytest.approx(1.0) and not wide.missed and not wide.preloads
+    assert wide.followed_share == pytest.approx(1.0) and not wide.preloads
+    # Of a peak's own size: 3.55 g made as 1.4 g, and 5 g turned by 30°, are within half of 10 g.
+    assert [(peak.load / G, peak.error > 0.5) for peak in wide.missed] == [(pytest.approx(s), True) for s in (3.55, 5)]
+    for tolerance in (0.01, 0.02, 0.1, 0.2, 0.51, 0.55, 0.7):
+        some = compare(*pair, tolerance=tolerance).accounting
+        assert [bool(peak.reason) for peak in some.peaks] == [peak.error > tolerance for peak in some.peaks]
     assert facts_of(wide)["tolerance_load"] == pytest.approx(5 * G) and facts_of(wide)["tolerance_of"] == "peak"
     with pytest.raises(InputError, match="tolerance_of"):
         compare(*pair, tolerance_of="time")

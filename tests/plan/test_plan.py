@@ -10,9 +10,13 @@ import pytest
 import xarray as xr
 from scipy.io import loadmat
 
+from gbeam.analysis.imitation.plan import plan
 from gbeam.cli import main
 from gbeam.cli.process import FIGURES
+from gbeam.report.page.result import report_of
+from gbeam.scenario import build_machines, load_environments
 
+from ..report.test_page import plots_of
 from ..scenarios import SPECIMEN, model
 
 PLAN = """\
@@ -49,6 +53,20 @@ def scenario(tmp_path: Path) -> Path:
     file = tmp_path / "plan.toml"
     file.write_text(PLAN, encoding="utf-8")
     return file
+
+
+def test_a_plans_figure_and_page_draw_the_flight(scenario: Path) -> None:
+    """Its load from its first to its last time, 2 g, 6 g and the ramps between, in g, and all else in g beside it."""
+    (machine,) = build_machines(load_environments(scenario)).values()
+    answer = plan("spin", machine, "flight")
+    size, *_, error = answer.plot("tracking")
+    assert size.get_ylabel() == "size, g" and error.get_ylabel() == "tracking error, g"
+    drawn = {line.get_label(): line.get_xydata() for line in size.get_lines()}
+    time, load_of_flight = drawn["flight"].T
+    assert (time[0], time[-1]) == pytest.approx((0, 3), abs=2e-3)
+    np.testing.assert_allclose(load_of_flight, np.interp(time, [0.5, 1.5, 2.0, 3.0], [2, 6, 6, 2]), rtol=1e-6)
+    lines = plots_of(report_of(answer))["spin: load at the control point: flight's, the target and the machine's: size"]
+    assert lines["flight"].max() == pytest.approx(6, rel=1e-5) and {"target", "machine"} < lines.keys()
 
 
 def test_a_plan_needs_no_beam(scenario: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -246,7 +264,8 @@ def test_the_load_is_compared_with_the_flight_and_not_only_with_the_rounded_targ
     assert rounding - off <= spin["flight_error"]["max"] <= 1.001 * rounding
     assert main(["plan", str(scenario), *exact]) == 0
     words = " ".join(capsys.readouterr().out.split())
-    assert f"; the flight's own load, whose corners it rounds, within {spin['flight_error']['max']:.3f} m/s²" in words
+    within = f"{spin['flight_error']['max'] / 9.80665:.3g} g"
+    assert f"; the flight's own load, whose corners it rounds, within {within}" in words
 
 
 def test_run_names_the_limits_too(scenario: Path, capsys: pytest.CaptureFixture[str]) -> None:

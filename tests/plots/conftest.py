@@ -58,7 +58,7 @@ def study() -> Study:
     )
     axes = AxesResult(
         rate, rate, 2 * rate * [1, -1, 1], load, load + off, held, ((0.505, 0.795, "below idle"),), limits,
-        jerk=3 * rate, span=(0.1, 1.9),
+        jerk=3 * rate, span=(0.1, 1.9), flight=flight.base.a_WO_B,
     )  # fmt: skip
     hub = HubResult(TIME, 2 * TIME, np.full_like(TIME, 2.0), np.cos(TIME))
     spin = replace(_response("spin", "centrifuge", 4.0), axes=axes)

@@ -148,8 +148,8 @@ def test_a_direction_that_hardly_moves_is_named(study: Study) -> None:
 
 
 def test_flight_is_seen_below_what_imitates_it(study: Study) -> None:
-    spin, flight = study.responses["spin"], study.responses["flight"]
-    figures = plot_tip(study), plot_tracking(spin, spin.axes, "", flight), plot_comparison(_with_root(study))
+    spin = study.responses["spin"]
+    figures = plot_tip(study), plot_tracking(spin, spin.axes), plot_comparison(_with_root(study))
     for figure in figures:
         by_name = {line.get_label(): line for line in figure.axes[0].get_lines()}
         flown, machine = by_name["flight"], by_name.get("spin", by_name.get("machine"))
@@ -203,14 +203,16 @@ def test_power_limits_the_arms_acceleration(study: Study) -> None:
 
 def test_tracking(study: Study) -> None:
     spin = study.responses["spin"]
-    figure = plot_tracking(spin, replace(spin.axes, idle=14.0), "t", study.responses["flight"])
+    figure = plot_tracking(spin, replace(spin.axes, idle=14.0), "t")
     _assert_labelled(figure)
     size, z, error = figure.axes
     assert list(_lines(size)) == ["flight", "target", "machine", "idle"]
+    flown = next(line for line in size.get_lines() if line.get_label() == "flight").get_xdata()
+    assert (flown[0], flown[-1]) == pytest.approx(spin.axes.span)  # between spin-up and spin-down
     np.testing.assert_allclose(_lines(size)["machine"], spin.axes.actual[:, 2] / 9.80665)
-    assert z.get_ylabel() == "z, g0" and error.get_ylabel() == "tracking error, m/s²"
+    assert z.get_ylabel() == "z, g" and error.get_ylabel() == "tracking error, g"
     # Scaled to what is followed: 0.6 m/s² at the end, not the 9 m/s² where the target is held.
-    assert error.get_ylim()[1] == pytest.approx(0.63) and all(_shaded(panel) for panel in figure.axes)
+    assert error.get_ylim()[1] == pytest.approx(0.63 / 9.80665) and all(_shaded(panel) for panel in figure.axes)
 
 
 def test_hub_without_a_torque(study: Study) -> None:
@@ -245,11 +247,12 @@ def test_comparison(study: Study) -> None:
     drawn = plot_shock(full, shock, "t").axes
     assert len(drawn) == 3  # in the order of the figures: the axis that moves most first
     assert drawn[0].get_xscale() == drawn[0].get_yscale() == "log"
-    np.testing.assert_array_equal(_lines(drawn[0])["flight"], spectra[:, 2])
-    np.testing.assert_array_equal(_lines(drawn[0])["spin"], 2 * spectra[:, 2])
+    np.testing.assert_allclose(_lines(drawn[0])["flight"], spectra[:, 2] / 9.80665)
+    np.testing.assert_allclose(_lines(drawn[0])["spin"], 2 * spectra[:, 2] / 9.80665)
+    assert drawn[0].get_ylabel().endswith(", g")
     beside = replace(shock, flight=spectra * [1, 0, 0], centrifuge=spectra * [1, 0, 0])  # of a sensor that is turned
     (only,) = plot_shock(full, beside, "t").axes
-    np.testing.assert_array_equal(_lines(only)["flight"], spectra[:, 0])
+    np.testing.assert_allclose(_lines(only)["flight"], spectra[:, 0] / 9.80665)
 
 
 def _with_root(study: Study) -> Comparison:

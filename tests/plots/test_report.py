@@ -18,8 +18,8 @@ def test_summary_names_what_matters(study: Study) -> None:
     assert said.startswith("a title\n")
     assert "spin (centrifuge): done" in said and "flight: done" in said
     assert "FOAM, newmark, 2000 steps of 1.000 ms; estimated error 0.0010 % (step 0.00080, model 0.00020)" in said
-    # Largest while not held: at the end, not the 9 m/s² in between.
-    assert "target followed within 0.600 m/s² (1.0 % of it) at 2.000 s" in said
+    # Largest while not held: 0.6 m/s² at the end, not the 9 m/s² in between.
+    assert "flight's own load followed within 0.0612 g (1.0 % of it) at 2.000 s" in said
     assert "target held 0.505 to 0.795 s: below idle" in said
     assert "hub: angle at the end 2.000 rad, largest rate 4.000 rad/s" in said
     verdict = study.comparisons[0].verdict
@@ -70,3 +70,14 @@ def test_json_has_null_for_what_is_no_number(study: Study) -> None:
     spin = json.loads(as_json(to_json(Study("", {"spin": response}, ()))))["motions"]["spin"]
     assert spin["step"] is None and spin["error_estimate"] is None
     assert spin["tracking_error"] == {"max": None, "time_of_max": None, "fraction": None}
+
+
+def test_steps_add_up_to_the_time(study: Study) -> None:
+    """Those of a machine's ways from and to standstill are the results', longer than the flight's refined ones."""
+    spin = replace(study.responses["spin"], steps=1820)
+    assert spin.steps_in_words == "1800 steps of 1.000 ms, 20 of 10.00 ms from and to standstill"
+    np.testing.assert_allclose(1800 * 1e-3 + 20 * 10e-3, spin.time[-1] - spin.time[0])
+    assert f"FOAM, newmark, {spin.steps_in_words}; " in text(replace(study, responses={"spin": spin}, comparisons=()))
+    assert spin.steps_in_words in repr(spin)
+    for same in (study.responses["flight"], replace(spin, step=0.01)):
+        assert same.steps_in_words == f"{same.steps} steps of {1e3 * same.step:#.4g} ms"

@@ -129,7 +129,8 @@ def test_a_run_of_a_system_that_is_not_accepted_fails(tmp_path: Path, capsys: py
     short = ["--set", "response.step=20 ms", "--out", str(tmp_path / "out"), "--report"]
     assert main(["run", str(file), *short]) == 1
     printed = capsys.readouterr()
-    assert "motion.centrifuge not accepted: damage" in printed.err and "not accepted: tip" in printed.out
+    assert "motion.centrifuge not accepted: damage" in printed.err
+    assert "  not accepted: damage" in printed.out and "  kept: tip" in printed.out
     assert "from standstill to standstill" in printed.out and "the tip is strip.tip" in printed.out
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     assert "Verdict" in page and "not accepted" in page

@@ -156,18 +156,16 @@ def _of_sweep(result: Sweep, title: str) -> dict[str, Describe]:
     return described | {f"{name} history": partial(studies.history, result, name, title) for name in result.histories}
 
 
-def _of_machine(
-    result: Response | MachinePlan | SystemResponse, axes: AxesResult, title: str, flight: Response | None = None
-) -> dict[str, Describe]:
+def _of_machine(result: Response | MachinePlan | SystemResponse, axes: AxesResult, title: str) -> dict[str, Describe]:
     """Figures of a machine: tracking of the load, and rate, acceleration and, if known, jerk of its axes."""
     quantities = ("rate", "acceleration", *(["jerk"] if axes.jerk is not None else []))
     return {
-        "tracking": partial(response.tracking, result, axes, title, flight),
+        "tracking": partial(response.tracking, result, axes, title),
         **{f"axes_{each}": partial(response.axes_of, result, axes, each, title) for each in quantities},
     }
 
 
-def _of_response(result: Response, title: str, flight: Response | None = None) -> dict[str, Describe]:
+def _of_response(result: Response, title: str) -> dict[str, Describe]:
     """Functions that describe the figures of a response but for its tip, of what it holds, by name."""
     described: dict[str, Describe] = {}
     if result.specimen is not None:
@@ -178,7 +176,7 @@ def _of_response(result: Response, title: str, flight: Response | None = None) -
     if result.loads is not None and result.specimen is None:
         described["loads"] = partial(response.loads, result, result.loads, title)
     if result.axes is not None:
-        described |= _of_machine(result, result.axes, title, flight)
+        described |= _of_machine(result, result.axes, title)
     if result.hub is not None:
         described["hub"] = partial(response.hub, result, result.hub, title)
     if result.solid is not None:
@@ -202,9 +200,8 @@ def _of_study(study: Study, title: str) -> dict[str, Describe]:
     described: dict[str, Describe] = {"tip": partial(response.tip, study)} if moving else {}
     if sum(each.loads is not None for each in study.responses.values()) > 1:
         described["sizes"] = partial(response.sizes, study)
-    flights = {each.centrifuge: study.responses.get(each.flight) for each in study.comparisons}
     for name, each in study.responses.items():
-        of_each = _of_response(each, title, flights.get(name))
+        of_each = _of_response(each, title)
         described |= {f"{kind} {name}": describe for kind, describe in of_each.items()}
     return described | _compared(study.comparisons, title)
 

@@ -226,7 +226,7 @@ _UNITS = {
     "N": ((0.0, 1e3, "mN"), (0.1, 1.0, "N"), (1e4, 1e-3, "kN")),
     "N m": ((0.0, 1e3, "mN m"), (0.01, 1.0, "N m"), (1e4, 1e-3, "kN m")),
     "Pa": ((0.0, 1e-3, "kPa"), (1e5, 1e-6, "MPa")),
-    "m/s^2": ((0.0, 1.0, "m/s²"), (0.5 * STANDARD_GRAVITY, 1 / STANDARD_GRAVITY, "g0")),
+    "m/s^2": ((0.0, 1.0, "m/s²"), (0.5 * STANDARD_GRAVITY, 1 / STANDARD_GRAVITY, "g")),
 }
 _READABLE = (0.01, 1e4)  # beyond it a power of ten goes to the axis
 

@@ -86,12 +86,13 @@ def _mismatch(c: Comparison, axis: int) -> Iterator[_Part]:
 def shock(comparison: Comparison, spectra: Shock, title: str = "") -> Figure:
     """Describe the shock response spectra, along the axes in which they are not small."""
     panels, main = [], comparison.main_axis
+    scale, unit = scale_of("m/s^2", spectra.flight, spectra.centrifuge)
     for axis in sorted(moving(spectra.flight, spectra.centrifuge), key=lambda k: k != main):
         lines = (
-            Line(spectra.frequency, spectra.flight[:, axis], comparison.flight, **FLIGHT),
-            Line(spectra.frequency, spectra.centrifuge[:, axis], comparison.centrifuge, **imitating(0)),
+            Line(spectra.frequency, scale * spectra.flight[:, axis], comparison.flight, **FLIGHT),
+            Line(spectra.frequency, scale * spectra.centrifuge[:, axis], comparison.centrifuge, **imitating(0)),
         )
-        label = f"largest acceleration along {'xyz'[axis]}, m/s²"
+        label = f"largest acceleration along {'xyz'[axis]}, {unit}"
         panels.append(Panel(label, lines, x="frequency of the oscillator, Hz", logarithmic=True, height=1.6))
     subject = f"shock response of the acceleration of {spectra.control}, Q = {spectra.quality:g}"
     return Figure(title, subject, tuple(panels))

@@ -293,7 +293,7 @@ def _plain(value: float) -> str:
     return f"{rounded:.0f}" if 1000 <= rounded < 1e6 else f"{rounded:g}"
 
 
-def tracking(response: PlotHeading, axes: AxesResult, title: str = "", flight: Response | None = None) -> Figure:
+def tracking(response: PlotHeading, axes: AxesResult, title: str = "") -> Figure:
     """Figure of the load at the control point over time: size and components, target, machine's and flight's."""
     components = moving(axes.actual, axes.reference)  # those that are not negligible
     time = response.time
@@ -302,24 +302,25 @@ def tracking(response: PlotHeading, axes: AxesResult, title: str = "", flight: R
         (time, axes.reference, "target", {"colour": REFERENCE, "dash": "dashed"}),
         (time, axes.actual, "machine", imitating(0)),
     ]
-    if flight is not None:
-        loads.insert(0, (flight.time, flight.base.a_WO_B, "flight", FLIGHT))
+    if axes.flight is not None:
+        near = 1e-9 * (time[-1] - time[0])
+        flown = (time >= axes.span[0] - near) & (time <= axes.span[1] + near)
+        loads.insert(0, (time[flown], axes.flight[flown], "flight", FLIGHT))
     size = tuple(Line(times, scale * np.linalg.norm(load, axis=1), name, **look) for times, load, name, look in loads)
     idle = (Level(scale * axes.idle, "idle", "dotted"),) if axes.idle > 0 else ()
     panels = [Panel(f"size, {unit}", size, levels=idle, zero=True)]
     for i in components:
         lines = tuple(Line(times, scale * load[:, i], name, **look) for times, load, name, look in loads)
         panels.append(Panel(f"{'xyz'[i]}, {unit}", lines, named=False, height=0.8))
-    panels.append(_error(time, axes))
+    panels.append(_error(time, axes, scale, unit))
     spans = stretches(axes, time)
     about = of_motion(response.name, "load at the control point: flight's, the target and the machine's")
     return Figure(title, about, tuple(replace(each, spans=spans) for each in panels), outcomes=(response.outcome,))
 
 
-def _error(time: Floats, axes: AxesResult) -> Panel:
-    """Panel of the tracking error, scaled to the times that are followed."""
+def _error(time: Floats, axes: AxesResult, scale: float, unit: str) -> Panel:
+    """Panel of the tracking error, in the unit of the loads, scaled to the times that are followed."""
     error, followed = axes.tracking_error, ~axes.not_followed
-    scale, unit = scale_of("m/s^2", error[followed])
     ends = ends_of(followed, scale * error)
     # Below a millionth of the load it is rounding, and shown as none.
     top = max(ends[1] if ends else 1.05 * scale * float(error.max()), 1e-6 * scale * largest(axes.reference)) or 1.0

@@ -24,7 +24,7 @@ from gbeam.report.blocks import (
     named,
     table,
 )
-from gbeam.report.words import known, number, percent, sentence
+from gbeam.report.words import known, percent, sentence
 from gbeam.results.accounting import QUANTITIES, Accounting, PeakPair, change, in_g
 from gbeam.results.accounting import percent as share_of
 from gbeam.results.criteria import GOOD, RULES, STRESS_AT, Judged
@@ -53,11 +53,11 @@ def followed(facts: Mapping[str, Any]) -> str:
 
 
 def _within(error: Mapping[str, Any]) -> str:
-    """Words for an error of the load, in m/s² and as a share, and its time."""
+    """Words for an error of the load, in g and as a share, and its time."""
     if error["fraction"] is not None and error["fraction"] < _EXACT:
         return "exactly"
     share = math.nan if error["fraction"] is None else error["fraction"]
-    return f"within {number(error['max'], 3)} m/s² ({percent(share)} of it) at {error['time_of_max']:.3f} s"
+    return f"within {in_g(error['max'])} ({percent(share)} of it) at {error['time_of_max']:.3f} s"
 
 
 def ends_line(time: Floats, axes: AxesResult) -> str:
@@ -89,9 +89,11 @@ SHOWN = 8  # peaks and stretches listed; a rough record has hundreds
 def judged_lines(judged: Judged) -> Iterator[str]:
     """Say what was accepted, then the accounting."""
     if judged.criteria:
-        held = "accepted" if judged.accepted else "not accepted"
         part = f" for {judged.part} only" if judged.part else ""
-        yield f"{held}{part}: {', '.join(map(str, judged.criteria))}"
+        if not judged.accepted:
+            yield f"not accepted{part}: {judged.refusal}"
+        if kept := ", ".join(str(each) for each in judged.criteria if each.passed):
+            yield f"{'accepted' if judged.accepted else 'kept'}{part}: {kept}"
     if judged.not_judged:
         yield f"not judged, as it needs the response, which `gbeam run` has: {', '.join(judged.not_judged)}"
     yield from accounting_lines(judged.accounting)

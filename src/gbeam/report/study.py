@@ -34,7 +34,7 @@ from gbeam.report.machine import (
     verdict,
 )
 from gbeam.report.words import errors_in_words, known, largest_loads, number, percent, sentence, tidy
-from gbeam.results.accounting import metres
+from gbeam.results.accounting import in_g, metres, seconds
 from gbeam.results.accounting import percent as share_of
 from gbeam.results.comparison import Comparison
 from gbeam.results.criteria import RULES
@@ -69,13 +69,12 @@ def of_beam(response: Response) -> Iterator[str]:
         kept = response.time[:: response.kept_every]
         yield (
             f"a result file keeps {len(kept)} of {len(response.time)} samples of its histories, "
-            f"{_time(float(kept[1] - kept[0]))} apart; histories of [response] says otherwise"
+            f"{seconds(float(kept[1] - kept[0]))} apart; histories of [response] says otherwise"
         )
 
 
 def _accuracy(response: Response) -> str:
     """Sentence on the model, the time steps, and the estimated errors, with what they leave out."""
-    step = f"{response.steps} steps of {_time(response.step)}"
     if math.isnan(response.error_estimate) or response.outcome != "done":
         error = "no error estimate"
     else:
@@ -87,7 +86,7 @@ def _accuracy(response: Response) -> str:
         if response.point_acceleration is not None and response.errors.note:  # no beam, of which all is judged
             link = ", of the time step alone: " if math.isnan(response.errors.displacement.shapes) else "; "
             error += f"{link}{response.errors.note}"
-    return f"{response.model}, {response.integrator}, {step}; {error}"
+    return f"{response.model}, {response.integrator}, {response.steps_in_words}; {error}"
 
 
 def _damping(response: Response) -> str:
@@ -95,10 +94,6 @@ def _damping(response: Response) -> str:
     ratios = np.atleast_1d(response.damping_ratio)
     size = " to ".join(f"{100 * each:.3g}" for each in sorted({float(ratios.min()), float(ratios.max())}))
     return f"damping {size} % of critical, of the modes of the beam on a hub at rest; those with the free hub have more"
-
-
-def _time(seconds: float) -> str:
-    return f"{number(1e3 * seconds)} ms" if seconds < 1 else f"{number(seconds)} s"
 
 
 def of_machine(response: Response | SystemResponse) -> Iterator[str]:
@@ -166,7 +161,7 @@ def comparison_lines(comparison: Comparison) -> Iterator[str]:
         matters = bound > _FELT * comparison.peak_flight[main]
         advice = "; `gbeam place` finds the best control point" if matters and not mismatch.placed else ""
         bent = f", which bends the tip by up to {1e3 * bound:.3g} mm quasi-statically" if math.isfinite(bound) else ""
-        yield f"mismatch up to {mismatch.max_acceleration[main]:.3g} m/s² along the beam{bent}{advice}"
+        yield f"mismatch up to {in_g(mismatch.max_acceleration[main])} along the beam{bent}{advice}"
 
 
 def of_system(response: SystemResponse) -> Iterator[str]:

@@ -21,7 +21,7 @@ class LoadPeak(Part):
     """A peak of the flight's load above idle, and the machine's load there.
 
     Maxima of the size of the load are one peak unless it falls below nine tenths of the lower of them, or to idle,
-    in between.
+    in between. It counts as reproduced where its `error` is within the tolerance, of its own size.
     """
 
     time: float = quantity("s", "peak of the flight's load above idle")
@@ -293,6 +293,11 @@ def in_g(load: float) -> str:
 def metres(length: float) -> str:
     """Write a length in m, or in mm below 1 m."""
     return f"{length:.4g} m" if abs(length) >= 1 else f"{1e3 * length:.4g} mm"
+
+
+def seconds(time: float) -> str:
+    """Write a time in s, or in ms below 1 s."""
+    return f"{time:#.4g} s" if time >= 1 else f"{1e3 * time:#.4g} ms"
 
 
 def change(ratio: float) -> str:

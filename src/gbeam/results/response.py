@@ -18,6 +18,7 @@ from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, index_of, positive
 from gbeam.numerics.samples import displacement
 from gbeam.printable import percent
+from gbeam.results.accounting import seconds
 from gbeam.results.declared import INSIDE, declared, fact, internal, labels, part, quantity
 from gbeam.results.errors import Errors
 from gbeam.results.machine import AxesFigure, AxesResult, Driven
@@ -373,6 +374,17 @@ class Response(Driven, Figured[ResponseFigure]):
         first, last = float(self.time[0]), float(self.time[-1])
         return (first, last) if self.axes is None else (max(first, self.axes.span[0]), min(last, self.axes.span[1]))
 
+    @property
+    def steps_in_words(self) -> str:
+        """Numbers of steps and their lengths: those of the flight, and others of a machine from and to standstill."""
+        first, last = self.flight_span
+        length, middle = np.diff(self.time), (self.time[1:] + self.time[:-1]) / 2
+        between = length[(middle < first) | (middle > last)]  # which every step of these ways is
+        if not between.size or math.isclose(between.max(), self.step, rel_tol=1e-6):
+            return f"{self.steps} steps of {seconds(self.step)}"
+        way = f"{between.size} of {seconds(float(between.max()))} from and to standstill"
+        return f"{self.steps - between.size} steps of {seconds(self.step)}, {way}"
+
     def __repr__(self) -> str:
         if is_traced(self.peaks.max_abs):
             return brief(self)
@@ -383,7 +395,7 @@ class Response(Driven, Figured[ResponseFigure]):
         moved = [
             f"tip up to {1e3 * self.peaks.max_abs[axis]:.4g} mm along {'xyz'[axis]}, "
             f"at {self.peaks.time_of_max[axis]:.4g} s of {self.time[0]:.4g} to {self.time[-1]:.4g} s",
-            f"{self.integrator}, {self.steps} steps of {1e3 * self.step:.4g} ms; {error}",
+            f"{self.integrator}, {self.steps_in_words}; {error}",
         ]
         lines = [
             f"Response{name} ({self.environment}, {self.model}): {self.outcome}",

@@ -132,7 +132,7 @@ def account(
         span=(float(time[0]), float(time[-1])),
         followed_share=1 - lost / duration if duration > 0 else float(not missed.any()),
         peaks=tuple(
-            _peak(time, flight, machine, top, basin, float(allowed[top]), _NAMES[reasons[top]], limits)
+            _peak(time, flight, machine, top, basin, tolerance, _NAMES[reasons[top]], limits)
             for top, basin in separate_peaks(size, floor, _DIP)
         ),
         not_followed=stretches,
@@ -185,7 +185,7 @@ def _peak(
     machine: History,
     top: int,
     basin: slice,
-    allowed: float,
+    tolerance: float,
     reason: str,
     shares: Mapping[str, Floats],
 ) -> LoadPeak:
@@ -206,7 +206,7 @@ def _peak(
         error=error,
         spread=machine.spread(basin.start + i),
         spread_flight=flight.spread(top),
-        reason=_named(reason, shares, basin) if error * load > allowed else "",
+        reason=_named(reason, shares, basin) if error > tolerance else "",
         instant_error=float(np.linalg.norm(machine.load[top] - flight.load[top])) / load,
     )
 

@@ -64,7 +64,8 @@ class Accept(_Limits):  # type: ignore[misc, valid-type]
     """Limits of the differences from flight; one that is not kept ends in exit status 1."""
 
     tolerance: Share | None = optional(
-        "difference from the flight's load within which it counts as followed, as a share; 5 % if left out"
+        "difference from the flight's load within which it counts as followed, and of a peak from its own size within "
+        "which that counts as reproduced, as a share; 5 % if left out"
     )
     tolerance_of: ToleranceOf | None = optional(
         "what tolerance is a share of. peak: the flight's largest load, as where it is left out; instant: "
