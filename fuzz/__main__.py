@@ -16,8 +16,9 @@ from fuzz.app import app
 from fuzz.bodies import body
 from fuzz.cases import Case, make
 from fuzz.commands import command
+from fuzz.fixes import circle
 from fuzz.judge import judge
-from fuzz.records import record
+from fuzz.records import measured, record
 from fuzz.results import result
 from fuzz.scenarios import scenario
 from fuzz.sweeps import sweep
@@ -25,9 +26,15 @@ from fuzz.worker import Answer, call, warm_up
 from gbeam.printable import shortened
 
 KINDS = {
-    "scenario": scenario, "record": record, "body": body, "command": command, "result": result, "sweep": sweep,
+    "scenario": scenario,
+    "record": record,
+    "fixes": measured,
+    "body": body,
+    "command": command,
+    "result": result,
+    "sweep": sweep,
     "app": app,
-}  # fmt: skip
+}
 FINDINGS = Path(__file__).parent / "findings"
 
 
@@ -42,8 +49,11 @@ def main() -> int:
     options = parser.parse_args()
     warm_up()
     if options.repeat:
-        answer = _called(_loaded(options.repeat))
+        case = _loaded(options.repeat)
+        answer = _called(case)
         print(answer.out, answer.err, answer.traceback, f"status {answer.status}, {answer.seconds:.1f} s", sep="\n")
+        if case.kind == "fixes":
+            print(circle(case, _called))
         return 0
     seed = random.SystemRandom().randrange(10**6) if options.seed is None else options.seed
     kinds = KINDS if options.only is None else {options.only: KINDS[options.only]}
@@ -64,7 +74,7 @@ def run(seed: int, numbers: range, kinds: dict = KINDS) -> Counter[str]:
         if number % 500 == 499:
             print(f"{number + 1} …", flush=True)
         slowest, largest = max(slowest, (answer.seconds, number)), max(largest, answer.memory)
-        if fault := judge(case, answer):
+        if fault := judge(case, answer) or (circle(case, _called) if case.kind == "fixes" else ""):
             faults[fault] += 1
             if faults[fault] == 1:
                 words = shortened(" ".join(case.arguments))

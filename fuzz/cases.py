@@ -18,7 +18,8 @@ class Case:
     Parameters
     ----------
     kind : str
-        What was made malformed: ``scenario``, ``record``, ``body``, ``command``, ``result``, ``sweep`` or ``app``.
+        What was made malformed: ``scenario``, ``record``, ``fixes``, ``body``, ``command``, ``result``, ``sweep`` or
+        ``app``.
     arguments : list of str
         Of the command line.
     files : dict of str to bytes
@@ -36,4 +37,4 @@ def make(seed: int, number: int, kinds: dict[str, Callable[[Random], Case]]) -> 
     return kinds[chosen.choices(list(kinds), [WEIGHTS[kind] for kind in kinds])[0]](chosen)
 
 
-WEIGHTS = {"scenario": 6, "record": 3, "body": 4, "command": 2, "result": 3, "sweep": 2, "app": 2}
+WEIGHTS = {"scenario": 6, "record": 3, "fixes": 1, "body": 4, "command": 2, "result": 3, "sweep": 2, "app": 2}

@@ -23,16 +23,17 @@ BINARIES = {
 }
 CELLS = [
     "", "nan", "inf", "-inf", "1e999", "1,5", "1;5", '"', '"1', "x", "٣", "\x1b[31m", "0x10", "1_0", "--1",
-    "9" * 500, " ", "12:34:56.7", "2024-02-30T25:00:00",
+    "9" * 500, " ", "12:34:56.7", "2024-02-30T25:00:00", "2024-3-23--13-41-38-830", "1.5D+02", "1.5-103",
 ]  # fmt: skip
 KEYS = [
     "time", "x", "y", "z", "unit", "time_unit", "cutoff", "resample", "despike", "skip_checks", "quantity", "p",
-    "rate_unit", "from", "to",
+    "rate_unit", "from", "to", "bridge", "sample_rate", "vehicle",
 ]  # fmt: skip
 VALUES = [
     '"0"', '"-"', '""', '"none"', '"-t"', '"ms"', '"s"', '"g"', '"m/s^2"', '"0.1 Hz"', '"3 Hz"', '"1e9 Hz"',
     '"1e-9 Hz"', "true", '["spikes"]', '["unit", "sign", "sampling"]', '"acceleration"', '"ax"', '"rad/s"', "-1",
-    '"\\u001b"', '"1 s"', '"99:12:34:56"', "12:34:56.5", "2024-05-03T12:34:56Z", '["columns"]',
+    '"\\u001b"', '"1 s"', '"1 g / 2048"', '"50 ms"', '"rocket"', '"mm/s^2"', '"ns"',
+    '"99:12:34:56"', "12:34:56.5", "2024-05-03T12:34:56Z", '["columns"]',
 ]  # fmt: skip
 
 
@@ -63,6 +64,83 @@ def record(chosen: Random) -> Case:
     return Case(
         "record", ["check", "s.toml"], {"s.toml": SCENARIO.replace("RECORD", table).encode(), f"r{suffix}": data}
     )
+
+
+SIZES = {"g": 1.0, "m/s^2": 9.80665, "mm/s^2": 9806.65, "mg": 1000.0, "ft/s^2": 32.174, "in/s^2": 386.09, "": 2048.0}
+STAMPS = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9, "min": 1 / 60}
+NAMES = ("a{0}", "n_{0}", "n_{0}_{u}", "acc_{0} [{u}]", "acc[{k}]", "accelerometer_m_s2[{k}]", "{0}HighG", "a{0}_mV")
+
+
+def measured(chosen: Random) -> Case:
+    """A sound record as loggers write it, with a fault of a clock or a sensor, and a wrong word or two about it."""
+    count, rate = chosen.choice((150, 400, 1600)), chosen.choice((20, 50, 100, 100, 400, 3200))
+    t, random = np.arange(count) / rate, np.random.default_rng(chosen.randrange(2**32))
+    share = t / t[-1]
+    upwards = {
+        "turn": 1 + 5 * np.exp(-(((share - 0.5) / 0.1) ** 2)),
+        "rocket": np.interp(share, (0, 0.1, 0.12, 0.2, 0.22, 0.4, 0.42, 1), (1, 1, 6, 8, 0, 0, -1, -1)),
+        "boost": np.interp(share, (0, 0.3, 0.32, 1), (7, 9, 0, 0)),
+        "cruise": np.ones(count),
+        "sledge": 0.2 * np.sin(20 * share),
+    }[chosen.choice(("turn", "turn", "rocket", "boost", "cruise", "sledge"))]
+    load = random.normal(0, 0.01, (count, 3)) + np.stack([0.1 * share, 0.05 * share, upwards], axis=1)
+    unit, stamp = chosen.choice([*SIZES, "g"]), chosen.choice([*STAMPS, "s", "s"])
+    signs = [chosen.choice((1, -1)) for _ in range(3)]
+    table = {}
+    style = chosen.choice(NAMES)
+    names = [style.format(axis, u=unit.replace("/", "_").replace("^", ""), k=k) for k, axis in enumerate("xyz")]
+    for k, name in enumerate(names):
+        table[name] = signs[k] * SIZES[unit] * load[:, k]
+    if chosen.random() < 0.3:
+        table |= {each: random.normal(0, 0.1, count) for each in ("p_rad_s", "q_rad_s", "r_rad_s")}
+    rows = np.column_stack([*table.values()])
+    kept, clock = np.arange(count), t + chosen.choice((0.0, 0.0, 1.7e9))
+    match chosen.randrange(9):
+        case 0:
+            kept = np.delete(kept, np.r_[chosen.randrange(20, 60) : 70, 90:91])
+        case 1:
+            kept = np.delete(kept, np.r_[60 : min(60 + rate, count - 60)])
+        case 2:
+            kept[[40, 41]] = 41, 40
+        case 3:
+            clock[50] = clock[49]
+        case 4:
+            clock = np.floor(clock)
+        case 5:
+            clock = clock + random.uniform(-0.3, 0.3, count) / rate
+        case 6:
+            clock[count // 2 :] -= 0.4 * t[-1]
+        case 7:
+            rows[chosen.randrange(10, 100) :][: chosen.randrange(1, 5), 2] += 15 * SIZES[unit]
+        case _:
+            pass
+    if chosen.random() < 0.15:
+        day = [
+            f"2024-3-23--{int(v // 3600)}-{int(v // 60 % 60)}-{int(v % 60)}-{int(1000 * v % 1000)}"
+            for v in clock % 86400
+        ]
+        stamps = day
+    else:
+        stamps = [f"{v * STAMPS[stamp]:.9g}" if v < 1e6 else f"{v * STAMPS[stamp]:.3f}" for v in clock]
+    lines = [",".join(["t", *table]), *(",".join([stamps[i], *(f"{v:.7g}" for v in rows[i])]) for i in kept)]
+    wrong = chosen.random
+    entry = {"file": '"r.csv"', "time": '"t"'}
+    for k, axis in enumerate("xyz"):
+        minus = (signs[k] < 0) != (wrong() < 0.25)
+        entry[axis] = f'"{"-" if minus else ""}{names[k]}"'
+    entry["unit"] = f'"{unit or "1 g / 2048"}"' if wrong() < 0.6 else f'"{chosen.choice(list(SIZES)) or "1 g / 98 mV"}"'
+    if wrong() < 0.5:
+        entry["time_unit"] = f'"{stamp if wrong() < 0.6 else chosen.choice(list(STAMPS))}"'
+    if "p_rad_s" in table and wrong() < 0.8:
+        entry |= {each[0]: f'"{chosen.choice(("", "-"))}{each}"' for each in table if each.endswith("_rad_s")}
+        entry["rate_unit"] = chosen.choice(('"rad/s"', '"rad/s"', '"deg/s"'))
+    asked = [("vehicle", '"rocket"'), ("vehicle", '"other"'), ("resample", f'"{rate} Hz"'), ("despike", "true")]
+    for key, value in (*asked, ("quantity", '"acceleration"'), ("cutoff", f'"{rate / 4} Hz"')):
+        if wrong() < 0.1:
+            entry[key] = value
+    record = ", ".join(f"{key} = {value}" for key, value in entry.items())
+    files = {"s.toml": SCENARIO.replace("RECORD", record).encode(), "r.csv": "\n".join(lines).encode()}
+    return Case("fixes", ["check", "s.toml"], files)
 
 
 def text(chosen: Random) -> bytes:

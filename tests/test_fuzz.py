@@ -57,3 +57,42 @@ def test_the_judge_sees_faults(status: int, out: str, err: str, fault: str) -> N
 
     answer = judge(Case("scenario", ["check", "s.toml"]), Answer(status, out, err, 0.1, 1, (), ""))
     assert answer.startswith(fault) and bool(answer) == bool(fault)
+
+
+RECORDED = """\
+[motion.flight.record]
+file = "r.csv"
+unit = "g"
+skip_checks = ["sign"]
+"""
+
+
+@pytest.mark.parametrize(
+    ("hints", "fault"),
+    [
+        (
+            {"g": 'write unit = "m/s^2"; if it is right, add skip_checks = ["unit"]', "m/s^2": 'write unit = "g"'},
+            "circle",
+        ),
+        ({"g": 'if it is a rocket\'s, add vehicle = "rocket"'}, "a fix that mends nothing"),
+        ({"g": 'write unit = "m/s^2"; add despike = true', "m/s^2": "put a number there"}, ""),
+    ],
+)
+def test_fixes_are_followed_to_their_end(hints: dict[str, str], fault: str) -> None:
+    """A message for every unit: fixes that lead to each other, or to the same message again, are faults."""
+    import tomllib
+
+    from fuzz.cases import Case
+    from fuzz.fixes import circle
+    from fuzz.worker import Answer
+
+    def call(case: Case) -> Answer:
+        record = tomllib.loads(case.files["s.toml"].decode())["motion"]["flight"]["record"]
+        unit = record["unit"]
+        if "unit" in record["skip_checks"] or "despike" in record or unit not in hints:
+            return Answer(0, "", "", 0.1, 1, (), "")
+        place = f's.toml:3:8: motion.flight.record.unit: is {unit}\n    3 | unit = "{unit}"\n      |        ^^^\n'
+        return Answer(2, "", f"{place}      = {hints[unit]}\n", 0.1, 1, (), "")
+
+    answer = circle(Case("fixes", ["check", "s.toml"], {"s.toml": RECORDED.encode()}), call)
+    assert answer.startswith(fault) and bool(answer) == bool(fault)

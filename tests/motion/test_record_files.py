@@ -343,6 +343,7 @@ def test_a_unit_stated_wrongly_by_the_file_can_be_overridden(tmp_path: Path) -> 
         (("t", "a_x [mV]", "a_y [mV]", "a_z [mV]"), 98.0, "1 g / 98 mV"),
         (("t", "a_x_counts", "a_y_counts", "a_z_counts"), 1000 / 0.061, "0.061 mg"),
         (("t", "a_x [mm/s²]", "a_y_mm_s2", "a_z"), 9806.65, "mm/s^2"),
+        (("t", "a_x [mm_s2]", "a_y [mm_s2]", "a_z [mm_s2]"), 9806.65, "mm/s^2"),
         (NAMES, 980.665, "Gal"),
         (("t", "a_x (cm/s2)", "a_y", "a_z"), 980.665, "cm/s^2"),
         (("t", "a_x [mg]", "a_y [mg]", "a_z_mg"), 1000.0, "mg"),

@@ -154,6 +154,26 @@ def test_a_rocket_may_begin_in_its_boost(tmp_path: Path) -> None:
         fly(write(tmp_path, BOOSTED, "m/s^2"), "g", vehicle="rocket")
 
 
+def test_a_vehicle_is_advised_only_if_it_is_taken(tmp_path: Path) -> None:
+    """In too small a unit it is no rocket's either."""
+    path = write(tmp_path, FLIGHTS["6 g turn"])
+    with pytest.raises(InputError, match=r"record.unit is in/s\^2") as caught:
+        fly(path, "in/s^2")
+    assert 'rocket"' not in caught.value.fix and 'add vehicle = "other"' in caught.value.fix
+    fly(path, "in/s^2", vehicle="other")
+
+
+def test_the_unit_of_time_is_judged_before_its_jitter(tmp_path: Path) -> None:
+    """Of ns read as s, with a sample late, a new rate of 1e-7 Hz would be no fix."""
+    load = FLIGHTS["6 g turn"]
+    stamps = np.round(1e9 * STEP * np.arange(len(load)))
+    stamps[40] += 4e6
+    rows = np.column_stack([stamps, load])
+    np.savetxt(path := tmp_path / "r.csv", rows, delimiter=",", header="t,x,y,z", comments="", fmt="%.12g")
+    with pytest.raises(InputError, match=r'record.time has a sample every .* write time_unit = "ns"'):
+        fly(path, "g")
+
+
 def test_level_is_level_for_a_second(tmp_path: Path) -> None:
     """A ramp through 1 g is level nowhere; the stretch that is said is the longest."""
     assert fly(write(tmp_path, along((0, 2), (2, 2), (3, 0.2), (4, 2), (20, 3))), "g").summary.level is None

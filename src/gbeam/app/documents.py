@@ -35,8 +35,10 @@ from gbeam.structure.matrices import read_matrices
 
 NAME = "scenario.toml"
 # Keys of a record that say what its columns are.
-COLUMNS = ("file", "time", "time_unit", "sample_rate", "x", "y", "z", "unit", "quantity", "vehicle")
-COLUMNS += ("p", "q", "r", "rate_unit")
+COLUMNS = (
+    *("file", "time", "time_unit", "sample_rate", "x", "y", "z", "unit", "quantity", "vehicle"),
+    *("p", "q", "r", "rate_unit"),
+)
 CHANGES = 3  # between two scenarios, at most, that are listed
 _LONG = 40  # characters of a value in that list
 _DURATION: Place = ("response", "duration")

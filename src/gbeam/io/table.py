@@ -102,7 +102,7 @@ def _logged(text: str) -> _Reading | None:
     if hour > 23 or minute > 59 or second > 60 or (None not in parts and day is None):
         return None
     fraction = match["fraction"] or (match["thousandths"] or "").zfill(3)
-    return day, ((60 * hour + minute) * 60 + second) * _SECOND + int(fraction.ljust(9, "0"))
+    return day, ((60 * hour + minute) * 60 + second) * _SECOND + int(f"{fraction:0<9}")
 
 
 @lru_cache(maxsize=2)  # days of a record

@@ -235,11 +235,12 @@ def read_flight(
     load = load_unit.size * table.vector(names, len(clock), part)
     turning = rate_unit.size * table.vector(turns, len(clock), part) if turns else np.empty((len(clock), 0))
 
-    line = Timeline.of(
-        times, part, np.concatenate([load, turning], axis=1), table.place, bridge=conditioning.bridge, evened=evened
-    )
-    if "sampling" not in skip:
-        check_interval(line.time, times, stated, brief=vehicle == "other")
+    def judge(time: Floats) -> None:
+        if "sampling" not in skip:
+            check_interval(time, times, stated, brief=vehicle == "other")
+
+    both, bridge = np.concatenate([load, turning], axis=1), conditioning.bridge
+    line = Timeline.of(times, part, both, table.place, bridge=bridge, evened=evened, judge=judge)
 
     def samples(time: Floats, load: Floats, rows: Indices) -> Samples:
         turned = upended(table, names)

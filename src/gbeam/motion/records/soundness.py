@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import get_args
 
 import numpy as np
@@ -132,13 +132,14 @@ def _check_level(record: Samples, size: Floats) -> None:
             "record.unit",
             f"is {record.unit.text}, and the record begins at {record.said(np.median(size[_beginning(record)]))} and "
             f"reaches {record.said(peak)}, {peak / STANDARD_GRAVITY:.3g} g: level flight is 1 g, which is 9.81 m/s^2",
-            "; ".join([*_other_units(record, size), _ACCELERATION, *_vehicles(record), _trust("unit")]),
+            "; ".join([*_other_units(record, size), _ACCELERATION, *_vehicles(record, size), _trust("unit")]),
         )
 
 
-def _vehicles(record: Samples) -> list[str]:
-    """Advice to say another vehicle, of which less is asked."""
-    return [_ROCKET, _OTHER] if record.vehicle == "aircraft" else [_OTHER]
+def _vehicles(record: Samples, size: Floats) -> list[str]:
+    """Advice to say another vehicle, of which less is asked: a rocket if the load may be one's."""
+    rocket = record.vehicle == "aircraft" and _is_flight(replace(record, vehicle="rocket"), size, record.unit.size)
+    return [_ROCKET, _OTHER] if rocket else [_OTHER]
 
 
 def _other_units(record: Samples, size: Floats) -> list[str]:
@@ -204,7 +205,7 @@ def _check_sign(record: Samples, upwards: Floats, size: Floats) -> None:
         "record.z",
         f"is {record.said(upwards[i])} at {record.time[i]:g} s ({record.place(i)}), and downwards for "
         f"{100 * down.sum() / level.sum():.0f} % of level flight, which is 1 g upwards, along +z",
-        "; ".join([*([] if pushed or upright else [turned]), _ACCELERATION, *_vehicles(record), hanging]),
+        "; ".join([*([] if pushed or upright else [turned]), _ACCELERATION, *_vehicles(record, size), hanging]),
     )
 
 

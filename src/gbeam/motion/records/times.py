@@ -95,15 +95,23 @@ class Timeline:
 
     @classmethod
     def of(
-        cls, times: Times, part: slice, values: Floats, place: Place, *, bridge: float | None, evened: bool
+        cls,
+        times: Times,
+        part: slice,
+        values: Floats,
+        place: Place,
+        *,
+        bridge: float | None,
+        evened: bool,
+        judge: Callable[[Floats], None],
     ) -> Timeline:
-        """Timeline of the `part` of a record and values (t, k).
+        """Timeline of the `part` of a record and values (t, k); `judge` refuses times, in order, of a wrong unit.
 
         Where samples are `evened` out later, times may jitter, repeat and come late, and lost samples of gaps up to
         `bridge`, s, are put on straight lines; InputError otherwise.
         """
         clock = times.values[part]
-        order, starts = _in_order(clock, values[part], lambda i: place(part.start + i), evened=evened)
+        order, starts = _in_order(clock, values[part], lambda i: place(part.start + i), judge, evened=evened)
         rows, time = part.start + order[starts], clock[order[starts]]
         gaps = _gaps(time, lambda i: place(int(rows[i])), bridge, evened=evened)
         whole, bridged = _bridged(time, _averaged(values[part], order, starts), gaps)
@@ -125,7 +133,9 @@ class Timeline:
         return np.flatnonzero(~np.logical_or.reduce(lost)) if lost else np.arange(len(self.time))
 
 
-def _in_order(time: Floats, values: Floats, place: Place, *, evened: bool) -> tuple[Indices, Indices]:
+def _in_order(
+    time: Floats, values: Floats, place: Place, judge: Callable[[Floats], None], *, evened: bool
+) -> tuple[Indices, Indices]:
     """Samples (t,) of times (t,), s, and values (t, n), in the order of their times, and the first (m,) of each time.
 
     InputError, unless samples are `evened`, if times repeat or a few come late; always for a clock that is too coarse,
@@ -135,6 +145,7 @@ def _in_order(time: Floats, values: Floats, place: Place, *, evened: bool) -> tu
     starts = np.flatnonzero(np.diff(time[order], prepend=-math.inf) > 0)
     back = np.flatnonzero(steps <= 0)
     if not back.size:
+        judge(time)
         return order, starts
     forward = steps[steps > 0]
     usual = float(np.median(forward)) if forward.size else math.inf
@@ -151,6 +162,7 @@ def _in_order(time: Floats, values: Floats, place: Place, *, evened: bool) -> tu
     farthest = int(late.argmax())
     if late[farthest] > _LATE * usual:
         raise InputError("record.time", *_set_back(time, farthest, float(late[farthest]), place))
+    judge(time[order[starts]])
     if not evened:
         told = [
             f"{'repeats' if steps[i] == 0 else 'goes back to'} {time[i + 1]:g} s at {place(int(i) + 1)}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
@@ -21,7 +21,7 @@ UNITS: dict[str, dict[str, float]] = {
     "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0, "day": 86400.0},
 }
 _FEET = {"ft": "f", "in": "i"}  # in fps2 and ips2
-_PER_SECOND_SQUARED = ("{}/s^2", "{}/s2", "{}/s/s", "{}s^-2", "{}s-2")
+_PER_SECOND_SQUARED = ("{}/s^2", "{}/s2", "{}/s/s", "{}s^-2", "{}s-2", "{}_s2", "{}_s^2", "{}_s_2")
 # Spellings after `_plain`: of the units above, and of other quantities, such as those of files that are no records.
 _SPELLINGS: dict[str, dict[str, str]] = {
     "acceleration": {
@@ -36,8 +36,8 @@ _SPELLINGS: dict[str, dict[str, str]] = {
         },
     },
     "rate": {
-        **dict.fromkeys(("rad/s", "rads-1", "rads^-1", "rps", "radps", "s-1", "s^-1", "1/s"), "rad/s"),
-        **dict.fromkeys(("deg/s", "degs-1", "degs^-1", "°/s", "dps", "degps"), "deg/s"),
+        **dict.fromkeys(("rad/s", "rad_s", "rads-1", "rads^-1", "rps", "radps", "s-1", "s^-1", "1/s"), "rad/s"),
+        **dict.fromkeys(("deg/s", "deg_s", "degs-1", "degs^-1", "°/s", "dps", "degps"), "deg/s"),
         "rpm": "rpm",
     },
     "time": {
@@ -164,6 +164,7 @@ def unit_of(
             if counts and stated_unit and counts.lower() != text.strip("[]()").lower():
                 problem = f"is {declared!r}, and the file gives column {column!r} in {text}"
                 raise InputError(f"record.{key}", problem, f"give the size of 1 {text}; {_TRUST}")
+            unit = None if unit is None else replace(unit, stated=True)
             continue
         problem = f"is {declared or 'missing'}, and the file gives column {column!r} in {text}"
         if canonical is None:
