@@ -9,11 +9,13 @@ import signal
 import sys
 import tempfile
 import time
+import warnings
 from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from importlib import import_module
 from io import StringIO
 from pathlib import Path
+from typing import Any
 
 from fuzz.cases import ROOT, Case
 
@@ -91,6 +93,7 @@ def _child(arguments: list[str], folder: Path, aside: str, out: Path, err: Path,
         resource.setrlimit(resource.RLIMIT_DATA, (memory, memory))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         signal.alarm(patience)
+        _show_words_on_files()
         if arguments[:1] == ["app"]:
             from fuzz.app import play as main
         else:
@@ -108,6 +111,20 @@ def _child(arguments: list[str], folder: Path, aside: str, out: Path, err: Path,
         sys.stderr.flush()
     finally:
         os._exit(status)
+
+
+def _show_words_on_files() -> None:
+    """Print what a library says of a file as the program does; another warning keeps its place in the source."""
+    from gbeam.cli.process import shorten_warnings
+
+    as_python = warnings.showwarning
+    shorten_warnings()
+    on_a_line = warnings.showwarning
+
+    def show(message: Any, category: type[Warning], *place: Any) -> None:
+        (on_a_line if category is UserWarning else as_python)(message, category, *place)
+
+    warnings.showwarning = show
 
 
 def _text(file: Path) -> str:

@@ -185,6 +185,17 @@ def test_matrices_come_from_mat_files_of_version_7_3(tmp_path: Path) -> None:
     np.testing.assert_array_equal(new.rest[0], old.rest[0])
 
 
+@pytest.mark.parametrize("nodes", [0, 2, 5])
+def test_files_with_other_nodes_than_rows_are_refused(tmp_path: Path, nodes: int) -> None:
+    np.savez(tmp_path / "m.npz", K=SPRINGS, M=np.eye(3))
+    lines = [f"{k}, 0.{k}, 0., 0." for k in range(1, nodes + 1)]
+    (tmp_path / "n.inp").write_text("\n".join(["*NODE", *lines, ""]), encoding="ascii")
+    with pytest.raises(
+        gb.InputError, match=rf"^nodes has the shape \({nodes}, 3\), and the matrices 3 rows; give a row"
+    ):
+        gb.ImportedModel.read(tmp_path / "m.npz", tmp_path / "n.inp")
+
+
 @pytest.mark.parametrize(("machine", "name"), [(2, "VAX D-float"), (3, "VAX G-float"), (4, "Cray")])
 def test_numbers_of_machines_that_scipy_misreads_are_refused(tmp_path: Path, machine: int, name: str) -> None:
     scipy.io.savemat(tmp_path / "k.mat", {"K": SPRINGS}, format="4")

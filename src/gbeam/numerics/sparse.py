@@ -35,6 +35,8 @@ def solver() -> str:
         for file in files("mkl") or ():
             if "mkl_rt" in file.name:
                 os.environ.setdefault("PYPARDISO_MKL_RT", str(file.locate()))
+    # Else rslab's allocator takes address space by the GiB, which limits of memory count.
+    os.environ.setdefault("MIMALLOC_ARENA_RESERVE", "64MiB")
     for module, name in ("pypardiso", "Pardiso"), ("rslab", "RSLAB"):
         with suppress(ImportError, OSError):
             import_module(module)

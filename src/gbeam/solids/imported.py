@@ -95,10 +95,7 @@ class ImportedModel(Value):
         if places.ndim != 2 or places.shape[1:] != (3,) or not len(places) or not np.isfinite(places).all():
             raise InputError("nodes", f"has the shape {places.shape}", "give a row of x, y, z for each node, finite")
         if self.unknowns is None:
-            if size not in (3 * len(places), 6 * len(places)):
-                fix = "give a row of x, y, z for each three or six rows of the matrices, or give unknowns"
-                raise InputError("nodes", f"has the shape {places.shape}, and the matrices {size} rows", fix)
-            unknowns = every_unknown(len(places), size)
+            unknowns = every_unknown(places, size)
         else:
             unknowns = np.asarray(self.unknowns, dtype=int)
             if unknowns.shape != (size, 2):
@@ -170,7 +167,7 @@ class ImportedModel(Value):
         places, numbers, unknowns, axes = model.nodes_of(nodes, unknowns)
         size, weight = unit_size("length_unit", length_unit, "length"), unit_size("mass_unit", mass_unit, "mass")
         if unknowns is None:
-            unknowns = every_unknown(len(places), m.shape[0])
+            unknowns = every_unknown(places, m.shape[0])
         if axes is not None:
             m, k = (_in_base_axes(matrix, unknowns, axes) for matrix in (m, k))
         # Displacements in m, rotations and modes' coordinates as they are.

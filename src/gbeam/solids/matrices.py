@@ -51,8 +51,14 @@ def sparse_matrix(where: str, matrix: Any, size: int | None = None) -> Any:
     return (square + square.T) / 2
 
 
-def every_unknown(nodes: int, unknowns: int) -> Indices:
-    """Nodes and directions (u, 2) of matrices that have three or six unknowns a node, node by node."""
+def every_unknown(places: Floats, unknowns: int) -> Indices:
+    """Nodes and directions (u, 2) of matrices that have three or six unknowns a node, node by node; InputError if they
+    have others.
+    """
+    nodes = len(places) if places.ndim else 0
+    if not nodes or unknowns not in (3 * nodes, 6 * nodes):
+        fix = "give a row of x, y, z for each three or six rows of the matrices, or give unknowns"
+        raise InputError("nodes", f"has the shape {places.shape}, and the matrices {unknowns} rows", fix)
     per = unknowns // nodes
     return np.stack([np.repeat(np.arange(nodes), per), np.tile(np.arange(1, per + 1), nodes)], axis=1)
 
