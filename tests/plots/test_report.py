@@ -73,7 +73,7 @@ def test_json_has_null_for_what_is_no_number(study: Study) -> None:
 
 
 def test_steps_add_up_to_the_time(study: Study) -> None:
-    """Those of a machine's ways from and to standstill are the results', longer than the flight's refined ones."""
+    """Times of a machine's ways from and to standstill are the results', longer than the flight's refined ones."""
     spin = replace(study.responses["spin"], steps=1820)
     assert spin.steps_in_words == "1800 steps of 1.000 ms, 20 of 10.00 ms from and to standstill"
     np.testing.assert_allclose(1800 * 1e-3 + 20 * 10e-3, spin.time[-1] - spin.time[0])
