@@ -293,7 +293,10 @@ class Samples:
             ),
             "read_record": (
                 (self.record, *columns),
-                {"time_unit": "s", "quantity": "specific-force", "span": (None, 0.1)},
+                {
+                    "time_unit": "s", "sample_rate": None, "quantity": "specific-force", "vehicle": "aircraft",
+                    "span": (None, 0.1),
+                },
             ),
             "read_scenario": ((self.fast, ["beam.length=250 mm"]), {}),
             "rerun": ((self.fast,), {"progress": None}),
