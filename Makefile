@@ -40,7 +40,7 @@ web: web/node_modules/.installed
 	cd web && npm run --silent build && npm test --silent
 
 web-check: web/node_modules/.installed
-	rm -rf out/web out/web-app
+	rm -rf out/web out/web-app && mkdir -p out
 	cd web && npm test --silent && GBEAM_WEB_OUT=../out/web npm run --silent build -- --logLevel warn
 	diff -r out/web src/gbeam/report/page/assets && diff -r out/web-app src/gbeam/app/assets && diff out/web-NOTICE NOTICE || { echo "what is built is not that of web/: run make web"; exit 1; }
 

@@ -129,7 +129,7 @@ def test_cutoff_and_resampling() -> None:
             InputError, match=r"record\.cutoff is .* over 15.99 s; give 0.0625391 Hz or more, below 50 Hz"
         ):
             fly(F16, cutoff=cutoff)
-    assert fly(F16, cutoff=0.0625391).notes == ("low-pass at 0.0625391 Hz, zero phase",)
+    assert fly(F16, cutoff=0.0625391).summary.done == ("low-pass at 0.0625391 Hz, zero phase",)
     assert fly(F16, resample=20.0, cutoff=5.0).acceleration.times.size == 320
     with pytest.raises(InputError, match=r"resample is 0.3 Hz, which leaves fewer than 6 samples of 15.99 s"):
         fly(F16, resample=0.3, cutoff=0.1)
