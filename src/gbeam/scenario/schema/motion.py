@@ -189,10 +189,9 @@ class Centrifuge(Table):
     smoothing: Time = Field(
         default=0.0, description="width of the kernel that rounds the target's corners; 0 leaves them sharp"
     )
-    ease: Annotated[float, Quantity("ratio", "positive")] = Field(
-        default=1.0,
-        description="of planned: weight of gentle motion of the axes beside the tracking error, times the usual one; "
-        "with less, quick loads are followed better, and the axes move more",
+    ease: Annotated[float, Quantity("ratio", "positive")] | None = optional(
+        "of planned: weight of gentle motion of the axes beside the tracking error, times the usual one; "
+        "with less, quick loads are followed better, and the axes move more"
     )
     start: Start = Field(
         default="rest",
