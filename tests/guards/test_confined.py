@@ -70,7 +70,7 @@ def test_a_file_that_is_read_for_ever_is_refused(tmp_path: Path, gbeam: Call, hu
     for verb in ("report", "rerun"):
         answer = gbeam(verb, tmp_path / "r.nc")
         assert answer.status == 2 and "r.nc takes more than 1 s of processor time to read" in answer.err
-    assert 3 < spent() - begun < 30
+    assert 2.5 < spent() - begun < 30  # three times one second, which the kernel counts in hundredths
     begun = spent()
     assert gbeam("check", _scenario(tmp_path, "r.nc")).status == 2  # which is known by now
     assert spent() == begun
