@@ -14,7 +14,7 @@ from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.printable import json_printable, on_one_line, printable, shortened
 
 if TYPE_CHECKING:
-    from gbeam.results.result import Decided
+    from gbeam.results.result import Result
 if sys.platform != "win32":
     import resource  # now, as nothing can be imported once memory is used up
 
@@ -41,9 +41,11 @@ def report(error: GbeamError, as_json: bool) -> int:
     return _refuse(f"{mark}{words}", _diagnostics(error), as_json)
 
 
-def ended(*answers: Decided) -> int:
+def ended(*answers: Result) -> int:
     """Print what is not known of answers on stderr; return the exit status."""
-    unknown = [each for each in answers if each.outcome != "done"]
+    from gbeam.results.result import Decided
+
+    unknown = [each for each in answers if isinstance(each, Decided) and each.outcome != "done"]
     for each in unknown:
         complain(each.message)
     return FAILED if unknown else 0
