@@ -358,7 +358,7 @@ class Structure:
 
     @property
     def bent(self) -> Structure:
-        """The same with forces of higher order where it bends far, of the kind exact; itself where none are known."""
+        """Structure of kind exact with forces of higher order, by which it bends far; itself where none are known."""
         if self.bending is None:
             return self
         at, soft = self.station_places, self.bending.soft
