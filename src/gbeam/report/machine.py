@@ -89,9 +89,8 @@ SHOWN = 8  # peaks and stretches listed; a rough record has hundreds
 def judged_lines(judged: Judged) -> Iterator[str]:
     """Say what was accepted, then the accounting."""
     if judged.criteria:
-        held = "accepted" if judged.accepted else "not accepted"
         part = f" for {judged.part} only" if judged.part else ""
-        yield f"{held}{part}: {', '.join(map(str, judged.criteria))}"
+        yield f"{judged.decision}{part}: {', '.join(map(str, judged.criteria))}"
     if judged.not_judged:
         yield f"not judged, as it needs the response, which `gbeam run` has: {', '.join(judged.not_judged)}"
     yield from accounting_lines(judged.accounting)
@@ -213,7 +212,7 @@ def verdict(judged: Facts, names: tuple[str, str]) -> Blocks:
 def said(judged: Facts) -> Block:
     """Section of the verdict and the sentences that it rests on."""
     lines = Items(tuple(judged["lines"]))
-    tone = "bad" if judged["accepted"] is False else "verdict"
+    tone = "bad" if not all(each["passed"] for each in judged["criteria"]) else "verdict"
     return Section(sentence(judged["verdict"]), (lines,), titled=True, folded="Verdict in words", tone=tone)
 
 
@@ -229,7 +228,8 @@ def _criteria(judged: Facts) -> Block:
     def kept(each: Facts) -> Value:
         if "limit" not in each:
             return "needs the response: gbeam run"
-        return Cell("kept", "good") if each["passed"] else Cell("not kept", "bad")
+        words = {True: ("kept", "good"), False: ("not kept", "bad"), None: ("not known", "bad")}
+        return Cell(*words[each["passed"]])
 
     cells: Columns = {
         "limit on": lambda each: each["name"].replace("_", " "),
