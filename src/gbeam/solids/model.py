@@ -18,6 +18,7 @@ from gbeam.results.response import Response
 from gbeam.results.solids import SolidStress
 from gbeam.solids.edges import without_limit
 from gbeam.solids.elements import mass_matrix
+from gbeam.solids.plausibility import locking
 from gbeam.solids.stress import NodalStress, solid_stress
 
 if TYPE_CHECKING:
@@ -55,7 +56,7 @@ class SolidModel(Value):
     @property
     def mesh_error(self) -> Floats:
         """Estimated errors (m,) of the frequencies at rest by the mesh, as fractions: their differences to those of a
-        coarser mesh; NaN where there is none.
+        coarser mesh; NaN where there is none, or elements lock.
         """
         if self.structure.coarser is None:
             return np.full(len(self.frequency), np.nan)
@@ -65,7 +66,8 @@ class SolidModel(Value):
     def __repr__(self) -> str:
         shown = ", ".join(f"{frequency:.4g}" for frequency in self.frequency[:6])
         known = np.isfinite(self.mesh_error)
-        error = f"up to {100 * self.mesh_error[known].max():.2g} %" if known.any() else "unknown, give a coarser mesh"
+        cure = "its elements lock" if locking(self.mesh) else "give a coarser mesh"
+        error = f"up to {100 * self.mesh_error[known].max():.2g} %" if known.any() else f"unknown, {cure}"
         return f"SolidModel({self.structure.size} coordinates; {shown} Hz; error of the mesh {error})"
 
     @property

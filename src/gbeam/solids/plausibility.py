@@ -72,7 +72,12 @@ def doubts_of(mesh: SolidMesh, unit: str) -> list[str]:
         other = "mm" if size > LARGE or mass > HEAVY else "m"
         other = other if other != unit else "another one"
         doubts.append(f"the mesh is {size:.3g} m across and weighs {mass:.3g} kg with unit = {unit!r}; is it {other}?")
-    of_blocks = _slenderness(mesh)
+    return doubts + locking(mesh)
+
+
+def locking(mesh: SolidMesh) -> list[str]:
+    """Warnings of elements that are too stiff, by more than meshes of them differ."""
+    doubts, of_blocks = list[str](), _slenderness(mesh)
     linear = [ratios for block, ratios in zip(mesh.blocks, of_blocks, strict=True) if KINDS[block.kind].linear]
     if linear:
         ratios = np.concatenate(linear)
