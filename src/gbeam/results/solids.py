@@ -71,6 +71,9 @@ class SolidStress(Figured[Literal["stress"]]):
                                      note=UNLIMITED, default=None)  # fmt: skip
     singular_nodes: int | None = fact("number of nodes that are left out; not known of one mesh", note=UNLIMITED,
                                       optional=True, default=None)  # fmt: skip
+    known: bool = fact(
+        "whether the largest stress is known", note="not where more than a tenth of the nodes is left out", default=True
+    )
     singular_depth: float = fact("largest distance of a node that is left out to one that is judged", "m", default=0.0)
     points: tuple[str, ...] = labels("name of the point", "point", default=())
     point_von_mises: Floats = quantity("Pa", "von Mises stress at the point", "time point", empty=True)
@@ -112,6 +115,11 @@ class SolidStress(Figured[Literal["stress"]]):
 
     @declared("", "what is left out of the largest stress, and why, or why that is not known", role="fact")
     def left_out(self) -> str:
+        if not self.known:
+            return (
+                f"the largest stress is not known: {UNLIMITED}, and {self.singular_nodes} of {len(self.nodes)} nodes "
+                "are there, more than a tenth; mesh it finer, or read the stress at a point"
+            )
         if self.singular is None:
             return NOT_KNOWN if self.singular_nodes is None else ""
         return (
@@ -149,6 +157,8 @@ class SolidStress(Figured[Literal["stress"]]):
     @property
     def lines(self) -> tuple[str, str]:
         """The largest stress and the least margin in words."""
+        if not self.known:
+            return "the largest stress is not known", "margin on yield not known"
         if self.nearest_yield is None:
             return said(self.worst), "margin on yield not known: no material has a yield_strength"
         assert self.nearest_yield.margin is not None
