@@ -311,8 +311,8 @@ def system_peaks(system: System, time: Floats, over_time: Mapping[str, Floats]) 
     def of_columns(values: Floats) -> tuple[Floats, Floats]:
         """Largest values (n,) of histories (t, n), and their times."""
         each = (column[:, None] for column in values.T)
-        found = [maxima(time, one, *seven_point(time, one, near_maxima(time, one))) for one in each]
-        value, when = np.reshape(found, (-1, 2)).T
+        largest = [maxima(time, one, *seven_point(time, one, near_maxima(time, one))) for one in each]
+        value, when = np.reshape(largest, (-1, 2)).T
         return value, when
 
     def of_ground(key: str) -> VectorPeaks:
