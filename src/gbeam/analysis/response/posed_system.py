@@ -27,9 +27,10 @@ from gbeam.arrays.types import Floats
 from gbeam.constants import State
 from gbeam.errors import InputError
 from gbeam.guards.limits import HISTORY_BYTES, STEPS, refuse_more
-from gbeam.integrate.equations import NonlinearEquations, Trajectory
+from gbeam.integrate.equations import LinearEquations, NonlinearEquations, Trajectory
 from gbeam.integrate.sampled import Sampling
 from gbeam.integrate.steps import Corners
+from gbeam.mechanics.tree.linear import is_linear, linear_equations
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress
@@ -53,23 +54,30 @@ class PosedSystem:
     limit: int = LOADS_STEPS  # of steps of a run
 
     @cached_property
-    def equations(self) -> NonlinearEquations:
-        """Equations of the system, with its controllers, if any, in the loop."""
-        control = SystemControllers(self.system) if self.system.controllers else None
-        drive = partial(self.system.inputs, motion=self.motion)
-        return NonlinearEquations(self.system.tree, drive, control, None if control is None else [])
+    def controllers(self) -> SystemControllers | None:
+        """Controllers in the loop; None without any."""
+        return SystemControllers(self.system) if self.system.controllers else None
+
+    @cached_property
+    def equations(self) -> LinearEquations | NonlinearEquations:
+        """Equations of the system, with its controllers, if any, in the loop; linear where they are so without."""
+        tree, drive = self.system.tree, partial(self.system.inputs, motion=self.motion)
+        if self.controllers is not None:
+            return NonlinearEquations(tree, drive, self.controllers, [])
+        return linear_equations(tree, drive) if is_linear(tree) else NonlinearEquations(tree, drive)
 
     @property
     def sampling(self) -> Sampling | None:
         """Samples of the controllers in the last run; None if there were none."""
-        return self.equations.samplings[-1] if self.equations.samplings else None
+        of_runs = self.equations.samplings if isinstance(self.equations, NonlinearEquations) else None
+        return of_runs[-1] if of_runs else None
 
     @cached_property
     def felt(self) -> Corners:
         """Corners and jumps of the inputs, and jumps of the controllers' commands."""
         end = self.settings.start + self.settings.duration
         felt = Corners.of(corners(self.system, self.motion, self.kept), self.equations.drive, self.settings.start, end)
-        if self.equations.controllers is None:
+        if self.controllers is None:
             return felt
         commands = self.commands.time
         commands = commands[np.abs(commands[:, None] - felt.time).min(axis=1, initial=np.inf) > 1e-9]
@@ -79,9 +87,9 @@ class PosedSystem:
     @property
     def commands(self) -> Corners:
         """Times at which controllers sample and their commands jump, as jumps."""
-        if self.equations.controllers is None:
+        if self.controllers is None:
             return Corners(np.zeros(0), np.zeros(0, dtype=bool))
-        times = self.equations.controllers.corners(self.settings.start, self.settings.start + self.settings.duration)
+        times = self.controllers.corners(self.settings.start, self.settings.start + self.settings.duration)
         times = np.unique(np.round(times, 12))
         return Corners(times, np.ones(len(times), dtype=bool))
 

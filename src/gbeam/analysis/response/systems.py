@@ -161,8 +161,10 @@ class SystemRun(Run):
     @cached_property
     def loop(self) -> Loop | None:
         """Record of the controllers at the times of the run; None without controllers."""
-        controllers = self.posed.equations.controllers
-        return None if self.sampling is None else loop_of(controllers, self.sampling, self.trajectory.time)
+        controllers = self.posed.controllers
+        if controllers is None or self.sampling is None:
+            return None
+        return loop_of(controllers, self.sampling, self.trajectory.time)
 
     @cached_property
     def moved(self) -> Floats:

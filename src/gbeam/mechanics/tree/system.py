@@ -384,7 +384,8 @@ class System(Value):
                 holding, on = self.point(f"joints.{name}.on", joint.on)
                 parent = index[holding]
                 refuse_turnless(f"joints.{name}.on", self.bodies[holding], on)
-                if holding in free or isinstance(self.bodies[holding], Structure):
+                deforms = isinstance(self.bodies[holding], Structure) and self.points_of(holding)[on] != ROOT
+                if holding in free or deforms:
                     free.add(body)
             if len(joint.rates) < len(joint.rate_names):
                 free.add(body)
