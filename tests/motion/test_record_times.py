@@ -195,6 +195,15 @@ def test_long_gaps_are_no_detail(tmp_path: Path) -> None:
     assert wave(path, span=(3.3, 11.99)).summary.read.samples == 870
 
 
+def test_a_bridge_that_is_offered_reaches_over_its_gap(tmp_path: Path) -> None:
+    """A clock of minutes rounds: a gap of 1010.00001 ms is not bridged by 1010 ms, and 1020 ms are offered."""
+    lost = np.delete(WAVE, np.s_[1200:1300], axis=0)
+    path = saved(tmp_path, lost, [f"{t:.12g}" for t in lost[:, 0] + np.where(lost[:, 0] > 12, 1e-8, 0.0)])
+    with pytest.raises(InputError, match=r'add bridge = "1020 ms"'):
+        wave(path, conditioning=Conditioning(resample=100.0))
+    assert len(wave(path, conditioning=Conditioning(resample=100.0, bridge=1.02)).summary.gaps) == 1
+
+
 def test_late_and_repeated_samples_are_put_in_order(tmp_path: Path) -> None:
     """Two that changed places and one that repeats a time; a time with two samples has their mean."""
     order = np.arange(1600)

@@ -53,6 +53,13 @@ def two_parts() -> meshio.Mesh:
     return meshio.Mesh(points, {"tetra10": cells}, point_sets=one.point_sets)
 
 
+def far() -> meshio.Mesh:
+    """Of a damaged file: the squares of such places are not finite."""
+    each = mesh()
+    each.points[0, 1] = -4.207e209
+    return each
+
+
 def endless() -> meshio.Mesh:
     each = mesh()
     each.points[0] = np.nan
@@ -65,6 +72,7 @@ BAD: list[tuple[Callable[[], Any], dict[str, Any], str]] = [
     (inverted, {}, r"mesh has 1 element turned inside out or folded: 2; mesh it again"),
     (folded, {}, r"mesh has 1 element turned inside out or folded: 2;"),
     (endless, {}, r"mesh has points of shape .* or not finite"),
+    (far, {}, r"mesh has a node at 4.207e\+209 in a unit of 1 m; write it again"),
     (
         two_parts,
         {},

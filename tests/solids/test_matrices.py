@@ -122,6 +122,7 @@ BAD: list[tuple[dict[str, Any], str]] = [
     ({"mass": np.ones((3, 2))}, r"mass has the shape \(3, 2\); give a square matrix"),
     ({"mass": np.full((3, 3), np.nan)}, r"mass has values that are not finite"),
     ({"mass": "M.mtx"}, r"mass is no matrix of numbers"),
+    ({"nodes": np.full((1, 3), 3e200)}, r"nodes has a node at 3e\+200 in a unit of 1 m"),
     ({"nodes": np.zeros((2, 3))}, r"nodes has the shape \(2, 3\), and the matrices 3 rows"),
     ({"total_mass": 2e-3}, r"total_mass is 0\.002 kg, and the matrix has 2 kg; are the units those of SI"),
     ({"centre": (0.4, 0, 0), "nodes": [(0.1, 0, 0)]}, r"centre is not that of the matrix, \(0\.1, 0, 0\) m"),

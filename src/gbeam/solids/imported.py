@@ -39,6 +39,7 @@ from gbeam.solids.matrices import (
     turned,
     with_tip,
 )
+from gbeam.solids.plausibility import refuse_far
 from gbeam.structure.attachments import TIP
 
 InertialLoad = Literal[
@@ -94,6 +95,7 @@ class ImportedModel(Value):
         size = m.shape[0]
         if places.ndim != 2 or places.shape[1:] != (3,) or not len(places) or not np.isfinite(places).all():
             raise InputError("nodes", f"has the shape {places.shape}", "give a row of x, y, z for each node, finite")
+        refuse_far("nodes", places)
         if self.unknowns is None:
             unknowns = every_unknown(places, size)
         else:

@@ -49,7 +49,7 @@ from gbeam.solids.foreign import (
 from gbeam.solids.links import WAYS, Linked, Links, LinkSpring, attached, refuse_names
 from gbeam.solids.model import SolidModel, beside, hardly_coarser
 from gbeam.solids.placed import Placed, with_cards
-from gbeam.solids.plausibility import doubts_of, locking, refuse_folded, refuse_loose, refuse_twice
+from gbeam.solids.plausibility import doubts_of, locking, refuse_far, refuse_folded, refuse_loose, refuse_twice
 from gbeam.solids.shells import points_of, refuse_oblique
 from gbeam.solids.stress import NodalStress
 from gbeam.structure.attachments import TIP, checked_name
@@ -219,6 +219,7 @@ class SolidMesh(Value):
         places = np.asarray(mesh.points, dtype=float)
         if places.ndim != 2 or places.shape[1] != 3 or not np.isfinite(places).all():
             raise InputError("mesh", f"has points of shape {places.shape}, or not finite", "give x, y and z of each")
+        refuse_far("mesh", places, size)
         elements = elements_of(mesh, thickness)
         used = np.unique(np.concatenate([block.nodes.ravel() for block in elements]))
         refuse_cost("mesh", 3 * len(used) * (1 if thickness is None else 2))

@@ -8,6 +8,7 @@ import numpy as np
 
 from gbeam.arrays.types import Floats, Indices
 from gbeam.errors import InputError
+from gbeam.guards.limits import BOUNDLESS
 from gbeam.solids.elements import determinants
 from gbeam.solids.shape_functions import KINDS
 from gbeam.solids.stress import corners_of, outer_triangles
@@ -22,6 +23,13 @@ SMALL = 1e-3  # m
 SLIVERS = 0.01  # of all elements: a few long ones of a mesher lock nothing
 APART = 1e-6  # of the size: nodes that are nearer are at one place
 PART = 0.1  # of the linear elements: fewer that fill a thickness are at edges
+
+
+def refuse_far(where: str, places: Floats, unit: float = 1.0) -> None:
+    """Refuse nodes, places (k, 3) in a `unit`, m, that are farther than anything that moves."""
+    farthest = float(np.abs(places).max(initial=0.0))
+    if farthest > BOUNDLESS / unit:
+        raise InputError(where, f"has a node at {farthest:.4g} in a unit of {unit:g} m", "write it again")
 
 
 def refuse_folded(mesh: SolidMesh) -> None:

@@ -289,7 +289,7 @@ def _near(number: float) -> float:
 def _up(number: float) -> float:
     """The next number of three digits above one."""
     unit = 10.0 ** (math.floor(math.log10(number)) - 2)
-    return float(f"{math.ceil(number / unit - 1e-6) * unit:.3g}")
+    return float(f"{math.ceil(number / unit / _ROUND) * unit:.3g}")
 
 
 def _more(count: int) -> str:
