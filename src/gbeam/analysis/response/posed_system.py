@@ -30,6 +30,7 @@ from gbeam.guards.limits import HISTORY_BYTES, STEPS, refuse_more
 from gbeam.integrate.equations import NonlinearEquations, Trajectory
 from gbeam.integrate.sampled import Sampling
 from gbeam.integrate.steps import Corners
+from gbeam.mechanics.tree.equations import SLIP
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress
@@ -51,13 +52,14 @@ class PosedSystem:
     start: tuple[Array, Array]
     kept: float  # step of the results, s
     limit: int = LOADS_STEPS  # of steps of a run
+    slip: float = SLIP  # rad/s or m/s, rate below which friction is smooth
 
     @cached_property
     def equations(self) -> NonlinearEquations:
         """Equations of the system, with its controllers, if any, in the loop."""
         control = SystemControllers(self.system) if self.system.controllers else None
         drive = partial(self.system.inputs, motion=self.motion)
-        return NonlinearEquations(self.system.tree, drive, control, None if control is None else [])
+        return NonlinearEquations(self.system.tree.slipping(self.slip), drive, control, None if control is None else [])
 
     @property
     def sampling(self) -> Sampling | None:

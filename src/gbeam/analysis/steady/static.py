@@ -135,6 +135,7 @@ def static(
         From :func:`gbeam.assemble`; shape and loads are given at its stations. A system rests in its joints too, but
         for what slides freely, as a free body that falls or is pushed: it is accelerated evenly, `accelerated`.
         Where it begins to turn ever faster too, it is the state at that instant (inertia relief), with a warning.
+        Joints rest without their friction; one that nothing else holds is held where it begins, if friction suffices.
     motion : Flight, Centrifuge or Hub, optional
         Without one the base is at rest, or accelerates as given.
     time : float
