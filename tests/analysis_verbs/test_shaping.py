@@ -201,7 +201,8 @@ def test_joints_that_no_command_leaves_at_rest_are_refused() -> None:
         gb.shape_command(replace(on_axis(effort=0.0), controllers={"damper": law}), "axis.angle", **options)  # type: ignore[arg-type]
     for more, said in (
         ({"stiffness": 5.0}, "a spring or gravity holds"),
-        ({"damping": 5.0}, "a damper brakes"),
+        ({"damping": 5.0}, "friction or a damper brakes"),
+        ({"friction": 5.0}, "friction or a damper brakes"),
         ({"initial_rate": 1.0}, "moves already"),
     ):
         with pytest.raises(gb.InputError, match=said):

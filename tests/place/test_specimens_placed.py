@@ -117,7 +117,13 @@ def test_what_does_not_rest_is_refused(flight: Any, spin: Any, settings: Any) ->
     with pytest.raises(gb.InputError, match=r"move hinge\.angle"):
         placed(moved, flight, spin, settings, "tip")
     held = gb.Joint(**hinge, rate=0.0)
-    assert placed(gb.System({"strip": structure}, {"hinge": held}), flight, spin, settings, "tip").best.mismatch < 1e-3
+    best = placed(gb.System({"strip": structure}, {"hinge": held}), flight, spin, settings, "tip")
+    assert best.best.mismatch < 1e-3 and not best.warnings
+    rubbed = gb.Joint(**hinge, stiffness=100.0, friction=0.1)
+    assert (
+        "friction of hinge.angle is left out: its joint moves freely"
+        in placed(gb.System({"strip": structure}, {"hinge": rubbed}), flight, spin, settings, "tip").warnings
+    )
     box = gb.RigidSpecimen.box(3.0, (0.3, 0.2, 0.1), (0.18, 0.0, 0.0)).structure
     with pytest.raises(gb.InputError, match="is tip, of which the flight makes none; choose of root-shear"):
         placed(box, flight, spin, settings, "tip")

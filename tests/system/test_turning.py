@@ -219,32 +219,25 @@ def test_rates_belong_to_their_coordinates_whatever_the_order() -> None:
 
 
 def test_friction_that_holds_is_warned_of_where_the_rotor_turns() -> None:
-    """A hinge that sticks in a rotor is a damper; the friction of the joint that turns is overcome. Where nothing else
-    swings there is no mode to follow.
-    """
-    rotor = gb.RigidBody(1.0, (0.1, 0.1, 0.1), points={"rim": (0.2, 0, 0), "other": (-0.2, 0, 0)})
+    """Small departures of a hinge in a rotor are without its friction; that of the joint that turns is overcome."""
+    rotor = gb.RigidBody(1.0, (0.1, 0.1, 0.1), points={"rim": (0.2, 0, 0)})
     flap = gb.RigidBody(0.2, (1e-3, 0.01, 0.01), centre=(0.2, 0, 0))
 
-    def spinning(friction: float, *, two: bool) -> gb.System:
+    def spinning(friction: float) -> gb.System:
         joints = {
             "spin": gb.Joint("revolute", "rotor", axes=[(0, 0, 1)], friction=0.3),
             "hinge": gb.Joint("revolute", "flap", "rotor.rim", axes=[(0, 1, 0)], stiffness=5.0, friction=friction),
         }
-        if two:
-            joints["other"] = gb.Joint("revolute", "free", "rotor.other", axes=[(0, 1, 0)], stiffness=5.0)
-        return gb.System({"rotor": rotor, "flap": flap} | ({"free": flap} if two else {}), joints)
+        return gb.System({"rotor": rotor, "flap": flap}, joints)
 
+    frequencies = []
     for friction in (0.0, 0.5):
-        system = spinning(friction, two=True)
-        answers = (
-            gb.campbell(system, turning="spin.angle", end=20.0, count=2, modes=1),
-            gb.critical_speed(system, turning="spin.angle", upper=20.0),
-        )
-        for answer in answers:
+        diagram = gb.campbell(spinning(friction), turning="spin.angle", end=20.0, count=2, modes=1)
+        for answer in (diagram, gb.critical_speed(spinning(friction), turning="spin.angle", upper=20.0)):
             said = [each for each in answer.warnings if "friction" in each]
-            assert [each.split(" is ")[0] for each in said] == ["friction of hinge.angle"] * (friction > 0)
-    with pytest.raises(gb.InputError, match=r"nothing oscillates at 0 rad/s; friction of hinge\.angle is a damper"):
-        gb.campbell(spinning(0.5, two=False), turning="spin.angle", end=20.0, count=2, modes=1)
+            assert [each.split(", ")[0] for each in said] == ["friction of hinge.angle"] * (friction > 0)
+        frequencies.append(diagram.frequency)
+    np.testing.assert_array_equal(*frequencies)
 
 
 def test_newtons_method_goes_in_shares_where_it_fails_at_once() -> None:

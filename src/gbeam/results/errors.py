@@ -16,6 +16,7 @@ from gbeam.results.result import Complex, Floats, Part
 PARTS = ("shapes", "model", "beam_theory", "mesh", "total")
 SHAPES, MODEL = "estimated error from too few shapes", "estimated error of the model against exact"
 THEORY, TOTAL = "estimated error of the theory of slender beams", "estimated error in all"
+FRICTION, SMOOTH = "estimated error of the smooth law of friction", "of systems, by another rate below which it is so"
 MESH, COARSER = "estimated error of a solid's mesh", "by the difference to a coarser one"
 UNKNOWN = "what is not estimated, and why"
 FRAME = "frame of the frequencies: ground, or turning with what turns"
@@ -33,6 +34,7 @@ class ErrorEstimate(Part):
     model: float = quantity("", MODEL, default=math.nan)
     beam_theory: float = quantity("", THEORY, note=SLENDER, default=math.nan)
     mesh: float = quantity("", MESH, note=COARSER, default=math.nan)
+    friction: float = quantity("", FRICTION, note=SMOOTH, default=math.nan)
     total: float = quantity("", TOTAL, note="the largest of all together, maybe less than their sum", default=math.nan)
 
     @property
@@ -45,9 +47,9 @@ class ErrorEstimate(Part):
         """Total error but for that of the beam theory: against an exact slender beam."""
         return self.total - (0.0 if math.isnan(self.beam_theory) else self.beam_theory)
 
-    def adding(self, *, beam_theory: float = math.nan, mesh: float = math.nan) -> ErrorEstimate:
-        """Return the errors with that of the beam theory, or of the mesh, added to the total; NaN adds nothing."""
-        added = {name: share for name, share in (("beam_theory", beam_theory), ("mesh", mesh)) if not math.isnan(share)}
+    def adding(self, **parts: float) -> ErrorEstimate:
+        """Return the errors with others added to the total: `beam_theory`, `mesh`, `friction`; NaN adds nothing."""
+        added = {name: share for name, share in parts.items() if not math.isnan(share)}
         return replace(self, total=self.total + sum(added.values()), **added)
 
     def __repr__(self) -> str:

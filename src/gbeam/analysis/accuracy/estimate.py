@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -120,7 +121,8 @@ def unjudged(structure: Structure) -> str:
 
 class Judgement(NamedTuple):
     """Pairs of readings that differ by too few shapes, by the model and, if known, by the mesh; differences by the beam
-    theory, relative errors of the steps, the sizes that others are relative to, and quantities that are rounding.
+    theory, relative errors of the steps, the sizes that others are relative to, quantities that are rounding, and
+    relative errors of the law of friction.
     """
 
     shapes: tuple[Reading, Reading]
@@ -130,6 +132,7 @@ class Judgement(NamedTuple):
     sizes: Mapping[Quantity, float]
     nothing: Collection[Quantity]
     mesh: tuple[Reading, Reading] | None = None
+    friction: Mapping[Quantity, float] = MappingProxyType({})
 
     def apart(self, key: Quantity, *pairs: tuple[Reading, Reading]) -> float:
         """Largest size of the sum of the differences of pairs of readings, as a share of the quantity's size."""
@@ -147,6 +150,8 @@ class Judgement(NamedTuple):
         estimate = ErrorEstimate(step, shapes, model, total=total + (0.0 if math.isnan(step) else step))
         if self.mesh is not None:
             estimate = estimate.adding(mesh=self.apart(key, self.mesh))
+        if key in self.friction:
+            estimate = estimate.adding(friction=0.0 if key in self.nothing else self.friction[key])
         theory, size = self.theory.get(key, math.nan), self.sizes[key]
         return estimate.adding(beam_theory=0.0 if key in self.nothing or size == 0 else theory / size)
 

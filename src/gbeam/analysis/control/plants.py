@@ -260,15 +260,16 @@ class OnJoint:
     @property
     def inertia(self) -> float:
         """Inertia, kg m² or kg, that the effort moves without vibration; InputError if it is held or braked."""
-        m, c, k, force = self._rest[1]
+        state, (m, c, k, force) = self._rest
         square, modes = symmetric_modes(symmetric(k), symmetric(m))
         rigid = modes[:, square <= RIGID**2 * square[-1]]
         shares = force[:, 0] @ rigid
         if not np.abs(shares).max(initial=0.0) > 0:
             raise InputError("joint", f"is {self.coordinate!r}, which a spring or gravity holds", "give it a rate")
-        if np.abs(rigid.T @ c @ rigid).max() > HELD * np.abs(c).max(initial=1e-300):
+        rubs = np.abs(rigid[np.isin(state.names, self.system.rubbing)]).max(initial=0.0) > HELD * np.abs(rigid).max()
+        if rubs or np.abs(rigid.T @ c @ rigid).max() > HELD * np.abs(c).max(initial=1e-300):
             fix = "leave out damping and friction of what is driven"
-            raise InputError("joint", f"is {self.coordinate!r}, whose motion a damper brakes", fix)
+            raise InputError("joint", f"is {self.coordinate!r}, whose motion friction or a damper brakes", fix)
         return float(1 / (shares @ shares))
 
     @property

@@ -236,7 +236,8 @@ def place(
         outcome="done" if allowed else BROKEN,
         warnings=input_warnings(structure, flight, name=names[0], span=trials.span)
         if isinstance(structure, Structure)
-        else structure.warnings,
+        else structure.warnings
+        + tuple(f"friction of {name} is left out: its joint moves freely" for name in structure.rubbing),
         point=trials.answers.tip if isinstance(structure, System) else "",
         straight=specimen.straight,
     )

@@ -30,6 +30,7 @@ from gbeam.guards.limits import HISTORY_BYTES, STEPS, refuse_more
 from gbeam.integrate.equations import LinearEquations, NonlinearEquations, Trajectory
 from gbeam.integrate.sampled import Sampling
 from gbeam.integrate.steps import Corners
+from gbeam.mechanics.tree.equations import SLIP
 from gbeam.mechanics.tree.linear import is_linear, linear_equations
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
@@ -52,6 +53,7 @@ class PosedSystem:
     start: tuple[Array, Array]
     kept: float  # step of the results, s
     limit: int = LOADS_STEPS  # of steps of a run
+    slip: float = SLIP  # rad/s or m/s, rate below which friction is smooth
 
     @cached_property
     def controllers(self) -> SystemControllers | None:
@@ -61,7 +63,7 @@ class PosedSystem:
     @cached_property
     def equations(self) -> LinearEquations | NonlinearEquations:
         """Equations of the system, with its controllers, if any, in the loop; linear where they are so without."""
-        tree, drive = self.system.tree, partial(self.system.inputs, motion=self.motion)
+        tree, drive = self.system.tree.slipping(self.slip), partial(self.system.inputs, motion=self.motion)
         if self.controllers is not None:
             return NonlinearEquations(tree, drive, self.controllers, [])
         return linear_equations(tree, drive) if is_linear(tree) else NonlinearEquations(tree, drive)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any
 
@@ -25,11 +25,12 @@ from gbeam.analysis.response.posed_system import (
 )
 from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.analysis.response.step_errors import difference
 from gbeam.analysis.response.stepping import LOADS_STEPS, scheme_of, steps_to_try
-from gbeam.analysis.system.accuracy import doubts, system_errors, unmoved
+from gbeam.analysis.system.accuracy import UNSMOOTHED, doubts, system_errors, unmoved
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
 from gbeam.analysis.system.histories import Carried, beams_of, deflection, histories, loads_of, meshes_of
-from gbeam.analysis.system.point import Point, started, started_traced, unknown_at_start
+from gbeam.analysis.system.point import Point, in_words, started, started_traced, unknown_at_start
 from gbeam.analysis.system.richer import judged_bodies
 from gbeam.analysis.system.solution import Solution
 from gbeam.analysis.system.steady import MASSLESS, bent_most, massless
@@ -39,9 +40,9 @@ from gbeam.errors import InputError
 from gbeam.integrate.equations import Trajectory, slopes
 from gbeam.integrate.sampled import Sampling
 from gbeam.mechanics.tree.bodies import LinearBody
-from gbeam.mechanics.tree.equations import Inputs
-from gbeam.mechanics.tree.joints import Joint
-from gbeam.mechanics.tree.signals import units_of
+from gbeam.mechanics.tree.equations import SLIP, SLIPS, STUCK, Inputs, Link
+from gbeam.mechanics.tree.joints import SLIDES, SPIN, Joint
+from gbeam.mechanics.tree.signals import local_names, units_of
 from gbeam.mechanics.tree.steps import continuous
 from gbeam.mechanics.tree.system import System
 from gbeam.motion import Centrifuge
@@ -58,6 +59,8 @@ from gbeam.structure.beam import names_at
 LOOKS = 30  # steps of a run at which its mass matrix is checked
 LOADS = "force", "moment", "stress"  # of a beam, whose errors are estimated
 BEYOND = 1e-8  # of a coordinate's range: a stop is not met by less
+STOPPED = 10  # times in which friction alone would stop a coordinate: held is what is slow for longer
+LITTLE = 1e-3  # of a coordinate's way: less is no creep
 
 Prepared = tuple[Motion | None, ResponseSettings]
 
@@ -119,7 +122,7 @@ class SystemRun(Run):
 
     def described(self, errors: StepErrors, name: str, progress: Progress = None) -> SystemResponse:
         """Return the response, with the errors beyond those of the time steps if the settings ask for an estimate."""
-        posed, settings, warnings = self.posed, self.posed.settings, self.missed + self.turned_over
+        posed, settings, warnings = self.posed, self.posed.settings, self.missed + self.turned_over + self.crept
         errors = StepErrors() if self.missed else errors  # unknown where steps may miss a stop
         say = "errors of shapes and models"
 
@@ -133,12 +136,27 @@ class SystemRun(Run):
             by_step |= {PLACE: errors.displacement, **dict(zip(by_step, errors.each, strict=False))}
             starting = partial(unknown_at_start, initial=settings.begin.state)
             rerun = again if posed.system.controllers else None
-            stated = system_errors(self.every(self.stride), rerun, by_step, starting=starting)
+            rubbed = self._of_friction(partial(tell, progress, "errors of the smooth law of friction"))
+            friction = dict(zip((PLACE, *by_step), rubbed, strict=False))
+            stated = system_errors(self.every(self.stride), rerun, by_step, starting=starting, friction=friction)
+            if not friction and posed.system.rubbing:
+                stated = replace(stated, note="; ".join(filter(None, (stated.note, UNSMOOTHED))))
             if rerun is not None:
                 from gbeam.analysis.steady.loop_errors import unstable_with_more  # takes SciPy's linear algebra
 
                 warnings += unstable_with_more(posed.system, posed.motion, posed.flight.start)
         return _described(self, stated, name, warnings)
+
+    def _of_friction(self, progress: Progress) -> list[float]:
+        """Errors by the smooth law of friction, of displacements and of :meth:`loads`, which go as the rate below which
+        it is smooth: by a run with half of that, or twice where this fails. Empty without friction, or where both fail.
+        """
+        for times, share in ((0.5, 2.0), (2.0, 1.0)) if self.posed.system.rubbing else ():
+            other = SystemRun.by_steps(replace(self.posed, slip=times * self.posed.slip), self.step, progress)
+            if other.whole:
+                loads = zip(self.loads(self.stride), other.loads(self.stride), strict=True)
+                return [share * difference(a, b, 1) for a, b in ((other.moved, self.moved), *loads)]
+        return []
 
     @cached_property
     def peaks(self) -> list[Floats]:
@@ -201,6 +219,43 @@ class SystemRun(Run):
         """Warning of springs that a ball's turn of more than 180° makes pull the other way; empty if none do."""
         return _turned_over(self.posed.system, self.trajectory, self.inputs(self.posed.system, slice(None)))
 
+    @cached_property
+    def crept(self) -> tuple[str, ...]:
+        """Warnings of coordinates that creep, or are driven, at rates at which friction has less than its size."""
+        system, run, warnings = self.posed.system, self.trajectory, list[str]()
+        if not any(joint.frictions for joint in system.joints.values()):
+            return ()
+        for name, joint, link, q, qd in _states(system, run, self.inputs(system, slice(None))):
+            values, rates = link.held(q, qd)
+            for kind, friction in joint.frictions.items():
+                k, driven, step = joint.rate_names.index(kind), kind in joint.rates, np.diff(run.time)
+                rate = rates[:, k]
+                mean = (rate[1:] + rate[:-1]) / 2 if kind in SPIN else np.diff(values[:, k]) / step
+                limit = SLIP if driven else STUCK
+                # Rates at the ends of steps ring about the creep by as much as its size.
+                slow = (np.abs(mean) < limit) & (np.maximum(np.abs(rate[1:]), np.abs(rate[:-1])) < 2 * limit)
+                ends = np.flatnonzero(np.diff(slow, prepend=False, append=False)).reshape(-1, 2)
+                if not driven and ends.size:
+                    # Friction stops an inertia in a few times m v/F; what turns back is slow for a shorter while.
+                    inertia = self._inertia(f"{name}.{joint.values[k]}", int(ends[0, 0]))
+                    lasting = np.diff(run.time[ends])[:, 0] > STOPPED * inertia * STUCK / friction
+                    ends = ends[lasting]
+                moved = np.append(0.0, np.cumsum(mean * step))
+                way = sum(float(np.ptp(moved[first : last + 1])) for first, last in ends)
+                if way > LITTLE * np.abs(mean * step).sum():
+                    felt = max(float(np.abs(mean[first:last]).max()) for first, last in ends)
+                    sizes = way, float(np.diff(run.time[ends]).sum()), friction * math.tanh(felt / SLIP), friction
+                    warnings.append(_creeping(f"{name}.{kind}", *sizes, driven=driven))
+        return tuple(warnings)
+
+    def _inertia(self, name: str, step: int) -> float:
+        """Inertia, kg or kg m², that an effort on a local coordinate accelerates at a step, the others being free."""
+        system, run = self.posed.system, self.trajectory
+        state = run.q[step], run.qd[step], 0 * run.q[step]
+        local, names = Point(system.tree, *state, self.inputs(system, step)).local, local_names(system.coordinates)
+        k = [names[each] for each in local.tree.free].index(name)
+        return float(1 / np.linalg.inv(local.slopes()[3])[k, k])
+
     def inputs(self, of: System, steps: Any) -> Inputs:
         """Inputs, at an index or slice of the steps, of its system or of another one with the same controllers."""
         plain = of.inputs(self.trajectory.time[steps], self.posed.motion)
@@ -229,9 +284,23 @@ class SystemRun(Run):
         return over_time | {"attitude": continuous(over_time["attitude"])}, along
 
 
-def _held(system: System, run: Trajectory, inputs: Inputs) -> Iterator[tuple[str, Joint, Floats, Floats]]:
-    """Yield name, joint, held coordinates (t, h) over the times of a run and their rates, of every joint with springs
-    or stops; of a ball the rotation vector is held.
+def _creeping(name: str, way: float, time: float, felt: float, friction: float, *, driven: bool) -> str:
+    """Warning of a coordinate that moves by a `way`, m or rad, where friction, N or N m, is felt in part."""
+    slides = name.rpartition(".")[2] in SLIDES
+    unit, far = "N" if slides else "N m", in_words(name.rpartition(".")[2], way)
+    smooth = f"friction is smooth below {SLIPS[not slides]}"
+    share = f"{felt:.4g} of {friction:.4g} {unit} at most"
+    if driven:
+        return f"{name} moves by {far} in {time:.4g} s so slowly that its drive feels {share}: {smooth}"
+    held = f"{name} creeps by {far} in {time:.4g} s in which friction would hold it with {share}"
+    return f"{held}: {smooth}; rate = 0 holds what should not move"
+
+
+def _states(
+    system: System, run: Trajectory, inputs: Inputs
+) -> Iterator[tuple[str, Joint, Link, list[Floats], list[Floats]]]:
+    """Yield name, joint, link, and coordinates and rates of its steps over the times of a run, of every joint with
+    springs, dampers, friction or stops.
     """
     states = [run.q, run.qd]
     if inputs.prescribed is not None:
@@ -240,10 +309,18 @@ def _held(system: System, run: Trajectory, inputs: Inputs) -> Iterator[tuple[str
     by_link = zip(*map(system.tree.parted, states), strict=True)
     for body, link, (q, qd) in zip(system.order, system.tree.links, by_link, strict=True):
         if not link.loose:
-            # The last part is the body's own coordinates. Rates are derivatives along time, by a complex step.
-            ahead = [value + 1j * STEP * rate for value, rate in zip(q[:-1], qd[:-1], strict=True)]
-            values, further = (link.held(of_joint, qd[:-1])[0] for of_joint in (q[:-1], ahead))
-            yield names[body], system.joints[names[body]], values, further.imag / STEP
+            yield names[body], system.joints[names[body]], link, q[:-1], qd[:-1]  # the last are the body's own
+
+
+def _held(system: System, run: Trajectory, inputs: Inputs) -> Iterator[tuple[str, Joint, Floats, Floats]]:
+    """Yield name, joint, held coordinates (t, h) over the times of a run and their rates; of a ball the rotation vector
+    is held.
+    """
+    for name, joint, link, q, qd in _states(system, run, inputs):
+        # Rates are derivatives along time, by a complex step.
+        ahead = [value + 1j * STEP * rate for value, rate in zip(q, qd, strict=True)]
+        values, further = (link.held(of_joint, qd)[0] for of_joint in (q, ahead))
+        yield name, joint, values, further.imag / STEP
 
 
 def _missed_stop(system: System, run: Trajectory, inputs: Inputs) -> tuple[str, ...]:

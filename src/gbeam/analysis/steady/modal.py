@@ -11,7 +11,7 @@ from gbeam.analysis.accuracy.estimate import not_known
 from gbeam.analysis.steady.frequency_errors import BY_RICHER, Richer, doubtful, judgeable, unknown_errors
 from gbeam.analysis.steady.operating_point import OperatingPoint, drawn, extent, operating_point
 from gbeam.analysis.system.linear import framed, instabilities, largest_component, system_modes
-from gbeam.analysis.system.steady import Drive, steady
+from gbeam.analysis.system.steady import Drive, settled
 from gbeam.arrays.tree import each_leaf
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.plausibility import bend, bent_far, input_warnings
@@ -147,7 +147,7 @@ def modes(
     """
     tell(progress, "equilibrium", 0.0)
     if isinstance(structure, System):
-        state = steady(structure, Drive(motion, time))
+        state = settled(structure, Drive(motion, time))
         moving = state.vibrations(gyroscopic=gyroscopic)
         of_system = decided(system_modes(state, moving, time, name), state.bend)
         if not errors:

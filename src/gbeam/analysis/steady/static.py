@@ -14,7 +14,7 @@ from gbeam.analysis.accuracy.response_errors import BENT, Solution, errors_of
 from gbeam.analysis.steady.equilibrium import keeps, solve_equilibrium
 from gbeam.analysis.steady.operating_point import OperatingPoint, on_base, operating_point
 from gbeam.analysis.system.linear import system_rest
-from gbeam.analysis.system.steady import Drive, steady
+from gbeam.analysis.system.steady import Drive, settled
 from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import ComputationError, InputError
@@ -135,6 +135,7 @@ def static(
         From :func:`gbeam.assemble`; shape and loads are given at its stations. A system rests in its joints too, but
         for what slides freely, as a free body that falls or is pushed: it is accelerated evenly, `accelerated`.
         Where it begins to turn ever faster too, it is the state at that instant (inertia relief), with a warning.
+        Joints rest without their friction; one that nothing else holds is held where it begins, if friction suffices.
     motion : Flight, Centrifuge or Hub, optional
         Without one the base is at rest, or accelerates as given.
     time : float
@@ -170,7 +171,7 @@ def static(
     if isinstance(structure, System):
         if acceleration is not None:
             raise InputError("acceleration", "is given of a system", "give it gravity, which is its opposite")
-        state = steady(structure, Drive(motion, time))
+        state = settled(structure, Drive(motion, time))
         tell(progress, "loads, and errors by richer models", 0.5)
         return system_rest(state, name)
     if acceleration is None:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
+from types import MappingProxyType
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from gbeam.analysis.system.solution import Solution
 from gbeam.arrays.types import Flags, Floats
 from gbeam.errors import ComputationError
 from gbeam.mechanics.theory import Theory
+from gbeam.mechanics.tree.equations import SLIPS
 from gbeam.mechanics.tree.system import System
 from gbeam.results.errors import ErrorEstimate, SystemErrors
 from gbeam.results.parts import Base
@@ -36,6 +38,10 @@ TOGETHER = "with more shapes of the same models the system does not follow: too 
 UNKNOWN = "errors by the theory of slender beams are not known: "
 BENT_FAR = UNKNOWN + "thick beams do not follow"
 LOOP_LOST = UNKNOWN + "controllers do not hold the system with more shapes in its beams"
+CREEPS = f"friction is smooth below {' and '.join(SLIPS)}, so that what it holds creeps; rate = 0 holds a joint"
+UNSMOOTHED = (
+    "the error of the smooth law of friction is not known: runs with half and twice its rate fail; give a smaller step"
+)
 STEPS = "the steps do not resolve what vibrates; give a smaller step, or damp it"
 LOST = 10.0  # times the motion, or the extent of the system: a larger answer of linear equations is none
 
@@ -52,16 +58,19 @@ def system_errors(
     *,
     starting: Starting | None = None,
     start: Floats | None = None,
+    friction: Mapping[Quantity, float] = MappingProxyType({}),
 ) -> SystemErrors:
     """Errors of the places of all points, over the largest displacement from the first places or a `start` (p, 3), and
     of the beams' root loads and stress; `steps` has the errors of the time steps. Richer systems are
-    linearised, beginning as `starting` says, or run by `again` if given (with controllers, at rest).
+    linearised, beginning as `starting` says, or run by `again` if given (with controllers, at rest). `friction` has
+    the errors of its law.
     """
     judged, note, count = judged_bodies(solution.system), left_unjudged(solution.system), len(solution.of.time)
     step = steps.get(PLACE, math.nan)
     if not judged or (again is None and count < FEWEST):
         none = math.nan if note or judged else 0.0
-        return SystemErrors(ErrorEstimate(step, none, none, total=step + none), note=note)
+        stated = ErrorEstimate(step, none, none, total=step + none)
+        return SystemErrors(stated.adding(friction=friction.get(PLACE, math.nan)), note=note)
     computed = solution.read(judged)
     place = computed[PLACE]
     sizes = {quantity: largest(values) for quantity, values in computed.items()}
@@ -107,7 +116,7 @@ def system_errors(
         lacking = Lacking()
         note = "; ".join(filter(None, (note, BENT_FAR if loop is None else LOOP_LOST)))
     by_mesh = None if mesh is None else (mesh, computed)
-    judgement = Judgement(shapes, model, lacking.sizes, dict(steps), sizes, nothing, by_mesh)
+    judgement = Judgement(shapes, model, lacking.sizes, dict(steps), sizes, nothing, by_mesh, friction)
     loads, stress = [judgement.loads(name) for name in judged], [judgement.error((name, "stress")) for name in judged]
     return SystemErrors(
         displacement=judgement.error(PLACE),
@@ -130,12 +139,15 @@ def doubts(errors: SystemErrors, tolerance: float) -> tuple[str, ...]:
         ("loads are", "the largest of them", errors.loads, errors.loads_by_beam),
         ("stress is", "its largest", errors.stress, errors.stress_by_beam),
     ):
-        parts = error.step, error.shapes, error.model, error.beam_theory, error.mesh
+        parts = error.step, error.shapes, error.model, error.beam_theory, error.mesh, error.friction
         if not any(part > tolerance for part in parts):
             continue
         share = percent(np.nanmax([error.total, error.step]))
         if error.step == np.nanmax(parts):
             warnings.append(f"{what} wrong by an estimated {share} of {size}: {STEPS}")
+            continue
+        if error.friction == np.nanmax(parts):
+            warnings.append(f"{what} wrong by an estimated {share} of {size}: {CREEPS}")
             continue
         worst_beam = int(np.nan_to_num(by_beam).argmax())
         cause, cure = cause_and_cure(error, errors.theory[worst_beam])

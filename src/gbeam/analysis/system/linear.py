@@ -18,7 +18,7 @@ from gbeam.analysis.system.gauges import Strained, read_signals
 from gbeam.analysis.system.histories import ROUNDING, beams_of, histories, loads_of, meshes_of
 from gbeam.analysis.system.point import Point
 from gbeam.analysis.system.solution import Solution
-from gbeam.analysis.system.steady import Drive, SteadySystem, beginning, open_loops, steady
+from gbeam.analysis.system.steady import Drive, SteadySystem, beginning, open_loops, settled
 from gbeam.arrays.namespace import Array
 from gbeam.arrays.types import Complex, Floats
 from gbeam.errors import ComputationError
@@ -67,7 +67,7 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
     inertia = sum(float(link.body.mass_moment(q[-1])[0] * np.linalg.norm(root.a)) for link, q, root in links)
     for key, size in ("ground_force", inertia), ("ground_moment", inertia * np.abs(values["place"]).max(initial=0.0)):
         values[key] = np.where(np.abs(values[key]) > ROUNDING * size, values[key], 0.0)
-    start = begun["place"][0]
+    start, sticking = begun["place"][0], point.sticking(system, resting=True)
     solids, surfaces = meshes_of(system, np.array([time]), resting["q"], name, "rest")
     errors = system_errors(standing(system), standing, {}, start=start)
     return SystemRest(
@@ -80,7 +80,7 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
         errors=errors,
         accelerated=state.accelerated,
         stable=None if undecided else not unstable,
-        warnings=unstable + doubts(errors, LIMIT) + state.warnings + open_loops(system),
+        warnings=unstable + doubts(errors, LIMIT) + state.warnings + sticking + open_loops(system),
         notes=notes_on({name: state.drive.motion}),
         assembly=assembly_of(system),
         outlines={
@@ -182,7 +182,7 @@ def frozen(system: System, motion: Motion | None, time: float, at: str) -> Stead
     """
     choice("at", at, ("rest", "start"))
     drive = Drive(motion, time)
-    return steady(system, drive) if at == "rest" else beginning(system, drive)
+    return settled(system, drive) if at == "rest" else beginning(system, drive)
 
 
 def linearize_system(

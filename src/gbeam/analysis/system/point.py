@@ -14,7 +14,7 @@ from gbeam.arrays.tree import each_leaf, together
 from gbeam.arrays.types import Flags, Floats
 from gbeam.errors import ComputationError, InputError
 from gbeam.integrate.equations import Trajectory, accelerations, slopes, solved
-from gbeam.mechanics.tree.equations import SLIP, Inputs, Tree
+from gbeam.mechanics.tree.equations import STUCK, Inputs, Tree
 from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.signals import local_names
 from gbeam.mechanics.tree.system import System
@@ -77,8 +77,10 @@ class Point:
         return Point(reduced, y[free], yd[free], ydd[free], inputs)
 
     def slopes(self) -> tuple[Floats, Floats, Floats, Floats]:
-        """The residual (n,) and its derivatives K, C and M (n, n) with respect to y, ẏ and ÿ, by complex steps."""
-        k, c, m = slopes(self.tree, self.y[None], self.yd[None], self.ydd[None], self.driven())
+        """The residual (n,) and its derivatives K, C and M (n, n) with respect to y, ẏ and ÿ, by complex steps, without
+        friction: at rest its smooth law is a damper that no joint has.
+        """
+        k, c, m = slopes(self.tree.frictionless, self.y[None], self.yd[None], self.ydd[None], self.driven())
         return self.tree(self.y, self.yd, self.ydd, self.inputs), k[0], c[0], m[0]
 
     def standing(self, time: float = 0.0) -> Trajectory:
@@ -89,22 +91,34 @@ class Point:
         """Inputs with an axis of one time, as of the trajectory of `standing`; arguments are ignored."""
         return each_leaf(lambda leaf: leaf[None], self.inputs)
 
-    def sticking(self, system: System) -> tuple[str, ...]:
-        """Warnings of coordinates that friction holds, which small departures see as dampers."""
-        state = self.tree.motion(self.y, self.yd, self.ydd, self.inputs)
-        warnings = []
+    def sticking(self, system: System, *, resting: bool = False) -> tuple[str, ...]:
+        """Warnings of coordinates that friction may hold, which is left out; if `resting`, how far from here."""
+        state, warnings, local = self.tree.motion(self.y, self.yd, self.ydd, self.inputs), list[str](), None
         for name, joint in system.joints.items():
             k = system.order.index(joint.body)
-            rates = self.tree.links[k].held(state.q[k][:-1], state.qd[k][:-1])[1] if joint.coordinates else ()
-            for kind, friction, rate in zip(joint.rate_names, np.asarray(joint.holder.friction), rates, strict=True):
-                if friction > 0 and kind not in joint.rates and abs(rate) < 3 * SLIP:
-                    size = friction / SLIP / np.cosh(rate / SLIP) ** 2
-                    unit = "N s/m" if kind in SLIDES else "N m s/rad"
-                    warnings.append(
-                        f"friction of {name}.{kind} is a damper of {size:.3g} {unit} for small departures, which "
-                        "hardly move it: leave it out for those with the joint free, or give rate = 0 with it held"
-                    )
+            rates = self.tree.links[k].held(state.q[k][:-1], state.qd[k][:-1])[1] if joint.frictions else ()
+            for kind, friction in joint.frictions.items():
+                i = joint.rate_names.index(kind)
+                if kind in joint.rates or abs(rates[i]) >= STUCK:
+                    continue
+                words = f"friction of {name}.{kind}, {friction:.4g} {'N' if kind in SLIDES else 'N m'}, is left out"
+                if not resting:
+                    warnings.append(f"{words} of small departures, which it damps or holds; rate = 0 holds the joint")
+                    continue
+                local = local or self.local
+                _, stiffness, _, mass = local.slopes()
+                names = local_names(system.coordinates)
+                force = friction * np.array([names[each] == f"{name}.{joint.values[i]}" for each in local.tree.free])
+                moved = answered(stiffness, mass, force)
+                held = np.allclose(stiffness @ moved, force, atol=1e-6 * friction)
+                far = f"up to {in_words(kind, abs(float(moved @ force)) / friction)} either way of here, to first order"
+                warnings.append(f"{words}, which may hold it {far if held else 'wherever it is put'}")
         return tuple(warnings)
+
+
+def in_words(kind: str, size: float) -> str:
+    """Size of a displacement, m, or of a rotation, rad, of a joint, as people read it."""
+    return f"{1e3 * size:.4g} mm" if kind in SLIDES else f"{np.degrees(size):.4g}°"
 
 
 def refuse_massless(system: System, point: Point, mass: Floats) -> None:
@@ -298,7 +312,7 @@ def rested_together(
     """States of rest of a system's tree under several inputs, each with its K, C and M, from starts (t, n) of all
     coordinates; None for each that Newton's method does not find near its start.
     """
-    inputs, sliding = together(drives), tree.sliding
+    inputs, sliding, sloped = together(drives), tree.sliding, tree.frictionless
     y, begun = starts[:, tree.free], starts[:, tree.free]
     still, ydd, before = np.zeros_like(y), np.zeros_like(y), np.full(len(y), np.inf)
     converged, lost = np.zeros((2, len(y)), dtype=bool)
@@ -307,11 +321,11 @@ def rested_together(
         for count in range(FEW):
             if sliding.any():
                 if not count:
-                    k, c, m = slopes(tree, y, still, ydd, inputs)
+                    k, c, m = slopes(sloped, y, still, ydd, inputs)
                     which = sliding & np.array([loose(*pair) for pair in zip(k, c, strict=True)])
                 left = tree(y, still, ydd, inputs)
                 ydd = ydd + [pulled(*state) for state in zip(left, m, which, strict=True)]
-            left, (k, c, m) = tree(y, still, ydd, inputs), slopes(tree, y, still, ydd, inputs)
+            left, (k, c, m) = tree(y, still, ydd, inputs), slopes(sloped, y, still, ydd, inputs)
             settled = converged  # where the derivatives are those of a state that has converged
             if (settled | lost).all():
                 break
@@ -392,7 +406,20 @@ def _steady(system: System, point: Point, slope: Sequence[Floats]) -> Point:
     faster = np.abs(point.ydd) > NONE
     for turn in tree.turning:
         faster |= turn & faster[turn].any()
-    return replace(point, ydd=np.where(faster, point.ydd, 0.0))
+    point = replace(point, ydd=np.where(faster, point.ydd, 0.0))
+    if faster.any():
+        _refuse_rubbing(system, point.local)
+    return point
+
+
+def _refuse_rubbing(system: System, local: Point) -> None:
+    """Raise ComputationError where a coordinate with friction is accelerated: it slips, or friction holds it."""
+    for index in np.flatnonzero(local.ydd).tolist():
+        name = local_names(system.coordinates)[local.tree.free[index]]
+        if _friction(system, name):
+            faster = np.where(np.arange(len(local.ydd)) == index, 0.0, local.ydd)
+            left = local.tree(local.y, local.yd, faster, local.inputs)
+            raise ComputationError("no equilibrium", _pushed(system, name, left[index]))
 
 
 def _unheld(system: System, local: Point) -> str:
@@ -409,4 +436,22 @@ def _unheld(system: System, local: Point) -> str:
         about = f"{kind[1]} of {system.joints[joint].body}.root"
         fix = "push in line with the mass centre, balance the moment, or hold it"
         return f"{joint} is turned ever faster by {size} about {about} through the mass centre: {fix}"
-    return f"{name} is accelerated by {size}, which nothing holds: hold it, or take away what pushes it"
+    return _pushed(system, name, left[row])
+
+
+def _friction(system: System, name: str) -> float:
+    """Friction, N or N m, along a local coordinate by its name; 0 where there is none."""
+    owner, _, kind = name.rpartition(".")
+    joint = system.joints.get(owner)
+    return 0.0 if joint is None else joint.frictions.get(joint.rate_names[joint.values.index(kind)], 0.0)
+
+
+def _pushed(system: System, name: str, force: float) -> str:
+    """Say by which force, N or N m, a local coordinate is accelerated, and what friction holds of it."""
+    unit, friction = "N" if name.rpartition(".")[2] in SLIDES else "N m", _friction(system, name)
+    size, fix = f"{abs(force):.4g} {unit}", "hold it, or take away what pushes it"
+    if not friction:
+        return f"{name} is accelerated by {size}, which nothing holds: {fix}"
+    if abs(force) > friction:
+        return f"{name} is accelerated by {size}, of which friction holds {friction:.4g} {unit}: {fix}"
+    return f"nothing but friction holds {name}, with {size} of its {friction:.4g} {unit}: give rate = 0, which does too"

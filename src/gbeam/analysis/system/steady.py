@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from gbeam.errors import ComputationError, InputError
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.equations import Inputs, Tree
 from gbeam.mechanics.tree.frames import Frame, turned_back
-from gbeam.mechanics.tree.joints import SLIDES
+from gbeam.mechanics.tree.joints import SLIDES, SPIN
 from gbeam.mechanics.tree.signals import deforming, local_names
 from gbeam.mechanics.tree.steps import turned_on
 from gbeam.mechanics.tree.system import ROOT, System
@@ -115,6 +116,7 @@ class SteadySystem(Steady):
     point: Point
     known: tuple[Floats, ...] | None = None  # K, C and M, where they have been found
     begins: bool = False  # True of a state of motion, at the start
+    stuck: tuple[str, ...] = ()  # sentences on joints that friction holds
     zero = RIGID
     first = 0
 
@@ -135,7 +137,7 @@ class SteadySystem(Steady):
     @property
     def warnings(self) -> tuple[str, ...]:
         """Doubts about the bodies' models, and what they leave out in this state."""
-        return self.system.warnings + self.solution.left_out + self._held_spin + self._spun_up
+        return self.stuck + self.system.warnings + self.solution.left_out + self._held_spin + self._spun_up
 
     @property
     def _held_spin(self) -> tuple[str, ...]:
@@ -385,6 +387,68 @@ def steady(system: System, drive: Drive, *, held: bool = False, start: Floats | 
         problem = f"{names} is accelerated by what turns, and not evenly: hold it, or take away what pushes it"
         raise ComputationError("no equilibrium", problem)
     return _released(state, held=held)
+
+
+def settled(system: System, drive: Drive) -> SteadySystem:
+    """System in equilibrium as of :func:`steady`, without friction; where it has none, or would not stay there, joints
+    without a spring are held where they begin, if their friction suffices.
+    """
+    state, lost, stuck = None, ComputationError("no equilibrium", ""), _rubbing(system)
+    try:
+        state = steady(system, drive)
+    except ComputationError as error:
+        lost = error
+    while stuck and (state is None or state.grows):
+        try:
+            held = steady(_holding(system, stuck), drive)
+        except ComputationError:
+            break
+        point, efforts = held.point, drive.inputs(system).efforts
+        force, _ = point.tree.rows(point.y, point.yd, point.ydd, point.inputs)
+        force = np.abs(force - (0.0 if efforts is None else efforts))
+        shares, words = dict[str, float](), list[str]()
+        for name, kinds in stuck.items():
+            for kind in kinds:
+                size, friction = force[system.row(f"{name}.{kind}")], system.joints[name].frictions[kind]
+                shares[name] = max(shares.get(name, 0.0), size / friction)
+                share = f"{size:.4g} of its {friction:.4g} {'N' if kind in SLIDES else 'N m'}"
+                held_by = f"nothing but friction holds {name}.{kind}, where it begins, with {share}"
+                words.append(f"{held_by}; small departures are those with it held")
+        worst = max(shares, key=lambda name: shares[name])
+        if shares[worst] <= 1:
+            return replace(held, stuck=tuple(words))
+        del stuck[worst]
+    if state is None:
+        raise lost
+    return state
+
+
+def _holding(system: System, stuck: Mapping[str, Sequence[str]]) -> System:
+    """The system with rates, by joint, prescribed to be zero, and no efforts along them."""
+    joints = dict(system.joints)
+    for name, kinds in stuck.items():
+        joint: Any = joints[name]
+        efforts = {kind: effort for kind, effort in joint.efforts.items() if kind not in kinds}
+        joints[name] = replace(joint, rate=joint.rates | dict.fromkeys(kinds, 0.0), effort=efforts)
+    return replace(system, joints=joints)
+
+
+def _rubbing(system: System) -> dict[str, tuple[str, ...]]:
+    """Rates, by joint, that friction alone may hold: no spring, no prescribed rate and no controller has them."""
+    driven = {each for controller in system.controllers.values() for each in controller.drive}
+    rubbing = {}
+    for name, joint in system.joints.items():
+        sprung = dict(zip(joint.rate_names, joint.holder.stiffness, strict=True))
+        kinds = [
+            kind
+            for kind in joint.frictions
+            if kind not in joint.rates and not sprung[kind] and f"{name}.{kind}" not in driven
+        ]
+        if not {*SPIN} <= {*kinds}:  # a ball is held about all axes or none
+            kinds = [kind for kind in kinds if kind not in SPIN]
+        if kinds:
+            rubbing[name] = tuple(kinds)
+    return rubbing
 
 
 def beginning(system: System, drive: Drive) -> SteadySystem:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
 from itertools import accumulate
@@ -16,13 +18,16 @@ from gbeam.mechanics.tree.frames import Frame, Wrench, cross, turned, turned_bac
 from gbeam.mechanics.tree.steps import Ball, Placed, Rotation, Slide, Step, Turning
 
 SLIP = 1e-3  # rad/s or m/s: rate at which friction has 0.76 of its size
+SLIPS = f"{1e3 * SLIP:g} mm/s", f"{math.degrees(SLIP):.3g} °/s"  # in words, along and about
+STUCK = 3 * SLIP  # rate below which friction has less than 0.995 of its size
 
 
 @record
 class Holder:
     """Springs and stops that act on the values (h,) of a joint (:meth:`Step.held`), and dampers and friction that act
     on their rates. The springs have no force at the values `ease`; the stops begin at `low` and `high` and have the
-    stiffness `stop`; `coupling` (h, h) is the stiffness between values, or None.
+    stiffness `stop`; `coupling` (h, h) is the stiffness between values, or None; friction is smooth below rates of the
+    size `slip`.
     """
 
     stiffness: Array
@@ -33,6 +38,7 @@ class Holder:
     high: Array
     stop: Array
     coupling: Array | None = None
+    slip: float = static(default=SLIP)
 
     @property
     def bends(self) -> bool:
@@ -50,7 +56,7 @@ class Holder:
         pull = self.stiffness * (values - self.ease) + self.stop * self._beyond(values)
         if self.coupling is not None:
             pull = pull + (values - self.ease) @ self.coupling
-        return pull, self.damping * rates + self.friction * xp.tanh(rates / SLIP)
+        return pull, self.damping * rates + self.friction * xp.tanh(rates / self.slip)
 
     def stored(self, values: Array) -> Array:
         """Energy (...) of the springs and stops, J."""
@@ -195,6 +201,18 @@ class Tree:
     def size(self) -> int:
         """Number of all coordinates, prescribed ones too."""
         return sum(sum(link.sizes) for link in self.links)
+
+    @property
+    def frictionless(self) -> Tree:
+        """The same tree without friction."""
+        return self._holding(lambda holder: replace(holder, friction=0 * holder.friction))
+
+    def slipping(self, rate: float) -> Tree:
+        """Return the same tree with friction that is smooth below another rate, rad/s or m/s."""
+        return self._holding(lambda holder: replace(holder, slip=rate))
+
+    def _holding(self, changed: Callable[[Holder], Holder]) -> Tree:
+        return replace(self, links=tuple(replace(link, holder=changed(link.holder)) for link in self.links))
 
     @property
     def free(self) -> Array:

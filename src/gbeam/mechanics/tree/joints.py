@@ -157,8 +157,10 @@ class Joint(Value):
         stops are given by the former, `initial_rate`, `damping`, `friction`, `rate` and `effort` by the latter.
     stiffness, ease, damping, friction : float or mapping of str to float
         Spring, N/m or N m/rad, coordinate at which it has no force, m or rad, damper, N s/m or N m s/rad, and Coulomb
-        friction, N or N m, of each coordinate. A ``fixed`` joint gives way along and about the axes that have a
-        stiffness: ``x``, ``y``, ``z``, ``rx``, ``ry``, ``rz``, the last three components of a rotation vector.
+        friction F, N or N m, of each coordinate. A ``fixed`` joint gives way along and about the axes that have a
+        stiffness: ``x``, ``y``, ``z``, ``rx``, ``ry``, ``rz``, the last three components of a rotation vector. Friction
+        is F tanh(rate/s), with s = 1 mm/s or 0.001 rad/s (0.0573 °/s): what it holds against a load P creeps, by s
+        artanh(P/F), and what is slower than s feels less of it. Equilibria and small departures are without friction.
     coupling : mapping of str to float, optional
         Stiffness between two coordinates, by both names, such as ``{"y-rz": -2e4}``: with the springs of all six
         directions the 6 × 6 stiffness of a fixture, N/m, N, or N m.
@@ -360,6 +362,12 @@ class Joint(Value):
                 "coupling", "makes springs that give energy", "give a stiffness without negative eigenvalue"
             )
         return coupling
+
+    @property
+    def frictions(self) -> dict[str, float]:
+        """Friction, N or N m, by the names of the rates that have any."""
+        friction = self._numbers("friction", self.friction)
+        return {name: float(each) for name, each in zip(self.rate_names, friction, strict=True) if each > 0}
 
     @property
     def first(self) -> dict[str, Any]:

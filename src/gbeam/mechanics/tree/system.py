@@ -358,6 +358,16 @@ class System(Value):
         return tuple(f"{name}: {each}" for name, body in bodies for each in getattr(body, "warnings", ()))
 
     @property
+    def rubbing(self) -> tuple[str, ...]:
+        """Names of the coordinates with friction and no prescribed rate, ``joint.angle``; of balls ``joint.rx``."""
+        return tuple(
+            f"{name}.{joint.values[joint.rate_names.index(kind)]}"
+            for name, joint in self.joints.items()
+            for kind in joint.frictions
+            if kind not in joint.rates
+        )
+
+    @property
     def points(self) -> tuple[str, ...]:
         """Names of all points, as ``body.point``."""
         return tuple(f"{body}.{point}" for body in self.order for point in self.points_of(body))

@@ -16,6 +16,7 @@ from pydantic import ConfigDict, Discriminator, Field, StrictBool, Tag, create_m
 from pydantic_core import PydanticCustomError
 
 from gbeam.guards.limits import ENTRIES
+from gbeam.mechanics.tree.equations import SLIP, SLIPS
 from gbeam.mechanics.tree.joints import COUPLINGS, GROUND, KINDS, SLIDES, Kind, kind_of_value
 from gbeam.scenario.bodies import BODIES, OF_TABLE
 from gbeam.scenario.bodies.common import Direction, Name
@@ -76,7 +77,11 @@ _ABOUT: dict[str, tuple[Callable[[str], Any], str]] = {
     "stiffness": (_size, "spring"),
     "ease": (_number, "coordinate at which the spring has no force"),
     "damping": (_size, "damper"),
-    "friction": (_size, "Coulomb friction"),
+    "friction": (
+        _size,
+        f"Coulomb friction, times tanh(rate/{SLIP:g}), the rate in m/s or rad/s: less below {' and '.join(SLIPS)}, so "
+        "that what it holds creeps",
+    ),
     "stops": (_pair, "lowest and highest coordinate, at which stops begin to give way"),
     "stop_stiffness": (_size, "stiffness of the stops"),
     "rate": (_OVER_TIME.__getitem__, "prescribed rate, instead of effort: a quantity or a profile"),
