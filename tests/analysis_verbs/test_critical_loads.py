@@ -49,6 +49,7 @@ def column(model: Model, *loads: Load, damping: float = 0.0):
 @pytest.mark.parametrize("kind", MODELS)
 def test_euler(kind):
     critical = critical_load(column(MODELS[kind], Load(1.0, force=(-0.5, 0.0, 0.0))))
+    assert critical.frame == "ground"
     # Clamped-free shapes know nothing of the load and converge slowly; polynomials at once.
     assert critical.value == pytest.approx(2 * np.pi**2 / 4, rel=1e-5 if kind == "exact" else 6e-4)
     assert (critical.kind, critical.direction, critical.unit) == ("divergence", "z", "times the loads")

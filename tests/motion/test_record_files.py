@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+import time
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -486,3 +487,40 @@ def test_numbers_of_a_vax_are_refused(tmp_path: Path) -> None:
     with warnings.catch_warnings(), pytest.raises(InputError, match=r"VAX D-float.*may be corrupt.*save the record by"):
         warnings.simplefilter("error")
         fly(tmp_path / "r.mat", ("t", "0", "0", "t"))
+
+
+LONG = 20_000
+CELLS = ("1" * LONG + "x", "1." + "1" * LONG + "x", "1e" + "1" * LONG + "x", "1" * LONG, "1:" * LONG, "+" * LONG)
+HEADERS = (
+    "a" + " " * LONG + "x",
+    "(" * LONG,
+    "(" * LONG + ")x",
+    ")" * LONG + "x",
+    "a" + " " * LONG + "[g]",
+    "[1" * LONG,
+)
+
+
+@pytest.mark.parametrize("delimiter", [",", "\t"])
+@pytest.mark.parametrize("cell", [*CELLS, *HEADERS])
+def test_a_long_cell_takes_no_more_than_its_length(tmp_path: Path, cell: str, delimiter: str) -> None:
+    """20 kB: in the square of its length one cell of digits took minutes, now all of them milliseconds."""
+    path, (first, row, rest) = tmp_path / "r.csv", lines(delimiter).split("\n", 2)
+    long = delimiter.join([row.rpartition(delimiter)[0], cell]) if cell in CELLS else row
+    named = delimiter.join((*NAMES[:3], cell)) if cell in HEADERS else first
+    path.write_text("\n".join([named, *[long] * 10, rest]))
+    begin = time.process_time()
+    with pytest.raises(InputError, match=r"record\."):
+        fly(path)
+    assert time.process_time() - begin < 1.0
+
+
+@pytest.mark.parametrize(
+    "text", ["1 g" + " " * LONG + "x", "1" * LONG + "x", "1 g / " + "1" * LONG + "!", "g /" * LONG]
+)
+def test_a_long_size_of_a_count_is_refused_at_once(text: str, tmp_path: Path) -> None:
+    begin = time.process_time()
+    (tmp_path / "r.csv").write_text(lines())
+    with pytest.raises(InputError, match=r"record\.unit"):
+        read_flight(tmp_path / "r.csv", *NAMES, text)
+    assert time.process_time() - begin < 1.0

@@ -6,6 +6,7 @@ import gzip
 import hashlib
 import json
 import math
+import re
 import shutil
 from collections.abc import Callable
 from dataclasses import replace
@@ -419,6 +420,14 @@ def test_the_json_of_a_verb_is_computed_again(
     written.write_text(text.replace("{", '{"odd": [1.5, {"a": 1e3}],', 1), encoding="utf-8")
     answer = gbeam("rerun", written)  # damaged: it has names that no answer has
     assert answer.status == 1 and "odd.0: is not there any more" in answer.out, answer
+    facts = json.loads(text)
+    answers = ("motions", "modes", "critical_speed", "summary")
+    key = next(each for each in answers if each in facts)
+    del facts[key]
+    written.write_text(json.dumps(facts), encoding="utf-8")
+    answer = gbeam("rerun", written)
+    assert answer.status == 1 and "NOT reproduced" in answer.out, answer
+    assert re.search(rf"\n  {key}[^ ]*: is lacking in the file", answer.out), answer
 
 
 def test_the_netcdf_of_a_search_is_computed_again(
@@ -474,3 +483,20 @@ def test_json_that_is_none_of_gbeams_is_refused(tmp_path: Path, gbeam: Callable[
         answer = gbeam("rerun", tmp_path / "x.json")
         assert answer.status == 2 and problem in answer.err
     assert gbeam("rerun", tmp_path / "none.json").status == 2
+
+
+def test_what_another_version_alone_holds_does_not_count(of_0_2: Path, result: Path) -> None:
+    """Of the same version it does, in a run's file too."""
+
+    def lacks(file: h5py.File) -> None:
+        place = next(iter(file["motions"].values()))
+        del place["displacement"]
+
+    again = gb.rerun(_edited(result, lacks))
+    assert not again.reproduced
+    assert [str(each) for each in again.differences] == ["motions/flight/displacement: is lacking in the file"]
+    again = gb.rerun(_edited(of_0_2, lambda file: file["motions/slew"].attrs.update(of_then=1.0)))
+    assert again.reproduced
+    words = {each.name: each.what for each in again.restated}
+    assert words["motions/slew@of_then"] == "is not there any more"
+    assert "is lacking in the file" in words.values()

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+import time
 
 import pytest
 import scipy.constants as si
 from hypothesis import given
 from hypothesis import strategies as st
 
+import gbeam as gb
 from gbeam.guards.kinds import KINDS, USUAL
-from gbeam.guards.units import UnitError, argument, parsed_factor, quantity
+from gbeam.guards.units import NUMBER, UnitError, argument, parsed_factor, quantity
 
 G0 = 9.80665
 
@@ -183,3 +185,16 @@ def test_no_text_breaks_the_parser(text: str) -> None:
         assert math.isfinite(quantity(f"1 {text}", "length"))
     except UnitError as error:
         assert error.problem
+
+
+@pytest.mark.parametrize(
+    "text", [" " * 20_000 + "x", "+" + " " * 20_000, "1" + " " * 20_000 + "x" + " " * 20_000 + "y"]
+)
+def test_a_long_text_takes_no_more_than_its_length(text: str) -> None:
+    """White space of 20 kB took seconds, in the square of its length."""
+    begin = time.process_time()
+    with pytest.raises(gb.InputError, match="radius"):
+        gb.Hub(radius=text, rate=1.0)
+    parts = NUMBER.fullmatch(text)
+    assert (parts is not None) == text.startswith("1") and (parts is None or parts[2] == text[1:].strip())
+    assert time.process_time() - begin < 0.5

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import re
 import sys
+import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -301,6 +303,27 @@ def test_what_a_text_file_says_otherwise_is_refused(tmp_path: Path, name: str, o
     (tmp_path / name).write_text(text.replace(old, new, 1))
     with pytest.raises(gb.InputError, match=rf"^mesh .*{words}"):
         gb.SolidMesh.read(tmp_path / name, **arguments)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [("C3D8,", f"S{'1' * 20_000}-,"), ("*NSET", f"*CQUAD{'X' * 20_000}-\n*NSET"), ("C3D8,", f"C3D{'8' * 20_000}-,")],
+)
+def test_long_words_take_no_more_than_their_length(tmp_path: Path, old: str, new: str) -> None:
+    """In the square of their 20 kB some took seconds."""
+    (tmp_path / "a.inp").write_text(INP.replace(old, new, 1))
+    begin = time.process_time()
+    with suppress(gb.InputError):
+        gb.SolidMesh.read(tmp_path / "a.inp", materials=STEEL, clamp="wall", unit="m")
+    assert time.process_time() - begin < 1.5
+
+
+def test_many_heads_of_gmsh_take_no_more_than_their_length(tmp_path: Path) -> None:
+    (tmp_path / "a.msh").write_bytes(b"$MeshFormat 2 1 " * 20_000)
+    begin = time.process_time()
+    with pytest.raises(gb.InputError, match="mesh"):
+        gb.SolidMesh.read(tmp_path / "a.msh", materials=STEEL, clamp="wall", unit="m")
+    assert time.process_time() - begin < 1.5
 
 
 # A cube in two groups, of which version 2 has its element twice, and a wall.

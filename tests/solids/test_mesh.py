@@ -231,6 +231,36 @@ def assert_stated(stated: Any, true: Any) -> None:
     assert (np.asarray(stated) > 0.9 * np.asarray(true)).all() and (np.asarray(stated) < 8 * np.asarray(true)).all()
 
 
+@pytest.fixture(scope="module")
+def two_meshes() -> tuple[gb.Structure, gb.Structure]:
+    """A bar that is judged by a coarser mesh, and that mesh's own."""
+    meshes = [solid(block("tetra10", (n, 1, 1), (0.4, 0.05, 0.05))) for n in (4, 8)]
+    coarse = meshes[0].reduced(modes=4, damping_ratio=0.01)
+    return meshes[1].reduced(modes=4, damping_ratio=0.01, coarser=coarse).structure, coarse.structure
+
+
+HALF: dict[str, Any] = {"duration": 0.002, "step": 1e-5, "integrator": "gauss"}  # half a period
+
+
+@pytest.mark.parametrize(
+    "initial", ["undeformed", gb.Initial(tip_displacement={"z": 1e-3}), gb.Initial(tip_velocity={"z": 1.0})]
+)
+def test_a_coarser_mesh_begins_as_the_run_does(initial: Any, two_meshes: tuple[gb.Structure, gb.Structure]) -> None:
+    """Not in equilibrium: the stated share is the difference to its own run from that state, in half a period."""
+    lift = gb.Flight(z=constant(200.0))
+    of, rough = (gb.simulate(each, lift, initial=initial, **HALF) for each in two_meshes)
+    assert of.errors.displacement.mesh == pytest.approx(changed(of, rough, "tip"), rel=2e-3)
+    assert of.errors.loads.mesh == pytest.approx(changed(of, rough, "loads"), rel=1e-2)
+
+
+def test_a_coarser_mesh_in_a_system_begins_as_the_run_does(two_meshes: tuple[gb.Structure, gb.Structure]) -> None:
+    held = [gb.System({"a": each}, {"a": gb.Joint("fixed", "a")}, gravity=(0.0, 0.0, -200.0)) for each in two_meshes]
+    of, rough = (gb.simulate(each, initial="undeformed", **HALF) for each in held)
+    moved = [each.place - each.place[0] for each in (of, rough)]
+    sizes = [np.linalg.norm(each, axis=-1).max() for each in (moved[0] - moved[1], moved[0])]
+    assert of.errors.displacement.mesh == pytest.approx(sizes[0] / sizes[1], rel=2e-3)
+
+
 def test_bodies_of_a_system_state_their_meshes_share() -> None:
     """At rest and in motion as the coarser meshes' system has it; of one without a coarser mesh it is not judged."""
     meshes = [solid(block("tetra10", (n, 1, 1), (0.4, 0.05, 0.05))) for n in (4, 8)]

@@ -211,3 +211,30 @@ def test_a_run_under_curved_laws_of_two_rates_decays_by_the_poles() -> None:
     late = np.interp([20.3, 20.65, 21.0], response.time, response.coordinate("axis.angle"))
     slowest = np.exp(0.35 * gb.linearize(system, loop="closed").eigenvalue[0])
     np.testing.assert_allclose(late[1:] / late[:-1], slowest, rtol=1e-6)
+
+
+@pytest.mark.parametrize("gain", [-30.0, 40.0, 120.0])
+def test_delay_margins_of_an_angle_fed_back_are_those_in_closed_form(gain: float) -> None:
+    """L = g/(J s² + c s + k), late by half a sample: it crosses a gain of one where (k − J w²)² + c² w² = g².
+
+    A gain that takes a part of the spring away, g < 0, crosses twice, at angles of L above zero.
+    """
+    inertia, damping, stiffness, sample = 2.0, 1.5, 80.0, 2e-3
+
+    def held(delay: float) -> gb.StateSpace:
+        axis = gb.Joint("revolute", "hub", axes=[(0, 0, 1)], stiffness={"angle": stiffness}, damping={"angle": damping})
+        law = gb.Feedback(gains([[-gain]]), ["axis.angle"], ["axis.angle"], sample, delay)
+        bodies = {"hub": gb.RigidBody(1.0, (inertia,) * 3)}
+        return gb.linearize(gb.System(bodies, {"axis": axis}, controllers={"c": law}), loop="closed")
+
+    squares = np.roots([inertia**2, damping**2 - 2 * inertia * stiffness, stiffness**2 - gain**2])
+    w = np.sqrt(squares[squares > 0])
+    angles = np.angle(-gain / (inertia * (1j * w) ** 2 + damping * 1j * w + stiffness))
+    assert len(w) == (1 if abs(gain) > stiffness else 2) and ((angles < 0) == (gain < 0)).all()
+    phases = np.angle(np.exp(1j * (angles - w * sample / 2)))
+    (margin,) = held(0.0).margins
+    assert margin.delay == pytest.approx((angles % (2 * np.pi) / w).min() - sample / 2, rel=2e-5)
+    assert margin.phase == pytest.approx(np.abs(phases).min(), rel=2e-5)
+    # Where the delay margin is used up the loop is at its limit.
+    growth = [held(share * margin.delay).eigenvalue.real.max() for share in (0.99, 1.01)]
+    assert growth[0] < 0 < growth[1]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import gbeam as gb
 from gbeam.analysis.steady.frequency_errors import Richer
 from gbeam.analysis.system.point import Point
 from gbeam.analysis.system.steady import Drive, Turning
+from gbeam.figures import figure_of
 from gbeam.results.facts import json_of
 from tests.analysis_verbs.beams import slender
 from validation.published.tables import UNIFORM_FLAP
@@ -351,3 +353,27 @@ def test_the_effort_that_holds_a_weight_is_against_its_moment() -> None:
     )
     rest = gb.static(held)
     assert rest.effort == pytest.approx([-4.0]) and rest.ground_moment == pytest.approx([0.0, 4.0, 0.0])
+
+
+@pytest.mark.parametrize("driven", [False, True])
+def test_an_arm_that_stands_on_a_shaft_falls_at_the_rate_in_closed_form(driven: bool) -> None:
+    """k = (I_xx − I_zz) Ω² about y; the shaft is turned against a damper, or at a prescribed rate."""
+    hub = gb.RigidBody(10.0, (1.0, 1.0, 2.0), points={"p": (0.0, 0.0, 0.0)})
+    arm = gb.RigidBody(3.0, (0.05, 0.04, 0.01), centre=(0.0, 0.0, 0.4))
+    turned: dict[str, Any] = {"rate": 1.0} if driven else {"damping": 2.0, "effort": 5.0}
+    stiff = {"angle_1": 45.0, "angle_2": 30.0}
+    joints = {
+        "shaft": gb.Joint("revolute", "hub", axes=[(0, 0, 1)], **turned),
+        "hinge": gb.Joint("universal", "arm", "hub.p", axes=[(1, 0, 0), (0, 1, 0)], stiffness=stiff),
+    }
+    lost = gb.critical_speed(gb.System({"hub": hub, "arm": arm}, joints), turning="shaft.angle", upper=60.0)
+    assert lost.kind == "divergence" and lost.direction == "arm ry"
+    xx, yy, zz = 0.05 + 3.0 * 0.4**2, 0.04 + 3.0 * 0.4**2, 0.01
+    assert lost.value == pytest.approx(np.sqrt(30.0 / (xx - zz)), rel=1e-8)
+    # (K_x − I_xx ω²) (K_y − I_yy ω²) = ((I_xx + I_yy − I_zz) Ω ω)², as the arm vibrates in the frame of the shaft.
+    for rate, frequency in zip(lost.followed, lost.frequency, strict=True):
+        k, gyroscopic = (45.0 - (yy - zz) * rate**2, 30.0 - (xx - zz) * rate**2), (xx + yy - zz) * rate
+        squares = np.roots([xx * yy, -(k[0] * yy + k[1] * xx + gyroscopic**2), k[0] * k[1]])
+        np.testing.assert_allclose(2 * np.pi * frequency[:2], np.sort(np.sqrt(squares)), rtol=1e-4, atol=1e-3)
+    assert lost.frame == json_of(lost)["frame"] == "turning"
+    assert figure_of(lost).panels[0].y == "frequency in the turning frame, Hz"

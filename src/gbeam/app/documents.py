@@ -21,7 +21,7 @@ from gbeam.io.binary import is_binary
 from gbeam.io.models.registry import contents_of
 from gbeam.motion import Flight
 from gbeam.motion.records.record import columns_of_text, read_table
-from gbeam.motion.records.units import UNITS, spelled
+from gbeam.motion.records.units import UNITS, bracketed, spelled
 from gbeam.scenario import ScenarioError, build, loads
 from gbeam.scenario.schema import kind_of_scenario
 from gbeam.scenario.text.diagnostics import Diagnostic
@@ -268,7 +268,6 @@ def load_curves(text: str, folder: Path) -> dict[str, Any]:
     }
 
 
-_BRACKETS = re.compile(r"\s*[\[(][^\])]*[\])]\s*$")
 _WORDS = re.compile(r"[A-Za-z]+\d?|\d+")
 _TIME = re.compile(r"t|time|timestamp|elapsed|elapsedtime|sec|seconds?|zeit|temps")
 _LOADS = "n|a|acc|accel|acceleration|accelerometer|specificforce|loadfactor"  # fz may be a force in N
@@ -307,7 +306,7 @@ def _together(columns: Mapping[str, list[tuple[str, str]]], keys: Iterable[str],
 
 def _meanings(name: str, unit: str) -> Iterable[tuple[str, str]]:
     """Key of a record that a column may be, and its unit as a scenario spells it; empty if name or unit do not fit."""
-    plain = _BRACKETS.sub("", name)
+    plain, _ = bracketed(name) or (name, "")
     for words, written in (*_readings(plain, unit), *_readings(re.split(r"[./]", plain)[-1], unit)):
         for quantity, pattern in (("time", _TIME), ("acceleration", _LOAD), ("rate", _RATE)):
             match = pattern.fullmatch(words)

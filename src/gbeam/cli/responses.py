@@ -163,6 +163,7 @@ def rerun(
 
 
 # Keys that are not compared: about the computation or the form, or figures in words.
+_LONGEST = 1000  # characters of a path with a unit: its patterns take the third power of it
 _ABOUT = {"provenance", "files", "seconds", "written", "lines", "messages", "units", "form"}
 
 
@@ -219,7 +220,7 @@ def _compared(file: Path, facts: dict[str, Any], origin: Provenance) -> Reproduc
     forms = {name: form for each in (facts, again) for name, form, _ in _leaves(each)}
 
     def unit_of(name: str) -> str:
-        possible = forms[name], forms[name].removesuffix("[i]")
+        possible = [each for each in (forms[name], forms[name].removesuffix("[i]")) if len(each) <= _LONGEST]
         unit = next((unit for pattern, unit in units.items() if any(map(pattern.fullmatch, possible))), "")
         if unit == "mixed":
             return _unit_of_row(facts, name)

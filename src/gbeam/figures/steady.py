@@ -147,7 +147,8 @@ def critical(lost: Critical, title: str = "") -> Figure:
         if 0.0 < error < math.inf:
             at = factor * lost.value
             spans = (((1 - min(error, 1.0)) * at, (1 + error) * at, "estimated error"),)
-    panel = Panel("frequency, Hz", lines, x=quantity, marks=marks, spans=spans, zero=True, height=2.0)
+    frame = " in the turning frame" if lost.frame == "turning" else ""
+    panel = Panel(f"frequency{frame}, Hz", lines, x=quantity, marks=marks, spans=spans, zero=True, height=2.0)
     return Figure(title, of_motion(lost.motion, lost.reason), (panel,), estimated({"": error}))
 
 

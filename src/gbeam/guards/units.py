@@ -59,14 +59,14 @@ m mm cm km µm um g kg mg s ms us min h rad mrad deg rev rpm Hz kHz g0 N kN MN W
 psi ksi Msi % watt meter metre millimeter gram kilogram second millisecond minute hour radian degree revolution hertz
 newton pascal inch foot pound percent
 """
-BEGINNING = re.compile(r"\s*[+-]?\s*(\.?\d|inf|nan)", re.IGNORECASE)  # of a text that gives a number: 20 mm
+BEGINNING = re.compile(r"\s*+(?:[+-]\s*+)?(\.?\d|inf|nan)", re.IGNORECASE)  # of a text that gives a number: 20 mm
 # A number and what follows it: its unit, or nothing.
-NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*?)\s*", re.DOTALL)
+NUMBER = re.compile(r"\s*+([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*+((?:.*\S)?)\s*", re.DOTALL)
 # pint's tokenizer drops what it does not know ("5 m$", "5 m # note"), so the letters are checked first.
 _UNIT = re.compile(r"[\w°%()*/^+\-·.⁻⁰¹²³⁴-⁹ ]+")
 
 # Powers that would take for ever to work out: any power but by one digit, a power of a power, two superscripts.
-_POWER = re.compile(r"(?:\^|\*\*)(?!\s*[+-]?\s*[0-9](?![0-9.eE_]|\s*(?:\^|\*\*)))|[⁰¹²³⁴-⁹]{2}")
+_POWER = re.compile(r"(?:\^|\*\*)(?!\s*+(?:[+-]\s*+)?[0-9](?![0-9.eE_]|\s*(?:\^|\*\*)))|[⁰¹²³⁴-⁹]{2}")
 
 
 class UnitError(ValueError):

@@ -304,7 +304,7 @@ def _numbers(samples: Sequence[str] | NDArray[Any]) -> Floats:
         return np.array([_number(cell) for cell in samples])
 
 
-_FORTRAN = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[dD]([+-]?\d+)|([+-]\d{3}))")  # 1.5D+02, 1.5+102
+_FORTRAN = re.compile(r"([+-]?(?:\d++(?:\.\d*+)?|\.\d++))(?:[dD]([+-]?\d++)|([+-]\d{3}))")  # 1.5D+02, 1.5+102
 
 
 def _number(cell: str) -> float:

@@ -192,7 +192,7 @@ def critical(facts: Facts) -> Blocks:
         ("along", facts["direction"] or "–"),
         ("model", facts["model"]),
     ]
-    yield Section("", (pairs(rows),), detail=True)
+    yield Section("", (pairs(rows), *framed(facts)), detail=True)
 
 
 def _stated(errors: Facts) -> str:

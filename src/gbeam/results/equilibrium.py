@@ -10,7 +10,7 @@ from gbeam.constants import BY_STRAINS
 from gbeam.printable import percent
 from gbeam.results.declared import INSIDE, declared, fact, internal, part, quantity
 from gbeam.results.declared import quantity as entry  # a critical value has a field of that name
-from gbeam.results.errors import MODEL, SHAPES, THEORY, TOTAL, UNKNOWN, ErrorEstimate, Errors
+from gbeam.results.errors import FRAME, MODEL, SHAPES, THEORY, TOTAL, UNKNOWN, ErrorEstimate, Errors
 from gbeam.results.facts import at_place
 from gbeam.results.parts import Base, Loads
 from gbeam.results.result import Decided, Figured, Floats, Part, brief
@@ -106,6 +106,7 @@ class Critical(Decided, Figured[Literal["critical"]]):
     frequency: Floats = entry(
         "Hz", "lowest frequencies about the equilibrium there, undamped", "followed lowest", empty=True
     )
+    frame: str = fact(FRAME, default="ground")
 
     @declared(LOST, "critical value by what is raised", role="fact", name=None, key=INSIDE)
     def by_name(self) -> dict[str, float | None]:

@@ -236,8 +236,8 @@ class Reproduction(Part):
     compared: int = fact("number of variables and attributes compared")
     differences: tuple[Difference, ...] = rows("differences, the largest first", "difference")
     restated: tuple[Difference, ...] = rows(
-        "what else differs, and does not count: errors and words, which another version states otherwise, numbers in "
-        "words, and times of peaks, of which equal ones may change places by rounding",
+        "what else differs, and does not count: errors and words, which another version states otherwise, what one "
+        "version alone holds, numbers in words, and times of peaks, of which equal ones may change places by rounding",
         "restated",
     )
     rounded: int = fact("number of those that differ by rounding alone, beside the largest value of their unit")
@@ -280,7 +280,8 @@ class Reproduction(Part):
         """Lines on what has changed since the file was written, and on its version's defaults that were read."""
         lines = [f"{name} was {then}, is {now}" for name, (then, now) in self.changed.items()]
         if self.restated:
-            lines.insert(0, f"besides {len(self.restated)} stated errors, words and times of equal peaks are otherwise")
+            kinds = "stated errors, words, times of equal peaks and quantities of one version alone"
+            lines.insert(0, f"besides {len(self.restated)} {kinds} are otherwise")
         if self.defaults:
             words = ", ".join(f"{key} = {value}" for key, value in self.defaults.items())
             lines.insert(0, f"read with the defaults of gbeam {self.changed['gbeam'][0]}: {words}")

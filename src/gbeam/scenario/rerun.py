@@ -67,7 +67,7 @@ def rerun(path: str | os.PathLike[str], *, progress: Progress = None) -> Reprodu
         It is reproduced where nothing differs, or, with other versions or on another platform, by no more than
         rounding: 1e-12 of the largest value of its unit, or 1e-9 of its own.
         Of another version of gbeam the scenario is read with its defaults, `defaults`, and its errors and words, which
-        a version states in its way, are apart, `restated`.
+        a version states in its way, and what it alone holds or lacks are apart, `restated`.
 
     Raises
     ------
@@ -135,15 +135,16 @@ def run_again(path: str | os.PathLike[str], before: Stored, progress: Progress =
         scenario = loads(origin.scenario, str(path), [*origin.overrides, *changes], folder=folder)
         answers = study(replace(build(scenario, ahead=True), provenance=None), progress=progress)
         after = stored(answers)
-    now = computed(after)
+    then, now = computed(before), computed(after)
     if not any(name.startswith("motions/") for name in before.variables):  # one response alone
         (motion, *others) = facts_of(before).get("motions") or answers.responses
         if others:
             fix = "give the result.nc of all its motions"
             raise InputError(str(path), "holds one response, and does not say of which motion", fix)
         place = f"motions/{motion}"
-        now |= {name.removeprefix(place).lstrip("/"): each for name, each in now.items() if name.startswith(place)}
-    return reproduction(os.fspath(path), computed(before), now, origin, defaults, units_in(before))
+        response = {name.removeprefix(place).lstrip("/"): each for name, each in now.items() if name.startswith(place)}
+        now = {name: each for name, each in now.items() if name in then} | response  # such as the study's notes
+    return reproduction(os.fspath(path), then, now, origin, defaults, units_in(before))
 
 
 def units_in(stored: Stored) -> Callable[[str], str]:
@@ -174,9 +175,8 @@ def reproduction(
     assert origin.environment is not None
     changed = origin.environment.changes(present())
     other = "gbeam" in changed
-    # Of another version's file only what both hold is compared: either may hold more.
-    names = [name for name in then if not other or name in now]
-    scales = _scales(then, names, unit_of) if changed else {}
+    names = [*then, *(name for name in now if name not in then)]
+    scales = _scales(then, [name for name in then if name in now], unit_of) if changed else {}
 
     def scale_of(name: str) -> float:
         share = bool(changed) and unit_of(name) in ("", "1") and _SHARE.search(name) is not None
@@ -191,7 +191,8 @@ def reproduction(
         only_numbers = False  # of words, which are compared themselves
         if isinstance(old, str) and isinstance(new, str):
             only_numbers = _NUMBER.sub("", old) == _NUMBER.sub("", new)
-        stated = other and _STATED.search(each.name) is not None
+        of_one = (each.name in then) != (each.name in now)
+        stated = other and (of_one or _STATED.search(each.name) is not None)
         return stated or (bool(changed) and (peak_time or only_numbers))
 
     restated = [each for each in differences if does_not_count(each)]
@@ -265,7 +266,7 @@ def _scales(values: Mapping[str, Any], names: Sequence[str], unit_of: Callable[[
 def _difference(name: str, then: Any, now: Any, unit: str, scale: float) -> Difference | None:
     """Difference of a value then and now; of size zero if it is within rounding at the scale of its unit."""
     if then is None or now is None:
-        return Difference(name, math.inf, "is not there any more" if now is None else "was not there")
+        return Difference(name, math.inf, "is not there any more" if now is None else "is lacking in the file")
     old, new = np.asarray(then), np.asarray(now)
     if old.shape != new.shape:
         return Difference(name, math.inf, f"had the shape {old.shape}, has {new.shape}")

@@ -169,7 +169,8 @@ def _read(path: Path) -> Any:
 def _refuse_node_0(path: Path) -> None:
     """Refuse a binary file of Gmsh 2 with a node 0, which meshio takes for the one with the largest number."""
     content = path.read_bytes() if path.suffix.lower() == ".msh" else b""
-    if head := re.search(rb"\$MeshFormat\s+2\S* 1 .*?\$Nodes\s+(\d+)\n", content, re.DOTALL):
+    form = re.search(rb"\$MeshFormat\s+2\S* 1 ", content)
+    if form and (head := re.compile(rb"\$Nodes\s+(\d+)\n").search(content, form.end())):
         numbers = np.frombuffer(content, [("", "<i4"), ("", "<f8", 3)], int(head[1]), head.end())["f0"]
         if numbers.min() < 1:
             raise InputError("mesh", f"has node {numbers.min()}", "write it as text, or number its nodes from 1")

@@ -20,7 +20,7 @@ NASTRAN, ABAQUS = (".bdf", ".fem", ".nas"), (".inp",)  # endings
 AGAIN = "write it again with all of its nodes"
 # Elements of Abaqus by their types, of Nastran with their numbers of nodes, of Gmsh by their numbers and dimensions.
 TYPES = {
-    r"C3D(\d+)[A-Z]*": 3, r"(S|CPS|CPE|CAX|M3D|R3D|SFM3D|STRI)\d+\w*": 2, r"[BT]\d\w*|SPRING[2A]": 1,
+    r"C3D(\d+)[A-Z]*": 3, r"(S|CPS|CPE|CAX|M3D|R3D|SFM3D|STRI)\d\w*": 2, r"[BT]\d\w*|SPRING[2A]": 1,
     r"MASS|ROTARYI|SPRING1|DCOUP3D": 0,
 }  # fmt: skip
 CARDS = {

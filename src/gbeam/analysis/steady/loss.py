@@ -117,7 +117,7 @@ def with_frequencies(
     """A critical value with the lowest frequencies, undamped, on the way to it."""
     end = critical.searched_to if critical.value is None else (1 - CLOSE) * critical.value
     values = end * np.sin(np.linspace(0.0, np.pi / 2, FOLLOWED + 1)) if end else np.zeros(1)
-    frequency = np.full((len(values), LOWEST), np.nan)
+    frequency, last = np.full((len(values), LOWEST), np.nan), None
     for row, value in zip(frequency, _in_turn(path, structure, values.tolist()), strict=True):
         tell(progress, "frequencies on the way to it", value / end if end else 0.0)
         state = _state(path, structure, value)
@@ -126,7 +126,9 @@ def with_frequencies(
             undamped = state.linear._replace(velocity=(c - c.T) / 2)  # what is overdamped has no frequency
             known = vibrations(undamped, zero=max(state.zero, ZERO)).frequency[:LOWEST]
             row[: len(known)] = known / (2 * np.pi)
-    return replace(critical, followed=values, frequency=frequency)
+            last = state
+    turning = last is not None and last.whirl is not None and last.whirl.turning
+    return replace(critical, followed=values, frequency=frequency, frame="turning" if turning else "ground")
 
 
 # Shares of the critical value at which richer models are tried, ascending.

@@ -127,8 +127,9 @@ class SteadySystem(Steady):
 
     @property
     def solution(self) -> Solution:
-        """The state, as a solution of one time."""
-        return Solution(self.system, self.point.standing(), self.point.driven)
+        """The state, as a solution of one time, what turns free as in the system."""
+        point = _released(self, held=False).point
+        return Solution(self.system, point.standing(), point.driven)
 
     @property
     def bend(self) -> float:
@@ -368,11 +369,7 @@ class SteadySystem(Steady):
             if k not in tree.fixed:
                 y[np.searchsorted(tree.free, k)] += turn
                 prescribed = prescribed[:, :-1] if prescribed is not None else None
-        inputs = replace(
-            inputs,
-            efforts=self.point.inputs.efforts,
-            prescribed=None if prescribed is None or not prescribed.size else prescribed,
-        )
+        inputs = replace(inputs, prescribed=None if prescribed is None or not prescribed.size else prescribed)
         return replace(self.point, y=y, inputs=inputs)
 
 
@@ -482,20 +479,20 @@ def _held(system: System, drive: Drive) -> Tree:
 
 
 def _released(state: SteadySystem, *, held: bool) -> SteadySystem:
-    """Free the coordinate that turns, under the effort that holds it; nothing changes if it is `held` or prescribed."""
-    system, drive, fixed, tree = state.system, state.drive, state.point, state.system.tree
+    """Free the coordinate that turns; nothing changes if it is `held` or prescribed. The constant effort by which it
+    goes on has no part in small departures.
+    """
+    fixed, tree = state.point, state.system.tree
     if held or fixed.tree is tree:
         return state
-    k, inputs = system.coordinates.index(drive.coordinate), fixed.inputs
+    inputs = fixed.inputs
     assert inputs.prescribed is not None
     pairs = zip((fixed.y, fixed.yd, fixed.ydd), inputs.prescribed, strict=True)
     whole = [fixed.tree.whole(unknown, prescribed) for unknown, prescribed in pairs]
-    efforts = np.zeros(tree.size) if inputs.efforts is None else np.array(inputs.efforts)
-    efforts[k] += fixed.tree.rows(fixed.y, fixed.yd, fixed.ydd, inputs)[0][k]
     others = inputs.prescribed[:, :-1]
-    inputs = replace(inputs, efforts=efforts, prescribed=others if others.size else None)
+    inputs = replace(inputs, prescribed=others if others.size else None)
     y, yd, ydd = (each[tree.free] for each in whole)
-    return SteadySystem(system, drive, Point(tree, y, yd, ydd, inputs))
+    return SteadySystem(state.system, state.drive, Point(tree, y, yd, ydd, inputs))
 
 
 def open_loops(system: System) -> tuple[str, ...]:

@@ -13,15 +13,14 @@ from statistics import mode
 from gbeam.errors import InputError
 from gbeam.guards.limits import BINARY_BYTES, TEXT_BYTES, in_bytes, refuse_large_file
 from gbeam.io.table import Column, Stated, Table, is_clock
-from gbeam.motion.records.units import is_unit, unit_in_name
+from gbeam.motion.records.units import bracketed, is_unit, unit_in_name
 
 # Usual endings of such files; :func:`read_text` reads any other, too.
 ENDINGS = (".asc", ".csv", ".dat", ".log", ".lvm", ".prn", ".tab", ".tsv", ".txt")
 _DELIMITERS = (",", ";", "\t", " ")  # the first that fits best; a space is any white space
 _COMMENT = re.compile(r"\s*(#|%|//|;)+\s*")
 _BEFORE_BRACKET = re.compile(r" (?=[\[(])")
-_NUMBER = re.compile(r"[+-]?(\d+[.,]?\d*|[.,]\d+)([ed][+-]?\d+|[+-]\d{3})?|[+-]?(nan|inf)", re.IGNORECASE)
-_BRACKETS = re.compile(r"(.*?)\s*[\[(]([^\])]*)[\])]")
+_NUMBER = re.compile(r"[+-]?(\d++([.,]\d*+)?|[.,]\d++)([ed][+-]?\d++|[+-]\d{3})?|[+-]?(nan|inf)", re.IGNORECASE)
 _BYTE_ORDER_MARKS = {codecs.BOM_UTF8: "utf-8-sig", codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
 _BLANK = " \t\f,;"  # spreadsheets write empty rows as delimiters alone
 _LINE_END = re.compile(r"\r\n|\r|\n")
@@ -179,21 +178,17 @@ def _header(path: str | os.PathLike[str], lines: list[str], delimiter: str, widt
 
 def _indices(header: list[str]) -> set[str]:
     """Names that end in an index in brackets, ``acc[0]``; ``n_z [1]`` is a number of g, if no other has an index."""
-    numbered = {name: match for name in header if (match := _BRACKETS.fullmatch(name)) and match[2].strip().isdecimal()}
-    stems = Counter(match[1] for match in numbered.values())
-    return {
-        name
-        for name, match in numbered.items()
-        if match[2].strip() != "1" or stems[match[1]] > 1 or unit_in_name(match[1])
-    }
+    numbered = {name: pair for name in header if (pair := bracketed(name)) and pair[1].isdecimal()}
+    stems = Counter(stem for stem, _ in numbered.values())
+    return {name for name, (stem, index) in numbered.items() if index != "1" or stems[stem] > 1 or unit_in_name(stem)}
 
 
 def _column(header: str, unit: str, data: list[Row], i: int, *, indexed: bool) -> Column:
     """Column `i` of the data, with a decimal point; its unit may stand in brackets behind its name."""
-    bracket = None if indexed else _BRACKETS.fullmatch(header)
+    bracket = None if indexed else bracketed(header)
     aliases: tuple[str, ...] = ()
     if bracket is not None:
-        aliases, unit = (bracket[1],), unit or bracket[2]
+        aliases, unit = (bracket[0],), unit or bracket[1]
 
     def read() -> list[str]:
         cells = [row[i] for _, row in data]

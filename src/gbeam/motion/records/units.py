@@ -66,10 +66,12 @@ _WORD = re.compile(rf"(?<![a-z])({'|'.join(_LONG)})(?![a-z])")
 
 _BARE = ("1", "-")  # a load factor's units: in a name they are a number and a dash
 _TELLING = ("acceleration", "rate", "signal")  # of which a unit at the end of a name is one of nothing else
-_INDEX = re.compile(r"\s*[\[(][\d:, ]*[\])]$")  # acc[1], acc(:,3)
+# Nothing is read twice, however long a name in a file is: possessive quantifiers, and white space from its beginning.
+_BRACKETS = re.compile(r"((?:.*[\])])?[^\[\]()]*)[\[(]([^\])]*)[\])]")
+_INDEX = re.compile(r"(?<!\s)\s*+[\[(][\d:, ]*[\])]$")  # acc[1], acc(:,3)
 _RANGES = ("high", "low")  # high g: a sensor's range
-_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
-_SIZED = re.compile(rf"(?:({_NUMBER})\s*)?([^\d\s/.+-].*?)(?:\s*/\s*({_NUMBER})\s*([^\W\d]*))?")
+_NUMBER = r"[+-]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][+-]?\d++)?"
+_SIZED = re.compile(rf"(?:({_NUMBER})\s*+)?([^\d\s/.+-].*?)(?:(?<!\s)\s*+/\s*+({_NUMBER})\s*+([^\W\d]*))?")
 
 
 @dataclass(frozen=True)
@@ -95,6 +97,12 @@ _CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])")
 
 def _separated(name: str) -> list[str]:
     return re.findall(r"[^\W_]+", name.lower())
+
+
+def bracketed(name: str) -> tuple[str, str] | None:
+    """Parts of a name that ends in brackets: before these and inside; None of another name."""
+    match = _BRACKETS.fullmatch(name.strip())
+    return match and (match[1].rstrip(), match[2].strip())
 
 
 def unit_in_name(name: str) -> str:
