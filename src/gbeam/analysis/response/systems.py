@@ -101,8 +101,10 @@ class SystemRun(Run):
     @classmethod
     def by_steps(cls, posed: PosedSystem, step: float, progress: Progress = None) -> SystemRun:
         """Run the problem by steps of a length, s."""
-        trajectory = posed.integrated(step, corners=posed.felt, progress=progress)
-        return cls(trajectory, step, posed, posed.sampling)
+        trajectory, sampling = posed.integrated(step, corners=posed.felt, progress=progress), posed.sampling
+        if sampling is not None and sampling.failure is not None:
+            trajectory = replace(trajectory, stopped=True)
+        return cls(trajectory, step, posed, sampling)
 
     @classmethod
     def traced(
@@ -162,7 +164,9 @@ class SystemRun(Run):
     def loop(self) -> Loop | None:
         """Record of the controllers at the times of the run; None without controllers."""
         controllers = self.posed.equations.controllers
-        return None if self.sampling is None else loop_of(controllers, self.sampling, self.trajectory.time)
+        if self.sampling is None or not self.sampling.begun:
+            return None
+        return loop_of(controllers, self.sampling, self.trajectory.time)
 
     @cached_property
     def moved(self) -> Floats:
@@ -316,6 +320,9 @@ def _described(run: SystemRun, errors: SystemErrors, name: str, warnings: tuple[
     if not trajectory.whole:
         outcome, end = "not converged", trajectory.time[-1]
         message = f"Newton's method failed at {end:.4g} s: give a smaller step, or look for what breaks there"
+    if run.sampling is not None and run.sampling.failure is not None:
+        _, error = run.sampling.failure
+        outcome, message = error.outcome, str(error)
     if (step := run.without_mass) is not None:
         free = [system.coordinates[k] for k in system.tree.free]
         words = f"at {trajectory.time[step]:.4g} s, {massless(system, free, trajectory.q[step])}"
