@@ -160,9 +160,9 @@ def test_accepted_by_each_limit(pair: tuple[Response, Response]) -> None:
         assert refused == f"not accepted: {bad.refusal}" and refused.count("(") == 1
         assert kept.startswith("kept: ") and name not in kept and kept.count("(") == 3
     assert next(judged_lines(good)).startswith("accepted: tip -1 % (limit 1.1 %), peaks 1 % at 4.00 s (limit 1.1 %), ")
-    # What is not known is not accepted.
+    # What is not known decides nothing.
     unknown = compare(*reproduced(), accept={"root_moment": 0.5})
-    assert unknown.accepted is False and str(unknown.criteria[0]) == "root_moment unknown (limit 50 %)"
+    assert unknown.decision == "not decided" and str(unknown.criteria[0]) == "root_moment unknown (limit 50 %)"
 
 
 @pytest.mark.parametrize("accept", [{"tips": 0.1}, {"tip": -0.1}, {"tip": float("nan")}])

@@ -226,7 +226,7 @@ def test_limits_that_need_no_response_are_judged(scenario: Path, capsys: pytest.
         assert [each["name"] for each in spin["criteria"] if not each["passed"]] == [limit]
     scenario.write_text(SLOW + accept, encoding="utf-8")
     assert main(["plan", str(scenario)]) == 1  # without a beam nothing is known of the specimen's ends
-    assert "not accepted: largest_load unknown (limit 50 %)" in capsys.readouterr().err
+    assert "not decided: largest_load unknown (limit 50 %)" in capsys.readouterr().err
 
 
 def test_plan_run_and_place_agree_on_the_largest_load(scenario: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -92,14 +92,19 @@ def test_what_needs_a_response_is_not_judged_without_one() -> None:
     )  # not accepted, where a part is not judged
 
 
-def test_what_is_not_known_does_not_pass() -> None:
+def test_what_is_not_known_is_not_decided() -> None:
     unknown = Imitation({"stress": 0.5, "damage": 9.0})
     unknown.fatigue = None
     assert [str(each) for each in unknown.criteria] == [
         "stress unknown (limit 50 %)",
         "damage unknown (limit 0.111 to 9)",
     ]
-    assert unknown.accepted is False
+    assert unknown.accepted is None and unknown.decision == unknown.acceptance == "not decided"
+    assert unknown.refusal == "stress unknown (limit 50 %), damage unknown (limit 0.111 to 9)"
+    assert state_of("done", [unknown]) == state_of("done", [unknown, Imitation({"tip": 0.06})]) == "not decided"
+    missed = Imitation({"stress": 0.5, "tip": 0.01})
+    assert missed.accepted is False and missed.refusal == "tip 5 % (limit 1 %)"
+    assert state_of("done", [unknown, missed]) == "not accepted"
     none = PeakPair(flight=0.0, machine=1.26749)
     for machine, words in (
         (1.26749, "root_moment unknown as flight has none and the machine makes 1.267 N m (limit 50 %)"),

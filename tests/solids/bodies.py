@@ -70,3 +70,16 @@ def block(
 def solid(mesh: Any, material: Any = STEEL, **more: Any) -> gb.SolidMesh:
     """The mesh in metres, held at its wall."""
     return gb.SolidMesh.read(mesh, materials=material, clamp="wall", unit="m", **more)
+
+
+def corner(kind: str, n: int) -> meshio.Mesh:
+    """A bar of 40 × 40 × 120 mm, held at its upper end, and one of 80 mm on its foot that meets it at a sharp corner;
+    of 3n elements along and 2n across.
+    """
+    mesh = block(
+        kind, (6 * n, 2 * n, 6 * n), (0.12, 0.04, 0.12), groups={"wall": lambda x: np.abs(x[:, 2] - 0.06) < 1e-9}
+    )
+    nodes = mesh.cells[0].data
+    middle = mesh.points[nodes].mean(axis=1)
+    beside = (middle[:, 0] > 0.04) & (middle[:, 2] > -0.02)
+    return meshio.Mesh(mesh.points, [Block(kind, nodes[~beside])], point_sets=mesh.point_sets)

@@ -11,15 +11,17 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import spsolve
 
 import gbeam as gb
+from gbeam.report import text
 from gbeam.report.page.document import viewer
 from gbeam.report.page.parts import Numbers
+from gbeam.report.study import comparison_lines
 from gbeam.results.facts import json_of
 from gbeam.results.solids import von_mises
 from gbeam.solids.elements import chunks, stiffness_matrix
 from gbeam.solids.shape_functions import KINDS
 from gbeam.solids.stress import VERTICES, NodalStress, principal, surface_of
 
-from .bodies import STIFF, block, solid
+from .bodies import STEEL, STIFF, block, corner, solid
 
 SIZE = (0.2, 0.03, 0.02)
 
@@ -77,32 +79,93 @@ def test_stress_over_time_is_that_of_each_time() -> None:
     assert "MPa at (" in repr(stress) and "margin on yield not known" in repr(stress)
 
 
+def cantilever(kind: str, n: int) -> gb.SolidMesh:
+    """Strip of 200 × 30 × 10 mm, of 8n × 2n × n cells."""
+    return solid(block(kind, (8 * n, 2 * n, n), (0.2, 0.03, 0.01)))
+
+
+@pytest.mark.parametrize("kind", ["hexahedron20", "tetra10"])
+def test_the_root_of_a_cantilever_is_judged(kind: str) -> None:
+    """But for the edge of its clamp: M c/I within 8 %, where a layer of elements took 24 % of it."""
+    coarse, model = (cantilever(kind, n) for n in (1, 2))
+    model = model.reduced(modes=2, damping_ratio=0.0, coarser=coarse.reduced(modes=2, damping_ratio=0.0))
+    stress = model.stress(gb.static(model.structure, acceleration=(0, 0, 9.81)))
+    root = STEEL.density * 0.03 * 0.01 * 9.81 * 0.2**2 / 2 * 0.005 / (0.03 * 0.01**3 / 12)
+    assert stress.worst.von_mises == pytest.approx(root, rel=0.08) and stress.worst.place[0] < 0.013
+    edge = (np.abs(stress.nodes[:, 1:]) > np.array([0.015, 0.005]) - 1e-9).any(axis=1)
+    assert stress.known and stress.singular_nodes == ((stress.nodes[:, 0] == 0) & edge).sum() == 24
+
+
 def test_stress_at_the_edge_of_a_clamp_is_left_out() -> None:
-    """There it grows from mesh to mesh; away from it the stated error is more than that to a mesh twice as fine."""
-    strips = [solid(block("hexahedron20", (8 * n, 2 * n, n), (0.2, 0.03, 0.01))) for n in (1, 2, 4)]
-    coarse, alone, fine = (each.reduced(modes=4, damping_ratio=0.01) for each in strips)
-    model = strips[1].reduced(modes=4, damping_ratio=0.01, coarser=coarse)
-    for k, more in ((0, 1.2), (1, 1.1), (2, 1.02)):
+    """With one mesh that is not known. The stated error is more than that to a mesh twice as fine."""
+    meshes = [cantilever("hexahedron20", n) for n in (1, 2, 4)]
+    coarse, alone, fine = (each.reduced(modes=2, damping_ratio=0.01) for each in meshes)
+    model = meshes[1].reduced(modes=2, damping_ratio=0.01, coarser=coarse)
+    for k in range(3):
         push = tuple(9.81 * (np.arange(3) == k))
         rest, unjudged, truth = (gb.static(each.structure, acceleration=push) for each in (model, alone, fine))
         stress, plain, finest = model.stress(rest), alone.stress(unjudged), fine.stress(truth)
-        assert stress.singular is not None and stress.singular_depth == pytest.approx(0.0315, rel=1e-2)
-        assert plain.singular is None and plain.worst.von_mises == stress.singular.von_mises
-        assert plain.singular_nodes is None and "one mesh does not tell whether the largest is there" in repr(plain)
-        assert finest.worst.von_mises > more * stress.singular.von_mises
+        assert stress.singular is not None and stress.singular.place[0] == 0 < stress.singular_depth < 0.0063
+        assert plain.singular is None and plain.singular_nodes is None
+        assert "one mesh does not tell whether the largest is there" in repr(plain)
         (same,) = np.flatnonzero(np.linalg.norm(finest.nodes - stress.worst.place, axis=1) < 1e-12)
         error = abs(stress.worst.von_mises / finest.node_von_mises[same] - 1)
-        assert error < rest.errors.stress.mesh < 0.06
-        assert stress.von_mises.max() == stress.worst.von_mises < stress.singular.von_mises
-        assert stress.singular.place[0] < 0.0251 < stress.worst.place[0]
+        assert error < rest.errors.stress.mesh < 4 * error
         assert f"{stress.singular_nodes} nodes" in repr(stress) and "no limit" in repr(stress)
-    assert stress.singular_nodes == (stress.nodes[:, 0] < 0.0251).sum()
+
+
+def test_elements_at_a_sharp_corner_are_left_out() -> None:
+    coarse, model = (solid(corner("hexahedron20", n)) for n in (1, 2))
+    model = model.reduced(modes=2, damping_ratio=0.01, coarser=coarse.reduced(modes=2, damping_ratio=0.01))
+    rest = gb.static(model.structure, acceleration=(0, 0, 100.0))
+    stress = model.stress(rest)
+    assert stress.singular is not None and stress.known and stress.singular_nodes == 154
+    at = np.abs(stress.singular.place - (0.04, 0.0, -0.02))
+    assert at[0] < 0.0101 and at[2] < 0.0101 and stress.singular.von_mises > 1.1 * stress.worst.von_mises
+    assert stress.von_mises.max() == stress.worst.von_mises and 0.1 < rest.errors.stress.mesh < 0.35
+
+
+def test_where_a_tenth_of_the_nodes_would_be_left_out_the_largest_stress_is_not_known() -> None:
+    """A sharp corner in 28 elements: no margin is stated, and a limit on stress is not decided, but at a point."""
+    strong = replace(STEEL, yield_strength=300e6)
+    few, fewer = (solid(corner(kind, 1), strong, points={"middle": (0.0, 0.02, 0.0)})
+                  for kind in ("hexahedron20", "hexahedron"))  # fmt: skip
+    structure = few.reduced(modes=2, damping_ratio=0.02, coarser=fewer.reduced(modes=2, damping_ratio=0.02)).structure
+    rest = gb.static(structure, acceleration=(0, 0, 100.0))
+    stress = rest.solid
+    assert stress is not None and not stress.known and stress.nearest_yield is None
+    assert json_of(stress)["known"] is False and stress.singular_nodes == 86
+    for words in (repr(stress), text(rest)):
+        assert "the largest stress is not known: at sharp edges" in words and "86 of 321 nodes are there" in words
+        assert "MPa" not in words
+
+    turn = gb.Flight(z=gb.Sum((gb.constant(20.0), gb.trapezoid(50.0, jerk=100.0, start=0.5, hold=0.5))))
+    machine = gb.Centrifuge(turn, arm=3.3, control_point=0.05, gravity=True, smoothing=0.1, span=(0.0, 2.0))
+    options: Any = {"duration": 2.0, "step": 0.01, "integrator": "gauss", "estimate": False}
+    runs = [gb.simulate(structure, motion, **options) for motion in (turn, machine)]
+    compared = gb.compare(*runs, accept={"stress": 0.5, "damage": 9.0})
+    assert compared.decision == "not decided" and compared.accepted is None
+    assert "not decided: stress unknown (limit 50 %), damage unknown" in " ".join(comparison_lines(compared))
+    assert gb.compare(*runs, stress_at="middle", accept={"stress": 9.0}).accepted is True
+
+
+def test_a_ring_of_linear_tetrahedra() -> None:
+    """Nearly all of its nodes were left out, and the largest stress of none was sought; a third lies at its clamp."""
+
+    def ring(x: np.ndarray) -> np.ndarray:
+        radius, turn = 0.02 - 0.015 * x[:, 0], -1.9 * np.pi * (x[:, 1] + 0.5)
+        return np.stack([radius * np.cos(turn), radius * np.sin(turn), 0.004 * x[:, 2]], axis=1)
+
+    coarse, fine = (solid(block("tetra", (n, 6 * n, 1), (1.0, 1.0, 1.0), ring)) for n in (1, 2))
+    model = fine.reduced(modes=1, damping_ratio=0.0, coarser=coarse.reduced(modes=1, damping_ratio=0.0))
+    stress = model.stress(gb.static(model.structure, acceleration=(0, 0, 9.81)))
+    assert not stress.known and (stress.singular_nodes, len(stress.nodes)) == (26, 78)
 
 
 @pytest.mark.parametrize("verb", ["modes", "static"])
 def test_colours_end_at_the_largest_stress_that_is_judged(verb: str) -> None:
-    """And the view says that it is more at the clamp's edge; with one mesh, which does not tell, they end there."""
-    coarse, fine = (solid(block("hexahedron20", (8 * n, 2 * n, n), (0.2, 0.03, 0.01))) for n in (1, 2))
+    """And the view says that it is more at a sharp corner; with one mesh, which does not tell, they end there."""
+    coarse, fine = (solid(corner("hexahedron20", n)) for n in (1, 2))
     shown, edge = [], []
     for coarser in (None, coarse.reduced(modes=2, damping_ratio=0.01)):
         structure = fine.reduced(modes=2, damping_ratio=0.01, coarser=coarser).structure
@@ -116,10 +179,13 @@ def test_colours_end_at_the_largest_stress_that_is_judged(verb: str) -> None:
             variables = {f"motions/rest/{key}": each.values for key, each in data.variables.items()}
             motions = viewer("Deflection", {"motions": {"rest": {}}}, variables, Numbers())["scene"]
         shown.append(motions["motions"][0]["parts"][0]["surface"])
-        edge.append(data["surface_vertices"].values[~data["surface_judged"].values.astype(bool), 0])
+        edge.append(data["surface_vertices"].values[~data["surface_judged"].values.astype(bool)])
     assert shown[0]["beyond"] is False and not len(edge[0])
-    assert shown[1]["beyond"] is True and len(edge[1]) and edge[1].max() < 0.0251
-    assert 0.5 * shown[0]["largest"] < shown[1]["largest"] < 0.98 * shown[0]["largest"]
+    assert shown[1]["beyond"] is (verb == "static") and len(edge[1])
+    at_corner = (np.abs(edge[1][:, [0, 2]] - (0.04, -0.02)) < 0.0101).all(axis=1)
+    np.testing.assert_allclose(edge[1][~at_corner, 2], 0.06)  # of the clamp
+    share = shown[1]["largest"] / shown[0]["largest"]
+    assert at_corner.any() and (0.5 < share < 0.98 if verb == "static" else share == 1)
 
 
 def test_the_margin_is_least_in_the_weaker_material() -> None:

@@ -9,7 +9,7 @@ import pytest
 
 import gbeam as gb
 
-from .bodies import STEEL, block
+from .bodies import STEEL, block, solid
 
 EDGE = 0.2
 SQUARE = 35.985  # Leissa (1969), NASA SP-160, table 4.26: ω a² √(ρh/D) of a square plate clamped all round
@@ -50,6 +50,45 @@ def test_a_board_that_locks_is_warned_of(
         any("they may lock in bending; make them shorter, or use hexahedra of 27 nodes" in w for w in warnings)
         == warned
     )
+
+
+def test_the_error_of_a_mesh_that_locks_is_not_known() -> None:
+    """Of linear tetrahedra two meshes of a strip differ by less than half of what the finer one is wrong by."""
+    strips = [solid(block("tetra", (12 * n, 2 * n, n), (0.3, 0.03, 0.01))) for n in (1, 2)]
+    coarse = strips[0].reduced(modes=2, damping_ratio=0.01)
+    fine = strips[1].reduced(modes=2, damping_ratio=0.01, coarser=coarse)
+    slender = 1.8751**2 / (2 * np.pi) * np.sqrt(STEEL.youngs_modulus * 0.01**2 / 12 / STEEL.density) / 0.3**2
+    apart, wrong = coarse.frequency[0] / fine.frequency[0] - 1, fine.frequency[0] / slender - 1
+    assert wrong > 0.3 and apart < wrong
+    assert np.isnan(fine.mesh_error).all() and "error of the mesh unknown, its elements lock" in repr(fine)
+    rest, modes = gb.static(fine.structure, acceleration=(0, 0, 9.81)), gb.modes(fine.structure)
+    assert np.isnan(rest.errors.displacement.mesh) and "the mesh is not judged" in rest.errors.note
+    assert modes.errors is not None and np.isnan(modes.errors.mesh).all()
+    for answer in (rest, modes):
+        assert any("the error of the mesh is not known: meshes whose elements lock" in each for each in answer.warnings)
+    # What its sharp edges are the geometry says all the same.
+    assert rest.solid is not None and rest.solid.singular_nodes == 12
+
+
+@pytest.mark.parametrize("modes", [2, 6, 10])
+def test_a_strip_of_one_element_across_is_solved(modes: int) -> None:
+    """Of 300 × 30 × 1 mm, whose stiffest static answer has next to no energy under any motion of its base."""
+    strip = solid(block("hexahedron20", (15, 1, 1), (0.3, 0.03, 0.001))).reduced(modes=modes, damping_ratio=0.0)
+    slender = 1.8751**2 / (2 * np.pi) * np.sqrt(STEEL.youngs_modulus * 0.001**2 / 12 / STEEL.density) / 0.3**2
+    assert strip.frequency[0] == pytest.approx(slender, rel=0.03)
+    pulled, spun = (
+        gb.static(strip.structure, acceleration=(-9.81, 0, 0)),
+        gb.static(strip.structure, gb.Hub(radius=0.0, rate=1.0)),
+    )
+    assert pulled.tip[0] == pytest.approx(STEEL.density * 9.81 * 0.3**2 / 2 / STEEL.youngs_modulus, rel=0.01)
+    assert spun.tip[0] == pytest.approx(STEEL.density * 0.3**3 / 3 / STEEL.youngs_modulus, rel=0.01)
+
+
+def test_a_foil_is_refused_with_a_message_of_its_own() -> None:
+    foil = solid(block("hexahedron20", (30, 3, 1), (0.3, 0.03, 0.0001)))
+    words = "mass is next to none in a static answer to the base's motion, .*; mesh a thin sheet by its middle surface"
+    with pytest.raises(gb.InputError, match=words):
+        foil.reduced(modes=6, damping_ratio=0.0)
 
 
 @pytest.mark.parametrize("kind", ["hexahedron", "wedge", "tetra"])

@@ -108,11 +108,20 @@ def _readings(response: Response | SystemResponse, sensors: Mapping[str, Sensor]
     """Readings of accelerometers; None in a response that is not done or has no accelerations."""
     if response.outcome != "done" or getattr(response, "accelerations", ()) is None:
         return None
-    readings = []
+    readings, peaks_of = [], []
+    at_steps = response.felt_at_steps if isinstance(response, Response) else None
     for point, sensor in sensors.items():
         with placing_within(f"sensors.{point}"):
-            readings.append(response.reading_at(point, sensor))
-    value, time = np.stack([vector_peaks(response.time, reading) for reading in readings], axis=1)
+            reading = response.reading_at(point, sensor)
+        readings.append(reading)
+        largest = vector_peaks(response.time, reading)
+        if at_steps is not None:
+            steps, felt = at_steps
+            finer = sensor.reads(felt[:, response.points.index(point)], float(steps[1] - steps[0]))
+            both = np.stack([largest, vector_peaks(steps, finer)])
+            largest = tuple(np.where(both[1, 0] >= both[0, 0], both[1], both[0]))
+        peaks_of.append(largest)
+    value, time = np.stack(peaks_of, axis=1)
     peaks = VectorPeaks(Extremes(value[:, :3], time[:, :3]), Extremes(value[:, 3], time[:, 3]))
     return Readings(tuple(sensors), np.stack(readings, axis=1), peaks)
 

@@ -92,9 +92,9 @@ def plan(
     broken = [each for each in plans if each.outcome != "done"]
     for each in broken:
         complain(f"motion.{each.name} {each.outcome}: {each.message}" + (" (allowed)" if ignore_limits else ""))
-    refused = [each for each in plans if each.accepted is False]
+    refused = [each for each in plans if each.refusal]
     for each in refused:
-        complain(f"motion.{each.name} not accepted: {each.refusal}")
+        complain(f"motion.{each.name} {each.decision}: {each.refusal}")
     return FAILED if refused or (broken and not ignore_limits) else 0
 
 

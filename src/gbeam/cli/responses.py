@@ -41,7 +41,7 @@ def run(
 
     Writes result.nc, plots and with --report report.html into --out, by default out/ and the scenario's name; with
     --json only if --out or --report is given. Exit status: 0 done, 1 the computation failed, a machine's limit is
-    exceeded or a [motion.NAME.accept] is not met, 2 the input is wrong.
+    exceeded or a [motion.NAME.accept] is not met or not decided, 2 the input is wrong.
     """
     folder = output.folder(scenario, always=True)
     loaded = read("run", scenario, output.overrides)
@@ -50,6 +50,7 @@ def run(
         Thread(target=_import_leaves, daemon=True).start()
 
     from gbeam.analysis.environments import study
+    from gbeam.results.criteria import NOT_ACCEPTED, NOT_DECIDED
 
     with Watch() as watch, loaded.placing():
         answer = study(loaded.case, watch)
@@ -59,10 +60,15 @@ def run(
         complain(f"motion.{name} {failure.outcome}: {failure.message}")
     for name, which in answer.exceeding.items():
         complain(f"motion.{name} limits exceeded: {which}" + (" (allowed)" if ignore_limits else ""))
-    refused = answer.not_accepted
-    for name, which in refused.items():
-        complain(f"motion.{name} not accepted: {which}")
-    return 0 if answer.outcome == "done" and not refused and (ignore_limits or not answer.exceeding) else FAILED
+    refused = {NOT_ACCEPTED: answer.not_accepted, NOT_DECIDED: answer.not_decided}
+    for decision, reasons in refused.items():
+        for name, which in reasons.items():
+            complain(f"motion.{name} {decision}: {which}")
+    return (
+        0
+        if answer.outcome == "done" and not any(refused.values()) and (ignore_limits or not answer.exceeding)
+        else FAILED
+    )
 
 
 def _import_leaves() -> None:

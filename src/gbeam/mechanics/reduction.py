@@ -21,11 +21,21 @@ if TYPE_CHECKING:
     from gbeam.mechanics.equations.linear import Bending
     from gbeam.mechanics.structure import Structure
 
+_UNIT, _SPINS = np.eye(3), [*np.eye(3), (0, 1, 1), (1, 0, 1), (1, 1, 0)]
+# Motions of a base as factors (12, 12) of unit loads: accelerations, angular accelerations, and spins.
+MOTIONS = np.stack(
+    [np.pad(axis[:, None], ((0, 0), (0, 3))).ravel() for axis in _UNIT]
+    + [np.pad(np.cross(axis, _UNIT).T, ((0, 0), (1, 0))).ravel() for axis in _UNIT]
+    + [np.pad(np.outer(w, w) - np.dot(w, w) * _UNIT, ((0, 0), (1, 0))).ravel() for w in _SPINS],
+    axis=1,
+)
+
 Solve = Callable[[Floats], Floats]
 BendingOf = Callable[[Floats, Floats, Solve], "Bending"]
 NEGATIVE = 1e-6  # of the largest: a mass that is less than none, and no rounding
 ZERO = 1e-10  # of the largest of the eigenvalues computed: a smaller one is that of a motion without strain
 ALIKE = 1e-9  # of its energy: what is left of a static answer beside the modes and the others adds nothing
+FAINTLY = 1e-3  # of its energy: as much of a static answer is left out with what moves next to no mass
 MORE = 6  # modes besides, by which the error of those left out is judged
 WIDTH = 8  # random vectors with which the search for modes begins: as many equal frequencies are told apart
 FAINT = 1e-14  # of the largest: a product of shapes that is rounding
@@ -110,11 +120,20 @@ def _reduced(
     inverse, in_basis = _dense(basis.T @ (stiffness @ basis), basis.T @ (mass @ basis))
     if inverse.min() < -NEGATIVE * inverse.max():
         raise InputError("mass", "is not positive definite", "is it the right matrix?")
-    if _moving(inverse) < len(inverse):
+    heavy = _moving(inverse)
+    light = basis @ in_basis[:, heavy:]  # of unit stiffness
+    by_motions, by_loads = (
+        (_shares(stiffness, light, answers) > FAINTLY).any() for answers in (static[:, :12] @ MOTIONS, static[:, 12:])
+    )
+    if by_loads:
         problem = "leaves a static answer without mass, or with next to none beside the heaviest"
         fix = "give the nodes of interfaces mass in every direction, and inertia where they turn, or carry less"
         raise InputError("mass", problem, fix)
-    shapes = basis @ in_basis
+    if by_motions:
+        problem = "is next to none in a static answer to the base's motion, beside that of the lowest mode"
+        fix = "mesh a thin sheet by its middle surface, as a shell with its thickness, or carry less"
+        raise InputError("mass", problem, fix)
+    inverse, shapes = inverse[:heavy], basis @ in_basis[:, :heavy]
     size = shapes.shape[1]
     beyond = _complement(stiffness, mass, shapes, beyond)
     if beyond.size:
@@ -141,6 +160,13 @@ def _dense(stiffness: Floats, mass: Floats) -> tuple[Floats, Floats]:
 def _moving(inverse: Floats) -> int:
     """Number of motions that move mass, by inverse eigenvalues in descending order."""
     return int((inverse > ZERO * inverse[0]).sum())
+
+
+def _shares(stiffness: Any, shapes: Floats, static: Floats) -> Floats:
+    """Shares (n, m) of the strain energy of static answers (u, m) that shapes (u, n) of unit stiffness have."""
+    forces = stiffness @ static
+    energy = np.einsum("ij,ij->j", static, forces)
+    return np.square(shapes.T @ forces) / np.where(energy > 0, energy, np.inf)
 
 
 def _complement(stiffness: Any, mass: Any, modes: Floats, static: Floats) -> Floats:

@@ -98,7 +98,8 @@ def stress_table(solids: Facts, row_of: str = "motion") -> Blocks:
             margin(each["nearest_yield"]["margin"]) if each.get("nearest_yield") else "not known"
         ),
     }
-    yield table(named(solids), cells, "Largest stress, and where it is", optional=("node",))
+    judged = {name: each for name, each in solids.items() if each.get("known", True)}
+    yield table(named(judged), cells, "Largest stress, and where it is", optional=("node",))
     remarks = {name: each["left_out"] for name, each in solids.items() if each.get("left_out")}
     alike = len(remarks) == len(solids) and len(set(remarks.values())) == 1
     if remarks:

@@ -91,7 +91,7 @@ def judged_lines(judged: Judged) -> Iterator[str]:
     if judged.criteria:
         part = f" for {judged.part} only" if judged.part else ""
         if not judged.accepted:
-            yield f"not accepted{part}: {judged.refusal}"
+            yield f"{judged.decision}{part}: {judged.refusal}"
         if kept := ", ".join(str(each) for each in judged.criteria if each.passed):
             yield f"{'accepted' if judged.accepted else 'kept'}{part}: {kept}"
     if judged.not_judged:
@@ -215,7 +215,7 @@ def verdict(judged: Facts, names: tuple[str, str]) -> Blocks:
 def said(judged: Facts) -> Block:
     """Section of the verdict and the sentences that it rests on."""
     lines = Items(tuple(judged["lines"]))
-    tone = "bad" if judged["accepted"] is False else "verdict"
+    tone = "bad" if not all(each["passed"] for each in judged["criteria"]) else "verdict"
     return Section(sentence(judged["verdict"]), (lines,), titled=True, folded="Verdict in words", tone=tone)
 
 
@@ -231,7 +231,8 @@ def _criteria(judged: Facts) -> Block:
     def kept(each: Facts) -> Value:
         if "limit" not in each:
             return "needs the response: gbeam run"
-        return Cell("kept", "good") if each["passed"] else Cell("not kept", "bad")
+        words = {True: ("kept", "good"), False: ("not kept", "bad"), None: ("not known", "bad")}
+        return Cell(*words[each["passed"]])
 
     cells: Columns = {
         "limit on": lambda each: each["name"].replace("_", " "),

@@ -61,8 +61,8 @@ def of_beam(response: Response) -> Iterator[str]:
         if part is not None:
             yield from part.lines
     if response.hub is not None:
-        rate = float(abs(response.hub.rate).max())
-        yield f"hub: angle at the end {number(response.hub.angle[-1])} rad, largest rate {number(rate)} rad/s"
+        angle, rate = response.hub.angle_end, response.hub.rate_max
+        yield f"hub: angle at the end {number(angle)} rad, largest rate {number(rate)} rad/s"
         if response.hub.free and np.any(response.damping_ratio):
             yield _damping(response)
     if response.kept_every > 1:
@@ -181,6 +181,12 @@ def of_system(response: SystemResponse) -> Iterator[str]:
         shares = zip(response.loop.drives, response.loop.saturated, strict=True)
         limited = (f"{drive} limited at {100 * share:.3g} % of the samples" for drive, share in shares)
         yield "; ".join(limited)
+    if response.peaks is not None:
+        force, moment = response.peaks.ground_force.size, response.peaks.ground_moment.size
+        yield (
+            f"on the ground: largest force {number(float(force.value))} N at {float(force.time):.4g} s, moment "
+            f"{number(float(moment.value))} N m at {float(moment.time):.4g} s"
+        )
     yield from (f"{body}: {largest_loads(each.peaks)}" for body, each in response.beams.items() if each.peaks)
     yield from (f"{body}: {line}" for body, each in response.solids.items() for line in each.lines)
     invariants = response.invariants

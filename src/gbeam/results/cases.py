@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import index_of
-from gbeam.results.criteria import BROKEN, EXCEEDED, NOT_ACCEPTED
+from gbeam.results.criteria import BROKEN, EXCEEDED, NOT_ACCEPTED, NOT_DECIDED
 from gbeam.results.declared import BESIDE, declared, fact, labels, quantity, rows
 from gbeam.results.result import Figured, Flags, Floats, Part
 
@@ -52,7 +52,7 @@ class Indices(Part):
 
 SAMPLE = "sample"  # the dimension of what is drawn from distributions
 # Outcomes of cases that are computed to the end, with every figure, and do not keep limits.
-ANSWERED = (NOT_ACCEPTED, EXCEEDED, BROKEN)
+ANSWERED = (NOT_ACCEPTED, NOT_DECIDED, EXCEEDED, BROKEN)
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -120,9 +120,10 @@ class Sweep(Figured[str]):
         "how each case ended",
         "case",
         key="outcomes",
-        note="as its verb: done, diverged, not converged; not accepted where limits of acceptance are not kept; "
-        "machine limits exceeded or, of plan and place, limits exceeded; refused where the scenario does not allow its "
-        "values; failed where the computation broke down; pending where it has not been computed",
+        note="as its verb: done, diverged, not converged, not known; not accepted where limits of acceptance are not "
+        "kept, not decided where a value is not known; machine limits exceeded or, of plan and place, limits exceeded; "
+        "refused where the scenario does not allow its values; failed where the computation broke down; pending where "
+        "it has not been computed",
     )
     message: NDArray[Any] = quantity(
         "", "why a case is not done, or which limits it does not keep", "case", key="messages"

@@ -28,7 +28,7 @@ _AtPoint = Literal["damage_at", "stress_at"]
 AT_POINTS: tuple[_AtPoint, ...] = get_args(_AtPoint)  # settings that name a point with a stress
 OF_RESPONSES = ("point", "control", *AT_POINTS)  # settings of what responds
 STRESS, DISPLACEMENT = "a stress", "a displacement"  # that not every specimen has
-NOT_ACCEPTED, EXCEEDED = "not accepted", "machine limits exceeded"
+NOT_ACCEPTED, NOT_DECIDED, EXCEEDED = "not accepted", "not decided", "machine limits exceeded"
 BROKEN = "limits exceeded"  # outcome of a plan, a placement or a search
 GOOD = ("done", "accepted")  # states of which nothing is to be said
 
@@ -84,17 +84,28 @@ class Judged:
     @declared("", "whether every limit is kept: true, false, or empty where there is none", role="fact", key=None,
               name="accepted")  # fmt: skip
     def acceptance(self) -> str:
-        return {None: "", True: "true", False: "false"}[self.accepted]
+        return {"": "", "accepted": "true", NOT_ACCEPTED: "false"}.get(self.decision, self.decision)
 
     @declared("", "whether every limit that can be judged is kept", role="fact", name=None)
     def accepted(self) -> bool | None:
-        """True if every limit that can be judged is kept; None where there is none."""
-        return all(each.passed for each in self.criteria) if self.criteria else None
+        """True if every limit that can be judged is kept; None where there is none, or that is not decided."""
+        return {"accepted": True, NOT_ACCEPTED: False}.get(self.decision)
+
+    @property
+    def decision(self) -> str:
+        """Accepted; not accepted where a limit is not kept; else not decided where a value is not known; empty without
+        limits.
+        """
+        kept = [each.passed for each in self.criteria]
+        if False in kept:
+            return NOT_ACCEPTED
+        return NOT_DECIDED if None in kept else "accepted" if kept else ""
 
     @property
     def refusal(self) -> str:
-        """The limits that are not kept, in words; empty where every one is."""
-        return ", ".join(str(each) for each in self.criteria if not each.passed)
+        """The limits that are not kept, or else those whose values are not known, in words; empty where accepted."""
+        missed = {NOT_ACCEPTED: False, NOT_DECIDED: None}.get(self.decision, 0)
+        return ", ".join(str(each) for each in self.criteria if each.passed is missed)
 
 
 def state_of(
@@ -106,8 +117,11 @@ def state_of(
     """
     if outcome != "done":
         return outcome
-    if False in kept or any(each.accepted is False for each in imitations):
+    decisions = [each.decision for each in imitations]
+    if False in kept or NOT_ACCEPTED in decisions:
         return NOT_ACCEPTED
+    if NOT_DECIDED in decisions:
+        return NOT_DECIDED
     if exceeded:
         return EXCEEDED
     accepted = [each for each in imitations if each.accepted and not each.not_judged and not each.part]
@@ -206,7 +220,7 @@ class Criterion:
 
     name: str = quantity("", "what a limit of acceptance is on", note="docs/verdict.md, Pass or fail")
     limit: Limit = quantity("", "the limit, as given", name=None)
-    value: float = quantity("", "its value", note="NaN where it is not known, which does not pass")
+    value: float = quantity("", "its value", note="NaN where it is not known, which decides nothing")
     where: str = quantity("", "where and when that is", note="empty where it belongs to the whole flight", default="")
 
     @declared("", "least value that is accepted", name="least_allowed", key=None)
@@ -222,10 +236,10 @@ class Criterion:
         """Least and largest value that is accepted."""
         return RULES[self.name].bounds(self.limit)
 
-    @declared("", "whether the value is within its bounds", name=None)
-    def passed(self) -> bool:
+    @declared("", "whether the value is within its bounds; None where it is not known", name=None)
+    def passed(self) -> bool | None:
         low, high = self.bounds
-        return low <= self.value <= high
+        return None if math.isnan(self.value) else bool(low <= self.value <= high)
 
     def __str__(self) -> str:
         rule = RULES[self.name]
@@ -282,7 +296,7 @@ def _change(name: str) -> Callable[[Judged], Iterator[Value]]:
             if pair.flight == 0 < pair.machine:
                 from gbeam.results.accounting import UNITS
 
-                yield math.nan, f"as flight has none and the machine makes {pair.machine:.4g} {UNITS[name]}"
+                yield math.inf, f"as flight has none and the machine makes {pair.machine:.4g} {UNITS[name]}"
                 return
             change = 0.0 if pair.machine == pair.flight else pair.ratio - 1
             yield change, f"at {pair.place_machine} at {pair.time_machine:.2f} s" if pair.place_machine else ""

@@ -167,6 +167,13 @@ def _declarations(kind: type) -> tuple[tuple[str, Declaration], ...]:
     return (*((name, each) for name, each in fields if each is not None), *properties)
 
 
+def along_time(record: Any) -> dict[str, Any]:
+    """Return the arrays of a record that stand along time, by the name of their field."""
+    fields = {each.name for each in dataclasses.fields(record)}
+    histories = (name for name, each in declarations(type(record)) if name in fields and each.dims[:1] == ("time",))
+    return {name: getattr(record, name) for name in histories if getattr(record, name) is not None}
+
+
 def parameters(kind: type) -> str:
     """Return the section `Parameters` of a docstring: type and words of every declared field."""
     lines = ["Parameters", "----------"]

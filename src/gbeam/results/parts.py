@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 
 from gbeam.arrays.tree import record
-from gbeam.results.declared import BESIDE, INSIDE, declared, fact, internal, part, quantity
+from gbeam.results.declared import BESIDE, INSIDE, along_time, declared, fact, internal, part, quantity
 from gbeam.results.result import Floats, Part
 
 _SECTION_AXES = "S: axes of the deformed section"
@@ -359,10 +359,7 @@ class Loads(Part):
 
     def during(self, part: slice) -> Loads:
         """Return the loads at a slice of the times."""
-        over_time = [
-            field.name for field in fields(self) if np.ndim(getattr(self, field.name)) and field.name != "stations"
-        ]
-        return replace(self, **{name: getattr(self, name)[part] for name in over_time})
+        return replace(self, **{name: values[part] for name, values in along_time(self).items()})
 
     @declared("Pa", "largest size of the normal stress over the section", "time section", key="")
     def stress(self) -> Floats:

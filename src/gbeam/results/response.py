@@ -139,6 +139,7 @@ class HubResult(Part):
         default=None,
     )
     free: bool = internal("", "whether the hub's motion is a result, not prescribed", default=False)
+    fastest: float = internal("rad/s", "largest size of the rate at all steps", default=0.0)
 
     @declared("rad", "angle at the end", name=None)
     def angle_end(self) -> float:
@@ -146,7 +147,7 @@ class HubResult(Part):
 
     @declared("rad/s", "largest size of the rate", name=None)
     def rate_max(self) -> float:
-        return float(abs(self.rate).max())
+        return max(float(abs(self.rate).max()), self.fastest)
 
     @declared("rad/s", "rate at the end", name=None)
     def rate_end(self) -> float:
@@ -268,6 +269,10 @@ class Response(Driven, Figured[ResponseFigure]):
         default=None,
     )
     kept_every: int = internal("", "how many samples of the histories make one in a file", default=1)
+    felt_at_steps: tuple[Floats, Floats] | None = internal(
+        "", "times (t,) s of all steps of the flight, and accelerations (t, s, 3) m/s² of the stations there; None "
+        "where these are the samples", default=None,
+    )  # fmt: skip
     envelope: Floats = internal(
         "m",
         "corners of the convex hull of a solid, rigid or curved specimen, undeformed, from the root",

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import ClassVar, Literal
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from gbeam.arrays.types import Numbers
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.guards.checks import index_of, vector
-from gbeam.results.declared import declared, fact, internal, labels, part, quantity
+from gbeam.results.declared import along_time, declared, fact, internal, labels, part, quantity
 from gbeam.results.parts import LoadPeaks, margin_words, yield_margin
 from gbeam.results.result import Complex, Figured, Flags, Floats, Part
 
@@ -71,6 +71,9 @@ class SolidStress(Figured[Literal["stress"]]):
                                      note=UNLIMITED, default=None)  # fmt: skip
     singular_nodes: int | None = fact("number of nodes that are left out; not known of one mesh", note=UNLIMITED,
                                       optional=True, default=None)  # fmt: skip
+    known: bool = fact(
+        "whether the largest stress is known", note="not where more than a tenth of the nodes is left out", default=True
+    )
     singular_depth: float = fact("largest distance of a node that is left out to one that is judged", "m", default=0.0)
     points: tuple[str, ...] = labels("name of the point", "point", default=())
     point_von_mises: Floats = quantity("Pa", "von Mises stress at the point", "time point", empty=True)
@@ -110,8 +113,23 @@ class SolidStress(Figured[Literal["stress"]]):
         "Pa", "largest von Mises stress over time at the node", "node", key=None, empty=True
     )
 
+    point_peaks: Floats | None = internal(
+        "", "at the points: largest von Mises stress Pa, its time s, and largest strain", "peak point", default=None
+    )
+
+    def sampled(self, steps: Any) -> SolidStress:
+        """Return the histories at some of the steps, with the peaks of all."""
+        peaks = np.stack([self.point_max, self.point_time_of_max, self.point_strain_max])
+        histories = {name: values[steps] for name, values in along_time(self).items() if len(values)}
+        return replace(self, **histories, point_peaks=peaks)
+
     @declared("", "what is left out of the largest stress, and why, or why that is not known", role="fact")
     def left_out(self) -> str:
+        if not self.known:
+            return (
+                f"the largest stress is not known: {UNLIMITED}, and {self.singular_nodes} of {len(self.nodes)} nodes "
+                "are there, more than a tenth; mesh it finer, or read the stress at a point"
+            )
         if self.singular is None:
             return NOT_KNOWN if self.singular_nodes is None else ""
         return (
@@ -126,15 +144,15 @@ class SolidStress(Figured[Literal["stress"]]):
 
     @declared("Pa", "largest von Mises stress", "point", name=None, key="von_mises")
     def point_max(self) -> Floats:
-        return self.point_von_mises.max(axis=0)
+        return self.point_von_mises.max(axis=0) if self.point_peaks is None else self.point_peaks[0]
 
     @declared("s", "time of that stress", "point", name=None, key="time_of_max")
     def point_time_of_max(self) -> Floats:
-        return self.time[self.point_von_mises.argmax(axis=0)]
+        return self.time[self.point_von_mises.argmax(axis=0)] if self.point_peaks is None else self.point_peaks[1]
 
     @declared("", "largest size of the normal strain along x of the point's axes", "point", name=None, key="strain")
     def point_strain_max(self) -> Floats:
-        return np.abs(self.point_strain[..., 0]).max(axis=0)
+        return np.abs(self.point_strain[..., 0]).max(axis=0) if self.point_peaks is None else self.point_peaks[2]
 
     def strain_at(self, point: str, along: Numbers = (1.0, 0.0, 0.0)) -> Floats:
         """Return what a strain gauge at a named point reads, (t,), as :meth:`gbeam.Response.strain_at` does."""
@@ -149,6 +167,8 @@ class SolidStress(Figured[Literal["stress"]]):
     @property
     def lines(self) -> tuple[str, str]:
         """The largest stress and the least margin in words."""
+        if not self.known:
+            return "the largest stress is not known", "margin on yield not known"
         if self.nearest_yield is None:
             return said(self.worst), "margin on yield not known: no material has a yield_strength"
         assert self.nearest_yield.margin is not None

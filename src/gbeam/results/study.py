@@ -10,7 +10,7 @@ from typing import Any, Literal
 
 from gbeam.results.cases import Sensitivity, Sweep
 from gbeam.results.comparison import Comparison, MachinePlan
-from gbeam.results.criteria import Judged, state_of
+from gbeam.results.criteria import NOT_ACCEPTED, NOT_DECIDED, Judged, state_of
 from gbeam.results.declared import declared, fact, internal, quantity, rows
 from gbeam.results.equilibrium import Critical, CriticalMap, Deflection
 from gbeam.results.facts import ANY, Entry, json_of, tree_of
@@ -61,13 +61,19 @@ class Answers(Figured[str]):
         reasons = {name: specimen.refusal for name, specimen in self._specimens.items()}
         for comparison in self.comparisons:
             name = comparison.centrifuge
-            reasons[name] = ", ".join(filter(None, (comparison.refusal, reasons.get(name, ""))))
+            refusal = comparison.refusal if comparison.decision == NOT_ACCEPTED else ""
+            reasons[name] = ", ".join(filter(None, (refusal, reasons.get(name, ""))))
         return {name: reason for name, reason in reasons.items() if reason}
+
+    @property
+    def not_decided(self) -> Mapping[str, str]:
+        """Limits of acceptance whose values are not known, by the motion's name."""
+        return {each.centrifuge: each.refusal for each in self.comparisons if each.decision == NOT_DECIDED}
 
     @property
     def refusals(self) -> Mapping[str, str]:
         """Limits of acceptance that are not kept and limits of machines that are exceeded, by the motion's name."""
-        return self.not_accepted or self.exceeding
+        return self.not_accepted or self.not_decided or self.exceeding
 
     @declared("", "the outcome, with what limits make of it", role="fact")
     def state(self) -> str:

@@ -27,13 +27,12 @@ from gbeam.results.errors import (
 )
 from gbeam.results.facts import at_place
 from gbeam.results.machine import AxesResult, Driven
-from gbeam.results.parts import Base, LoadPeaks, Loads, Outline
+from gbeam.results.parts import Base, LoadPeaks, Loads, Outline, VectorPeaks
 from gbeam.results.response import Readings, Sensor
 from gbeam.results.result import Complex, Decided, Figured, Floats, Part
 from gbeam.results.solids import SolidStress, Surface, SurfaceModes
 
 _EULER, _TURNS, _SPINS = ("e0", "e1", "e2", "e3"), ("rx", "ry", "rz"), ("wx", "wy", "wz")  # of balls
-_ROUNDING = 1e-16  # of the places: a displacement that is less is none
 ENERGIES = ("kinetic", "elastic", "gravity")
 _OF_POINTS = {each: each for each in ("place", "velocity", "attitude", "acceleration")} | {"spin": "angular_velocity"}
 
@@ -82,6 +81,11 @@ class Loop(Part):
     asked: Floats = quantity("", "effort that the law asks for, held from its sample", "time drive")
     applied: Floats = quantity("", "effort that acts, limited and delayed", "time drive")
     saturated: Floats = quantity("", "share of the samples that were limited", "drive")
+    measured_max: Floats = quantity(
+        "", "size of the measurement, the largest of all samples", "measurement", key="/measured_max"
+    )
+    asked_max: Floats = quantity("", "size of the effort that the law asks for, the largest of all samples", "drive")
+    applied_max: Floats = quantity("", "size of the effort that acts, the largest of all samples", "drive")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -109,6 +113,52 @@ class BeamShape(Part):
         "", "displacement of the beam's axis, in the size of the mode's shape", "mode point axis",
         name="outline_shape", key=None,
     )  # fmt: skip
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class SystemPeaks(Part):
+    """Largest values of a system's points, coordinates and ground at all steps and between them.
+
+    Near the largest steps a history is the polynomial of sixth degree through seven of them.
+    """
+
+    json_rows: ClassVar[dict[str, str]] = {"point": "points", "coordinate": "coordinates"}
+
+    points: tuple[str, ...] = labels("name of the point", "point")
+    coordinates: tuple[str, ...] = labels("name of the coordinate", "coordinate")
+    displacement: Floats = quantity(
+        "m", "displacement of the point from its place at the start, the largest", "point",
+        name="displacement_max", key="displacement_max",
+    )  # fmt: skip
+    displacement_time: Floats = quantity(
+        "s", "time of that", "point", name="displacement_time_of_max", key="displacement_time_of_max"
+    )
+    velocity: Floats = quantity("m/s", "speed, the largest", "point", name="velocity_max", key="velocity_max")
+    velocity_time: Floats = quantity(
+        "s", "time of that", "point", name="velocity_time_of_max", key="velocity_time_of_max"
+    )
+    acceleration: Floats = quantity(
+        "m/s^2", "acceleration, the largest", "point", name="acceleration_max", key="acceleration_max"
+    )
+    acceleration_time: Floats = quantity(
+        "s", "time of that", "point", name="acceleration_time_of_max", key="acceleration_time_of_max"
+    )
+    lowest: Floats = quantity("", "coordinate, the lowest", "coordinate", name="lowest", key="min")
+    lowest_time: Floats = quantity("s", "time of that", "coordinate", name="lowest_time", key="time_of_min")
+    highest: Floats = quantity("", "coordinate, the highest", "coordinate", name="highest", key="max")
+    highest_time: Floats = quantity("s", "time of that", "coordinate", name="highest_time", key="time_of_max")
+    rate: Floats = quantity(
+        "", "size of the coordinate's rate, the largest", "coordinate", name="rate_max", key="rate_max"
+    )
+    rate_time: Floats = quantity("s", "time of that", "coordinate", name="rate_time_of_max", key="rate_time_of_max")
+    effort: Floats = quantity("", "size of the effort, the largest", "coordinate", name="effort_max", key="effort_max")
+    effort_time: Floats = quantity(
+        "s", "time of that", "coordinate", name="effort_time_of_max", key="effort_time_of_max"
+    )
+    ground_force: VectorPeaks = part("largest force on the ground", unit="N", name="ground_force_max_")
+    ground_moment: VectorPeaks = part(
+        "largest moment on the ground about its origin", unit="N m", name="ground_moment_max_"
+    )
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -259,6 +309,10 @@ class SystemResponse(_Placed, Driven, Figured[str]):
         "point axis", frame="axes of the body's root, else of the ground", optional=True, default=None,
     )  # fmt: skip
     kept_every: int = internal("", "how many samples of the histories make one in a file", default=1)
+    peaks: SystemPeaks | None = part(
+        "largest values between all steps", key=INSIDE, name=INSIDE, optional=True, note="None where a run is traced",
+        default=None,
+    )  # fmt: skip
 
     @declared("m", "length of the vector of half peak-to-peak from residual_from on", "point", optional=True, name=None)
     def residual_size(self) -> Floats | None:
@@ -271,15 +325,18 @@ class SystemResponse(_Placed, Driven, Figured[str]):
         total, step = self.errors.displacement.total, self.errors.displacement.step
         return step if math.isnan(total) else total
 
-    @declared(
-        "m", "displacement of the point from its place at the start, the largest", "point", key="displacement_max"
-    )
+    @property
     def largest(self) -> Floats:
-        distance = np.linalg.norm(self.place - self.place[0], axis=-1).max(axis=0)
-        return np.where(distance <= _ROUNDING * np.abs(self.place).max(initial=0.0), 0.0, distance)
+        """Largest displacement of every point from its place at the start, (p,) m."""
+        if self.peaks is not None:
+            return self.peaks.displacement
+        return np.linalg.norm(self.place - self.place[0], axis=-1).max(axis=0)
 
-    @declared("m/s^2", "acceleration, the largest", "point", key="acceleration_max")
+    @property
     def largest_acceleration(self) -> Floats:
+        """Largest acceleration of every point, (p,) m/s²."""
+        if self.peaks is not None:
+            return self.peaks.acceleration
         return np.linalg.norm(self.acceleration, axis=-1).max(axis=0)
 
     @declared("", "coordinate at the end", "coordinate", name="last", key="end")

@@ -49,12 +49,13 @@ from gbeam.solids.foreign import (
 from gbeam.solids.links import WAYS, Linked, Links, LinkSpring, attached, refuse_names
 from gbeam.solids.model import SolidModel, beside, hardly_coarser
 from gbeam.solids.placed import Placed, with_cards
-from gbeam.solids.plausibility import doubts_of, refuse_folded, refuse_loose, refuse_twice
+from gbeam.solids.plausibility import doubts_of, locking, refuse_folded, refuse_loose, refuse_twice
 from gbeam.solids.shells import points_of, refuse_oblique
 from gbeam.solids.stress import NodalStress
 from gbeam.structure.attachments import TIP, checked_name
 from gbeam.structure.material import Material, Orthotropic
 
+LOCKED = "the error of the mesh is not known: meshes whose elements lock differ by less than they are wrong"
 MIDDLE = 1e-6  # of half of the thickness of a shell: a place that is nearer to the middle is on neither side
 
 
@@ -362,7 +363,8 @@ class SolidMesh(Value):
         halves = geometric_stiffness(self.points, self.blocks, static[:count, :, stressed], shapes)
         halves += linked.geometric_stiffness(held, mass, loads[:, stressed], reduced.static[:, stressed], reduced)
         frequency = np.sqrt(np.diagonal(reduced.stiffness)[:modes]) / (2 * np.pi)
-        doubts = () if coarser is None else hardly_coarser(coarser.mesh, self)
+        locked = coarser is not None and bool(locking(self))
+        doubts = () if coarser is None else (*hardly_coarser(coarser.mesh, self), *[LOCKED] * locked)
         nodal, length = NodalStress.of(self, shapes), float(np.linalg.norm(linked.points, axis=1).max())
 
         def build(n: int, damping_ratio: Any) -> Structure:
@@ -391,6 +393,7 @@ class SolidMesh(Value):
         structure = reduced.structure(build, damping_ratio)
         if coarser is not None:
             structure = beside(coarser, structure)
+            structure = replace(structure, coarser=None) if locked else structure
         return SolidModel(self, structure, frequency)
 
     @property

@@ -3,29 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gbeam.arrays.tree import Value
-from gbeam.arrays.types import Flags, Floats, Indices
+from gbeam.arrays.types import Floats, Indices
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.structure import Structure
 from gbeam.results.equilibrium import Deflection
 from gbeam.results.response import Response
-from gbeam.results.solids import SolidStress, von_mises
+from gbeam.results.solids import SolidStress
+from gbeam.solids.edges import without_limit
 from gbeam.solids.elements import mass_matrix
+from gbeam.solids.plausibility import locking
 from gbeam.solids.stress import NodalStress, solid_stress
 
 if TYPE_CHECKING:
     from gbeam.solids.mesh import SolidMesh
 
-CONVERGING = 0.5  # order in the elements' size: two or three where stress is smooth, below zero where it is not
-GROWING = 0.05  # order of growing stress: a clamp's edge has 0.3, a sharp corner up to 0.5
-UNLIKE = 0.05  # of the stress: how far elements are apart at least where it is singular, on any mesh
-REFINED = 1.25  # times as large elements at least, to judge that by
+MOST = 0.1  # of the nodes: where more would be left out, the largest stress is not known
 COARSER = 2**0.5  # times as large elements, from where an error of second order is less than the difference
 
 
@@ -57,7 +56,7 @@ class SolidModel(Value):
     @property
     def mesh_error(self) -> Floats:
         """Estimated errors (m,) of the frequencies at rest by the mesh, as fractions: their differences to those of a
-        coarser mesh; NaN where there is none.
+        coarser mesh; NaN where there is none, or elements lock.
         """
         if self.structure.coarser is None:
             return np.full(len(self.frequency), np.nan)
@@ -67,7 +66,8 @@ class SolidModel(Value):
     def __repr__(self) -> str:
         shown = ", ".join(f"{frequency:.4g}" for frequency in self.frequency[:6])
         known = np.isfinite(self.mesh_error)
-        error = f"up to {100 * self.mesh_error[known].max():.2g} %" if known.any() else "unknown, give a coarser mesh"
+        cure = "its elements lock" if locking(self.mesh) else "give a coarser mesh"
+        error = f"up to {100 * self.mesh_error[known].max():.2g} %" if known.any() else f"unknown, {cure}"
         return f"SolidModel({self.structure.size} coordinates; {shown} Hz; error of the mesh {error})"
 
     @property
@@ -154,11 +154,14 @@ def beside(coarser: SolidModel, finer: Structure) -> Structure:
     basis = np.zeros((structure.size, n))
     basis[:known] = turn * np.where(np.diagonal(size) < 0, -1.0, 1.0)
     padded = np.pad(basis, ((0, rough.every_shape.shape[-1] - len(basis)), (0, 0)))
-    without_limit = singular(fine, rough, _static(finer), _static(coarser.structure))
+    without = without_limit(fine.mesh)
+    excess = int(without.sum()) if without.mean() > MOST else 0
+    singular = without[fine.node] & (excess == 0)
     # Where both have a node: stress changes fast near those where it is largest.
     of_both = np.unique(_nearest(fine, rough, np.arange(len(rough.known))))
-    felt_at = fine.most(of_both[~without_limit[of_both]])
-    compared = replace(fine, singular=without_limit, compared=True, felt_at=felt_at)
+    shared = of_both[~singular[of_both]]
+    felt_at = fine.most(shared if len(shared) else np.flatnonzero(~singular))
+    compared = replace(fine, singular=singular, compared=True, excess=excess, felt_at=felt_at)
     nodal = replace(
         rough,
         every_shape=rough.every_shape @ padded,
@@ -176,79 +179,6 @@ def beside(coarser: SolidModel, finer: Structure) -> Structure:
     )
     richer = finer.richer and replace(finer.richer, recovery=replace(compared, size=finer.richer.size))
     return replace(finer, recovery=compared, richer=richer, coarser=turned)
-
-
-def _static(structure: Structure) -> Floats:
-    """Static answers (n, 6) to unit accelerations and angular accelerations of the base."""
-    c = structure.coefficients
-    return np.linalg.solve(np.asarray(c.stiffness), np.concatenate([c.f_a, c.f_al]).T)
-
-
-def singular(fine: NodalStress, rough: NodalStress, of_fine: Floats, of_rough: Floats) -> Flags:
-    """Flags (p,) of the pairs of a mesh in elements of a coarser one where the stress of answers (n, l) diverges.
-
-    There the stress of an element and the mean at its nodes differ as much on both meshes, where their difference falls
-    with the elements' size elsewhere, and somewhere in such a patch of elements stress grows.
-    """
-    from scipy.sparse import csr_array
-    from scipy.sparse.csgraph import connected_components
-    from scipy.spatial import cKDTree
-
-    top = von_mises(np.moveaxis(fine.table @ of_fine, 1, 2)).max(axis=0)
-    top = np.where(top > 0, top, np.inf)
-    small, large = _elements(fine, of_fine / top), _elements(rough, of_rough / top)
-    count, (_, inside) = len(large.middle), cKDTree(large.middle).query(small.middle)
-    mismatch, stress, size = np.zeros((3, count))  # of the small elements in each large one, the largest
-    np.maximum.at(mismatch, inside, small.mismatch)
-    np.maximum.at(stress, inside, small.stress)
-    np.maximum.at(size, inside, small.size)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        finer = np.log(large.size / size)
-        order, growth = np.log(large.mismatch / mismatch) / finer, np.log(stress / large.stress) / finer
-        unlike = (order < CONVERGING) & (mismatch > UNLIKE * stress) & (finer > np.log(REFINED))
-    suspects = np.flatnonzero(unlike)
-    sharing = csr_array(
-        (np.ones(large.pairs.size), (np.repeat(np.arange(count), large.counts), large.pairs)),
-        shape=(count, len(rough.known)),
-    )[suspects]
-    number, patch = connected_components(sharing @ sharing.T)
-    grows = np.bincount(patch, growth[suspects] > GROWING, number) > 0
-    diverging = np.zeros(count, dtype=bool)
-    diverging[suspects[grows[patch]]] = True
-    flags = np.zeros(len(fine.known), dtype=bool)
-    flags[small.pairs[np.repeat(diverging[inside], small.counts)]] = True
-    return flags if not flags.all() else ~flags
-
-
-class _Elements(NamedTuple):
-    """Elements (e,) of a mesh under several answers: middles (e, 3) and sizes, m, the largest von Mises `stress` at
-    their nodes, that of the difference, `mismatch`, of an element's stress to the mean at the node, and their pairs, of
-    which each element has so many as `counts` says, one element after the other.
-    """
-
-    middle: Floats
-    size: Floats
-    mismatch: Floats
-    stress: Floats
-    counts: Indices
-    pairs: Indices
-
-
-def _elements(nodal: NodalStress, answers: Floats) -> _Elements:
-    """Elements of a mesh under answers (n, l), whose von Mises stresses are summed as squares."""
-    mean, places = nodal.table @ answers, nodal.mesh.points[nodal.node]
-    under = replace(nodal, every_shape=nodal.shapes @ answers, size=answers.shape[1])
-
-    def total(stress: Floats) -> Floats:
-        return np.asarray(np.linalg.norm(von_mises(np.moveaxis(stress, -2, -1)), axis=-1))
-
-    size, parts = total(mean), []
-    for pairs, stress in under.elements(nodal.mesh.blocks):
-        box, counts = np.ptp(places[pairs], axis=1), np.full(len(pairs), pairs.shape[1])
-        mismatch = total(stress - mean[pairs]).max(axis=1)
-        middle, diagonal = places[pairs].mean(axis=1), np.linalg.norm(box, axis=1)
-        parts.append((middle, diagonal, mismatch, size[pairs].max(axis=1), counts, pairs.ravel()))
-    return _Elements(*map(np.concatenate, zip(*parts, strict=True)))
 
 
 def _nearest(of: NodalStress, to: NodalStress, pairs: Indices) -> Indices:

@@ -97,7 +97,12 @@ def doubts_of(mesh: SolidMesh, unit: str) -> list[str]:
             f"{len(pairs):,} pairs of nodes lie at one place and are not merged, such as {first} and {second}: "
             "the mesh does not hold together there; merge them, if it should"
         )
-    of_blocks = _slenderness(mesh)
+    return doubts + locking(mesh)
+
+
+def locking(mesh: SolidMesh) -> list[str]:
+    """Warnings of elements that are too stiff, by more than meshes of them differ."""
+    doubts, of_blocks = list[str](), _slenderness(mesh)
     linear = [ratios for block, ratios in zip(mesh.blocks, of_blocks, strict=True) if KINDS[block.kind].linear]
     if linear:
         ratios = np.concatenate(linear)

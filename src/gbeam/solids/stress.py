@@ -36,8 +36,9 @@ FACES = {
 class NodalStress(Value):
     """Stresses of a mesh by the first `size` of n coordinates: displacements `every_shape` (k, 3, n) of its nodes and
     stresses `every_table` (p, 6, n) per unit coordinate. A pair is a node and a material of its elements, `known` (p,)
-    its number, material · nodes + node. `felt_at` are the pairs that some coordinate stresses most; `singular` (p,)
-    flags those where stress grows without limit as a mesh gets finer, once a coarser mesh was `compared`.
+    its number, material · nodes + node. `felt_at` are the pairs that some coordinate stresses most. Once a coarser mesh
+    was `compared`, `singular` (p,) flags those where stress grows without limit as a mesh gets finer; where these would
+    be too many, `excess` is the number of their nodes, and none is flagged.
     """
 
     mesh: Any
@@ -49,6 +50,7 @@ class NodalStress(Value):
     felt_at: Indices
     singular: Flags
     compared: bool = False
+    excess: int = 0
 
     @classmethod
     def of(cls, mesh: Any, shapes: Floats) -> Self:
@@ -223,20 +225,28 @@ def on_face(kind: str, face: int) -> Indices:
     return np.array([*corners, *distance.argmin(axis=0)[distance.min(axis=0) < 1e-9]])
 
 
+def outer_faces(mesh: Any) -> list[tuple[Any, int, Indices]]:
+    """Faces that no two elements share: a block, the number of the face, and the elements (e,) of which it is one."""
+    faces, count = list[tuple[Any, int, Indices]](), len(mesh.points)
+    for size in (3, 4):
+        sides = [(block, k) for block in mesh.blocks for k, face in enumerate(FACES[corners_of(block.kind)])
+                 if len(face) == size]  # fmt: skip
+        if sides:
+            corners = [block.nodes[:, FACES[corners_of(block.kind)][k]] for block, k in sides]
+            first, second, third = np.sort(np.concatenate(corners), axis=1).T[:3]  # no two faces share three corners
+            _, edge = np.unique(first * count + second, return_inverse=True)
+            _, number, shared = np.unique(edge * count + third, return_inverse=True, return_counts=True)
+            parts = np.split(shared[number] == 1, np.cumsum([len(each) for each in corners])[:-1])
+            faces += [(*side, np.flatnonzero(alone)) for side, alone in zip(sides, parts, strict=True)]
+    return faces
+
+
 def outer_triangles(mesh: Any) -> Indices:
     """Corners (f, 3) of the triangles that make up the outer faces."""
-    triangles, count = list[Indices](), len(mesh.points)
-    for size in (3, 4):
-        faces = [
-            block.nodes[:, face] for block in mesh.blocks for face in FACES[corners_of(block.kind)] if len(face) == size
-        ]
-        if faces:
-            corners = np.concatenate(faces)
-            first, second, third = np.sort(corners, axis=1).T[:3]  # no two faces share three corners
-            _, edge = np.unique(first * count + second, return_inverse=True)
-            _, index, shared = np.unique(edge * count + third, return_index=True, return_counts=True)
-            outer = corners[index[shared == 1]]
-            triangles += [outer[:, [0, k, k + 1]] for k in range(1, size - 1)]
+    triangles = list[Indices]()
+    for block, k, elements in outer_faces(mesh):
+        corners = block.nodes[elements][:, FACES[corners_of(block.kind)][k]]
+        triangles += [corners[:, [0, i, i + 1]] for i in range(1, corners.shape[1] - 1)]
     return np.concatenate(triangles)
 
 
@@ -322,7 +332,7 @@ def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> S
             yield_strength=strength if np.isfinite(strength) else None,
         )
 
-    singular: dict[str, Any] = {"singular_nodes": 0 if nodal.compared else None}
+    singular: dict[str, Any] = {"singular_nodes": nodal.excess if nodal.compared else None, "known": not nodal.excess}
     if nodal.singular.any():
         nodes = np.unique(node_of[nodal.singular])
         depth = cKDTree(mesh.points[node_of[~nodal.singular]]).query(mesh.points[nodes])[0].max()
@@ -341,7 +351,9 @@ def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> S
         time=time,
         von_mises=over,
         worst=stress_at(int(judged.argmax())),
-        nearest_yield=stress_at(int((judged / strengths).argmax())) if np.isfinite(strengths).any() else None,
+        nearest_yield=stress_at(int((judged / strengths).argmax()))
+        if np.isfinite(strengths).any() and not nodal.excess
+        else None,
         **singular,
         points=names,
         point_von_mises=von_mises(stress),

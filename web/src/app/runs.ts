@@ -14,7 +14,7 @@ const HIGHEST = 200_000; // pixels
 
 interface Answer {
   motions?: Record<string, { outcome: string; tip?: { size: { max_abs: number } }; loads?: { root_moment: { size: { max_abs: number } }; stress?: { max: number } } }>;
-  comparisons?: { verdict: string; accepted: boolean | null }[];
+  comparisons?: { verdict: string; accepted: boolean | null; criteria?: unknown[] }[];
 }
 
 /** When a run was submitted, month, day and time, as its id has it. */
@@ -180,7 +180,8 @@ export class Runs {
         if (motion.loads?.stress) put(`${name}: stress, MPa`, i, format(1e-6 * motion.loads.stress.max));
       }
       for (const each of answer.comparisons ?? []) {
-        put("accepted", i, each.accepted === null ? "no limits set" : each.accepted ? "yes" : "no");
+        const undecided = each.criteria?.length ? "not decided" : "no limits set";
+        put("accepted", i, each.accepted === null ? undecided : each.accepted ? "yes" : "no");
         put("verdict", i, each.verdict);
       }
     });

@@ -96,9 +96,11 @@ def _together(response: SystemResponse) -> SolidStress:
     """Stress of the worst mesh, with the history of the largest of all bodies; a margin on yield only without beams."""
     solids, beams = response.solids.values(), [beam.loads.stress.max(axis=1) for beam in response.beams.values()]
     worst = max(solids, key=lambda solid: solid.worst.von_mises)
-    near = [solid.nearest_yield for solid in solids if solid.nearest_yield is not None and not beams]
+    known = all(solid.known for solid in solids)
+    near = [solid.nearest_yield for solid in solids if solid.nearest_yield is not None and not beams and known]
     return replace(
         worst,
+        known=known,
         von_mises=np.max([*(solid.von_mises for solid in solids), *beams], axis=0),
         nearest_yield=min(near, key=lambda point: point.margin or math.inf, default=None),
     )

@@ -8,7 +8,7 @@ linearly: its derivatives say nothing of the values between samples.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -17,7 +17,9 @@ from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.arrays.types import Floats, Indices
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.system import System
 from gbeam.results.parts import Extremes, LoadPeaks, Loads, Peaks, VectorPeaks
+from gbeam.results.system import SystemPeaks
 
 FEWEST = 7  # samples that the polynomial without derivatives needs
 _PER_STEP = 8  # subdivisions; the vertex of a parabola through three of them is the peak
@@ -25,6 +27,7 @@ _COUNT = 128  # windows at most per history
 _STRAIGHT = 1e-150  # of a second derivative: less is none
 _SMOOTH = 0.25  # degree 6 may change degree 4 by this share of what that changed degree 2; corners and jumps: 0.35
 _RESOLVED = 0.5  # share of the squared changes that their difference may have; reached at 2.6 steps a period
+_ROUNDING = 1e-16  # of the places: a displacement that is less is none
 _SHARES = np.arange(_PER_STEP + 1) / _PER_STEP
 # Hermite's polynomials of fifth degree there: of value, first and second derivative at either end.
 _QUINTIC = np.stack(
@@ -249,7 +252,9 @@ def _samples(time: Floats, tip: Any, start: int | None) -> Peaks:
     return Peaks(sizes.max(axis=0), times[sizes.argmax(axis=0)], residual, length, when)
 
 
-def load_peaks(loads: Loads, loads_at: Callable[[Indices], Loads | None], time: Floats, stride: int) -> LoadPeaks:
+def load_peaks(
+    loads: Loads, time: Floats, loads_at: Callable[[Indices], Loads | None] | None = None, stride: int = 1
+) -> LoadPeaks:
     """Peaks of loads known at every `stride`-th of the times; `loads_at` computes them at others, near peaks."""
     s = loads.section_force.shape[1]
     table, steps = _table(loads), np.arange(0, len(time), stride)
@@ -260,7 +265,7 @@ def load_peaks(loads: Loads, loads_at: Callable[[Indices], Loads | None], time: 
         return np.concatenate([_sizes(vectors), table[..., 6 * s : 8 * s], np.abs(table[..., 8 * s :])], axis=-1)
 
     chosen = near_maxima(time[steps], measure(table))
-    if stride > 1 and chosen.size:
+    if loads_at is not None and stride > 1 and chosen.size:
         # Beside the samples that may be the largest, the loads are computed at every step.
         near = steps[chosen][:, None] + np.arange(-stride - FEWEST // 2, stride + FEWEST // 2 + 1)
         new = np.setdiff1d(np.clip(near, 0, len(time) - 1), steps)
@@ -293,6 +298,45 @@ def vector_peaks(time: Floats, vectors: Floats) -> tuple[Floats, Floats]:
     sizes = _sizes(vectors[:, None])
     t, between = seven_point(time, vectors, near_maxima(time, sizes))
     return maxima(time, sizes, t, _sizes(between[:, :, None]))
+
+
+def system_peaks(system: System, time: Floats, over_time: Mapping[str, Floats]) -> SystemPeaks:
+    """Peaks of a system between steps, by the histories of its points, coordinates, efforts and the ground's loads."""
+
+    def of_points(vectors: Floats) -> tuple[Floats, Floats]:
+        """Largest lengths (p,) of vectors (t, p, 3), and their times."""
+        peaks = np.reshape([vector_peaks(time, each) for each in np.moveaxis(vectors, 1, 0)], (-1, 2, 4))
+        return peaks[:, 0, 3], peaks[:, 1, 3]
+
+    def of_columns(values: Floats) -> tuple[Floats, Floats]:
+        """Largest values (n,) of histories (t, n), and their times."""
+        each = (column[:, None] for column in values.T)
+        largest = [maxima(time, one, *seven_point(time, one, near_maxima(time, one))) for one in each]
+        value, when = np.reshape(largest, (-1, 2)).T
+        return value, when
+
+    def of_ground(key: str) -> VectorPeaks:
+        value, when = vector_peaks(time, over_time[key])
+        return VectorPeaks(Extremes(value[:3], when[:3]), Extremes(value[3], when[3]))
+
+    place, q = over_time["place"], over_time["q"]
+    distance, when = of_points(place - place[0])
+    lowest, lowest_time = of_columns(-q)
+    return SystemPeaks(
+        system.points,
+        system.coordinates,
+        np.where(distance <= _ROUNDING * np.abs(place).max(initial=0.0), 0.0, distance),
+        when,
+        *of_points(over_time["velocity"]),
+        *of_points(over_time["acceleration"]),
+        -lowest,
+        lowest_time,
+        *of_columns(q),
+        *of_columns(np.abs(over_time["qd"])),
+        *of_columns(np.abs(over_time["effort"])),
+        of_ground("ground_force"),
+        of_ground("ground_moment"),
+    )
 
 
 def half_ranges(time: Floats, values: Any, start: float) -> Any:

@@ -19,7 +19,15 @@ from gbeam.analysis.response.posed import Posed, pose
 from gbeam.analysis.response.problem import problem_of, start_of
 from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.stepping import first_steps, integrated, joined, scheme_of, split, steps_beyond
+from gbeam.analysis.response.stepping import (
+    LOADS_STEPS,
+    first_steps,
+    integrated,
+    joined,
+    scheme_of,
+    split,
+    steps_beyond,
+)
 from gbeam.arrays.namespace import Array, is_jax
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
@@ -202,11 +210,27 @@ def response_of(
 
     (time, q, qd, qdd), over_time, hub, loads = read(entire, slice(None), base)
     frequencies, _ = structure.rest
+    # Peaks are of all steps, of 50,000 at most: among more their neighbourhoods are looked at again. The results' steps
+    # are among those that are looked at.
+    fewest = min(stride, -(-len(trajectory.time) // LOADS_STEPS))
+    looked = next(every for every in range(fewest, stride + 1) if stride % every == 0)
+    felt_at_steps = None
     if loads is not None and not traced:
-        of_flight = load_peaks(loads.during(flight), lambda steps: read(trajectory, steps)[3], trajectory.time, stride)
+        every = loads.during(flight)
+        if looked < stride:
+            (at, *state), base_there, _, at_steps = read(trajectory, slice(None, None, looked))
+            assert at_steps is not None
+            every, (y, yd, ydd) = at_steps, (values[:, beam] for values in state)
+            accelerated = every.acceleration[:, 1:] if structure.sections is not None else accelerations(
+                structure, base_there, y, yd, ydd
+            )  # fmt: skip
+            felt_at_steps = at, accelerated
+        of_flight = load_peaks(every, trajectory.time, lambda steps: read(trajectory, steps)[3], looked)
         peaks = replace(peaks, loads=of_flight)
     if hub is not None and not motion.free and loads is not None and loads.drive_torque is not None:
         hub = replace(hub, drive_torque=loads.drive_torque)
+    if hub is not None and hub.free and not traced:
+        hub = replace(hub, fastest=float(np.abs(trajectory.qd[:, 0]).max()))
     axes = None if traced or motion.kind != "centrifuge" else axes_of(motion, time)
     outcome, message = "done", ""
     straight = structure.source is None or structure.source.beam.line is None
@@ -225,6 +249,13 @@ def response_of(
         span = time[0], time[-1]
         from_inputs = input_warnings(structure, motion, name=name, span=span, base=over_time, rest=frequencies)
         warnings = from_inputs + settings.warnings + from_run + (() if axes is None else axes.warnings)
+    recovered = dict[str, Any]()
+    if settings.loads and not traced:
+        at_all = entire if looked == stride else joined(up, trajectory, down, looked)[0]
+        base_then = over_time if looked == stride else posed.moving(at_all.time, at_all.q, at_all.qd, at_all.qdd)[0]
+        recovered = _recovered(structure, motion, at_all.time, base_then, at_all.q[:, beam], name, peaks)
+        if looked < stride and "solid" in recovered:
+            recovered["solid"] = recovered["solid"].sampled(np.searchsorted(at_all.time, time))
     flown = motion.flight if isinstance(motion, Centrifuge) else motion
     span = settings.start, settings.start + settings.duration
     whole = flown.part_of(*span) if isinstance(flown, Flight) else None
@@ -265,11 +296,8 @@ def response_of(
         whole=whole,
         point_acceleration=felt,
         kept_every=settings.kept_every(len(time), float(time[-1] - time[0]) / max(len(time) - 1, 1)),
-        **(
-            _recovered(structure, motion, time, over_time, q[:, beam], name, peaks)
-            if settings.loads and not traced
-            else {}
-        ),
+        felt_at_steps=felt_at_steps,
+        **recovered,
     )
 
 

@@ -66,8 +66,9 @@ class ResponseSettings(Value):
         Whether what the sections carry, and the outline for pictures, are computed. The estimate is of loads too, and
         an automatic step follows the root's in any case.
     histories : float or None
-        Time between the samples of histories in a file, s, as near as the results' steps allow; None keeps all up to
-        50,000, else every second, third and so on. Peaks, errors and comparisons are of all, and so is xarray.
+        Time between the samples of histories in a file, s, as near as its steps allow; None keeps those of the
+        results' steps, up to 50,000, else every second, third and so on. Peaks are of all steps, and of a system so is
+        xarray.
 
     Raises
     ------
@@ -139,9 +140,11 @@ class ResponseSettings(Value):
             return self
         return replace(self, integrator="gauss" if free and not self.parameters else "newmark")
 
-    def kept_every(self, samples: int, step: float) -> int:
-        """Number n if every n-th of the `samples` of a history, `step` s apart, goes into a file."""
-        wanted = -(-samples // KEPT) if self.histories is None else round(self.histories / step)
+    def kept_every(self, samples: int, step: float, stride: int = 1) -> int:
+        """Number n if every n-th of the `samples` of a history, `step` s apart, goes into a file: those of the results'
+        steps, `stride` of which make one of these, or fewer, unless the settings say how often.
+        """
+        wanted = stride * -(-samples // (stride * KEPT)) if self.histories is None else round(self.histories / step)
         return max(1, wanted)
 
     @property

@@ -13,7 +13,7 @@ import numpy as np
 from gbeam.analysis.accuracy.correction import PLACE, pieces
 from gbeam.analysis.outline import assembly_of, outline_of
 from gbeam.analysis.response.outcome import yielding
-from gbeam.analysis.response.peaks import half_ranges, load_peaks
+from gbeam.analysis.response.peaks import half_ranges, load_peaks, system_peaks
 from gbeam.analysis.response.posed_system import (
     PosedSystem,
     begun_in_words,
@@ -287,19 +287,16 @@ def _turned_over(system: System, run: Trajectory, inputs: Inputs) -> tuple[str, 
 
 
 def _described(run: SystemRun, errors: SystemErrors, name: str, warnings: tuple[str, ...] = ()) -> SystemResponse:
-    """Response at the times of the results; the residual vibration is measured over the flight's times alone."""
+    """Response at all steps; the residual vibration is measured over the flight's times alone."""
     trajectory, stride, system, motion = run.trajectory, run.stride, run.posed.system, run.posed.motion
     settings, flight = run.posed.settings, run.posed.flight
-    time, traced = trajectory.time[::stride], is_jax(trajectory.q)
-    over_time, along = run.histories(slice(None, None, stride), loads=settings.loads)
+    time, traced = trajectory.time, is_jax(trajectory.q)
+    over_time, along = run.histories(slice(None), loads=settings.loads)
     beams, yielded = dict[str, BeamResponse](), []
     for body, loads in along.items():
         beam = beams_of(system)[body]
 
-        def between(steps: Any, body: str = body) -> Loads:
-            return run.histories(steps, loads=True)[1][body]
-
-        peaks = None if traced else load_peaks(loads, between, trajectory.time, stride)
+        peaks = None if traced else load_peaks(loads, time)
         first = system.coordinates.index(f"{body}.q1")
         q = over_time["q"][:, first : first + beam.size]
         names = () if traced or beam.source is None else names_at(beam.source.beam, beam.stations)
@@ -312,10 +309,6 @@ def _described(run: SystemRun, errors: SystemErrors, name: str, warnings: tuple[
     if motion is None:
         invariants = Invariants(*(over_time.pop(key) for key in ("momentum", "angular_momentum", "energy")))
     base: Any = None if motion is None else motion.base(time)
-    loop = run.loop
-    if loop is not None:
-        histories = {key: getattr(loop, key)[::stride] for key in ("measured", "asked", "applied")}
-        loop = replace(loop, **histories)
     outcome, message = "done", ""
     if not trajectory.whole:
         outcome, end = "not converged", trajectory.time[-1]
@@ -352,7 +345,7 @@ def _described(run: SystemRun, errors: SystemErrors, name: str, warnings: tuple[
         coordinates=system.coordinates,
         units=units_of(system),
         invariants=invariants,
-        loop=loop,
+        loop=run.loop,
         beams=beams,
         solids=solids,
         surfaces=surfaces,
@@ -365,7 +358,8 @@ def _described(run: SystemRun, errors: SystemErrors, name: str, warnings: tuple[
         errors=errors,
         residual_from=math.nan if settings.residual_from is None else settings.residual_from,
         residual_amplitude=residual,
-        kept_every=settings.kept_every(len(time), run.step * stride),
+        kept_every=settings.kept_every(len(time), run.step, stride),
+        peaks=None if traced else system_peaks(system, time, over_time),
         initial=begun_in_words(system, settings.begin.state),
         warnings=warnings,
         notes=notes_on({name: motion}),

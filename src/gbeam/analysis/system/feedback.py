@@ -123,6 +123,7 @@ def loop_of(controllers: SystemControllers, sampling: Any, time: Floats) -> Loop
     """Record of the controllers at times (t,) s: samples, commands asked for and commands acting, as held then."""
     start, slack = sampling.steps.begin[0], NEAR * float(sampling.steps.length.min())
     measured, asked, acting, saturated = [], [], [], []
+    largest: list[list[Floats]] = [[], [], []]
     for c, (period, delay) in enumerate(controllers.timing):
         taken = np.floor((time + slack - start) / period).astype(int)
         active = np.floor((time + slack - start - delay) / period).astype(int)
@@ -132,6 +133,8 @@ def loop_of(controllers: SystemControllers, sampling: Any, time: Floats) -> Loop
         measured.append(values[taken])
         asked.append(wanted[taken])
         saturated.append((wanted != commands).mean(axis=0))
+        for sizes, of_samples in zip(largest, (values, wanted, commands), strict=True):
+            sizes.append(abs(of_samples).max(axis=0))
         acting.append(namespace(commands).where(active[:, None] >= 0, commands[last], 0.0))
     xp, units = namespace(*asked), measurable(controllers.system)
     drives = drives_of(controllers.system)
@@ -144,6 +147,9 @@ def loop_of(controllers: SystemControllers, sampling: Any, time: Floats) -> Loop
         asked=xp.concatenate(asked, axis=1),
         applied=xp.concatenate(acting, axis=1),
         saturated=xp.concatenate(saturated),
+        measured_max=xp.concatenate(largest[0]),
+        asked_max=xp.concatenate(largest[1]),
+        applied_max=xp.concatenate(largest[2]),
     )
 
 

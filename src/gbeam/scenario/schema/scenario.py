@@ -170,8 +170,8 @@ class Response(Table):
 
     histories: Step = Field(
         default="auto",
-        description="time between the samples of histories in the result file, such as 10 ms; auto keeps all up to "
-        "50,000 of a motion, else every second, third and so on. Peaks, errors and verdict are of all",
+        description="time between the samples of histories in the result file, such as 10 ms; auto keeps those of the "
+        "results' steps, up to 50,000 of a motion, else every second, third and so on. Peaks are of all steps",
     )
 
     @property

@@ -1,0 +1,79 @@
+"""Edges at which the stress of an elastic solid grows without limit as its mesh gets finer."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gbeam.arrays.types import Flags, Floats, Indices
+from gbeam.solids.elements import Block
+from gbeam.solids.shape_functions import jacobians, reference, shapes_at
+from gbeam.solids.stress import FACES, corners_of, on_face, outer_faces
+
+if TYPE_CHECKING:
+    from gbeam.solids.mesh import SolidMesh
+
+SHARP = np.cos(np.radians(30.0))  # between the normals of two faces; in a fillet's elements they are nearer
+
+
+def without_limit(mesh: SolidMesh) -> Flags:
+    """Flags (k,) of nodes where stress has no limit: on the edges of clamps and rigid links, where its growth is slow,
+    and of the elements at re-entrant edges.
+    """
+    flags, corner = _edges_of_held(mesh), _re_entrant(mesh)
+    for block in mesh.blocks:
+        flags[block.nodes[corner[block.nodes].any(axis=1)]] = True
+    return flags
+
+
+def _edges_of_held(mesh: SolidMesh) -> Flags:
+    """Flags (k,) of nodes that a clamp or a rigid link holds, on outer faces that it does not hold as a whole."""
+    flags = np.zeros(len(mesh.points), dtype=bool)
+    rigid = [nodes for name, nodes in mesh.links.nodes.items() if name not in mesh.links.weights and len(nodes) > 1]
+    for nodes in (np.flatnonzero(mesh.clamped), *rigid):
+        held = np.zeros_like(flags)
+        held[nodes] = True
+        for block, face, elements in outer_faces(mesh):
+            on = block.nodes[elements][:, on_face(block.kind, face)]
+            flags[on[held[on] & ~held[on].all(axis=1, keepdims=True)]] = True
+    return flags
+
+
+def _re_entrant(mesh: SolidMesh) -> Flags:
+    """Flags (k,) of nodes on edges that two outer faces meet at from outside, at an angle that no fillet has."""
+    parts = [_edges_of_faces(mesh, *each) for each in outer_faces(mesh)]
+    ends, normals, centres = (np.concatenate(part) for part in zip(*parts, strict=True))
+    order = np.argsort(ends[:, 0] * len(mesh.points) + ends[:, 1], kind="stable")
+    ends, normals, centres = ends[order], normals[order], centres[order]
+    _, first, faces = np.unique(ends[:, :2], axis=0, return_index=True, return_counts=True)
+    one, other = (first[faces == 2] + k for k in (0, 1))
+    sharp = (normals[one] * normals[other]).sum(axis=2).max(axis=1) < SHARP
+    away = centres[other] - mesh.points[ends[one, :2]].mean(axis=1)
+    met = one[sharp & ((away * normals[one].mean(axis=1)).sum(axis=1) > 0)]
+    flags = np.zeros(len(mesh.points), dtype=bool)
+    flags[ends[met]] = True
+    return flags
+
+
+def _edges_of_faces(mesh: SolidMesh, block: Block, face: int, elements: Indices) -> tuple[Indices, Floats, Floats]:
+    """Edges of one face of some elements: nodes (m, 3) at its ends, ascending, and in its middle, or again at an end;
+    outward normals at both ends (m, 2, 3), and the middle of the face (m, 3).
+    """
+    on, places = on_face(block.kind, face), reference(block.kind)
+    count = len(FACES[corners_of(block.kind)][face])
+    corners = on[:count]
+    normal = np.cross(places[corners[1]] - places[corners[0]], places[corners[2]] - places[corners[0]])
+    normal *= np.sign(normal @ (places[corners[0]] - places[: corners_of(block.kind)].mean(axis=0)))
+    nodes = block.nodes[elements]
+    maps = jacobians(mesh.points, nodes, shapes_at(block.kind, places[corners])[1])
+    normals = np.einsum("c,eqcd->eqd", normal, np.linalg.inv(maps))
+    normals /= np.linalg.norm(normals, axis=2, keepdims=True)
+    start, end = np.arange(count), np.roll(np.arange(count), -1)
+    middles = on[count : 2 * count] if len(on) >= 2 * count else corners
+    ends = np.stack([nodes[:, corners[start]], nodes[:, corners[end]]], axis=2).reshape(-1, 2)
+    of_ends = np.stack([normals[:, start], normals[:, end]], axis=2).reshape(-1, 2, 3)
+    order = np.argsort(ends, axis=1)
+    edges = np.concatenate([np.take_along_axis(ends, order, axis=1), nodes[:, middles].reshape(-1, 1)], axis=1)
+    centres = np.repeat(mesh.points[nodes[:, corners]].mean(axis=1), count, axis=0)
+    return edges, np.take_along_axis(of_ends, order[..., None], axis=1), centres
