@@ -20,6 +20,7 @@ _COUNT = 128  # windows at most per history
 _STRAIGHT = 1e-150  # of a second derivative: less is none
 _SMOOTH = 0.25  # degree 6 may change degree 4 by this share of what that changed degree 2; corners and jumps: 0.35
 _RESOLVED = 0.5  # share of the squared changes that their difference may have; reached at 2.6 steps a period
+_WIDE = 6  # columns of a history
 _SHARES = np.arange(_PER_STEP + 1) / _PER_STEP
 # Hermite's polynomials of fifth degree there: of value, first and second derivative at either end.
 _QUINTIC = np.stack(
@@ -195,3 +196,28 @@ def sizes(vectors: Floats) -> Floats:
     length = np.sqrt((vectors**2).sum(axis=-1, keepdims=True))
     columns = np.concatenate([np.abs(vectors), length], axis=-1)
     return columns.reshape(*columns.shape[:-2], 4 * vectors.shape[-2])
+
+
+def extremes(time: Floats, values: Floats) -> Floats:
+    """Highest values (k,) between the samples of a history (t,); or the highest and lowest of columns (t, c), and the
+    largest length of a row.
+    """
+    if values.ndim == 1:
+        columns = values[:, None]
+    else:
+        columns = np.concatenate([values, -values, np.sqrt((values**2).sum(axis=1, keepdims=True))], axis=1)
+    highest = []
+    for column in columns.T:
+        one = column[:, None]
+        highest.append(maxima(time, one, *seven_point(time, one, near_maxima(time, one)))[0][0])
+    return np.array(highest)
+
+
+def peaks_apart(time: Floats, values: Floats, others: Floats) -> float:
+    """Largest difference of the highest and lowest values of two histories (t,) or (t, c), whenever each is reached; of
+    more columns than vectors have, those alone that reach half of the largest.
+    """
+    if values.ndim > 1 and values.shape[1] > _WIDE:
+        most = np.abs(values).max(axis=0)
+        values, others = (each[:, most >= most.max() / 2] for each in (values, others))
+    return float(np.abs(extremes(time, values) - extremes(time, others)).max())

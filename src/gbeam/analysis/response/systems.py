@@ -132,10 +132,13 @@ class SystemRun(Run):
         if settings.estimate and self.whole:
             tell(progress, say, 0.0)
             by_step = {(body, load): math.nan for body in judged_bodies(posed.system) for load in LOADS}
+            peaks_by_step = dict(zip(by_step, errors.peaks, strict=False))
             by_step |= {PLACE: errors.displacement, **dict(zip(by_step, errors.each, strict=False))}
             starting = partial(unknown_at_start, initial=settings.begin.state)
             rerun = again if posed.system.controllers else None
-            stated = system_errors(self.every(self.stride), rerun, by_step, starting=starting)
+            stated = system_errors(
+                self.every(self.stride), rerun, by_step, peaks_by_step=peaks_by_step, starting=starting
+            )
             if rerun is not None:
                 from gbeam.analysis.steady.loop_errors import unstable_with_more  # takes SciPy's linear algebra
 
@@ -158,7 +161,8 @@ class SystemRun(Run):
         if not beams or not self.posed.settings.estimate:
             return []
         values = self.every(stride).read(beams)
-        return [values[name, load] for name in beams for load in LOADS]
+        # A largest stress (t,) is a column, as a vector is a row.
+        return [values[name, load].reshape(len(values[PLACE]), -1) for name in beams for load in LOADS]
 
     @cached_property
     def loop(self) -> Loop | None:
