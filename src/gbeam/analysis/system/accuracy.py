@@ -141,7 +141,7 @@ def doubts(errors: SystemErrors, tolerance: float) -> tuple[str, ...]:
             continue
         share = percent(np.nanmax([error.total, error.step]))
         if not math.isnan(error.peak):
-            size += f" at an instant, and {percent(error.peak)} where that is reached"
+            size += f" at an instant, and in the peak by {percent(error.peak)}"
         if error.step == np.nanmax(parts):
             warnings.append(f"{what} wrong by an estimated {share} of {size}: {STEPS}")
             continue
